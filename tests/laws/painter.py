@@ -275,11 +275,13 @@ def paint(rng, brush, strokes, faults, regions=None):
     return sheet
 
 
-def swept(brush, strokes, height, vertices=33, lasts=None, narrows_per_m=0.0):
+def swept(brush, strokes, height, vertices=33, lasts=None, narrows_per_m=0.0, share=None):
     """For each stroke the region that the brush paints on paper of this height; None where it does not reach it.
 
     lasts: of each stroke after how much way its paint begins to run out; narrows_per_m: of the width, from the first
-    stroke to the last, which are painted with one load."""
+    stroke to the last, which are painted with one load; share: of the width, ways since then (n,) -> (n,), by another
+    law."""
+    share = share or (lambda way: np.exp(-narrows_per_m * way / 1000))
     count = max(POSES, *(len(poses) + 4 for _, poses in strokes))
     plans = np.array([_stepped(poses, height, count) for _, poses in strokes])
     laws = [brush.law("lag")] * len(strokes)
@@ -291,7 +293,7 @@ def swept(brush, strokes, height, vertices=33, lasts=None, narrows_per_m=0.0):
     ways = [float(np.hypot(*np.diff(poses[:, :2], axis=0).T).sum()) for _, poses in strokes]
     before = np.cumsum([0.0, *ways])
     return [
-        _painted(brush, plan, contact, vertices, left, narrows_per_m, come)
+        _painted(brush, plan, contact, vertices, left, lambda way, come=come: share(come + way))
         if _down(plan, contact).any()
         else None
         for plan, contact, left, come in zip(plans, contacts, lasts, before, strict=False)
@@ -336,7 +338,7 @@ def _united(regions):
         return shapely.union_all(regions, grid_size=1e-7)
 
 
-def _painted(brush, plan, contact, vertices, lasts=np.inf, narrows_per_m=0.0, before=0.0):
+def _painted(brush, plan, contact, vertices, lasts=np.inf, share=np.ones_like):
     down = _down(plan, contact)
     tcp, contact, depth = plan[down, :2], contact[down], -plan[down, 2]
     lever = tcp - contact
@@ -360,10 +362,7 @@ def _painted(brush, plan, contact, vertices, lasts=np.inf, narrows_per_m=0.0, be
     )
     shapes = brush.shape(depth) if brush.shape else np.maximum(half, 1e-6)[:, None, None] * unit
     come = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(tcp, axis=0).T))])
-    shapes = (
-        shapes
-        * np.stack([np.ones(len(come)), np.exp(-narrows_per_m * (before + come) / 1000)], axis=1)[:, None]
-    )
+    shapes = shapes * np.stack([np.ones(len(come)), share(come)], axis=1)[:, None]
     outlines = []
     for p, axis, b, shape in zip(contact, u, gap, shapes, strict=True):
         outlines.append(p - b * axis + shape @ np.array([axis, [-axis[1], axis[0]]]))

@@ -13,9 +13,12 @@ core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
+from brushsvg.brush.confidence import law_band  # noqa: E402
+from brushsvg.calibration.chart.layout import chart  # noqa: E402
 from brushsvg.calibration.from_file import calibrate  # noqa: E402
-from brushsvg.calibration.from_marks import calibrate_marks, height_at  # noqa: E402
+from brushsvg.calibration.from_marks import brush_of, calibrate_marks, expected_marks, height_at  # noqa: E402
 from brushsvg.calibration.mark_input import read_painted  # noqa: E402
+from brushsvg.calibration.paint_found import expected_paint  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
 
 pytestmark = pytest.mark.long
@@ -62,6 +65,54 @@ def test_the_rate_and_the_freshly_dipped_brush_come_back(seed, rate, mixed):
         for each in (made.covariance, made.fit.covariance)
     )
     assert known > 1.3 * alone, "what the rate leaves open is in the laws' intervals"
+
+
+@cache
+def chart_sheet(seed, law):
+    """Of a chart made for one load: the brush, what the chart told beforehand, what calibrates, and the way in mm."""
+    rng = np.random.default_rng(1000 + seed)
+    brush = painter.random_brush(rng)
+    laws = core.MarkLaws(
+        brush.lag.tolist(),
+        brush.tip_gap.tolist(),
+        brush.half_width.tolist(),
+        brush.widest_per_half,
+        brush.front_per_half,
+    )
+    known = brush_of(laws, "b", (0.0, round(brush.deepest, 2)))
+    made = chart(known, (210.0, 297.0), "few", one_load=True)
+    told = expected_paint(made.plan, known, 0.1, expected_marks(made.plan, known))
+    strokes = [(one.stroke, np.array(one.poses_mm)) for one in made.plan.passes]
+
+    def regions(brush, strokes, height):
+        return painter.swept(brush, strokes, height, share=lambda way: law(way, told.way_mm))
+
+    sheet = painter.paint(rng, brush, strokes, painter.Faults(), regions)
+    marks = [{"stroke": name, "outline_mm": [r.tolist() for r in rings]} for name, _, rings in sheet.marks]
+    plan = json.loads(core.write_plan(made.plan))
+    return brush, told, calibrate({"plan": plan, "marks": marks}, "b", paint=True)
+
+
+def rate_of(made):
+    paint = made.brush.paint
+    return paint.narrows_per_m, core.deviations_of_95(paint.degrees_of_freedom) * np.sqrt(
+        paint.covariance[0][0]
+    )
+
+
+@pytest.mark.parametrize(("seed", "rate"), [(0, 0.7), (3, 0.25), (3, 0.0)])
+def test_a_chart_for_one_load_tells_laws_and_paint_at_once(seed, rate):
+    brush, told, made = chart_sheet(seed, lambda way, _: np.exp(-rate * way / 1000))
+    found, half = rate_of(made)
+    assert told.told_by_depth < 0.3
+    assert abs(found - rate) < half < 0.06
+    assert 0.4 < half / told.half_per_m < 2.5, "as the chart told"
+    depths = np.linspace(0.2, 1.0, 5) * brush.deepest
+    for law in ("lag", "half_width"):
+        half = law_band(made.brush, law, depths)[0]
+        off = np.array([getattr(made.brush, law)(d) - brush.law(law)(d) for d in depths])
+        assert (np.abs(off) < 1.5 * half).all(), (law, off, half)
+        assert half[-1] < 0.05 * brush.law(law)(brush.deepest)
 
 
 def test_paint_that_does_not_run_out_is_not_said_to():

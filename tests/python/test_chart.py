@@ -3,8 +3,10 @@
 import functools
 import itertools
 import json
+import math
 import re
 import sys
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -21,7 +23,9 @@ from brushsvg.calibration.chart.page import TEXT_MM, chart_page, chart_pdf
 from brushsvg.calibration.from_widths import new_brush
 from brushsvg.cli import main
 from brushsvg.errors import Error
+from brushsvg.machine.cell import Reload, Station
 from brushsvg.machine.cell_file import cell_names, find_cell
+from brushsvg.machine.paint_reload import in_loads, visits
 from brushsvg.machine.posts import POSTS
 from brushsvg.strokes.contour_fill import region
 
@@ -392,6 +396,71 @@ def test_no_depth_is_rounded_beyond_the_brush(deepest):
 def test_a_sheet_without_room_for_its_markers_is_refused(sheet, tmp_path, capsys):
     status, _, ((_, told),) = in_json(capsys, "chart", tmp_path / "c.json", "--sheet", sheet)
     assert status == 1 and agrees(told, "sheet-too-small markers"), told
+
+
+@pytest.mark.parametrize("sheet", [A5, A4, (420.0, 594.0)], ids=["a5", "a4", "a2"])
+def test_one_load_is_painted_in_an_order_that_tells_depth_from_way(sheet):
+    """The same strokes in the same places; how far the tool came hardly says how deep it is."""
+    brush = find_brush("round-6")
+    usual, made = chart(brush, sheet), chart(brush, sheet, one_load=True)
+
+    def places(of):
+        return {one.stroke: np.asarray(one.poses_mm).tolist() for one in of.plan.passes}
+
+    def told(of):
+        """Of the way's variance by a parabola of depth, at points every 1 mm."""
+        come, way, depth = 0.0, [], []
+        for one, stroke in zip(of.plan.passes, of.strokes, strict=True):
+            assert one.stroke == stroke.id
+            length = float(np.hypot(*np.diff(np.asarray(one.poses_mm)[:, :2], axis=0).T).sum())
+            way += list(come + np.arange(0.0, length))
+            depth += [stroke.depth_mm] * math.ceil(length)
+            come += length
+        left = way - np.polyval(np.polyfit(depth, way, 2), depth)
+        return 1 - left.var() / np.var(way)
+
+    assert places(usual) == places(made)
+    assert usual.labels[:-1] == made.labels[:-1], "the page is the same, but for the chart's id"
+    assert usual.id != made.id
+    assert told(usual) > 0.6 and told(made) < 0.1
+    assert {one.settings.reload for one in made.plan.passes} == {False}
+
+
+def test_one_load_is_fetched_once():
+    """By a cell that otherwise fetches paint before every stroke."""
+    stations = (Station("any", (-20.0, 10.0), depth_mm=7.0),)
+    cell = replace(find_cell(), reload=Reload("stroke"), stations=stations)
+    made = chart(find_brush("round-6"), A5, one_load=True)
+    fetched = [bool(each) for each in visits(in_loads(made.plan, find_brush("round-6"), cell), cell)]
+    assert fetched[0] and not any(fetched[1:]) and len(fetched) == len(made.strokes)
+
+
+@pytest.mark.slow
+def test_it_says_how_sure_the_paint_will_be(tmp_path, capsys):
+    def told(*flags):
+        assert main(["chart", str(tmp_path / "p.json"), "--sheet", "a5", *flags]) == 0
+        return capsys.readouterr().out
+
+    assert int(re.search(r"depth tells (\d+) %", told()).group(1)) > 55
+    halves = []
+    for noise in ("0.1", "0.2"):
+        found = re.search(
+            r"narrowing per metre \+- ([\d.]+); depth tells (\d+) %.* last for (\d+) mm",
+            told("--paint", "--noise", noise),
+        )
+        half, share, way = map(float, found.groups())
+        assert share < 30
+        ways = [np.asarray(one.poses_mm)[:, :2] for one in small_chart().plan.passes]
+        assert way == pytest.approx(sum(np.hypot(*np.diff(each, axis=0).T).sum() for each in ways), abs=1)
+        halves.append(half)
+    assert halves[1] == pytest.approx(2 * halves[0], rel=0.1)
+
+
+def test_dabs_do_not_tell_paint(tmp_path, capsys):
+    assert main(["chart", str(tmp_path / "p.json"), "--dabs", "--paint"]) == 2
+    assert "--paint is for strokes" in capsys.readouterr().err
+    with refused("options-contradict"):
+        chart(find_brush("round-6"), A5, dabs=True, one_load=True)
 
 
 def test_same_chart_each_time():

@@ -299,7 +299,7 @@ def expected_brush(
     painted: expected_marks(plan, brush), where it is at hand.
     """
     painted = painted or expected_marks(plan, brush)
-    fit = _expected_fit(painted, plan, brush, noise_mm, noise_length_mm, options or _core.MarkOptions())
+    fit = expected_fit(painted, plan, brush, noise_mm, noise_length_mm, options or _core.MarkOptions())
     return brush_of(fit.laws, brush.name, brush.depth_range_mm, np.array(fit.covariance)), fit.remarks
 
 
@@ -314,7 +314,7 @@ def expected_machine(
     options = _core.MarkOptions()
     ask_for(options, parts)
     painted = painted or expected_marks(plan, brush)
-    fit = _expected_fit(painted, plan, brush, noise_mm, 1.0, options)
+    fit = expected_fit(painted, plan, brush, noise_mm, 1.0, options)
     return numbers(fit, np.array(fit.covariance), options)
 
 
@@ -335,7 +335,8 @@ def expected_marks(plan: _core.Plan, brush: _core.Brush) -> list[_core.PaintedMa
     return painted
 
 
-def _expected_fit(painted, plan, brush, noise_mm: float, noise_length_mm: float, options):
+def expected_fit(painted, plan, brush, noise_mm: float, noise_length_mm: float, options) -> _core.MarkFit:
+    """The fit of such marks with edges so uncertain. options: depths and numbers per law are set here."""
     options.deepest_mm = brush.depth_range_mm[1]
     depths = max(1, depths_painted([np.array(one.poses_mm) for one in plan.passes]))
     options.lag_terms = min(LAG_TERMS, depths)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -86,9 +86,14 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
             for stroke, poses, rings in sorted(found, key=lambda one: painted_as[one[0]])
         ]
     )
-    ways = [polylines.length(np.array(one.poses_mm)[:, :2]) for one in passes.values()]
-    before = np.cumsum([0.0, *ways])[:-1].tolist()
-    return replace(whole, before_mm=dict(zip(passes, before, strict=True)))
+    return replace(whole, before_mm=ways_before_mm(passes.values()))
+
+
+def ways_before_mm(passes: Iterable[_core.Pass]) -> dict[str, float]:
+    """By stroke the way of the TCP on the paper along all passes before it."""
+    ways = {one.stroke: polylines.length(np.array(one.poses_mm)[:, :2]) for one in passes}
+    before = np.cumsum([0.0, *ways.values()])[:-1].tolist()
+    return dict(zip(ways, before, strict=True))
 
 
 def painted_of(marks: list) -> Painted:

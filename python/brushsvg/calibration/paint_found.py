@@ -10,15 +10,19 @@ from .. import _core
 from ..errors import Error
 from ..geometry.polylines import lengths
 from ..geometry.rotation import rotation
-from .from_marks import MarkCalibration, calibrate_marks, simulated
-from .mark_input import Painted
+from .from_marks import MarkCalibration, brush_of, calibrate_marks, expected_fit, simulated
+from .mark_input import Painted, painted_of, ways_before_mm
 
 ROUNDS = 8
 SETTLED = 0.3  # of the standard deviation: added in squares 4 % of it; fits of like marks differ by up to 0.2
-LEAST_OWN = 0.1  # of the way's say that depth may not take: with less its interval is three times as wide
+# Of how the way grows, what depth may not tell: with less its interval is 1.5 times as wide, and a width law that is
+# not of the family passes for paint
+LEAST_OWN = 0.45
 OUTLYING = 4.0  # standard deviations of the edges
 ACROSS = (0.5, 1.5)  # half widths from the middle: flanks, not what ends and crossings paint
 STEP_MM = 0.5
+APART = 3.0  # standard deviations between two rates that tell what the fit takes of a rate
+LEAST_KEPT = 0.2
 FEWEST = 3  # marks more than there are numbers to find
 
 
@@ -31,10 +35,11 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
     laws hold what the other number leaves open. Error where the way grows with the depth so that narrower and
     shallower marks are alike, where marks get wider, and where the number does not settle.
     """
-    rate, fresh = 0.0, painted
+    rate, fresh, tried = 0.0, painted, []
     for _ in range(ROUNDS):
         made = calibrate_marks(fresh, name, *args, **kwargs)
         change, sigma, freedom = _left(made)
+        tried.append((rate, change))
         rate += change
         fresh = freshly_dipped(painted, made, rate)
         if abs(change) < SETTLED * sigma:
@@ -42,6 +47,11 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
     else:
         sentence = f"how marks narrow does not settle, the last change was {change:.2g} per metre"
         raise Error(sentence, "paint", change, code="paint-undetermined")
+    if abs(tried[-1][0] - tried[0][0]) < APART * sigma:
+        other = tried[-1][0] + APART * sigma
+        off = calibrate_marks(freshly_dipped(painted, made, other), name, *args, **kwargs)
+        tried = [(other, _left(off)[0]), tried[-1]]
+    sigma /= _kept(tried[0], tried[-1])
     half = _core.deviations_of_95(freedom) * sigma
     if rate + half < 0:
         raise Error(
@@ -60,6 +70,12 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
         degrees_of_freedom=freedom,
     )
     return replace(made, painted=replace(made.painted, before_mm=painted.before_mm))
+
+
+def _kept(one: tuple[float, float], other: tuple[float, float]) -> float:
+    """Of a rate that is off, the share that the fit leaves in the edges' residuals, by two rates and what each left;
+    the rest goes into its laws."""
+    return float(np.clip((one[1] - other[1]) / (other[0] - one[0]), LEAST_KEPT, 1.0))
 
 
 def freshly_dipped(painted: Painted, made: MarkCalibration, rate_per_m: float) -> list:
@@ -128,12 +144,69 @@ class Sides:
         return Beside(self.depth_mm[row], self.ways_mm[row], across, normal, ends)
 
 
-def _left(made: MarkCalibration) -> tuple[float, float, float]:
-    """By how much the rate is off that the marks were made fresh with, per metre, by the edges' residuals: its standard
-    deviation, by how marks differ from each other, and marks beyond what is found."""
+@dataclass(frozen=True)
+class Expected:
+    """What marks will say of how they narrow: half the 95 % interval of the rate per metre, the share of how the way
+    grows that the depth tells, and the way in mm that one load has to last."""
+
+    half_per_m: float
+    told_by_depth: float
+    way_mm: float
+
+    @property
+    def is_refused(self) -> bool:
+        return 1 - self.told_by_depth < LEAST_OWN
+
+
+def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painted: list) -> Expected:
+    """Of a plan painted with one load, before anyone paints it; painted: expected_marks(plan, brush)."""
+    options = _core.MarkOptions()
+    fit = expected_fit(painted, plan, brush, noise_mm, 1.0, options)
+    told = replace(painted_of(painted), before_mm=ways_before_mm(plan.passes))
+    made = MarkCalibration(brush_of(fit.laws, brush.name, brush.depth_range_mm), fit, told, options)
+    flanks = _flanks(made)
+    own = flanks.own()
+    kept = np.exp(-options.spacing_mm / 1.0)  # points beside each other know of each other, over 1 mm
+    sigma = noise_mm * np.sqrt((1 + kept) / (1 - kept) / float(own @ own))
+    half = _core.deviations_of_95(flanks.freedom) * sigma
+    last_mm = max(told.before_mm[mark.stroke] + _lengths(mark)[-1] for mark in told.marks)
+    return Expected(float(half), flanks.told_by_depth(), float(last_mm))
+
+
+@dataclass(frozen=True)
+class Flanks:
+    """Points of the edges beside the middle line, row by row: by how much a narrowing of 1 per metre moves the edge
+    out, the half width, powers of the depth, how far off the edge is (all mm), and of which mark the point is."""
+
+    moved: np.ndarray
+    half_mm: np.ndarray
+    powers: np.ndarray
+    off_mm: np.ndarray
+    of_mark: np.ndarray
+
+    @property
+    def freedom(self) -> float:
+        return float(len(np.unique(self.of_mark)) - self.powers.shape[1] - 1)
+
+    def own(self) -> np.ndarray:
+        """What of moved no width law and no height of the paper does."""
+        return beside_powers(self.moved, self.powers)
+
+    def told_by_depth(self) -> float:
+        """Of how moved differs from what one way for all points would make of it."""
+        way = float(self.moved @ self.half_mm) / float(self.half_mm @ self.half_mm)
+        about, own = self.moved - way * self.half_mm, self.own()
+        return 1 - float(own @ own) / max(float(about @ about), 1e-12)
+
+
+def beside_powers(values: np.ndarray, powers: np.ndarray) -> np.ndarray:
+    return values - powers @ np.linalg.lstsq(powers, values, rcond=None)[0]
+
+
+def _flanks(made: MarkCalibration) -> Flanks:
     brush, traces = simulated(made, made.painted.marks)
     astray = {each.mark.stroke for each in made.strays}
-    rows, off, of_mark = [], [], []
+    found = []
     for number, (miss, trace) in enumerate(zip(made.fit.marks, traces, strict=True)):
         if trace.stroke in astray or miss.outlier:
             continue
@@ -145,36 +218,42 @@ def _left(made: MarkCalibration) -> tuple[float, float, float]:
         told = (share > ACROSS[0]) & (share < ACROSS[1]) & (at.ends_mm > long)
         told &= np.abs(distance) < OUTLYING * made.fit.noise_mm
         powers = at.depth_mm[:, None] ** np.arange(3 if made.painted.depths > 1 else 1)
-        rows.append(np.column_stack([-1e-3 * half * at.way_mm, powers])[told])
-        off.append(distance[told])
-        of_mark += [number] * int(told.sum())
-    if len(set(of_mark)) < FEWEST + 4:
-        sentence = f"{len(set(of_mark))} marks show their flanks, at least {FEWEST + 4} are needed"
+        rows = np.column_stack([-1e-3 * half * at.way_mm, half, distance, np.full(len(half), number), powers])
+        found.append(rows[told])
+    rows = np.vstack(found) if found else np.empty((0, 5))
+    marks = len(np.unique(rows[:, 3]))
+    if marks < FEWEST + 4:
+        sentence = f"{marks} marks show their flanks, at least {FEWEST + 4} are needed"
         raise Error(sentence, "paint", code="paint-undetermined")
-    return _regression(np.vstack(rows), np.concatenate(off), np.array(of_mark))
+    return Flanks(rows[:, 0], rows[:, 1], rows[:, 4:], rows[:, 2], rows[:, 3])
 
 
-def _regression(rows: np.ndarray, off: np.ndarray, of_mark: np.ndarray) -> tuple[float, float, float]:
-    """Least squares of the first column beside the others; its standard deviation by whole marks, whose points know of
-    each other."""
-    others = rows[:, 1:]
-    own = rows[:, 0] - others @ np.linalg.lstsq(others, rows[:, 0], rcond=None)[0]
-    about = rows[:, 0] - rows[:, 0].mean()
-    left = float(own @ own) / max(float(about @ about), 1e-12)
-    if left < LEAST_OWN:
+def _left(made: MarkCalibration) -> tuple[float, float, float]:
+    """By how much the rate is off that the marks were made fresh with, per metre, by the edges' residuals: least
+    squares of what narrowing moves beside powers of the depth; its standard deviation by whole marks, whose points
+    know of each other, each as far off as its residuals say times what the rate is without it: the residuals of the few
+    that decide are smaller than their errors (HC2 of MacKinnon and White, 1985, by marks); and marks beyond what is
+    found."""
+    flanks = _flanks(made)
+    told = flanks.told_by_depth()
+    if 1 - told < LEAST_OWN:
         raise Error(
-            f"{100 * (1 - left):.0f} % of how the way since the dip grows is told by the depth alone, so narrower and "
-            "shallower marks are alike: paint strokes of one depth early and late",
+            f"{100 * told:.0f} % of how the way since the dip grows is told by the depth alone, so narrower and "
+            "shallower marks are alike: paint strokes of one depth early and late, as `brushsvg chart --paint` does",
             "paint",
             code="paint-undetermined",
         )
-    rate = float(own @ off) / float(own @ own)
-    beside = off - others @ np.linalg.lstsq(others, off, rcond=None)[0] - rate * own
-    marks = np.unique(of_mark)
-    sums = np.array([float((own * beside)[of_mark == mark].sum()) for mark in marks])
-    freedom = float(len(marks) - rows.shape[1])
-    variance = float(sums @ sums) * len(marks) / freedom / float(own @ own) ** 2
-    return rate, float(np.sqrt(variance)), freedom
+    columns, own = np.column_stack([flanks.moved, flanks.powers]), flanks.own()
+    rate = _first_number(columns, flanks.off_mm)
+    beside = beside_powers(flanks.off_mm, flanks.powers) - rate * own
+    marks = [flanks.of_mark == one for one in np.unique(flanks.of_mark)]
+    says = np.array([float((own * beside)[mark].sum()) for mark in marks]) / float(own @ own)
+    without = np.array([_first_number(columns[~mark], flanks.off_mm[~mark]) for mark in marks])
+    return rate, float(np.sqrt(max(says @ (rate - without), 0.0))), flanks.freedom
+
+
+def _first_number(columns: np.ndarray, values: np.ndarray) -> float:
+    return float(np.linalg.lstsq(columns, values, rcond=None)[0][0])
 
 
 def _lengths(mark) -> np.ndarray:

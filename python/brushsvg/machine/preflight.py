@@ -15,6 +15,7 @@ from .distortion import true_pass
 from .paint_reload import PlanInLoads
 from .program import POSES_AT_ONCE, WHOLE_JOB, Job, Walked, out_of_arm, walked
 from .rounding import as_written
+from .tool_axes import mixed
 from .workspace_limits import beyond_edges
 
 DEFAULT_TOLERANCE_MM = 0.05
@@ -140,7 +141,8 @@ ROWS_MM = 0.02  # rows of a mark are as close as that: a coarse tolerance is no 
 def _as_told(a_pass, cell: Cell):
     """With the poses and circles that a program has, not rounded."""
     written = as_written(a_pass, cell, robot_from_paper(cell))
-    told = _core.Pass(a_pass.stroke, written.told_mm, a_pass.speed_mm_s, arcs=written.arcs)
+    axes = np.zeros((0, 3)) if written.axes is None else written.axes
+    told = _core.Pass(a_pass.stroke, written.told_mm, a_pass.speed_mm_s, arcs=written.arcs, tool_axes=axes)
     return true_pass(told, cell)
 
 
@@ -178,8 +180,11 @@ def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[t
             _core.Arc(rows[arc.first, 1], rows[arc.last, 0], arc.centre_mm, arc.direction)
             for arc in a_pass.arcs
         ]
-        run = _core.Pass(a_pass.stroke, path[first:last], a_pass.speed_mm_s, arcs=arcs)
-        runs.append((run, at[first:last] - start))
+        rows_at, axes = at[first:last] - start, np.asarray(a_pass.tool_axes)
+        if len(axes):  # turned on along with the cut as with its moves
+            axes = mixed(axes, rows_at)
+        run = _core.Pass(a_pass.stroke, path[first:last], a_pass.speed_mm_s, arcs=arcs, tool_axes=axes)
+        runs.append((run, rows_at))
     return runs
 
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from contextlib import suppress
 
 from .. import _core
-from ..errors import Error
 from ..machine.cell import Cell
-from ..machine.paint_reload import dips_mm, in_loads
+from ..machine.paint_reload import fetched_mm
 from .preparation import Work
 
 
@@ -29,20 +27,13 @@ def marks_of(
     cell: Cell | None = None,
 ) -> _core.Marks:
     """The marks of any plan. cell: where it fetches paint, of a brush whose marks narrow until then; where none does
-    every stroke is taken to begin freshly dipped."""
+    every stroke is taken to begin freshly dipped, but those that are to be painted without (`reload`)."""
     marks = _core.simulate(plan, brush, progress=_counted(stage, "simulated"))
     if brush.paint:
-        _core.narrow(marks, brush.paint, _dips_mm(plan, brush, cell))
+        _core.narrow(marks, brush.paint, fetched_mm(plan, brush, cell))
     if not outlines:
         return marks
     return outlined(marks, brush, stage) if whole else _outlined_apart(marks, brush, stage)
-
-
-def _dips_mm(plan, brush, cell) -> list[list[float]]:
-    if cell:
-        with suppress(Error):  # a colour that no station serves is told where a program is made
-            return dips_mm(plan.passes, in_loads(plan, brush, cell), cell)
-    return [[0.0] for _ in plan.passes]
 
 
 def outlined(

@@ -16,11 +16,12 @@ from ..drawing import layout
 from ..drawing.design import Design, Notice
 from ..errors import Error
 from ..machine.cell import LEAST_SPEED_MM_S, Cell
-from ..machine.paint_reload import PlanInLoads, in_loads, is_later_part
+from ..machine.paint_reload import PlanInLoads, fetched_mm, in_loads, is_later_part
 from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look, off_sheet
 from ..machine.program import Job, Walked, walked
 from ..painted.corrections import Correction, beside_machine, corrected
 from ..planning import travel_order
+from ..planning.paint_running_out import pressed_deeper
 from ..planning.refinement import refined
 from ..strokes.corners import lifted_at_corners
 from ..strokes.extraction import strokes as strokes_of
@@ -140,9 +141,24 @@ def prepare(
         fitting, walk = _begun_within_reach(painted, brush, done.plan, compensated, options)
         if fitting is not painted:
             painted, done = fitting, compensated(fitting)
+    asked = strokes
+    if brush.paint and brush.width_follows_depth() and options.compensation in ("closed", "refined"):
+        cell = options.cell
+        lowest_mm = cell.heights.lowest_mm if cell else -np.inf
+        pressed = pressed_deeper(
+            painted,
+            strokes,
+            brush,
+            done,
+            compensated,
+            lambda plan: fetched_mm(plan, brush, cell),
+            lowest_mm,
+        )
+        painted, asked, done = pressed.painted, pressed.wanted, pressed.done
+        notices += pressed.told
     plan, tracking_errors, moved = done.plan, done.misses, [False] * len(painted)
     if options.compensation == "refined":
-        better = refined(painted, strokes, brush, done, compensated, _forbidden(brush, options))
+        better = refined(painted, asked, brush, done, compensated, _forbidden(brush, options))
         plan.passes, tracking_errors, moved = better.passes, better.tracking_errors, better.moved
         notices += [told] if (told := better.nothing_moved()) else []
     plan = _at_speed(_with_speeds(plan, strokes), options)
@@ -158,7 +174,7 @@ def prepare(
         bare = left_blank(bare, painted, traces, brush)
         blank = missed(planned, painted, traces, bare, brush)
     notices += blank_notices(bare)
-    astray = _astray(painted, strokes, plan, tracking_errors, moved, brush, options)
+    astray = _astray(painted, asked, plan, tracking_errors, moved, brush, options)
     if leads:
         notices += blank_notices(blank, is_reached=True) + astray
     return Work(

@@ -14,6 +14,7 @@ from ..machine.as_run import as_run
 from ..machine.backlash import from_air_mm
 from ..machine.cell import Machine
 from ..machine.distortion import told_mm
+from ..machine.paint_reload import dips_without_cell
 from ..machine.pass_way import on_way
 from .studio import Studio
 
@@ -27,13 +28,19 @@ class PaintedStroke:
     way: np.ndarray
 
 
-def painted(plan, brush, studio: Studio, undone: Machine | None, seed: int) -> list[PaintedStroke]:
-    """undone: what the cell undoes of the machine's errors. Error where the brush would be pressed beyond its range."""
+def painted(
+    plan, brush, studio: Studio, undone: Machine | None, seed: int, dips_mm=None
+) -> list[PaintedStroke]:
+    """undone: what the cell undoes of the machine's errors; dips_mm: where along each stroke paint was fetched, of a
+    brush whose marks narrow until then, by default at its beginning. Error where the brush would be pressed beyond its
+    range."""
     off = studio.machine
     machine = Machine(off.lean_mm_per_mm, off.scale, off.skew, off.height_mm, off.tilt_mm_per_mm)
     brush = with_factors(brush, {"lag": (studio.brush.lag,), "half_width": (studio.brush.half_width,)})
     run = as_run([_told(one, undone) for one in plan.passes], machine, off.backlash_mm)
     marks = _core.simulate(_core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, run), brush)
+    if brush.paint:
+        _core.narrow(marks, brush.paint, dips_mm or dips_without_cell(plan.passes))
     _core.trace_outlines(marks, brush)
     always = np.random.default_rng(0)  # of this machine: whatever is random
     own = {one.stroke: always.normal(0, 1, 2) * off.own_mm for one in plan.passes}

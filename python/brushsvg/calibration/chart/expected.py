@@ -8,6 +8,7 @@ from ... import _core
 from ...brush.confidence import law_band
 from ...brush.describe import LAWS
 from ..from_marks import expected_brush, expected_machine, expected_marks
+from ..paint_found import Expected, expected_paint
 
 ROWS = 4
 
@@ -39,4 +40,14 @@ def chart_report(chart, brush, noise_mm: float) -> str:
     machine = expected_machine(chart.plan, brush, noise_mm, painted=painted)
     told = [f"{one.name} +- {one.half:.2g}" for one in machine]
     lines += ["Of the machine, with calibrate --machine lean,axes,tilt,backlash:", "  " + ", ".join(told)]
-    return "\n".join([*lines, ""])
+    return "\n".join([*lines, *_of_paint(expected_paint(chart.plan, brush, noise_mm, painted)), ""])
+
+
+def _of_paint(told: Expected) -> list[str]:
+    share = f"depth tells {100 * told.told_by_depth:.0f} % of how the way since the dip grows"
+    if told.is_refused:
+        return ["Of paint that runs out nothing, as " + share + ": chart --paint has another order"]
+    return [
+        "Of paint that runs out, with calibrate --paint, painted with one load:",
+        f"  narrowing per metre +- {told.half_per_m:.2g}; {share}; the load has to last for {told.way_mm:.0f} mm",
+    ]

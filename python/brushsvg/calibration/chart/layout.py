@@ -20,6 +20,7 @@ from ... import _core
 from ...brush.perturbed import with_lag
 from ...errors import Error, need, need_number, need_one_of
 from .dabs import HEADINGS_DEG, KIND, dab_depths, dab_poses
+from .painting_order import early_and_late, shallow_to_deep
 
 SETS = {"few": 4, "normal": 6, "many": 9}  # depths
 MOST_SETS = 12  # depths; beyond, a larger sheet repeats them
@@ -147,15 +148,19 @@ def chart(
     strokes: str | None = None,
     deepest_mm: float = math.inf,
     dabs: bool = False,
+    one_load: bool = False,
 ) -> Chart:
     """The chart of a brush that is known roughly: its depth range, its lag, its width.
 
     strokes: few, normal, many; None for as many as the sheet has room for; deepest_mm: what the machine can reach, if
-    less than the brush; dabs: of a brush whose lag is known, for its outlines. Error for a pen, and where the sheet is
+    less than the brush; dabs: of a brush whose lag is known, for its outlines; one_load: in an order that tells how
+    marks narrow from depth, with paint fetched before the first stroke only. Error for a pen, and where the sheet is
     too small, with the size that would do.
     """
     need(brush, _core.Brush, "a brush")
     _core.check(brush)
+    if dabs and one_load:
+        raise Error("dabs do not tell how marks narrow: one load is for strokes", code="options-contradict")
     if not isinstance(sheet_mm, (list, tuple)) or len(sheet_mm) != 2:
         raise Error("a sheet is (width, height) in mm", "sheet", code="wrong-type")
     sheet_mm = tuple(
@@ -203,7 +208,7 @@ def chart(
             code="sheet-too-small",
             advice="--strokes few needs less" if strokes in ("normal", "many") else "",
         )
-    return _laid_out(brush, sheet_mm, best, side, beside)
+    return _laid_out(brush, sheet_mm, best, side, beside, one_load)
 
 
 def _side(sheet_mm: tuple[float, float]) -> float:
@@ -425,24 +430,30 @@ def _turned(unit: _Unit) -> _Unit:
     return _Unit(tuple(strokes), tuple((-y1, x0, -y0, x1) for x0, y0, x1, y1 in unit.boxes_mm))
 
 
-def _laid_out(brush, sheet_mm, placed, side: float, beside: tuple[float, float] | None) -> Chart:
+def _laid_out(
+    brush, sheet_mm, placed, side: float, beside: tuple[float, float] | None, one_load: bool
+) -> Chart:
     height = sheet_mm[1]
-    named, strokes, numbers, labels = [], [], [], []
+    what = [(unit.strokes[0].kind, unit.strokes[0].depth_mm) for unit, _, _ in placed]
+    units, labels = {}, []
     counts: dict[str, int] = {}
-    for unit, left, down in sorted(placed, key=lambda each: _order(each[0])):
+    for k in shallow_to_deep(what):
+        unit, left, down = placed[k]
         x0, _, _, y1 = unit.box_mm
         shift = EDGE_MM + left + GAP_MM / 2 - x0, height - EDGE_MM - down - GAP_MM / 2 - y1
+        units[k], numbers = [], []
         for stroke, box in zip(unit.strokes, unit.boxes_mm, strict=True):
             number = counts[stroke.kind] = counts.get(stroke.kind, 0) + 1
             name = f"{stroke.kind}-{number}"
             numbers.append(number)
-            named.append((name, stroke, shift))
-            moved = tuple(float(v + shift[k % 2]) for k, v in enumerate(box))
-            strokes.append(Stroke(name, stroke.kind, stroke.depth_mm, moved))
+            moved = tuple(float(v + shift[i % 2]) for i, v in enumerate(box))
+            units[k].append(((name, stroke, shift), Stroke(name, stroke.kind, stroke.depth_mm, moved)))
         x, bottom = unit.box_mm[0] + shift[0], unit.box_mm[1] + shift[1]
-        first, at_mm = -len(unit.strokes), (x, bottom - 0.8 * LABEL_MM)
-        labels.append(_label(strokes[first], numbers[first], at_mm, unit.size_mm[0] - GAP_MM))
-    plan = _plan(brush, sheet_mm, named)
+        at_mm = x, bottom - 0.8 * LABEL_MM
+        labels.append(_label(units[k][0][1], numbers[0], at_mm, unit.size_mm[0] - GAP_MM))
+    order = early_and_late(what) if one_load else list(units)
+    named, strokes = zip(*(pair for k in order for pair in units[k]), strict=True)
+    plan = _plan(brush, sheet_mm, named, False if one_load else None)
     mark = chart_id(plan)
     bar = _bar(sheet_mm, side)
     labels += _titles(brush, sheet_mm, side, mark, bar)
@@ -451,7 +462,7 @@ def _laid_out(brush, sheet_mm, placed, side: float, beside: tuple[float, float] 
         Marker(base + k, ((x, y), (x + side, y), (x + side, y - side), (x, y - side)))
         for k, (x, y) in _marker_places(sheet_mm, side, beside)
     )
-    return Chart(plan, tuple(strokes), markers, tuple(labels), mark, bar)
+    return Chart(plan, strokes, markers, tuple(labels), mark, bar)
 
 
 def _marker_places(
@@ -497,12 +508,7 @@ def _label(stroke: Stroke, number: int, at_mm: tuple[float, float], width_mm: fl
     return Label(next(fitting, texts[-1]), at_mm, width_mm)
 
 
-def _order(unit: _Unit) -> tuple[bool, float]:
-    """References first, then from shallow to deep: paint that runs out does so where most of it is used."""
-    return unit.strokes[0].kind != "reference", unit.strokes[0].depth_mm
-
-
-def _plan(brush, sheet_mm, named):
+def _plan(brush, sheet_mm, named, reload: bool | None = None):
     plan = _core.Plan(brush=brush.name, brush_sha256=brush.sha256, sheet_mm=sheet_mm)
     passes = []
     for name, stroke, (dx, dy) in named:
@@ -512,7 +518,7 @@ def _plan(brush, sheet_mm, named):
         ]
         poses = stroke.poses_mm + np.array([dx, dy, 0.0])
         speed = min(PAINT_MM_S, brush.max_speed_mm_s)
-        settings = _core.Settings(kind=stroke.kind)
+        settings = _core.Settings(kind=stroke.kind, reload=reload)
         passes.append(_core.Pass(name, poses, speed, settings=settings, arcs=arcs))
     plan.passes = passes
     return plan

@@ -34,6 +34,12 @@ def add_chart(commands) -> None:
         help="dabs in place of strokes, to measure the footprints of a brush whose lag is known: give it with --brush",
     )
     chart.add_argument(
+        "--paint",
+        action="store_true",
+        help="painted with one load, each depth early and late: for calibrate --paint, which finds how marks narrow as "
+        "paint runs out",
+    )
+    chart.add_argument(
         "--page", metavar="FILE", help="also write the page to print, markers and labels (.pdf .svg)"
     )
     chart.add_argument(
@@ -57,6 +63,8 @@ def _check_chart(args) -> None:
     check_job(args)
     if args.dabs and args.noise is not None:
         args.parser.error("--noise is for intervals to expect of strokes: a chart of dabs tells none")
+    if args.dabs and args.paint:
+        args.parser.error("--paint is for strokes: dabs do not tell how marks narrow")
     written = [(args.output, (".json", *PROGRAMS)), (args.page, (".pdf", ".svg")), (args.chart, (".json",))]
     check_files(args, [(args.brush, None), (args.drawing, tuple(READERS))], written)
 

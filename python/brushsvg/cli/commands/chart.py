@@ -33,7 +33,7 @@ def chart_file(args) -> None:
         if suffix != ".json":
             writer.post_for(suffix, cell)
         stage("laying out the chart")
-        made = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm, args.dabs)
+        made = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm, args.dabs, args.paint)
         painting = writer.painting_cell(suffix, cell)
         loads, marks = in_loads(made.plan, brush, painting), _core.simulate(made.plan, brush)
         tolerance_mm = preflight.DEFAULT_TOLERANCE_MM

@@ -10,6 +10,7 @@ from ..steps.prepared import prepare
 
 
 def simulate_photo_file(args) -> None:
+    from ...machine.paint_reload import fetched_mm
     from ...painted.job_page import job_page
     from ...simulated.painting import painted
     from ...simulated.photo import simulated_photo
@@ -26,7 +27,14 @@ def simulate_photo_file(args) -> None:
     brush = brush_of(args.true_brush) or work.brush
     with about(args.input):
         stage("painting")
-        strokes = painted(work.plan, brush, studio, work.options.cell.machine, args.seed)
+        strokes = painted(
+            work.plan,
+            brush,
+            studio,
+            work.options.cell.machine,
+            args.seed,
+            fetched_mm(work.plan, brush, work.options.cell),
+        )
         stage("photographing")
         made = simulated_photo(job_page(work.plan, work.title), strokes, studio, args.seed)
     write(args, {args.output: made}, len(strokes), more="simulated")

@@ -134,7 +134,9 @@ def _has_straight_sides(
     left = _left_of(ahead)
     for side in (-1, 1):
         on_mm = (to_cut_mm + slope * side * ASIDE * half) * ALONG
-        at = here + on_mm[:, None] * ahead + 0.7 * half * side * left  # inside, on either side of a slanted cut
+        at = (
+            here + on_mm[:, None] * ahead + 0.7 * half * side * left
+        )  # inside, on either side of a slanted cut
         beside_mm = np.array(_core.first_crossings(rings, at, side * left))
         if (np.abs(beside_mm - 0.3 * half) > BENT * half).any():
             return False

@@ -1,0 +1,158 @@
+"""Plans press deeper as paint runs out: marks come out as wide as drawn, within the depths that were measured."""
+
+import random
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+import shapely
+from diagnostics import is_told
+
+from brushsvg import _core
+from brushsvg.brush.library import find_brush
+from brushsvg.cli import main
+from brushsvg.machine.cell import Reload, Station
+from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.paint_reload import in_loads, visits
+from brushsvg.pipeline.prediction import marks_of
+from brushsvg.pipeline.preparation import Options, prepare
+
+COUNT = 60
+
+
+@cache
+def drawing():
+    """Lines, waves and bows of 20 mm and of any width from 2 to 5 mm."""
+    rng = random.Random(3)
+    rows = []
+    for k in range(COUNT):
+        x, y = 12 + (k % 6) * 32, 14 + (k // 6) * 27
+        bend, width = rng.uniform(-12, 12), rng.uniform(2, 5)
+        d = (f"l20,{bend / 2:.2f}", "c6,-8 14,8 20,0", f"q10,{bend:.2f} 20,0")[k % 3]
+        rows.append(f'<path id="s{k}" d="M{x},{y} {d}" stroke-width="{width:.2f}"/>')
+    size = 'width="210mm" height="297mm" viewBox="0 0 210 297"'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {size} fill="none" stroke="#000">{"".join(rows)}</svg>'
+
+
+def brush_of(rate):
+    brush = find_brush("round-6")
+    brush.paint = _core.Paint(rate) if rate else None
+    return brush
+
+
+def cell_with(reload):
+    return replace(
+        find_cell(), name="painting", reload=reload, stations=(Station("any", (-20.0, 40.0), depth_mm=5.0),)
+    )
+
+
+ONE_LOAD = cell_with(Reload("length", 1e5, 6.0))
+
+
+def prepared(tmp_path, rate, cell=ONE_LOAD, compensation="closed", drawn=None):
+    path = tmp_path / "d.svg"
+    path.write_text(drawn or drawing())
+    return prepare(path, Options(brush=brush_of(rate), compensation=compensation, cell=cell))
+
+
+def mean_overlap(work, rate):
+    """With the drawn strokes, each stroke alone."""
+    marks = marks_of(work.plan, brush_of(rate), cell=work.options.cell)
+    found = []
+    for trace, stroke in zip(marks.passes, work.strokes, strict=True):
+        mark, drawn = (
+            shapely.union_all([shapely.Polygon(ring).buffer(0) for ring in rings])
+            for rings in (trace.outline_mm, _core.wanted_outline(stroke, 0.02))
+        )
+        found.append(mark.intersection(drawn).area / mark.union(drawn).area)
+    return np.mean(found)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("compensation", ["closed", "refined"])
+def test_a_job_of_one_load_comes_out_as_wide_as_drawn(tmp_path, compensation):
+    """The last marks would be a sixth too narrow."""
+    always, now = (prepared(tmp_path, rate, compensation=compensation) for rate in (0.0, 0.05))
+    fresh = mean_overlap(always, 0.0)
+    assert mean_overlap(always, 0.05) < fresh - 0.07
+    assert mean_overlap(now, 0.05) > fresh - 0.005
+    assert not now.notices
+
+
+def test_beside_the_middle_marks_are_as_wide_as_drawn(tmp_path):
+    """Half way along each stroke, by a cut through the mark; the last ones were half as wide else."""
+    work = prepared(tmp_path, 0.15)
+    marks = marks_of(work.plan, brush_of(0.15), cell=ONE_LOAD)
+    assert marks.passes[-1].width_share[-1] < 0.6
+    for trace, stroke in zip(marks.passes[::3], work.strokes[::3], strict=True):  # the lines
+        ends = np.asarray(stroke.middle_mm).reshape(-1, 2)[[0, -1]]
+        along = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]))
+        across = 20 * np.array([-along[1], along[0]])
+        cut = shapely.LineString([ends.mean(axis=0) - across, ends.mean(axis=0) + across])
+        mark = shapely.union_all([shapely.Polygon(ring).buffer(0) for ring in trace.outline_mm])
+        assert mark.intersection(cut).length == pytest.approx(2 * stroke.half_width[0][1], rel=0.01)
+
+
+def test_depth_falls_back_where_paint_is_fetched(tmp_path):
+    cell = cell_with(Reload("length", 1e5, 6.0, narrower_percent=20.0))
+    same = drawing().replace('stroke-width="', 'stroke-width="3" data-was="')
+    work = prepared(tmp_path, 0.4, cell, drawn=same)
+    fetched = [bool(each) for each in visits(in_loads(work.plan, brush_of(0.4), cell), cell)]
+    deepest = np.array([-np.asarray(one.poses_mm)[:, 2].min() for one in work.plan.passes])
+    fresh = prepared(tmp_path, 0.0, cell, drawn=same).plan.passes
+    usual = np.array([-np.asarray(one.poses_mm)[:, 2].min() for one in fresh])
+    more = (deepest / usual)[::3]  # lines have one depth
+    assert 5 < sum(fetched) < COUNT / 3
+    assert more.min() < 1.05 and 1.15 < more.max() < 1.4
+    after = [k for k in range(3, COUNT, 3) if fetched[k]]
+    assert after and all(deepest[k] < deepest[k - 3] for k in after)
+
+
+def test_without_paint_plans_stay(tmp_path):
+    """And with paint that never runs out they are the same to the last bit."""
+    plans = [_core.write_plan(prepared(tmp_path, rate).plan) for rate in (0.0, 1e-12)]
+    assert plans[0].split('"passes"')[1] == plans[1].split('"passes"')[1]
+
+
+def test_where_the_depths_end_it_is_said_once(tmp_path):
+    work = prepared(tmp_path, 0.4)
+    deepest = max(-np.asarray(one.poses_mm)[:, 2].min() for one in work.plan.passes)
+    assert 9.9 < deepest <= 10
+    assert is_told(work.notices, "paint-runs-out round-6 '10 mm'")
+    assert len(work.notices) == 1
+    share = marks_of(work.plan, brush_of(0.4), False, cell=ONE_LOAD).passes[-1].width_share[-1]
+    assert share < 0.3, "far beyond what depth could make up for"
+    heights = replace(find_cell().heights, lowest_mm=-7.0)
+    shallow = prepared(tmp_path, 0.4, replace(ONE_LOAD, heights=heights))
+    assert max(-np.asarray(one.poses_mm)[:, 2].min() for one in shallow.plan.passes) <= 7.0
+    assert is_told(shallow.notices, "paint-runs-out round-6 '7 mm'")
+
+
+def test_shapes_and_dabs_and_closed_paths_are_pressed_deeper_too(tmp_path):
+    shapes = (
+        '<rect x="20" y="40" width="60" height="4" fill="#000"/>'
+        '<path d="M100,40 l0,0" stroke="#000" stroke-width="4" stroke-linecap="round"/>'
+        '<circle cx="60" cy="80" r="15" fill="none" stroke="#000" stroke-width="3"/>'
+    )
+    long = '<path id="long" d="M10,120 h180 v20 h-180 v20 h180" fill="none" stroke="#000" stroke-width="2"/>'
+    size = 'width="210mm" height="297mm" viewBox="0 0 210 297"'
+    drawn = f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{long}{shapes}</svg>'
+    for compensation in ("closed", "refined"):
+        off = [prepared(tmp_path, rate, compensation=compensation, drawn=drawn) for rate in (0.0, 0.2)]
+        assert len(off[1].plan.passes) == len(off[0].plan.passes) == 4
+        kept, pressed = (mean_overlap(work, 0.2) for work in off)
+        assert pressed > kept + 0.04
+        assert pressed > mean_overlap(off[0], 0.0) - 0.02
+
+
+def test_the_program_passes_its_own_check(tmp_path, capsys):
+    brush = brush_of(0.4)
+    (tmp_path / "b.json").write_bytes(_core.write_brush(brush).encode())
+    cell = cell_with(Reload("length", 200.0, 6.0, narrower_percent=15.0))
+    (tmp_path / "c.toml").write_text(write_cell(cell))
+    (tmp_path / "d.svg").write_text(drawing())
+    out = str(tmp_path / "d.ngc")
+    flags = ["--brush", str(tmp_path / "b.json"), "--cell", str(tmp_path / "c.toml")]
+    assert main(["convert", str(tmp_path / "d.svg"), out, *flags]) == 0
+    assert main(["check", out, str(tmp_path / "d.svg"), *flags]) == 0, capsys.readouterr()
