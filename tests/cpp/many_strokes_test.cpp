@@ -124,9 +124,9 @@ void hold_against(const std::vector<Rows>& strokes, const std::vector<LagLaw<dou
             const LagState<double>& one = alone.at[std::size_t(i)];
             REQUIRE((V(many.contact_x_mm(i, lane), many.contact_y_mm(i, lane)) - one.contact).norm() <= kSame);
             REQUIRE(bool(many.taut(i, lane)) == one.taut);
-            if (rows[std::size_t(i)].depth < 0.0) headed = false;
             headed = headed || one.heading_known || (one.taut && !law.rigid);
             if (headed) REQUIRE((V(many.heading_x(i, lane), many.heading_y(i, lane)) - one.heading).norm() <= kSame);
+            if (rows[std::size_t(i)].depth < 0.0) headed = false;
         }
     }
 }
