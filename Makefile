@@ -8,7 +8,7 @@ SHELL := /bin/bash
 PYTHON ?= $(shell for p in /usr/bin/python3 python3; do $$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 VENV := .venv
 BIN := $(VENV)/bin
-SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libceres-dev libboost-dev nlohmann-json3-dev python3 python3-dev python3-venv
+SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libceres-dev libboost-dev nlohmann-json3-dev libhwy-dev python3 python3-dev python3-venv
 TEST_PACKAGES := doctest-dev cppcheck
 CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
 
@@ -90,7 +90,7 @@ lint: $(VENV)/.dev test-system
 # Read by clang, which refuses what g++ lets pass (clang 14: captured structured bindings); nothing is compiled or run.
 clang-check: $(VENV)/.dev
 	@$(call install,clang)
-	includes="$$(printf -- '-Icpp/%s ' include io posts fit/laws fit/marks fit/tracks refine src) $$($(BIN)/python -m pybind11 --includes) -isystem /usr/include/eigen3"
+	includes="$$(printf -- '-Icpp/%s ' include io posts fit/laws fit/marks fit/tracks many refine src) $$($(BIN)/python -m pybind11 --includes) -isystem /usr/include/eigen3"
 	git ls-files 'cpp/*.cpp' | xargs -P "$$(nproc)" -n 1 clang++ -std=c++17 -fsyntax-only -Wall -Wextra -Werror \
 	  -Wno-missing-field-initializers -DBRUSHSVG_FIT '-DBRUSHSVG_VERSION="0"' $$includes
 
@@ -132,9 +132,10 @@ integration: setup
 bench: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev
 	cmake --preset release >/dev/null
-	cmake --build --preset release --target advance_bench
+	cmake --build --preset release --target advance_bench many_bench
 	$(BIN)/python benchmarks/table.py $(TABLE)
 	build/release/benchmarks/advance_bench
+	build/release/benchmarks/many_bench
 	$(BIN)/python benchmarks/marks.py
 	$(BIN)/python benchmarks/page.py
 	$(BIN)/python benchmarks/read.py

@@ -1,36 +1,12 @@
 #include "bindings.hpp"
 #include "brushsvg/lag_arc.hpp"
+#include "law_between.hpp"
 #include "within.hpp"
 
 namespace {
 
 using namespace brushsvg;
 using Eigen::Vector2d;
-
-constexpr double kFarthestMm = 1e6;  // a longer way is damage
-
-/// A lever that can be followed from the least of these depths to the greatest. Error where it is negative, or 0 in
-/// part: only a rigid pen's is 0 everywhere.
-LagLaw<double> law_between(const Profile& profile, double depth0, double depth1) {
-    if (profile.coefficients.empty() || int(profile.coefficients.size()) > kMaxLawDegree + 1)
-        throw Error("law-terms", "a lag has 1 to " + std::to_string(kMaxLawDegree + 1) + " coefficients, not " +
-                                     std::to_string(profile.coefficients.size()));
-    for (const double c : profile.coefficients)
-        require_within(c, {-kFarthestMm, kFarthestMm}, "a coefficient of the lag");
-    for (const double depth : {depth0, depth1}) require_within(depth, {0.0, 1000.0}, "the depth");
-    const double lo = std::min(depth0, depth1), hi = std::max(depth0, depth1) + 1e-9;
-    LagLaw<double> law = make_law(pieces(profile, lo, hi));
-    if (law.rigid) return law;
-    for (const auto& piece : law.pieces) {
-        const std::vector<double> own(piece.coefficients.begin(), piece.coefficients.begin() + piece.degree + 1);
-        const std::vector<double> zeros = real_roots(own, piece.lo, piece.hi);
-        const bool falls = !zeros.empty() && !(zeros.size() == 1 && zeros[0] <= 1e-12);  // 0 at touch-down is sound
-        if (falls || piece.at(0.5 * (piece.lo + piece.hi)) < 0.0)
-            throw Error("law-negative", "the lag is not positive at all depths from " + std::to_string(lo) + " to " +
-                                            std::to_string(hi) + " mm");
-    }
-    return law;
-}
 
 /// Goes through the pieces of a law that a straight move passes, in the order of travel: visit(piece, t0, t1).
 template <class Visit>

@@ -43,7 +43,7 @@ void require_within(const std::vector<double>& values, const std::string& path, 
 
 /// No brush is tilted farther than a plan may say.
 void require_lean(const PassMarks& pass, const std::string& path) {
-    static const double most = std::tan(kMostTiltDeg * std::acos(-1.0) / 180.0);
+    static const double most = std::tan((kMostTiltDeg + kRoundedTiltDeg) * std::acos(-1.0) / 180.0);
     for (Eigen::Index i = 0; i < pass.lean_mm_per_mm.rows(); ++i) {
         const double lean = pass.lean_mm_per_mm.row(i).norm();
         if (!(lean <= most + 1e-6))  // written to seven decimals

@@ -111,6 +111,16 @@ Beginning best_beginning(const Stroke& wanted, const Stroke& stroke, const Brush
     return is_better ? Beginning::hidden : Beginning::exposed;
 }
 
+bool is_better_squared(const Stroke& wanted, const SquaredDot& dot, const Brush& brush, double step_tolerance) {
+    bool turns = false;
+    Pass round, squared;
+    poses_of(dot.dot, brush).into(round);
+    closed_form(dot, brush, step_tolerance, turns).into(squared);
+    const double half = std::min(half_width_at(wanted, 0.0), brush.half_width_range_mm()[1]);
+    const View view(wanted, dot.dot.from_mm, half, half, brush);
+    return view.is_better(squared, round);
+}
+
 bool begins_better(const Stroke& wanted, const Stroke& squared, const Stroke& stroke, const Brush& brush,
                    Beginning start, double step_tolerance) {
     const Line line(stroke, brush);

@@ -2,6 +2,7 @@
 
 #include "brushsvg/compensate.hpp"
 #include "middle_line.hpp"
+#include "squared_dot.hpp"
 
 namespace brushsvg {
 
@@ -9,6 +10,9 @@ namespace brushsvg {
 /// as the brush goes, with its line.
 Beginning best_beginning(const Stroke& wanted, const Stroke& stroke, const Brush& brush, const Line& line,
                          double step_tolerance);
+
+/// Whether a dot with corners is more like the wanted one than round.
+bool is_better_squared(const Stroke& wanted, const SquaredDot& dot, const Brush& brush, double step_tolerance);
 
 /// Whether a squared one makes the mark begin still better, by more than can hardly be seen. start: how the stroke
 /// begins without it; squared: the stroke with its way.

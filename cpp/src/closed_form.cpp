@@ -40,6 +40,25 @@ Samples dab(const Stroke& stroke, const Line& line) {
 
 Stance stance_of(const Sample& sample) { return {sample.contact, sample.heading, sample.depth}; }
 
+/// Along the samples, from where the brush is taut at the first, and lifted at the last.
+void lead(const Samples& samples, const Brush& brush, PoseList& out, bool& turns) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        turns = turns || !samples[i].taut;
+        if (i > 0 && !brush.is_rigid()) {
+            const double moved = (samples[i].contact - samples[i - 1].contact).norm();
+            const double angle = angle_between(samples[i - 1].heading, samples[i].heading);
+            const std::int64_t before = out.last();
+            if (std::abs(angle) > kTurnStepRad && moved < 0.1 * brush.lag(samples[i].depth))
+                turn_in_place(samples[i - 1], samples[i], brush, out);
+            out.add(samples[i].tcp, samples[i].depth);
+            if (moved < kSameCircleMm) out.arc(before, samples[i].contact, angle);
+        } else {
+            out.add(samples[i].tcp, samples[i].depth);
+        }
+    }
+    lift(stance_of(samples.back()), brush, out);
+}
+
 }  // namespace
 
 std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, double length,
@@ -99,21 +118,19 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
     } else {
         land(stance_of(samples.front()), brush, out);
     }
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        turns = turns || !samples[i].taut;
-        if (i > 0 && !brush.is_rigid()) {
-            const double moved = (samples[i].contact - samples[i - 1].contact).norm();
-            const double angle = angle_between(samples[i - 1].heading, samples[i].heading);
-            const std::int64_t before = out.last();
-            if (std::abs(angle) > kTurnStepRad && moved < 0.1 * brush.lag(samples[i].depth))
-                turn_in_place(samples[i - 1], samples[i], brush, out);
-            out.add(samples[i].tcp, samples[i].depth);
-            if (moved < kSameCircleMm) out.arc(before, samples[i].contact, angle);
-        } else {
-            out.add(samples[i].tcp, samples[i].depth);
-        }
-    }
-    lift(stance_of(samples.back()), brush, out);
+    lead(samples, brush, out, turns);
+    return out;
+}
+
+PoseList closed_form(const SquaredDot& dot, const Brush& brush, double step_tolerance, bool& turns) {
+    const Line line(dot.way, brush);
+    const InverseLag inverse(line, brush);
+    Samples samples = line.coarse(dot.on_from_mm, line.length(), {});
+    refine_steps(line, samples, step_tolerance, [&](Samples& all) { inverse(all, dot.on_along); });
+    PoseList out;
+    const Stance turned = turn(dot.dot, brush, out);
+    turn_over(turned, stance_of(samples.front()), brush, out);
+    lead(samples, brush, out, turns);
     return out;
 }
 

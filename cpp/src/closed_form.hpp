@@ -5,6 +5,7 @@
 #include "brushsvg/compensate.hpp"
 #include "middle_line.hpp"
 #include "pose_list.hpp"
+#include "squared_dot.hpp"
 
 namespace brushsvg {
 
@@ -16,5 +17,8 @@ std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, d
 /// bends too sharply for the lever and the brush turns in place.
 PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line, Beginning start, double step_tolerance,
                      bool& turns);
+
+/// The same of a dot with corners.
+PoseList closed_form(const SquaredDot& dot, const Brush& brush, double step_tolerance, bool& turns);
 
 }  // namespace brushsvg

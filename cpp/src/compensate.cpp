@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
@@ -17,6 +18,7 @@
 #include "middle_line.hpp"
 #include "refuse_unusable.hpp"
 #include "squared_beginning.hpp"
+#include "squared_dot.hpp"
 #include "squared_end.hpp"
 #include "stroke_ends.hpp"
 #include "thin_out_after_turn.hpp"
@@ -149,6 +151,7 @@ namespace {
 struct Begun {
     Stroke stroke, whole;              ///< with the way of a squared beginning; and up to its end
     Beginning start;                   ///< of that line: all of a squared beginning's way is in it
+    std::optional<SquaredDot> dot;     ///< instead of that line
     std::optional<Beginning> instead;  ///< what `auto` takes where this one misses the line
 };
 
@@ -157,16 +160,22 @@ Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateO
                      double step_tolerance) {
     const Beginning asked = stroke.settings.start ? beginning_named(*stroke.settings.start, stroke.id) : options.start;
     const bool choose = asked == Beginning::automatic;
-    Begun plain{stroke, up_to_its_end(stroke, brush), asked, {}};
+    Begun plain{stroke, up_to_its_end(stroke, brush), asked, {}, {}};
     if (choose)
         plain.start = best_beginning(stroke, plain.whole, brush, Line(plain.whole, brush), step_tolerance);
     else if (asked == Beginning::squared)
         plain.start = Beginning::hidden;
     if (choose && plain.start == Beginning::hidden) plain.instead = Beginning::exposed;
+    if (plain.start == Beginning::hidden && asked != Beginning::hidden)
+        if (auto dot = squared_dot(stroke, brush)) {
+            if (!choose || is_better_squared(stroke, *dot, brush, step_tolerance)) plain.dot = std::move(dot);
+            if (choose && plain.dot) plain.instead = Beginning::hidden;
+            return plain;
+        }
     if (asked != Beginning::squared && !(choose && !stroke.wanted_mm.empty())) return plain;  // round caps, as fronts
     const std::optional<SquaredBeginning> squared = squared_beginning(stroke, brush);
     if (!squared || dot_of(stroke, brush)) return plain;
-    Begun begun{squared->stroke, up_to_its_end(squared->stroke, brush), Beginning::exposed, {}};
+    Begun begun{squared->stroke, up_to_its_end(squared->stroke, brush), Beginning::exposed, {}, {}};
     if (choose) begun.instead = plain.start;
     if (choose && !begins_better(stroke, begun.whole, plain.whole, brush, plain.start, step_tolerance)) return plain;
     return begun;
@@ -218,13 +227,16 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
     if (const std::optional<Dot> dot = dot_of(stroke, brush); dot && start == Beginning::hidden) {
         const auto [least, greatest] = std::minmax(dot->from_depth_mm, dot->to_depth_mm);
         warn({least, greatest}, stroke.id, brush, result.warnings);
-        poses_of(*dot, brush).into(pass);
-        result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
-        return result;
+        if (!begun.dot) {
+            poses_of(*dot, brush).into(pass);
+            result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
+            return result;
+        }
+    } else {
+        warn(depths, stroke.id, brush, result.warnings);
     }
-    warn(depths, stroke.id, brush, result.warnings);
-    const std::optional<Stroke> squared =
-        squared_where_asked(begun.stroke, begun.whole, brush, options, start, step_tolerance);
+    std::optional<Stroke> squared;
+    if (!begun.dot) squared = squared_where_asked(begun.stroke, begun.whole, brush, options, start, step_tolerance);
     const Stroke& whole = squared ? *squared : begun.whole;
     const Line whole_line(whole, brush);
     // the plan is simulated before it is handed over; finer steps as long as they help
@@ -232,7 +244,9 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
     for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {
         bool turns = false;
         Pass trial = pass;
-        closed_form(whole, brush, whole_line, start, step_tolerance, turns).into(trial);
+        (begun.dot ? closed_form(*begun.dot, brush, step_tolerance, turns)
+                   : closed_form(whole, brush, whole_line, start, step_tolerance, turns))
+            .into(trial);
         if (options.few_poses && thin_out(trial, kThinShare, kSurely * options.tolerance_mm, stroke, brush,
                                           options.tolerance_mm, result.pass, result.miss)) {
             result.miss.has_turn_in_place = turns;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "brushsvg/footprint.hpp"
-#include "landing.hpp"
 #include "middle_line.hpp"
 
 namespace brushsvg {
@@ -78,9 +77,8 @@ std::optional<Dot> dot_of(const Stroke& stroke, const Brush& brush) {
     return Dot{a, b, *from, *to, is_point ? Vector2d(1.0, 0.0) : (b - a).normalized()};
 }
 
-PoseList poses_of(const Dot& dot, const Brush& brush) {
+Stance turn(const Dot& dot, const Brush& brush, PoseList& out) {
     const double along_rad = std::atan2(dot.heading.y(), dot.heading.x());
-    PoseList out;
     const double first_rad = along_rad - kTurnRad;
     land({dot.from_mm, Vector2d(std::cos(first_rad), std::sin(first_rad)), dot.from_depth_mm}, brush, out);
     turn_round(dot.from_mm, first_rad, dot.from_depth_mm, brush, out);
@@ -90,7 +88,12 @@ PoseList poses_of(const Dot& dot, const Brush& brush) {
         turn_round(dot.to_mm, along_rad, dot.to_depth_mm, brush, out);
         last = {std::cos(along_rad + kTurnRad), std::sin(along_rad + kTurnRad)};
     }
-    lift({dot.to_mm, last, dot.to_depth_mm}, brush, out);
+    return {dot.to_mm, last, dot.to_depth_mm};
+}
+
+PoseList poses_of(const Dot& dot, const Brush& brush) {
+    PoseList out;
+    lift(turn(dot, brush, out), brush, out);
     return out;
 }
 

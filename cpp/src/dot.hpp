@@ -5,6 +5,7 @@
 #include "brushsvg/brush.hpp"
 #include "brushsvg/marks.hpp"
 #include "brushsvg/stroke.hpp"
+#include "landing.hpp"
 #include "pose_list.hpp"
 
 namespace brushsvg {
@@ -22,6 +23,9 @@ struct Dot {
 std::optional<Dot> dot_of(const Stroke& stroke, const Brush& brush);
 
 PoseList poses_of(const Dot& dot, const Brush& brush);
+
+/// The same, the brush left on the paper.
+Stance turn(const Dot& dot, const Brush& brush, PoseList& out);
 
 /// Press depth at which a footprint that is turned on the spot reaches so far; none where that leaves a hole about P,
 /// or the least depth reaches farther already; the greatest depth where none reaches so far.

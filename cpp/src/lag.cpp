@@ -76,38 +76,47 @@ LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign)
 
 namespace detail {
 
+/// Of the square of a law, and of a parabola.
+constexpr std::size_t kMostCoefficients = 2 * kMaxLawDegree + 1;
+
 double first_positive(std::vector<double> f) {
     while (f.size() > 1 && f.back() == 0.0) f.pop_back();
     const int n = int(f.size()) - 1;
-    // power to Bernstein on [0, 1]
-    std::vector<double> bernstein(n + 1);
+    using Bernstein = std::array<double, kMostCoefficients>;
+    struct Span {
+        double a, b;
+        Bernstein c;
+    };
+    // halves of halves, the left one first: one waits at each depth
+    std::array<Span, 64> stack;
+    std::size_t top = 0;
+    Span& whole = stack[top++];
+    whole.a = 0.0;
+    whole.b = 1.0;
     for (int i = 0; i <= n; ++i) {
         double sum = 0.0, ratio = 1.0;
         for (int j = 0; j <= i; ++j) {
             sum += ratio * f[j];
             if (j < n) ratio *= double(i - j) / double(n - j);
         }
-        bernstein[i] = sum;
+        whole.c[i] = sum;
     }
-    struct Span {
-        double a, b;
-        std::vector<double> c;
-    };
-    std::vector<Span> stack{{0.0, 1.0, std::move(bernstein)}};
-    for (int looks = 0; !stack.empty() && looks < kMostLooks; ++looks) {
-        Span span = std::move(stack.back());
-        stack.pop_back();
-        if (std::all_of(span.c.begin(), span.c.end(), [](double c) { return c <= 0.0; })) continue;
-        const double middle = 0.5 * (span.a + span.b);
-        if (span.c.front() > 0.0) return span.a;
-        if (span.b - span.a < 1e-16 || !(span.a < middle && middle < span.b)) return span.b;
-        Span left{span.a, middle, std::vector<double>(n + 1)}, right{middle, span.b, std::move(span.c)};
-        for (int i = 0; i <= n; ++i) {
-            left.c[i] = right.c[0];
-            for (int j = 0; j < n - i; ++j) right.c[j] = 0.5 * (right.c[j] + right.c[j + 1]);
+    for (int looks = 0; top > 0 && looks < kMostLooks; ++looks) {
+        Span& span = stack[top - 1];  // becomes its own right half
+        if (std::all_of(span.c.begin(), span.c.begin() + n + 1, [](double c) { return c <= 0.0; })) {
+            --top;
+            continue;
         }
-        stack.push_back(std::move(right));
-        stack.push_back(std::move(left));
+        const double middle = 0.5 * (span.a + span.b);
+        if (span.c[0] > 0.0) return span.a;
+        if (span.b - span.a < 1e-16 || !(span.a < middle && middle < span.b)) return span.b;
+        Span& left = stack[top++];
+        left.a = span.a;
+        left.b = span.a = middle;
+        for (int i = 0; i <= n; ++i) {
+            left.c[i] = span.c[0];
+            for (int j = 0; j < n - i; ++j) span.c[j] = 0.5 * (span.c[j] + span.c[j + 1]);
+        }
     }
     return 2.0;
 }

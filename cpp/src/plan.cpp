@@ -103,7 +103,7 @@ void check_tool_axes(const Pass& pass, const std::string& where) {
                                       1.0 + kUnitLength),
                         where, length, std::array<double, 2>{1.0 - kUnitLength, 1.0 + kUnitLength});
         const double tilt = tilt_deg(axes.row(i));
-        if (!(tilt <= kMostTiltDeg))
+        if (!(tilt <= kMostTiltDeg + kRoundedTiltDeg))
             throw Error("tool-axis-invalid",
                         row + text_of(" is tilted by %.4g degrees, outside the range [0, %g] degrees from upright",
                                       tilt, kMostTiltDeg),

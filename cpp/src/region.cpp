@@ -406,6 +406,30 @@ std::vector<double> clearance(const Rings& rings, const Ring& points) {
     return distances;
 }
 
+std::vector<double> first_crossings(const Rings& rings, const Ring& places, const Eigen::Vector2d& way) {
+    std::vector<double> nearest(std::size_t(places.rows()), std::numeric_limits<double>::infinity());
+    for (Eigen::Index k = 0; k < places.rows(); ++k)
+        for (const Ring& ring : rings) {
+            checkpoint(1 + int(ring.rows() / 100));
+            const auto ahead = [&](Eigen::Index i) { return (ring.row(i) - places.row(k)).dot(way); };
+            const auto left = [&](Eigen::Index i) {
+                return way.x() * (ring(i, 1) - places(k, 1)) - way.y() * (ring(i, 0) - places(k, 0));
+            };
+            const Eigen::Index n = ring.rows();
+            double left_before = n > 0 ? left(n - 1) : 0.0;
+            for (Eigen::Index i = 0, before = n - 1; i < n; before = i++) {
+                const double left_here = left(i);
+                if ((left_here > 0.0) != (left_before > 0.0)) {
+                    const double from = ahead(before);
+                    const double crossed = from + (ahead(i) - from) * left_before / (left_before - left_here);
+                    if (crossed > 0.0) nearest[std::size_t(k)] = std::min(nearest[std::size_t(k)], crossed);
+                }
+                left_before = left_here;
+            }
+        }
+    return nearest;
+}
+
 Rings pieces_between(const Rings& chain) {
     for (const Ring& ring : chain) require_finite(ring);
     if (chain.size() < 2) return chain;

@@ -166,11 +166,13 @@ class Tracer {
     }
 
     /// What the footprint looks like at one instant; its corners stand for its motion.
+    using Columns = Eigen::Array<double, Eigen::Dynamic, 2>;  // read along x and y, once for each normal
     struct Instant {
         LagState<double> state;
         double depth, pull;
         Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity();  ///< of a tilted brush, about the contact
         Eigen::Matrix<double, 2, 5> corners;  ///< of its bounding box, and the widest section's centre
+        mutable Columns outline;              ///< once it was asked for: both parts of a way ask for their common end's
     };
 
     template <class Piece, class Motion>
@@ -218,10 +220,10 @@ class Tracer {
         Instant a = instant(piece, m, from, begin, begin);
         double ta = begin;
         for (double tb : ends) {
-            const Instant b = instant(piece, m, start, begin, tb);
+            Instant b = instant(piece, m, start, begin, tb);
             split(piece, m, start, begin, ta, a, tb, b, 0);
             if (tb < end) row(m.tcp(tb), m.depth(tb), b.state, tb);
-            a = b;
+            a = std::move(b);
             ta = tb;
         }
     }
@@ -249,48 +251,52 @@ class Tracer {
         const bool turned = a.state.heading.dot(b.state.heading) < 0.8;
         const bool pressed = std::abs(a.depth - b.depth) > 0.5;  // nor of laws that bend twice
         if (bend <= tolerance_ && !((turned || pressed) && level < 24) &&
-            !(level < 12 && shape_gap(a, b, c) > tolerance_))
+            !(level < 12 && shape_bends(a, b, c)))
             return;
         split(piece, m, start, begin, ta, a, tm, c, level + 1);
         row(m.tcp(tm), m.depth(tm), c.state, tm);
         split(piece, m, start, begin, tm, c, tb, b, level + 1);
     }
 
-    /// How far the outline half way is from the mean of the outlines at both ends, as support functions h(n) = max n.v
-    /// (Hausdorff distance of convex shapes): the hull of both ends is what they sweep only where this is small.
-    double shape_gap(const Instant& a, const Instant& b, const Instant& c) const {
-        if (!for_outlines_) return 0.0;
+    /// Whether the outline half way is farther than the tolerance from the mean of the outlines at both ends, as support
+    /// functions h(n) = max n.v (Hausdorff distance of convex shapes): the hull of both ends is what they sweep only
+    /// where it is not.
+    bool shape_bends(const Instant& a, const Instant& b, const Instant& c) const {
+        if (!for_outlines_) return false;
         const bool grows = std::abs(a.depth - b.depth) > 0.1 || std::abs(a.pull - b.pull) > 0.05 ||
                            (a.stretch - b.stretch).cwiseAbs().maxCoeff() > 0.01;
         // turning about a point of its flank a footprint leaves a waist that no hull has; while it is dragged forwards
         // the widest section has painted there before
         const bool turns_in_place = !a.state.taut && a.state.heading.dot(b.state.heading) < 1.0 - 1e-8;
-        if (!grows && !turns_in_place) return 0.0;
+        if (!grows && !turns_in_place) return false;
         // along the normals of the middle outline's edges: long flanks show it, and only there
-        using Columns = Eigen::Array<double, Eigen::Dynamic, 2>;  // read along x and y, once for each normal
-        const Columns from = outline_of(a), to = outline_of(b), between = outline_of(c);
+        const Columns &from = outline_of(a), &to = outline_of(b), &between = outline_of(c);
         const auto reach = [](const Columns& outline, const Vec2<double>& normal) {
             return (outline.col(0) * normal.x() + outline.col(1) * normal.y()).maxCoeff();
         };
-        double gap = 0.0;
         for (Eigen::Index k = 0, n = between.rows(); k < n; ++k) {
             const Eigen::Index j = k + 1 == n ? 0 : k + 1;
             const Vec2<double> edge = (between.row(j) - between.row(k)).matrix().transpose();
             const double length = edge.norm();
             if (length < 4.0 * tolerance_) continue;  // too short to open a gap of the tolerance
             const Vec2<double> normal(edge.y() / length, -edge.x() / length);
-            gap = std::max(gap, std::abs(reach(between, normal) - 0.5 * (reach(from, normal) + reach(to, normal))));
+            const double mean = 0.5 * (reach(from, normal) + reach(to, normal));
+            if (std::abs(reach(between, normal) - mean) > tolerance_) return true;
         }
-        return gap;
+        return false;
     }
-    Ring outline_of(const Instant& now) const {
+    const Columns& outline_of(const Instant& now) const {
+        if (now.outline.rows() == 0) now.outline = placed(now);
+        return now.outline;
+    }
+    Ring placed(const Instant& now) const {
         const Vec2<double> u = now.state.heading, tip = tip_of(now);
         Eigen::Matrix2d turn;
         turn << u.x(), u.y(), -u.y(), u.x();
-        const Ring placed = (footprint_at(brush_.footprints, now.depth, now.pull) * turn).rowwise() + tip.transpose();
-        if (lean_.rows() == 0) return placed;
+        const Ring upright = (footprint_at(brush_.footprints, now.depth, now.pull) * turn).rowwise() + tip.transpose();
+        if (lean_.rows() == 0) return upright;
         const Eigen::RowVector2d contact = now.state.contact.transpose();
-        return ((placed.rowwise() - contact) * now.stretch).rowwise() + contact;
+        return ((upright.rowwise() - contact) * now.stretch).rowwise() + contact;
     }
 
     /// r'/r, 1 when taut.

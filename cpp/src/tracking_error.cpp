@@ -8,6 +8,7 @@
 #include "dot.hpp"
 #include "nearest_on_polyline.hpp"
 #include "squared_beginning.hpp"
+#include "squared_dot.hpp"
 #include "squared_end.hpp"
 #include "stroke_ends.hpp"
 #include "tolerance.hpp"
@@ -92,7 +93,8 @@ std::size_t last_at(const Ring& rows, std::size_t begin, std::size_t end, const 
 
 TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, const Stroke& stroke, double tolerance_mm,
                                 bool turns, const std::optional<SquaredBeginning>& beginning = {},
-                                const std::optional<SquaredEnd>& squared = {}) {
+                                const std::optional<SquaredEnd>& squared = {},
+                                const std::optional<Surroundings>& all = {}) {
     const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
     // on its way back to a hidden beginning a blunt front goes beyond the path's
     MiddlePolyline longer(line.rows() + 1, 4);
@@ -141,7 +143,12 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
         look(leaves, end, surroundings);
         end = leaves;
     }
-    look(begin, end, nearest);
+    if (all) {
+        Surroundings surroundings = *all;
+        look(begin, end, surroundings);
+    } else {
+        look(begin, end, nearest);
+    }
     miss.mean_mm = travelled > 0.0 ? miss.mean_mm / travelled : miss.largest_mm;
     miss.within_tolerance = miss.largest_mm <= tolerance_mm;
     return miss;
@@ -160,6 +167,10 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     const Stroke whole = up_to_its_end(stroke, brush);
     const TrackingError miss = tracking_error_of(marks, widest, whole, tolerance_mm, turns);
     if (miss.within_tolerance) return miss;
+    if (turns)
+        if (const std::optional<SquaredDot> dot = squared_dot(stroke, brush))
+            return tracking_error_of(marks, widest, whole, tolerance_mm, turns, {}, {},
+                                     Surroundings{dot->dot.from_mm, dot->reach_mm});
     const std::optional<SquaredBeginning> beginning = squared_beginning(stroke, brush);
     std::optional<SquaredEnd> end = squared_end(stroke, brush);
     if (end && !ends_squared(marks, widest, *end)) end.reset();

@@ -82,12 +82,16 @@ def _told(words: str, ways: list[dict[str, str]], given: tuple, named: dict) -> 
 def _truth(way: dict[str, str], given: tuple, named: dict) -> str:
     """What is said of True or False where numbers are asked for, "" where there is none."""
     for name, value in [*zip(way, given, strict=False), *named.items()]:
-        kind = way.get(name, "")
-        if re.search("number|array|float", kind) and "bool" not in kind and _has_truth(value):
+        if _takes_numbers(way.get(name, "")) and _has_truth(value):
             return (
                 f"{'' if re.fullmatch('arg[0-9]', name) else f': {name}'} takes numbers, not {_short(value)}"
             )
     return ""
+
+
+@functools.cache  # asked at each call of anything
+def _takes_numbers(kind: str) -> bool:
+    return bool(re.search("number|array|float", kind)) and "bool" not in kind
 
 
 def _has_truth(value: object) -> bool:

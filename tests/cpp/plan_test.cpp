@@ -67,6 +67,8 @@ TEST_CASE("tool axes: one for each pose, of length 1, tilted by at most 30 degre
     pass.tool_axes.resize(2, 3);
     pass.tool_axes << 0.0, 0.0, 1.0, 0.5, 0.0, std::sqrt(0.75) + 1e-9;
     CHECK_NOTHROW(check_tool_axes(pass, ""));
+    pass.tool_axes.row(1) << 0.18, 0.467, 0.866;  // 30 degrees to three decimals
+    CHECK_NOTHROW(check_tool_axes(pass, ""));
     CHECK(is_tilted(pass));
     CHECK_THROWS_AS(refuse_tilted(pass, "a test holds it upright"), Error);
     pass.arcs = {{0, 1, {1.0, 0.0}, 1}};

@@ -15,6 +15,4 @@ inline std::string refusal(const std::function<void()>& does) {
     return "";
 }
 
-inline bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
+inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

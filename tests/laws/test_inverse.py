@@ -647,6 +647,49 @@ def test_a_dot_is_round(half_width, length, least):
 
 
 @pytest.mark.parametrize(
+    ("sides", "turned_rad", "least"),
+    [((8.0, 8.0), 0.0, 0.965), ((8.4, 6.0), 0.0, 0.975), ((5.0, 4.0), 0.7, 0.955), ((3.0, 3.0), 0.3, 0.92)],
+)
+def test_a_dot_with_corners_is_square(sides, turned_rad, least):
+    import shapely
+
+    length, width = max(sides), min(sides)
+    along = np.array([np.cos(turned_rad), np.sin(turned_rad)])
+    middle = np.array([50.0, 50.0])
+    off = (length - width) / 2 * along
+    box = shapely.box(-length / 2, -width / 2, length / 2, width / 2)
+    wanted = shapely.affinity.translate(
+        shapely.affinity.rotate(box, turned_rad, (0, 0), use_radians=True), *middle
+    )
+    stroke = stroke_of(line(middle - off, middle + off), [(0.0, width / 2)])
+    stroke.wanted_mm = [np.asarray(wanted.exterior.coords)[:-1]]
+
+    def overlap(start):
+        found = core.compensate([stroke], ROUND, (200.0, 200.0), start=start)
+        assert found.misses[0].within_tolerance
+        poses = np.asarray(found.plan.passes[0].poses_mm)
+        assert poses[0, 2] == poses[-1, 2] == 0.0
+        assert (poses[1:-1, 2] < 0.0).all()  # one touch
+        mark = painted_region(poses)
+        return (mark & wanted).area / (mark | wanted).area, len(poses)
+
+    (squared, count), (said, _), (hidden, before) = map(overlap, ("auto", "squared", "hidden"))
+    assert squared == said > least > hidden + 0.1
+    assert count < before + 75
+
+
+@pytest.mark.parametrize("corners", [8, 90])
+def test_a_dot_without_corners_stays_round(corners):
+    angles = np.arange(corners) * 2 * np.pi / corners
+    stroke = stroke_of(line((50, 50), (50, 50)), [(0.0, 3.0)])
+    stroke.wanted_mm = [np.column_stack([50 + 3 * np.cos(angles), 50 + 3 * np.sin(angles)])]
+    plans = [
+        core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("auto", "hidden")
+    ]
+    np.testing.assert_array_equal(*(plan.passes[0].poses_mm for plan in plans))
+
+
+@pytest.mark.parametrize(
     ("cubic", "half_width"),
     [([42, 49, 43, 50, 89, 34, 87, 28], 3.2), ([54, 83, 55, 91, 86, 99, 76, 105], 3.9)],
 )

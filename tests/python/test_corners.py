@@ -180,6 +180,28 @@ def test_an_outline_that_turns_in_a_corner_is_two_strokes_whose_marks_fill_it(br
     assert bare_mm2(parts) < most * bare_mm2(whole)
 
 
+FLAG = "M10 5H25V50H17V10H10Z"
+
+
+@pytest.mark.parametrize("neighbour", ["", "M40 20H52V22H40Z"])
+def test_the_flag_of_a_serif_is_thinner_than_its_stem_and_their_corner_is_filled(brush, neighbour):
+    """The stem fills the corner: the flag is lifted inside of it. What stands beside is wider than the brush."""
+    wide = "M40 5H52V45H40Z" if neighbour else ""
+    whole = of(FLAG + wide, FILL)
+    stroke = next(each for each in whole if each.wanted_mm[0][:, 0].min() < 30)
+    flag, stem = [each for each in squared_at_corners(whole, brush) if each.wanted_mm[0][:, 0].min() < 30]
+    assert flag.settings.end == "lifted"
+    assert stem.settings.start in (None, "auto")
+    np.testing.assert_allclose(stem.middle_mm[0, :2], (21, 41), atol=0.2)  # half a width inside
+    corner = [np.array([(21.0, 41.0), (25.0, 41.0), (25.0, 45.0), (21.0, 45.0)])]
+
+    def bare_mm2(some) -> float:
+        return _core.area(corner) - _core.area(_core.intersect(corner, trial_mark(some, brush)))
+
+    assert _core.area(_core.intersect(corner, stroke.wanted_mm)) == pytest.approx(16, abs=0.1)
+    assert bare_mm2([flag, stem]) < 0.25 * bare_mm2([stroke])
+
+
 def test_bends_and_shapes_wider_than_the_brush_stay_one_stroke(brush):
     bend = of("M20 5H28V30Q28 42 40 42H45V50H40Q20 50 20 30Z", FILL)
     wide = of("M20 5H31V36H55V47H20Z", FILL)

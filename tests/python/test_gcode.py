@@ -24,7 +24,14 @@ GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
 
 def text_of(*passes, header=("title: test",), sheet=(100.0, 60.0), limit=25.0, cell="linuxcnc-3axis"):
     passes = [
-        SimpleNamespace(stroke=stroke, poses_mm=np.array(poses, float), speed_mm_s=speed, arcs=(), colour="")
+        SimpleNamespace(
+            stroke=stroke,
+            poses_mm=np.array(poses, float),
+            speed_mm_s=speed,
+            arcs=(),
+            tool_axes=(),
+            colour="",
+        )
         for stroke, poses, speed in passes
     ]
     brush = SimpleNamespace(name="b", max_speed_mm_s=limit)
@@ -209,7 +216,7 @@ def test_the_first_rise_is_over_every_place_of_paper_that_leans():
     cell = find_cell("linuxcnc-3axis")
     cell = replace(cell, paper=replace(cell.paper, rotation_deg=(0.0, -2.0, 0.0)))
     a_pass = SimpleNamespace(
-        stroke="s", poses_mm=np.array(TWO[0][1], float), speed_mm_s=20.0, arcs=(), colour=""
+        stroke="s", poses_mm=np.array(TWO[0][1], float), speed_mm_s=20.0, arcs=(), tool_axes=(), colour=""
     )
     plan = SimpleNamespace(sheet_mm=(300.0, 60.0), passes=[a_pass])
     made = program(plan, SimpleNamespace(name="b", max_speed_mm_s=25.0), cell)

@@ -150,7 +150,7 @@ def test_a_robot_stops_where_the_corner_that_is_written_is_sharp(turn_deg):
 
 
 def test_places_are_those_of_the_text_in_the_frame_that_it_has():
-    a_pass = SimpleNamespace(poses_mm=[(1.23456, 2.0, 0.0), (1.2349, 2.0, -1.0)], arcs=[])
+    a_pass = SimpleNamespace(poses_mm=[(1.23456, 2.0, 0.0), (1.2349, 2.0, -1.0)], arcs=[], tool_axes=())
     upright = as_written(a_pass, cell_of("linuxcnc-3axis", 3), np.eye(4))
     assert upright.poses_mm[:, 0].tolist() == [1.235, 1.235]
     cell = cell_of("linuxcnc-3axis", 3, paper=Paper((0.5, 0.0, 0.0), (2.0, 1.0, 30.0)))

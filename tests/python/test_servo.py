@@ -72,7 +72,9 @@ def test_no_lift_is_faster_than_told_by_the_values_as_they_are_written(values, s
     poses = np.array([(10, 10, 0), (10, 10, -1), (14, 10, -3.3), (16, 11, -1.7), (16, 11, 0)])
     plan = SimpleNamespace(
         sheet_mm=(100.0, 60.0),
-        passes=[SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=5.0, arcs=(), colour="")],
+        passes=[
+            SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=5.0, arcs=(), tool_axes=(), colour="")
+        ],
     )
     brush = SimpleNamespace(name="b", max_speed_mm_s=25.0)
     lines = "".join(grbl_servo(program(plan, brush, cell))).splitlines()
@@ -131,7 +133,11 @@ def test_paper_so_high_or_low_that_heights_leave_the_table_is_refused(z_offset, 
         sheet_mm=(100.0, 60.0),
         passes=[
             SimpleNamespace(
-                stroke="s", poses_mm=np.array([(10, 10, 0), (20, 10, -2.0)]), speed_mm_s=9.0, arcs=()
+                stroke="s",
+                poses_mm=np.array([(10, 10, 0), (20, 10, -2.0)]),
+                speed_mm_s=9.0,
+                arcs=(),
+                tool_axes=(),
             )
         ],
     )
@@ -201,7 +207,9 @@ def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():
     poses = np.array([(10, 10, 0), (13, 10, -3.6), (20, 10, -3.6), (23, 10, 0)])
     plan = SimpleNamespace(
         sheet_mm=(100.0, 60.0),
-        passes=[SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=20.0, arcs=(), colour="")],
+        passes=[
+            SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=20.0, arcs=(), tool_axes=(), colour="")
+        ],
     )
     brush = SimpleNamespace(name="b", max_speed_mm_s=25.0)
     feed, feeds = 0.0, {}

@@ -41,6 +41,7 @@ def text_for(cell=CELL, strokes=STROKES, header=("title: two strokes",), colours
             poses_mm=np.array(poses, float),
             speed_mm_s=20.0,
             arcs=ARCS.get(name, ()),
+            tool_axes=(),
             colour=colour,
             layer="",
             settings=_core.Settings(),

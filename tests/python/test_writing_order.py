@@ -34,6 +34,7 @@ LETTERS = {
     "j": ("M22 20H28V42A10 10 0 0 1 18 50L17 44A5 5 0 0 0 22 40ZM21 5H29V12H21Z", [(25, 35), (25, 8)]),
     "a dot above a bar": ("M5 20H45V26H5ZM21 5H29V12H21Z", [(25, 8), (15, 23)]),
     "4": ("M30 5H36V30H42V36H36V45H30V36H8V30ZM30 14L16 30H30Z", [(20, 22), (33, 42)]),
+    "bold 4": ("M22 5H36V30H42V36H36V45H26V36H8V29ZM26 14L16 30H26Z", [(15, 27), (31, 42)]),
     "d": ("M34 3H40V45H34V42A14 14 0 1 1 34 20ZM34 31A8 8 0 1 0 18 31A8 8 0 1 0 34 31Z", [(12, 31), (37, 8)]),
     "cross": ("M22 5H28V22H45V28H28V45H22V28H5V22H22Z", [(10, 25), (25, 10)]),
     "N": ("M10 5H16L34 34V5H40V45H34L16 16V45H10Z", [(13, 35), (25, 25), (37, 15)]),
@@ -55,6 +56,26 @@ def test_lines_are_painted_in_the_order_of_writing(d, places):
     assert (off.min(axis=1) < 3).all(), "each place lies on a line"
     assert order.tolist() == sorted(order.tolist())
     assert len(set(order.tolist())) == len(places)
+
+
+@pytest.mark.parametrize(
+    ("d", "first", "last"),
+    [
+        ("M10 10H17V17Q22 10 34 10V18Q20 17 17 28V45H10Z", (15.6, 22), (30.5, 14)),
+        ("M10 5H28L13 45H5L18 12H10Z", (13, 8.5), (10, 42)),  # bends as far, but falls
+    ],
+    ids=["r", "7"],
+)
+def test_an_arm_that_leaves_its_stem_in_an_arch_is_written_from_there(d, first, last):
+    line = lines_of(d)[-1]
+    assert np.hypot(*(line[0] - (first[0], 50 - first[1]))) < 2
+    assert np.hypot(*(line[-1] - (last[0], 50 - last[1]))) < 2
+
+
+def test_the_stem_of_a_bold_4_is_no_flick_of_its_slant():
+    _, stem = lines_of(LETTERS["bold 4"][0])
+    assert np.ptp(stem[:, 0]) < 0.5, "straight up to the top"
+    assert stem[0, 1] > 38 > 12 > stem[-1, 1]
 
 
 def test_parts_in_a_row_are_read_from_the_left_and_what_stands_above_comes_before_what_is_below():

@@ -39,6 +39,9 @@ inline constexpr double kMostTiltDeg = 30.0;
 /// How far from 1 the length of a tool axis may be: coordinates rounded to three decimals add up to 0.0009.
 inline constexpr double kUnitLength = 1e-3;
 
+/// By how much they may tilt an axis of 30 degrees further: 0.05 degrees.
+inline constexpr double kRoundedTiltDeg = 0.05;
+
 /// One stroke's motion: straight moves between poses, depth linear along each.
 struct Pass {
     StrokeId stroke;  ///< the stroke it paints

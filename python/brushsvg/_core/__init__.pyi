@@ -60,11 +60,13 @@ __all__: list[str] = [
     "deviations_of_95",
     "excess_turning",
     "fill",
+    "first_crossings",
     "fit_curve",
     "fit_law",
     "fit_marks",
     "fit_tracks",
     "flatten",
+    "follow_lags",
     "footprint_at",
     "from_angles",
     "interrupted",
@@ -1493,6 +1495,15 @@ def fill(
     Rings of the shape that closed outlines fill; they may cross and turn either way.
     """
 
+def first_crossings(
+    rings: collections.abc.Sequence[numpy.typing.ArrayLike],
+    places: numpy.typing.ArrayLike,
+    way: tuple[float, float],
+) -> list[float]:
+    """
+    How far ahead [mm] of each place (n, 2), along a unit vector, the outline of rings is first crossed; infinite where it is not.
+    """
+
 def fit_curve(
     line: numpy.typing.ArrayLike, tolerance_mm: float, closed: bool = False
 ) -> tuple[numpy.typing.NDArray[numpy.float64], list[tuple[float, float]]]:
@@ -1544,6 +1555,22 @@ def flatten(
 ) -> numpy.typing.NDArray[numpy.float64]:
     """
     Middle line as (n, 4): x, y, arc length, half width [mm].
+    """
+
+def follow_lags(
+    passes: collections.abc.Sequence[Pass],
+    marks: collections.abc.Sequence[PassMarks],
+    lags: collections.abc.Sequence[Profile],
+    depth_range_mm: collections.abc.Sequence[float],
+) -> list:
+    """
+    What patches of K other lags do on the ways of these passes, at the rows of their marks.
+
+    marks: PassMarks of each pass, simulated with one upright brush. lags: Profiles that are positive on depth_range_mm. For
+    each pass: contacts [mm] and headings as unit vectors, (n, 2, K) each. In the air the contact is the TCP.
+
+    Exact at each row, by the closed form; vector instructions carry several lags at once where the library was built with
+    Highway.
     """
 
 def footprint_at(

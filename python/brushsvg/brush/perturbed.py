@@ -8,6 +8,14 @@ from .. import _core
 from .confidence import LAWS
 
 
+def changed_lag(brush, change: np.ndarray):
+    """Its lag with other coefficients."""
+    law = brush.lag
+    return _core.Profile(
+        (np.array(law.coefficients) + change).tolist(), floor=law.floor, floor_slope=law.floor_slope
+    )
+
+
 def with_lag(brush, change: np.ndarray):
     """The brush with other coefficients of the lag: fit to be simulated, nothing else."""
     other = _core.Brush()
@@ -22,10 +30,7 @@ def with_lag(brush, change: np.ndarray):
         "paint_depth_mm",
     ):
         setattr(other, name, getattr(brush, name))
-    law = brush.lag
-    other.lag = _core.Profile(
-        (np.array(law.coefficients) + change).tolist(), floor=law.floor, floor_slope=law.floor_slope
-    )
+    other.lag = changed_lag(brush, change)
     return other
 
 

@@ -80,6 +80,7 @@ class Report:
     refused: tuple[Notice, ...] = ()  # strokes that are not among those of the report
     forbidden: tuple[Notice, ...] = ()  # of the warnings, those for which no program would be written
     confidence: PlanConfidence | None = None  # None: the brush has no confidence
+    is_tilted: bool = False  # the brush, somewhere: of that no confidence is known
     groups: tuple[Group, ...] = ()
     advice: str = ""  # on the drawing's size
 
@@ -313,7 +314,7 @@ def to_text(report: Report) -> str:
         "Lengths in mm. Overlap: intersection over union of predicted mark and target mark. Centre: tracking",
         "error, the distance of the widest point from the middle line. Painted: path of the TCP on the paper.",
         "Turning: of the mark's outline beyond that of the target mark, in full turns.",
-        *_confidence_words(report.confidence),
+        *_confidence_words(report.confidence, report.is_tilted),
         f"Time, with the acceleration of the machine: {clock(report.time_s)}",
     ]
     if report.groups:
@@ -346,7 +347,9 @@ def _confidence_columns(confidence: PlanConfidence | None) -> list[tuple[str, li
     ]
 
 
-def _confidence_words(confidence: PlanConfidence | None) -> list[str]:
+def _confidence_words(confidence: PlanConfidence | None, is_tilted: bool) -> list[str]:
+    if is_tilted:
+        return ["No confidence intervals: how sure a mark is is known of a brush held upright."]
     if confidence is None:
         return ["No confidence intervals: the brush has neither covariance nor RMSE."]
     return [

@@ -1,6 +1,6 @@
 """Confidence in the brush, carried into what a plan paints: millimetres on paper.
 
-Linear propagation at the plan's own poses. The simulator is asked only for what the lag changes, by central
+Linear propagation at the rows of the plan's marks. The law is asked only for what the lag changes, by central
 differences along the independent directions of its covariance, one standard deviation to either side; the other laws
 enter in closed form: m = p + (x_w - b) u, tip = p - b u, width 2 h.
 """
@@ -13,8 +13,9 @@ import numpy as np
 
 from .. import _core
 from ..brush.confidence import LAWS, places
-from ..brush.perturbed import with_lag
+from ..brush.perturbed import changed_lag
 
+AT_ONCE = 64  # passes whose rows are in memory with all other lags
 ROWS = 160  # of a stroke that a band is made from: beyond, it only takes longer
 COVARIANCE, RMSE = "covariance", "RMSE"
 
@@ -138,13 +139,14 @@ def _all_effects(plan, brush, marks):
     )
     factor, steps = deviations[:, None] * _factor(covariance), _factor(covariance[lag, lag])
     mixing = np.linalg.pinv(steps) @ factor[lag]  # the independent directions of all, in steps of the lag
-    runs = [_both_sides(plan, brush, step / scale[lag]) for step in steps.T]
-    # once: every look at the passes copies the list
-    runs = [(up.passes, down.passes, part) for up, down, part in runs]
+    sides = [_both_sides(brush, step / scale[lag]) for step in steps.T]
     parts = {law: (factor / scale[:, None])[place] for law, place in at.items()}
-    for k, trace in enumerate(marks.passes):
-        lag_runs = [(up[k], down[k], part) for up, down, part in runs]
-        yield _effects(brush, trace, parts, lag_runs, mixing)
+    passes, traces = plan.passes, marks.passes  # once: every look copies the list
+    for first in range(0, len(traces), AT_ONCE):
+        some = slice(first, first + AT_ONCE)
+        moved = _moved(brush, passes[some], traces[some], sides)
+        for trace, (d_contact, d_along) in zip(traces[some], moved, strict=True):
+            yield _effects(brush, trace, parts, d_contact @ mixing, d_along @ mixing)
 
 
 def _factor(covariance: np.ndarray) -> np.ndarray:
@@ -154,25 +156,29 @@ def _factor(covariance: np.ndarray) -> np.ndarray:
     return vectors[:, kept] * np.sqrt(values[kept])
 
 
-def _both_sides(plan, brush, step: np.ndarray):
-    """Marks with the lag a step up and a step down, and how much of the step was gone: r stays above 0."""
+def _both_sides(brush, step: np.ndarray):
+    """The lag a step up and a step down, and how much of the step that was: r stays above 0."""
     depths = np.linspace(*brush.depth_range_mm, 101)
     change = np.abs(np.polynomial.polynomial.polyval(depths, step))
     lag = brush.lag(depths)
     part = min(1.0, 0.5 * float(np.min(lag / np.maximum(change, 1e-300))))
-    return *(_core.simulate(plan, with_lag(brush, sign * part * step)) for sign in (1, -1)), part
+    return *(changed_lag(brush, sign * part * step) for sign in (1, -1)), part
 
 
-def _effects(brush, trace, parts, lag_runs, mixing) -> _Effects:
+def _moved(brush, passes, traces, sides) -> list[tuple[np.ndarray, np.ndarray]]:
+    """By how much each step moves the contact and turns the heading, (n, 2, K) each, at the rows of each pass."""
+    if not sides:
+        return [(np.zeros((len(trace.pose), 2, 0)),) * 2 for trace in traces]
+    up, down, part = zip(*sides, strict=True)
+    led = _core.follow_lags(passes, traces, (*up, *down), brush.depth_range_mm)
+    steps, k = 2 * np.array(part), len(sides)
+    return [tuple((at[:, :, :k] - at[:, :, k:]) / steps for at in each) for each in led]
+
+
+def _effects(brush, trace, parts, d_contact, d_along) -> _Effects:
     depth = np.asarray(trace.depth_mm)
     contact, along = np.asarray(trace.contact_mm), _unit(np.asarray(trace.heading_rad))
     gap, widest, half = (getattr(brush, law)(depth) for law in LAWS[1:])
-    d_contact = np.zeros((len(depth), 2, len(lag_runs)))
-    d_along = np.zeros_like(d_contact)
-    for k, (up, down, part) in enumerate(lag_runs):
-        for out, read in ((d_contact, _contacts), (d_along, _alongs)):
-            out[:, :, k] = (read(up, trace.pose) - read(down, trace.pose)) / (2 * part)
-    d_contact, d_along = d_contact @ mixing, d_along @ mixing
     d_gap, d_widest, d_half = (_powers(getattr(brush, law), depth) @ parts[law] for law in LAWS[1:])
     return _Effects(
         contact + (widest - gap)[:, None] * along,
@@ -188,18 +194,6 @@ def _effects(brush, trace, parts, lag_runs, mixing) -> _Effects:
         d_widest,
         d_half,
     )
-
-
-def _contacts(trace, pose) -> np.ndarray:
-    return _at(trace, pose, np.asarray(trace.contact_mm))
-
-
-def _alongs(trace, pose) -> np.ndarray:
-    return _at(trace, pose, _unit(np.asarray(trace.heading_rad)))
-
-
-def _at(trace, pose, columns: np.ndarray) -> np.ndarray:
-    return np.column_stack([np.interp(pose, trace.pose, column) for column in columns.T])
 
 
 def _unit(angle: np.ndarray) -> np.ndarray:

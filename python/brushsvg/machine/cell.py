@@ -55,6 +55,10 @@ class Paper:
 
 FANUC_CONFIGURATION = "N U T, 0, 0, 0"
 ROS_FRAMES = "base_link", "tool0"  # as ROS-Industrial names them
+MOST_TILT_DEG = 30.0  # of a plan.json
+TURN_DEG_S = (
+    45.0  # a quarter of what most joints of arms turn by in a second: some turn farther than the tool does
+)
 
 
 @dataclass(frozen=True)
@@ -66,6 +70,12 @@ class Tool:
         "of the tool's frame, z along the brush; about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0)
     )
     spin_deg: float = _number("how the tool is turned about the brush's axis", -360, 360, default=0.0)
+    tilt_limit_deg: float = _number(
+        "how far a plan may tilt the brush from the paper's normal", 0, 30, default=MOST_TILT_DEG
+    )
+    turn_deg_s: float = _number(
+        "how fast the tool may turn where a plan tilts it", 0.1, 360, default=TURN_DEG_S
+    )
     configuration: str = _key(
         "fanuc: of the arm over the sheet, as the pendant shows it", "text", default=FANUC_CONFIGURATION
     )

@@ -60,12 +60,12 @@ def told_high_mm(told_mm: np.ndarray, height_mm: float, machine: Machine | None)
 
 
 def on_map_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
-    """(m, 3): places (n, 3) where the tool shall go, with more of them between, so that straight lines between what is
-    told keep the tool's height over the paper's map."""
+    """(m, k): places (n, k), x, y, z and what else changes evenly, where the tool shall go, with more of them between,
+    so that straight lines between what is told keep the tool's height over the paper's map."""
     if machine is None or not machine.map_mm:
         return points_mm
     wanted = np.asarray(points_mm, dtype=float)
-    told = told_mm(wanted, machine)[:, :2]
+    told = told_mm(wanted[:, :3], machine)[:, :2]
     rows = [wanted[:1]]
     for k in range(len(wanted) - 1):
         at = _cuts(told[k], told[k + 1], machine)[:, None]
@@ -150,4 +150,4 @@ def _mapped(a_pass, machine: Machine | None, to):
     for arc in a_pass.arcs if is_similar(machine) else ():
         centre = to(np.array([[*arc.centre_mm, poses[arc.first, 2]]]), machine)[0, :2]
         arcs.append(_core.Arc(arc.first, arc.last, tuple(centre.tolist()), arc.direction))
-    return on_way(a_pass, to(poses, machine), arcs)
+    return on_way(a_pass, to(poses, machine), arcs, a_pass.tool_axes)

@@ -124,6 +124,25 @@ def quaternion(turned: np.ndarray) -> np.ndarray:
     return -found if found[0] < 0 else found
 
 
+def of_quaternion(wxyz) -> np.ndarray:
+    """(..., 3, 3) the rotations of unit quaternions (..., 4): w, x, y, z."""
+    w, x, y, z = np.moveaxis(np.asarray(wxyz, dtype=float), -1, 0)
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def of_rotation_vector(vector_rad) -> np.ndarray:
+    """(3, 3) the rotation of axis times angle [rad]. Rodrigues: I + sin t [n] + (1 - cos t) [n]^2."""
+    angle = float(np.linalg.norm(vector_rad))
+    x, y, z = np.asarray(vector_rad, dtype=float) / angle if angle > 0 else np.zeros(3)
+    across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * across @ across
+
+
 def rotation_vector(turned: np.ndarray) -> np.ndarray:
     """(3,) axis times angle [rad] of a rotation (3, 3), angle in [0, pi]."""
     turn = quaternion(turned)

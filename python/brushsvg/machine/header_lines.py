@@ -8,6 +8,8 @@ from .paint_reload import PlanInLoads
 from .posts import POSTS
 from .program import WHOLE_JOB, Job
 
+TILT_LINE = "tilt: the brush is held as each move says"
+
 
 def header_of(title: str, brush: str, loads: PlanInLoads, notes, made: Program, job: Job) -> tuple[str, ...]:
     """The header of a program; loads before the first one of the job are only counted."""
@@ -70,6 +72,8 @@ def about(made: Program, job: Job = WHOLE_JOB) -> list[str]:
         _frame_line(made),
         f"time: about {clock(duration_s(made))}",
     ]
+    if made.tilts:
+        lines.append(TILT_LINE)
     if job.z_offset_mm:
         lines.append(f"paper: {job.z_offset_mm:+.10g} mm against the cell's")
     if made.cell.paper.example:

@@ -32,6 +32,8 @@ class Move:
     poses), lift (up to the clearance), retract (up to safe height), dip (into the paint and out), wipe, look (slowly,
     at safe height).
     blends_mm: (n,) how far before each point the robot may begin to turn to the next; None: not at all.
+    axes: (n, 3) unit vectors from the tip up along the brush at each point, in the frame of the points, the tool turned
+    there the shortest way from upright; None: upright.
     """
 
     meaning: str
@@ -39,6 +41,7 @@ class Move:
     speed_mm_s: float
     arc: Arc | None = None
     blends_mm: np.ndarray | None = None
+    axes: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -79,7 +82,7 @@ class Program:
     """header: lines for the reader, each beginning with a word of ours. sections() yields them one by one: a page of
     strokes is never held twice. robot_from_frame: (4, 4), the frame of all points, in the robot's. rise_mm: how high
     the tool is over everything, where it goes first; rise_in_robot_mm: the same in the robot's frame; touching_mm_s:
-    the most that the brush's tip may have where it touches."""
+    the most that the brush's tip may have where it touches; tilts: whether the brush is tilted anywhere."""
 
     header: tuple[str, ...]
     cell: Cell
@@ -88,6 +91,7 @@ class Program:
     rise_mm: float
     rise_in_robot_mm: float
     touching_mm_s: float
+    tilts: bool = False
 
 
 def rise_over(cell: Cell, sheet_mm, frame: np.ndarray) -> float:
@@ -119,7 +123,8 @@ def _turned(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
     if arc is not None:
         centre = moved(frame, np.array([[*arc.centre_mm, 0.0]]))[0]
         arc = Arc((float(centre[0]), float(centre[1])), arc.turn)
-    return replace(step, points_mm=moved(frame, step.points_mm), arc=arc)
+    axes = step.axes if step.axes is None else step.axes @ frame[:3, :3].T
+    return replace(step, points_mm=moved(frame, step.points_mm), arc=arc, axes=axes)
 
 
 def at_told_speeds(section: Section, cell: Cell) -> Section:

@@ -18,6 +18,8 @@ from .distortion import is_similar, on_map_mm
 from .frames import is_upright
 from .pass_way import on_way
 from .posts import POSTS, circles_by
+from .tilt import in_steps, refuse_where_upright
+from .tool_axes import axes_of, unit
 
 
 @dataclass(frozen=True)
@@ -56,9 +58,10 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
     already stays as it is. What begins or ends below the paper is set down and lifted there. Where the machine is told
     no circles, arcs have poses enough for lines; where its axes have backlash, arcs end where one turns back; where the
     cell has a map of the paper, lines have enough for that.
-    Error for a part that does not follow the one before it, and for a tilted brush: programs hold it upright.
+    Where the brush turns, there are poses enough for a robot that turns evenly between them. Error for a part that does
+    not follow the one before it, and for a tilted brush where the cell cannot tilt it.
     """
-    _core.refuse_tilted(plan.passes, f"programs for cell {cell.name} hold the brush upright")
+    refuse_where_upright(plan.passes, cell)
     loads, last, lasts_mm = list(plan.passes), None, math.inf
     for a_pass in loads:
         if is_later_part(a_pass) and (last is None or last.load != a_pass.load - 1):
@@ -79,8 +82,18 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
         axes = robot_from_paper(cell)[:2, 0]
         loads = (cut_at_extremes(each, float(np.arctan2(axes[1], axes[0]))) for each in loads)
     if cell.machine and cell.machine.map_mm:
-        loads = (on_way(each, on_map_mm(np.asarray(each.poses_mm), cell.machine), ()) for each in loads)
+        loads = (_on_map(each, cell.machine) for each in map(in_steps, loads))
+    else:
+        loads = map(in_steps, loads)
     return PlanInLoads(tuple(plan.sheet_mm), tuple(map(_from_paper_to_paper, loads)), lasts_mm)
+
+
+def _on_map(a_pass, machine):
+    axes = axes_of(a_pass)
+    rows = on_map_mm(
+        np.asarray(a_pass.poses_mm if axes is None else np.hstack([a_pass.poses_mm, axes])), machine
+    )
+    return on_way(a_pass, rows[:, :3], (), None if axes is None else unit(rows[:, 3:]))
 
 
 def load_lasts_mm(brush: _core.Brush, cell: Cell) -> float:
@@ -135,7 +148,10 @@ def _from_paper_to_paper(a_pass):
         _core.Arc(arc.first + len(before), arc.last + len(before), arc.centre_mm, arc.direction)
         for arc in a_pass.arcs
     ]
-    return on_way(a_pass, np.vstack([before, poses, after]), arcs)
+    axes = np.asarray(a_pass.tool_axes).reshape(-1, 3)
+    if len(axes):
+        axes = np.vstack([axes[:1][below[:1]], axes, axes[-1:][below[1:]]])
+    return on_way(a_pass, np.vstack([before, poses, after]), arcs, axes)
 
 
 def too_long(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> list[Notice]:

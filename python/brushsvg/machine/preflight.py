@@ -15,6 +15,7 @@ from .distortion import true_pass
 from .paint_reload import PlanInLoads
 from .program import POSES_AT_ONCE, WHOLE_JOB, Job, Walked, out_of_arm, walked
 from .rounding import as_written
+from .tool_axes import mixed
 from .workspace_limits import beyond_edges
 
 DEFAULT_TOLERANCE_MM = 0.05
@@ -27,10 +28,12 @@ def look(
     cell: Cell,
     tolerance_mm: float,
     job: Job = WHOLE_JOB,
+    known: Walked | None = None,
 ) -> Walked:
     """The job with everything that forbids to run it on the robot. marks: of the plan or of its loads; of a job that
-    is resumed only what is left is asked."""
-    walk = walked(loads, brush, cell, job)
+    is resumed only what is left is asked. known: a job of the same brush, which is not gone through again if it is
+    this one."""
+    walk = known if known and known.is_of(loads, cell, job) else walked(loads, brush, cell, job)
     if job.first_stroke > 1:
         loads = loads.left(job.first_stroke)
         if not loads.loads:
@@ -138,7 +141,8 @@ ROWS_MM = 0.02  # rows of a mark are as close as that: a coarse tolerance is no 
 def _as_told(a_pass, cell: Cell):
     """With the poses and circles that a program has, not rounded."""
     written = as_written(a_pass, cell, robot_from_paper(cell))
-    told = _core.Pass(a_pass.stroke, written.told_mm, a_pass.speed_mm_s, arcs=written.arcs)
+    axes = np.zeros((0, 3)) if written.axes is None else written.axes
+    told = _core.Pass(a_pass.stroke, written.told_mm, a_pass.speed_mm_s, arcs=written.arcs, tool_axes=axes)
     return true_pass(told, cell)
 
 
@@ -176,8 +180,11 @@ def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[t
             _core.Arc(rows[arc.first, 1], rows[arc.last, 0], arc.centre_mm, arc.direction)
             for arc in a_pass.arcs
         ]
-        run = _core.Pass(a_pass.stroke, path[first:last], a_pass.speed_mm_s, arcs=arcs)
-        runs.append((run, at[first:last] - start))
+        rows_at, axes = at[first:last] - start, np.asarray(a_pass.tool_axes)
+        if len(axes):  # turned on along with the cut as with its moves
+            axes = mixed(axes, rows_at)
+        run = _core.Pass(a_pass.stroke, path[first:last], a_pass.speed_mm_s, arcs=arcs, tool_axes=axes)
+        runs.append((run, rows_at))
     return runs
 
 

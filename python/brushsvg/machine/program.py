@@ -21,6 +21,8 @@ from .paint_reload import PlanInLoads, visits
 from .posts import POSTS
 from .posts.text import told_apart
 from .rounding import Written, as_written
+from .tilt import slow_enough
+from .tool_axes import axes_of, tilts_deg
 from .workspace_limits import broken_limits, rise_astray, touching_mm_s, walked_astray
 
 PLAIN, ON_THE_SPOT = -1, -2  # what a segment is that is on no arc
@@ -54,6 +56,11 @@ class Walked:
     job: Job
     made: Program
     problems: list[Notice]
+
+    def is_of(self, loads: PlanInLoads, cell: Cell, job: Job) -> bool:
+        """Whether it is this job, on this cell, that was gone through. The brush must be the same."""
+        is_same = self.job == replace(job, visits=self.job.visits) and self.made.cell == cell
+        return is_same and self.loads == loads
 
     def allowed(self) -> Program:
         """What is run. Error, naming stroke and range, where something forbids it."""
@@ -113,7 +120,7 @@ def _as_run(a_pass, made: Program):
         return a_pass
     written = as_written(a_pass, made.cell, made.robot_from_frame)
     poses = true_mm(written.told_mm, made.cell.machine)
-    return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s)
+    return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s)  # no servo tilts a brush
 
 
 def astray_in(made: Program, sheet_mm) -> list[Notice]:
@@ -172,7 +179,8 @@ def unchecked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JO
     is_little = sum(len(a_pass.poses_mm) for _, a_pass in left) <= POSES_KEPT
     rises_mm = (rise_over(cell, loads.sheet_mm, of) for of in (np.eye(4), frame))
     walk = (lambda: iter(made())) if is_little else sections
-    return Program((), cell, frame, walk, *rises_mm, touching_mm_s(brush, cell))
+    tilts = any(axes_of(a_pass) is not None for _, a_pass in left)
+    return Program((), cell, frame, walk, *rises_mm, touching_mm_s(brush, cell), tilts)
 
 
 def over(point, height_mm: float) -> np.ndarray:
@@ -236,15 +244,28 @@ def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:
     def above(place, height_mm: float) -> np.ndarray:
         return told_mm(over(place, height_mm), cell.machine)
 
+    axes = written.axes
+    first, last = (None, None) if axes is None else (axes[:1], axes[-1:])
+
+    def no_faster(speed_mm_s: float, held) -> float:
+        """The tool turns between upright, at the safe height, and how it is held at the clearance."""
+        turn_deg = 0.0 if held is None else float(tilts_deg(held)[0])
+        return slow_enough(speed_mm_s, heights.safe_mm - heights.clearance_mm, turn_deg, cell)
+
     # Pressing on the spot and lifting off bend the bristles as much as painting does: never faster than it.
     press_mm_s = min(speeds.press_mm_s, a_pass.speed_mm_s)
     return (
         Move("travel", safely_over(above(start, 0.0)[0], cell), speeds.travel_mm_s),
-        Move("approach", above(start, heights.clearance_mm), approach_mm_s(brush, cell)),
-        Move("land", poses[:1], press_mm_s),
+        Move(
+            "approach",
+            above(start, heights.clearance_mm),
+            no_faster(approach_mm_s(brush, cell), first),
+            axes=first,
+        ),
+        Move("land", poses[:1], press_mm_s, axes=first),
         *_painting(poses, written, a_pass.speed_mm_s, press_mm_s, cell),
-        Move("lift", above(end, heights.clearance_mm), press_mm_s),
-        Move("retract", safely_over(above(end, 0.0)[0], cell), speeds.travel_mm_s),
+        Move("lift", above(end, heights.clearance_mm), press_mm_s, axes=last),
+        Move("retract", safely_over(above(end, 0.0)[0], cell), no_faster(speeds.travel_mm_s, last)),
     )
 
 
@@ -268,4 +289,6 @@ def _painting(
         kind = kinds[run[0]]
         arc = Arc(tuple(arcs[kind].centre_mm), arcs[kind].direction) if kind >= 0 else None
         speed = press_mm_s if kind == ON_THE_SPOT else paint_mm_s
-        yield Move("paint", poses[run + 1], speed, arc, None if radii is None else radii[run + 1])
+        blends_mm = None if radii is None else radii[run + 1]
+        axes = None if written.axes is None else written.axes[run + 1]
+        yield Move("paint", poses[run + 1], speed, arc, blends_mm, axes)

@@ -17,6 +17,7 @@ from .distortion import leans, told_pass
 from .frames import is_upright, moved
 from .motion import via
 from .posts import POSTS, circles_by
+from .tool_axes import axes_of
 
 # circles that are smaller or flatter, in units of the last decimal, are run along their chords: rounded, they could
 # turn the other way, or all round, or lie on one line
@@ -27,12 +28,13 @@ CIRCLE_UNITS = 10
 class Written:
     """told_mm: (k, 3) what the machine is told for each pose that a program has; poses_mm: (k, 3) the same as the
     program has it, in the paper's frame; arcs: what of these it tells as circles; sideways_mm: steps of less than that
-    are straight up and down."""
+    are straight up and down; axes: (k, 3) how the brush is held there, None: upright."""
 
     told_mm: np.ndarray
     poses_mm: np.ndarray
     arcs: list
     sideways_mm: float
+    axes: np.ndarray | None = None
 
 
 def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
@@ -73,7 +75,8 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
     if cell.servo:
         held = _held(poses[:, :2], least_mm)
         poses[:, :2], told_mm[:, :2] = poses[held, :2], told_mm[held, :2]
-    return Written(told_mm, poses, arcs, sideways_mm)
+    axes = axes_of(a_pass)  # without arcs
+    return Written(told_mm, poses, arcs, sideways_mm, axes if axes is None else axes[kept])
 
 
 def _held(places: np.ndarray, least_mm: float) -> np.ndarray:

@@ -7,7 +7,9 @@ from math import sqrt
 
 import numpy as np
 
+from .cell import robot_from_paper
 from .motion import Move, Program, Wait
+from .tool_axes import turned_on
 
 POSE, WAY, REST = 0, 1, 2  # what a row is: a place of the plan, one on the way to it, the end of a wait
 SLICE_S = 0.02  # rows are so far apart where the speed changes: between two it counts as even
@@ -16,7 +18,8 @@ LEAST_MM = 1e-6
 
 def timed(program: Program) -> Iterator[tuple[str, np.ndarray]]:
     """(title, rows) of each section. rows (n, 6): time from the first place on [s], x, y, z [mm, the program's frame],
-    the speed that its move may have [mm/s], POSE, WAY or REST.
+    the speed that its move may have [mm/s], POSE, WAY or REST; (n, 9) of a program that tilts the brush, then the unit
+    vector from its tip up along it, which turns evenly along a line.
 
     A move begins and ends at rest, and is at rest where nothing may be cut. Along straight lines the speed changes by
     the cell's acceleration a. Through a joint of two lines that turns by t and may be cut from r on, it goes no faster
@@ -24,43 +27,62 @@ def timed(program: Program) -> Iterator[tuple[str, np.ndarray]]:
     """
     a, decimals = program.cell.speeds.acceleration_mm_s2, program.cell.decimals
     now_s, here = 0.0, None
+    # its points are in the robot's frame, where nothing is upright but on the paper
+    normal = tuple(robot_from_paper(program.cell)[:3, 2].tolist()) if program.tilts else ()
+    held = normal
     for section in program.sections():
         rows: list[tuple] = []
         for step in section.steps:
             if isinstance(step, Wait):
                 now_s += step.seconds or 0.0
-                rows.append((now_s, *here, 0.0, REST))
+                rows.append((now_s, *here, 0.0, REST, *held))
                 continue
+            axes = None
+            if program.tilts:
+                axes = np.tile(normal, (len(step.points_mm), 1)) if step.axes is None else step.axes
             if here is None:
                 here = tuple(np.round(step.points_mm[0], decimals).tolist())
-                rows.append((now_s, *here, step.speed_mm_s, POSE))
-            now_s, here = _moved(step, here, now_s, a, decimals, rows)
-        yield section.title, np.array(rows).reshape(-1, 6)
+                held = held if axes is None else tuple(axes[0].tolist())
+                rows.append((now_s, *here, step.speed_mm_s, POSE, *held))
+            now_s, here, held = _moved(step, here, axes, held, now_s, a, decimals, rows)
+        yield section.title, np.array(rows).reshape(-1, 6 + len(normal))
 
 
-def _moved(move: Move, here: tuple, now_s: float, a: float, decimals: int, rows: list) -> tuple[float, tuple]:
-    """Rows of a move, added; and when and where it ends."""
+def _moved(
+    move: Move,
+    here: tuple,
+    axes: np.ndarray | None,
+    held: tuple,
+    now_s: float,
+    a: float,
+    decimals: int,
+    rows: list,
+) -> tuple[float, tuple, tuple]:
+    """Rows of a move, added; when and where it ends, and how the brush is held there; axes: (n, 3) of its points."""
     path = np.vstack([here, np.round(move.points_mm, decimals)])
     steps = np.diff(path, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     goes = lengths > LEAST_MM
     if not goes.any():
-        return now_s, here
+        return now_s, here, held
     at = np.flatnonzero(goes) + 1
     steps, lengths = steps[goes], lengths[goes]
     top = move.speed_mm_s
     caps = joint_caps(move.blends_mm, at, steps, lengths, a).tolist()
     places = path[at].tolist()
+    axes = axes if axes is None else axes[at - 1]
     for k, when_s, done_mm in paced(lengths.tolist(), caps, [top] * len(lengths), a, now_s):
         there = places[k]
         if done_mm is None:
             now_s, here = when_s, tuple(there)
-            rows.append((now_s, *here, top, POSE))
+            held = held if axes is None else tuple(axes[k].tolist())
+            rows.append((now_s, *here, top, POSE, *held))
             continue
         part = done_mm / lengths[k]
         place = (x + part * (to - x) for x, to in zip(here, there, strict=True))
-        rows.append((when_s, *place, top, WAY))
-    return now_s, here
+        on = () if axes is None else turned_on(np.array(held), axes[k], part).tolist()
+        rows.append((when_s, *place, top, WAY, *on))
+    return now_s, here, held
 
 
 def paced(

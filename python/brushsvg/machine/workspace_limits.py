@@ -11,6 +11,7 @@ from ..errors import Notice
 from .cell import LEAST_SPEED_MM_S, Cell, servo_parts, servo_stands
 from .motion import Move, Section
 from .move_extents import Ways, bounds, from_origin, place_inside, ways, ways_in
+from .tilt import broken_limits as tilted_too_far
 
 ROUNDING_MM = 1e-6
 SLOWEST_MM_S = 1e-6  # slower, times cannot be told
@@ -36,7 +37,7 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
         elif not np.isfinite(poses).all():
             found = [Notice("", "a pose is not a finite number", code="not-finite")]
         else:
-            found = [*_heights(poses, cell)]
+            found = [*_heights(poses, cell), *tilted_too_far(a_pass, cell)]
             if not (poses[:, 2] < 0).any():
                 sentence = "the brush is never pressed to the paper: nothing would be painted"
                 found.append(Notice("", sentence, code="never-pressed"))

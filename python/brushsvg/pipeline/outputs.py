@@ -13,6 +13,7 @@ from ..evaluation import report
 from ..evaluation.uncertainty import Band, uncertainty
 from ..machine.cell import Cell
 from ..machine.paint_reload import PlanInLoads, in_loads
+from ..machine.tool_axes import is_tilted
 from ..machine.writer import time_s, whole_program
 from ..pictures.animation import animation
 from ..pictures.marks_svg import marks_svg
@@ -100,6 +101,7 @@ def overlap_picture(suffix: str, work: Work, marks: _core.Marks, long_side_px: i
 def played(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed: float = 1.0) -> bytes:
     """An HTML page that plays tool and paint over time, speed times as fast at first. marks: of the work's plan in
     loads, with outlines."""
+    _core.refuse_tilted(work.plan.passes, "the tool is shown upright")
     runs = replace(cell, machine=None)  # the tool is shown where it goes, not where it is told to go
     moves = timeline(whole_program(loads, work.brush, runs), marks)
     wanted = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
@@ -120,6 +122,7 @@ def reported(
     those of them for which no program would be written; drawn: see report.measure; seconds: how long it takes, where
     that is known better than from the plan; advice: on the size."""
     known = warnings if warnings is not None else work.notices
+    leans = any(map(is_tilted, work.plan.passes))
     is_drawing = work.strokes is not None
     rows, total = report.measure(
         work.plan,
@@ -144,7 +147,8 @@ def reported(
         warnings=tuple(known),
         refused=tuple(work.refused),
         forbidden=tuple(forbidden),
-        confidence=uncertainty(work.plan, work.brush, marks),
+        confidence=None if leans else uncertainty(work.plan, work.brush, marks),
+        is_tilted=leans,
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,
     )

@@ -4,6 +4,7 @@ line that ends square in the corner, and one that begins on what that painted, f
 from __future__ import annotations
 
 from collections import defaultdict
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,6 +18,9 @@ LEAST_RAD, MOST_RAD = np.radians(60), np.radians(120)
 # In half widths: how far from its corner a line is as straight as its leg, and how long a leg is at least, in which
 # a square end has room.
 AWAY, LEG = 1.2, 3.0
+STUB = 0.2  # and of how little of a leg its direction is known
+# A first leg so much thinner than the second hides no pointed beginning of that; but a squared one its end.
+THIN = 0.65
 WORTH = 0.15  # two strokes for one, in squares of the half width: the outer corner of 90 degrees has 0.21
 HARDLY_WIDER = 1.05  # than the brush: what is wider yet may be painted in passes
 
@@ -36,11 +40,14 @@ def squared_at_corners(strokes: list, brush) -> list:
         )
     if not brush.width_follows_depth():
         return strokes
-    most = HARDLY_WIDER * brush.half_width_range_mm()[1]
+    greatest = brush.half_width_range_mm()[1]
+
+    def may_be_filled(stroke) -> bool:
+        own = max(half for _, half in stroke.half_width)
+        return own > greatest and widest[stroke.origin.element] > HARDLY_WIDER * greatest
+
     return [
-        part
-        for stroke in strokes
-        for part in (_parts(stroke, brush) if widest[stroke.origin.element] <= most else [stroke])
+        part for stroke in strokes for part in ([stroke] if may_be_filled(stroke) else _parts(stroke, brush))
     ]
 
 
@@ -50,24 +57,49 @@ def _parts(stroke, brush) -> list:
     line = drawn_line(np.asarray(stroke.middle_mm).reshape(-1, 4, 2), stroke.half_width)
     turning = [k for k in range(1, len(line.cubics)) if LEAST_RAD < line.turn_rad(k) < MOST_RAD]
     length_mm = knots(line.cubics)[:, -1].sum()
-    at_mm = [0.0, *(line.at[k] * length_mm for k in turning), length_mm]
-    half_mm = max(half for _, half in line.half_width)
-    roomy = [
-        at
-        for before, at, after in zip(at_mm, at_mm[1:], at_mm[2:], strict=False)
-        if min(at - before, after - at) > LEG * half_mm
+    ends_mm = [0.0, *(line.at[k] * length_mm for k in turning), length_mm]
+    corners = [
+        corner
+        for before, at, after in zip(ends_mm, ends_mm[1:], ends_mm[2:], strict=False)
+        if (corner := _corner(line, before, at, after))
     ]
-    if not roomy:
+    if not corners:
         return [stroke]
     whole_mm2 = misplaced_mm2([_paintable(stroke, brush)], stroke.wanted_mm, brush)
     better = []
-    for at in roomy:
-        parts = _cut(stroke, line, [at])
+    for corner in corners:
+        parts = _cut(stroke, line, [corner])
         if parts and whole_mm2 - misplaced_mm2(
             [_paintable(p, brush) for p in parts], stroke.wanted_mm, brush
-        ) > (WORTH * half_mm**2):
-            better.append(at)
+        ) > (WORTH * max(corner.legs_mm) ** 2):
+            better.append(corner)
     return _cut(stroke, line, better) or [stroke] if better else [stroke]
+
+
+@dataclass(frozen=True)
+class _Corner:
+    """Arc lengths of a corner, and before and after it, where the line is as straight as its legs; half their widths
+    there."""
+
+    at_mm: float
+    away_mm: tuple[float, float]
+    legs_mm: tuple[float, float]
+
+
+def _corner(line: Line, before_mm: float, at_mm: float, after_mm: float) -> _Corner | None:
+    """A corner with its legs, up to the next ones; none where one of them has no room."""
+    lengths = at_mm - before_mm, after_mm - at_mm
+    whole_mm = knots(line.cubics)[:, -1].sum()
+    (here,) = _halves(line, at_mm / whole_mm)
+    looked_at = [min(LEG * here, length_mm / 2) for length_mm in lengths]
+    legs = _halves(line, (at_mm - looked_at[0]) / whole_mm, (at_mm + looked_at[1]) / whole_mm)
+    away = []
+    for length_mm, half, other in zip(lengths, legs, legs[::-1], strict=True):
+        if length_mm < LEG * half:
+            return None
+        # the thinner one bends towards a corner as far from it as the other is wide
+        away.append(min(AWAY * max(here, other), length_mm - STUB * half))
+    return _Corner(at_mm, (at_mm - away[0], at_mm + away[1]), (legs[0], legs[1]))
 
 
 def _paintable(stroke, brush):
@@ -76,23 +108,22 @@ def _paintable(stroke, brush):
     return stroke.replaced(half_width=clamped(stroke, *brush.half_width_range_mm()).half_width)
 
 
-def _cut(stroke, line: Line, at_mm: list[float]) -> list:
-    """The stroke in parts, cut at arc lengths; empty where its shape does not fall into two at each."""
+def _cut(stroke, line: Line, corners: list[_Corner]) -> list:
+    """The stroke in parts, cut at corners; empty where its shape does not fall into two at each."""
     import shapely
 
     from .contour_fill import region
 
     length_mm = knots(line.cubics)[:, -1].sum()
     legs, left, tip = [], region(stroke.wanted_mm), None
-    begin_mm = 0.0
-    for at in at_mm:
-        away = [AWAY * each for each in _halves(line, at / length_mm, at / length_mm)]
-        first, second = _at(line, at - away[0]), _at(line, at + away[1])
+    begin_mm, begun = 0.0, ""
+    for each in corners:
+        first, second = (_at(line, beside_mm) for beside_mm in each.away_mm)
         corner = _meet(first, second)
         if corner is None:
             return []
-        halves = _halves(line, (at - away[0]) / length_mm, (at + away[1]) / length_mm)
-        sides = _sides(left, corner, first, second, halves, line, (begin_mm, at, length_mm))
+        halves = _halves(line, *(beside_mm / length_mm for beside_mm in each.away_mm))
+        sides = _sides(left, corner, first, second, halves, line, (begin_mm, each.at_mm, length_mm))
         if sides is None:
             return []
         done, left, shared = sides
@@ -100,9 +131,12 @@ def _cut(stroke, line: Line, at_mm: list[float]) -> list:
         start = _end(region(stroke.wanted_mm), (second[0], -second[1]), halves[1])
         if end is None or start is None:
             return []
-        legs.append((begin_mm, at - away[0], tip, end, shapely.union(done, shared)))
-        left, tip, begin_mm = shapely.union(left, shared), start, at + away[1]
-    legs.append((begin_mm, length_mm, tip, None, left))
+        is_thin = halves[0] < THIN * halves[1]
+        ways = begun, "lifted" if is_thin else ""
+        legs.append((begin_mm, each.away_mm[0], tip, end, shapely.union(done, shared), ways))
+        left, tip, begin_mm = shapely.union(left, shared), start, each.away_mm[1]
+        begun = "auto" if is_thin else "exposed"
+    legs.append((begin_mm, length_mm, tip, None, left, (begun, "")))
     return [_leg(stroke, line, number, *leg) for number, leg in enumerate(legs, start=1)]
 
 
@@ -190,7 +224,7 @@ def _end(shape, place, half_mm: float) -> np.ndarray | None:
     return at + (near[0].length - half_mm) * along
 
 
-def _leg(stroke, line: Line, lane: int, from_mm: float, to_mm: float, tip, end, shape):
+def _leg(stroke, line: Line, lane: int, from_mm: float, to_mm: float, tip, end, shape, ways: tuple[str, str]):
     from .fillings import rings_of
 
     cubics, halves = line.stretch(from_mm, to_mm)
@@ -208,6 +242,9 @@ def _leg(stroke, line: Line, lane: int, from_mm: float, to_mm: float, tip, end, 
         knots_mm = [*knots_mm, (length_mm, knots_mm[-1][1])]
     made = line_stroke(Line(cubics, [(at / length_mm, half) for at, half in knots_mm]), stroke, lane)
     made.wanted_mm = rings_of(shape)
-    if lane > 1 and made.settings.start in (None, "auto"):
-        made.settings = made.settings.replaced(start="exposed")
+    begun, ended = ways
+    if begun and made.settings.start in (None, "auto"):
+        made.settings = made.settings.replaced(start=begun)
+    if ended and made.settings.end in (None, "auto"):
+        made.settings = made.settings.replaced(end=ended)
     return made

@@ -13,6 +13,7 @@ from ..machine.arc_chords import with_chords
 from ..machine.cell import Cell, least_move_mm, unit_mm, value_mm
 from ..machine.paint_reload import PlanInLoads, visits
 from ..machine.posts.text import spelled
+from ..machine.tool_axes import axes_of, between_deg, mixed, tilts_deg
 from .simulate_program import Problems, Ran, chords, slack_mm
 
 STRAY_MM = 0.02  # what rounding and the chords of circles make of a path; a brush does not show it
@@ -87,13 +88,13 @@ def _same(written: str, name: str) -> bool:
 def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
     """Where a pass that was read, its poses in these lines of the program, does not run where it should, in the order
     in which it should, or not as fast."""
+    problems = _held_otherwise(a_pass, lines, meant)
     meant = _with_circles_of(a_pass, meant)
     # where units are coarse, a pose gives way to one that is less than a move away
     limit_mm = max(STRAY_MM, slack_mm(cell), least_move_mm(cell) + unit_mm(cell))
     # a servo's height goes in steps of whole values, beside the line by half of both
     beside_mm = (cell.servo.step_mm + value_mm(cell)) / 2 if cell.servo else 0.0
     steepness = limit_mm / (limit_mm + beside_mm)
-    problems = []
     if _pose_by_pose(a_pass, meant) > limit_mm:  # it may yet be the same path, with other poses on it
         (found, owner), (asked, _) = _round(a_pass), _round(meant)
         found, asked = found * (1, 1, steepness), asked * (1, 1, steepness)
@@ -108,6 +109,41 @@ def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
         sentence = f"it is painted at {a_pass.speed_mm_s:.1f} mm/s, {asked_for}"
         problems.append(Notice(a_pass.stroke, sentence, code="stroke-too-fast"))
     return problems
+
+
+HELD_DEG = 0.5  # off what was meant, a brush's mark does not show it
+
+
+def _held_otherwise(a_pass, lines: np.ndarray, meant) -> Problems:
+    """A notice where the brush of a pass that was read is tilted otherwise than it should: at the same pose, or, where
+    a pass has others on its way, as far along it."""
+    if not len(a_pass.tool_axes) and axes_of(meant) is None:
+        return []
+    found, asked = (_axes(each) for each in (a_pass, meant))
+    if len(found) != len(asked):
+        along, on = (_shares(np.asarray(each.poses_mm)) for each in (a_pass, meant))
+        asked = mixed(asked, np.interp(along, on, np.arange(len(on))))
+    off_deg = between_deg(found, asked)
+    worst = int(off_deg.argmax())
+    if off_deg[worst] <= HELD_DEG:
+        return []
+    sentence = (
+        f"line {lines[worst]}: the brush is held {off_deg[worst]:.3g} degrees from how the drawing asks for it, by "
+        f"{float(tilts_deg(asked[worst])):.3g} degrees from upright: it was changed, or made with other flags or of "
+        "another drawing"
+    )
+    return [Notice(a_pass.stroke, sentence, code="held-otherwise")]
+
+
+def _axes(a_pass) -> np.ndarray:
+    axes = axes_of(a_pass)
+    return np.tile((0.0, 0.0, 1.0), (len(a_pass.poses_mm), 1)) if axes is None else axes
+
+
+def _shares(poses: np.ndarray) -> np.ndarray:
+    """(n,) how far along a path each of its poses (n, 3) is, from 0 to 1."""
+    along = np.cumsum(np.linalg.norm(np.diff(poses, axis=0, prepend=poses[:1]), axis=1))
+    return along / max(along[-1], 1e-9)
 
 
 def _astray(away_mm: float, limit_mm: float) -> str:

@@ -15,6 +15,7 @@ from ..machine.header_lines import header_of
 from ..machine.motion import Program, duration_s, painting_mm
 from ..machine.paint_reload import PlanInLoads
 from ..machine.posts import POSTS
+from ..machine.posts.script import down
 from ..machine.program import Job, unchecked_program
 from ..machine.writer import text_of
 from .readback import Act, Readback, read_program
@@ -43,7 +44,7 @@ def again(
         passes = [without_steps(*each) for each in zip(passes, ran.lines, rests, strict=True)]
     if speeds_mm_s:
         passes = [
-            _core.Pass(each.stroke, each.poses_mm, speed, arcs=each.arcs)
+            _core.Pass(each.stroke, each.poses_mm, speed, arcs=each.arcs, tool_axes=each.tool_axes)
             for each, speed in zip(passes, speeds_mm_s, strict=True)
         ]
     loads = PlanInLoads(tuple(ran.plan.sheet_mm), (None,) * before + tuple(passes))
@@ -79,24 +80,29 @@ def differing_line(
     if lost := sorted((again.modes or set()) - (read.modes or set()) - idle):
         return f"{lost[0]} is missing before the first move"
     ours, theirs = _with_header_sorted(read.acts), _with_header_sorted(again.acts)
-    like = _Alike(cell, _header_ranges(program, least_time_s))
+    upright = down(cell.tool.spin_deg) if cell.tool else None
+    if upright is not None and not read.in_paper_frame:
+        upright = program.robot_from_frame[:3, :3] @ upright
+    like = _Alike(cell, _header_ranges(program, least_time_s), upright)
     if cell.servo:
         both = without_none(as_lifts(ours), as_lifts(theirs), like.is_none, like.is_same)
         ours, theirs = map(as_ways, both)
     here: tuple = ()
+    held: tuple = ()  # how the tool is turned here
     i, k = 0, 0
     while i < len(ours) or k < len(theirs):
         a = ours[i] if i < len(ours) else None
         b = theirs[k] if k < len(theirs) else None
         if a and b and like.is_same(a, b):
-            i, k, here = i + 1, k + 1, a.place or here
-        elif a and like.is_idle(a, here):
+            i, k = i + 1, k + 1
+            here, held = (a.place, a.turned) if a.place else (here, held)
+        elif a and like.is_idle(a, here) and like.is_held(a.turned, held):
             i += 1
-        elif b and like.is_idle(b, here):
+        elif b and like.is_idle(b, here) and like.is_held(b.turned, held):
             k += 1
-        elif a and b and like.is_on_the_way(a, here, b) and like.is_slow(a, b):
+        elif a and b and like.is_on_the_way(a, here, b) and like.is_slow(a, b) and like.are_held(a, b, held):
             i, here = i + 1, a.place
-        elif a and b and like.is_on_the_way(b, here, a) and like.is_slow(a, b):
+        elif a and b and like.is_on_the_way(b, here, a) and like.is_slow(a, b) and like.are_held(a, b, held):
             k += 1
         else:
             if sentence := _differs_in_header(
@@ -220,6 +226,7 @@ NEAR_MM = 2.05e-3  # how far a place may be off: what checking.TOUCH_MM allows, 
 WAITS_S = 0.0031
 LIFTS_S = 0.05  # what rounded heights make of the time that a lift waits, and which part of it
 FASTER = 0.011  # mm/s, of what is written in steps of 0.01
+TURNED_DEG = 0.5  # of the tool: what no brush shows
 DIGITS = 10.5  # of the last decimal, the third at least: what a statement loses with it
 TILTED_RAD = 1.05e-3  # about a brush's tip, which stays where it is
 PAPER_TILTED_RAD = 1e-5  # about a sheet's corner
@@ -231,9 +238,15 @@ LEAST_BLEND_MM, BLENDS, BLENDS_PER_MM = 1e-2, 0.05, 2e2
 class _Alike:
     """Whether one act does what another does, on a machine."""
 
-    def __init__(self, cell: Cell, header_ranges: tuple = ((0.0, math.inf), (0.0, math.inf))):
+    def __init__(
+        self,
+        cell: Cell,
+        header_ranges: tuple = ((0.0, math.inf), (0.0, math.inf)),
+        upright: np.ndarray | None = None,
+    ):
         self.length_mm, self.time_s = header_ranges
         self.near_mm = max(NEAR_MM, 3.1 * unit_mm(cell))
+        self.upright = upright
         self.blends = max(BLENDS, BLENDS_PER_MM * unit_mm(cell))
         if cell.servo:
             # rounded heights tell a lift's begin and end to a value, and a way's last part to a step
@@ -244,6 +257,8 @@ class _Alike:
 
     def is_same(self, a: Act, b: Act) -> bool:
         if a.kind != b.kind or not self._is_near(a.place, b.place) or not self.is_slow(a, b):
+            return False
+        if not self.is_held(a.turned, b.turned):
             return False
         if a.kind == "text":
             return a.text == b.text or self._says_same(a.text, b.text)
@@ -262,6 +277,17 @@ class _Alike:
         return len(a.at_most) == len(b.at_most) and all(
             found <= most + more for found, most, more in zip(a.at_most, b.at_most, slacks, strict=False)
         )
+
+    def is_held(self, found: tuple, wanted: tuple) -> bool:
+        """Whether two rotations of the tool are one, but for what no brush shows; () is upright."""
+        if not found and not wanted:
+            return True
+        a, b = (np.reshape(turned or self.upright, (3, 3)) for turned in (found, wanted))
+        return math.degrees(2 * math.asin(min(np.linalg.norm(a - b) / 8**0.5, 1.0))) <= TURNED_DEG
+
+    def are_held(self, a: Act, b: Act, held: tuple) -> bool:
+        """Whether the tool is turned nowhere on two moves from a place on."""
+        return self.is_held(a.turned, held) and self.is_held(b.turned, held)
 
     def is_stopped(self, ours: list[Act], theirs: list[Act]) -> bool:
         """Whether a lift follows where another one does, or none."""

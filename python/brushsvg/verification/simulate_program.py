@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
-from ..machine.cell import Blending, Cell, robot_from_paper, unit_mm, value_mm
+from ..machine.cell import MOST_TILT_DEG, Blending, Cell, robot_from_paper, unit_mm, value_mm
 from ..machine.corner_blending import blend_radii
 from ..machine.distortion import is_similar, told_pass, true_mm, true_pass
 from ..machine.frames import is_upright, moved
@@ -19,6 +20,7 @@ from ..machine.paint_reload import may_pause, pen
 from ..machine.posts.text import NAMED, spelled
 from ..machine.preflight import as_run, off_sheet
 from ..machine.program import names_of_stations
+from ..machine.tool_axes import tilts_deg
 from ..machine.workspace_limits import (
     astray,
     astray_between,
@@ -30,6 +32,8 @@ from .readback import Readback, ReadSection, Step
 
 TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
 CHORD_RAD = 0.02
+ROUNDED_DEG = 0.01  # of a tilt
+TURNS = 0.05  # by which rounded places may make a tool's turn on a short way faster
 LARGE_RAD = 3.0  # poses of a circle are less than half a turn apart
 Problems = list[Notice]
 
@@ -63,6 +67,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
     slack = slack_mm(cell)
     leans = not read.in_paper_frame and not is_upright(robot_from_paper(cell, z_offset_mm))
     here = None
+    frame = np.eye(4) if read.in_paper_frame else robot_from_paper(cell, z_offset_mm)
     for section, track, said in walked(read, brush, cell, sheet_mm, z_offset_mm):
         name = _name(section)
         problems += [replace(each, where=name) for each in said]
@@ -80,11 +85,12 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             problems.append(Notice(name, sentence, code="touches-outside-stroke"))
         for on in found if stroke else ():
             poses, radii, speed, arcs = _pass(section, track, on, cell, leans)
+            axes = _axes(section, track, on, frame)
             deepest_mm = brush.depth_range_mm[1]  # rounding goes no deeper than the brush
             just_over = (poses[:, 2] < -deepest_mm) & (poses[:, 2] >= -deepest_mm - slack)
             poses[just_over, 2] = -deepest_mm
             joint = radii if read.blends_by_radius else blend_radii(poses, Blending(read.joint_mm), arcs)
-            meant.append(_core.Pass(name, poses, speed, arcs=arcs))
+            meant.append(_core.Pass(name, poses, speed, arcs=arcs, tool_axes=axes))
             told = [told_pass(meant[-1], cell)]
             cut.append(true_pass(as_run(told, lambda *_, joint=joint: joint)[0][0], cell))
             lines.append(np.array([section.steps[number].line for number in track.step[on]]))
@@ -161,7 +167,8 @@ def _rounded(cell: Cell) -> Cell:
     """The cell with limits that what was rounded keeps, too."""
     heights = replace(cell.heights, lowest_mm=cell.heights.lowest_mm - slack_mm(cell))
     servo = cell.servo and replace(cell.servo, step_mm=cell.servo.step_mm + value_mm(cell))
-    return replace(cell, heights=heights, servo=servo)
+    tool = cell.tool and replace(cell.tool, turn_deg_s=cell.tool.turn_deg_s * (1 + TURNS))
+    return replace(cell, heights=heights, servo=servo, tool=tool)
 
 
 def _astray(
@@ -250,7 +257,13 @@ def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> 
     stays = (np.diff(ends[known], axis=0) == 0).all(
         axis=1
     )  # as a line that stands twice does, but for a blend
-    does = [steps[k].centre is not None or steps[k].blend_mm > 0 or steps[k].wait_s > 0 for k in known[1:]]
+    does = [
+        steps[k].centre is not None
+        or steps[k].blend_mm > 0
+        or steps[k].wait_s > 0
+        or steps[k].axis != steps[before].axis
+        for before, k in pairwise(known)
+    ]
     stays &= ~np.array(does, dtype=bool)
     known = known[np.r_[True, ~stays]] if len(known) else known
     centres: list = [None] * len(steps)
@@ -358,6 +371,25 @@ def _pass(section: ReadSection, track: Track, on: slice, cell: Cell, leans: bool
         if np.ptp(on_arcs) <= slack_mm(cell):
             on_arcs[:] = on_arcs.min()
     return poses, radii, max(speed, landed_mm_s), arcs
+
+
+def _axes(section: ReadSection, track: Track, on: slice, frame: np.ndarray) -> np.ndarray:
+    """(n, 3) how the brush is held at the poses of one touch, in the paper's frame, that of which in the program's is
+    frame; no rows where it is upright."""
+    steps = [section.steps[number] for number in track.step[on]]
+    if not any(step.axis for step in steps):
+        return np.zeros((0, 3))
+    normal = tuple(frame[:3, 2].tolist())
+    axes = np.array([step.axis or normal for step in steps]) @ frame[:3, :3]
+    most_deg = tilts_deg(axes)
+    if most_deg[worst := int(most_deg.argmax())] > MOST_TILT_DEG + ROUNDED_DEG:
+        raise Error(
+            f"line {steps[worst].line}: the brush is tilted by {most_deg[worst]:.4g} degrees, outside the range "
+            f"[0, {MOST_TILT_DEG:g}] degrees from upright",
+            _name(section),
+            code="tilt-out-of-range",
+        )
+    return axes
 
 
 def _chains(arcs: list) -> list[list[int]]:

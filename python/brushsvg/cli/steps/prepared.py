@@ -68,9 +68,10 @@ def look(
         marks = prediction.marks_of(plan, brush, outlines, stage, whole, cell)
         walk = None
         if not held_upright and (work.plan.passes or not work.refused):
-            walk = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm)
+            walk = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm, known=work.walked)
         forbidden = walk.problems if walk else []
-        warnings = [*work.notices, *forbidden, *held_upright]
+        astray = preflight.off_sheet(marks, brush, work.plan.sheet_mm) if held_upright else []
+        warnings = [*work.notices, *forbidden, *astray, *held_upright]
         warnings += too_long(loads, brush, cell) if at_loads else []
     warn(chosen.input, warnings)
     return Looked(work, loads, marks, walk, warnings, forbidden)

@@ -19,12 +19,14 @@ from ..cell import Arm, Cell, joint_number
 from ..frames import frame_of_pose, moved
 from ..motion import Program
 from ..posts.script import down
+from ..tool_axes import across, between_deg, turned_to, unit
 from .joints import Joints, flange_rates, rates_at, towards
 
 STEP_MM = 5.0
 # Joints may turn by so much between two places: less would only cost time, more could pass a peak of speed unseen.
 SAME_RAD = np.radians(6.0)
-LEAST_STEP_MM = 0.01  # a joint that turns by SAME_RAD within less is at a singularity
+# a joint that turns by SAME_RAD within less is at a singularity
+LEAST_STEP_MM, LEAST_TURN_DEG = 0.01, 0.05
 # A joint that turns by more for each mm is about a degree from a singularity: arms slow down there, stop or shake.
 SINGULAR_RAD_MM = np.radians(5.0)
 CALM_RAD_MM = (
@@ -37,13 +39,14 @@ BENDS, TWISTS = 4, [3, 5]  # joint 5 bends a wrist, 4 and 6 twist it
 
 @dataclass(frozen=True)
 class Place:
-    """name: of the stroke; paper_mm, robot_mm: (3,) the tip; velocities_mm_s: (m, 3) of the moves around it, in the
-    robot's frame."""
+    """name: of the stroke; paper_mm, robot_mm: (3,) the tip; velocities: (m, 6) of the moves around it, in the robot's
+    frame, mm/s and rad/s; axis: (3,) in the paper's frame, along the brush, up."""
 
     name: str
     paper_mm: np.ndarray
     robot_mm: np.ndarray
-    velocities_mm_s: np.ndarray
+    velocities: np.ndarray
+    axis: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -57,11 +60,11 @@ class Followed:
 
 @dataclass(frozen=True)
 class _Found:
-    """All angles (k, 6) for a place, and how the joints then turn for each mm (k, 6, 3), see rates."""
+    """All angles (k, 6) for a place, and how the joints then turn for each mm and rad (k, 6, 6), see rates."""
 
     angles_rad: np.ndarray
     rates: np.ndarray
-    most: np.ndarray  # (k,) of any joint
+    most: np.ndarray  # (k,) of any joint, by mm
     sides: np.ndarray  # (k,) on which side of all singularities: where two differ, there is one between them
 
 
@@ -97,7 +100,8 @@ def follow(made: Program, joints: Joints, to_the_end: bool = True) -> Followed:
 
     def flange(place: Place) -> np.ndarray:
         tip = np.eye(4)
-        tip[:3, :3], tip[:3, 3] = upright, place.robot_mm
+        tip[:3, :3] = turned_to(frame[:3, :3] @ place.axis, upright) if made.tilts else upright
+        tip[:3, 3] = place.robot_mm
         return tip @ behind
 
     def find(place: Place) -> _Found:
@@ -135,7 +139,7 @@ def follow(made: Program, joints: Joints, to_the_end: bool = True) -> Followed:
 
 def _found(angles: np.ndarray, jacobian: np.ndarray) -> _Found:
     turns = _inverse(jacobian)
-    most = np.sqrt((turns**2).sum(axis=-1)).max(axis=-1, initial=0.0)
+    most = np.sqrt((turns[..., :3] ** 2).sum(axis=-1)).max(axis=-1, initial=0.0)
     return _Found(angles, turns, most, np.sign(np.linalg.det(jacobian)))
 
 
@@ -166,28 +170,42 @@ def far_from_singular(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) ->
 
 def places(made: Program) -> Iterator[Place]:
     """Where the tip is looked at: at the ends of moves and between them, at most STEP_MM apart."""
-    here = None
+    here = held = None
     for section in made.sections():
         moves = section.moves
         if not moves:
             continue
         points = np.vstack([move.points_mm for move in moves])
+        axes = None
+        if made.tilts:
+            axes = np.vstack(
+                [np.tile(UP, (len(m.points_mm), 1)) if m.axes is None else m.axes for m in moves]
+            )
         speeds = np.concatenate([np.full(len(move.points_mm), move.speed_mm_s) for move in moves])
         ends = np.cumsum([len(move.points_mm) for move in moves])
         if here is not None:
             points, speeds, ends = np.vstack([here, points]), np.r_[speeds[:1], speeds], ends + 1
-        yield from _along(section.name, points, speeds, ends - 1, made.robot_from_frame, here is None)
-        here = points[-1]
+            axes = None if axes is None else np.vstack([held, axes])
+        yield from _along(section.name, points, axes, speeds, ends - 1, made.robot_from_frame, here is None)
+        here, held = points[-1], None if axes is None else axes[-1]
 
 
-def _along(name, points, speeds, ends, frame, is_first: bool) -> Iterator[Place]:
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def _along(name, points, axes, speeds, ends, frame, is_first: bool) -> Iterator[Place]:
     robot = moved(frame, points)
     steps = np.diff(robot, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     along = np.r_[0.0, np.cumsum(lengths)]
     looked = np.unique(np.r_[0.0, along[ends], np.arange(STEP_MM, along[-1], STEP_MM)])
+    turns = np.zeros_like(steps)
+    if axes is not None:
+        about = across(axes[:-1], axes[1:]) @ frame[:3, :3].T
+        turns = np.radians(between_deg(axes[1:], axes[:-1]))[:, None] * about
     with np.errstate(invalid="ignore", divide="ignore"):
-        velocities = np.where(lengths[:, None] > 0, steps / lengths[:, None] * speeds[1:, None], 0.0)
+        ways = np.hstack([steps, turns])
+        velocities = np.where(lengths[:, None] > 0, ways / lengths[:, None] * speeds[1:, None], 0.0)
     around = np.r_[looked[:1], looked, looked[-1:]]
     first = np.maximum(np.searchsorted(along, around[:-2], "right") - 1, 0)
     last = np.searchsorted(along, around[2:], "left")
@@ -197,7 +215,8 @@ def _along(name, points, speeds, ends, frame, is_first: bool) -> Iterator[Place]
         paper_mm, robot_mm = (
             np.array([np.interp(at, along, axis) for axis in path.T]) for path in (points, robot)
         )
-        yield Place(name, paper_mm, robot_mm, velocities[first[k] : last[k]])
+        axis = UP if axes is None else unit(np.array([np.interp(at, along, each) for each in axes.T]))
+        yield Place(name, paper_mm, robot_mm, velocities[first[k] : last[k]], axis)
 
 
 def _go_on(posture: _Posture, before: Place | None, place: Place, found: _Found, find, arm: Arm) -> None:
@@ -206,11 +225,12 @@ def _go_on(posture: _Posture, before: Place | None, place: Place, found: _Found,
     far = np.abs(turns).max(axis=1)
     which = int(far.argmin())
     if before is not None and far[which] > SAME_RAD:
-        if np.linalg.norm(place.robot_mm - before.robot_mm) < LEAST_STEP_MM:
+        is_held = between_deg(place.axis, before.axis) < LEAST_TURN_DEG
+        if is_held and np.linalg.norm(place.robot_mm - before.robot_mm) < LEAST_STEP_MM:
             posture.failure = _near_singularity(place, arm, posture.most, posture.here_rad)
             return
         middle = (before.paper_mm + place.paper_mm) / 2, (before.robot_mm + place.robot_mm) / 2
-        half = Place(place.name, *middle, place.velocities_mm_s)
+        half = Place(place.name, *middle, place.velocities, unit(before.axis + place.axis))
         between = find(half)
         if not len(between.angles_rad):
             posture.failure = _out_of_reach(half, arm)
@@ -235,17 +255,17 @@ def _turned(here_rad: np.ndarray, found: np.ndarray) -> np.ndarray:
 
 def rates(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) -> np.ndarray:
     """(..., 6, 3) how each joint turns [rad] for each mm that the tip goes along x, y or z and does not turn."""
-    return _inverse(flange_rates(arm, joints_rad, robot_mm))
+    return _inverse(flange_rates(arm, joints_rad, robot_mm))[..., :3]
 
 
 def _inverse(jacobian: np.ndarray) -> np.ndarray:
     try:
-        return np.linalg.inv(jacobian)[..., :3]
+        return np.linalg.inv(jacobian)
     except np.linalg.LinAlgError:  # at a singularity to the last digit: whatever is near it turns as fast
-        return np.linalg.inv(jacobian + 1e-9 * np.eye(6))[..., :3]
+        return np.linalg.inv(jacobian + 1e-9 * np.eye(6))
 
 
-def _forbidden(posture: _Posture, place: Place, turns_mm: np.ndarray, arm: Arm) -> Notice | None:
+def _forbidden(posture: _Posture, place: Place, turns: np.ndarray, arm: Arm) -> Notice | None:
     angles = posture.here_rad
     least, greatest = np.minimum(posture.least_rad, angles), np.maximum(posture.greatest_rad, angles)
     beyond, _ = _beyond(arm, least, greatest)
@@ -256,8 +276,8 @@ def _forbidden(posture: _Posture, place: Place, turns_mm: np.ndarray, arm: Arm) 
         return _near_singularity(place, arm, posture.most, angles)
     if posture.most <= CALM_RAD_MM:
         posture.calm_rad = angles
-    if len(place.velocities_mm_s) and arm.speeds_deg_s:
-        fastest = np.degrees(np.abs(place.velocities_mm_s @ turns_mm.T).max(axis=0))
+    if len(place.velocities) and arm.speeds_deg_s:
+        fastest = np.degrees(np.abs(place.velocities @ turns.T).max(axis=0))
         over = fastest / np.array(arm.speeds_deg_s)
         if over[worst := int(over.argmax())] > 1 + 1e-9:
             sentence = (

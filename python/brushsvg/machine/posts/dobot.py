@@ -9,7 +9,7 @@ import numpy as np
 
 from ..frames import rotation_deg
 from ..motion import Move, Program, Wait, via
-from .script import QUIET, Words, blends_mm, body, down, numbers
+from .script import QUIET, Words, blends_mm, body, down, numbers, turned_at
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
@@ -29,11 +29,14 @@ def dobot(program: Program) -> Iterator[str]:
     yield f"SetUser({INDEX}, {paper})\nSetTool({INDEX}, {tool})\nUser({INDEX})\nTool({INDEX})\nCP(0)\n"
     upright = numbers(rotation_deg(down(cell.tool.spin_deg)), DEGREE_DECIMALS)
     yield f"\nfunction on_paper(x, y, z)\n  return {{pose = {{x, y, z, {upright}}}}}\nend\n"
+    if program.tilts:
+        yield "\nfunction tilted(x, y, z, rx, ry, rz)\n  return {pose = {x, y, z, rx, ry, rz}}\nend\n"
+    stands = down(cell.tool.spin_deg)
     words = Words(
         comment,
         lambda speed: _rise(number(program.rise_mm, decimals), speed),
         _wait,
-        lambda move: _lines(move, cell.blending.step_mm, decimals),
+        lambda move: _lines(move, stands, cell.blending.step_mm, decimals),
     )
     yield from body(program, words)
     yield "\n" + comment(DOBOT_END)
@@ -53,7 +56,7 @@ def _rise(height: str, speed_mm_s: float) -> str:
     )
 
 
-def _lines(move: Move, step_mm: float, decimals: int) -> Iterator[str]:
+def _lines(move: Move, upright: np.ndarray, step_mm: float, decimals: int) -> Iterator[str]:
     speed = f"speed = {whole_mm_s(move.speed_mm_s)}"
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
@@ -64,6 +67,13 @@ def _lines(move: Move, step_mm: float, decimals: int) -> Iterator[str]:
     if move.blends_mm is not None:
         blends = np.floor(blends_mm(move, decimals) / step_mm + 1e-9) * step_mm
     blend = "r = %.0f" if step_mm == 1 else f"r = %.{decimals}f"
+    if move.axes is not None:
+        for point, turned, r in zip(move.points_mm, turned_at(move, upright), blends.tolist(), strict=True):
+            place = numbers(point, decimals)
+            angles = "" if turned is None else f", {numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
+            told = f"{speed}, {blend % r}" if r > 0 else speed
+            yield f"MovL({'tilted' if angles else 'on_paper'}({place}{angles}), {{{told}}})\n"
+        return
     values, is_blended = np.column_stack([move.points_mm, blends]), blends > 0
     for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
         if is_blended[run[0]]:

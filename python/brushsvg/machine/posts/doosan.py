@@ -8,14 +8,14 @@ import numpy as np
 
 from ..frames import zyz_deg
 from ..motion import Move, Program, Wait, via
-from .script import QUIET, Words, blends_mm, body, down, numbers, rounded_down
+from .script import QUIET, Words, blends_mm, body, down, numbers, rounded_down, turned_at
 from .text import number, plain, rows
 from .xarm import NAMES_LETTERS
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 5
 SPEED_DECIMALS = 3
-TURNS = "30.000"  # degrees/s, of the tool, which never turns
+TURNS = "30.000"  # degrees/s, of the tool, and degrees/s^2: where a plan tilts it faster the arm slows down
 TCP = "brush"
 DOOSAN_END = "end: the brush is held up"
 
@@ -43,11 +43,14 @@ def doosan(program: Program) -> Iterator[str]:
     yield f"paper = set_user_cart_coord(posx({paper}), ref=DR_BASE)\nset_ref_coord(paper)\n"
     upright = numbers(zyz_deg(down(cell.tool.spin_deg)), DEGREE_DECIMALS)
     yield f"\n\ndef on_paper(x, y, z):\n    return posx(x, y, z, {upright})\n\n"
+    if program.tilts:
+        yield "\ndef tilted(x, y, z, a, b, c):\n    return posx(x, y, z, a, b, c)\n\n"
+    stands = down(cell.tool.spin_deg)
     words = Words(
         comment,
         lambda speed: _rise(number(program.rise_mm, decimals), speed),
         _wait,
-        lambda move: _lines(move, decimals),
+        lambda move: _lines(move, stands, decimals),
     )
     yield from body(program, words)
     yield "\n" + comment(DOOSAN_END)
@@ -64,7 +67,7 @@ def _rise(height: str, speed_mm_s: float) -> str:
     )
 
 
-def _lines(move: Move, decimals: int) -> Iterator[str]:
+def _lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
     yield _speed(move.speed_mm_s)
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
@@ -72,6 +75,15 @@ def _lines(move: Move, decimals: int) -> Iterator[str]:
         yield from rows(f"movec({point}, {point})", values, decimals)
         return
     blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
+    if move.axes is not None:
+        for point, turned, blend in zip(
+            move.points_mm, turned_at(move, upright), blends.tolist(), strict=True
+        ):
+            place = numbers(point, decimals)
+            angles = "" if turned is None else f", {numbers(zyz_deg(turned), DEGREE_DECIMALS)}"
+            radius = f", radius={number(blend, decimals)}" if blend > 0 else ""
+            yield f"movel({'tilted' if angles else 'on_paper'}({place}{angles}){radius})\n"
+        return
     values, is_blended = np.column_stack([move.points_mm, blends]), blends > 0
     for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
         if is_blended[run[0]]:

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..cell import Blending
+from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Wait, via
-from .script import Words, body, numbers, rounded_down, upright_deg
+from .script import Words, body, numbers, rounded_down, turned_at, upright_deg
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
@@ -30,12 +31,13 @@ def jaka(program: Program) -> Iterator[str]:
     yield f"tool = [{numbers(cell.tool.tcp_mm, decimals)}, {numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)}]\n"
     yield "set_tool(tool)\n"
     turned = numbers(upright_deg(cell), DEGREE_DECIMALS)
+    upright = rotation(upright_deg(cell))
     acceleration = number(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)
     words = Words(
         comment,
         lambda speed: _rise(program.rise_mm, speed, acceleration, decimals),
         _wait,
-        lambda move: _lines(move, turned, acceleration, cell.blending, decimals),
+        lambda move: _lines(move, turned, upright, acceleration, cell.blending, decimals),
     )
     yield from body(program, words)
     yield "\n" + comment(JAKA_END)
@@ -58,7 +60,9 @@ def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int)
     )
 
 
-def _lines(move: Move, turned: str, acceleration: str, blending: Blending, decimals: int) -> Iterator[str]:
+def _lines(
+    move: Move, turned: str, upright: np.ndarray, acceleration: str, blending: Blending, decimals: int
+) -> Iterator[str]:
     speed = _speed(move.speed_mm_s)
     pose = f"[%.{decimals}f, %.{decimals}f, %.{decimals}f, {turned}]"
     if move.arc is not None:
@@ -70,6 +74,12 @@ def _lines(move: Move, turned: str, acceleration: str, blending: Blending, decim
     if move.blends_mm is not None:
         cut_mm[:-1] = np.minimum(move.blends_mm[:-1], blending.tolerance_mm)
     values = np.column_stack([move.points_mm, np.floor(cut_mm * 10.0**decimals) / 10.0**decimals])
+    if move.axes is not None:
+        for row, held in zip(values, turned_at(move, upright), strict=True):
+            angles = turned if held is None else numbers(rotation_deg(held), DEGREE_DECIMALS)
+            yield f"to = [{numbers(row[:3], decimals)}, {angles}]\n"
+            yield f"movl(to, 0, {speed}, {acceleration}, {number(row[3], decimals)})\n"
+        return
     pattern = f"to = {pose}\nmovl(to, 0, {speed}, {acceleration}, %.{decimals}f)"
     yield from rows(pattern, values, decimals)
 

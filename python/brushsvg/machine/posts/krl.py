@@ -8,7 +8,7 @@ import numpy as np
 
 from ..frames import frame_of_pose, rotation_deg
 from ..motion import Move, Program, Wait, via
-from .script import Words, blends_mm, body, down, numbers, rounded_down
+from .script import Words, blends_mm, body, down, numbers, rounded_down, turned_at
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
@@ -27,13 +27,18 @@ def krl(program: Program) -> Iterator[str]:
     yield "".join(map(comment, program.header))
     yield "DECL E6POS here\nBAS(#INITMOV, 0)\n"
     yield f"$TOOL = {_frame(tool, decimals)}\n$BASE = {_frame(program.robot_from_frame, decimals)}\n"
+    if program.tilts:
+        yield "$ORI_TYPE = #VAR\n"  # #CONSTANT, of a program before, would hold the tool as it was
     yield f"PTP $AXIS_ACT\n$ACC.CP = {acceleration}\n"
-    turned = _angles(rotation_deg(down(cell.tool.spin_deg)))
+    upright = down(cell.tool.spin_deg)
+    turned = _angles(rotation_deg(upright))
     words = Words(
         comment,
         lambda speed: _rise(number(program.rise_mm, decimals), speed),
         _wait,
-        lambda move: _lines(move, turned, decimals),
+        lambda move: (
+            _lines(move, turned, decimals) if move.axes is None else _tilted(move, upright, decimals)
+        ),
     )
     yield from body(program, words)
     yield "\n" + comment(KRL_END) + "END\n"
@@ -64,6 +69,19 @@ def _lines(move: Move, turned: str, decimals: int) -> Iterator[str]:
             yield from rows(f"$APO.CDIS = %.{decimals}f\nLIN {point} C_DIS", values[run], decimals)
         else:
             yield from rows(f"LIN {point}", values[run, 1:], decimals)
+
+
+def _tilted(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
+    """The same moves, each with how the tool is held at its end; where that is upright as all others are written."""
+    yield _speed(move.speed_mm_s)
+    blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
+    stands = _angles(rotation_deg(upright))
+    rows_of = zip(move.points_mm, turned_at(move, upright), blends.tolist(), strict=True)
+    for point, turned, blend in rows_of:
+        x, y, z = numbers(point, decimals).split(", ")
+        angles = stands if turned is None else _angles(rotation_deg(turned))
+        place = f"{{X {x}, Y {y}, Z {z}, {angles}}}"
+        yield f"$APO.CDIS = {number(blend, decimals)}\nLIN {place} C_DIS\n" if blend > 0 else f"LIN {place}\n"
 
 
 def _wait(step: Wait) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..frames import frame_of_pose, quaternion
 from ..motion import Move, Program, Wait, via
-from .script import QUIET, Words, blends_mm, body, down, numbers, rounded_down
+from .script import QUIET, Words, blends_mm, body, down, numbers, rounded_down, turned_at
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
@@ -40,7 +40,8 @@ def rapid(program: Program) -> Iterator[str]:
     acceleration = rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, SPEED_DECIMALS)
     tool = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)
     load = f"[{BRUSH_KG}, [0, 0, 50], [1, 0, 0, 0], 0, 0, 0]"
-    upright = _turned(down(cell.tool.spin_deg))
+    stands = down(cell.tool.spin_deg)
+    upright = _turned(stands)
     paper = _pose(program.robot_from_frame, decimals)
     yield "MODULE brushsvg\n"
     yield "".join(map(comment, program.header))
@@ -52,6 +53,12 @@ def rapid(program: Program) -> Iterator[str]:
         f"    RETURN [[x, y, z], [{upright}], [0, 0, 0, 0], [9E9, 9E9, 9E9, 9E9, 9E9, 9E9]];\n"
         "  ENDFUNC\n"
     )
+    if program.tilts:
+        yield (
+            "\n  FUNC robtarget tilted(num x, num y, num z, num q1, num q2, num q3, num q4)\n"
+            "    RETURN [[x, y, z], [q1, q2, q3, q4], [0, 0, 0, 0], [9E9, 9E9, 9E9, 9E9, 9E9, 9E9]];\n"
+            "  ENDFUNC\n"
+        )
     yield _FUNCTIONS
     yield "\n  PROC paint()\n    ConfL \\Off;\n"
     yield f"    PathAccLim TRUE \\AccMax:={acceleration}, TRUE \\DecelMax:={acceleration};\n"
@@ -59,7 +66,7 @@ def rapid(program: Program) -> Iterator[str]:
         comment,
         lambda speed: _rise(program.rise_mm, speed, decimals),
         _wait,
-        lambda move: _lines(move, decimals),
+        lambda move: _lines(move, stands, decimals),
     )
     yield from body(program, words)
     yield "\n" + comment(RAPID_END) + "  ENDPROC\nENDMODULE\n"
@@ -80,18 +87,31 @@ def _rise(height_mm: float, speed_mm_s: float, decimals: int) -> str:
     )
 
 
-def _lines(move: Move, decimals: int) -> Iterator[str]:
+def _lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
     speed = f"mm_s({rounded_down(move.speed_mm_s, SPEED_DECIMALS)})"
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
         values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
         yield from rows(f"    MoveC {point}, {point}, {speed}, fine, {USED};", values, decimals)
         return
+    if move.axes is not None:
+        yield from _tilted(move, upright, speed, decimals)
+        return
     if move.blends_mm is None:
         yield from rows(f"    MoveL {point}, {speed}, fine, {USED};", move.points_mm, decimals)
         return
     values = np.column_stack([move.points_mm, blends_mm(move, decimals)])
     yield from rows(f"    MoveL {point}, {speed}, within(%.{decimals}f), {USED};", values, decimals)
+
+
+def _tilted(move: Move, upright: np.ndarray, speed: str, decimals: int) -> Iterator[str]:
+    """The same moves, each with how the tool is held at its end; where that is upright as all others are written."""
+    blends = None if move.blends_mm is None else blends_mm(move, decimals)
+    for k, (point, turned) in enumerate(zip(move.points_mm, turned_at(move, upright), strict=True)):
+        place = numbers(point, decimals)
+        place = f"on_paper({place})" if turned is None else f"tilted({place}, {_turned(turned)})"
+        zone = "fine" if blends is None else f"within({number(blends[k], decimals)})"
+        yield f"    MoveL {place}, {speed}, {zone}, {USED};\n"
 
 
 def _wait(step: Wait) -> str:

@@ -11,9 +11,10 @@ from tempfile import SpooledTemporaryFile
 
 import numpy as np
 
-from ..cell import Cell
+from ..cell import Cell, robot_from_paper
 from ..frames import frame_of_pose, quaternion, rotation
 from ..motion import Program
+from ..tool_axes import is_upright_on, turned_to
 from ..trajectory import timed
 from .script import rounded_down, upright_deg
 from .text import plain
@@ -25,6 +26,7 @@ COLUMNS = "time_s,x_m,y_m,z_m,qx,qy,qz,qw,limit_m_s,row"
 KINDS = ("pose", "way", "rest")  # as trajectory numbers them
 ROS2_END = "end: the brush is held up"
 HELD_BYTES = 20_000_000
+TILTED_COLUMNS = 6  # of a row, behind which stands how the brush is held
 
 
 def csv(program: Program) -> Iterator[str]:
@@ -113,12 +115,20 @@ def _head(program: Program) -> tuple[str, ...]:
 
 
 def _placed(table: np.ndarray, cell: Cell) -> tuple[np.ndarray, np.ndarray]:
-    """(n, 3) where the flange is [m], (4,) how it is turned, x, y, z, w: the brush stands upright on the paper."""
+    """(n, 3) where the flange is [m], (4,) how it is turned, x, y, z, w: the brush stands upright on the paper; (n, 4)
+    where a program tilts it."""
     tip = rotation(upright_deg(cell))
     flange = flange_from_tip(cell)
-    w, *xyz = quaternion(tip @ flange[:3, :3])
+    if table.shape[1] > TILTED_COLUMNS:
+        tip = turned_to(table[:, TILTED_COLUMNS:], tip)
+        stands = is_upright_on(table[:, TILTED_COLUMNS:], robot_from_paper(cell)[:3, 2])
+        tip[stands] = rotation(upright_deg(cell))
+        turned = np.array([quaternion(each) for each in tip @ flange[:3, :3]]).reshape(-1, 4)[:, [1, 2, 3, 0]]
+    else:
+        w, *xyz = quaternion(tip @ flange[:3, :3])
+        turned = np.array([*xyz, w])
     places_m = (table[:, 1:4] + tip @ flange[:3, 3]) / 1e3
-    return np.round(places_m, cell.decimals + FINER) + 0.0, np.round([*xyz, w], TURN_DECIMALS) + 0.0
+    return np.round(places_m, cell.decimals + FINER) + 0.0, np.round(turned, TURN_DECIMALS) + 0.0
 
 
 def _shortest(limit_mm_s: float) -> str:
@@ -128,10 +138,14 @@ def _shortest(limit_mm_s: float) -> str:
 def _lines(table: np.ndarray, cell: Cell) -> Iterator[tuple[str, str]]:
     places_m, turn = _placed(table, cell)
     place = f"%.{cell.decimals + FINER}f"
-    turned = ",".join(f"{value:.{TURN_DECIMALS}f}" for value in turn)
+    turns: list[list[float]] = []
+    if turn.ndim == 1:
+        turned = ",".join(f"{value:.{TURN_DECIMALS}f}" for value in turn)
+    else:
+        turned, turns = ",".join([f"%.{TURN_DECIMALS}f"] * 4), turn.T.tolist()
     pattern = f"%.{SECOND_DECIMALS}f,{place},{place},{place},{turned},%s"
     limits = {limit: _shortest(limit) for limit in set(table[:, 4])}
     told = [limits[limit] for limit in table[:, 4].tolist()]
-    values = zip(table[:, 0].tolist(), *places_m.T.tolist(), told, strict=True)
+    values = zip(table[:, 0].tolist(), *places_m.T.tolist(), *turns, told, strict=True)
     lines = ("\n".join([pattern] * len(table)) % tuple(chain.from_iterable(values))).split("\n")
     return zip(lines if len(table) else [], (KINDS[int(kind)] for kind in table[:, 5]), strict=True)

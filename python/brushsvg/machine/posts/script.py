@@ -10,6 +10,7 @@ import numpy as np
 from ..cell import Cell, robot_from_paper
 from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Section, Wait
+from ..tool_axes import is_upright_on, turned_to
 from .text import number
 
 RISE_MM_S = 50.0
@@ -71,6 +72,16 @@ def blends_mm(move: Move, decimals: int, part: float = 1.0) -> np.ndarray:
 def down(spin_deg: float) -> np.ndarray:
     """(3, 3) the tool in the paper's frame, its z into the paper."""
     return np.diag([1.0, -1.0, -1.0]) @ rotation((0, 0, spin_deg))
+
+
+def turned_at(move: Move, upright: np.ndarray) -> Iterator[np.ndarray | None]:
+    """(3, 3) the tool at each point of a move, in the frame in which it is upright (3, 3); None where it is."""
+    if move.axes is None:
+        yield from [None] * len(move.points_mm)
+        return
+    stands = is_upright_on(move.axes, -upright[:, 2])
+    for turned, is_upright in zip(turned_to(move.axes, upright), stands.tolist(), strict=True):
+        yield None if is_upright else turned
 
 
 def upright_deg(cell: Cell) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..frames import frame_of_pose, rotation_vector
 from ..motion import Move, Program, Wait, via
-from .script import QUIET, Words, body, down
+from .script import QUIET, Words, body, down, turned_at
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
@@ -31,15 +31,20 @@ def urscript(program: Program) -> Iterator[str]:
     yield "  def on_paper(x, y, z):\n"
     yield f"    return pose_trans(paper, p[x, y, z, {_vector(down(tool.spin_deg), decimals)}])\n"
     yield "  end\n"
+    if program.tilts:
+        yield "  def tilted(x, y, z, rx, ry, rz):\n"
+        yield "    return pose_trans(paper, p[x, y, z, rx, ry, rz])\n"
+        yield "  end\n"
     contact = program.cell.contact
     if contact:
         yield _watch(contact.force_n)
     begin = f"  zero_ftsensor()\n{WATCHED}" if contact else ""  # held high, where nothing presses
+    upright = down(tool.spin_deg)
     words = Words(
         lambda title: f"  # {plain(title, LINE_LIMIT - 4)}\n",
         lambda speed: _rise(program.rise_mm, speed, acceleration, decimals) + begin,
         lambda step: _wait(step, contact is not None),
-        lambda move: _lines(move, acceleration, decimals),
+        lambda move: _lines(move, upright, acceleration, decimals),
     )
     yield from body(program, words)
     yield "end\n"
@@ -73,7 +78,7 @@ def _watch(force_n: float) -> str:
     )
 
 
-def _lines(move: Move, acceleration: str, decimals: int) -> Iterator[str]:
+def _lines(move: Move, upright: np.ndarray, acceleration: str, decimals: int) -> Iterator[str]:
     speed = number(max(np.floor(move.speed_mm_s * M * 1e5) / 1e5, 1e-5), 5)
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
@@ -81,6 +86,9 @@ def _lines(move: Move, acceleration: str, decimals: int) -> Iterator[str]:
         yield from rows(
             f"  movec({point}, {point}, a={acceleration}, v={speed}, r=0.0, mode=1)", values, decimals
         )
+        return
+    if move.axes is not None:
+        yield from _tilted(move, upright, f"a={acceleration}, v={speed}", decimals)
         return
     points = move.points_mm * M
     if move.blends_mm is None or len(points) == 1:
@@ -92,6 +100,20 @@ def _lines(move: Move, acceleration: str, decimals: int) -> Iterator[str]:
     values = np.hstack([points[:-1], blends])
     yield from rows(f"  movep({point}, a={acceleration}, v={speed}, r=%.{decimals}f)", values, decimals)
     yield from rows(f"  movel({point}, a={acceleration}, v={speed})", points[-1:], decimals)
+
+
+def _tilted(move: Move, upright: np.ndarray, at_most: str, decimals: int) -> Iterator[str]:
+    """The same moves, each with how the tool is held at its end; where that is upright as all others are written."""
+    last = len(move.points_mm) - 1
+    blends = np.zeros(last + 1) if move.blends_mm is None else move.blends_mm * M
+    for k, (point, turned) in enumerate(zip(move.points_mm * M, turned_at(move, upright), strict=True)):
+        place = ", ".join(number(value, decimals) for value in point)
+        place = f"on_paper({place})" if turned is None else f"tilted({place}, {_vector(turned, decimals)})"
+        if move.blends_mm is None or k == last:
+            yield f"  movel({place}, {at_most})\n"
+        else:
+            blend = blends[k] if blends[k] >= LEAST_BLEND_M else 0.0
+            yield f"  movep({place}, {at_most}, r={number(blend, decimals)})\n"
 
 
 def _wait(step: Wait, is_watched: bool) -> str:

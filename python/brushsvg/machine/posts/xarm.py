@@ -7,8 +7,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Wait
-from .script import QUIET, Words, blends_mm, body, numbers, rounded_down, upright_deg
+from .script import QUIET, Words, blends_mm, body, numbers, rounded_down, turned_at, upright_deg
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
@@ -24,6 +25,7 @@ BEFORE = """import sys
 
 from xarm.wrapper import XArmAPI
 """
+BEFORE_ARM = "\n\narm = XArmAPI("
 FUNCTIONS = """
 
 def done(code):
@@ -61,6 +63,11 @@ done(arm.motion_enable(True))
 done(arm.set_world_offset([0, 0, 0, 0, 0, 0], is_radian=False))
 done(arm.set_tcp_offset(TOOL, is_radian=False))
 """
+TILTED = """
+
+def lean(x, y, z, roll, pitch, yaw, speed, radius):
+    done(arm.set_position(x, y, z, roll, pitch, yaw, radius or None, speed, MOST, is_radian=False, wait=False))
+"""
 READY = """done(arm.set_mode(0))
 done(arm.set_state(0))
 """
@@ -77,15 +84,16 @@ def xarm(program: Program) -> Iterator[str]:
     yield f"\nUPRIGHT = ({numbers(upright_deg(cell), DEGREE_DECIMALS)})\n"
     yield f"TOOL = [{tool[0]}, {tool[1]}]\n"
     yield f"MOST = {rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}\n"
-    yield FUNCTIONS
+    yield FUNCTIONS.replace(BEFORE_ARM, TILTED + BEFORE_ARM) if program.tilts else FUNCTIONS
     if cell.contact:
         yield f"done(arm.set_collision_sensitivity({cell.contact.sensitivity}))\n"
     yield READY
+    upright = rotation(upright_deg(cell))
     words = Words(
         comment,
         lambda speed: f"rise({number(program.rise_mm, decimals)}, {rounded_down(speed, SPEED_DECIMALS)})\n",
         _wait,
-        lambda move: _lines(move, decimals),
+        lambda move: _lines(move, upright, decimals),
     )
     yield from body(program, words)
     yield f"\n{AFTER}" + comment(XARM_END)
@@ -95,14 +103,27 @@ def comment(text: str) -> str:
     return f"# {plain(text, LINE_LIMIT - 2)}\n"
 
 
-def _lines(move: Move, decimals: int) -> Iterator[str]:
+def _lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
     speed = rounded_down(move.speed_mm_s, SPEED_DECIMALS)
     point = f"go(%.{decimals}f, %.{decimals}f, %.{decimals}f, {speed}"
+    if move.axes is not None:
+        yield from _tilted(move, upright, speed, decimals)
+        return
     if move.blends_mm is None:
         yield from rows(f"{point}, None)", move.points_mm, decimals)
         return
     values = np.column_stack([move.points_mm, blends_mm(move, decimals, BLENDED)])
     yield from rows(f"{point}, %.{decimals}f)", values, decimals)
+
+
+def _tilted(move: Move, upright: np.ndarray, speed: str, decimals: int) -> Iterator[str]:
+    """The same moves, each with how the tool is held at its end; where that is upright as all others are written."""
+    blends = None if move.blends_mm is None else blends_mm(move, decimals, BLENDED)
+    for k, (point, turned) in enumerate(zip(move.points_mm, turned_at(move, upright), strict=True)):
+        place = numbers(point, decimals)
+        radius = "None" if blends is None else number(blends[k], decimals)
+        angles = "" if turned is None else f", {numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
+        yield f"{'lean' if angles else 'go'}({place}{angles}, {speed}, {radius})\n"
 
 
 def _wait(step: Wait) -> str:

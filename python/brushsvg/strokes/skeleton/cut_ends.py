@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ... import _core
 from ...geometry.polylines import length
 from ...geometry.rotation import rotation
 from .graph import Piece
@@ -19,6 +20,8 @@ LEVEL = 0.06
 # How far to both sides the cut is looked at, how far cut and sides may stray from straight, and how steep the cut may
 # be, in half widths. A brush squares what is no steeper (drawn_cut.cpp).
 ASIDE, STRAIGHT, BENT, STEEPEST = 0.92, 0.12, 0.5, 1.3
+ACROSS = ASIDE * np.linspace(-1.0, 1.0, 7)
+ALONG = 0.9 * np.linspace(0.0, 1.0, 4)  # where sides are looked at, in shares of the way to the cut
 FLICK = 0.25  # in half widths: a last piece that is no longer is but how the axis ends
 # The axis of an arm whose sides bend as they end, as of an r, points past the middle of its cut by so much.
 TURNS_RAD = np.radians([0, -8, 8, -16, 16])
@@ -69,10 +72,10 @@ def run_to_cut(line: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
     to where its disc touches the cut; the same object where the end is no straight cut. rings: of the shape."""
     back = line[::-1]
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(back[:, :2], axis=0).T))])
-    for k, (x, y, half) in enumerate(back):
+    befores = np.column_stack([np.interp(along + back[:, 2], along, column) for column in back.T])
+    for k, ((x, y, half), before) in enumerate(zip(back, befores, strict=True)):
         if along[k] > LOOKED_AT * half > LOOKED_AT * back[0, 2] or along[-1] < along[k] + half:
             return line
-        before = np.array([np.interp(along[k] + half, along, column) for column in back.T])
         if not half > 0 or before[2] > (1 + LEVEL) * half:
             continue
         here = np.array([x, y])
@@ -111,14 +114,10 @@ def straight_cuts(
 ) -> tuple[np.ndarray, np.ndarray]:
     """How far ahead of a place, in mm, the outline of rings is cut straight across, over the width of a line of this
     half width, and its slope. Both (k,) for ways (k, 2), unit vectors; nan where there is no such cut."""
-    aside = ASIDE * half * np.linspace(-1.0, 1.0, 7)
-    reached = np.full((len(ways), 7), np.inf)
-    for ring in rings:
-        ahead_mm, left_mm = _seen(ring - here, ways)
-        crossed_mm = _first_crossed(
-            np.repeat(ahead_mm, 7, axis=0), np.repeat(left_mm, 7, axis=0) - np.tile(aside, len(ways))[:, None]
-        )
-        reached = np.minimum(reached, crossed_mm.reshape(-1, 7))
+    aside = half * ACROSS
+    reached = np.array(
+        [_core.first_crossings(rings, here + aside[:, None] * _left_of(way), way) for way in ways]
+    )
     reached[~np.isfinite(reached).all(axis=1)] = np.nan
     slope = (reached[:, -1] - reached[:, 0]) / (aside[-1] - aside[0])
     middle = (reached[:, 0] + reached[:, -1]) / 2
@@ -132,13 +131,15 @@ def _has_straight_sides(
     here: np.ndarray, ahead: np.ndarray, half: float, to_cut_mm: float, slope: float, rings: list[np.ndarray]
 ) -> bool:
     """Whether a line has straight sides from a place on to the cut ahead of it."""
-    left = np.array([-ahead[1], ahead[0]])
+    left = _left_of(ahead)
     for side in (-1, 1):
-        for on_mm in np.linspace(0.0, 0.9 * (to_cut_mm + slope * side * ASIDE * half), 4):
-            at = here + on_mm * ahead + 0.7 * half * side * left  # inside, on either side of a slanted cut
-            beside_mm = min(_first_crossed(*_seen(ring - at, side * left[None]))[0] for ring in rings)
-            if abs(beside_mm - 0.3 * half) > BENT * half:
-                return False
+        on_mm = (to_cut_mm + slope * side * ASIDE * half) * ALONG
+        at = (
+            here + on_mm[:, None] * ahead + 0.7 * half * side * left
+        )  # inside, on either side of a slanted cut
+        beside_mm = np.array(_core.first_crossings(rings, at, side * left))
+        if (np.abs(beside_mm - 0.3 * half) > BENT * half).any():
+            return False
     return True
 
 
@@ -146,22 +147,5 @@ def _turn(one: np.ndarray, other: np.ndarray) -> float:
     return abs(float(np.arctan2(one[0] * other[1] - one[1] * other[0], one @ other)))
 
 
-def _seen(off_mm: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Places (n, 2) seen along ways (k, 2): how far ahead and how far to the left, both (k, n)."""
-    return np.array([off_mm @ way for way in ways]), np.array([off_mm @ (-way[1], way[0]) for way in ways])
-
-
-def _first_crossed(ahead_mm: np.ndarray, left_mm: np.ndarray) -> np.ndarray:
-    """How far ahead of each of k places a ring is first crossed, in mm; infinite where it is not. Both (k, n): the
-    ring as it is seen from there."""
-    nearest = np.full(len(ahead_mm), np.inf)
-    is_left = left_mm > 0
-    ray, at = np.nonzero(is_left != np.roll(is_left, -1, axis=1))
-    after = (at + 1) % ahead_mm.shape[1]
-    here_mm, left_here_mm = ahead_mm[ray, at], left_mm[ray, at]
-    crossed_mm = here_mm + (ahead_mm[ray, after] - here_mm) * left_here_mm / (
-        left_here_mm - left_mm[ray, after]
-    )
-    is_ahead = crossed_mm > 0
-    np.minimum.at(nearest, ray[is_ahead], crossed_mm[is_ahead])
-    return nearest
+def _left_of(way: np.ndarray) -> np.ndarray:
+    return np.array([-way[1], way[0]])

@@ -19,9 +19,12 @@ from .junctions import Crossing
 TOWARDS = np.array([np.cos(np.radians(-60)), np.sin(np.radians(-60))])
 # Strokes are set down wide and lifted thin: what a taper counts for beside the direction.
 TAPER = 0.27
+# So far an arm bends that is written from its stem on; straight ones, as of a K, are written towards it.
+ARCH_RAD = np.radians(18)
 # A piece shorter than this many of its half widths, and than this share of what it meets at a corner, has no direction
 # of its own: a flick.
 FLICK, FLICK_SHARE = 7.0, 0.6
+FLICK_WIDER = 1.15  # nor is what is so much wider than that: the stem of a bold 4
 
 # Which comes first.
 UPPER_LEFT_FIRST = np.array([1.0, -1.0])
@@ -40,6 +43,25 @@ def directed(piece: Piece) -> Piece:
     if piece.closed:
         return _ring(piece)
     return piece if willing(piece.line) >= 0 else reversed_(piece)
+
+
+def _outwards(chain: list[Piece]) -> list[Piece]:
+    """An arm that leaves its stem in an arch, from there on; others as they are."""
+    if chain[0].ends[0] is not None or chain[-1].ends[1] is None:
+        return chain
+    turned = [reversed_(piece) for piece in reversed(chain)]
+    return turned if _is_arch(np.vstack([piece.line for piece in turned])) else chain
+
+
+def _is_arch(line: np.ndarray) -> bool:
+    """Whether a line rises to the right and bends down all along: so an arm leaves its stem, as that of an r."""
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
+    # the last of an axis may hook into a corner of its end
+    at = np.array([np.interp([0.0, 0.3, 0.5, 0.8], along / along[-1], column) for column in line[:, :2].T]).T
+    first, last = at[1] - at[0], at[3] - at[2]
+    right, up = line[-1, :2] - line[0, :2]
+    bends = np.arctan2(first[1] * last[0] - first[0] * last[1], first @ last)
+    return bool(right > up > 0 and bends > ARCH_RAD)
 
 
 def willing(line: np.ndarray) -> float:
@@ -95,7 +117,7 @@ def joined(pieces: list[Piece], skeleton: Skeleton) -> list[list[Piece]]:
         chains[second][0] = to_corner(chains[second][0], 0, crossing)
         chains[first] += chains.pop(second)
         lengths[first] += lengths[second]
-    return list(chains.values())
+    return [_outwards(chain) for chain in chains.values()]
 
 
 def to_corner(piece: Piece, side: int, crossing: Crossing) -> Piece:
@@ -115,6 +137,8 @@ def _flick(chains: dict[int, list[Piece]], lengths: list[float], i: int, j: int)
     if len(chains[short]) > 1 or None not in chains[short][0].ends:
         return None
     widest = chains[short][0].line[:, 2].max()
+    if widest > FLICK_WIDER * max(piece.line[:, 2].max() for piece in chains[long]):
+        return None
     return short if lengths[short] < min(FLICK * widest, FLICK_SHARE * lengths[long]) else None
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...errors import Error
+from ...machine.header_lines import TILT_LINE
 
 if TYPE_CHECKING:
     from ...machine.cell import Cell
@@ -23,7 +24,7 @@ class Step(NamedTuple):
     line: of the file, from 1; centre: of the circle it runs on, with its turn (1 counter-clockwise), or None;
     blend_mm: how far before the point the next move may begin; via: a point of the circle that was named, in the
     frame of the program; wait_s: what is waited for behind it, in so many waits. What a servo does alone takes no time
-    but that.
+    but that. axis: (3,) the unit vector from the tip up along a tilted brush, in the frame of the program; () upright.
     """
 
     line: int
@@ -37,6 +38,7 @@ class Step(NamedTuple):
     via: tuple = ()
     wait_s: float = 0.0
     waits: int = 0
+    axis: tuple = ()
 
 
 class Act(NamedTuple):
@@ -44,7 +46,8 @@ class Act(NamedTuple):
 
     line: of the file, from 1; kind: move, circle, way (a servo's move), lift (of a servo), wait or text, which says
     something, or is a statement; place: where it goes [mm]; at_most: its speed [mm/s] and acceleration [mm/s^2], where
-    it tells them; same: other numbers. Of a rapid move the speed is inf.
+    it tells them; same: other numbers; turned: (9,) the tool's rotation there, row by row, in the frame of the program,
+    where the move tells one that is not upright. Of a rapid move the speed is inf.
     """
 
     line: int
@@ -53,6 +56,7 @@ class Act(NamedTuple):
     place: tuple = ()
     at_most: tuple = ()
     same: tuple = ()
+    turned: tuple = ()
 
 
 @dataclass
@@ -73,7 +77,7 @@ class Readback:
     axis may be anywhere in its backlash, as it was before the program.
 
     in_paper_frame: points are the paper's; else the robot's. blends_by_radius: each move says how far before its end
-    the next one may begin; else joint_mm holds for all corners.
+    the next one may begin; else joint_mm holds for all corners. tilts: its header says that the brush is tilted.
     """
 
     sections: list[ReadSection] = field(default_factory=list)
@@ -84,6 +88,7 @@ class Readback:
     modes: frozenset[str] | None = None
     rises_mm: list[float] = field(default_factory=list)
     unsure: set[int] = field(default_factory=set)
+    tilts: bool = False
 
     def section(self) -> ReadSection:
         """The one being read."""
@@ -95,6 +100,7 @@ class Readback:
         """Perhaps the title of a section. Blanks at its end are not told apart: some languages drop them."""
         text = text.rstrip(" ")
         text += " " * text.endswith(":")  # of a name without plain letters
+        self.tilts = self.tilts or text == TILT_LINE
         if text.startswith(("stroke ", "paint: ", "border ")):
             self.sections.append(ReadSection(text, number))
         if re.match(r"stroke \d|border |\w+: ", text):  # others are somebody's remarks

@@ -6,7 +6,7 @@ import re
 
 from ...errors import Error
 from ...machine.cell import Cell
-from ...machine.frames import rotation_deg
+from ...machine.frames import rotation, rotation_deg
 from ...machine.posts.dobot import DOBOT_END, INDEX
 from ...machine.posts.script import down
 from . import Act, Readback
@@ -26,11 +26,17 @@ _LINES = tuple(
     (kind, re.compile(pattern))
     for kind, pattern in (
         ("move", rf"MovL\({_point('xyz')}, \{{{_SPEED}(?:, r = (?P<blend>{N}))?\}}\)"),
+        (
+            "move",
+            rf"MovL\(tilted\({', '.join(f'(?P<{name}>{N})' for name in 'xyz')}, (?P<turned>{N}, {N}, {N})\), "
+            rf"\{{{_SPEED}(?:, r = (?P<blend>{N}))?\}}\)",
+        ),
         ("circle", rf"Arc\({_point('uvw')}, {_point('xyz')}, \{{{_SPEED}\}}\)"),
         ("wait", rf"Wait\((?P<seconds>{_WHOLE})\)"),
         ("rise", rf"MovL\(\{{pose = here\}}, \{{{_SPEED}\}}\)"),
         ("text", rf"if here\[3\] < (?P<height>{N}) then|here\[3\] = {N}|end|Pause\(\)|print\(\"[^\"\\]*\"\)"),
         ("text", rf"here = GetPose\({INDEX}, {INDEX}\)\.pose|function on_paper\(x, y, z\)"),
+        ("text", r"function tilted\(x, y, z, rx, ry, rz\)|return \{pose = \{x, y, z, rx, ry, rz\}\}"),
         ("text", rf"return \{{pose = \{{x, y, z, (?P<turned>{N}, {N}, {N})\}}\}}"),
         ("text", rf"Set(?:User|Tool)\({INDEX}, {_FRAME}\)|(?:User|Tool)\({INDEX}\)|CP\(-?0\)"),
     )
@@ -50,6 +56,7 @@ def read_dobot(text: str, cell: Cell) -> Readback:
         last=(f"-- {DOBOT_END}",),
         units_mm={"seconds": 1e-3},
         turned_deg=tuple(rotation_deg(down(cell.tool.spin_deg)).tolist()),
+        rotation=rotation,
     )
     out = read_script(text, script, Readback(in_paper_frame=True, blends_by_radius=True))
     out.acts = _with_settings_sorted(_without_held(out.acts))

@@ -7,9 +7,11 @@ import itertools
 import math
 import re
 
+import numpy as np
+
 from ...errors import Error
 from ...machine.cell import Cell
-from ...machine.frames import zyz_deg
+from ...machine.frames import rotation, zyz_deg
 from ...machine.posts.doosan import CHECKS, DOOSAN_END, STOPS
 from ...machine.posts.script import down
 from ...machine.posts.xarm import NAMES_LETTERS
@@ -27,6 +29,11 @@ _LINES = tuple(
     (kind, re.compile(pattern))
     for kind, pattern in (
         ("move", rf"movel\({_point('xyz')}(?:, radius=(?P<blend>{N}))?\)"),
+        (
+            "move",
+            rf"movel\(tilted\({', '.join(f'(?P<{name}>{N})' for name in 'xyz')}, (?P<turned>{N}, {N}, {N})\)"
+            rf"(?:, radius=(?P<blend>{N}))?\)",
+        ),
         ("sets", rf"set_velx\((?P<speed>{N}), {_TURNS}\)"),
         ("circle", rf"movec\({_point('uvw')}, {_point('xyz')}\)"),
         ("wait", rf"wait\((?P<seconds>{N})\)"),
@@ -37,6 +44,7 @@ _LINES = tuple(
             "text",
             rf"here = get_current_posx\(paper\)\[0\]|if abs\(tip_mm - {N}\) > {N}:|def on_paper\(x, y, z\):",
         ),
+        ("text", r"def tilted\(x, y, z, a, b, c\):|    return posx\(x, y, z, a, b, c\)"),
         ("text", rf"    return posx\(x, y, z, (?P<turned>{N}, {N}, {N})\)"),
         (
             "text",
@@ -48,6 +56,12 @@ _LINES = tuple(
 
 
 _LOOKS = re.compile(r"(?m)^((?:tip|here) = get_current_posx\(\w+\))\[-0\]")
+
+
+def _of_zyz_deg(abc: list[float]) -> np.ndarray:
+    """(3, 3) about z by a, about the new y by b, about the newest z by c."""
+    a, b, c = abc
+    return rotation((0, 0, a)) @ rotation((0, b, 0)) @ rotation((0, 0, c))
 
 
 def read_doosan(text: str, cell: Cell) -> Readback:
@@ -69,6 +83,7 @@ def read_doosan(text: str, cell: Cell) -> Readback:
         units_mm={},
         turned_deg=tuple(zyz_deg(down(cell.tool.spin_deg)).tolist()),
         is_indented=True,
+        rotation=_of_zyz_deg,
     )
     text = _LOOKS.sub(r"\1[0]", text)  # the same to Python
     out = read_script(text, script, Readback(in_paper_frame=True, blends_by_radius=True))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from ...machine.cell import Cell
+from ...machine.frames import rotation
 from ...machine.posts.jaka import JAKA_END, upright_deg
 from . import Readback
 from .script import N, Script, place, read_script
@@ -33,5 +34,7 @@ _LINES = tuple(
 def read_jaka(text: str, cell: Cell) -> Readback:
     """The program as steps in the robot's frame. Error with the line for what brushsvg does not write."""
     turned = tuple(upright_deg(cell).tolist())
-    script = Script("# ", _LINES, re.compile(r"set_|\w+ = "), (f"# {JAKA_END}",), {}, turned)
+    script = Script(
+        "# ", _LINES, re.compile(r"set_|\w+ = "), (f"# {JAKA_END}",), {}, turned, rotation=rotation
+    )
     return read_script(text, script, Readback())

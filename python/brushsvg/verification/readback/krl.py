@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from ...machine.cell import Cell
-from ...machine.frames import rotation_deg
+from ...machine.frames import rotation, rotation_deg
 from ...machine.posts.krl import KRL_END
 from ...machine.posts.script import down
 from . import Readback
@@ -36,7 +36,7 @@ _LINES = tuple(  # in small letters
             "text",
             rf"def brushsvg\(\)|decl e6pos here|end|\$(?:tool|base) = {_FRAME}",
         ),
-        ("text", r"bas\(#initmov, 0\)|ptp \$axis_act"),
+        ("text", r"bas\(#initmov, 0\)|ptp \$axis_act|\$ori_type = #var"),
     )
 )
 _READY = "bas(#initmov, 0)"  # which sets all of them
@@ -53,5 +53,6 @@ def read_krl(text: str, cell: Cell) -> Readback:
         sets_after=_READY,
         turned_deg=tuple(rotation_deg(down(cell.tool.spin_deg))[::-1].tolist()),
         any_case=True,
+        rotation=lambda abc: rotation(abc[::-1]),
     )
     return read_script(text, script, Readback(in_paper_frame=True, blends_by_radius=True))

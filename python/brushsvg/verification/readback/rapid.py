@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
+
 from ...machine.cell import LEAST_ACCELERATION_MM_S2
+from ...machine.frames import of_quaternion
 from ...machine.posts.rapid import RAPID_END
 from . import Readback
 from .script import N, Script, place, read_script
@@ -18,6 +21,8 @@ _FRAME = (  # what stands around the moves, in small letters
     rf"\[{N}, \[{_NUMBERS}\], \[{_NUMBERS}\], {_NUMBERS}\]\];",
     rf'local pers wobjdata paper := \[false, true, "", \[\[{_NUMBERS}\], \[{_NUMBERS}\]\], '
     rf"\[\[{_NUMBERS}\], \[{_NUMBERS}\]\]\];",
+    r"func robtarget tilted\(num x, num y, num z, num q1, num q2, num q3, num q4\)",
+    rf"return \[\[x, y, z\], \[q1, q2, q3, q4\], \[{_NUMBERS}\], \[{_NUMBERS}\]\];",
     r"local var robtarget here;|func robtarget on_paper\(num x, num y, num z\)",
     rf"return \[\[x, y, z\], \[{_NUMBERS}\], \[{_NUMBERS}\], \[{_NUMBERS}\]\];",
     r"func speeddata mm_s\(num speed\)|return \[speed, 500, 5000, 1000\];",
@@ -26,11 +31,24 @@ _FRAME = (  # what stands around the moves, in small letters
     r'here := crobt\(\\tool:=brush \\wobj:=paper\);|tpwrite "[^"\\]*";',
     rf"if here\.trans\.z < (?P<height>{N}) then|here\.trans\.z := {N};",
 )
+NOT_ONE = 1e-3  # off the length 1 the controller takes no quaternion
+
+
+def _rotation(wxyz: list[float]) -> np.ndarray | None:
+    size = float(np.linalg.norm(wxyz))
+    return of_quaternion(np.array(wxyz) / size) if abs(size - 1) <= NOT_ONE else None
+
+
 _SCRIPT = Script(
     remark="! ",
     lines=tuple(
         (kind, re.compile(pattern))
         for kind, pattern in (
+            (
+                "move",
+                rf"movel tilted\({place('xyz')}, (?P<turned>{N}(?:, {N}){{3}})\), {_MOVE}"
+                rf"(?:within\((?P<blend>{N})\)|fine), {_USED}",
+            ),
             ("move", rf"movel on_paper\({place('xyz')}\), {_MOVE}(?:within\((?P<blend>{N})\)|fine), {_USED}"),
             (
                 "circle",
@@ -48,6 +66,7 @@ _SCRIPT = Script(
     least=LEAST_ACCELERATION_MM_S2["rapid"],
     any_case=True,
     either_way=r"confl \off;",
+    rotation=_rotation,
 )
 
 

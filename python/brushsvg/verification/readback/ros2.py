@@ -10,9 +10,11 @@ import numpy as np
 
 from ...errors import Error
 from ...machine.cell import Cell
-from ...machine.frames import frame_of_pose, rotation
+from ...machine.frames import frame_of_pose, of_quaternion, rotation
+from ...machine.header_lines import TILT_LINE
 from ...machine.posts.ros2 import COLUMNS, ROS2_END, flange_from_tip
 from ...machine.posts.script import upright_deg
+from ...machine.tool_axes import turned_on, turned_to
 from . import Act, Readback, Step
 from .script import LEANS_DEG
 
@@ -23,6 +25,7 @@ _NAMES = '["' + COLUMNS.replace(",", '","') + '"]'
 LEAST_S = 1e-7
 ROUNDED_MM = 2e-4  # what decimals make of a way
 NOT_ONE = 1e-2  # of a quaternion: nearer ones are taken as the turns that they point at
+ROUNDED_DEG = 1e-4  # what decimals make of a turn
 NEAR_MM = 3e-3  # of places, what no brush shows
 FASTER, FASTER_MM_S = 1e-3, 0.01  # what rounding makes of speeds
 
@@ -67,16 +70,17 @@ def read_ros2(text: str, cell: Cell) -> Readback:
             sentence = f"line {number}: {line[:60]!r} is not a line that brushsvg writes"
             raise Error(sentence, code="line-unread")
     numbers = [number for (number, _), row in zip(lines, found, strict=True) if row]
-    places = _tips(np.array(rows).reshape(-1, 9), numbers, cell)
+    is_tilted = any(line == f"# {TILT_LINE}" for _, line in lines)
+    places, turned = _tips(np.array(rows).reshape(-1, 9), numbers, cell, is_tilted)
     on_grid = np.array([row[2] != "way" for row in found if row], dtype=bool)
     places[on_grid] = np.round(places[on_grid], cell.decimals)
-    tips = iter(places.tolist())
+    tips, turns = iter(places.tolist()), iter(turned)
     values, has_names = iter(rows), 0
     for (number, line), row in zip(lines, found, strict=True):
         if row:
             if has_names != 1:
                 raise Error(f"line {number}: no line says once what the columns are", code="line-unread")
-            reader.row(number, next(values), tuple(next(tips)), row[2])
+            reader.row(number, next(values), tuple(next(tips)), row[2], next(turns))
         elif line == COLUMNS:
             has_names += 1
         elif line != f"# {ROS2_END}":
@@ -86,23 +90,18 @@ def read_ros2(text: str, cell: Cell) -> Readback:
     return reader.out
 
 
-def _tips(rows: np.ndarray, numbers: list[int], cell: Cell) -> np.ndarray:
-    """(n, 3) where the brush's tip is [mm]. Error where it leans."""
+def _tips(rows: np.ndarray, numbers: list[int], cell: Cell, is_tilted: bool) -> tuple[np.ndarray, list]:
+    """(n, 3) where the brush's tip is [mm], and (3, 3) how the tool is turned there, None where it is upright. Error
+    where it leans and no line says that it does."""
     sizes = np.linalg.norm(rows[:, 4:8], axis=1, keepdims=True)
     off = np.abs(sizes[:, 0] - 1) > NOT_ONE
     turns = rows[:, 4:8] / np.where(sizes > 0, sizes, 1.0)
     upright = rotation(upright_deg(cell)) @ flange_from_tip(cell)[:3, :3]
-    x, y, z, w = turns.T
-    turned = np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    ).transpose(2, 0, 1)
-    cosine = (np.einsum("nij,ij->n", turned, upright) - 1) / 2
-    leans_deg = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
-    for k in np.flatnonzero(off | (leans_deg > LEANS_DEG)):
+    turned = of_quaternion(turns[:, [3, 0, 1, 2]])
+    leans_deg = np.degrees(
+        2 * np.arcsin(np.clip(np.linalg.norm(turned - upright, axis=(1, 2)) / 8**0.5, 0, 1))
+    )
+    for k in np.flatnonzero(off | ((leans_deg > LEANS_DEG) & (not is_tilted))):
         if off[k]:
             raise Error(f"line {numbers[k]}: its quaternion is not of length 1", code="line-unread")
         sentence = (
@@ -110,7 +109,10 @@ def _tips(rows: np.ndarray, numbers: list[int], cell: Cell) -> np.ndarray:
         )
         raise Error(sentence, code="tool-turned")
     tip_in_flange = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)[:3, 3]
-    return 1e3 * rows[:, 1:4] + turned @ tip_in_flange
+    tips = 1e3 * rows[:, 1:4] + turned @ tip_in_flange
+    stands = leans_deg < ROUNDED_DEG if is_tilted else np.ones(len(rows), dtype=bool)
+    tool = turned @ frame_of_pose(np.zeros(3), cell.tool.rotation_deg)[:3, :3]
+    return tips, [None if upright else each for each, upright in zip(tool, stands.tolist(), strict=True)]
 
 
 class _Rows:
@@ -120,20 +122,22 @@ class _Rows:
         self.now_s, self.begin_s = 0.0, 0.0  # of the last row, of the last pose
         self.last: tuple = ()
         self.here: tuple | None = None
-        self.ways: list[tuple[int, tuple, float]] = []
+        self.ways: list[tuple[int, tuple, float, np.ndarray | None]] = []
+        self.upright = rotation(upright_deg(cell))
+        self.turned: np.ndarray | None = None
 
-    def row(self, number: int, values: list[float], tip: tuple, kind: str) -> None:
+    def row(self, number: int, values: list[float], tip: tuple, kind: str, turned: np.ndarray | None) -> None:
         now_s, limit_mm_s = values[0], 1e3 * values[8]
         if self.here is None:
             if kind != "pose" or now_s != 0:
                 raise Error(f"line {number}: the first row is no pose at time 0", code="line-unread")
-            self._pose(number, tip, limit_mm_s, limit_mm_s, now_s)
+            self._pose(number, tip, limit_mm_s, limit_mm_s, now_s, turned)
             return
         if now_s < self.now_s + LEAST_S:
             raise Error(f"line {number}: time {now_s:g} s does not go on", code="line-unread")
         after_s, way_mm = now_s - self.now_s, math.dist(tip, self.last)
         if kind == "rest":
-            if self.ways or way_mm > self.near_mm or limit_mm_s:
+            if self.ways or way_mm > self.near_mm or limit_mm_s or not self._is_same(turned, self.turned):
                 raise Error(f"line {number}: it moves while it rests", code="line-unread")
             step = self.out.section().steps[-1] if self.out.section().steps else None
             if step is None:
@@ -149,28 +153,50 @@ class _Rows:
             raise Error(said, code="speed-out-of-range")
         self.now_s, self.last = now_s, tip
         if kind == "way":
-            self.ways.append((number, tip, limit_mm_s))
+            self.ways.append((number, tip, limit_mm_s, turned))
             return
-        self._on_the_way(tip, limit_mm_s)
+        self._on_the_way(tip, limit_mm_s, turned)
         way_mm = math.dist(tip, self.here)
-        self._pose(number, tip, limit_mm_s, way_mm / (now_s - self.begin_s), now_s)
+        self._pose(number, tip, limit_mm_s, way_mm / (now_s - self.begin_s), now_s, turned)
 
-    def _pose(self, number: int, tip: tuple, limit_mm_s: float, mean_mm_s: float, now_s: float) -> None:
-        self.out.section().steps.append(Step(number, False, *tip, limit_mm_s))
-        self.out.acts.append(Act(number, "move", "movel", tip, (limit_mm_s, mean_mm_s), (0.0,)))
+    def _pose(
+        self,
+        number: int,
+        tip: tuple,
+        limit_mm_s: float,
+        mean_mm_s: float,
+        now_s: float,
+        turned: np.ndarray | None,
+    ) -> None:
+        axis, told = ((), ()) if turned is None else (tuple(-turned[:, 2]), tuple(turned.ravel().tolist()))
+        self.out.section().steps.append(Step(number, False, *tip, limit_mm_s, axis=axis))
+        self.out.acts.append(Act(number, "move", "movel", tip, (limit_mm_s, mean_mm_s), (0.0,), told))
         self.here = self.last = tip
+        self.turned = turned
         self.now_s = self.begin_s = now_s
 
-    def _on_the_way(self, tip: tuple, limit_mm_s: float) -> None:
-        """Error where the rows since the last pose are not on the straight line to this one, one behind the other."""
+    def _is_same(self, a: np.ndarray | None, b: np.ndarray | None, most_deg: float = LEANS_DEG) -> bool:
+        """Whether the tool is turned alike, but for what no brush shows; None is upright."""
+        a, b = (self.upright if each is None else each for each in (a, b))
+        return math.degrees(2 * math.asin(min(float(np.linalg.norm(a - b)) / 8**0.5, 1.0))) <= most_deg
+
+    def _on_the_way(self, tip: tuple, limit_mm_s: float, turned: np.ndarray | None) -> None:
+        """Error where the rows since the last pose are not on the straight line to this one, one behind the other, or
+        the tool is not turned there as between both."""
         start, way = np.array(self.here), np.subtract(tip, self.here)
         length, done = float(np.linalg.norm(way)), 0.0
-        for number, place, its_mm_s in self.ways:
+        for number, place, its_mm_s, its_turn in self.ways:
             step = np.array(place) - start
             along = float(step @ way) / length if length else 0.0
             beside = float(np.linalg.norm(step - along * way / length)) if length else math.inf
             if beside > self.near_mm or not done - self.near_mm <= along <= length + self.near_mm:
                 raise Error(f"line {number}: it is on no straight line to the next pose", code="line-unread")
+            a, b, c = (self.upright if each is None else each for each in (self.turned, its_turn, turned))
+            share = min(max(along / length, 0.0), 1.0)
+            if not self._is_same(b, turned_to(turned_on(-a[:, 2], -c[:, 2], share), self.upright)):
+                raise Error(
+                    f"line {number}: the tool is not turned on evenly to the next pose", code="line-unread"
+                )
             if its_mm_s != limit_mm_s:
                 raise Error(f"line {number}: its limit is not that of the next pose", code="line-unread")
             done = along

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,7 @@ from . import Act, Readback, Step, circle
 
 N = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 LEANS_DEG = 0.5  # what no brush shows
+ROUNDED_RAD = 3e-6  # what four decimals of degrees make of a rotation
 
 
 @dataclass(frozen=True)
@@ -24,7 +26,9 @@ class Script:
         rise: straight up; wait: for seconds; most: an acceleration that holds for all moves; text: what else stands
         there, perhaps with a height that the tool rises to.
     again: texts that do nothing when they stand there twice; last: of the program, without blanks around them;
-    units_mm: of groups that are not in mm; turned_deg: what the group `turned` of a move must be; least: of `most`;
+    units_mm: of groups that are not in mm; turned_deg: what the group `turned` of a move must be, but where the header
+    says that the brush is tilted: there it is the tool's rotation, which `rotation` makes (3, 3) of, None where it is
+    none; least: of `most`;
     sets_after: the text before which nothing may be set; is_indented: whether blanks before a line mean something;
     any_case: whether large and small letters are the same; either_way: a text that may stand before `most` or after.
     """
@@ -40,6 +44,7 @@ class Script:
     is_indented: bool = False
     any_case: bool = False
     either_way: str = ""
+    rotation: Callable[[list[float]], np.ndarray | None] | None = None
 
 
 def place(names: str) -> str:
@@ -74,6 +79,7 @@ class _Reader:
         self.held: dict[str, float] = {}
         self.is_ready = not script.sets_after
         self.in_block = False  # which may not be run
+        self.turned: tuple = ()
 
     def line(self, number: int, line: str) -> None:
         if line.lstrip(" ").startswith(self.script.remark):
@@ -84,7 +90,7 @@ class _Reader:
             self.in_block = False
         for kind, pattern in self.script.lines:
             if found := pattern.fullmatch(line):
-                values = self._values(number, line, found)
+                values = self._values(number, "move" if kind == "blended" else kind, line, found)
                 if kind == "text" and found.groupdict().get("turned"):
                     line = line[: found.start("turned")]  # which was looked at
                 getattr(self, f"_{kind}")(number, line, values)
@@ -102,15 +108,37 @@ class _Reader:
     def spelled(self, line: str) -> str:
         return line.lower() if self.script.any_case else line
 
-    def _values(self, number: int, line: str, found: re.Match) -> dict[str, float]:
-        """The numbers of a line by name, in mm and s."""
+    def _values(self, number: int, kind: str, line: str, found: re.Match) -> dict[str, float]:
+        """The numbers of a line by name, in mm and s; how it turns the tool is kept aside."""
         said = {name: text for name, text in found.groupdict().items() if text is not None}
+        if kind != "move" or "x" in said:
+            self.turned = ()
         if turned := said.pop("turned", ""):
-            self._stands(number, line, [float(value) for value in re.findall(N, turned)])
+            values = [float(value) for value in re.findall(N, turned)]
+            is_end = kind == "move" or (
+                kind == "sets" and "x" in said
+            )  # of a move, which stands in another line
+            if is_end and self.script.rotation and self.out.tilts:
+                self.turned = self._rotation(number, line, values)
+            else:
+                self._stands(number, line, values)
         return {name: float(text) * self.script.units_mm.get(name, 1.0) for name, text in said.items()}
+
+    def _rotation(self, number: int, line: str, values: list[float]) -> tuple:
+        turned = self.script.rotation(values)
+        if turned is None:
+            raise Error(f"line {number}: {line[:60]!r} tells no rotation of the tool", code="line-unread")
+        if self.script.turned_deg:  # digits apart it is upright
+            off = np.abs(turned - self.script.rotation(list(self.script.turned_deg))).max()
+            if off < ROUNDED_RAD:
+                return ()
+        return tuple(turned.ravel().tolist())
 
     def _stands(self, number: int, line: str, found_deg: list[float]) -> None:
         """The brush stands on the paper: whole turns are none."""
+        if not self.script.turned_deg:
+            sentence = f"line {number}: {line[:60]!r} tilts the brush, and no line of its header says so"
+            raise Error(sentence, code="tool-turned")
         wanted_deg = np.round(self.script.turned_deg, 6) + 0.0
         off_deg = np.abs((np.array(found_deg) - wanted_deg + 180.0) % 360.0 - 180.0).max()
         if off_deg > LEANS_DEG:
@@ -134,8 +162,11 @@ class _Reader:
         if blend_mm < 0:
             raise Error(f"line {number}: {line[:60]!r} has a negative blend", code="line-unread")
         self.out.joint_mm = max(self.out.joint_mm, blend_mm)
-        self.out.section().steps.append(Step(number, False, *end, at_most[0], blend_mm))
-        self.out.acts.append(Act(number, "move", "blends", end, at_most, (blend_mm,)))
+        axis = tuple(
+            -value for value in self.turned[2::3]
+        )  # the tool's z points from the brush into the paper
+        self.out.section().steps.append(Step(number, False, *end, at_most[0], blend_mm, axis=axis))
+        self.out.acts.append(Act(number, "move", "blends", end, at_most, (blend_mm,), self.turned))
 
     def _blended(self, number: int, line: str, values: dict) -> None:
         if "blend" not in self.held:
@@ -146,6 +177,9 @@ class _Reader:
         self._move(number, line, {**values, "blend": self.held["blend"]})
 
     def _circle(self, number: int, line: str, values: dict) -> None:
+        if self.turned:
+            sentence = f"line {number}: {line[:60]!r} tilts the brush on a circle, which brushsvg does not"
+            raise Error(sentence, code="tool-turned")
         at_most = self._at_most(number, line, values)
         via, end = (self._place(number, line, values, names) for names in ("uvw", "xyz"))
         circle(self.out, number, np.array(via), np.array(end), at_most[0])

@@ -7,11 +7,15 @@ import re
 import numpy as np
 
 from ...errors import Error
+from ...machine.frames import of_rotation_vector
 from . import Act, Readback, Step, circle
 
 _N = r"-?(?:\d+\.?\d*|\.\d+)"
 _POINT = rf"on_paper\(({_N}), ({_N}), ({_N})\)"
 _MOVE = re.compile(rf"(movel|movep)\({_POINT}, a=({_N}), v=({_N})(?:, r=({_N}))?\)")
+_TILTED = re.compile(
+    rf"(movel|movep)\(tilted\(({_N}), ({_N}), ({_N}), ({_N}), ({_N}), ({_N})\), a=({_N}), v=({_N})(?:, r=({_N}))?\)"
+)
 _CIRCLE = re.compile(rf"movec\({_POINT}, {_POINT}, a=({_N}), v=({_N}), r=(?:0+\.?0*|\.0+), mode=1\)")
 _PAPER = re.compile(rf"paper = p\[({_N}(?:, {_N}){{5}})\]")
 _SLEEP = re.compile(r"sleep\((\d+\.?\d*|\.\d+)\)")
@@ -22,6 +26,7 @@ _RISE = re.compile(
 _OTHER = re.compile(  # the frame around the moves
     rf"def brushsvg\(\):|end|brushsvg\(\)|set_tcp\(p\[{_N}(?:, {_N}){{5}}\]\)|def on_paper\(x, y, z\):"
     rf"|return pose_trans\(paper, p\[x, y, z(?:, {_N}){{3}}\]\)"
+    r"|def tilted\(x, y, z, rx, ry, rz\):|return pose_trans\(paper, p\[x, y, z, rx, ry, rz\]\)"
     r"|here = pose_trans\(pose_inv\(paper\), get_actual_tcp_pose\(\)\)"
     rf"|if here\[2\] < {_N}:"
     rf"|thread watch\(\):|while True:|if force\(\) > {_N}:|halt|sync\(\)|zero_ftsensor\(\)|kill watching"
@@ -50,6 +55,17 @@ def read_urscript(text: str) -> Readback:
                 raise Error(f"line {number}: {line[:60]!r} has a negative blend", code="line-unread")
             out.section().steps.append(Step(number, False, x, y, z, v, r))
             out.acts.append(Act(number, "move", found[1], (x, y, z), (v, a), (r,)))
+        elif found := _TILTED.fullmatch(line):
+            x, y, z, a, v, r = (float(found[k] or 0) * 1e3 for k in (2, 3, 4, 8, 9, 10))
+            _is_run(number, line, a, v)
+            if r < 0:
+                raise Error(f"line {number}: {line[:60]!r} has a negative blend", code="line-unread")
+            turned = of_rotation_vector([float(found[k]) for k in (5, 6, 7)])
+            axis = tuple((-turned[:, 2]).tolist())
+            out.section().steps.append(Step(number, False, x, y, z, v, r, axis=axis))
+            out.acts.append(
+                Act(number, "move", found[1], (x, y, z), (v, a), (r,), tuple(turned.ravel().tolist()))
+            )
         elif found := _CIRCLE.fullmatch(line):
             *points, a, v = (float(value) * 1e3 for value in found.groups())
             _is_run(number, line, a, v)

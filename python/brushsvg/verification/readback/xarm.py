@@ -7,13 +7,23 @@ import re
 
 from ...errors import Error
 from ...machine.cell import Cell
-from ...machine.posts.xarm import AFTER, BEFORE, FUNCTIONS, NAMES_LETTERS, READY, XARM_END, upright_deg
+from ...machine.frames import rotation
+from ...machine.posts.xarm import (
+    AFTER,
+    BEFORE,
+    FUNCTIONS,
+    NAMES_LETTERS,
+    READY,
+    TILTED,
+    XARM_END,
+    upright_deg,
+)
 from . import Act, Readback
 from .script import N, Script, place, read_script
 
 _FIXED = "|".join(
     re.escape(line).replace("\\[0,", "\\[-?0,")
-    for line in dict.fromkeys((BEFORE + FUNCTIONS + READY + AFTER).splitlines())
+    for line in dict.fromkeys((BEFORE + FUNCTIONS + TILTED + READY + AFTER).splitlines())
     if line
 )
 _LINES = tuple(
@@ -23,6 +33,11 @@ _LINES = tuple(
         (
             "move",
             rf"go\({place('xyz')}, (?P<speed>{N}), (?:(?P<blend>\d+\.?\d*|\.\d+)|-(?:\d+\.?\d*|\.\d+)|None)\)",
+        ),
+        (
+            "move",
+            rf"lean\({place('xyz')}, (?P<turned>{N}, {N}, {N}), (?P<speed>{N}), "
+            r"(?:(?P<blend>\d+\.?\d*|\.\d+)|-(?:\d+\.?\d*|\.\d+)|None)\)",
         ),
         ("wait", rf"rest\((?P<seconds>{N})\)"),
         ("rise", rf"rise\((?P<height>{N}), (?P<speed>{N})\)"),
@@ -56,6 +71,7 @@ def read_xarm(text: str, cell: Cell) -> Readback:
         units_mm={},
         turned_deg=tuple(upright_deg(cell).tolist()),
         is_indented=True,
+        rotation=rotation,
     )
     lines = (_spelled(line) if line.startswith("done(arm.set_") else line for line in text.splitlines())
     out = read_script("\n".join(lines), script, Readback(blends_by_radius=True))

@@ -1,0 +1,83 @@
+#include "marks_way.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "brushsvg/simulate.hpp"
+#include "refusal.hpp"
+#include "round6.hpp"
+
+using namespace brushsvg;
+using Eigen::Index;
+
+namespace {
+
+/// Set down, a line, a circle's arc, a corner, lifted, down again on the way, lifted on the spot.
+Pass pass_with_arc() {
+    Pass pass;
+    pass.stroke = "s";
+    pass.poses_mm.resize(9, 3);
+    const double turn = 0.8, radius = 12.0;
+    pass.poses_mm << 0, 0, -1, 10, 0, -4, 10 + radius * std::sin(turn), radius * (1 - std::cos(turn)), -4,
+        10 + radius * std::sin(2 * turn), radius * (1 - std::cos(2 * turn)), -4, 15, 20, -2, 12, 22, 3, 8, 22, 2, 0, 20,
+        -3, -6, 15, -3;
+    pass.arcs.push_back({1, 3, {10.0, radius}, 1});
+    return pass;
+}
+
+LagLaw<double> law_of(const Brush& brush) {
+    return make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
+}
+
+}  // namespace
+
+TEST_CASE("the brush itself on its marks' way does what the simulator says at every row") {
+    const Brush brush = shipped("round-6");
+    const Pass pass = pass_with_arc();
+    const PassMarks marks = simulate(pass, brush);
+    const ManyStates again = follow_many(way_of(pass, marks), {law_of(brush), law_of(brush)});
+    REQUIRE(again.taut.rows() == marks.contact_mm.rows());
+    REQUIRE((way_of(pass, marks).turn_rad != 0.0).count() > 5);
+    for (Index i = 0; i < marks.contact_mm.rows(); ++i) {
+        CAPTURE(i);
+        CHECK(std::abs(again.contact_x_mm(i, 1) - marks.contact_mm(i, 0)) < 1e-9);
+        CHECK(std::abs(again.contact_y_mm(i, 1) - marks.contact_mm(i, 1)) < 1e-9);
+        CHECK(std::abs(again.heading_x(i, 1) - std::cos(marks.heading_rad[std::size_t(i)])) < 1e-9);
+        CHECK(std::abs(again.heading_y(i, 1) - std::sin(marks.heading_rad[std::size_t(i)])) < 1e-9);
+    }
+}
+
+TEST_CASE("another lag on these marks' way is where its own simulation has it at the poses") {
+    const Brush brush = shipped("round-6");
+    Brush other = brush;
+    for (double& c : other.lag.coefficients) c *= 1.2;
+    const Pass pass = pass_with_arc();
+    const PassMarks marks = simulate(pass, brush), own = simulate(pass, other);
+    const ManyStates led = follow_many(way_of(pass, marks), {law_of(other)});
+    int compared = 0;
+    for (std::size_t i = 0; i < marks.pose.size(); ++i)
+        for (std::size_t k = 0; k < own.pose.size(); ++k) {
+            if (marks.pose[i] != std::floor(marks.pose[i]) || own.pose[k] != marks.pose[i]) continue;
+            if (own.depth_mm[k] != marks.depth_mm[i]) continue;
+            CHECK(std::abs(led.contact_x_mm(Index(i), 0) - own.contact_mm(Index(k), 0)) < 1e-9);
+            CHECK(std::abs(led.contact_y_mm(Index(i), 0) - own.contact_mm(Index(k), 1)) < 1e-9);
+            ++compared;
+        }
+    CHECK(compared >= 9);
+}
+
+TEST_CASE("marks that are not those of the pass") {
+    const Brush brush = shipped("round-6");
+    Pass pass = pass_with_arc();
+    PassMarks marks = simulate(pass, brush);
+    marks.pose.back() = 99.0;
+    CHECK(contains(refusal([&] { way_of(pass, marks); }), "do not follow the poses of the pass"));
+    marks.depth_mm.pop_back();
+    CHECK(contains(refusal([&] { way_of(pass, marks); }), "not parallel"));
+    pass.arcs.clear();
+    pass.tool_axes.setZero(pass.poses_mm.rows(), 3);
+    pass.tool_axes.col(2).setConstant(std::sqrt(0.99));
+    pass.tool_axes.col(0).setConstant(0.1);
+    CHECK(contains(refusal([&] { way_of(pass, marks); }), "held upright"));
+}
