@@ -18,6 +18,7 @@ from brushsvg.calibration.chart.layout import chart  # noqa: E402
 from brushsvg.calibration.from_file import calibrate  # noqa: E402
 from brushsvg.calibration.from_marks import brush_of, calibrate_marks, expected_marks, height_at  # noqa: E402
 from brushsvg.calibration.mark_input import read_painted  # noqa: E402
+from brushsvg.calibration.mark_report import report  # noqa: E402
 from brushsvg.calibration.paint_found import expected_paint  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
 
@@ -113,6 +114,17 @@ def test_a_chart_for_one_load_tells_laws_and_paint_at_once(seed, rate):
         off = np.array([getattr(made.brush, law)(d) - brush.law(law)(d) for d in depths])
         assert (np.abs(off) < 1.5 * half).all(), (law, off, half)
         assert half[-1] < 0.05 * brush.law(law)(brush.deepest)
+
+
+def test_paint_that_runs_out_by_another_law_is_told():
+    """Fast at first, then hardly: the one rate makes the freshly dipped brush too narrow, by more than its interval."""
+    brush, _, made = chart_sheet(1, lambda way, whole: 0.7 + 0.3 * np.exp(-way / (0.25 * whole)))
+    assert made.paint_bends > 3
+    assert "one rate" in report(made)
+    half = law_band(made.brush, "half_width", np.array([brush.deepest]))[0][0]
+    assert brush.law("half_width")(brush.deepest) - made.brush.half_width(brush.deepest) > half
+    _, _, usual = chart_sheet(3, lambda way, _: np.exp(-0.25 * way / 1000))
+    assert usual.paint_bends < 2 and "one rate" not in report(usual)
 
 
 def test_paint_that_does_not_run_out_is_not_said_to():

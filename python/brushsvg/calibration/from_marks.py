@@ -37,6 +37,7 @@ class MarkCalibration(ArrayValue):
 
     round_tail_gain: chi-square by which footprints with a round tail fit the marks better than pointed ones.
     edge_mm: by which all edges may lie off together (sigma), and covariance, of all that is fitted, with that in it.
+    paint_bends: by how many standard deviations marks narrow by another law than the one of brush.paint.
     strays: marks that are not like the others, which the fit had no part of where they were left out.
     """
 
@@ -50,6 +51,7 @@ class MarkCalibration(ArrayValue):
     covariance: np.ndarray | None = None
     strays: tuple[Stray, ...] = ()
     strays_left_out: bool = False
+    paint_bends: float = 0.0
 
     def __repr__(self) -> str:
         return f"<MarkCalibration of {self.brush!r} from {len(self.painted.marks)} marks>"

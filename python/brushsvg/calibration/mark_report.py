@@ -46,7 +46,7 @@ def report(made) -> str:
         halves = ", ".join(f"{half:.2g}" for half in law.half_interval_95)
         lines.append(f"  95 % confidence intervals +- {halves} (ascending powers)")
     overlap = overlaps(made)
-    lines += _paint(brush.paint) if brush.paint else []
+    lines += _paint(brush.paint, made.paint_bends) if brush.paint else []
     lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
     found = machine_found.numbers(fit, made.covariance, made.expected)
     if table := machine_found.cell_table(fit, made.expected, found):
@@ -67,13 +67,19 @@ def report(made) -> str:
     return "\n".join([*lines, *([""] if remarks else []), *remarks, ""])
 
 
-def _paint(paint) -> list[str]:
+def _paint(paint, bends: float) -> list[str]:
     half = paint_interval_per_m(paint)
     known = "" if paint.narrows_per_m > half else ": these marks do not tell that they do"
-    return [
+    lines = [
         f"marks narrow by {paint.narrows_per_m:.3f} +- {half:.2g} per metre of way since the dip{known} (95 %, up to "
         f"{paint.calibrated_mm[1]:.0f} mm)"
     ]
+    if bends > _core.deviations_of_95(paint.degrees_of_freedom):
+        lines.append(
+            f"they do not narrow by one rate, by {bends:.1f} standard deviations: it is one over the whole way, "
+            "and the freshly dipped width is off by more than its interval"
+        )
+    return lines
 
 
 def _tail(made) -> str:

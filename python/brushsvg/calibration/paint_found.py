@@ -69,7 +69,8 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
         covariance=[[sigma**2]],
         degrees_of_freedom=freedom,
     )
-    return replace(made, painted=replace(made.painted, before_mm=painted.before_mm))
+    made = replace(made, painted=replace(made.painted, before_mm=painted.before_mm))
+    return replace(made, paint_bends=_bends(made))
 
 
 def _kept(one: tuple[float, float], other: tuple[float, float]) -> float:
@@ -250,6 +251,18 @@ def _left(made: MarkCalibration) -> tuple[float, float, float]:
     says = np.array([float((own * beside)[mark].sum()) for mark in marks]) / float(own @ own)
     without = np.array([_first_number(columns[~mark], flanks.off_mm[~mark]) for mark in marks])
     return rate, float(np.sqrt(max(says @ (rate - without), 0.0))), flanks.freedom
+
+
+def _bends(made: MarkCalibration) -> float:
+    """How far what is left of the edges goes with the square of the way besides the way, in its standard deviations by
+    leaving out marks one by one."""
+    flanks = _flanks(made)
+    ways = -1e3 * flanks.moved / np.maximum(flanks.half_mm, 1e-9)
+    columns = np.column_stack([flanks.moved * ways, flanks.moved, flanks.powers])
+    marks = [flanks.of_mark == one for one in np.unique(flanks.of_mark)]
+    bend = _first_number(columns, flanks.off_mm)
+    without = np.array([_first_number(columns[~mark], flanks.off_mm[~mark]) for mark in marks])
+    return abs(bend) / max(float(np.sqrt((len(marks) - 1) * without.var())), 1e-15)
 
 
 def _first_number(columns: np.ndarray, values: np.ndarray) -> float:
