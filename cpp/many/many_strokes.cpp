@@ -272,8 +272,9 @@ void refuse_row(const ManyWays& ways, const std::vector<LagLaw<double>>& lags, I
                       turns ? "row %ld of many ways turns by %.3f rad, outside the range [-6.28, 6.28]"
                             : "row %ld of many ways lies at %.3g mm, outside the range [-1e6, 1e6] mm",
                       long(i), largest);
-        throw Error(turns ? "out-of-range" : "geometry-out-of-range", text, "", largest,
-                    std::array<double, 2>{-most, most});
+        const std::array<double, 2> range{-most, most};
+        if (turns) throw Error("out-of-range", text, "", largest, range);
+        throw Error("geometry-out-of-range", text, "", largest, range);
     }
     if (i < ways.turn_rad.rows() &&
         (ways.turn_rad.row(i) != 0.0 && (ways.depth_mm.row(i) - ways.depth_mm.row(i + 1)).abs() > kRounded).any())

@@ -117,10 +117,12 @@ def reported(
     drawn: Sequence[_core.Stroke] | None = None,
     seconds: float | None = None,
     advice: str = "",
+    as_run: _core.Plan | None = None,
 ) -> report.Report:
     """The figures of a work. warnings: None for those of the work; forbidden:
     those of them for which no program would be written; drawn: see report.measure; seconds: how long it takes, where
-    that is known better than from the plan; advice: on the size."""
+    that is known better than from the plan; advice: on the size; as_run: what the marks are of, where a machine cuts
+    corners of the work's plan."""
     known = warnings if warnings is not None else work.notices
     leans = any(map(is_tilted, work.plan.passes))
     is_drawing = work.strokes is not None
@@ -147,7 +149,7 @@ def reported(
         warnings=tuple(known),
         refused=tuple(work.refused),
         forbidden=tuple(forbidden),
-        confidence=None if leans else uncertainty(work.plan, work.brush, marks),
+        confidence=None if leans else uncertainty(as_run or work.plan, work.brush, marks),
         is_tilted=leans,
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,

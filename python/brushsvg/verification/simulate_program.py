@@ -40,7 +40,7 @@ Problems = list[Notice]
 
 @dataclass(frozen=True)
 class Ran:
-    """What a program paints: its passes as they are programmed and as they are run, with corners cut.
+    """What a program paints: its passes as they are programmed and, with corners cut, as they are run; the marks of these.
 
     problems: one for each thing that must not be; visits: for each stroke the stations that are visited
     before it; lines: for each pass the line of the program that leads to each pose; rests: whether a servo rests
@@ -48,6 +48,7 @@ class Ran:
     """
 
     plan: object
+    as_run: object
     marks: object
     problems: Problems
     visits: tuple
@@ -96,7 +97,8 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             lines.append(np.array([section.steps[number].line for number in track.step[on]]))
             rests.append(np.array([_rests(section.steps[number], cell) for number in track.step[on]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
-    marks = _core.simulate(_core.Plan(brush.name, "", tuple(sheet_mm), cut), brush)
+    ran = _core.Plan(brush.name, "", tuple(sheet_mm), cut)
+    marks = _core.simulate(ran, brush)
     visited = _visits(read, cell)
     if brush.paint:
         # where visits belong to no stroke each begins freshly dipped, as in predictions
@@ -104,7 +106,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
         dips = [[0.0] if not is_counted or visited[k] else [] for k in range(len(cut))]
         _core.narrow(marks, brush.paint, dips)
     problems += broken_limits(meant, sheet_mm, brush, _rounded(cell)) + off_sheet(marks, brush, sheet_mm)
-    return Ran(plan, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests))
+    return Ran(plan, ran, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests))
 
 
 def _rests(step: Step, cell: Cell) -> bool:

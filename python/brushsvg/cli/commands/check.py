@@ -112,7 +112,7 @@ def check_file(args) -> None:
         seconds, as_run_s = duration_s(again) if again else 0.0, time_as_run_s(read, cell)
         if as_run_s > 1.1 * seconds + 1.0:  # feeds were lowered
             seconds = as_run_s
-        figures = outputs.reported(shown, ran.marks, cell, drawn=drawn, seconds=seconds)
+        figures = outputs.reported(shown, ran.marks, cell, drawn=drawn, seconds=seconds, as_run=ran.as_run)
         if args.preview:
             write(args, {args.preview: picture}, len(shown.plan.passes), seconds, figures.total.overlap)
         tell(report.as_text(".json" if args.json else ".txt", figures))
