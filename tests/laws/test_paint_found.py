@@ -195,7 +195,7 @@ def run_dry(lasts_mm, gone=()):
 
 @pytest.mark.parametrize("share", [0.0, 0.4])
 def test_marks_that_end_dry_tell_how_long_a_load_lasts(share):
-    """The load comes to its end between two strokes or within one; a mark that is missing earlier says nothing of it."""
+    """The load ends between two strokes or within one; a mark that is missing earlier says nothing of it."""
     _, ends = run_dry(1e6)
     strokes, way = list(ends), list(ends.values())
     whole, dry = way[-4], way[-3]

@@ -29,9 +29,9 @@ class RanDry:
 
     def told(self) -> str:
         return (
-            f"the load ran dry between {self.whole_mm:.0f} mm, where stroke {self.whole} ends, the last whole mark, and "
-            f"{self.dry_mm:.0f} mm, the end of {self.dry}, which is missing or broken, as all after it are: lasts_mm is "
-            "the former"
+            f"the load ran dry between {self.whole_mm:.0f} mm, where stroke {self.whole} ends, the last whole mark, "
+            f"and {self.dry_mm:.0f} mm, the end of {self.dry}, which is missing or broken, as all after it are: "
+            "lasts_mm is the former"
         )
 
 
