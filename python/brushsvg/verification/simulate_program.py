@@ -40,7 +40,8 @@ Problems = list[Notice]
 
 @dataclass(frozen=True)
 class Ran:
-    """What a program paints: its passes as they are programmed and, with corners cut, as they are run; the marks of these.
+    """What a program paints: its passes as they are programmed, and as they are run, with corners cut; marks of the
+    latter.
 
     problems: one for each thing that must not be; visits: for each stroke the stations that are visited
     before it; lines: for each pass the line of the program that leads to each pose; rests: whether a servo rests
