@@ -165,3 +165,58 @@ def test_an_order_by_depth_alone_is_refused():
     marks = [mark for mark in told["marks"] if mark["stroke"] in names]
     with refused("paint-undetermined"):
         calibrate({"plan": {"passes": passes}, "marks": marks}, "b", paint=True)
+
+
+def run_dry(lasts_mm, gone=()):
+    """What a measurement file holds of a sheet whose load lasts so long, without the marks of some strokes, and the way
+    to the end of each stroke."""
+    rng = np.random.default_rng(6)
+    brush = painter.random_brush(rng)
+    strokes = painter.chart_strokes(brush.deepest, 3)
+    strokes = [strokes[k] for k in np.random.default_rng(1).permutation(len(strokes))]
+    ends = np.cumsum([np.hypot(*np.diff(poses[:, :2], axis=0).T).sum() for _, poses in strokes])
+    left = np.maximum(lasts_mm - np.concatenate([[0.0], ends[:-1]]), 0.0)
+
+    def regions(brush, strokes, height):
+        return painter.swept(brush, strokes, height, lasts=np.maximum(left, 1e-3), narrows_per_m=0.8)
+
+    painted = painter.paint(rng, brush, strokes, painter.Faults(), regions)
+    passes = [{"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes]
+    wet = {name for (name, _), way in zip(strokes, left, strict=True) if way > 0} - set(gone)
+    marks = [
+        {"stroke": name, "outline_mm": [ring.tolist() for ring in rings]}
+        for name, _, rings in painted.marks
+        if name in wet
+    ]
+    return {"plan": {"passes": passes}, "marks": marks}, dict(
+        zip((name for name, _ in strokes), ends, strict=True)
+    )
+
+
+@pytest.mark.parametrize("share", [0.0, 0.4])
+def test_marks_that_end_dry_tell_how_long_a_load_lasts(share):
+    """The load ends between two strokes or within one; a mark that is missing earlier says nothing of it."""
+    _, ends = run_dry(1e6)
+    strokes, way = list(ends), list(ends.values())
+    whole, dry = way[-4], way[-3]
+    lasts_mm = whole + share * (dry - whole)
+    told, _ = run_dry(lasts_mm, {strokes[2]})
+    made = calibrate(told, "b", paint=True)
+    paint = made.brush.paint
+    assert paint.lasts_mm == pytest.approx(whole) and made.dry.dry_mm == pytest.approx(dry)
+    assert (made.dry.whole, made.dry.dry) == (strokes[-4], strokes[-3])
+    assert paint.lasts_mm - 1e-6 <= lasts_mm <= made.dry.dry_mm
+    assert f"between {whole:.0f} mm" in report(made) and f"{dry:.0f} mm, the end of {strokes[-3]}" in report(
+        made
+    )
+    assert paint.narrows_per_m == pytest.approx(0.8, abs=0.15)
+    again = core.read_brush(core.write_brush(made.brush)).paint
+    assert again.lasts_mm == paint.lasts_mm and len(again.covariance) == 2
+
+
+def test_a_load_that_lasts_is_said_to():
+    told, ends = run_dry(1e6)
+    made = calibrate(told, "b", paint=True)
+    assert made.dry is None and made.brush.paint.lasts_mm is None
+    (line,) = [each for each in report(made).splitlines() if "ran dry" in each]
+    assert f"{max(ends.values()):.0f} mm" in line

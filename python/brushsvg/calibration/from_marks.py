@@ -18,6 +18,7 @@ from .from_widths import outlines_assumed
 from .machine_found import PARTS, Number, ask_for, numbers
 from .mark_input import UPRIGHT, Painted, depths_painted, middle
 from .plausibility import BEYOND
+from .ran_dry import RanDry
 from .sheet_scale import SheetScale, refuse_scale, sheet_scale
 from .stray_marks import MOST, OUTLYING, Stray, strays
 
@@ -37,7 +38,8 @@ class MarkCalibration(ArrayValue):
 
     round_tail_gain: chi-square by which footprints with a round tail fit the marks better than pointed ones.
     edge_mm: by which all edges may lie off together (sigma), and covariance, of all that is fitted, with that in it.
-    paint_bends: by how many standard deviations marks narrow by another law than the one of brush.paint.
+    paint_bends: by how many standard deviations marks narrow by another law than the one of brush.paint; dry: between
+    which strokes its load ran dry.
     strays: marks that are not like the others, which the fit had no part of where they were left out.
     """
 
@@ -52,6 +54,7 @@ class MarkCalibration(ArrayValue):
     strays: tuple[Stray, ...] = ()
     strays_left_out: bool = False
     paint_bends: float = 0.0
+    dry: RanDry | None = None
 
     def __repr__(self) -> str:
         return f"<MarkCalibration of {self.brush!r} from {len(self.painted.marks)} marks>"

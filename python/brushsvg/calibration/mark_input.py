@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -37,17 +37,18 @@ LAID = (
 @dataclass(frozen=True)
 class Painted:
     """Marks of one sheet; how many different depths were painted at; before_mm: by stroke the way of the TCP on the
-    paper along all strokes of the plan before it, where that is known."""
+    paper along all strokes of the plan before it, where that is known, and way_mm along all of them."""
 
     marks: list
     deepest_mm: float
     depths: int
     before_mm: dict[str, float] = field(default_factory=dict)
+    way_mm: float = 0.0
 
     def without(self, strokes: set[str]) -> Painted:
         """Error where what is left tells nothing."""
         left = painted_of([mark for mark in self.marks if mark.stroke not in strokes])
-        return replace(left, before_mm=self.before_mm)
+        return replace(left, before_mm=self.before_mm, way_mm=self.way_mm)
 
 
 def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], bytes]) -> Painted:
@@ -86,14 +87,15 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
             for stroke, poses, rings in sorted(found, key=lambda one: painted_as[one[0]])
         ]
     )
-    return replace(whole, before_mm=ways_before_mm(passes.values()))
+    before_mm, way_mm = ways_before_mm(passes)
+    return replace(whole, before_mm=before_mm, way_mm=way_mm)
 
 
-def ways_before_mm(passes: Iterable[_core.Pass]) -> dict[str, float]:
-    """By stroke the way of the TCP on the paper along all passes before it."""
-    ways = {one.stroke: polylines.length(np.array(one.poses_mm)[:, :2]) for one in passes}
-    before = np.cumsum([0.0, *ways.values()])[:-1].tolist()
-    return dict(zip(ways, before, strict=True))
+def ways_before_mm(passes: dict[str, _core.Pass]) -> tuple[dict[str, float], float]:
+    """By stroke the way of the TCP on the paper along all passes before it, and that along all passes."""
+    ways = [polylines.length(np.array(one.poses_mm)[:, :2]) for one in passes.values()]
+    *before, way_mm = np.cumsum([0.0, *ways]).tolist()
+    return dict(zip(passes, before, strict=True)), way_mm
 
 
 def painted_of(marks: list) -> Painted:

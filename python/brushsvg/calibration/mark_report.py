@@ -46,7 +46,7 @@ def report(made) -> str:
         halves = ", ".join(f"{half:.2g}" for half in law.half_interval_95)
         lines.append(f"  95 % confidence intervals +- {halves} (ascending powers)")
     overlap = overlaps(made)
-    lines += _paint(brush.paint, made.paint_bends) if brush.paint else []
+    lines += _paint(made) if brush.paint else []
     lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
     found = machine_found.numbers(fit, made.covariance, made.expected)
     if table := machine_found.cell_table(fit, made.expected, found):
@@ -67,7 +67,8 @@ def report(made) -> str:
     return "\n".join([*lines, *([""] if remarks else []), *remarks, ""])
 
 
-def _paint(paint, bends: float) -> list[str]:
+def _paint(made) -> list[str]:
+    paint, bends = made.brush.paint, made.paint_bends
     half = paint_interval_per_m(paint)
     known = "" if paint.narrows_per_m > half else ": these marks do not tell that they do"
     lines = [
@@ -79,6 +80,11 @@ def _paint(paint, bends: float) -> list[str]:
             f"they do not narrow by one rate, by {bends:.1f} standard deviations: it is one over the whole way, "
             "and the freshly dipped width is off by more than its interval"
         )
+    lines.append(
+        made.dry.told()
+        if made.dry
+        else f"no mark ran dry: a load lasts {made.painted.way_mm:.0f} mm at least"
+    )
     return lines
 
 

@@ -12,6 +12,8 @@ from ..geometry.polylines import lengths
 from ..geometry.rotation import rotation
 from .from_marks import MarkCalibration, brush_of, calibrate_marks, expected_fit, simulated
 from .mark_input import Painted, painted_of, ways_before_mm
+from .mark_report import predicted_marks
+from .ran_dry import ran_dry
 
 ROUNDS = 8
 SETTLED = 0.3  # of the standard deviation: added in squares 4 % of it; fits of like marks differ by up to 0.2
@@ -32,7 +34,8 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
 
     What the marks would be freshly dipped is what the fit is given: each edge as much farther from the middle line as
     the paint took. By how much it took is what makes the edges' residuals depend on the way no more. Intervals of the
-    laws hold what the other number leaves open. Error where the way grows with the depth so that narrower and
+    laws hold what the other number leaves open. Where the last strokes of the plan are missing or broken, the brush
+    says that hairs are wet up to the last whole mark. Error where the way grows with the depth so that narrower and
     shallower marks are alike, where marks get wider, and where the number does not settle.
     """
     rate, fresh, tried = 0.0, painted, []
@@ -62,15 +65,17 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
         )
     made = calibrate_marks(fresh, name, *args, **kwargs, off=freshly_dipped(painted, made, rate + sigma))
     last_mm = max(painted.before_mm[mark.stroke] + _lengths(mark)[-1] for mark in made.painted.marks)
+    dry = ran_dry(fresh, predicted_marks(made, fresh.marks))
     made.brush.paint = _core.Paint(
         max(rate, 0.0),
+        lasts_mm=dry.whole_mm if dry else None,
         calibrated_mm=(0.0, last_mm),
         source=f"Fitted to {len(made.painted.marks)} marks painted with one load.",
-        covariance=[[sigma**2]],
+        covariance=[[sigma**2, 0.0], [0.0, dry.variance_mm2]] if dry else [[sigma**2]],
         degrees_of_freedom=freedom,
     )
     made = replace(made, painted=replace(made.painted, before_mm=painted.before_mm))
-    return replace(made, paint_bends=_bends(made))
+    return replace(made, paint_bends=_bends(made), dry=dry)
 
 
 def _kept(one: tuple[float, float], other: tuple[float, float]) -> float:
@@ -163,7 +168,8 @@ def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painte
     """Of a plan painted with one load, before anyone paints it; painted: expected_marks(plan, brush)."""
     options = _core.MarkOptions()
     fit = expected_fit(painted, plan, brush, noise_mm, 1.0, options)
-    told = replace(painted_of(painted), before_mm=ways_before_mm(plan.passes))
+    before_mm, _ = ways_before_mm({one.stroke: one for one in plan.passes})
+    told = replace(painted_of(painted), before_mm=before_mm)
     made = MarkCalibration(brush_of(fit.laws, brush.name, brush.depth_range_mm), fit, told, options)
     flanks = _flanks(made)
     own = flanks.own()
