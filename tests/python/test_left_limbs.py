@@ -4,8 +4,10 @@ import pytest
 import shapely
 
 from brushsvg import find_brush
+from brushsvg.evaluation import report
 from brushsvg.pipeline.prediction import predict
 from brushsvg.pipeline.preparation import Options, prepare
+from brushsvg.strokes.contour_fill import region
 
 SVG = (
     '<svg xmlns="http://www.w3.org/2000/svg" xmlns:b="https://brushsvg.org/ns" width="60mm" height="60mm" '
@@ -70,6 +72,19 @@ def test_it_begins_under_paint_and_stays_in_the_shape(tmp_path):
         place = limb.middle_mm[0][:2] + at * (limb.middle_mm[-1][-2:] - limb.middle_mm[0][:2])
         assert shape.boundary.distance(shapely.Point(place)) > half - 0.15
     assert shapely.union_all([shapely.Polygon(ring) for ring in limb.wanted_mm]).within(shape.buffer(1e-3))
+
+
+def test_each_stroke_is_held_against_what_it_shall_paint(tmp_path):
+    """The stem was still asked for its flag, and the flag for where it begins under paint."""
+    work = prepared(tmp_path, FLAG)
+    rows, _ = report.measure(work.plan, predict(work), work.brush, work.strokes)
+    assert all(row.overlap > 0.9 for row in rows)
+    stem, limb = (region(stroke.wanted_mm) for stroke in work.strokes)
+    shape = shape_of(FLAG)
+    assert shapely.union(stem, limb).area == pytest.approx(shape.area, rel=1e-3)
+    tip = shape.intersection(shapely.box(0, 60 - 7, 60, 60))
+    assert shapely.intersection(limb, tip).area > 0.9 * tip.area
+    assert shapely.intersection(stem, tip).area < 0.1 * tip.area
 
 
 def test_it_is_painted_as_often_as_its_shape(tmp_path):

@@ -29,7 +29,11 @@ def with_left_limbs(drawn: list, painted: list, wanted: list, brush) -> tuple[li
     for element in dict.fromkeys(piece.element for piece in large_blanks(drawn, painted, brush)):
         limbs = _limbs(element, drawn, painted, brush)
         if limbs:
-            drawn, painted, wanted = (_behind(limbs, strokes) for strokes in (drawn, painted, wanted))
+            meant = [limb.replaced(wanted_mm=own_mm) for limb, own_mm, _ in limbs]
+            limbs_mm = [ring for _, _, blank_mm in limbs for ring in blank_mm]
+            wanted = [_without(stroke, element, limbs_mm) for stroke in wanted]
+            painted = _behind([limb for limb, _, _ in limbs], painted)
+            drawn, wanted = _behind(meant, drawn), _behind(meant, wanted)
     return drawn, painted, wanted
 
 
@@ -38,8 +42,22 @@ def _behind(limbs: list, strokes: list) -> list:
     return [*strokes[: last + 1], *limbs, *strokes[last + 1 :]]
 
 
+def _without(stroke, element: str, limbs_mm: list[np.ndarray]):
+    """A stroke of the element, no longer asked for what its limbs paint."""
+    if stroke.origin.element != element or not _core.intersect(stroke.wanted_mm, limbs_mm):
+        return stroke
+    import shapely
+
+    from .contour_fill import region
+    from .fillings import rings_of
+
+    left = shapely.difference(region(stroke.wanted_mm), region(limbs_mm))
+    return stroke.replaced(wanted_mm=rings_of(left)) if left.area > 0 else stroke
+
+
 def _limbs(element: str, drawn: list, painted: list, brush) -> list:
-    """Strokes into the blank pieces of an element, each as often as its others are painted."""
+    """Strokes into the blank pieces of an element, each as often as its others are painted, with the rings of what it
+    paints of the shape, its piece with it, and of the piece."""
     every = [stroke for stroke in painted if stroke.origin.element == element]
     own = [stroke for stroke in every if stroke.origin.repeat == 1]
     shape = _core.unite(
@@ -56,18 +74,22 @@ def _limbs(element: str, drawn: list, painted: list, brush) -> list:
         piece = next(iter(blank_of_mark(element, shape, known, brush)), None)
         if piece is None:
             break
-        ways = [_limb_towards(place, piece, [*own, *limbs], shape, brush) for place in _places(piece, own)]
-        tried = [(_with(mark, limb, shape, brush), limb) for limb in ways if limb is not None]
-        (won_mm2, both), limb = max(tried, key=lambda each: each[0][0], default=((0.0, mark), None))
+        ways = [
+            _limb_towards(place, piece, [*own, *(each for each, _, _ in limbs)], shape, brush)
+            for place in _places(piece, own)
+        ]
+        tried = [(_won(mark, limb, shape, brush), limb) for limb in ways if limb is not None]
+        (won_mm2, own_mm), limb = max(tried, key=lambda each: each[0][0], default=((0.0, []), None))
         if won_mm2 > _WORTH * _core.area(piece.rings):
-            limbs.append(limb)
-            mark = both
+            inside = _core.intersect(own_mm, shape)
+            limbs.append((limb, _core.unite([*inside, *piece.rings]), piece.rings))
+            mark = _core.unite([*mark, *own_mm])
         else:
             refused.append(piece)
     repeats = sorted({stroke.origin.repeat for stroke in every})
     return [
-        limb.replaced(id=_core.StrokeId(element, limb.origin.part, repeat, limb.origin.lane))
-        for limb in limbs
+        (limb.replaced(id=_core.StrokeId(element, limb.origin.part, repeat, limb.origin.lane)), *rings)
+        for limb, *rings in limbs
         for repeat in repeats
     ]
 
@@ -88,15 +110,16 @@ def _middle_lines(strokes: list) -> np.ndarray:
     return np.array([shapely.linestrings(np.vstack([line[:1], line])) for line in lines])
 
 
-def _with(mark: list, limb, shape: list[np.ndarray], brush) -> tuple[float, list]:
-    """What a limb paints of the shape less what it paints beside it, and the mark with it."""
+def _won(mark: list, limb, shape: list[np.ndarray], brush) -> tuple[float, list]:
+    """What a limb paints of the shape less what it paints beside it, beyond the mark [mm2], and its own mark."""
     try:
-        both = _core.unite([*mark, *trial_mark([limb], brush)])
+        own_mm = trial_mark([limb], brush)
     except Error:
-        return 0.0, mark
+        return 0.0, []
+    both = _core.unite([*mark, *own_mm])
     more = _core.area(both) - _core.area(mark)
     inside = _core.area(_core.intersect(both, shape)) - _core.area(_core.intersect(mark, shape))
-    return 2 * inside - more, both
+    return 2 * inside - more, own_mm
 
 
 def _limb_towards(place: np.ndarray, piece: Blank, own: list, shape: list[np.ndarray], brush):
