@@ -26,6 +26,7 @@ from ..planning.refinement import refined
 from ..strokes.corners import lifted_at_corners
 from ..strokes.extraction import strokes as strokes_of
 from ..strokes.joining import joined
+from ..strokes.left_limbs import with_left_limbs
 from ..strokes.outline_corners import squared_at_corners
 from ..strokes.unreached import left_blank, missed, unreached
 from ..strokes.unreached import notices as blank_notices
@@ -126,6 +127,8 @@ def prepare(
         )
     painted, strokes, clamped = within_reach(strokes, brush, options.wide)
     notices += clamped
+    if options.compensation in ("closed", "refined"):
+        drawn, painted, strokes = with_left_limbs(list(drawn), painted, strokes, brush)
     compensated = _way(brush, design.sheet_mm, options, stage)
     try:
         done = compensated(painted)

@@ -16,6 +16,7 @@ LEAST_SHARE = 0.01  # of its shape
 _CORNER = 0.69
 _LIMB_SHARE = 0.8  # of a disc in it, beyond: see shape_to_strokes.LEAST_SHARE
 MISSED_SHARE = 0.03  # of its shape, beside which strokes run: pointed beginnings leave some of every letter
+_DISCS_SHARE = 0.02  # what discs leave where a mark may leave as much as that
 _STILL_BLANK = 0.5  # of a piece: what is left of a corner beside the mark in it is less
 _EDGE_MM = 0.3  # a mark's edge lies beside the shape's by about as much: a thinner sliver is none
 _SWEPT_MM = 0.05
@@ -40,26 +41,49 @@ def unreached(drawn: list, painted: list, brush) -> list[Blank]:
 
     drawn: strokes as they were found, those with wanted_mm are of shapes; painted: as the brush will paint them.
     """
+    found_as = {stroke.id: stroke for stroke in drawn}
+    return [
+        piece
+        for element, rings, strokes in _shapes(drawn, painted, brush)
+        for piece in _told_rims(
+            _pieces(element, rings, strokes, brush),
+            [found_as[stroke.id] for stroke in strokes if stroke.id in found_as],
+        )
+    ]
+
+
+def large_blanks(drawn: list, painted: list, brush) -> list[Blank]:
+    """The same from 2 % of a shape on, corners too: a mark leaves rather more than discs."""
+    return [
+        _blank(element, piece, _core.area(rings))
+        for element, rings, strokes in _shapes(drawn, painted, brush)
+        for piece in _left(rings, _discs(strokes), _DISCS_SHARE * _core.area(rings), finest(brush))
+    ]
+
+
+def blank_of_mark(element: str, rings: list[np.ndarray], mark: list[np.ndarray], brush) -> list[Blank]:
+    """Pieces of more than 3 % of a shape that a mark leaves, the largest first."""
+    whole = _core.area(rings)
+    return [
+        _blank(element, piece, whole) for piece in _left(rings, mark, MISSED_SHARE * whole, finest(brush))
+    ]
+
+
+def _shapes(drawn: list, painted: list, brush):
+    """Elements of shapes not filled in passes: name, rings, the strokes that paint it."""
     if not brush.width_follows_depth():
-        return []  # its one width is not that of any shape
+        return  # its one width is not that of any shape
     parts: dict[str, list[np.ndarray]] = {}
     for stroke in drawn:
         if stroke.origin.repeat == 1 and stroke.wanted_mm:
             parts.setdefault(stroke.origin.element, []).extend(stroke.wanted_mm)
     paint: dict[str, list] = {element: [] for element in parts}
-    found_as = {stroke.id: stroke for stroke in drawn}
     for stroke in painted:
         if stroke.origin.element in paint:
             paint[stroke.origin.element].append(stroke)
-    return [
-        piece
-        for element, rings in parts.items()
-        if all(stroke.wanted_mm for stroke in paint[element])  # else filled in passes
-        for piece in _told_rims(
-            _pieces(element, _core.unite(rings), paint[element], brush),
-            [found_as[stroke.id] for stroke in paint[element] if stroke.id in found_as],
-        )
-    ]
+    for element, rings in parts.items():
+        if all(stroke.wanted_mm for stroke in paint[element]):  # else filled in passes
+            yield element, _core.unite(rings), paint[element]
 
 
 def _told_rims(pieces: list[Blank], strokes: list) -> list[Blank]:
@@ -79,27 +103,34 @@ def _discs(strokes: list) -> list[np.ndarray]:
 
 
 def _pieces(element: str, rings: list[np.ndarray], strokes: list, brush) -> list[Blank]:
-    """Of one element; without shapely where the strokes leave too little."""
-    discs = _discs(strokes)
+    """Of one element."""
     whole = _core.area(rings)
-    finest, greatest = _finest(brush), brush.half_width_range_mm()[1]
-    least = max(LEAST_SHARE * whole, np.pi / 4 * finest**2)
-    if whole - _core.area(_core.intersect(rings, discs)) < least:
-        return []
-    import shapely
-
-    from .contour_fill import region
-
-    left = shapely.difference(region(rings), region(discs)).buffer(-_EDGE_MM).buffer(_EDGE_MM)
+    least_half, greatest = finest(brush), brush.half_width_range_mm()[1]
     limbs = None
     found = []
-    for piece in _large(left, least, finest):
+    for piece in _left(
+        rings, _discs(strokes), max(LEAST_SHARE * whole, np.pi / 4 * least_half**2), least_half
+    ):
         if piece.area <= _CORNER * greatest**2:
+            import shapely
+
             limbs = _limbs(rings) if limbs is None else limbs
             if not shapely.intersects_xy(piece, *limbs.T).any():
                 continue
         found.append(_blank(element, piece, whole))
     return found
+
+
+def _left(rings: list[np.ndarray], covered: list[np.ndarray], least: float, least_half: float) -> list:
+    """Large pieces of a shape that other rings leave; without shapely where they leave too little."""
+    if _core.area(rings) - _core.area(_core.intersect(rings, covered)) < least:
+        return []
+    import shapely
+
+    from .contour_fill import region
+
+    left = shapely.difference(region(rings), region(covered)).buffer(-_EDGE_MM).buffer(_EDGE_MM)
+    return _large(left, least, least_half)
 
 
 def left_blank(found: list[Blank], painted: list, traces: list, brush) -> list[Blank]:
@@ -175,18 +206,18 @@ def _missed(element: str, strokes: list, marks, known: list[Blank], brush) -> li
     told = [region(piece.rings) for piece in known if piece.element == element]
     left = shapely.difference(shape, shapely.union_all([region(marks.outline_mm), *told]))
     left = left.buffer(-_EDGE_MM).buffer(_EDGE_MM)
-    large = _large(left, MISSED_SHARE * shape.area, _finest(brush))
+    large = _large(left, MISSED_SHARE * shape.area, finest(brush))
     return [_blank(element, piece, shape.area) for piece in large]
 
 
-def _large(left, least: float, finest: float) -> list:
+def _large(left, least: float, least_half: float) -> list:
     """Pieces that are large enough to be told, the largest first."""
     import shapely
 
     return [
         piece
         for piece in sorted(shapely.get_parts(left), key=lambda piece: -piece.area)
-        if piece.area > least and shapely.maximum_inscribed_circle(piece, 0.02).length >= finest
+        if piece.area > least and shapely.maximum_inscribed_circle(piece, 0.02).length >= least_half
     ]
 
 
@@ -233,7 +264,7 @@ def _limbs(rings: list[np.ndarray]) -> np.ndarray:
     return np.vstack([np.empty((0, 2)), *(branch.line[:, :2] for branch in branches)])
 
 
-def _finest(brush) -> float:
+def finest(brush) -> float:
     """Half the width of the finest line that the brush paints, as far as it was measured."""
     measured = brush.lag.calibrated_mm
     least = brush.half_width_range_mm()[0]

@@ -1,0 +1,100 @@
+"""Limbs too small to be found as strokes are painted by a stroke of their own."""
+
+import pytest
+import shapely
+
+from brushsvg import find_brush
+from brushsvg.evaluation import report
+from brushsvg.pipeline.prediction import predict
+from brushsvg.pipeline.preparation import Options, prepare
+from brushsvg.strokes.contour_fill import region
+
+SVG = (
+    '<svg xmlns="http://www.w3.org/2000/svg" xmlns:b="https://brushsvg.org/ns" width="60mm" height="60mm" '
+    'viewBox="0 0 60 60"><path id="p" {} d="{}"/></svg>'
+)
+FLAG = [(20, 12), (31, 3), (28, 14), (28, 45), (20, 45)]
+APEX = [(20, 16), (30, 3), (30, 50), (22, 50), (22, 16)]
+BLOCK = [(20, 5), (28, 5), (28, 30), (20, 30)]
+
+
+def prepared(tmp_path, corners, attributes="", **options):
+    file = tmp_path / "p.svg"
+    points = " ".join(f"{x} {y}" for x, y in corners)
+    file.write_text(SVG.format(attributes, f"M{points}Z"))
+    return prepare(file, Options(**options))
+
+
+def shape_of(corners):
+    return shapely.Polygon([(x, 60 - y) for x, y in corners])
+
+
+def blank(corners, marks):
+    """Of the largest connected piece that the marks leave: its share, and whether the brush's finest line fits in."""
+    shape = shape_of(corners)
+    painted = shapely.union_all([shapely.make_valid(shapely.Polygon(ring)) for ring in marks.outline_mm])
+    left = shapely.difference(shape, painted).buffer(-0.3).buffer(0.3)
+    largest = max(shapely.get_parts(left), key=shapely.area, default=shapely.Point())
+    brush = find_brush("round-6")
+    fits = largest.area > 0 and shapely.maximum_inscribed_circle(largest, 0.01).length > brush.half_width(1.0)
+    return largest.area / shape.area, fits
+
+
+@pytest.mark.parametrize("compensation", ["closed", "refined"])
+@pytest.mark.parametrize("corners", [FLAG, APEX])
+def test_no_limb_of_a_thick_stem_is_lost(tmp_path, corners, compensation):
+    work = prepared(tmp_path, corners, compensation=compensation)
+    share, fits = blank(corners, predict(work))
+    assert share < 0.03 or not fits
+    assert not work.unreached and not work.missed and not work.notices
+
+
+def test_without_its_stroke_it_would_be(tmp_path):
+    work = prepared(tmp_path, FLAG)
+    work.plan.passes = [each for each in work.plan.passes if each.stroke == "p"]
+    share, fits = blank(FLAG, predict(work))
+    assert share > 0.03 and fits
+
+
+def test_it_is_called_as_the_stroke_it_leaves_and_comes_behind_it(tmp_path):
+    work = prepared(tmp_path, FLAG)
+    assert [stroke.id for stroke in work.strokes] == ["p", "p~2"]
+    assert [stroke.id for stroke in work.drawn] == ["p", "p~2"]
+    assert [each.stroke for each in work.plan.passes] == ["p", "p~2"]
+
+
+def test_it_begins_under_paint_and_stays_in_the_shape(tmp_path):
+    stem, limb = prepared(tmp_path, FLAG).strokes
+    begun = shapely.Point(limb.middle_mm[0][:2])
+    assert shapely.LineString(stem.middle_mm.reshape(-1, 2)).distance(begun) < 0.2
+    shape = shape_of(FLAG)
+    for at, half in limb.half_width:
+        place = limb.middle_mm[0][:2] + at * (limb.middle_mm[-1][-2:] - limb.middle_mm[0][:2])
+        assert shape.boundary.distance(shapely.Point(place)) > half - 0.15
+    assert shapely.union_all([shapely.Polygon(ring) for ring in limb.wanted_mm]).within(shape.buffer(1e-3))
+
+
+def test_each_stroke_is_held_against_what_it_shall_paint(tmp_path):
+    """The stem was still asked for its flag, and the flag for where it begins under paint."""
+    work = prepared(tmp_path, FLAG)
+    rows, _ = report.measure(work.plan, predict(work), work.brush, work.strokes)
+    assert all(row.overlap > 0.9 for row in rows)
+    stem, limb = (region(stroke.wanted_mm) for stroke in work.strokes)
+    shape = shape_of(FLAG)
+    assert shapely.union(stem, limb).area == pytest.approx(shape.area, rel=1e-3)
+    tip = shape.intersection(shapely.box(0, 60 - 7, 60, 60))
+    assert shapely.intersection(limb, tip).area > 0.9 * tip.area
+    assert shapely.intersection(stem, tip).area < 0.1 * tip.area
+
+
+def test_it_is_painted_as_often_as_its_shape(tmp_path):
+    work = prepared(tmp_path, FLAG, 'data-brushsvg-passes="2"')
+    assert [stroke.id for stroke in work.strokes] == ["p", "p#2", "p~2", "p#2~2"]
+
+
+def test_blunt_corners_and_shapes_in_passes_get_none(tmp_path):
+    assert [stroke.id for stroke in prepared(tmp_path, BLOCK).strokes] == ["p"]
+    wide = [(3 * x - 40, y) for x, y in FLAG]
+    filled = prepared(tmp_path, wide, wide="passes")
+    assert not any(stroke.wanted_mm for stroke in filled.strokes[1:])
+    assert [stroke.id for stroke in prepared(tmp_path, FLAG, compensation="none").strokes] == ["p"]
