@@ -28,12 +28,10 @@ def look(
     cell: Cell,
     tolerance_mm: float,
     job: Job = WHOLE_JOB,
-    known: Walked | None = None,
 ) -> Walked:
     """The job with everything that forbids to run it on the robot. marks: of the plan or of its loads; of a job that
-    is resumed only what is left is asked. known: a job of the same brush, which is not gone through again if it is
-    this one."""
-    walk = known if known and known.is_of(loads, cell, job) else walked(loads, brush, cell, job)
+    is resumed only what is left is asked."""
+    walk = walked(loads, brush, cell, job)
     if job.first_stroke > 1:
         loads = loads.left(job.first_stroke)
         if not loads.loads:

@@ -57,11 +57,6 @@ class Walked:
     made: Program
     problems: list[Notice]
 
-    def is_of(self, loads: PlanInLoads, cell: Cell, job: Job) -> bool:
-        """Whether it is this job, on this cell, that was gone through. The brush must be the same."""
-        is_same = self.job == replace(job, visits=self.job.visits) and self.made.cell == cell
-        return is_same and self.loads == loads
-
     def allowed(self) -> Program:
         """What is run. Error, naming stroke and range, where something forbids it."""
         for notice in self.problems:

@@ -18,7 +18,7 @@ from ..errors import Error
 from ..machine.cell import LEAST_SPEED_MM_S, Cell
 from ..machine.paint_reload import PlanInLoads, fetched_mm, in_loads, is_later_part
 from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look, off_sheet
-from ..machine.program import Job, Walked, walked
+from ..machine.program import Job, walked
 from ..painted.corrections import Correction, beside_machine, corrected
 from ..planning import travel_order
 from ..planning.paint_running_out import pressed_deeper
@@ -74,8 +74,7 @@ class Work:
     """A file understood: strokes is None where IN was a plan, which does not say what was wanted.
 
     plan: with corrections. tracking_errors: one per pass of the plan without them, () for a plan read from a file;
-    refused: strokes that were left out. walked: the plan gone through on the options' cell, where the choice of
-    beginnings asked for it; of speeds that a drawing does not say.
+    refused: strokes that were left out.
     """
 
     title: str
@@ -91,7 +90,6 @@ class Work:
     unreached: tuple = ()  # pieces of filled shapes that no stroke reaches
     missed: tuple = ()  # pieces that strokes reach and the mark does not
     astray: tuple = ()  # names of strokes whose paint lies visibly elsewhere
-    walked: Walked | None = None
 
 
 def prepare(
@@ -139,9 +137,8 @@ def prepare(
         refused += why
         left_out += which
         done = compensated(painted)
-    walk = None
     if options.cell is not None and options.compensation in ("closed", "refined"):
-        fitting, walk = _begun_within_reach(painted, brush, done.plan, compensated, options)
+        fitting = _begun_within_reach(painted, brush, done.plan, compensated, options)
         if fitting is not painted:
             painted, done = fitting, compensated(fitting)
     asked = strokes
@@ -194,7 +191,6 @@ def prepare(
         tuple(bare),
         tuple(blank),
         tuple(notice.where for notice in astray),
-        walk,
     )
 
 
@@ -228,36 +224,29 @@ def _way(brush, sheet_mm, options: Options, stage=lambda text: None):
     return compensated
 
 
-def _begun_within_reach(
-    painted: list, brush, plan, compensated, options: Options
-) -> tuple[list, Walked | None]:
+def _begun_within_reach(painted: list, brush, plan, compensated, options: Options) -> list:
     """The strokes, those plain that choose how they begin or end, cannot be run as they chose, and can plain: lifted,
     or hidden or exposed as well. A hidden beginning is landed on the far side, from where the tool may not be, and its
     round front may be wider than what is wanted; at a squared beginning or end the tool runs aside. The list itself
-    where there are none. With them the plan gone through, where that was asked.
+    where there are none.
     """
 
-    def gone_through(of) -> Walked:
-        return walked(in_loads(of, brush, options.cell), brush, options.cell, Job(options.z_offset_mm))
-
-    def astray(of, walk: Walked) -> set[str]:
-        problems = walk.problems + off_sheet(_core.simulate(of, brush), brush, of.sheet_mm)
+    def astray(of) -> set[str]:
+        loads = in_loads(of, brush, options.cell)
+        problems = walked(loads, brush, options.cell, Job(options.z_offset_mm)).problems
+        problems += off_sheet(_core.simulate(of, brush), brush, of.sheet_mm)
         return {problem.where for problem in problems}
 
     choosing = [stroke for stroke in painted if "auto" in _ends(stroke, options)]
-    walk = gone_through(plan) if choosing else None
-    left = {stroke.id for stroke in choosing} & astray(plan, walk) if walk else set()
+    left = {stroke.id for stroke in choosing} & astray(plan) if choosing else set()
     found = {}
     lifted = {"end": "lifted"}
     for plain in (lifted, {"start": "hidden"}, {**lifted, "start": "hidden"}, {**lifted, "start": "exposed"}):
         tried = {stroke.id: _plain(stroke, options, plain) for stroke in choosing if stroke.id in left}
-        if not tried:
-            break
-        new = compensated(list(tried.values())).plan
-        fits = tried.keys() - astray(new, gone_through(new))
+        fits = tried.keys() - astray(compensated(list(tried.values())).plan) if tried else set()
         found |= {name: tried[name] for name in fits}
         left -= fits
-    return [found.get(stroke.id, stroke) for stroke in painted] if found else painted, walk
+    return [found.get(stroke.id, stroke) for stroke in painted] if found else painted
 
 
 def _ends(stroke, options: Options) -> tuple[str, str]:

@@ -68,7 +68,7 @@ def look(
         marks = prediction.marks_of(plan, brush, outlines, stage, whole, cell)
         walk = None
         if not held_upright and (work.plan.passes or not work.refused):
-            walk = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm, known=work.walked)
+            walk = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm)
         forbidden = walk.problems if walk else []
         astray = preflight.off_sheet(marks, brush, work.plan.sheet_mm) if held_upright else []
         warnings = [*work.notices, *forbidden, *astray, *held_upright]
