@@ -60,6 +60,8 @@ def _limbs(element: str, drawn: list, painted: list, brush) -> list:
     paints of the shape, its piece with it, and of the piece."""
     every = [stroke for stroke in painted if stroke.origin.element == element]
     own = [stroke for stroke in every if stroke.origin.repeat == 1]
+    if not own:
+        return []  # the brush is too small for it, which was refused
     shape = _core.unite(
         [ring for stroke in drawn if stroke.origin.element == element for ring in stroke.wanted_mm]
     )
