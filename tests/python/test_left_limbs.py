@@ -1,5 +1,6 @@
 """Limbs too small to be found as strokes are painted by a stroke of their own."""
 
+import numpy as np
 import pytest
 import shapely
 
@@ -54,6 +55,25 @@ def test_without_its_stroke_it_would_be(tmp_path):
     work.plan.passes = [each for each in work.plan.passes if each.stroke == "p"]
     share, fits = blank(FLAG, predict(work))
     assert share > 0.03 and fits
+
+
+def knobbed(out_mm, long_mm):
+    """A thin stem with a round knob at its side."""
+    turns = np.linspace(0, np.pi, 10)
+    knob = zip(24 + out_mm * np.sin(turns), 18 + long_mm / 2 * (1 - np.cos(turns)), strict=True)
+    return [(20, 10), (24, 10), *((round(x, 2), round(y, 2)) for x, y in knob), (24, 50), (20, 50)]
+
+
+def test_a_small_knob_along_its_stem_is_told_rather_than_a_blob_painted(tmp_path):
+    work = prepared(tmp_path, knobbed(3, 6))
+    assert [stroke.id for stroke in work.strokes] == ["p"]
+    assert [notice.where for notice in work.notices] == ["p"]
+
+
+def test_a_large_one_is_painted(tmp_path):
+    work = prepared(tmp_path, knobbed(4, 8))
+    assert [stroke.id for stroke in work.strokes] == ["p", "p~2"]
+    assert not work.notices
 
 
 def test_it_is_called_as_the_stroke_it_leaves_and_comes_behind_it(tmp_path):

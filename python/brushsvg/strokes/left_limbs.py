@@ -12,6 +12,9 @@ from .unreached import Blank, blank_of_mark, finest, large_blanks
 
 # Of a blank piece, what its stroke paints of the shape less what it paints beside it: else it is not worth its poses.
 _WORTH = 0.4
+# By how many full turns the outline of a mark may turn more for a piece that is a smaller share of its shape: a stroke
+# into a knob along its stem makes a blob, which the eye minds more.
+_CALM_TURNS, _SMALL_SHARE = 0.9, 0.06
 _MOST = 4  # strokes added to an element: a logo of one path may have many limbs
 _ROUND = -0.85  # half width won per length where a limb ends round or square: there its line ends
 _EVEN_MM = 0.1
@@ -81,8 +84,11 @@ def _limbs(element: str, drawn: list, painted: list, brush) -> list:
             for place in _places(piece, own)
         ]
         tried = [(_won(mark, limb, shape, brush), limb) for limb in ways if limb is not None]
+        area_mm2 = _core.area(piece.rings)
+        if area_mm2 < _SMALL_SHARE * _core.area(shape):
+            tried = [each for each in tried if _turned_more(mark, each[0][1], shape) < _CALM_TURNS]
         (won_mm2, own_mm), limb = max(tried, key=lambda each: each[0][0], default=((0.0, []), None))
-        if won_mm2 > _WORTH * _core.area(piece.rings):
+        if won_mm2 > _WORTH * area_mm2:
             inside = _core.intersect(own_mm, shape)
             limbs.append((limb, _core.unite([*inside, *piece.rings]), piece.rings))
             mark = _core.unite([*mark, *own_mm])
@@ -122,6 +128,12 @@ def _won(mark: list, limb, shape: list[np.ndarray], brush) -> tuple[float, list]
     more = _core.area(both) - _core.area(mark)
     inside = _core.area(_core.intersect(both, shape)) - _core.area(_core.intersect(mark, shape))
     return 2 * inside - more, own_mm
+
+
+def _turned_more(mark: list, own_mm: list, shape: list[np.ndarray]) -> float:
+    """How much more the outline of a mark turns with that of a limb, in full turns."""
+    both = _core.unite([*mark, *own_mm])
+    return _core.excess_turning(both, shape) - _core.excess_turning(mark, shape)
 
 
 def _limb_towards(place: np.ndarray, piece: Blank, own: list, shape: list[np.ndarray], brush):
