@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "brushsvg/region.hpp"
 #include "drawn_cut.hpp"
 
 namespace brushsvg {
@@ -55,21 +56,13 @@ std::optional<Box> least_box(const Rings& rings) {
     return best;
 }
 
-double area_of(const Rings& rings) {
-    double twice = 0.0;
-    for (const Ring& ring : rings)
-        for (Index i = 0, n = ring.rows(); i < n; ++i)
-            twice += ring(i, 0) * ring((i + 1) % n, 1) - ring((i + 1) % n, 0) * ring(i, 1);
-    return 0.5 * std::abs(twice);
-}
-
 }  // namespace
 
 std::optional<SquaredDot> squared_dot(const Stroke& stroke, const Brush& brush) {
     if (stroke.wanted_mm.empty()) return {};
     const std::optional<Dot> dot = dot_of(stroke, brush);
     const std::optional<Box> box = dot ? least_box(stroke.wanted_mm) : std::nullopt;
-    if (!box || area_of(stroke.wanted_mm) < kFilled * 4.0 * box->half_mm[0] * box->half_mm[1]) return {};
+    if (!box || std::abs(area(stroke.wanted_mm)) < kFilled * 4.0 * box->half_mm[0] * box->half_mm[1]) return {};
     const auto narrow = half_along_cut_mm(brush, std::min(box->half_mm[0], box->half_mm[1]));
     if (!narrow) return {};
     const Vector2d left(-box->along.y(), box->along.x()), at = dot->to_mm;

@@ -15,6 +15,8 @@ from brushsvg.cli import main
 from brushsvg.machine.cell import Reload, Station
 from brushsvg.machine.cell_file import find_cell, write_cell
 from brushsvg.machine.paint_reload import in_loads, visits
+from brushsvg.machine.program import Job
+from brushsvg.pipeline.conversion import tried
 from brushsvg.pipeline.prediction import marks_of
 from brushsvg.pipeline.preparation import Options, prepare
 
@@ -127,6 +129,16 @@ def test_where_the_depths_end_it_is_said_once(tmp_path):
     shallow = prepared(tmp_path, 0.4, replace(ONE_LOAD, heights=heights))
     assert max(-np.asarray(one.poses_mm)[:, 2].min() for one in shallow.plan.passes) <= 7.0
     assert is_told(shallow.notices, "paint-runs-out round-6 '7 mm'")
+
+
+@pytest.mark.parametrize(("order", "first"), [("nearest", 1), ("drawn", 31)])
+def test_another_order_and_a_job_that_is_resumed_are_told(tmp_path, order, first):
+    work = prepared(tmp_path, 0.2)
+    told = tried(work, ".ngc", Job(first_stroke=first), order).remarks()
+    assert is_told(told, "paint-out-of-turn " + ("'in another order'" if first == 1 else "'at stroke 31'"))
+    assert not tried(work, ".ngc").remarks()
+    often = prepared(tmp_path, 0.2, cell_with(Reload("stroke")))
+    assert not tried(often, ".ngc", Job(first_stroke=first), order).remarks()
 
 
 def test_shapes_and_dabs_and_closed_paths_are_pressed_deeper_too(tmp_path):

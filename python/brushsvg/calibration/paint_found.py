@@ -195,6 +195,10 @@ class Flanks:
     def freedom(self) -> float:
         return float(len(np.unique(self.of_mark)) - self.powers.shape[1] - 1)
 
+    def marks(self) -> list[np.ndarray]:
+        """Which points are of each mark."""
+        return [self.of_mark == one for one in np.unique(self.of_mark)]
+
     def own(self) -> np.ndarray:
         """What of moved no width law and no height of the paper does."""
         return beside_powers(self.moved, self.powers)
@@ -253,9 +257,8 @@ def _left(made: MarkCalibration) -> tuple[float, float, float]:
     columns, own = np.column_stack([flanks.moved, flanks.powers]), flanks.own()
     rate = _first_number(columns, flanks.off_mm)
     beside = beside_powers(flanks.off_mm, flanks.powers) - rate * own
-    marks = [flanks.of_mark == one for one in np.unique(flanks.of_mark)]
-    says = np.array([float((own * beside)[mark].sum()) for mark in marks]) / float(own @ own)
-    without = np.array([_first_number(columns[~mark], flanks.off_mm[~mark]) for mark in marks])
+    says = np.array([float((own * beside)[mark].sum()) for mark in flanks.marks()]) / float(own @ own)
+    without = _without_each(columns, flanks)
     return rate, float(np.sqrt(max(says @ (rate - without), 0.0))), flanks.freedom
 
 
@@ -265,10 +268,13 @@ def _bends(made: MarkCalibration) -> float:
     flanks = _flanks(made)
     ways = -1e3 * flanks.moved / np.maximum(flanks.half_mm, 1e-9)
     columns = np.column_stack([flanks.moved * ways, flanks.moved, flanks.powers])
-    marks = [flanks.of_mark == one for one in np.unique(flanks.of_mark)]
-    bend = _first_number(columns, flanks.off_mm)
-    without = np.array([_first_number(columns[~mark], flanks.off_mm[~mark]) for mark in marks])
-    return abs(bend) / max(float(np.sqrt((len(marks) - 1) * without.var())), 1e-15)
+    bend, without = _first_number(columns, flanks.off_mm), _without_each(columns, flanks)
+    return abs(bend) / max(float(np.sqrt((len(without) - 1) * without.var())), 1e-15)
+
+
+def _without_each(columns: np.ndarray, flanks: Flanks) -> np.ndarray:
+    """(m,) the first number, each of the marks left out in turn."""
+    return np.array([_first_number(columns[~mark], flanks.off_mm[~mark]) for mark in flanks.marks()])
 
 
 def _first_number(columns: np.ndarray, values: np.ndarray) -> float:

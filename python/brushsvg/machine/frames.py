@@ -143,6 +143,11 @@ def of_rotation_vector(vector_rad) -> np.ndarray:
     return np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * across @ across
 
 
+def apart_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """(...) angle between rotations (..., 3, 3), exact for small ones, too: |a - b| = sqrt(8) sin(t / 2)."""
+    return np.degrees(2 * np.arcsin(np.clip(np.linalg.norm(a - b, axis=(-2, -1)) / np.sqrt(8), 0, 1)))
+
+
 def rotation_vector(turned: np.ndarray) -> np.ndarray:
     """(3,) axis times angle [rad] of a rotation (3, 3), angle in [0, pi]."""
     turn = quaternion(turned)

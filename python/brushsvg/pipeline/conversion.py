@@ -18,7 +18,7 @@ from ..machine.arm.joints import is_installed
 from ..machine.cell import Cell
 from ..machine.cell_check import OF_EXAMPLE
 from ..machine.motion import duration_s
-from ..machine.paint_reload import PlanInLoads, in_loads, too_long, with_one_pen, without_paint
+from ..machine.paint_reload import PlanInLoads, fetched_mm, in_loads, too_long, with_one_pen, without_paint
 from ..machine.posts import POSTS
 from ..machine.program import WHOLE_JOB, Job, Walked
 from ..text_summary import summarized
@@ -229,6 +229,7 @@ class Tried:
     loads: PlanInLoads
     walk: Walked
     problems: list[Notice]
+    order: str
 
     @property
     def is_program(self) -> bool:
@@ -245,11 +246,31 @@ class Tried:
         first = self.walk.job.first_stroke
         pens = with_one_pen(self.loads, self.cell, first) if self.is_program else []
         brush, cell = self.work.brush, self.cell
-        return [*without_paint(brush, cell), *too_long(self.loads, brush, cell), *pens]
+        out_of_turn = _out_of_turn(self.work, self.order, first)
+        return [*without_paint(brush, cell), *out_of_turn, *too_long(self.loads, brush, cell), *pens]
 
     def time_s(self) -> float | None:
         """How long the machine takes for the program, or for one of the plan."""
         return time_written_s(self.suffix, self.work.plan, self.walk, self.work.brush, self.work.options.cell)
+
+
+def _out_of_turn(work: preparation.Work, order: str, first_stroke: int) -> list[Notice]:
+    """A notice where strokes are pressed for paint that is left of others than those that are painted before them."""
+    is_pressed = work.brush.paint and work.strokes is not None
+    if not is_pressed or work.options.compensation not in ("closed", "refined"):
+        return []
+    how = ["in another order"] if order == "nearest" else []
+    how += [f"resumed freshly dipped at stroke {first_stroke}"] if first_stroke > 1 else []
+    dips_mm = fetched_mm(work.plan, work.brush, work.options.cell) if how else []
+    if all(dips[:1] == [0.0] for dips in dips_mm):
+        return []
+    sentence = (
+        "strokes are pressed as deep as the paint that the drawing's order leaves asks for: "
+        f"{' and '.join(how)} they come out wider or narrower than drawn"
+    )
+    return [
+        Notice("", sentence, code="paint-out-of-turn", advice="fetch paint more often: [reload] of the cell")
+    ]
 
 
 def tried(
@@ -282,7 +303,7 @@ def tried(
     problems = summarized([*walk.problems, *damaged])
     if damaged:
         problems[-1] = replace(problems[-1], advice="--lenient draws what is sound")
-    return Tried(suffix, work, cell, notes, marks, loads, walk, problems)
+    return Tried(suffix, work, cell, notes, marks, loads, walk, problems, order)
 
 
 def time_of_s(loads: PlanInLoads, brush, cell: Cell) -> float | None:

@@ -114,7 +114,8 @@ def prepare(
     if options.join:
         strokes, joints = joined(strokes)
         notices += joints
-    if options.corners == "auto" and options.compensation in ("closed", "refined"):
+    leads = options.compensation in ("closed", "refined")
+    if options.corners == "auto" and leads:
         strokes = lifted_at_corners(strokes, brush)
         if (options.start, options.end) == ("auto", "auto"):
             strokes = squared_at_corners(strokes, brush)
@@ -125,7 +126,7 @@ def prepare(
         )
     painted, strokes, clamped = within_reach(strokes, brush, options.wide)
     notices += clamped
-    if options.compensation in ("closed", "refined"):
+    if leads:
         drawn, painted, strokes = with_left_limbs(list(drawn), painted, strokes, brush)
     compensated = _way(brush, design.sheet_mm, options, stage)
     try:
@@ -137,12 +138,12 @@ def prepare(
         refused += why
         left_out += which
         done = compensated(painted)
-    if options.cell is not None and options.compensation in ("closed", "refined"):
+    if options.cell is not None and leads:
         fitting = _begun_within_reach(painted, brush, done.plan, compensated, options)
         if fitting is not painted:
             painted, done = fitting, compensated(fitting)
     asked = strokes
-    if brush.paint and brush.width_follows_depth() and options.compensation in ("closed", "refined"):
+    if brush.paint and brush.width_follows_depth() and leads:
         cell = options.cell
         lowest_mm = cell.heights.lowest_mm if cell else -np.inf
         pressed = pressed_deeper(
@@ -168,7 +169,6 @@ def prepare(
     without = {notice.where for notice in refused}
     planned = [stroke for stroke in drawn if stroke.id not in without]
     bare, blank = unreached(planned, painted, brush), []
-    leads = options.compensation in ("closed", "refined")
     if leads and any(stroke.wanted_mm for stroke in planned):  # of shapes alone it is asked what stays blank
         traces = _core.simulate(plan, brush).passes
         bare = left_blank(bare, painted, traces, brush)
@@ -187,7 +187,7 @@ def prepare(
         tuple(notices),
         tuple(refused),
         tuple(left_out),
-        drawn,
+        tuple(drawn),
         tuple(bare),
         tuple(blank),
         tuple(notice.where for notice in astray),

@@ -86,12 +86,14 @@ def _limbs(element: str, drawn: list, painted: list, brush) -> list:
         tried = [(_won(mark, limb, shape, brush), limb) for limb in ways if limb is not None]
         area_mm2 = _core.area(piece.rings)
         if area_mm2 < _SMALL_SHARE * _core.area(shape):
-            tried = [each for each in tried if _turned_more(mark, each[0][1], shape) < _CALM_TURNS]
-        (won_mm2, own_mm), limb = max(tried, key=lambda each: each[0][0], default=((0.0, []), None))
+            most = _core.excess_turning(mark, shape) + _CALM_TURNS
+            tried = [each for each in tried if _core.excess_turning(each[0][2], shape) < most]
+        nothing = (0.0, [], mark), None
+        (won_mm2, own_mm, both_mm), limb = max(tried, key=lambda each: each[0][0], default=nothing)
         if won_mm2 > _WORTH * area_mm2:
             inside = _core.intersect(own_mm, shape)
             limbs.append((limb, _core.unite([*inside, *piece.rings]), piece.rings))
-            mark = _core.unite([*mark, *own_mm])
+            mark = both_mm
         else:
             refused.append(piece)
     repeats = sorted({stroke.origin.repeat for stroke in every})
@@ -118,22 +120,16 @@ def _middle_lines(strokes: list) -> np.ndarray:
     return np.array([shapely.linestrings(np.vstack([line[:1], line])) for line in lines])
 
 
-def _won(mark: list, limb, shape: list[np.ndarray], brush) -> tuple[float, list]:
-    """What a limb paints of the shape less what it paints beside it, beyond the mark [mm2], and its own mark."""
+def _won(mark: list, limb, shape: list[np.ndarray], brush) -> tuple[float, list, list]:
+    """What a limb paints of the shape less what it paints beside it, beyond the mark [mm2]; its own mark, and both."""
     try:
         own_mm = trial_mark([limb], brush)
     except Error:
-        return 0.0, []
+        return 0.0, [], mark
     both = _core.unite([*mark, *own_mm])
     more = _core.area(both) - _core.area(mark)
     inside = _core.area(_core.intersect(both, shape)) - _core.area(_core.intersect(mark, shape))
-    return 2 * inside - more, own_mm
-
-
-def _turned_more(mark: list, own_mm: list, shape: list[np.ndarray]) -> float:
-    """How much more the outline of a mark turns with that of a limb, in full turns."""
-    both = _core.unite([*mark, *own_mm])
-    return _core.excess_turning(both, shape) - _core.excess_turning(mark, shape)
+    return 2 * inside - more, own_mm, both
 
 
 def _limb_towards(place: np.ndarray, piece: Blank, own: list, shape: list[np.ndarray], brush):

@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import _core
 from ..machine.cell import Cell, unit_mm, value_mm
+from ..machine.frames import apart_deg
 from ..machine.header_lines import header_of
 from ..machine.motion import Program, duration_s, painting_mm
 from ..machine.paint_reload import PlanInLoads
@@ -283,7 +284,7 @@ class _Alike:
         if not found and not wanted:
             return True
         a, b = (np.reshape(turned or self.upright, (3, 3)) for turned in (found, wanted))
-        return math.degrees(2 * math.asin(min(np.linalg.norm(a - b) / 8**0.5, 1.0))) <= TURNED_DEG
+        return bool(apart_deg(a, b) <= TURNED_DEG)
 
     def are_held(self, a: Act, b: Act, held: tuple) -> bool:
         """Whether the tool is turned nowhere on two moves from a place on."""

@@ -27,11 +27,11 @@ def dobot(program: Program) -> Iterator[str]:
     tool = _pose(cell.tool.tcp_mm, cell.tool.rotation_deg, decimals)
     yield "".join(map(comment, program.header))
     yield f"SetUser({INDEX}, {paper})\nSetTool({INDEX}, {tool})\nUser({INDEX})\nTool({INDEX})\nCP(0)\n"
-    upright = numbers(rotation_deg(down(cell.tool.spin_deg)), DEGREE_DECIMALS)
+    stands = down(cell.tool.spin_deg)
+    upright = numbers(rotation_deg(stands), DEGREE_DECIMALS)
     yield f"\nfunction on_paper(x, y, z)\n  return {{pose = {{x, y, z, {upright}}}}}\nend\n"
     if program.tilts:
         yield "\nfunction tilted(x, y, z, rx, ry, rz)\n  return {pose = {x, y, z, rx, ry, rz}}\nend\n"
-    stands = down(cell.tool.spin_deg)
     words = Words(
         comment,
         lambda speed: _rise(number(program.rise_mm, decimals), speed),

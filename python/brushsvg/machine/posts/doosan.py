@@ -41,11 +41,11 @@ def doosan(program: Program) -> Iterator[str]:
     yield f"if abs(tip_mm - {number(np.linalg.norm(cell.tool.tcp_mm), decimals)}) > 1.0:\n{STOPS}"
     yield f"set_accx({rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}, {TURNS})\n"
     yield f"paper = set_user_cart_coord(posx({paper}), ref=DR_BASE)\nset_ref_coord(paper)\n"
-    upright = numbers(zyz_deg(down(cell.tool.spin_deg)), DEGREE_DECIMALS)
+    stands = down(cell.tool.spin_deg)
+    upright = numbers(zyz_deg(stands), DEGREE_DECIMALS)
     yield f"\n\ndef on_paper(x, y, z):\n    return posx(x, y, z, {upright})\n\n"
     if program.tilts:
         yield "\ndef tilted(x, y, z, a, b, c):\n    return posx(x, y, z, a, b, c)\n\n"
-    stands = down(cell.tool.spin_deg)
     words = Words(
         comment,
         lambda speed: _rise(number(program.rise_mm, decimals), speed),

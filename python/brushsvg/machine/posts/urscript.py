@@ -28,8 +28,9 @@ def urscript(program: Program) -> Iterator[str]:
     yield "".join(f"  # {plain(line, LINE_LIMIT - 4)}\n" for line in program.header)
     yield f"  set_tcp({_pose(tcp, decimals)})\n"
     yield f"  paper = {_pose(program.robot_from_frame, decimals)}\n"
+    upright = down(tool.spin_deg)
     yield "  def on_paper(x, y, z):\n"
-    yield f"    return pose_trans(paper, p[x, y, z, {_vector(down(tool.spin_deg), decimals)}])\n"
+    yield f"    return pose_trans(paper, p[x, y, z, {_vector(upright, decimals)}])\n"
     yield "  end\n"
     if program.tilts:
         yield "  def tilted(x, y, z, rx, ry, rz):\n"
@@ -39,7 +40,6 @@ def urscript(program: Program) -> Iterator[str]:
     if contact:
         yield _watch(contact.force_n)
     begin = f"  zero_ftsensor()\n{WATCHED}" if contact else ""  # held high, where nothing presses
-    upright = down(tool.spin_deg)
     words = Words(
         lambda title: f"  # {plain(title, LINE_LIMIT - 4)}\n",
         lambda speed: _rise(program.rise_mm, speed, acceleration, decimals) + begin,

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import Error
 from ...machine.cell import Cell
-from ...machine.frames import frame_of_pose, of_quaternion, rotation
+from ...machine.frames import apart_deg, frame_of_pose, of_quaternion, rotation
 from ...machine.header_lines import TILT_LINE
 from ...machine.posts.ros2 import COLUMNS, ROS2_END, flange_from_tip
 from ...machine.posts.script import upright_deg
@@ -98,9 +98,7 @@ def _tips(rows: np.ndarray, numbers: list[int], cell: Cell, is_tilted: bool) -> 
     turns = rows[:, 4:8] / np.where(sizes > 0, sizes, 1.0)
     upright = rotation(upright_deg(cell)) @ flange_from_tip(cell)[:3, :3]
     turned = of_quaternion(turns[:, [3, 0, 1, 2]])
-    leans_deg = np.degrees(
-        2 * np.arcsin(np.clip(np.linalg.norm(turned - upright, axis=(1, 2)) / 8**0.5, 0, 1))
-    )
+    leans_deg = apart_deg(turned, upright)
     for k in np.flatnonzero(off | ((leans_deg > LEANS_DEG) & (not is_tilted))):
         if off[k]:
             raise Error(f"line {numbers[k]}: its quaternion is not of length 1", code="line-unread")
@@ -178,7 +176,7 @@ class _Rows:
     def _is_same(self, a: np.ndarray | None, b: np.ndarray | None, most_deg: float = LEANS_DEG) -> bool:
         """Whether the tool is turned alike, but for what no brush shows; None is upright."""
         a, b = (self.upright if each is None else each for each in (a, b))
-        return math.degrees(2 * math.asin(min(float(np.linalg.norm(a - b)) / 8**0.5, 1.0))) <= most_deg
+        return bool(apart_deg(a, b) <= most_deg)
 
     def _on_the_way(self, tip: tuple, limit_mm_s: float, turned: np.ndarray | None) -> None:
         """Error where the rows since the last pose are not on the straight line to this one, one behind the other, or
