@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "brushsvg/region.hpp"
 #include "drawn_cut.hpp"
 
 namespace brushsvg {
@@ -62,7 +61,9 @@ std::optional<SquaredDot> squared_dot(const Stroke& stroke, const Brush& brush) 
     if (stroke.wanted_mm.empty()) return {};
     const std::optional<Dot> dot = dot_of(stroke, brush);
     const std::optional<Box> box = dot ? least_box(stroke.wanted_mm) : std::nullopt;
-    if (!box || std::abs(area(stroke.wanted_mm)) < kFilled * 4.0 * box->half_mm[0] * box->half_mm[1]) return {};
+    double area_mm2 = 0.0;
+    for (const Ring& ring : stroke.wanted_mm) area_mm2 += signed_area(ring);
+    if (!box || std::abs(area_mm2) < kFilled * 4.0 * box->half_mm[0] * box->half_mm[1]) return {};
     const auto narrow = half_along_cut_mm(brush, std::min(box->half_mm[0], box->half_mm[1]));
     if (!narrow) return {};
     const Vector2d left(-box->along.y(), box->along.x()), at = dot->to_mm;
