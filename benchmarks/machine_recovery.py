@@ -1,10 +1,13 @@
 """Random brushes paint a sheet by machines that lean and whose axes are off, and the fit is asked what both are.
 
     machine_recovery.py [--brushes 12] [--seed 1] [--processes 2] [--parts lean,axes] [--sheet a4]
+                        [--planted lean,axes] [--sine 0.5]
 
 The slow stepping simulator of tests/laws paints, along the ways that the machine runs; the fit is told the ways that it
 was told. Printed: how far the lag is off without --machine and with it (rms over depths and brushes), and how often the
-95 % intervals hold each number of the machine.
+95 % intervals hold each number of the machine, and the lag. --planted: what the machines do, if that is not what the
+fit is asked for; numbers of what is not planted are 0. With --sine they are off by a sine over the sheet, too, so many
+mm high and as long as the sheet, which is no field that the fit knows.
 """
 
 from __future__ import annotations
@@ -13,12 +16,15 @@ import argparse
 import functools
 import multiprocessing
 import time
+from itertools import pairwise
 
 import numpy as np
 import truth_recovery
 
 from brushsvg import _core
+from brushsvg.brush.confidence import half_interval_mm, places
 from brushsvg.calibration import machine_found
+from brushsvg.calibration.from_marks import brush_of
 from brushsvg.cli.arguments import values
 
 painter = truth_recovery.painter
@@ -31,6 +37,7 @@ def random_machine(rng, parts) -> dict[str, np.ndarray]:
         "axes": rng.normal(0, 0.01, 3),
         "tilt": rng.normal(0, 0.005, 2),
         "backlash": np.abs(rng.normal(0, 0.2, 2)),
+        "field": rng.normal(0, 0.5, (2, 3)),
     }
     return {part: drawn[part] * (part in parts) for part in machine_found.PARTS}
 
@@ -53,38 +60,71 @@ def with_play(strokes, backlash: np.ndarray) -> list:
     return out
 
 
-def run(machine, poses: np.ndarray, centre: np.ndarray, height: float) -> np.ndarray:
+def aside_by(machine, strokes, sine_mm: float, rng):
+    """(n, 2) places to (n, 2) mm by which its field takes the tool aside, over the box of all strokes."""
+    places = np.concatenate([poses[:, :2] for _, poses in strokes])
+    middle, reach = (places.max(axis=0) + places.min(axis=0)) / 2, np.ptp(places, axis=0) / 2
+    phases = rng.uniform(0, 2 * np.pi, 2)
+
+    def aside(places):
+        u, v = ((places - middle) / reach).T
+        waves = np.column_stack([np.sin(np.pi * v + phases[0]), np.sin(np.pi * u + phases[1])])
+        return np.column_stack([u * u, u * v, v * v]) @ machine["field"].T + sine_mm * waves
+
+    return aside
+
+
+def run(machine, poses: np.ndarray, centre: np.ndarray, height: float, aside) -> np.ndarray:
     """The way that the machine runs when it is told to come down on the first of these poses, to follow them and to go
     up again, on paper that lies so much higher."""
     up = poses[[0, -1]] * (1, 1, 0) + (0, 0, 1)
     poses = np.vstack([up[:1], poses, up[1:]])
+    if np.any(aside(poses[:, :2])):
+        poses = every_mm(poses)  # straight lines are none any more
     at = poses[:, :2] - centre
     z = poses[:, 2] - at @ machine["tilt"]
     scale_x, scale_y, skew = machine["axes"]
     off = np.column_stack([scale_x * at[:, 0] + skew * at[:, 1], scale_y * at[:, 1]])
+    off += aside(poses[:, :2])
     return np.column_stack([poses[:, :2] + off + np.outer(height - z, machine["lean"]), z])
 
 
-def recover(seed: int, parts=("lean", "axes"), sheet_mm: tuple[float, float] | None = None) -> dict:
+def every_mm(poses: np.ndarray) -> np.ndarray:
+    """The same way with a pose for each 2 mm of it."""
+    rows = [poses[:1]]
+    for a, b in pairwise(poses):
+        parts = max(1, int(np.hypot(*(b - a)[:2]) / 2))
+        rows.append(a + (np.arange(1, parts + 1) / parts)[:, None] * (b - a))
+    return np.vstack(rows)
+
+
+def recover(
+    seed: int,
+    parts=("lean", "axes"),
+    sheet_mm: tuple[float, float] | None = None,
+    planted: tuple[str, ...] | None = None,
+    sine_mm: float = 0.0,
+) -> dict:
     """One brush on one machine: relative errors of the lag without and with the machine in the fit, and (error, half
     interval) of each number."""
     rng = np.random.default_rng(seed)
     brush, faults = painter.random_brush(rng), painter.Faults()
     strokes = truth_recovery.strokes_of(rng, brush, sheet_mm)
-    machine = random_machine(rng, parts)
+    machine = random_machine(rng, parts if planted is None else planted)
+    aside = aside_by(machine, strokes, sine_mm, rng)
     centre = np.concatenate([poses[:, :2] for _, poses in strokes]).mean(axis=0)
 
     def regions(brush, strokes, height):
         if machine["backlash"].any():
             strokes = with_play(strokes, machine["backlash"])
         return painter.swept(
-            brush, [(name, run(machine, poses, centre, height)) for name, poses in strokes], height
+            brush, [(name, run(machine, poses, centre, height, aside)) for name, poses in strokes], height
         )
 
     sheet = painter.paint(rng, brush, strokes, faults, regions)
     marks = [_core.PaintedMark(*mark) for mark in sheet.marks]
     depths = np.linspace(0.2, 1, 9) * brush.deepest
-    out = {"seed": seed, "lag": {}, "s": 0.0}
+    out = {"seed": seed, "lag": {}, "s": 0.0, "z": {}}
     for with_machine in (False, True):
         options = truth_recovery.options_for(brush, faults)
         if with_machine:
@@ -94,11 +134,17 @@ def recover(seed: int, parts=("lean", "axes"), sheet_mm: tuple[float, float] | N
         out["s"] = time.perf_counter() - begin
         lag = np.polynomial.polynomial.polyval(depths, fit.laws.lag)
         out["lag"][with_machine] = lag / brush.law("lag")(depths) - 1
+        made = brush_of(fit.laws, "found", (0.0, brush.deepest), np.array(fit.covariance))
+        at = places(made)["lag"]
+        half = half_interval_mm(np.array(made.covariance)[at, at], depths, None)
+        out["z"][with_machine] = (lag - brush.law("lag")(depths)) / half
     found = machine_found.numbers(fit, np.array(fit.covariance), options)
     truth = [*machine["lean"]] * ("lean" in parts)
     scale_x, scale_y, skew = machine["axes"]
     truth += [1 + scale_x, 1 + scale_y, skew] * ("axes" in parts)
     truth += [*machine["tilt"]] * ("tilt" in parts) + [*machine["backlash"]] * ("backlash" in parts)
+    truth += [*machine["field"].ravel()] * ("field" in parts)
+    out["field"] = machine_found.has_field(found)
     out["numbers"] = {one.name: (one.value - true, one.half) for one, true in zip(found, truth, strict=True)}
     return out
 
@@ -111,8 +157,10 @@ def summary(found: list[dict]) -> str:
         off = np.array([f["lag"][with_machine] for f in found])
         lines.append(
             f"  {what} the machine: lag off by {100 * np.sqrt(np.mean(off**2)):.2f} % (rms), "
-            f"{100 * np.abs(off).max():.1f} % (worst)"
+            f"{100 * np.abs(off).max():.1f} % (worst); its intervals hold "
+            f"{100 * np.mean([np.abs(f['z'][with_machine]) < 1 for f in found]):.0f} %"
         )
+    lines.append(f"  a field is certain in {sum(f['field'] for f in found)}")
     lines.append("  held by 95 %   error (rms)   half interval (median)")
     inside = []
     for name in found[0]["numbers"]:
@@ -131,9 +179,13 @@ def main():
     arguments.add_argument("--seed", type=int, default=1)
     arguments.add_argument("--processes", type=int, default=2)
     arguments.add_argument("--parts", type=lambda text: tuple(text.split(",")), default=("lean", "axes"))
+    arguments.add_argument("--planted", type=lambda text: tuple(text.split(",")))
+    arguments.add_argument("--sine", type=float, default=0.0, help="mm")
     arguments.add_argument("--sheet", type=values.sheet, help="the chart of `brushsvg chart` on such a sheet")
     args = arguments.parse_args()
-    one = functools.partial(recover, parts=args.parts, sheet_mm=args.sheet)
+    one = functools.partial(
+        recover, parts=args.parts, sheet_mm=args.sheet, planted=args.planted, sine_mm=args.sine
+    )
     with multiprocessing.Pool(args.processes) as pool:
         found = list(pool.imap_unordered(one, range(args.seed, args.seed + args.brushes)))
     print(summary(sorted(found, key=lambda f: f["seed"])))

@@ -37,7 +37,9 @@ inline constexpr auto members<brushsvg::fit::LawPrior> =
 template <>
 inline constexpr auto members<brushsvg::fit::Machine> =
     std::tuple(&brushsvg::fit::Machine::lean_mm_per_mm, &brushsvg::fit::Machine::scale, &brushsvg::fit::Machine::skew,
-               &brushsvg::fit::Machine::tilt_mm_per_mm, &brushsvg::fit::Machine::backlash_mm);
+               &brushsvg::fit::Machine::tilt_mm_per_mm, &brushsvg::fit::Machine::backlash_mm,
+               &brushsvg::fit::Machine::field_mm, &brushsvg::fit::Machine::field_middle_mm,
+               &brushsvg::fit::Machine::field_reach_mm);
 
 template <>
 inline constexpr auto members<brushsvg::fit::MarkOptions> =
@@ -49,7 +51,8 @@ inline constexpr auto members<brushsvg::fit::MarkOptions> =
                &brushsvg::fit::MarkOptions::placement_mm, &brushsvg::fit::MarkOptions::turn_rad,
                &brushsvg::fit::MarkOptions::displacement_mm, &brushsvg::fit::MarkOptions::lean_mm_per_mm,
                &brushsvg::fit::MarkOptions::axes, &brushsvg::fit::MarkOptions::tilt_mm_per_mm,
-               &brushsvg::fit::MarkOptions::backlash_mm, &brushsvg::fit::MarkOptions::spacing_mm,
+               &brushsvg::fit::MarkOptions::backlash_mm, &brushsvg::fit::MarkOptions::field_mm,
+               &brushsvg::fit::MarkOptions::spacing_mm,
                &brushsvg::fit::MarkOptions::noise_mm, &brushsvg::fit::MarkOptions::noise_length_mm,
                &brushsvg::fit::MarkOptions::most_iterations);
 
@@ -189,12 +192,17 @@ widest_per_half, gives a standard normal number of what they differ from it.)");
     py::class_<Machine> machine(m, "Machine", R"(How a machine takes the tool elsewhere than it was told.
 
 Told (x, y) from MarkFit.centre_mm and depth d it goes to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d,
-is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlash.)");
+is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlash. A smooth field takes it elsewhere
+still: field_mm (2, 3), a, b and c of a u^2 + b u v + c v^2 for x and for y, u and v how far it was told to go from
+field_middle_mm, over field_reach_mm.)");
     machine.def_property_readonly("lean_mm_per_mm", frozen_copy(&Machine::lean_mm_per_mm))
         .def_property_readonly("scale", frozen_copy(&Machine::scale))
         .def_readonly("skew", &Machine::skew)
         .def_property_readonly("tilt_mm_per_mm", frozen_copy(&Machine::tilt_mm_per_mm))
         .def_property_readonly("backlash_mm", frozen_copy(&Machine::backlash_mm))
+        .def_property_readonly("field_mm", frozen_copy(&Machine::field_mm))
+        .def_property_readonly("field_middle_mm", frozen_copy(&Machine::field_middle_mm))
+        .def_property_readonly("field_reach_mm", frozen_copy(&Machine::field_reach_mm))
         .def("__repr__", [](const Machine& v) {
             return "<Machine: scale " + told(v.scale[0]) + " and " + told(v.scale[1]) + ", skew " + told(v.skew) +
                    ", backlash " + told(v.backlash_mm[0]) + " and " + told(v.backlash_mm[1]) + " mm>";
@@ -204,8 +212,8 @@ is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlas
 
 deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
 widest_per_half, front_per_half, height_mm: Prior; laws: LawPrior or None. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
-and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm: sigmas of the
-machine's numbers; 0: it does as it is told. departing: laws get more numbers if the marks ask for it. noise_mm: fit
+and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm, field_mm:
+sigmas of the machine's numbers; 0: it does as it is told. departing: laws get more numbers if the marks ask for it. noise_mm: fit
 nothing, say what to expect of such edges.)");
     mark_options.def(py::init<>())
         .def_readwrite("deepest_mm", &MarkOptions::deepest_mm)
@@ -227,6 +235,7 @@ nothing, say what to expect of such edges.)");
         .def_readwrite("axes", &MarkOptions::axes)
         .def_readwrite("tilt_mm_per_mm", &MarkOptions::tilt_mm_per_mm)
         .def_readwrite("backlash_mm", &MarkOptions::backlash_mm)
+        .def_readwrite("field_mm", &MarkOptions::field_mm)
         .def_readwrite("spacing_mm", &MarkOptions::spacing_mm)
         .def_readwrite("noise_mm", &MarkOptions::noise_mm)
         .def_readwrite("noise_length_mm", &MarkOptions::noise_length_mm)
@@ -250,7 +259,7 @@ nothing, say what to expect of such edges.)");
 
 covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
 front_per_half (of widest_by_depth and front_by_depth, where the ratios change with depth), height, shift x and y, turn;
-where any of the machine was asked for lean x and y, scale x and y, skew, tilt x and y, backlash x and y.)");
+where any of the machine was asked for lean x and y, scale x and y, skew, tilt x and y, backlash x and y and the field's six.)");
     mark_fit.def_readonly("laws", &MarkFit::laws)
         .def_property_readonly("covariance", frozen_copy(&MarkFit::covariance))
         .def_readonly("height_mm", &MarkFit::height_mm)

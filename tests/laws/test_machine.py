@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from itertools import pairwise
 
 import numpy as np
 import painter
@@ -21,16 +22,33 @@ from brushsvg.calibration.mark_report import report  # noqa: E402
 pytestmark = pytest.mark.long
 
 LEAN, SCALE, SKEW, TILT = (0.3, -0.2), (1.012, 0.993), 0.01, (0.006, -0.004)
+FIELD = ((0.8, -0.5, 0.6), (-0.7, 0.4, 0.9))
 
 
-def run(poses, centre, height, lean, axes, tilt):
+def run(poses, centre, height, lean, axes, tilt, aside=None):
     """Come down on the first pose and gone up from the last one, too."""
     up = poses[[0, -1]] * (1, 1, 0) + (0, 0, 1)
     poses = np.vstack([up[:1], poses, up[1:]])
+    if aside:  # lines are none any more
+        parts = [a + np.linspace(0, 1, 12)[1:, None] * (b - a) for a, b in pairwise(poses)]
+        poses = np.vstack([poses[:1], *parts])
     at = poses[:, :2] - centre
     z = poses[:, 2] - at @ tilt
     off = np.column_stack([axes[0] * at[:, 0] + axes[2] * at[:, 1], axes[1] * at[:, 1]])
+    off += aside(poses[:, :2]) if aside else 0.0
     return np.column_stack([poses[:, :2] + off + np.outer(height - z, lean), z])
+
+
+def aside_of(strokes):
+    """(n, 2) places to how far FIELD takes the tool aside there, over the box of all strokes."""
+    places = np.concatenate([poses[:, :2] for _, poses in strokes])
+    low, high = places.min(axis=0), places.max(axis=0)
+
+    def aside(at):
+        u, v = (2 * at - low - high).T / (high - low)[:, None]
+        return np.column_stack([a * u**2 + b * u * v + c * v**2 for a, b, c in FIELD])
+
+    return aside
 
 
 def painted_by(seed, parts, one_way=False):
@@ -50,8 +68,10 @@ def painted_by(seed, parts, one_way=False):
     axes = np.array([SCALE[0] - 1, SCALE[1] - 1, SKEW]) * ("axes" in parts)
     tilt = np.array(TILT) * ("tilt" in parts)
 
+    aside = aside_of(strokes) if "field" in parts else None
+
     def regions(brush, strokes, height):
-        ways = [(name, run(poses, centre, height, lean, axes, tilt)) for name, poses in strokes]
+        ways = [(name, run(poses, centre, height, lean, axes, tilt, aside)) for name, poses in strokes]
         return painter.swept(brush, ways, height)
 
     sheet = painter.paint(rng, brush, strokes, painter.Faults(displacement=0.3), regions)
@@ -76,7 +96,7 @@ def lag_off(made, brush):
     return max(abs(made.brush.lag(depth) / brush.law("lag")(depth) - 1) for depth in depths)
 
 
-@pytest.mark.parametrize("parts", [("lean", "axes"), ("lean", "axes", "tilt"), ("tilt",)])
+@pytest.mark.parametrize("parts", [("lean", "axes"), ("lean", "axes", "tilt"), ("tilt",), ("lean", "axes", "field"), ("field",)])
 def test_brush_and_machine_come_back(parts):
     brush, painted = painted_by(5, parts)
     made = calibrate_marks(painted, "b", options=options_for(parts))
@@ -89,8 +109,13 @@ def test_brush_and_machine_come_back(parts):
         "tilt in x": TILT[0],
         "tilt in y": TILT[1],
     }
+    truth |= {
+        f"field in {axis}, {term}": value
+        for axis, row in zip("xy", FIELD, strict=True)
+        for term, value in zip(("u u", "u v", "v v"), row, strict=True)
+    }
     found = machine_found.numbers(made.fit, made.covariance, made.expected)
-    assert len(found) == 2 * ("lean" in parts) + 3 * ("axes" in parts) + 2 * ("tilt" in parts)
+    assert len(found) == 2 * ("lean" in parts) + 3 * ("axes" in parts) + 2 * ("tilt" in parts) + 6 * ("field" in parts)
     for one in found:
         assert abs(one.value - truth[one.name]) < 2 * one.half, one
         assert one.half < 0.6 * machine_found.PARTS[one.part][1], f"{one}: hardly more than the prior"
@@ -100,6 +125,18 @@ def test_brush_and_machine_come_back(parts):
     if "lean" in parts:
         assert table["lean_mm_per_mm"] == pytest.approx(made.fit.machine.lean_mm_per_mm, abs=1e-4)
         assert re.search(r"lean in x: 0\.\d+ \+- 0\.\d+ mm per mm", text)
+    if "field" in parts:
+        for row, fitted in zip(table["field_mm"], made.fit.machine.field_mm, strict=True):
+            assert row == pytest.approx(fitted, abs=1e-4)
+        assert table["field_reach_mm"] == pytest.approx(made.fit.machine.field_reach_mm, abs=0.01)
+
+
+@pytest.mark.parametrize("seed", [5, 6])
+def test_without_a_field_none_is_said_to_be_certain(seed):
+    _, painted = painted_by(seed, ())
+    made = calibrate_marks(painted, "b", options=options_for(("field",)))
+    text = report(made)
+    assert "field: none that is certain" in text and "field_mm" not in text
 
 
 def test_without_the_machine_the_lag_is_off():

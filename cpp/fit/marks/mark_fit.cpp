@@ -43,7 +43,8 @@ void refuse_options(const MarkOptions& options) {
     require_sigma(options.displacement_mm, "displacement_mm");
     for (const auto& [sigma, name] :
          {std::pair{options.lean_mm_per_mm, "lean_mm_per_mm"}, std::pair{options.axes, "axes"},
-          std::pair{options.tilt_mm_per_mm, "tilt_mm_per_mm"}, std::pair{options.backlash_mm, "backlash_mm"}})
+          std::pair{options.tilt_mm_per_mm, "tilt_mm_per_mm"}, std::pair{options.backlash_mm, "backlash_mm"},
+          std::pair{options.field_mm, "field_mm"}})
         require_sigma(sigma, name);
     if (options.noise_mm) {
         require_within(*options.noise_mm, {0.0, kLargestMm}, "the noise", "noise_mm");

@@ -39,11 +39,15 @@ struct MarkLaws {
 
 /// How a machine takes the tool elsewhere than it was told. Told (x, y) from MarkFit::centre_mm and a depth d it goes
 /// to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d, and is tilt_x x + tilt_y y deeper; on each axis it
-/// stays behind by half its backlash.
+/// stays behind by half its backlash. A smooth field takes it elsewhere still by a u^2 + b u v + c v^2 [mm], three numbers
+/// for x and three for y, where u and v are how far it was told to go from field_middle_mm, over field_reach_mm.
 struct Machine {
     std::array<double, 2> lean_mm_per_mm{0.0, 0.0}, scale{1.0, 1.0};
     double skew = 0.0;
     std::array<double, 2> tilt_mm_per_mm{0.0, 0.0}, backlash_mm{0.0, 0.0};
+    std::array<std::array<double, 3>, 2> field_mm{};
+    /// The middle of all that was told and half its sides: beyond, nothing is known of the field.
+    std::array<double, 2> field_middle_mm{0.0, 0.0}, field_reach_mm{1.0, 1.0};
 };
 
 /// Laws that are known beforehand: laws is the mean; each row, over the coefficients of lag, tip_gap and half_width
@@ -69,7 +73,7 @@ struct MarkOptions {
     double turn_rad = 0.02;        ///< sigma of the sheet's turn: 1 mm on 50 mm
     double displacement_mm = 1.0;  ///< sigma of each mark's own displacement in x and in y
     /// Sigmas of the machine's numbers, of scale and skew together; 0: it has none of it.
-    double lean_mm_per_mm = 0.0, axes = 0.0, tilt_mm_per_mm = 0.0, backlash_mm = 0.0;
+    double lean_mm_per_mm = 0.0, axes = 0.0, tilt_mm_per_mm = 0.0, backlash_mm = 0.0, field_mm = 0.0;
     double spacing_mm = 0.5;  ///< between the points of an outline that are compared
     /// If given nothing is fitted: the covariance is that to expect at the start from edges this uncertain.
     std::optional<double> noise_mm;
@@ -92,7 +96,7 @@ struct MarkFit {
     /// Over lag, tip_gap and half_width (their constant, 0, left out), widest_per_half, front_per_half, height, shift x
     /// and y, turn: in this order, in the laws' own coefficients; those of widest_by_depth and front_by_depth in place
     /// of the ratios where these change with depth. Where any of the machine was asked for, lean x and y,
-    /// scale x and y, skew, tilt x and y, backlash x and y follow.
+    /// scale x and y, skew, tilt x and y, backlash x and y and the field's six follow.
     std::vector<std::vector<double>> covariance;
     double height_mm = 0.0, turn_rad = 0.0;
     std::array<double, 2> shift_mm{0.0, 0.0};

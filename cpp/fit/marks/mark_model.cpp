@@ -13,6 +13,7 @@ namespace {
 constexpr double kStepMm = 0.2, kPressMm = 0.15;
 constexpr double kAboveMm = 5.0;       // and the deepest: whence the brush comes, above any error of the paper's height
 constexpr double kLeastRingMm2 = 0.2;  // specks
+constexpr double kLeastReachMm = 5.0;  // of a field: over less, what is smooth is the same everywhere
 // Looks at instants in a whole fit, for each place and point there is. Marks of a brush take two to ten thousand;
 // those that no brush paints, where huge footprints lie on each other, took millions, and minutes.
 constexpr double kMostLooks = 2e7, kMostLooksEach = 3e4;
@@ -88,7 +89,7 @@ VectorXd of_terms(const std::vector<double>& c, Index terms, Index first, double
 
 bool has_machine(const MarkOptions& options) {
     return options.lean_mm_per_mm > 0.0 || options.axes > 0.0 || options.tilt_mm_per_mm > 0.0 ||
-           options.backlash_mm > 0.0;
+           options.backlash_mm > 0.0 || options.field_mm > 0.0;
 }
 
 std::vector<double> close_places(const Poses& poses, double coarse) {
@@ -100,6 +101,16 @@ std::vector<double> close_places(const Poses& poses, double coarse) {
         for (int k = 1; k <= parts; ++k) out.push_back(double(i) + double(k) / parts);
     }
     return out;
+}
+
+/// As far as the TCP was told to go.
+FieldBox box_of(const std::vector<PaintedMark>& marks) {
+    Eigen::Vector2d low(INFINITY, INFINITY), high = -low;
+    for (const PaintedMark& mark : marks) {
+        low = low.cwiseMin(mark.poses_mm.leftCols<2>().colwise().minCoeff().transpose());
+        high = high.cwiseMax(mark.poses_mm.leftCols<2>().colwise().maxCoeff().transpose());
+    }
+    return {0.5 * (low + high), (0.5 * (high - low)).cwiseMax(kLeastReachMm)};
 }
 
 /// Points at equal distances along a closed outline, about `spacing` apart.
@@ -136,7 +147,8 @@ Layout MarkModel::layout_of(const MarkOptions& options) {
 }
 
 MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse)
-    : layout_(layout_of(options)), deepest_(options.deepest_mm), coarse_(coarse), round_tail_(options.round_tail) {
+    : layout_(layout_of(options)), deepest_(options.deepest_mm), coarse_(coarse), round_tail_(options.round_tail),
+      is_bent_(options.field_mm > 0.0) {
     lag_powers_ = powers_from_controls(layout_.lag - 1, 0.0, deepest_);
     const MatrixXd whole = powers_from_controls(layout_.half, 0.0, deepest_);
     const MatrixXd sums = MatrixXd::Ones(layout_.half, layout_.half).triangularView<Eigen::Lower>();
@@ -169,6 +181,7 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
         poses += mark.poses_mm.rows();
     }
     centre_ /= double(std::max<Index>(1, poses));
+    box_ = box_of(marks);
     looks_.assign(painted_.size(), 0);
 }
 
@@ -289,12 +302,16 @@ Machine MarkModel::machine(const VectorXd& shared) const {
     const auto two = [&](int first, double more) {
         return std::array<double, 2>{by[std::size_t(first)] + more, by[std::size_t(first + 1)] + more};
     };
+    const auto three = [&](int first) {
+        return std::array<double, 3>{by[std::size_t(first)], by[std::size_t(first + 1)], by[std::size_t(first + 2)]};
+    };
     return {two(MachineAt::lean, 0.0), two(MachineAt::scale, 1.0), by[MachineAt::skew], two(MachineAt::tilt, 0.0),
-            two(MachineAt::backlash, 0.0)};
+            two(MachineAt::backlash, 0.0), {three(MachineAt::field), three(MachineAt::field + 3)},
+            {box_.middle.x(), box_.middle.y()}, {box_.reach.x(), box_.reach.y()}};
 }
 
 bool MarkModel::follow(const Painted& painted, const VectorXd& shared, bool by_laws, Footprints& out) const {
-    const MachineHere machine{machine_numbers(shared), centre_, painted.travel};
+    const MachineHere machine{machine_numbers(shared), centre_, painted.travel, box_, is_bent_};
     return out.follow(painted.poses_mm, painted.arcs, painted.at, laws(shared), by_laws ? &lag_powers_ : nullptr,
                       shared[layout_.height()], deepest_, layout_.machine_numbers > 0 ? &machine : nullptr, coarse_);
 }
@@ -303,7 +320,7 @@ Poses MarkModel::run(Index mark, const VectorXd& shared) const {
     const Painted& painted = painted_[std::size_t(mark)];
     Poses out = painted.poses_mm;
     if (layout_.machine_numbers > 0) {
-        const MachineHere machine{machine_numbers(shared), centre_, painted.travel};
+        const MachineHere machine{machine_numbers(shared), centre_, painted.travel, box_, is_bent_};
         const RunWay<double> way{painted.poses_mm, painted.arcs, machine, 0.0, machine.by};
         for (Index i = 0; i < out.rows(); ++i) out.row(i) << way.tcp(i).transpose(), -way.depth(i);
     }

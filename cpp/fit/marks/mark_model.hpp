@@ -118,9 +118,10 @@ class MarkModel {
     mutable std::vector<std::uint64_t> looks_;  ///< of each mark, at instants of its pass: what was spent on it
     Layout layout_;
     double deepest_, coarse_;
-    bool round_tail_, headings_doubted_ = false;
+    bool round_tail_, is_bent_, headings_doubted_ = false;
     MatrixXd lag_powers_, half_powers_;  ///< coefficients of the laws from their unknowns
     Eigen::Vector2d centre_;
+    FieldBox box_;
 };
 
 }  // namespace brushsvg::fit

@@ -107,7 +107,8 @@ MatrixXd law_rows(const LawPrior& known, const MarkModel& model) {
 double machine_sigma(const MarkOptions& options, int number) {
     if (number < MachineAt::scale) return options.lean_mm_per_mm;
     if (number < MachineAt::tilt) return options.axes;
-    return number < MachineAt::backlash ? options.tilt_mm_per_mm : options.backlash_mm;
+    if (number < MachineAt::backlash) return options.tilt_mm_per_mm;
+    return number < MachineAt::field ? options.backlash_mm : options.field_mm;
 }
 
 }  // namespace

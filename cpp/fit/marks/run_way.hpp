@@ -10,11 +10,21 @@
 // Where a machine takes the tool that was told to go elsewhere. Inside fit_marks.
 namespace brushsvg::fit {
 
-constexpr int kMachine = 9;  // numbers of a machine, in the order of MachineAt
+constexpr int kMachine = 15;  // numbers of a machine, in the order of MachineAt
 
-/// First of each number of a machine: of two, x and then y.
+/// First of each number of a machine: of two, x and then y; of the field's six three of x and then three of y.
 struct MachineAt {
-    static constexpr int lean = 0, scale = 2, skew = 4, tilt = 5, backlash = 7;
+    static constexpr int lean = 0, scale = 2, skew = 4, tilt = 5, backlash = 7, field = 9;
+};
+
+/// Where a field over the sheet is known: as far as the TCP was told to go, a box.
+struct FieldBox {
+    Eigen::Vector2d middle{0.0, 0.0}, reach{1.0, 1.0};  ///< reach: half its sides [mm]
+    /// u^2, u v, v^2 of a place, u and v from -1 to 1 over the box.
+    Eigen::Vector3d terms(const Eigen::Vector2d& place) const {
+        const Eigen::Vector2d uv = (place - middle).cwiseQuotient(reach);
+        return {uv.x() * uv.x(), uv.x() * uv.y(), uv.y() * uv.y()};
+    }
 };
 
 /// What a machine does at one place of a fit. by: scale as what it is more than 1. travel: for each pose the direction
@@ -23,6 +33,8 @@ struct MachineHere {
     std::array<double, kMachine> by;
     Eigen::Vector2d centre;
     const Ring& travel;
+    const FieldBox& box;
+    bool is_bent;  ///< a field is asked for: without one its derivatives cost a third of all
 };
 
 /// The TCP's way as such a machine runs what was told, on any scalar.
@@ -45,10 +57,15 @@ struct RunWay {
     Vec2<T> tcp(Eigen::Index i) const {
         const Eigen::Vector2d at = from_centre(i), behind = 0.5 * machine.travel.row(i).transpose();
         const T d = depth(i);
-        return {T(poses(i, 0) + by[MachineAt::scale] * at.x() + by[MachineAt::skew] * at.y() + by[MachineAt::lean] * d -
-                  by[MachineAt::backlash] * behind.x()),
-                T(poses(i, 1) + by[MachineAt::scale + 1] * at.y() + by[MachineAt::lean + 1] * d -
-                  by[MachineAt::backlash + 1] * behind.y())};
+        Vec2<T> out{T(poses(i, 0) + by[MachineAt::scale] * at.x() + by[MachineAt::skew] * at.y() +
+                      by[MachineAt::lean] * d - by[MachineAt::backlash] * behind.x()),
+                    T(poses(i, 1) + by[MachineAt::scale + 1] * at.y() + by[MachineAt::lean + 1] * d -
+                      by[MachineAt::backlash + 1] * behind.y())};
+        if (!machine.is_bent) return out;
+        const Eigen::Vector3d terms = machine.box.terms(poses.row(i).template head<2>().transpose());
+        for (int axis = 0; axis < 2; ++axis)
+            for (int k = 0; k < 3; ++k) out[axis] += by[std::size_t(MachineAt::field + 3 * axis + k)] * terms[k];
+        return out;
     }
     T turn(const Arc&, Eigen::Index) const { return T(0.0); }  // it has none: circles are no circles
 };

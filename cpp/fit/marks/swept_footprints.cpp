@@ -24,7 +24,8 @@ constexpr double kLeastCosine = 0.05;        // between a footprint's own normal
 // The lag's unknowns and the height, and the machine: even numbers, which processors take two at a time.
 constexpr int even(int n) { return n + n % 2; }
 using Jet = ceres::Jet<double, even(kMostTerms + 1)>;
-using MachineJet = ceres::Jet<double, even(kWays)>;
+using MachineJet = ceres::Jet<double, even(kMostTerms + 1 + MachineAt::field)>;
+using FieldJet = ceres::Jet<double, even(kWays)>;
 
 double at_depth(const std::vector<double>& c, double d) {
     double y = 0.0;
@@ -76,6 +77,16 @@ std::vector<T> law_by(const std::vector<double>& lag, const Eigen::MatrixXd& by)
     return out;
 }
 
+/// With derivatives by the first so many numbers of the machine.
+template <class T>
+RunWay<T> run_by(const Poses& poses, const std::vector<Arc>& arcs, const MachineHere& machine, double height_mm,
+                 int numbers) {
+    RunWay<T> out{poses, arcs, machine, T(height_mm, kMostTerms), {}};
+    for (int i = 0; i < numbers; ++i)
+        out.by[std::size_t(i)] = T(machine.by[std::size_t(i)], kMostTerms + 1 + i);
+    return out;
+}
+
 /// First from i on of numbers that never fall that is no less than this one. In strides that double: most are short.
 std::size_t first_from(const std::vector<double>& rising, std::size_t i, double least) {
     std::size_t end = i;
@@ -111,10 +122,11 @@ bool Footprints::follow(const Poses& poses, const std::vector<Arc>& arcs, const 
     if (!lag_by)
         return follow_on<double>(RunWay<double>{poses, arcs, *machine, height_mm, machine->by}, at, laws, lag_by,
                                  deepest_mm);
-    RunWay<MachineJet> way{poses, arcs, *machine, MachineJet(height_mm, kMostTerms), {}};
-    for (int i = 0; i < kMachine; ++i)
-        way.by[std::size_t(i)] = MachineJet(machine->by[std::size_t(i)], kMostTerms + 1 + i);
-    return follow_on<MachineJet>(way, at, laws, lag_by, deepest_mm);
+    if (machine->is_bent)
+        return follow_on<FieldJet>(run_by<FieldJet>(poses, arcs, *machine, height_mm, kMachine), at, laws, lag_by,
+                                   deepest_mm);
+    return follow_on<MachineJet>(run_by<MachineJet>(poses, arcs, *machine, height_mm, MachineAt::field), at, laws,
+                                 lag_by, deepest_mm);
 }
 
 template <class T, class Way>

@@ -1187,7 +1187,9 @@ class Machine:
     How a machine takes the tool elsewhere than it was told.
 
     Told (x, y) from MarkFit.centre_mm and depth d it goes to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d,
-    is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlash.
+    is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlash. A smooth field takes it elsewhere
+    still: field_mm (2, 3), a, b and c of a u^2 + b u v + c v^2 for x and for y, u and v how far it was told to go from
+    field_middle_mm, over field_reach_mm.
     """
     def __copy__(self) -> Machine: ...
     def __deepcopy__(self, memo: dict) -> Machine: ...
@@ -1198,6 +1200,12 @@ class Machine:
     def __setstate__(self, arg0: tuple) -> None: ...
     @property
     def backlash_mm(self) -> tuple[float, ...]: ...
+    @property
+    def field_middle_mm(self) -> tuple[float, ...]: ...
+    @property
+    def field_mm(self) -> tuple[tuple[float, ...], ...]: ...
+    @property
+    def field_reach_mm(self) -> tuple[float, ...]: ...
     @property
     def lean_mm_per_mm(self) -> tuple[float, ...]: ...
     @property
@@ -1213,8 +1221,8 @@ class MarkOptions:
 
     deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
     widest_per_half, front_per_half, height_mm: Prior; laws: LawPrior or None. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
-    and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm: sigmas of the
-    machine's numbers; 0: it does as it is told. departing: laws get more numbers if the marks ask for it. noise_mm: fit
+    and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm, field_mm:
+    sigmas of the machine's numbers; 0: it does as it is told. departing: laws get more numbers if the marks ask for it. noise_mm: fit
     nothing, say what to expect of such edges.
     """
 
@@ -1248,6 +1256,10 @@ class MarkOptions:
     def displacement_mm(self) -> float: ...
     @displacement_mm.setter
     def displacement_mm(self, arg0: float) -> None: ...
+    @property
+    def field_mm(self) -> float: ...
+    @field_mm.setter
+    def field_mm(self, arg0: float) -> None: ...
     @property
     def half_width_terms(self) -> int: ...
     @half_width_terms.setter
@@ -1323,7 +1335,7 @@ class MarkFit:
 
     covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
     front_per_half (of widest_by_depth and front_by_depth, where the ratios change with depth), height, shift x and y, turn;
-    where any of the machine was asked for lean x and y, scale x and y, skew, tilt x and y, backlash x and y.
+    where any of the machine was asked for lean x and y, scale x and y, skew, tilt x and y, backlash x and y and the field's six.
     """
     def __copy__(self) -> MarkFit: ...
     def __deepcopy__(self, memo: dict) -> MarkFit: ...

@@ -12,14 +12,19 @@ from ..errors import Notice
 
 # Standard deviation of each number beforehand. A tool on a long thin arm gives way by half as much as it is pressed;
 # a printed or scanned page is as long as it should be to 1 %; 1 mm over a sheet is what a table is off level; worn
-# screws and loose belts leave some tenths of a mm where they turn.
+# screws and loose belts leave some tenths of a mm where they turn; a frame that is warped or sags takes the tool half a
+# mm aside at the sheet's edges.
 PARTS = {
     "lean": ("lean_mm_per_mm", 0.5),
     "axes": ("axes", 0.01),
     "tilt": ("tilt_mm_per_mm", 0.005),
     "backlash": ("backlash_mm", 0.2),
+    "field": ("field_mm", 0.5),
 }
+TERMS = ("u u", "u v", "v v")
 LEAST_MM = 0.01  # of backlash that a cell undoes
+CERTAIN = 1.6  # half 95 % intervals: none of a field's six numbers is farther from 0 by chance in 99 of 100 fits
+HARDLY = 0.8  # of what a number was known to beforehand: what is known no better, marks say nothing of
 # Where the ways on the paper go one way by more than this (0: all ways alike, 1: one), lean along it is what a longer
 # lag at greater depth would be
 ONE_WAY = 0.8
@@ -63,6 +68,11 @@ def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Num
         ("tilt", "tilt in y", machine.tilt_mm_per_mm[1], "mm higher per mm"),
         ("backlash", "backlash in x", machine.backlash_mm[0], "mm"),
         ("backlash", "backlash in y", machine.backlash_mm[1], "mm"),
+        *(
+            ("field", f"field in {axis}, {term}", value, "mm at the edge")
+            for axis, values in zip("xy", machine.field_mm, strict=True)
+            for term, value in zip(TERMS, values, strict=True)
+        ),
     )
     first = len(covariance) - len(rows)
     halves = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(covariance)[first:], 0.0))
@@ -74,18 +84,30 @@ def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Num
 
 
 def told(found: list[Number]) -> list[str]:
-    """A line for each number."""
-    return [f"{one.name}: {one.value:.4f} +- {one.half:.4f} {one.unit}".rstrip() for one in found]
+    """A line for each number, and of the field what becomes of it."""
+    lines = [f"{one.name}: {one.value:.4f} +- {one.half:.4f} {one.unit}".rstrip() for one in found]
+    field = [one for one in found if one.part == "field"]
+    if field and min(one.half for one in field) > HARDLY * _core.deviations_of_95() * PARTS["field"][1]:
+        lines.append("field: the marks tell nothing of it; strokes all over the sheet would")
+    elif field and not has_field(found):
+        lines.append("field: none that is certain, and none for the cell")
+    return lines
+
+
+def has_field(found: list[Number]) -> bool:
+    """Whether there is a field at all: that six numbers are 0 is asked of all of them at once."""
+    return any(abs(one.value) > CERTAIN * one.half for one in found if one.part == "field")
 
 
 def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str]:
-    """The lines of a cell's table [machine]; none where nothing is asked for that a cell can undo. Backlash that may as
-    well be none is left out."""
+    """The lines of a cell's table [machine]; none where nothing is asked for that a cell can undo. Backlash and a field
+    that may as well be none are left out."""
     parts, machine = asked(options), fit.machine
     backlash = [
         one.value if one.value > max(one.half, LEAST_MM) else 0.0 for one in found if one.part == "backlash"
     ]
-    lines = ["[machine]"] if set(parts) - {"backlash"} or any(backlash) else []
+    is_bent = has_field(found)
+    lines = ["[machine]"] if set(parts) - {"backlash", "field"} or any(backlash) or is_bent else []
     if "lean" in parts:
         lines.append(f"lean_mm_per_mm = {_pair(machine.lean_mm_per_mm)}")
     if "axes" in parts:
@@ -95,7 +117,15 @@ def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str
         lines += [f"height_mm = {height:.3f}", f"tilt_mm_per_mm = {_pair(machine.tilt_mm_per_mm)}"]
     if any(backlash):
         lines.append("backlash_mm = [{:.3f}, {:.3f}]".format(*backlash))
-    return lines
+    return [*lines, *(field_lines(machine) if is_bent else [])]
+
+
+def field_lines(machine) -> list[str]:
+    """Of a cell's table [machine]. machine: one that was fitted or that of a cell."""
+    rows = ", ".join("[" + ", ".join(f"{mm:.4f}" for mm in row) + "]" for row in machine.field_mm)
+    places = (machine.field_middle_mm, machine.field_reach_mm)
+    middle, reach = ("[{:.2f}, {:.2f}]".format(*pair) for pair in places)
+    return [f"field_mm = [{rows}]", f"field_middle_mm = {middle}", f"field_reach_mm = {reach}"]
 
 
 def _pair(values) -> str:

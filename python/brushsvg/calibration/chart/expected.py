@@ -8,6 +8,7 @@ from ... import _core
 from ...brush.confidence import law_band
 from ...brush.describe import LAWS
 from ..from_marks import expected_brush, expected_machine, expected_marks
+from ..machine_found import PARTS
 from ..paint_found import Expected, expected_paint
 
 ROWS = 4
@@ -39,7 +40,7 @@ def chart_report(chart, brush, noise_mm: float) -> str:
     lines += ["  +-: half the 95 % confidence interval of the law", *remarks]
     machine = expected_machine(chart.plan, brush, noise_mm, painted=painted)
     told = [f"{one.name} +- {one.half:.2g}" for one in machine]
-    lines += ["Of the machine, with calibrate --machine lean,axes,tilt,backlash:", "  " + ", ".join(told)]
+    lines += ["Of the machine, with calibrate --machine " + ",".join(PARTS) + ":", "  " + ", ".join(told)]
     return "\n".join([*lines, *_of_paint(expected_paint(chart.plan, brush, noise_mm, painted)), ""])
 
 
