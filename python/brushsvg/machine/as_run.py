@@ -9,7 +9,7 @@ import numpy as np
 from .. import _core
 from .arc_chords import with_chords
 from .cell import Machine
-from .distortion import true_mm
+from .distortion import true_way_mm
 from .pass_way import on_way
 
 STEP_MM = 0.4
@@ -23,7 +23,7 @@ def as_run(passes, machine: Machine, backlash_mm=(0.0, 0.0), deepest_mm: float =
     out = []
     for one in with_play(passes, backlash_mm):
         poses = np.asarray(with_chords(one).poses_mm, dtype=float).reshape(-1, 3)
-        down = _on_paper(true_mm(poses, machine))
+        down = _on_paper(true_way_mm(poses, machine))
         if down is not None:
             down[:, 2] = np.maximum(down[:, 2], -deepest_mm)
             out.append(on_way(one, down, []))

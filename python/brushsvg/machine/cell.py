@@ -226,6 +226,18 @@ class Machine:
         3,
         (0.0, 0.0),
     )
+    field_mm: tuple = _key(
+        "how far the tool goes aside over the sheet: three numbers for x and three for y, at its edges, of u u, u v "
+        "and v v, where u and v go from -1 to 1",
+        (2, 3),
+        -10,
+        10,
+        (),
+    )
+    field_middle_mm: tuple = _key("x and y where u and v are 0", (2,), -2e3, 2e3, ())
+    field_reach_mm: tuple = _key(
+        "how far from there along x and along y they are 1: the field was measured so far", (2,), 5, 2e3, ()
+    )
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from .cell import (
     NEEDED_BY,
     RELOADS,
     Cell,
+    Machine,
     Speeds,
     Station,
     entries,
@@ -29,9 +30,11 @@ from .cell import (
 )
 from .frames import moved, normal_tilt_deg
 from .move_extents import from_origin, ways
+from .smooth_field import steepest
 from .workspace_limits import astray
 
 LEAST_GRID_MM, MOST_MAP_MM = 5.0, 5.0  # how far apart a map's lines are at least, and how high or low it is
+MOST_BENT = 0.1  # of a field, mm in a mm: as far off as scale and skew may be; from 1 on a sheet would fold
 JOINTS = 6  # of an arm: with more of them, angles for a place are no longer few
 COARSEST_VALUE_MM = 0.5  # of height, that a servo's value may change: half of it is what depths are off by
 
@@ -63,6 +66,8 @@ def check(cell: Cell) -> None:
     _check_workspace(cell)
     if cell.machine and cell.machine.map_mm:
         _check_map(cell.machine.map_mm)
+    if cell.machine:
+        _check_field(cell.machine)
     if cell.machine and any(cell.machine.backlash_mm):
         _check_backlash(cell)
     if cell.pen:
@@ -443,6 +448,20 @@ def _check_map(map_mm: tuple) -> None:
                 where=where,
                 code="cell-machine",
             )
+
+
+def _check_field(machine: Machine) -> None:
+    keys = ("field_mm", "field_middle_mm", "field_reach_mm")
+    missing = [key for key in keys if not getattr(machine, key)]
+    if 0 < len(missing) < len(keys):
+        sentence = f"a field needs {', '.join(keys)}: there is no {missing[0]}"
+        raise Error(sentence, where=f"machine.{missing[0]}", code="key-missing")
+    if machine.field_mm and (slope := steepest(machine)) > MOST_BENT:
+        sentence = (
+            f"the field changes by up to {slope:.3g} mm in a mm, outside the range [0, {MOST_BENT:g}]: with field_reach_mm "
+            f"{[*machine.field_reach_mm]} its numbers are too large"
+        )
+        raise Error(sentence, where="machine.field_mm", code="cell-machine")
 
 
 def _check_machine_keeps_heights(cell: Cell, whose: str, *keys: str) -> None:

@@ -10,7 +10,9 @@ import numpy as np
 from .. import _core
 from .cell import Cell, Machine
 from .pass_way import on_way
+from .smooth_field import edge_cuts, field_mm, is_bent, parts_of
 
+NEAR_MM, MOST_ROUNDS = 1e-9, 60  # of the way back through a field: each round leaves a quarter of it or less
 MAP_OFF_MM = 0.003  # how far a line that is told may lie from the paper's map between its ends
 
 
@@ -21,6 +23,7 @@ def is_similar(machine: Machine | None) -> bool:
         and machine.scale[0] == machine.scale[1]
         and not any(machine.tilt_mm_per_mm)
         and not machine.map_mm
+        and not machine.field_mm
     )
 
 
@@ -35,7 +38,15 @@ def true_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
     told = np.asarray(points_mm, dtype=float)
     z = told[:, 2] - _paper_mm(told[:, :2], machine)
     depth = np.maximum(-z, 0.0)
-    return np.column_stack([told[:, :2] @ _axes(machine).T + np.outer(depth, machine.lean_mm_per_mm), z])
+    place = told[:, :2] @ _axes(machine).T + field_mm(told[:, :2], machine)
+    return np.column_stack([place + np.outer(depth, machine.lean_mm_per_mm), z])
+
+
+def true_way_mm(told_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
+    """(m, 3): where the tool goes along lines between places (n, 3) that are told, with more of them where it bends."""
+    if is_bent(machine):
+        told_mm = _in_parts(told_mm, parts_of(told_mm[:, :2], machine))
+    return true_mm(told_mm, machine)
 
 
 def told_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
@@ -44,8 +55,19 @@ def told_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
         return points_mm
     wanted = np.asarray(points_mm, dtype=float)
     depth = np.maximum(-wanted[:, 2], 0.0)
-    place = (wanted[:, :2] - np.outer(depth, machine.lean_mm_per_mm)) @ np.linalg.inv(_axes(machine)).T
+    place = _led_to(wanted[:, :2] - np.outer(depth, machine.lean_mm_per_mm), machine)
     return np.column_stack([place, wanted[:, 2] + _paper_mm(place, machine)])
+
+
+def _led_to(wanted_mm: np.ndarray, machine: Machine) -> np.ndarray:
+    """(n, 2) what to tell the machine so that its axes and its field take the tool there."""
+    back = np.linalg.inv(_axes(machine)).T
+    place = wanted_mm @ back
+    for _ in range(MOST_ROUNDS if is_bent(machine) else 0):
+        before, place = place, (wanted_mm - field_mm(place, machine)) @ back
+        if np.max(np.abs(place - before), initial=0.0) < NEAR_MM:
+            break
+    return place
 
 
 def told_high_mm(told_mm: np.ndarray, height_mm: float, machine: Machine | None) -> np.ndarray:
@@ -59,18 +81,37 @@ def told_high_mm(told_mm: np.ndarray, height_mm: float, machine: Machine | None)
     return height_mm + rises_mm
 
 
-def on_map_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
+def goes_straight(machine: Machine | None) -> bool:
+    """Whether lines that are told are lines on the paper."""
+    return machine is None or not (machine.map_mm or machine.field_mm)
+
+
+def in_lines_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
     """(m, k): places (n, k), x, y, z and what else changes evenly, where the tool shall go, with more of them between,
-    so that straight lines between what is told keep the tool's height over the paper's map."""
-    if machine is None or not machine.map_mm:
+    so that straight lines between what is told keep the tool on its way, and its height over the paper's map."""
+    if goes_straight(machine):
         return points_mm
     wanted = np.asarray(points_mm, dtype=float)
+    if is_bent(machine):
+        wanted = _in_parts(wanted, parts_of(told_mm(wanted[:, :3], machine)[:, :2], machine))
+        wanted = _cut(wanted, edge_cuts(told_mm(wanted[:, :3], machine)[:, :2], machine))
+    if not machine.map_mm:
+        return wanted
     told = told_mm(wanted[:, :3], machine)[:, :2]
-    rows = [wanted[:1]]
-    for k in range(len(wanted) - 1):
-        at = _cuts(told[k], told[k + 1], machine)[:, None]
-        rows.append(wanted[k] + at * (wanted[k + 1] - wanted[k]))
-    return np.vstack(rows)
+    return _cut(wanted, [_cuts(*ends, machine) for ends in pairwise(told)])
+
+
+def _cut(points: np.ndarray, cuts) -> np.ndarray:
+    """Each line between points (n, k) at n - 1 times shares of it, the last of which is 1."""
+    lines = zip(pairwise(points), cuts, strict=True)
+    return np.vstack([points[:1], *(a + at[:, None] * (b - a) for (a, b), at in lines)])
+
+
+def _in_parts(points: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """Each line between points (n, k) in so many (n - 1,) of the same length."""
+    line = np.repeat(np.arange(len(counts)), counts)
+    share = (np.arange(len(line)) - np.repeat(np.cumsum(counts) - counts, counts) + 1) / counts[line]
+    return np.vstack([points[:1], points[line] + share[:, None] * (points[line + 1] - points[line])])
 
 
 def _cuts(a: np.ndarray, b: np.ndarray, machine: Machine) -> np.ndarray:

@@ -14,7 +14,7 @@ from ..errors import Error, Notice
 from ..geometry.polylines import length, lengths
 from .arc_chords import chords, cut_at_extremes, with_chords
 from .cell import Cell, Station, robot_from_paper, why_no_waiting
-from .distortion import is_similar, on_map_mm
+from .distortion import goes_straight, in_lines_mm, is_similar
 from .frames import is_upright
 from .pass_way import on_way
 from .posts import POSTS, circles_by
@@ -57,7 +57,7 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
     Whole are all strokes of cells that do not count the length, and those whose setting reload is false. What is a part
     already stays as it is. What begins or ends below the paper is set down and lifted there. Where the machine is told
     no circles, arcs have poses enough for lines; where its axes have backlash, arcs end where one turns back; where the
-    cell has a map of the paper, lines have enough for that.
+    cell has a map of the paper or a field, lines have enough for that.
     Where the brush turns, there are poses enough for a robot that turns evenly between them. Error for a part that does
     not follow the one before it, and for a tilted brush where the cell cannot tilt it.
     """
@@ -81,16 +81,16 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
     elif cell.machine and any(cell.machine.backlash_mm):
         axes = robot_from_paper(cell)[:2, 0]
         loads = (cut_at_extremes(each, float(np.arctan2(axes[1], axes[0]))) for each in loads)
-    if cell.machine and cell.machine.map_mm:
-        loads = (_on_map(each, cell.machine) for each in map(in_steps, loads))
+    if not goes_straight(cell.machine):
+        loads = (_in_lines(each, cell.machine) for each in map(in_steps, loads))
     else:
         loads = map(in_steps, loads)
     return PlanInLoads(tuple(plan.sheet_mm), tuple(map(_from_paper_to_paper, loads)), lasts_mm)
 
 
-def _on_map(a_pass, machine):
+def _in_lines(a_pass, machine):
     axes = axes_of(a_pass)
-    rows = on_map_mm(
+    rows = in_lines_mm(
         np.asarray(a_pass.poses_mm if axes is None else np.hstack([a_pass.poses_mm, axes])), machine
     )
     return on_way(a_pass, rows[:, :3], (), None if axes is None else unit(rows[:, 3:]))

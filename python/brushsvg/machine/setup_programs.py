@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import Error
 from .cell import LEAST_SPEED_MM_S, Cell, robot_from_paper, why_no_waiting
-from .distortion import on_map_mm, told_mm
+from .distortion import in_lines_mm, told_mm
 from .motion import Move, Program, Section, Wait, at_told_speeds, rise_over
 from .move_extents import ways
 from .program import approach_mm_s, astray_in, out_of_arm, over, safely_over
@@ -214,7 +214,7 @@ def _stroke_at(ends, height_mm: float, clearance_mm: float, brush, cell: Cell) -
     """A stroke from one place (x, y) to another at a height."""
     speed_mm_s = min(touching_mm_s(brush, cell), SPEED_MM_S)
     press_mm_s = min(cell.speeds.press_mm_s, speed_mm_s)
-    way = on_map_mm(np.vstack([over(end, height_mm) for end in ends]), cell.machine)
+    way = in_lines_mm(np.vstack([over(end, height_mm) for end in ends]), cell.machine)
     told = told_mm(way, cell.machine)
     down, up = (told_mm(over(end, clearance_mm), cell.machine) for end in ends)
     return (

@@ -52,7 +52,9 @@ class Correction:
 
 def machine_sha256(machine: Machine | None) -> str:
     """Of what a cell undoes of its machine; None undoes nothing."""
-    return hashlib.sha256(json.dumps(asdict(machine or Machine())).encode()).hexdigest()
+    table = asdict(machine or Machine())
+    known = {key: value for key, value in table.items() if value or not key.startswith("field")}
+    return hashlib.sha256(json.dumps(known).encode()).hexdigest()
 
 
 def beside_machine(corrections: tuple[Correction, ...], machine: Machine | None) -> tuple[Correction, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..calibration.machine_found import field_lines
 from ..machine.cell import LEAST_BACKLASH_MM, Machine
 from .fault_model import MACHINE, PAPER
 from .faults import Faults
@@ -50,6 +51,9 @@ def mended(faults: Faults, middle_mm, before: Machine | None, along: Along = (0,
         _rounded(np.array(before.tilt_mm_per_mm) + tilt @ was),
         before.map_mm,
         tuple(round(float(value), 3) for value in backlash),
+        tuple(map(_rounded, beyond @ before.field_mm)) if before.field_mm else (),
+        before.field_middle_mm,
+        before.field_reach_mm,
     )
 
 
@@ -75,6 +79,8 @@ def as_table(machine: Machine) -> list[str]:
         ]
     if any(machine.backlash_mm):
         lines.append("backlash_mm = [{:.3f}, {:.3f}]".format(*machine.backlash_mm))
+    if machine.field_mm:
+        lines += field_lines(machine)
     return lines
 
 

@@ -21,6 +21,7 @@ from ..machine.motion import duration_s
 from ..machine.paint_reload import PlanInLoads, fetched_mm, in_loads, too_long, with_one_pen, without_paint
 from ..machine.posts import POSTS
 from ..machine.program import WHOLE_JOB, Job, Walked
+from ..machine.smooth_field import beyond_field
 from ..text_summary import summarized
 from . import cancelling, outputs, prediction, preparation
 from .cancelling import Cancel
@@ -247,7 +248,8 @@ class Tried:
         pens = with_one_pen(self.loads, self.cell, first) if self.is_program else []
         brush, cell = self.work.brush, self.cell
         out_of_turn = _out_of_turn(self.work, self.order, first)
-        return [*without_paint(brush, cell), *out_of_turn, *too_long(self.loads, brush, cell), *pens]
+        beyond = beyond_field(self.loads.loads, cell) if self.is_program else []
+        return [*without_paint(brush, cell), *out_of_turn, *too_long(self.loads, brush, cell), *pens, *beyond]
 
     def time_s(self) -> float | None:
         """How long the machine takes for the program, or for one of the plan."""

@@ -13,7 +13,7 @@ from ..machine.arc_chords import with_chords
 from ..machine.as_run import as_run
 from ..machine.backlash import from_air_mm
 from ..machine.cell import Machine
-from ..machine.distortion import told_mm
+from ..machine.distortion import in_lines_mm, told_mm
 from ..machine.paint_reload import dips_without_cell
 from ..machine.pass_way import on_way
 from .studio import Studio
@@ -35,7 +35,14 @@ def painted(
     brush whose marks narrow until then, by default at its beginning. Error where the brush would be pressed beyond its
     range."""
     off = studio.machine
-    machine = Machine(off.lean_mm_per_mm, off.scale, off.skew, off.height_mm, off.tilt_mm_per_mm)
+    middle = 0.5 * np.array(plan.sheet_mm)
+    over_sheet = {
+        "field_mm": (off.field_x_mm, off.field_y_mm),
+        "field_middle_mm": tuple(middle),
+        "field_reach_mm": tuple(middle),
+    }
+    bent = over_sheet if np.any(over_sheet["field_mm"]) else {}
+    machine = Machine(off.lean_mm_per_mm, off.scale, off.skew, off.height_mm, off.tilt_mm_per_mm, **bent)
     brush = with_factors(brush, {"lag": (studio.brush.lag,), "half_width": (studio.brush.half_width,)})
     run = as_run([_told(one, undone) for one in plan.passes], machine, off.backlash_mm)
     marks = _core.simulate(_core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, run), brush)
@@ -45,7 +52,6 @@ def painted(
     always = np.random.default_rng(0)  # of this machine: whatever is random
     own = {one.stroke: always.normal(0, 1, 2) * off.own_mm for one in plan.passes}
     random = np.random.default_rng(seed + 1)
-    middle = 0.5 * np.array(plan.sheet_mm)
     turn = rotation(np.radians(studio.sheet.turn_deg))
     out = []
     for mark in marks.passes:
@@ -66,7 +72,7 @@ def painted(
 
 def _told(a_pass, undone: Machine | None):
     poses = np.asarray(with_chords(a_pass).poses_mm, dtype=float).reshape(-1, 3)
-    told = told_mm(poses, undone)
+    told = told_mm(in_lines_mm(poses, undone), undone)
     if undone and any(undone.backlash_mm):
         told = from_air_mm(told, undone.backlash_mm)
     return on_way(a_pass, told, [])

@@ -17,8 +17,8 @@ def _number(default: float, least: float, greatest: float):
     return field(default=default, metadata={"range": (least, greatest), "count": None})
 
 
-def _pair(default: float, least: float, greatest: float):
-    return field(default=(default, default), metadata={"range": (least, greatest), "count": 2})
+def _pair(default: float, least: float, greatest: float, count: int = 2):
+    return field(default=(default,) * count, metadata={"range": (least, greatest), "count": count})
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,8 @@ class BrushOff:
 @dataclass(frozen=True)
 class MachineOff:
     """The machine, as a cell's table [machine] has it; backlash_mm: of x and y, all of it; own_mm: how far each stroke
-    lies elsewhere, always alike (standard deviation); random_mm: the same, another time elsewhere."""
+    lies elsewhere, always alike (standard deviation); random_mm: the same, another time elsewhere; field_x_mm, field_y_mm: the rows of
+    field_mm, over the whole sheet."""
 
     scale: tuple[float, float] = _pair(1.0, 0.9, 1.1)
     skew: float = _number(0.0, -0.1, 0.1)
@@ -42,6 +43,8 @@ class MachineOff:
     backlash_mm: tuple[float, float] = _pair(0.0, 0.0, 3.0)
     own_mm: float = _number(0.0, 0.0, 5.0)
     random_mm: float = _number(0.0, 0.0, 5.0)
+    field_x_mm: tuple[float, float, float] = _pair(0.0, -5.0, 5.0, 3)
+    field_y_mm: tuple[float, float, float] = _pair(0.0, -5.0, 5.0, 3)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
+from scipy.optimize import least_squares
 
 
 def turned_deg(x_deg: float, y_deg: float, z_deg: float) -> np.ndarray:
@@ -81,8 +82,19 @@ def true_of(told: np.ndarray, machine: dict | None) -> np.ndarray:
         - on_map(told, machine.get("map_mm", ()))
     )
     pressed = np.maximum(-z, 0.0)
+    aside = np.array([bent(place, machine) for place in told[:, :2]])
     x, y = along * x + machine.get("skew", 0.0) * y + lean[0] * pressed, across * y + lean[1] * pressed
-    return np.column_stack([x, y, z])
+    return np.column_stack([x + aside[:, 0], y + aside[:, 1], z])
+
+
+def bent(place, machine: dict) -> np.ndarray:
+    """(2,) by how much the machine's field takes the tool aside: for x and for y half a quadratic form's value."""
+    if "field_mm" not in machine:
+        return np.zeros(2)
+    reach = np.array(machine["field_reach_mm"])
+    at = np.minimum(np.maximum((place - np.array(machine["field_middle_mm"])) / reach, -1), 1)
+    forms = (np.array([[2 * xx, xy], [xy, 2 * yy]]) for xx, xy, yy in machine["field_mm"])
+    return np.array([at @ form @ at / 2 for form in forms])
 
 
 def on_map(told: np.ndarray, rows) -> np.ndarray:
@@ -99,7 +111,12 @@ def told_in_air(place, height: float, machine: dict | None) -> np.ndarray:
     """(3,) what such a machine is told so that the tool is over a place: there it leans nowhere."""
     along, across = (machine or {}).get("scale", (1.0, 1.0))
     y = place[1] / across
-    return np.array([(place[0] - (machine or {}).get("skew", 0.0) * y) / along, y, height])
+    straight = np.array([(place[0] - (machine or {}).get("skew", 0.0) * y) / along, y])
+    if "field_mm" not in (machine or {}):
+        return np.array([*straight, height])
+    axes = np.array([[along, machine.get("skew", 0.0)], [0.0, across]])
+    found = least_squares(lambda told: axes @ told + bent(told, machine) - place[:2], straight, xtol=1e-15)
+    return np.array([*found.x, height])
 
 
 def angle_rad(one: np.ndarray, other: np.ndarray) -> float:

@@ -153,7 +153,22 @@ def _machine(random, dialect: str) -> Machine:
         found = found if is_servo else replace(found, tilt_mm_per_mm=pair(0.005, 0.03))
     if random.random() < 0.4 and not is_servo:
         found = replace(found, map_mm=_map(random, 3.0 if much else 0.6))
+    if random.random() < 0.4:
+        found = replace(found, **_field(random, 3.0 if much else 0.8))
     return found
+
+
+def _field(random, most_mm: float) -> dict:
+    """A field whose place need not be the sheet's; no steeper than a cell may say."""
+    reach = random.uniform(30.0, 150.0, 2)
+    most_mm = min(most_mm, 0.1 * reach.min() / 3)
+    numbers = random.uniform(-most_mm, most_mm, (2, 3)).tolist()
+    middle = random.uniform((0, 0), SHEET)
+    return {
+        "field_mm": tuple(map(tuple, numbers)),
+        "field_middle_mm": tuple(middle.tolist()),
+        "field_reach_mm": tuple(reach.tolist()),
+    }
 
 
 def _map(random, most_mm: float) -> tuple:
