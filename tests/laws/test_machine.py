@@ -135,8 +135,10 @@ def test_brush_and_machine_come_back(parts):
 def test_without_a_field_none_is_said_to_be_certain(seed):
     _, painted = painted_by(seed, ())
     made = calibrate_marks(painted, "b", options=options_for(("field",)))
-    text = report(made)
-    assert "field: none that is certain" in text and "field_mm" not in text
+    found = machine_found.numbers(made.fit, made.covariance, made.expected)
+    assert len(found) == 6 and not machine_found.has_field(found), found
+    assert len(machine_found.told(found)) == 7, "and that none is certain"
+    assert "field_mm" not in report(made)
 
 
 def test_without_the_machine_the_lag_is_off():

@@ -146,7 +146,7 @@ def test_strokes_beyond_where_it_was_measured_are_told(desk, capsys):
         write_cell(replace(find_cell("linuxcnc-3axis"), name="mine", machine=NARROW))
     )
     status, _, err = call(capsys, "convert", "two.svg", "two.ngc", "--cell", "mine.toml")
-    assert status == 0 and any("beyond where the field" in line for line in err)
+    assert status == 0 and any("[30.0, 90.0]" in line for line in err)
 
 
 @pytest.mark.parametrize(
