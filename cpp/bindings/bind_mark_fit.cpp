@@ -35,11 +35,10 @@ inline constexpr auto members<brushsvg::fit::LawPrior> =
     std::tuple(&brushsvg::fit::LawPrior::laws, &brushsvg::fit::LawPrior::rows);
 
 template <>
-inline constexpr auto members<brushsvg::fit::Machine> =
-    std::tuple(&brushsvg::fit::Machine::lean_mm_per_mm, &brushsvg::fit::Machine::scale, &brushsvg::fit::Machine::skew,
-               &brushsvg::fit::Machine::tilt_mm_per_mm, &brushsvg::fit::Machine::backlash_mm,
-               &brushsvg::fit::Machine::field_mm, &brushsvg::fit::Machine::field_middle_mm,
-               &brushsvg::fit::Machine::field_reach_mm);
+inline constexpr auto members<brushsvg::fit::Machine> = std::tuple(
+    &brushsvg::fit::Machine::lean_mm_per_mm, &brushsvg::fit::Machine::scale, &brushsvg::fit::Machine::skew,
+    &brushsvg::fit::Machine::tilt_mm_per_mm, &brushsvg::fit::Machine::backlash_mm, &brushsvg::fit::Machine::field_mm,
+    &brushsvg::fit::Machine::field_middle_mm, &brushsvg::fit::Machine::field_reach_mm);
 
 template <>
 inline constexpr auto members<brushsvg::fit::MarkOptions> =
@@ -52,9 +51,8 @@ inline constexpr auto members<brushsvg::fit::MarkOptions> =
                &brushsvg::fit::MarkOptions::displacement_mm, &brushsvg::fit::MarkOptions::lean_mm_per_mm,
                &brushsvg::fit::MarkOptions::axes, &brushsvg::fit::MarkOptions::tilt_mm_per_mm,
                &brushsvg::fit::MarkOptions::backlash_mm, &brushsvg::fit::MarkOptions::field_mm,
-               &brushsvg::fit::MarkOptions::spacing_mm,
-               &brushsvg::fit::MarkOptions::noise_mm, &brushsvg::fit::MarkOptions::noise_length_mm,
-               &brushsvg::fit::MarkOptions::most_iterations);
+               &brushsvg::fit::MarkOptions::spacing_mm, &brushsvg::fit::MarkOptions::noise_mm,
+               &brushsvg::fit::MarkOptions::noise_length_mm, &brushsvg::fit::MarkOptions::most_iterations);
 
 template <>
 inline constexpr auto members<brushsvg::fit::MarkMiss> =

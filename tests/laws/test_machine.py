@@ -96,7 +96,9 @@ def lag_off(made, brush):
     return max(abs(made.brush.lag(depth) / brush.law("lag")(depth) - 1) for depth in depths)
 
 
-@pytest.mark.parametrize("parts", [("lean", "axes"), ("lean", "axes", "tilt"), ("tilt",), ("lean", "axes", "field"), ("field",)])
+@pytest.mark.parametrize(
+    "parts", [("lean", "axes"), ("lean", "axes", "tilt"), ("tilt",), ("lean", "axes", "field"), ("field",)]
+)
 def test_brush_and_machine_come_back(parts):
     brush, painted = painted_by(5, parts)
     made = calibrate_marks(painted, "b", options=options_for(parts))
@@ -115,7 +117,9 @@ def test_brush_and_machine_come_back(parts):
         for term, value in zip(("u u", "u v", "v v"), row, strict=True)
     }
     found = machine_found.numbers(made.fit, made.covariance, made.expected)
-    assert len(found) == 2 * ("lean" in parts) + 3 * ("axes" in parts) + 2 * ("tilt" in parts) + 6 * ("field" in parts)
+    assert len(found) == 2 * ("lean" in parts) + 3 * ("axes" in parts) + 2 * ("tilt" in parts) + 6 * (
+        "field" in parts
+    )
     for one in found:
         assert abs(one.value - truth[one.name]) < 2 * one.half, one
         assert one.half < 0.6 * machine_found.PARTS[one.part][1], f"{one}: hardly more than the prior"

@@ -87,11 +87,15 @@ def test_lines_on_the_paper_are_lines_all_along(desk, machine):
     assert beside.max() > 0.3, "and it is told otherwise"
 
 
-@pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-servo", "ur5e", "jaka-zu3", "irb120", "axidraw-ebb"])
+@pytest.mark.parametrize(
+    "name", ["linuxcnc-3axis", "grbl-servo", "ur5e", "jaka-zu3", "irb120", "axidraw-ebb"]
+)
 @pytest.mark.parametrize("machine", [BENT, NARROW, ON_A_MAP])
 def test_check_reads_back_what_was_planned(desk, capsys, name, machine):
     if LANGUAGES[name] in (".nc", ".ebb"):
-        machine = replace(machine, lean_mm_per_mm=(0.0, 0.0), map_mm=(), height_mm=0.0)  # 5 mm is all it lifts
+        machine = replace(
+            machine, lean_mm_per_mm=(0.0, 0.0), map_mm=(), height_mm=0.0
+        )  # 5 mm is all it lifts
     suffix = LANGUAGES[name]
     cell = replace(find_cell(name), name="mine", machine=machine)
     (desk / "mine.toml").write_text(write_cell(cell))
@@ -187,9 +191,7 @@ def test_a_mended_cell_undoes_the_field_as_well():
     now = mended(found(replace(TRUE, lean_mm_per_mm=(0.0, 0.0))), MIDDLE, BENT)
     told = np.random.default_rng(2).uniform((0, 0, 0), (120, 70, 0), (50, 3))
     once = goes(told, BENT)[:, :2]
-    twice = np.column_stack(
-        [TRUE.scale[0] * once[:, 0] + TRUE.skew * once[:, 1], TRUE.scale[1] * once[:, 1]]
-    )
+    twice = np.column_stack([TRUE.scale[0] * once[:, 0] + TRUE.skew * once[:, 1], TRUE.scale[1] * once[:, 1]])
     assert goes(told, now)[:, :2] == pytest.approx(twice, abs=1e-3)
 
 

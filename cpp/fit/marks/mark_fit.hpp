@@ -39,8 +39,9 @@ struct MarkLaws {
 
 /// How a machine takes the tool elsewhere than it was told. Told (x, y) from MarkFit::centre_mm and a depth d it goes
 /// to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d, and is tilt_x x + tilt_y y deeper; on each axis it
-/// stays behind by half its backlash. A smooth field takes it elsewhere still by a u^2 + b u v + c v^2 [mm], three numbers
-/// for x and three for y, where u and v are how far it was told to go from field_middle_mm, over field_reach_mm.
+/// stays behind by half its backlash. A smooth field takes it elsewhere still by a u^2 + b u v + c v^2 [mm], three
+/// numbers for x and three for y, where u and v are how far it was told to go from field_middle_mm, over
+/// field_reach_mm.
 struct Machine {
     std::array<double, 2> lean_mm_per_mm{0.0, 0.0}, scale{1.0, 1.0};
     double skew = 0.0;

@@ -147,7 +147,10 @@ Layout MarkModel::layout_of(const MarkOptions& options) {
 }
 
 MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse)
-    : layout_(layout_of(options)), deepest_(options.deepest_mm), coarse_(coarse), round_tail_(options.round_tail),
+    : layout_(layout_of(options)),
+      deepest_(options.deepest_mm),
+      coarse_(coarse),
+      round_tail_(options.round_tail),
       is_bent_(options.field_mm > 0.0) {
     lag_powers_ = powers_from_controls(layout_.lag - 1, 0.0, deepest_);
     const MatrixXd whole = powers_from_controls(layout_.half, 0.0, deepest_);
@@ -305,9 +308,14 @@ Machine MarkModel::machine(const VectorXd& shared) const {
     const auto three = [&](int first) {
         return std::array<double, 3>{by[std::size_t(first)], by[std::size_t(first + 1)], by[std::size_t(first + 2)]};
     };
-    return {two(MachineAt::lean, 0.0), two(MachineAt::scale, 1.0), by[MachineAt::skew], two(MachineAt::tilt, 0.0),
-            two(MachineAt::backlash, 0.0), {three(MachineAt::field), three(MachineAt::field + 3)},
-            {box_.middle.x(), box_.middle.y()}, {box_.reach.x(), box_.reach.y()}};
+    return {two(MachineAt::lean, 0.0),
+            two(MachineAt::scale, 1.0),
+            by[MachineAt::skew],
+            two(MachineAt::tilt, 0.0),
+            two(MachineAt::backlash, 0.0),
+            {three(MachineAt::field), three(MachineAt::field + 3)},
+            {box_.middle.x(), box_.middle.y()},
+            {box_.reach.x(), box_.reach.y()}};
 }
 
 bool MarkModel::follow(const Painted& painted, const VectorXd& shared, bool by_laws, Footprints& out) const {

@@ -82,8 +82,7 @@ template <class T>
 RunWay<T> run_by(const Poses& poses, const std::vector<Arc>& arcs, const MachineHere& machine, double height_mm,
                  int numbers) {
     RunWay<T> out{poses, arcs, machine, T(height_mm, kMostTerms), {}};
-    for (int i = 0; i < numbers; ++i)
-        out.by[std::size_t(i)] = T(machine.by[std::size_t(i)], kMostTerms + 1 + i);
+    for (int i = 0; i < numbers; ++i) out.by[std::size_t(i)] = T(machine.by[std::size_t(i)], kMostTerms + 1 + i);
     return out;
 }
 

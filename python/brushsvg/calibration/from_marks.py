@@ -212,7 +212,15 @@ def _all_fitted(fit, like, deepest_mm: float) -> np.ndarray:
         return all_fitted
     one = fit.machine
     return np.concatenate(
-        [all_fitted, one.lean_mm_per_mm, one.scale, [one.skew], one.tilt_mm_per_mm, one.backlash_mm, *one.field_mm]
+        [
+            all_fitted,
+            one.lean_mm_per_mm,
+            one.scale,
+            [one.skew],
+            one.tilt_mm_per_mm,
+            one.backlash_mm,
+            *one.field_mm,
+        ]
     )
 
 

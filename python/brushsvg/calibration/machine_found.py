@@ -23,7 +23,9 @@ PARTS = {
 }
 TERMS = ("u u", "u v", "v v")
 LEAST_MM = 0.01  # of backlash that a cell undoes
-CERTAIN = 1.6  # half 95 % intervals: none of a field's six numbers is farther from 0 by chance in 99 of 100 fits
+CERTAIN = (
+    1.6  # half 95 % intervals: none of a field's six numbers is farther from 0 by chance in 99 of 100 fits
+)
 HARDLY = 0.8  # of what a number was known to beforehand: what is known no better, marks say nothing of
 # Where the ways on the paper go one way by more than this (0: all ways alike, 1: one), lean along it is what a longer
 # lag at greater depth would be

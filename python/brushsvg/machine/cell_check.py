@@ -458,8 +458,8 @@ def _check_field(machine: Machine) -> None:
         raise Error(sentence, where=f"machine.{missing[0]}", code="key-missing")
     if machine.field_mm and (slope := steepest(machine)) > MOST_BENT:
         sentence = (
-            f"the field changes by up to {slope:.3g} mm in a mm, outside the range [0, {MOST_BENT:g}]: with field_reach_mm "
-            f"{[*machine.field_reach_mm]} its numbers are too large"
+            f"the field changes by up to {slope:.3g} mm in a mm, outside the range [0, {MOST_BENT:g}]: with "
+            f"field_reach_mm {[*machine.field_reach_mm]} its numbers are too large"
         )
         raise Error(sentence, where="machine.field_mm", code="cell-machine")
 

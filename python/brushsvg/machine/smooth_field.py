@@ -72,8 +72,9 @@ def beyond_field(passes, cell: Cell) -> list[Notice]:
         return []
     (x, y), (along, up) = cell.machine.field_middle_mm, cell.machine.field_reach_mm
     sentence = (
-        f"the tool goes {far[stroke]:.1f} mm beyond where the field of cell {cell.name} was measured, outside the ranges "
-        f"[{x - along:.1f}, {x + along:.1f}] and [{y - up:.1f}, {y + up:.1f}] mm: it is taken to be as at its edge there"
+        f"the tool goes {far[stroke]:.1f} mm beyond where the field of cell {cell.name} was measured, outside the "
+        f"ranges [{x - along:.1f}, {x + along:.1f}] and [{y - up:.1f}, {y + up:.1f}] mm: there it is taken to be as at "
+        "its edge"
     )
     return [
         Notice(

@@ -32,8 +32,8 @@ class BrushOff:
 @dataclass(frozen=True)
 class MachineOff:
     """The machine, as a cell's table [machine] has it; backlash_mm: of x and y, all of it; own_mm: how far each stroke
-    lies elsewhere, always alike (standard deviation); random_mm: the same, another time elsewhere; field_x_mm, field_y_mm: the rows of
-    field_mm, over the whole sheet."""
+    lies elsewhere, always alike (standard deviation); random_mm: the same, another time elsewhere; field_x_mm,
+    field_y_mm: the rows of field_mm, over the whole sheet."""
 
     scale: tuple[float, float] = _pair(1.0, 0.9, 1.1)
     skew: float = _number(0.0, -0.1, 0.1)

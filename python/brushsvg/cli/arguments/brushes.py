@@ -112,7 +112,8 @@ def add_calibrate(commands) -> None:
         metavar="PARTS",
         type=values.machine_parts,
         default=(),
-        help="from painted marks: also find what the machine does besides what it is told, of lean,axes,tilt,backlash,field",
+        help="from painted marks: also find what the machine does besides what it is told, of "
+        "lean,axes,tilt,backlash,field",
     )
     fit.add_argument(
         "--paint",
