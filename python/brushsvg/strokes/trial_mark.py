@@ -28,8 +28,14 @@ def trial_overlap(strokes: list, rings: list[np.ndarray], brush) -> float:
     return common / both
 
 
+def misplaced_mm2(marks, rings: list[np.ndarray], brush) -> float:
+    """Area of what is wanted and not painted, and of what is painted and not wanted."""
+    mark = outline_of(marks, brush)
+    return _core.area(mark) + _core.area(rings) - 2 * _core.area(_core.intersect(mark, rings))
+
+
 def misplaced_seen_mm2(marks, rings: list[np.ndarray], brush) -> float:
-    """Area of a shape that marks leave and of paint beside it, in pixels."""
+    """The same in pixels."""
     common, both, px_per_mm = _shared_px(marks, rings, brush)
     return (both - common) / px_per_mm**2
 
