@@ -408,7 +408,8 @@ std::vector<double> clearance(const Rings& rings, const Ring& points) {
 
 std::vector<double> first_crossings(const Rings& rings, const Ring& places, const Ring& ways) {
     if (ways.rows() != places.rows())
-        throw Error("value-invalid", std::to_string(ways.rows()) + " ways for " + std::to_string(places.rows()) + " places");
+        throw Error("sizes-differ",
+                    std::to_string(ways.rows()) + " ways for " + std::to_string(places.rows()) + " places");
     std::vector<double> nearest(std::size_t(places.rows()), std::numeric_limits<double>::infinity());
     for (Eigen::Index k = 0; k < places.rows(); ++k) {
         const Eigen::Vector2d way = ways.row(k).transpose();

@@ -218,7 +218,9 @@ def _all_or_any(mask: np.ndarray, rule) -> np.ndarray:
     return mask
 
 
-def _missed(element: str, rings: list[np.ndarray], marks, known: list[list[np.ndarray]], brush) -> list[Blank]:
+def _missed(
+    element: str, rings: list[np.ndarray], marks, known: list[list[np.ndarray]], brush
+) -> list[Blank]:
     import shapely
 
     from .contour_fill import region

@@ -87,7 +87,7 @@ def run_to_cut(line: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
     ways = np.stack([axes @ rotation(turn_rad) for turn_rad in TURNS_RAD], axis=1)
     cuts_mm, slopes = straight_cuts(back[level, None, :2], ways, halves[level, None], rings)
     is_cut = np.abs(np.arctan(slopes) - TURNS_RAD) < np.arctan(STEEPEST)  # False for nan
-    for row, turn in np.argwhere(is_cut):  # the first place back where a line with straight sides runs up to a cut
+    for row, turn in np.argwhere(is_cut):  # the first place back with straight sides up to a cut
         k, ahead, to_cut_mm, slope = level[row], ways[row, turn], cuts_mm[row, turn], slopes[row, turn]
         here, half = back[k, :2], back[k, 2]
         if _has_straight_sides(here, ahead, half, to_cut_mm, slope, rings):
