@@ -23,10 +23,10 @@ void bind_region(py::module_& m) {
     m.def("convex_hull", &convex_hull, py::arg("points"), "Convex hull of points (n, 2), counter-clockwise.");
     m.def("clearance", &clearance, py::arg("rings"), py::arg("points"), unlocked,
           "Distance [mm] of points (n, 2) from the outline, on whichever side of it.");
-    m.def(
-        "first_crossings", &first_crossings, py::arg("rings"), py::arg("places"), py::arg("way"), unlocked,
-        "How far ahead [mm] of each place (n, 2), along a unit vector, the outline of rings is first crossed; infinite "
-        "where it is not.");
+    m.def("first_crossings", &first_crossings, py::arg("rings"), py::arg("places"), py::arg("ways"), unlocked,
+          "How far ahead [mm] of each place (n, 2), along the unit vector in its row of ways (n, 2), the outline of "
+          "rings "
+          "is first crossed; infinite where it is not. Error where there are not as many ways as places.");
     m.def("area", &area, py::arg("rings"),
           "Area [mm^2], clockwise rings, which are holes, taken off: negative where they outweigh.");
     m.def(

@@ -406,9 +406,13 @@ std::vector<double> clearance(const Rings& rings, const Ring& points) {
     return distances;
 }
 
-std::vector<double> first_crossings(const Rings& rings, const Ring& places, const Eigen::Vector2d& way) {
+std::vector<double> first_crossings(const Rings& rings, const Ring& places, const Ring& ways) {
+    if (ways.rows() != places.rows())
+        throw Error("sizes-differ",
+                    std::to_string(ways.rows()) + " ways for " + std::to_string(places.rows()) + " places");
     std::vector<double> nearest(std::size_t(places.rows()), std::numeric_limits<double>::infinity());
-    for (Eigen::Index k = 0; k < places.rows(); ++k)
+    for (Eigen::Index k = 0; k < places.rows(); ++k) {
+        const Eigen::Vector2d way = ways.row(k).transpose();
         for (const Ring& ring : rings) {
             checkpoint(1 + int(ring.rows() / 100));
             const auto ahead = [&](Eigen::Index i) { return (ring.row(i) - places.row(k)).dot(way); };
@@ -427,6 +431,7 @@ std::vector<double> first_crossings(const Rings& rings, const Ring& places, cons
                 left_before = left_here;
             }
         }
+    }
     return nearest;
 }
 

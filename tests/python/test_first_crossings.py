@@ -1,9 +1,10 @@
 """How far ahead of a place an outline is crossed, against shapely."""
 
 import numpy as np
+import pytest
 from shapely import LineString, MultiLineString, Point, get_coordinates
 
-from brushsvg import _core
+from brushsvg import Error, _core
 
 
 def _blob(random, middle, radius_mm):
@@ -18,9 +19,9 @@ def test_the_first_crossing_ahead_is_that_of_shapely():
     for _ in range(60):
         rings = [_blob(random, (0, 0), 20), _blob(random, (0, 0), 5)[::-1], _blob(random, (25, 9), 6)]
         outlines = MultiLineString([[*ring, ring[0]] for ring in rings])
-        places, angle = random.uniform(-30, 40, (9, 2)), random.uniform(0, 2 * np.pi)
-        way = np.array([np.cos(angle), np.sin(angle)])
-        for place, found in zip(places, _core.first_crossings(rings, places, way), strict=True):
+        places, angles = random.uniform(-30, 40, (9, 2)), random.uniform(0, 2 * np.pi, 9)
+        ways = np.column_stack([np.cos(angles), np.sin(angles)])
+        for place, way, found in zip(places, ways, _core.first_crossings(rings, places, ways), strict=True):
             met = get_coordinates(LineString([place, place + 200 * way]).intersection(outlines))
             wanted = min((Point(place).distance(Point(at)) for at in met), default=np.inf)
             crossed += np.isfinite(wanted)
@@ -30,8 +31,12 @@ def test_the_first_crossing_ahead_is_that_of_shapely():
 
 def test_nothing_is_crossed_where_there_is_nothing_ahead():
     square = np.array([[0, 0], [4, 0], [4, 4], [0, 4.0]])
-    assert _core.first_crossings([square], [[2, 2]], [1, 0]) == [2]
-    assert _core.first_crossings([square], [[5, 2]], [1, 0]) == [np.inf]
-    assert _core.first_crossings([square], [[5, 2]], [-1, 0]) == [1]
-    assert _core.first_crossings([], [[5, 2]], [1, 0]) == [np.inf]
-    assert _core.first_crossings([np.empty((0, 2))], [[5, 2]], [1, 0]) == [np.inf]
+    assert _core.first_crossings([square], [[2, 2]], [[1, 0]]) == [2]
+    assert _core.first_crossings([square], [[5, 2], [5, 2]], [[1, 0], [-1, 0]]) == [np.inf, 1]
+    assert _core.first_crossings([], [[5, 2]], [[1, 0]]) == [np.inf]
+    assert _core.first_crossings([np.empty((0, 2))], [[5, 2]], [[1, 0]]) == [np.inf]
+
+
+def test_each_place_has_its_way():
+    with pytest.raises(Error, match="1 ways for 2 places"):
+        _core.first_crossings([], [[5, 2], [6, 2]], [[1, 0]])

@@ -34,7 +34,8 @@ Ring convex_hull(const Ring& points);
 /// Distance [mm] of each point from the outline, on whichever side of it.
 std::vector<double> clearance(const Rings& rings, const Ring& points);
 
-/// How far ahead [mm] of each place, along a unit vector, an outline is first crossed; infinite where none is.
-std::vector<double> first_crossings(const Rings& rings, const Ring& places, const Eigen::Vector2d& way);
+/// How far ahead [mm] of each place, along the unit vector in its row of ways, an outline is first crossed; infinite
+/// where none is. Error where there are not as many ways as places.
+std::vector<double> first_crossings(const Rings& rings, const Ring& places, const Ring& ways);
 
 }  // namespace brushsvg

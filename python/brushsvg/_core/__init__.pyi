@@ -1510,10 +1510,10 @@ def fill(
 def first_crossings(
     rings: collections.abc.Sequence[numpy.typing.ArrayLike],
     places: numpy.typing.ArrayLike,
-    way: tuple[float, float],
+    ways: numpy.typing.ArrayLike,
 ) -> list[float]:
     """
-    How far ahead [mm] of each place (n, 2), along a unit vector, the outline of rings is first crossed; infinite where it is not.
+    How far ahead [mm] of each place (n, 2), along the unit vector in its row of ways (n, 2), the outline of rings is first crossed; infinite where it is not. Error where there are not as many ways as places.
     """
 
 def fit_curve(

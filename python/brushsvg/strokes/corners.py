@@ -134,24 +134,16 @@ def _parts(stroke, brush) -> list:
 
 def _is_better_lifted(line: Line, before: int, corner: int, after: int, brush) -> bool:
     from .. import _core
+    from .trial_mark import misplaced_mm2, trial_marks
 
     whole = line_stroke(line.between(before, after))
     parts = [line_stroke(line.between(before, corner)), line_stroke(line.between(corner, after))]
     wanted = _core.wanted_outline(whole, 0.01)
     try:
-        gain_mm2 = misplaced_mm2([whole], wanted, brush) - misplaced_mm2(parts, wanted, brush)
+        one, several = (misplaced_mm2(trial_marks(some, brush), wanted, brush) for some in ([whole], parts))
     except Error:
         return False
-    return gain_mm2 > _WORTH * (2 * max(half for _, half in whole.half_width)) ** 2
-
-
-def misplaced_mm2(strokes: list, wanted: list, brush) -> float:
-    """Area of what is wanted and not painted, and of what is painted and not wanted."""
-    from .. import _core
-    from .trial_mark import trial_mark
-
-    mark = trial_mark(strokes, brush)
-    return _core.area(mark) + _core.area(wanted) - 2 * _core.area(_core.intersect(mark, wanted))
+    return one - several > _WORTH * (2 * max(half for _, half in whole.half_width)) ** 2
 
 
 def drawn_line(cubics: np.ndarray, half_width: list) -> Line:

@@ -7,8 +7,8 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error
-from .trial_mark import trial_mark
-from .unreached import Blank, blank_of_mark, finest, large_blanks
+from .trial_mark import outline_of, trial_mark, trial_marks
+from .unreached import Blank, blank_of_mark, finest, large_blanks, may_miss
 
 # Of a blank piece, what its stroke paints of the shape less what it paints beside it: else it is not worth its poses.
 _WORTH = 0.4
@@ -69,9 +69,12 @@ def _limbs(element: str, drawn: list, painted: list, brush) -> list:
         [ring for stroke in drawn if stroke.origin.element == element for ring in stroke.wanted_mm]
     )
     try:
-        mark = trial_mark(own, brush)
+        marks = trial_marks(own, brush)
     except Error:
         return []  # which is told when the plan is made
+    if not may_miss(shape, marks, brush):
+        return []
+    mark = outline_of(marks, brush)
     limbs: list = []
     refused: list[Blank] = []
     while len(limbs) + len(refused) < _MOST:

@@ -11,7 +11,8 @@ import numpy as np
 from ..errors import need
 from ..geometry.arc_length import knots, parameters_at
 from ..geometry.cubics import split
-from .corners import Line, drawn_line, line_stroke, misplaced_mm2
+from .corners import Line, drawn_line, line_stroke
+from .trial_mark import misplaced_mm2, misplaced_seen_mm2, trial_marks
 
 # Turns of less are bends, and of more have two legs side by side, of which the second begins on none of the first.
 LEAST_RAD, MOST_RAD = np.radians(60), np.radians(120)
@@ -22,6 +23,7 @@ STUB = 0.2  # and of how little of a leg its direction is known
 # A first leg so much thinner than the second hides no pointed beginning of that; but a squared one its end.
 THIN = 0.65
 WORTH = 0.15  # two strokes for one, in squares of the half width: the outer corner of 90 degrees has 0.21
+PLAIN = 0.04  # beside that, what is won is plain in pixels: they are off by 0.013 at most (257 corners of characters)
 HARDLY_WIDER = 1.05  # than the brush: what is wider yet may be painted in passes
 
 
@@ -65,15 +67,27 @@ def _parts(stroke, brush) -> list:
     ]
     if not corners:
         return [stroke]
-    whole_mm2 = misplaced_mm2([_paintable(stroke, brush)], stroke.wanted_mm, brush)
+    whole = trial_marks([_paintable(stroke, brush)], brush)
     better = []
     for corner in corners:
         parts = _cut(stroke, line, [corner])
-        if parts and whole_mm2 - misplaced_mm2(
-            [_paintable(p, brush) for p in parts], stroke.wanted_mm, brush
-        ) > (WORTH * max(corner.legs_mm) ** 2):
-            better.append(corner)
+        if parts:
+            cut = trial_marks([_paintable(part, brush) for part in parts], brush)
+            if _won(whole, cut, stroke.wanted_mm, brush, max(corner.legs_mm)) > WORTH:
+                better.append(corner)
     return _cut(stroke, line, better) or [stroke] if better else [stroke]
+
+
+def _won(whole, cut, wanted_mm: list, brush, half_mm: float) -> float:
+    """What marks of parts are nearer to a shape than one of the whole, in squares of the half width."""
+    seen = _nearer(misplaced_seen_mm2, whole, cut, wanted_mm, brush) / half_mm**2
+    if abs(seen - WORTH) > PLAIN:
+        return seen
+    return _nearer(misplaced_mm2, whole, cut, wanted_mm, brush) / half_mm**2
+
+
+def _nearer(misplaced, whole, cut, wanted_mm: list, brush) -> float:
+    return misplaced(whole, wanted_mm, brush) - misplaced(cut, wanted_mm, brush)
 
 
 @dataclass(frozen=True)

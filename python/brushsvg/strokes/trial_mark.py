@@ -14,24 +14,44 @@ _TOLERANCE_MM = 0.05  # as plans have by default: a coarser one blurs what corne
 
 def trial_mark(strokes: list, brush) -> list[np.ndarray]:
     """Rings of the mark of strokes in closed form, each begun as suits it; Error where they cannot be painted."""
-    marks = _marks(strokes, brush)
+    return outline_of(trial_marks(strokes, brush), brush)
+
+
+def outline_of(marks, brush) -> list[np.ndarray]:
     _core.trace_outlines(marks, brush)
     return marks.outline_mm
 
 
 def trial_overlap(strokes: list, rings: list[np.ndarray], brush) -> float:
     """How much that mark overlaps with a shape, to 0.002, in pixels: its outline takes ten times as long."""
-    marks = _marks(strokes, brush)
+    common, both = _shared_px(trial_marks(strokes, brush), rings, brush)[:2]
+    return common / both
+
+
+def misplaced_mm2(marks, rings: list[np.ndarray], brush) -> float:
+    """Area of what is wanted and not painted, and of what is painted and not wanted."""
+    mark = outline_of(marks, brush)
+    return _core.area(mark) + _core.area(rings) - 2 * _core.area(_core.intersect(mark, rings))
+
+
+def misplaced_seen_mm2(marks, rings: list[np.ndarray], brush) -> float:
+    """The same in pixels."""
+    common, both, px_per_mm = _shared_px(marks, rings, brush)
+    return (both - common) / px_per_mm**2
+
+
+def _shared_px(marks, rings: list[np.ndarray], brush) -> tuple[float, float, float]:
+    """What marks and a shape have in common, and what both cover [px]; px/mm."""
     points = np.vstack(rings)
     low, size = points.min(axis=0) - _BESIDE_MM, np.ptp(points, axis=0) + 2 * _BESIDE_MM
     window, px_per_mm = (*low, *size), min(_PX_PER_MM, _SIDE_PX / size.max())
-    shape = strokes[0].replaced(wanted_mm=rings)
-    wanted = _core.wanted_coverage([shape], window, px_per_mm)
+    wanted = _core.coverage(rings, window, px_per_mm)
     painted = _core.coverage(marks, brush, window, px_per_mm)
-    return float(np.minimum(wanted, painted).sum() / np.maximum(wanted, painted).sum())
+    return float(np.minimum(wanted, painted).sum()), float(np.maximum(wanted, painted).sum()), px_per_mm
 
 
-def _marks(strokes: list, brush):
+def trial_marks(strokes: list, brush):
+    """The same, not its outline yet."""
     plan = _core.compensate(
         strokes, brush, _ANY_SHEET_MM, "closed", _TOLERANCE_MM, start="auto", end="auto"
     ).plan

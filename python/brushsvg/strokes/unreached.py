@@ -20,7 +20,9 @@ _DISCS_SHARE = 0.02  # what discs leave where a mark may leave as much as that
 _STILL_BLANK = 0.5  # of a piece: what is left of a corner beside the mark in it is less
 _EDGE_MM = 0.3  # a mark's edge lies beside the shape's by about as much: a thinner sliver is none
 _SWEPT_MM = 0.05
-_PX_PER_MM, _SIDE_PX = 6.0, 4000  # for a first look: a piece wider than twice _EDGE_MM is several pixels wide
+# For a first look: what is as wide as the finest line, or as twice _EDGE_MM, is several pixels wide.
+_PX_PER_MM, _PX_OF_FINEST, _SIDE_PX = 6.0, 2.5, 4000
+_SEEN = 0.8  # of a piece in pixels, at least
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,7 @@ def large_blanks(drawn: list, painted: list, brush) -> list[Blank]:
     return [
         _blank(element, piece, _core.area(rings))
         for element, rings, strokes in _shapes(drawn, painted, brush)
-        for piece in _left(rings, _discs(strokes), _DISCS_SHARE * _core.area(rings), finest(brush))
+        for piece in _left_by_discs(rings, strokes, _DISCS_SHARE * _core.area(rings), finest(brush))
     ]
 
 
@@ -108,9 +110,8 @@ def _pieces(element: str, rings: list[np.ndarray], strokes: list, brush) -> list
     least_half, greatest = finest(brush), brush.half_width_range_mm()[1]
     limbs = None
     found = []
-    for piece in _left(
-        rings, _discs(strokes), max(LEAST_SHARE * whole, np.pi / 4 * least_half**2), least_half
-    ):
+    least = max(LEAST_SHARE * whole, np.pi / 4 * least_half**2)
+    for piece in _left_by_discs(rings, strokes, least, least_half):
         if piece.area <= _CORNER * greatest**2:
             import shapely
 
@@ -119,6 +120,14 @@ def _pieces(element: str, rings: list[np.ndarray], strokes: list, brush) -> list
                 continue
         found.append(_blank(element, piece, whole))
     return found
+
+
+def _left_by_discs(rings: list[np.ndarray], strokes: list, least: float, least_half: float) -> list:
+    """Large pieces of a shape that discs of strokes leave."""
+    bare = [stroke.replaced(wanted_mm=[]) for stroke in strokes]
+    if not _may_leave(rings, lambda *window: _core.wanted_coverage(bare, *window), least, least_half):
+        return []
+    return _left(rings, _discs(strokes), least, least_half)
 
 
 def _left(rings: list[np.ndarray], covered: list[np.ndarray], least: float, least_half: float) -> list:
@@ -172,21 +181,34 @@ def missed(drawn: list, painted: list, traces: list, known: list[Blank], brush) 
     for element, strokes in shapes.items():
         marks = _core.Marks()
         marks.passes = on_shapes[element]
-        if _may_miss(strokes, marks, brush):
-            found += _missed(element, strokes, marks, known, brush)
+        shape = _core.unite([ring for stroke in strokes for ring in stroke.wanted_mm])
+        told = [piece.rings for piece in known if piece.element == element]
+        if may_miss(shape, marks, brush, told):
+            found += _missed(element, shape, marks, told, brush)
     return found
 
 
-def _may_miss(strokes: list, marks, brush) -> bool:
-    """A first look in pixels, which takes a tenth of the time of outlines."""
-    points = np.vstack([ring for stroke in strokes for ring in stroke.wanted_mm])
+def may_miss(rings: list[np.ndarray], marks, brush, known: list[list[np.ndarray]] = ()) -> bool:
+    """Whether `blank_of_mark` may find anything, beside pieces whose rings are known: a look in pixels, which takes a
+    tenth of the time of outlines."""
+    least = MISSED_SHARE * _core.area(rings)
+    return _may_leave(
+        rings, lambda *window: _core.coverage(marks, brush, *window), least, finest(brush), known
+    )
+
+
+def _may_leave(rings: list[np.ndarray], coverage, least: float, least_half: float, known=()) -> bool:
+    """Whether `_left` may find anything. coverage: makes of a window and px/mm what covers the shape."""
+    points = np.vstack(rings)
     low, size = points.min(axis=0), np.ptp(points, axis=0) + 1.0
-    window, px_per_mm = (*low, *size), min(_PX_PER_MM, _SIDE_PX / size.max())
-    wanted = _core.wanted_coverage(strokes, window, px_per_mm) > 0.5
-    blank = wanted & (_core.coverage(marks, brush, window, px_per_mm) < 0.5)
-    if px_per_mm == _PX_PER_MM:
+    fine, most = max(_PX_PER_MM, _PX_OF_FINEST / least_half), _SIDE_PX / size.max()
+    window = (*low, *size), min(fine, most)
+    blank = (_core.coverage(rings, *window) > 0.5) & (coverage(*window) < 0.5)
+    for piece in known:
+        blank &= _core.coverage(piece, *window) < 0.5
+    if fine <= most:
         blank = _all_or_any(_all_or_any(blank, np.logical_and), np.logical_or)
-    return blank.sum() > 0.8 * MISSED_SHARE * wanted.sum()
+    return blank.sum() > _SEEN * least * window[1] ** 2
 
 
 def _all_or_any(mask: np.ndarray, rule) -> np.ndarray:
@@ -196,15 +218,16 @@ def _all_or_any(mask: np.ndarray, rule) -> np.ndarray:
     return mask
 
 
-def _missed(element: str, strokes: list, marks, known: list[Blank], brush) -> list[Blank]:
+def _missed(
+    element: str, rings: list[np.ndarray], marks, known: list[list[np.ndarray]], brush
+) -> list[Blank]:
     import shapely
 
     from .contour_fill import region
 
     _core.trace_outlines(marks, brush)
-    shape = region(_core.unite([ring for stroke in strokes for ring in stroke.wanted_mm]))
-    told = [region(piece.rings) for piece in known if piece.element == element]
-    left = shapely.difference(shape, shapely.union_all([region(marks.outline_mm), *told]))
+    shape = region(rings)
+    left = shapely.difference(shape, shapely.union_all([region(marks.outline_mm), *map(region, known)]))
     left = left.buffer(-_EDGE_MM).buffer(_EDGE_MM)
     large = _large(left, MISSED_SHARE * shape.area, finest(brush))
     return [_blank(element, piece, shape.area) for piece in large]

@@ -73,58 +73,48 @@ def run_to_cut(line: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
     back = line[::-1]
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(back[:, :2], axis=0).T))])
     befores = np.column_stack([np.interp(along + back[:, 2], along, column) for column in back.T])
-    for k, ((x, y, half), before) in enumerate(zip(back, befores, strict=True)):
-        if along[k] > LOOKED_AT * half > LOOKED_AT * back[0, 2] or along[-1] < along[k] + half:
+    halves = back[:, 2]
+    is_over = (along > LOOKED_AT * halves) & (halves > halves[0]) | (along[-1] < along + halves)
+    is_level = (halves > 0) & (befores[:, 2] <= (1 + LEVEL) * halves)
+    is_level[is_over.argmax() if is_over.any() else len(back) :] = False
+    (level,) = is_level.nonzero()
+    axes = back[level, :2] - befores[level, :2]
+    axes /= np.hypot(*axes.T)[:, None]
+    if is_level[0]:
+        if _turn(back[0, :2] - back[1, :2], axes[0]) < UNSEEN_RAD:
             return line
-        if not half > 0 or before[2] > (1 + LEVEL) * half:
-            continue
-        here = np.array([x, y])
-        axis = (here - before[:2]) / np.hypot(*(here - before[:2]))
-        if k == 0:
-            if _turn(back[0, :2] - back[1, :2], axis) < UNSEEN_RAD:
-                return line
-            continue
-        ways = np.array([rotation(turn_rad).T @ axis for turn_rad in TURNS_RAD])
-        cut = _first_cut(here, ways, half, rings)
-        if cut is None:
-            continue
-        ahead, to_cut_mm, slope = cut
-        on_mm = to_cut_mm - half * np.hypot(1, slope)
-        if on_mm <= 0:
-            return line[: len(line) - k]
-        return np.vstack([line[: len(line) - k], [*(here + on_mm * ahead), half]])
+        level, axes = level[1:], axes[1:]
+    ways = np.stack([axes @ rotation(turn_rad) for turn_rad in TURNS_RAD], axis=1)
+    cuts_mm, slopes = straight_cuts(back[level, None, :2], ways, halves[level, None], rings)
+    is_cut = np.abs(np.arctan(slopes) - TURNS_RAD) < np.arctan(STEEPEST)  # False for nan
+    for row, turn in np.argwhere(is_cut):  # the first place back with straight sides up to a cut
+        k, ahead, to_cut_mm, slope = level[row], ways[row, turn], cuts_mm[row, turn], slopes[row, turn]
+        here, half = back[k, :2], back[k, 2]
+        if _has_straight_sides(here, ahead, half, to_cut_mm, slope, rings):
+            on_mm = to_cut_mm - half * np.hypot(1, slope)
+            if on_mm <= 0:
+                return line[: len(line) - k]
+            return np.vstack([line[: len(line) - k], [*(here + on_mm * ahead), half]])
     return line
 
 
-def _first_cut(
-    here: np.ndarray, ways: np.ndarray, half: float, rings: list[np.ndarray]
-) -> tuple[np.ndarray, float, float] | None:
-    """The first of the ways, turned by TURNS_RAD, on which a line with straight sides runs up to a straight cut, not
-    too steep to where the line ends; how far away that is, in mm, and its slope."""
-    to_cut_mm, slope = straight_cuts(here, ways, half, rings)
-    is_cut = np.abs(np.arctan(slope) - TURNS_RAD) < np.arctan(STEEPEST)  # False for nan
-    for k in np.flatnonzero(is_cut):
-        if _has_straight_sides(here, ways[k], half, to_cut_mm[k], slope[k], rings):
-            return ways[k], float(to_cut_mm[k]), float(slope[k])
-    return None
-
-
 def straight_cuts(
-    here: np.ndarray, ways: np.ndarray, half: float, rings: list[np.ndarray]
+    here: np.ndarray, ways: np.ndarray, half, rings: list[np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """How far ahead of a place, in mm, the outline of rings is cut straight across, over the width of a line of this
-    half width, and its slope. Both (k,) for ways (k, 2), unit vectors; nan where there is no such cut."""
-    aside = half * ACROSS
-    reached = np.array(
-        [_core.first_crossings(rings, here + aside[:, None] * _left_of(way), way) for way in ways]
-    )
-    reached[~np.isfinite(reached).all(axis=1)] = np.nan
-    slope = (reached[:, -1] - reached[:, 0]) / (aside[-1] - aside[0])
-    middle = (reached[:, 0] + reached[:, -1]) / 2
-    bent = np.abs(middle[:, None] + slope[:, None] * aside - reached).max(axis=1)
-    is_none = ~((np.abs(slope) <= STEEPEST) & (bent <= STRAIGHT * half))
-    middle[is_none] = slope[is_none] = np.nan
-    return middle, slope
+    """How far ahead of places (..., 2), in mm, the outline of rings is cut straight across, over the width of lines of
+    these half widths (...), and its slope; nan where there is no such cut. ways: (..., 2), unit vectors."""
+    aside = np.asarray(half)[..., None] * ACROSS
+    left = np.stack([-ways[..., 1], ways[..., 0]], axis=-1)
+    at = here[..., None, :] + aside[..., None] * left[..., None, :]
+    along = np.broadcast_to(ways[..., None, :], at.shape)
+    found = _core.first_crossings(rings, at.reshape(-1, 2), along.reshape(-1, 2))
+    reached = np.array(found).reshape(at.shape[:-1])
+    reached[~np.isfinite(reached).all(axis=-1)] = np.nan
+    slope = (reached[..., -1] - reached[..., 0]) / (aside[..., -1] - aside[..., 0])
+    middle = (reached[..., 0] + reached[..., -1]) / 2
+    bent = np.abs(middle[..., None] + slope[..., None] * aside - reached).max(axis=-1)
+    is_cut = (np.abs(slope) <= STEEPEST) & (bent <= STRAIGHT * np.asarray(half))
+    return np.where(is_cut, middle, np.nan), np.where(is_cut, slope, np.nan)
 
 
 def _has_straight_sides(
@@ -137,7 +127,7 @@ def _has_straight_sides(
         at = (
             here + on_mm[:, None] * ahead + 0.7 * half * side * left
         )  # inside, on either side of a slanted cut
-        beside_mm = np.array(_core.first_crossings(rings, at, side * left))
+        beside_mm = np.array(_core.first_crossings(rings, at, np.tile(side * left, (len(at), 1))))
         if (np.abs(beside_mm - 0.3 * half) > BENT * half).any():
             return False
     return True

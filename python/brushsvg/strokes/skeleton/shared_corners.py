@@ -44,7 +44,7 @@ def _boxes(stroke, area) -> list[tuple[np.ndarray, float]]:
         here = way[-1, :2]
         ahead = (here - back) / np.hypot(*(here - back))
         left = np.array([-ahead[1], ahead[0]])
-        (to_cut_mm,), (slope,) = straight_cuts(here, ahead[None], half, area)
+        to_cut_mm, slope = straight_cuts(here, ahead, half, area)
         if not NEAR[0] < to_cut_mm / (half * np.hypot(1, slope)) < NEAR[1]:  # nan: there is none
             continue
         to_cut = [to_cut_mm + slope * side * half for side in (1, -1)]
