@@ -9,8 +9,13 @@ from diagnostics import in_json, is_told, refused
 from programs import call
 from test_urscript import ARC, STROKES, text_for
 
+from brushsvg import _core, find_brush
 from brushsvg.machine.cell import Reload, RoboDK, Station
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.posts import POSTS
+from brushsvg.machine.program import walked
+from brushsvg.machine.writer import text_of
 
 POST = Path(__file__).with_name("robodk_post.py")
 
@@ -40,6 +45,21 @@ def test_the_post_is_called_for_each_move(capsys):
     assert lines[at - 1] == "zone 0.039" and lines[at + 1] == "zone 0.152"
     assert "pause 500" in lines and lines[lines.index("pause -1") - 1].endswith(": hand")
     assert lines[-1] == "finish"
+
+
+def test_a_tilted_brush_is_told_pose_by_pose():
+    """The brush leans by 20 degrees towards x from its second pose on, the tip where the plan has it."""
+    leans = np.array([[0.0, 0, 1], [np.sin(np.pi / 9), 0, np.cos(np.pi / 9)]])[[0, 1, 1]]
+    poses = [[20, 20, 0], [40, 20, -2], [60, 20, -2]]
+    plan = _core.Plan("round-6", "", (100, 60), [_core.Pass("s", poses, 20.0, tool_axes=leans)])
+    cell = replace(cell_with(POST), arm=None)
+    made = walked(in_loads(plan, find_brush("round-6"), cell), find_brush("round-6"), cell).allowed()
+    lines = "".join(text_of(POSTS["robodk"], made)).splitlines()
+    for pose, axis in zip(poses, leans, strict=True):
+        place = " ".join(f"{each:.3f}" for each in pose)
+        (line,) = {line for line in lines if line.startswith(f"line {place} ")}
+        assert float(line.split()[-1]) == pytest.approx(-axis[2], abs=1e-5)
+    assert lines[-2].endswith("down -1")  # upright where it travels
 
 
 @pytest.mark.parametrize(

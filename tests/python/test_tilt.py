@@ -19,7 +19,6 @@ from brushsvg.machine.as_run import as_run
 from brushsvg.machine.cell import Machine
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.pass_way import on_way
-from brushsvg.machine.posts import POSTS
 from brushsvg.painted.corrections import Correction, corrected
 from brushsvg.painted.job_page import job_page
 
@@ -143,7 +142,7 @@ CORRECTION = Correction("tilted", (20.0, 20.0), (40.0, 20.0), (1.0, 0.0), 0.0)
 READERS = {
     "thin_out": lambda of: _core.thin_out(of.passes[1], BRUSH, 0.5),
     "interrupted": lambda of: _core.interrupted(of.passes[1], BRUSH, 20, 20),
-    "in_loads": lambda of: in_loads(of, BRUSH, brushsvg.find_cell("lrmate200id")),
+    "in_loads": lambda of: in_loads(of, BRUSH, brushsvg.find_cell("linuxcnc-3axis")),
     "on_way": lambda of: on_way(of.passes[1], POSES, ()),
     "as_run": lambda of: as_run(of.passes, Machine()),
     "expected_marks": lambda of: expected_marks(of, BRUSH),
@@ -170,10 +169,10 @@ def test_and_takes_one_that_is_held_upright(name):
 
 
 def test_cells_that_cannot_tilt_the_brush_write_no_program(tmp_path):
-    """Those of three axes, and those whose post is not written for it: test_tilted_programs.py has the others."""
+    """Those of three axes: test_tilted_programs.py has the others."""
     for name in brushsvg.cell_names():
         cell = brushsvg.find_cell(name)
-        if POSTS[cell.language].tilts:
+        if cell.tool:
             continue
         with refused(f"tilt-unsupported {name} 12", "tilted"):
             in_loads(plan(), BRUSH, cell)
@@ -189,7 +188,6 @@ def test_cells_that_cannot_tilt_the_brush_write_no_program(tmp_path):
         ["convert", "a.json", "b.json"],
         ["animate", "a.json", "a.html"],
         ["animate", "a.json", "a.html", "--cell", "ur5e"],
-        ["convert", "a.json", "a.ls", "--cell", "lrmate200id"],
         ["convert", "a.json", "a.script", "--page", "a.pdf", "--cell", "ur5e"],
         ["predict", "a.json", "a.svg", "--band", "--cell", "ur5e"],
         ["report", "a.json"],

@@ -40,6 +40,7 @@ SUFFIXES = {"ur5e": ".script", "irb120": ".mod", "fr3": ".csv"} | {
     "xarm6": ".py",
     "jaka-zu3": ".jks",
     "m0609": ".drl",
+    "lrmate200id": ".ls",
 }
 TILTING = tuple(SUFFIXES)
 
@@ -145,6 +146,17 @@ def told_jaka(text, cell):
     return rows[:, :3], Rotation.from_euler("xyz", rows[:, 3:], degrees=True)
 
 
+def told_fanuc(text, cell):
+    """W, P and R of each point: about the fixed axes x, y, z; in the order in which the program goes there."""
+    points = re.findall(
+        rf"P\[(\d+)\][^X]*X = {N}  mm,\s*Y = {N}  mm,\s*Z = {N}  mm,\s*W = {N} deg,\s*P = {N} deg,\s*R = {N} deg",
+        text,
+    )
+    of = {name: [float(each) for each in values] for name, *values in points}
+    rows = np.array([of[name] for name in re.findall(r"(?m): L P\[(\d+)\]", text)])
+    return in_paper(rows[:, :3], Rotation.from_euler("xyz", rows[:, 3:], degrees=True), cell)
+
+
 TOLD = {
     "ur5e": told_ur,
     "irb120": told_rapid,
@@ -154,6 +166,7 @@ TOLD = {
     "xarm6": told_xarm,
     "jaka-zu3": told_jaka,
     "m0609": told_doosan,
+    "lrmate200id": told_fanuc,
 }
 
 
@@ -431,6 +444,7 @@ TURNS = {
     ),
     "xarm6": (r"(?m)(?<=^lean\()(?:[^,]*, ){5}[^,]*", *IN_DEGREES),
     "jaka-zu3": (r"(?<=to = \[)[^]]*", *IN_DEGREES),
+    "lrmate200id": (r"(?<=\t)X = [^}]*", *IN_DEGREES),
     "fr3": (r"(?<=\d,)[^,]*(?:,[^,]*){6}(?=,[^,]*,(?:pose|way)\n)", Rotation.from_quat, Rotation.as_quat),
 }
 
@@ -484,9 +498,9 @@ def test_damaged_directions_are_refused(name, tmp_path, capsys):
 def test_a_header_that_does_not_say_that_the_brush_is_tilted_is_refused(name, tmp_path, capsys):
     given, made, words = written(tmp_path, name, plan(TILTED))
     in_json(capsys, "convert", given, made, *words)
-    text, count = re.subn(
-        r"\n[^\n]*tilt: the brush is held as each move says[^\n]*", "", made.read_text(), count=1
-    )
+    # remarks of FANUC are short, and go on
+    said = r"\n[^\n]*tilt: the brush is held as each(?: ;\n : !\+)? move says[^\n]*"
+    text, count = re.subn(said, "", made.read_text(), count=1)
     assert count == 1
     made.write_text(text)
     status, _, said = in_json(capsys, "check", made, given, *words)

@@ -8,7 +8,6 @@ from .. import _core
 from ..errors import Notice
 from .cell import MOST_TILT_DEG, Cell
 from .pass_way import on_way
-from .posts import POSTS
 from .tool_axes import axes_of, between_deg, tilts_deg, unit
 
 LEAST_AXES = 5
@@ -21,15 +20,11 @@ ON_THE_SPOT_MM = 1e-6  # as simulate has it
 
 
 def refuse_where_upright(passes, cell: Cell) -> None:
-    """Error for a tilted brush where the cell cannot tilt it, or its language is not told to."""
-    post = POSTS.get(cell.language)
+    """Error for a tilted brush where the cell cannot tilt it."""
     if cell.tool is None:
         why = f"cell {cell.name} has no axes to tilt the brush with"
     elif cell.arm is not None and len(cell.arm.dh) < LEAST_AXES:
         why = f"the arm of cell {cell.name} has {len(cell.arm.dh)} joints, too few to tilt the brush"
-    elif post is None or not post.tilts:
-        title = post.title if post else cell.language
-        why = f"programs for cell {cell.name}, {title}, hold the brush upright: none other is written yet"
     else:
         return
     _core.refuse_tilted(passes, why)

@@ -20,7 +20,6 @@ class Post(NamedTuple):
     line_end: as the controller's own files have it; has_tabs: so have they, too.
     parted: the texts of several files, by name, "" that of the one which is asked for; None: there is but that one.
     others: what writes files of other extensions in another way.
-    tilts: whether a program tells how the tool is held at each pose.
     """
 
     title: str
@@ -32,7 +31,6 @@ class Post(NamedTuple):
     has_tabs: bool = False
     parted: Callable[[str], dict[str, str]] | None = None
     others: Mapping[str, Callable[[Program], Iterator[str | bytes]]] = MappingProxyType({})
-    tilts: bool = False
 
 
 def _linuxcnc(program: Program) -> Iterator[str]:
@@ -168,21 +166,20 @@ POSTS = {  # by the language a cell names
     "klipper": Post("G-code for Klipper", GCODE, _dialect),
     "grbl-servo": Post("G-code for grbl, the brush on a servo", GCODE, _grbl_servo, circles_by=""),
     "marlin-servo": Post("G-code for Marlin, a pen on a servo", GCODE, _marlin_servo, circles_by=""),
-    "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, "pose", tilts=True),
-    "jaka": Post("JAKA script", (".jks",), _jaka, circles_by="pose", tilts=True),
-    "rapid": Post("RAPID for ABB", (".mod",), _rapid, False, "pose", "\r\n", tilts=True),
-    "xarm": Post("Python for UFACTORY xArm", (".py",), _xarm, circles_by="", tilts=True),
-    "krl": Post("KRL for KUKA", (".src",), _krl, False, "pose", "\r\n", tilts=True),
-    "dobot": Post("Lua for Dobot CR and Nova", (".lua",), _dobot, False, "pose", tilts=True),
+    "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, "pose"),
+    "jaka": Post("JAKA script", (".jks",), _jaka, circles_by="pose"),
+    "rapid": Post("RAPID for ABB", (".mod",), _rapid, False, "pose", "\r\n"),
+    "xarm": Post("Python for UFACTORY xArm", (".py",), _xarm, circles_by=""),
+    "krl": Post("KRL for KUKA", (".src",), _krl, False, "pose", "\r\n"),
+    "dobot": Post("Lua for Dobot CR and Nova", (".lua",), _dobot, False, "pose"),
     "fanuc": Post("TP for FANUC", (".ls",), _fanuc, False, "pose", "\r\n", True, _fanuc_programs),
-    "doosan": Post("DRL for Doosan", (".drl",), _doosan, False, "pose", tilts=True),
+    "doosan": Post("DRL for Doosan", (".drl",), _doosan, False, "pose"),
     "ros2": Post(
         "poses with times for ROS 2",
         (".csv", ".traj", ".cdr"),
         _ros2,
         circles_by="",
         others={".traj": _ros2_json, ".cdr": _ros2_message},
-        tilts=True,
     ),
     "ebb": Post("commands for EBB boards (AxiDraw, NextDraw)", (".ebb",), _ebb, circles_by=""),
     "hpgl": Post("HP-GL for pen plotters", (".hpgl",), _hpgl, circles_by=""),

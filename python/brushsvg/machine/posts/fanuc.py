@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import re
 from collections.abc import Iterator
 from tempfile import SpooledTemporaryFile
@@ -13,12 +14,12 @@ from ..cell import MOST_POINTS, Cell
 from ..frames import rotation_deg
 from ..motion import Move, Program, Section, Wait, via
 from .dobot import whole_mm_s
-from .script import Words, blends_mm, down, told
+from .script import Words, blends_mm, down, told, turned_at
 from .text import ENDS, number, plain, rows
 
 LINE_LIMIT = 100  # of what a remark says, in as many lines as it takes
 REMARK = 32  # letters of one line of it
-DEGREE_DECIMALS = 5  # of frames; a point's angles are all the same
+DEGREE_DECIMALS, POINT_DECIMALS = 5, 3  # of the angles of frames and of points
 MAIN = "BRUSHSVG"
 INDEX = 1  # of the user frame, the tool, and the registers that set them
 RISE, HEIGHT = 2, 1  # position register and register of the rise
@@ -75,29 +76,47 @@ def comment(text: str) -> str:
 
 
 class _Points:
-    """Of one program: each has its number there."""
+    """Of one program: each has its number there, a place, and angles where the brush is tilted."""
 
     def __init__(self, cell: Cell):
-        w, p, r = (number(angle, 3) for angle in rotation_deg(down(cell.tool.spin_deg)))
+        self.decimals, self.count = cell.decimals, 0
+        self.held: list[tuple[np.ndarray, tuple[str, str, str]]] = []
+        self.stands = down(cell.tool.spin_deg)
+        self.upright = _angles(self.stands)
         x, y, z = (f"{axis} = %.{cell.decimals}f  mm" for axis in "XYZ")
-        self.decimals, self.held, self.count = cell.decimals, [], 0
-        self.pattern = (
+        self.place = (
             f"P[%d]{{\n   GP1:\n\tUF : {INDEX}, UT : {INDEX},\t\tCONFIG : '{cell.tool.configuration}',\n"
-            f"\t{x},\t{y},\t{z},\n\tW = {w} deg,\tP = {p} deg,\tR = {r} deg\n}};"
+            f"\t{x},\t{y},\t{z},\n"
         )
 
-    def more(self, points_mm: np.ndarray) -> np.ndarray:
-        """(n,) the numbers of new points (n, 3)."""
+    def more(self, move: Move, points_mm: np.ndarray) -> np.ndarray:
+        """(n,) the numbers of new points (n, 3), all those of a move where it tilts the brush."""
         first = self.count + 1
-        self.held.append(points_mm)
+        if move.axes is None:
+            self.held.append((points_mm, self.upright))
+        else:
+            turns = turned_at(move, self.stands)
+            angles = (self.upright if turned is None else _angles(turned) for turned in turns)
+            self.held += zip(points_mm[:, None], angles, strict=True)
         self.count += len(points_mm)
         return np.arange(first, self.count + 1)
 
     def text(self) -> str:
-        if not self.held:
-            return ""
-        values = np.column_stack([np.arange(1, self.count + 1), np.vstack(self.held)])
-        return "".join(rows(self.pattern, values, self.decimals))
+        told, first = "", 1
+        for angles, alike in itertools.groupby(self.held, lambda each: each[1]):
+            places = np.vstack([points_mm for points_mm, _ in alike])
+            values = np.column_stack([np.arange(first, first + len(places)), places])
+            w, p, r = angles
+            held = f"\tW = {w} deg,\tP = {p} deg,\tR = {r} deg\n}};"
+            told += "".join(rows(self.place + held, values, self.decimals))
+            first += len(places)
+        return told
+
+
+def _angles(turned: np.ndarray) -> tuple[str, str, str]:
+    """W, P and R of the tool (3, 3): about the fixed axes x, y and z."""
+    w, p, r = (number(angle, POINT_DECIMALS) for angle in rotation_deg(turned))
+    return w, p, r
 
 
 def _program(name: str, lines: str, points: _Points) -> str:
@@ -158,10 +177,10 @@ def _rise(height: str, speed_mm_s: float) -> str:
 def _lines(move: Move, points: _Points, ramp_s: float) -> Iterator[str]:
     speed = whole_mm_s(move.speed_mm_s)
     if move.arc is not None:
-        numbers = points.more(np.vstack([via(move.points_mm), move.points_mm[-1]]))
+        numbers = points.more(move, np.vstack([via(move.points_mm), move.points_mm[-1]]))
         yield " : C P[{}]\n :  P[{}] {}mm/sec FINE ;\n".format(*numbers, speed)
         return
-    numbers = points.more(move.points_mm)
+    numbers = points.more(move, move.points_mm)
     percent = np.zeros(len(numbers))
     if move.blends_mm is not None:
         percent = np.minimum(

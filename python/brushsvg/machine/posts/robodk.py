@@ -17,7 +17,7 @@ from ...errors import Error
 from ..cell import Cell
 from ..frames import frame_of_pose
 from ..motion import Move, Program, Wait, via
-from .script import blends_mm, down
+from .script import blends_mm, down, turned_at
 from .text import plain
 
 LINE_LIMIT = 100
@@ -77,17 +77,16 @@ def _loaded(where: str) -> ModuleType:
 
 
 def _called(post, mat, program: Program) -> None:
-    cell, upright = program.cell, np.eye(4)
-    upright[:3, :3] = down(cell.tool.spin_deg)
+    cell, upright = program.cell, down(program.cell.tool.spin_deg)
 
     def pose(frame: np.ndarray):
         rows = (np.round(frame, 12) + 0.0).tolist()
         return mat(rows) if mat else rows
 
-    def at(point):
-        return pose(
-            np.vstack([np.column_stack([upright[:3, :3], np.round(point, cell.decimals)]), upright[3]])
-        )
+    def at(point: np.ndarray, turned: np.ndarray = upright):
+        frame = np.eye(4)
+        frame[:3, :3], frame[:3, 3] = turned, np.round(point, cell.decimals)
+        return pose(frame)
 
     post.ProgStart(NAME)
     for line in program.header:
@@ -102,7 +101,7 @@ def _called(post, mat, program: Program) -> None:
             if isinstance(step, Wait):
                 _wait(post, step)
             else:
-                _move(post, told, step, at, cell)
+                _move(post, told, step, at, upright, cell)
     post.ProgFinish(NAME)
 
 
@@ -120,15 +119,15 @@ class _Told:
         self.speed, self.zone = speed_mm_s, zone_mm
 
 
-def _move(post, told: _Told, move: Move, at, cell: Cell) -> None:
+def _move(post, told: _Told, move: Move, at, upright: np.ndarray, cell: Cell) -> None:
     if move.arc is not None:
         told.at(move.speed_mm_s, EXACT)
         post.MoveC(at(via(move.points_mm)), None, at(move.points_mm[-1]), None)
         return
     zones = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, cell.decimals)
-    for point, zone in zip(move.points_mm, zones.tolist(), strict=True):
+    for point, turned, zone in zip(move.points_mm, turned_at(move, upright), zones.tolist(), strict=True):
         told.at(move.speed_mm_s, zone if zone > 0 else EXACT)
-        post.MoveL(at(point), None)
+        post.MoveL(at(point, upright if turned is None else turned), None)
 
 
 def _wait(post, step: Wait) -> None:

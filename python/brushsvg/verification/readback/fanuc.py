@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+import numpy as np
+
 from ...errors import Error
 from ...machine.cell import Cell
-from ...machine.frames import rotation_deg
-from ...machine.posts.fanuc import FANUC_END, INDEX, MAIN, cnt_mm
+from ...machine.frames import rotation, rotation_deg
+from ...machine.posts.fanuc import FANUC_END, INDEX, MAIN, POINT_DECIMALS, cnt_mm
 from ...machine.posts.script import down
 from . import Readback
 from .script import N, Script, place, read_script
@@ -62,7 +64,8 @@ def read_fanuc(text: str, cell: Cell) -> Readback:
         again=re.compile(r"PR\[2\]|R\[1\]"),
         last=(f"!{FANUC_END}",),
         units_mm={},
-        turned_deg=tuple(rotation_deg(down(cell.tool.spin_deg)).tolist()),
+        turned_deg=tuple(np.round(rotation_deg(down(cell.tool.spin_deg)), POINT_DECIMALS).tolist()),
+        rotation=rotation,
     )
     out = Readback(in_paper_frame=True, blends_by_radius=True)
     read_script("", script, out, _with_setup_as_frames(_in_order(text, cell)))
