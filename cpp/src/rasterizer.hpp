@@ -56,6 +56,9 @@ class Rasterizer {
     /// Coverage from x to the right end, as differences between neighbouring pixels: of the one returned and the next.
     Eigen::Index step(std::vector<float>& steps, float x, float weight) const;
 
+    /// Whether the hull of two rings lies on one side of the picture: nothing of it shows.
+    bool is_beside(const Ring& a, const Ring& b) const;
+
     void add(int line, float lo, float hi);
     /// Spans of the lines from `first` on, one each. Where all touch what is there, which is the rule along a stroke,
     /// the loops have no branch and run several lines at a time.

@@ -21,7 +21,11 @@ import brushsvg
 from brushsvg.cli import main
 from brushsvg.cli.arguments import values
 from brushsvg.cli.arguments.parser import command_parser
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.program import Job
 from brushsvg.pipeline.choices import CHOICES, ONE_OF, RANGES, Given
+from brushsvg.pipeline.conversion import tried
+from brushsvg.pipeline.preparation import Options, prepare
 
 PAGE = '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60"{}>{}</svg>'
 LINE = '<path id="{}" d="M{} 40 C40 10 60 10 {} 30" fill="none" stroke="{}" stroke-width="{}"/>'
@@ -217,6 +221,17 @@ def test_ranges_are_those_of_the_flags():
         assert tuple(flags[name].choices) == choices, name
 
 
+def test_what_is_known_of_a_plan_is_forgotten_when_it_changes(desk):
+    work = prepare("two.svg", Options(cell=find_cell()))
+    cell = work.options.cell
+    slow = work.plan.passes[0]
+    assert work.marks() == brushsvg.simulate(work.plan, work.brush) and work.walk(cell).problems == []
+    assert work.walk(replace(cell, name="another")) is None and work.walk(cell, Job(0.1)) is None
+    slow.speed_mm_s = 1000.0
+    assert work.marks() is None and work.walk(cell) is None
+    assert [each.code for each in tried(work, ".ngc").problems] == ["speed-out-of-range"]
+
+
 def waves(rows, columns=20):
     wave = "c10 -20 25 -20 30 0s10 10 15 -5"
     paths = "".join(
@@ -242,7 +257,7 @@ def still_working() -> list[str]:
 @pytest.mark.slow
 def test_it_is_given_up_wherever_it_is(desk, word):
     Path("long.svg").write_text(
-        waves({"reading": 200, "finding": 40, "writing": 60}.get(word, 10))
+        waves({"reading": 200, "finding": 40, "writing": 60, "drawing": 60}.get(word, 10))
         .replace("1200mm", "5000")
         .replace("1600mm", "5000")
     )

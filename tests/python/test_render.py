@@ -7,7 +7,17 @@ import cv2
 import numpy as np
 import pytest
 
-from brushsvg import Stroke, area, compensate, find_brush, marks_png, marks_svg, simulate, trace_outlines
+from brushsvg import (
+    Stroke,
+    area,
+    compensate,
+    coverage,
+    find_brush,
+    marks_png,
+    marks_svg,
+    simulate,
+    trace_outlines,
+)
 from brushsvg.pictures.panels_png import Panel, panels_png
 
 SHEET = (60.0, 30.0)
@@ -53,6 +63,16 @@ def test_png_shows_colours_at_their_places_and_order(painted):
 
 def decode_colour(colour):
     return [int(colour[5:7], 16), int(colour[3:5], 16), int(colour[1:3], 16)]
+
+
+@pytest.mark.parametrize("at", [(0, 0), (6, 4), (20, 12), (34, 20), (46, 2)])
+def test_part_of_a_picture_is_what_the_whole_one_shows_there(painted, at):
+    marks, brush, _ = painted
+    (x, y), (width, height), px = at, (14, 10), 8
+    whole = coverage(marks, brush, (0, 0, *SHEET), px)
+    bottom = whole.shape[0] - y * px
+    shown = whole[bottom - height * px : bottom, x * px : (x + width) * px]
+    np.testing.assert_allclose(coverage(marks, brush, (x, y, width, height), px), shown, atol=1e-5)
 
 
 def test_svg_holds_the_same_paint_upside_down(painted):

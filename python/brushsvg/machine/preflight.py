@@ -28,18 +28,29 @@ def look(
     cell: Cell,
     tolerance_mm: float,
     job: Job = WHOLE_JOB,
+    walk: Walked | None = None,
 ) -> Walked:
     """The job with everything that forbids to run it on the robot. marks: of the plan or of its loads; of a job that
-    is resumed only what is left is asked."""
+    is resumed only what is left is asked. walk: what within_limits found of it, where that is known."""
+    walk = walk or within_limits(loads, brush, marks, cell, job)
+    left = loads.left(job.first_stroke) if job.first_stroke > 1 else loads
+    if job.first_stroke > 1 and not left.loads:
+        return walk
+    found = walk.problems or out_of_arm(walk.made, left.sheet_mm)
+    return replace(walk, problems=found or shifted_by_blends(left, brush, cell, tolerance_mm))
+
+
+def within_limits(
+    loads: PlanInLoads, brush: _core.Brush, marks: _core.Marks, cell: Cell, job: Job = WHOLE_JOB
+) -> Walked:
+    """The job with the limits that it breaks and the edges of the sheet that its marks cross."""
     walk = walked(loads, brush, cell, job)
     if job.first_stroke > 1:
         loads = loads.left(job.first_stroke)
         if not loads.loads:
             return walk
         marks = _core.simulate(loads.as_plan(), brush)
-    found = walk.problems + off_sheet(marks, brush, loads.sheet_mm)
-    found = found or out_of_arm(walk.made, loads.sheet_mm)
-    return replace(walk, problems=found or shifted_by_blends(loads, brush, cell, tolerance_mm))
+    return replace(walk, problems=walk.problems + off_sheet(marks, brush, loads.sheet_mm))
 
 
 def as_exact_as(cell: Cell, tolerance_mm: float) -> Cell:

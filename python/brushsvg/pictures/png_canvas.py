@@ -15,8 +15,9 @@ def canvas(shape: tuple[int, int], colour: str) -> np.ndarray:
 
 
 def lay(image: np.ndarray, coverage: np.ndarray, colour: str) -> None:
-    share = coverage[..., None]
-    image[:] = np.round(image * (1 - share) + np.array(bgr(colour)) * share).astype(np.uint8)
+    painted = coverage > 0  # most of a page is blank
+    share = coverage[painted][:, None]
+    image[painted] = np.round(image[painted] * (1 - share) + np.array(bgr(colour)) * share).astype(np.uint8)
 
 
 def bgr(colour: str) -> tuple[int, int, int]:

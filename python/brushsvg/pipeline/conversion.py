@@ -300,7 +300,7 @@ def tried(
     if marks is None:
         marks = prediction.predict(work, rings, stage)
     loads = in_loads(work.plan, brush, cell)
-    walk = preflight.look(loads, brush, marks, cell, tolerance_mm, job)
+    walk = preflight.look(loads, brush, marks, cell, tolerance_mm, job, work.walk(cell, job))
     damaged = [] if lenient else [notice for notice in work.notices if notice.damaged]
     problems = summarized([*walk.problems, *damaged])
     if damaged:

@@ -15,6 +15,9 @@ def predict(
     work: Work, outlines: bool = True, stage: Callable[[str], object] = lambda text: None, whole: bool = True
 ) -> _core.Marks:
     """The marks of the plan; outlines: trace their rings too, whole: those of all paint together as well."""
+    known = None if outlines else work.marks()
+    if known is not None:
+        return known
     return marks_of(work.plan, work.brush, outlines, stage, whole, work.options.cell)
 
 

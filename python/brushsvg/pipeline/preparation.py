@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,8 +18,8 @@ from ..drawing.design import Design, Notice
 from ..errors import Error
 from ..machine.cell import LEAST_SPEED_MM_S, Cell
 from ..machine.paint_reload import PlanInLoads, fetched_mm, in_loads, is_later_part
-from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look, off_sheet
-from ..machine.program import Job, walked
+from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look, within_limits
+from ..machine.program import POSES_KEPT, WHOLE_JOB, Job, Walked
 from ..painted.corrections import Correction, beside_machine, corrected
 from ..planning import travel_order
 from ..planning.paint_running_out import pressed_deeper
@@ -70,6 +71,15 @@ class Options:
 
 
 @dataclass(frozen=True)
+class Known:
+    """What was found of a plan as it then was, a copy: its marks, without outlines and freshly dipped, and limits."""
+
+    plan: _core.Plan
+    marks: _core.Marks
+    walk: Walked
+
+
+@dataclass(frozen=True)
 class Work:
     """A file understood: strokes is None where IN was a plan, which does not say what was wanted.
 
@@ -90,6 +100,19 @@ class Work:
     unreached: tuple = ()  # pieces of filled shapes that no stroke reaches
     missed: tuple = ()  # pieces that strokes reach and the mark does not
     astray: tuple = ()  # names of strokes whose paint lies visibly elsewhere
+    known: Known | None = None  # of the plan, or of what it was before something of it changed
+
+    def marks(self) -> _core.Marks | None:
+        """Of the plan, where they are known: not to be changed."""
+        return self.known.marks if self._is_known() else None
+
+    def walk(self, cell: Cell, job: Job = WHOLE_JOB) -> Walked | None:
+        """The plan with the limits that it breaks, where these are known of such a job."""
+        known = self.known.walk if self._is_known() else None
+        return known if known and cell == self.options.cell and replace(known.job, visits=()) == job else None
+
+    def _is_known(self) -> bool:
+        return self.known is not None and not self.brush.paint and self.known.plan == self.plan
 
 
 def prepare(
@@ -138,8 +161,9 @@ def prepare(
         refused += why
         left_out += which
         done = compensated(painted)
+    known = None
     if options.cell is not None and leads:
-        fitting = _begun_within_reach(painted, brush, done.plan, compensated, options)
+        fitting, known = _begun_within_reach(painted, brush, done.plan, compensated, options, stage)
         if fitting is not painted:
             painted, done = fitting, compensated(fitting)
     asked = strokes
@@ -191,6 +215,7 @@ def prepare(
         tuple(bare),
         tuple(blank),
         tuple(notice.where for notice in astray),
+        known,
     )
 
 
@@ -224,29 +249,41 @@ def _way(brush, sheet_mm, options: Options, stage=lambda text: None):
     return compensated
 
 
-def _begun_within_reach(painted: list, brush, plan, compensated, options: Options) -> list:
+def _begun_within_reach(
+    painted: list, brush, plan, compensated, options: Options, stage
+) -> tuple[list, Known | None]:
     """The strokes, those plain that choose how they begin or end, cannot be run as they chose, and can plain: lifted,
     or hidden or exposed as well. A hidden beginning is landed on the far side, from where the tool may not be, and its
     round front may be wider than what is wanted; at a squared beginning or end the tool runs aside. The list itself
-    where there are none.
+    where there are none. And what was found of the plan, where that was asked and is little enough to be kept.
     """
 
-    def astray(of) -> set[str]:
+    def tried(of) -> Known:
         loads = in_loads(of, brush, options.cell)
-        problems = walked(loads, brush, options.cell, Job(options.z_offset_mm)).problems
-        problems += off_sheet(_core.simulate(of, brush), brush, of.sheet_mm)
-        return {problem.where for problem in problems}
+        marks = _core.simulate(
+            of, brush, progress=lambda now, all_: stage(f"simulated {now} of {all_} strokes")
+        )
+        walk = within_limits(loads, brush, marks, options.cell, Job(options.z_offset_mm))
+        return Known(copy(of), marks, walk)
+
+    def astray(of: Known) -> set[str]:
+        return {problem.where for problem in of.walk.problems}
 
     choosing = [stroke for stroke in painted if "auto" in _ends(stroke, options)]
-    left = {stroke.id for stroke in choosing} & astray(plan) if choosing else set()
+    if not choosing:
+        return painted, None
+    whole = tried(plan)
+    left = {stroke.id for stroke in choosing} & astray(whole)
     found = {}
     lifted = {"end": "lifted"}
     for plain in (lifted, {"start": "hidden"}, {**lifted, "start": "hidden"}, {**lifted, "start": "exposed"}):
-        tried = {stroke.id: _plain(stroke, options, plain) for stroke in choosing if stroke.id in left}
-        fits = tried.keys() - astray(compensated(list(tried.values())).plan) if tried else set()
-        found |= {name: tried[name] for name in fits}
+        some = {stroke.id: _plain(stroke, options, plain) for stroke in choosing if stroke.id in left}
+        fits = some.keys() - astray(tried(compensated(list(some.values())).plan)) if some else set()
+        found |= {name: some[name] for name in fits}
         left -= fits
-    return [found.get(stroke.id, stroke) for stroke in painted] if found else painted
+    is_little = sum(len(run.poses_mm) for run in plan.passes) <= POSES_KEPT
+    fitting = [found.get(stroke.id, stroke) for stroke in painted] if found else painted
+    return fitting, whole if is_little and not found else None
 
 
 def _ends(stroke, options: Options) -> tuple[str, str]:

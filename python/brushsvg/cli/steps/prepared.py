@@ -64,11 +64,14 @@ def look(
             if not tilted or refusal.code != "tilt-unsupported":
                 raise
             held_upright, loads = [refusal.notice()], PlanInLoads(tuple(work.plan.sheet_mm), ())
-        plan = loads.as_plan() if at_loads else work.plan
-        marks = prediction.marks_of(plan, brush, outlines, stage, whole, cell)
+        if at_loads:
+            marks = prediction.marks_of(loads.as_plan(), brush, outlines, stage, whole, cell)
+        else:
+            marks = prediction.predict(work, outlines, stage, whole)
         walk = None
         if not held_upright and (work.plan.passes or not work.refused):
-            walk = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm)
+            known = None if at_loads else work.walk(cell)
+            walk = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm, walk=known)
         forbidden = walk.problems if walk else []
         astray = preflight.off_sheet(marks, brush, work.plan.sheet_mm) if held_upright else []
         warnings = [*work.notices, *forbidden, *astray, *held_upright]
