@@ -25,6 +25,7 @@ ACROSS = (0.5, 1.5)  # half widths from the middle: flanks, not what ends and cr
 STEP_MM = 0.5
 APART = 3.0  # standard deviations between two rates that tell what the fit takes of a rate
 LEAST_KEPT = 0.2
+MOST_WIDER = 0.1  # per metre that marks may seem to widen by: strokes of other shapes, early and late, feign some
 FEWEST = 3  # marks more than there are numbers to find
 
 
@@ -35,8 +36,8 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
     What the marks would be freshly dipped is what the fit is given: each edge as much farther from the middle line as
     the paint took. By how much it took is what makes the edges' residuals depend on the way no more. Intervals of the
     laws hold what the other number leaves open. Where the last strokes of the plan are missing or broken, the brush
-    says that hairs are wet up to the last whole mark. Error where the way grows with the depth so that narrower and
-    shallower marks are alike, where marks get wider, and where the number does not settle.
+    says that hairs are wet up to the last whole mark. Marks that seem to widen a little do not narrow. Error where the way grows with the depth so that narrower and
+    shallower marks are alike, where marks get much wider, and where the number does not settle.
     """
     rate, fresh, tried = 0.0, painted, []
     for _ in range(ROUNDS):
@@ -55,19 +56,22 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
         off = calibrate_marks(freshly_dipped(painted, made, other), name, *args, **kwargs)
         tried = [(other, _left(off)[0]), tried[-1]]
     sigma /= _kept(tried[0], tried[-1])
-    half = _core.deviations_of_95(freedom) * sigma
-    if rate + half < 0:
+    deviations = _core.deviations_of_95(freedom)
+    if rate < -MOST_WIDER and rate + deviations * sigma < 0:
         raise Error(
-            f"marks get wider by {-rate:.2g} +- {half:.2g} per metre along the job: was paint fetched in between?",
+            f"marks get wider by {-rate:.2g} +- {deviations * sigma:.2g} per metre along the job: was paint fetched in "
+            "between?",
             "paint",
             rate,
             code="paint-undetermined",
         )
+    if rate < 0:  # marks do not narrow, which the interval has to hold
+        sigma, rate, fresh = max(sigma, -rate / deviations), 0.0, painted
     made = calibrate_marks(fresh, name, *args, **kwargs, off=freshly_dipped(painted, made, rate + sigma))
     last_mm = max(painted.before_mm[mark.stroke] + _lengths(mark)[-1] for mark in made.painted.marks)
     dry = ran_dry(fresh, predicted_marks(made, fresh.marks))
     made.brush.paint = _core.Paint(
-        max(rate, 0.0),
+        rate,
         lasts_mm=dry.whole_mm if dry else None,
         calibrated_mm=(0.0, last_mm),
         source=f"Fitted to {len(made.painted.marks)} marks painted with one load.",
