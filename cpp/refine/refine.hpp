@@ -33,8 +33,9 @@ struct RefinedPass {
 /// deep it is pressed, where it starts and ends; where that is not good, again from a beginning that comes in from the
 /// side. The patch is never pushed, so q = P + r(depth) u holds all along. The
 /// plan is simulated, and kept only where its mark overlaps better by the report's own measure, stays in bounds, and
-/// does not pay for it with an outline that turns more: a full turn is worth 0.25 of overlap. Its miss is that from the
-/// drawn middle line, which it leaves on purpose. Throws Error as compensate() does.
+/// does not pay for it with an outline that turns more or has thorns: a full turn is worth 0.1 of overlap, a thorn
+/// 0.03. Where the whole step is not calm, parts of it are tried as well. Its miss is that from the drawn middle line,
+/// which it leaves on purpose. Throws Error as compensate() does.
 RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions& options = {});
 
 }  // namespace brushsvg::fit

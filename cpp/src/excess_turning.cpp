@@ -12,31 +12,46 @@ namespace {
 namespace bg = boost::geometry;
 using Point = bg::model::d2::point_xy<double>;
 using Line = bg::model::linestring<Point>;
+using Shape = bg::model::multi_polygon<bg::model::polygon<Point, false, false>>;
 
 constexpr double kToleranceMm = 0.1;
 constexpr double kTwoPi = 6.28318530717958648;
+// What is more than a waver of the edge, and a bend of it rather than a curve.
+constexpr double kThornToleranceMm = 0.05, kThornRad = kTwoPi * 20.0 / 360.0, kOutsideMm = 0.3;
 
-/// Sum of the absolute angles at its corners: one turn where it is convex. From its first point to the farthest and
-/// back, so that what is left of a small ring is no single line.
-double turns(const Ring& ring) {
+/// The corners of a ring with few. From its first point to the farthest and back, so that what is left of a small ring
+/// is no single line.
+std::vector<Point> few_corners(const Ring& ring, double tolerance_mm) {
     const Eigen::Index n = ring.rows();
-    if (n < 3) return 0.0;
+    if (n < 3) return {};
     Eigen::Index farthest = 0;
     (ring.rowwise() - ring.row(0)).rowwise().squaredNorm().maxCoeff(&farthest);
     std::vector<Point> corners;
     for (const auto& [first, last] : {std::pair(Eigen::Index(0), farthest), std::pair(farthest, n)}) {
         Line line, simple;
         for (Eigen::Index i = first; i <= last; ++i) line.emplace_back(ring(i % n, 0), ring(i % n, 1));
-        bg::simplify(line, simple, kToleranceMm);
+        bg::simplify(line, simple, tolerance_mm);
         corners.insert(corners.end(), simple.begin(), simple.end() - 1);
     }
+    if (corners.size() < 3) corners.clear();
+    return corners;
+}
+
+/// Visits each corner with the angle by which the outline turns there, to the left [rad].
+template <class Visit>
+void each_turn(const std::vector<Point>& corners, Visit&& visit) {
     const std::size_t count = corners.size();
-    double sum = 0.0;
-    for (std::size_t i = 0; count > 2 && i < count; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         const Point &a = corners[i], &b = corners[(i + 1) % count], &c = corners[(i + 2) % count];
         const double ux = b.x() - a.x(), uy = b.y() - a.y(), vx = c.x() - b.x(), vy = c.y() - b.y();
-        sum += std::abs(std::atan2(ux * vy - uy * vx, ux * vx + uy * vy));
+        visit(b, std::atan2(ux * vy - uy * vx, ux * vx + uy * vy));
     }
+}
+
+/// Sum of the absolute angles at its corners: one turn where it is convex.
+double turns(const Ring& ring) {
+    double sum = 0.0;
+    each_turn(few_corners(ring, kToleranceMm), [&](const Point&, double angle) { sum += std::abs(angle); });
     return sum / kTwoPi;
 }
 
@@ -49,5 +64,24 @@ double turns(const Rings& rings) {
 }  // namespace
 
 double excess_turning(const Rings& mark, const Rings& wanted) { return turns(mark) - turns(wanted); }
+
+int thorns(const Rings& mark, const Rings& wanted) {
+    Shape shape;
+    for (const Ring& ring : wanted) {
+        if (ring.rows() < 3) continue;
+        bg::model::ring<Point, false, false> rim;
+        for (Eigen::Index i = 0; i < ring.rows(); ++i) rim.emplace_back(ring(i, 0), ring(i, 1));
+        if (shape.empty() || bg::area(rim) > 0.0)
+            shape.push_back({rim});
+        else
+            shape.back().inners().push_back(rim);
+    }
+    int count = 0;
+    for (const Ring& ring : mark)
+        each_turn(few_corners(ring, kThornToleranceMm), [&](const Point& corner, double angle) {
+            count += angle > kThornRad && (shape.empty() || bg::distance(corner, shape) > kOutsideMm);
+        });
+    return count;
+}
 
 }  // namespace brushsvg

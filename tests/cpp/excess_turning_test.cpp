@@ -50,3 +50,22 @@ TEST_CASE("a hole counts like an outline") {
     hole = hole.colwise().reverse().eval() / 2.0;
     CHECK(excess_turning({wavy(0.0, 0), hole}, {wavy(0.0, 0)}) == doctest::Approx(1.0).epsilon(1e-9));
 }
+
+TEST_CASE("thorns are sharp, point outwards and stick out of what was wanted, or into a hole of it") {
+    const auto square_with = [](double peak) {
+        return Rings{corners({{0, 0}, {10, 0}, {10, 10}, {5.5, 10}, {5, 10 + peak}, {4.5, 10}, {0, 10}})};
+    };
+    const Rings square{corners({{0, 0}, {10, 0}, {10, 10}, {0, 10}})};
+    CHECK(thorns(square_with(2.0), square) == 1);
+    CHECK(thorns(square_with(0.29), square) == 0);
+    CHECK(thorns(square_with(0.31), square) == 1);
+    CHECK(thorns(square_with(-2.0), square) == 0);  // a notch
+    CHECK(thorns(square_with(2.0), square_with(2.0)) == 0);
+    CHECK(thorns(square, {corners({{1, 1}, {9, 1}, {9, 9}, {1, 9}})}) == 4);
+    CHECK(thorns(square, {}) == 4);
+    CHECK(thorns({}, square) == 0);
+    CHECK(thorns({wavy(0.0, 0)}, {wavy(0.0, 0) / 2.0}) == 0);  // a curve bends by less at a time
+    // a bar from the left that ends within a hole
+    const Rings ring{corners({{0, 0}, {10, 0}, {10, 10}, {0, 10}}), corners({{2, 2}, {2, 8}, {8, 8}, {8, 2}})};
+    CHECK(thorns({corners({{0, 4}, {5, 4}, {5, 6}, {0, 6}})}, ring) == 2);
+}

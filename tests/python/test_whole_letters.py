@@ -1,7 +1,11 @@
 """Refined strokes that touch are kept only where they make a better letter."""
 
-from brushsvg import _core
+import numpy as np
+import shapely
+
+from brushsvg import Pass, Stroke, _core, compensate, find_brush
 from brushsvg.pipeline.preparation import Options, prepare
+from brushsvg.planning.touching_strokes import worse
 
 SHORT_BAR = '<path d="M10 12H34V28H10Z"/>'
 
@@ -19,3 +23,44 @@ def test_a_filled_shape_is_painted_no_worse_by_its_refined_passes(tmp_path):
     assert (
         overlaps["refined"] >= overlaps["closed"]
     )  # each pass alone, refined, left 0.03 of the shape unpainted
+
+
+def turned_deg(rings) -> float:
+    lines = [np.array(shapely.LinearRing(ring).simplify(0.1).coords)[:-1] for ring in rings]
+    ways = [np.roll(line, -1, axis=0) - line for line in lines]
+    angles = [np.arctan2(way[:, 1], way[:, 0]) for way in ways]
+    turns = [np.angle(np.exp(1j * (np.roll(each, -1) - each))) for each in angles]
+    return float(np.degrees(sum(np.abs(each).sum() for each in turns)))
+
+
+def test_a_stroke_that_makes_its_letter_restless_is_worse_and_its_neighbour_is_not():
+    """Two bars that touch: one is refined to cover a little more, the other waves and covers more as well."""
+    brush = find_brush("round-6")
+    bars = [
+        Stroke("stem", np.linspace((30, 20), (30, 70), 4).reshape(1, 8), half_width=[(0, 2.5), (1, 2.5)]),
+        Stroke("bar", np.linspace((30, 45), (80, 45), 4).reshape(1, 8), half_width=[(0, 2.5), (1, 2.5)]),
+    ]
+    closed = compensate(bars, brush, (100, 90), start="auto", end="auto").plan.passes
+    calm = list(closed)
+    waving = Pass("bar", waved(closed[1].poses_mm), closed[1].speed_mm_s)
+    # what was meant is wider than the closed form paints, so that a wave covers more of it
+    wider = [bars[0], bars[1].replaced(half_width=[(0, 3.4), (1, 3.4)])]
+    group = [[0, 1]]
+    overlaps, marks = [], []
+    for passes in (calm, [closed[0], waving]):
+        painted = _core.simulate(_core.Plan(passes=passes), brush)
+        _core.trace_outlines(painted, brush)
+        overlaps.append(_core.common_area(painted.passes, wider, brush).overlap)
+        marks.append(painted.outline_mm)
+    assert overlaps[1] > overlaps[0]  # by overlap alone it was kept
+    assert turned_deg(marks[1]) > turned_deg(marks[0]) + 270
+    assert worse([closed[0], waving], closed, wider, brush, group) == [1]
+    assert worse(calm, closed, wider, brush, group) == []
+
+
+def waved(poses_mm: np.ndarray) -> np.ndarray:
+    """From side to side by 3 mm, which the lag makes less, five times between landing and lift-off, pressed deeper."""
+    inside = np.linspace(poses_mm[2], poses_mm[-3], 60)
+    inside[:, 1] += 3.0 * np.sin(np.linspace(0, 10 * np.pi, 60))
+    inside[:, 2] -= 2.0
+    return np.vstack([poses_mm[:2], inside, poses_mm[-2:]])

@@ -9,4 +9,9 @@ namespace [[gnu::visibility("default")]] brushsvg {
 /// neither pixels nor facets of curves count. Negative where the mark is rounder than what was drawn.
 double excess_turning(const Rings& mark, const Rings& wanted);
 
+/// How many corners of a mark's outlines beyond 20 degrees, each outline as a polygon within 0.05 mm of it, stick out
+/// of what was wanted by more than 0.3 mm: thorns, and the bends of what bulges out. Outer rings run counter-clockwise,
+/// the clockwise ones behind each are its holes.
+int thorns(const Rings& mark, const Rings& wanted);
+
 }  // namespace brushsvg

@@ -84,6 +84,7 @@ __all__: list[str] = [
     "remarks",
     "simulate",
     "thin_out",
+    "thorns",
     "touching",
     "trace_outlines",
     "unite",
@@ -1719,6 +1720,14 @@ def simulate(
 def thin_out(pass_: Pass, brush: Brush, tolerance_mm: float = 0.05) -> Pass:
     """
     The pass with fewer poses, its mark's middle and edges within the tolerance of where they were.
+    """
+
+def thorns(
+    mark: collections.abc.Sequence[numpy.typing.ArrayLike],
+    wanted: collections.abc.Sequence[numpy.typing.ArrayLike],
+) -> int:
+    """
+    How many corners of a mark's outlines beyond 20 degrees stick out of what was wanted by more than 0.3 mm; each outline as a polygon within 0.05 mm, wanted given as for unite.
     """
 
 def touching(wanted: collections.abc.Sequence[Stroke]) -> list[list[int]]:
