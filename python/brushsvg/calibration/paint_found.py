@@ -25,7 +25,9 @@ ACROSS = (0.5, 1.5)  # half widths from the middle: flanks, not what ends and cr
 STEP_MM = 0.5
 APART = 3.0  # standard deviations between two rates that tell what the fit takes of a rate
 LEAST_KEPT = 0.2
-MOST_WIDER = 0.1  # per metre that marks may seem to widen by: strokes of other shapes, early and late, feign some
+MOST_WIDER = (
+    0.1  # per metre that marks may seem to widen by: strokes of other shapes, early and late, feign some
+)
 FEWEST = 3  # marks more than there are numbers to find
 
 
@@ -36,8 +38,9 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
     What the marks would be freshly dipped is what the fit is given: each edge as much farther from the middle line as
     the paint took. By how much it took is what makes the edges' residuals depend on the way no more. Intervals of the
     laws hold what the other number leaves open. Where the last strokes of the plan are missing or broken, the brush
-    says that hairs are wet up to the last whole mark. Marks that seem to widen a little do not narrow. Error where the way grows with the depth so that narrower and
-    shallower marks are alike, where marks get much wider, and where the number does not settle.
+    says that hairs are wet up to the last whole mark. Marks that seem to widen a little do not narrow. Error where the
+    way grows with the depth so that narrower and shallower marks are alike, where marks get much wider, and where the
+    number does not settle.
     """
     rate, fresh, tried = 0.0, painted, []
     for _ in range(ROUNDS):
