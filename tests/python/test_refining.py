@@ -35,11 +35,13 @@ def test_a_stroke_too_wide_for_the_brush_stays_straight(tmp_path):
     """Bars of 12 and 24 mm had hooks and became a C, up to 14 mm off the middle, since that covers more."""
     closed, refined = works(tmp_path, BARS, wide="clamp")
     marks = _core.simulate(refined.plan, refined.brush).passes
+    # of the bar that is three times too wide hardly anything of its ends is worth a turn of the edge
+    least = (0.01, 0.0)
     for number, (middle_mm, trace) in enumerate(zip((26.0, 82.0), marks, strict=True)):
         widest = _core.widest_points(trace, refined.brush)
         inside = (widest[:, 1] > 22) & (widest[:, 1] < 68)
         assert widest[inside, 0] == pytest.approx(np.full(inside.sum(), middle_mm), abs=0.15)
-        assert overlap(refined, number) > overlap(closed, number)  # ends are refined as ever
+        assert overlap(refined, number) > overlap(closed, number) + least[number]  # ends are refined as ever
     assert not [notice for notice in refined.notices if "widest point" in notice.sentence]
 
 
