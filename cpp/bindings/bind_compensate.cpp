@@ -113,7 +113,7 @@ too sharp for the lever.)");
                 out.warnings.push_back(
                     Warning{"widths-ignored", "", "brush " + brush.name + " has one width: drawn widths are ignored"});
             std::vector<CompensatedPass> done(strokes.size());
-            constexpr std::size_t at_once = 32;  // half a second of refined ones is told of at once
+            const std::size_t at_once = method == "refined" ? 8 : 32;  // Ctrl-C and progress wait for so many
             in_parallel_chunks(strokes.size(), at_once, progress, [&](std::size_t i) { done[i] = way(strokes[i]); });
             for (CompensatedPass& one : done) {
                 out.plan.passes.push_back(std::move(one.pass));
