@@ -12,6 +12,7 @@ from brushsvg.strokes.contour_fill import contour_passes, painted, region
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.offset_passes import Line
 from brushsvg.strokes.skeleton import shape_to_strokes
+from brushsvg.strokes.trial_mark import spoiling
 from brushsvg.strokes.wide_shapes import within_reach
 
 HALF_MM = 4.2  # of round-6 at its deepest
@@ -43,8 +44,13 @@ def of(d: str, rest: str = 'fill="red" fill-rule="nonzero" stroke="none"'):
     return strokes(read(f'<path id="p" d="{d}" {rest}/>'))[0]
 
 
+def meant_by(made):
+    """What discs of passes paint, and what they are meant to paint beyond, in the corners of square ends."""
+    return shapely.union_all([painted(made), *(region(each.wanted_mm) for each in made if each.wanted_mm)])
+
+
 def share_left(shape, made) -> float:
-    return shape.difference(painted(made)).area / shape.area
+    return shape.difference(meant_by(made)).area / shape.area
 
 
 @pytest.mark.slow
@@ -54,12 +60,14 @@ def test_passes_fill_a_shape_and_stay_in_it(brush, d):
     shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm]))
     passes, wanted, notices = within_reach(made, brush, "passes")
     assert share_left(shape, passes) < 0.01
-    assert painted(passes).difference(shape.buffer(0.03 * HALF_MM + 0.02)).area < 0.01
+    assert meant_by(passes).difference(shape.buffer(0.03 * HALF_MM + 0.02)).area < 0.01
     assert max(half for each in passes for _, half in each.half_width) <= HALF_MM + 1e-9
     assert not any("unpainted" in notice.sentence for notice in notices)
     assert [each.id for each in passes] == [each.id for each in wanted]
     assert len({each.id for each in passes}) == len(passes)
-    assert not any(each.wanted_mm for each in passes)  # or `refined` would draw each to the whole shape
+    # each its own: `refined` would draw it to the whole shape
+    for each in (each for each in passes if each.wanted_mm):
+        assert region(each.wanted_mm).difference(painted([each]).buffer(0.45 * HALF_MM)).area < 0.01
     meant = region(_core.unite([ring for each in wanted for ring in _core.wanted_outline(each, 0.01)]))
     assert meant.symmetric_difference(shape).area < 0.006 * shape.area
 
@@ -87,30 +95,70 @@ def test_a_disc_hardly_wider_than_the_brush_is_no_ring_to_turn_round_in(brush):
     assert not any(each.closed for each in passes)
 
 
-def test_the_first_pass_is_asked_for_its_own_discs_and_not_for_the_whole_shape(brush):
+def test_the_first_pass_is_asked_for_its_own_mark_and_not_for_the_whole_shape(brush):
     passes, wanted, _ = within_reach(of(SQUARE), brush, "passes")
-    own = painted(passes[:1]).area
+    own = meant_by(passes[:1]).area
     assert _core.area(wanted[0].wanted_mm) == pytest.approx(own, rel=0.02)
     assert own < 0.7 * 45 * 45
 
 
-def test_the_outermost_ring_comes_first_and_corners_are_entered_from_their_points(brush):
+def test_sides_that_meet_at_right_angles_come_first_with_square_ends_then_the_rings_inside(brush):
     passes, _, _ = within_reach(of(SQUARE), brush, "passes")
-    rings, corners = [s for s in passes if s.closed], [s for s in passes if s.half_width[0][1] < 1]
-    assert [each.id for each in passes[: len(rings)]] == [each.id for each in rings]
+    sides, rings = passes[:4], [each for each in passes if each.closed]
+    assert not any(each.closed for each in sides)
+    assert [each.id for each in passes[4 : 4 + len(rings)]] == [each.id for each in rings]
+    square = shapely.box(5, 5, 50, 50)
+    for each in sides:
+        way = _core.flatten(each, 0.02)
+        assert way[-1, 2] == pytest.approx(45 - 2 * HALF_MM, abs=0.02)
+        meant = region(each.wanted_mm)
+        corners = [
+            corner for corner in square.exterior.coords[1:] if meant.distance(shapely.Point(corner)) < 0.02
+        ]
+        assert len(corners) == 2
     sizes = [np.ptp(_core.flatten(each, 0.02)[:, 0]) for each in rings]
     assert sizes == sorted(sizes, reverse=True)
-    assert sizes[0] == pytest.approx(45 - 2 * HALF_MM, abs=0.02)
-    assert len(corners) == 4
+
+
+def test_sharper_corners_are_entered_from_their_points(brush):
+    passes, _, _ = within_reach(of(SHAPES["triangle"]), brush, "passes")
+    corners = [s for s in passes if s.half_width[0][1] < 1]
+    assert len(corners) == 3
     for each in corners:
         assert each.half_width[-1][1] > 0.5 * HALF_MM
 
 
 def test_a_ring_begins_amid_an_edge_as_its_tip_would_stick_out_of_a_corner(brush):
-    passes, _, _ = within_reach(of(SQUARE), brush, "passes")
+    turns = np.radians(60 * np.arange(6))
+    hexagon = np.column_stack([30 + 25 * np.cos(turns), 25 + 25 * np.sin(turns)])
+    passes, _, _ = within_reach(
+        of("M" + "L".join(f"{x:.4f} {y:.4f}" for x, y in hexagon) + "Z"), brush, "passes"
+    )
+    assert passes[0].closed
     start = passes[0].middle_mm[0, :2]
-    corners = np.array([[5, 50], [50, 50], [50, 5], [5, 5]])
-    assert np.hypot(*(corners - start).T).min() > 20
+    inside = (30, 25) + (hexagon - (30, 25)) * (1 - HALF_MM / (25 * np.sqrt(0.75)))
+    assert np.hypot(*(inside - start).T).min() > 8
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("d", [SHAPES["bar"], SQUARE, SHAPES["ell"]])
+def test_marks_of_passes_have_the_shape_s_straight_edges_up_to_its_corners(brush, d):
+    """Measured on the simulated marks by shapely: within 0.2 mm of each edge, from 2 mm beside corners on, from 5 mm
+    beside one that points inwards, where the brush turns."""
+    made = of(d)
+    shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm])).simplify(0.01)
+    passes, _, _ = within_reach(made, brush, "passes")
+    made = _core.compensate(passes, brush, (100, 60), "closed", 0.05, None, start="auto", end="auto")
+    marks = _core.simulate(made.plan, brush)
+    _core.trace_outlines(marks, brush)
+    paint = region(_core.unite(marks.outline_mm))
+    corners = [shapely.Point(each) for each in shape.exterior.coords]
+    inward = [shape.intersection(each.buffer(1)).area > 2 for each in corners]
+    near = [each.buffer(5 if turns else 2) for each, turns in zip(corners, inward, strict=True)]
+    edge = shapely.segmentize(shape.exterior.difference(shapely.union_all(near)), 0.1)
+    places = shapely.points(shapely.get_coordinates(edge))
+    assert shapely.distance(places, paint.boundary).max() < 0.2
+    assert paint.intersection(shape).area / paint.union(shape).area > 0.99
 
 
 def test_a_short_fat_stroke_is_a_ring_without_a_tip(brush):
@@ -207,3 +255,20 @@ def test_a_pen_fills_a_shape_in_passes_of_its_one_width(name):
     assert inked.difference(shape.buffer(0.03 * 1.2 + 0.02)).area < 0.05
     assert shape.difference(inked).area / shape.area < 0.03
     assert within_reach(made, pen, "auto") == (made, made, [])  # unless asked it draws middle lines
+
+
+def straight(name, start, end, half):
+    """A stroke from one place to another."""
+    return _core.Stroke(name, np.linspace(start, end, 4).reshape(1, 8), half_width=[(0, half), (1, half)])
+
+
+def test_lines_that_paint_more_beside_a_shape_than_within_it_spoil_it(brush):
+    """A line of 5 mm up from an edge: its mark lies behind it, below the shape; one of 45 mm lies in it."""
+    rings = [np.array([(10, 20), (70, 20), (70, 38), (10, 38)], dtype=float)]
+    lines = [
+        straight("first", (14, 33), (66, 33), 4.0),
+        straight("blot", (40, 20.5), (40, 25.5), 4.0),
+        straight("second", (16, 25), (61, 25), 4.0),
+    ]
+    assert spoiling(lines, [1, 2], rings, brush) == {1}
+    assert spoiling(lines, [], rings, brush) == set()

@@ -9,6 +9,7 @@ medial axis, are painted at the width that the shape has there.
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -23,7 +24,7 @@ _STEP = 1.5
 _INNERMOST = 0.9  # in half widths, from the innermost ring to the shape's middle: it covers that
 _HAIR = 0.05  # in half widths: no ring round a place narrower than that, a line along its middle covers it
 _UPPER_LEFT = (-0.3, 1.0)
-_CORNER_RAD, _SHARP_RAD = np.radians(30), np.radians(100)
+_CORNER_RAD, _SQUARE_RAD, _SHARP_RAD = np.radians(30), np.radians(80), np.radians(100)
 # Worth a line of its own, in squares of the half width; a corner of 90 degrees has 0.21, of 60 degrees 0.69.
 _WORTH = 0.1
 _SEEN = 0.02  # what a line's disc must show of the unpainted to be a part of it
@@ -36,6 +37,7 @@ _TURNED_IN = 2.0  # half widths round a ring that is all of a filling: in a smal
 # tip runs back out of the corner.
 _BLUNT = 0.6
 _WIDE_END = 0.5  # in half widths; narrower ends lie in corners
+_SQUARED = 0.4  # of the greatest width, the least of a brush whose marks can begin and end square
 _AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
 _GRID_MM = 1e-4  # of differences: without one they may fail on edges that all but touch
 _QUARTER, _ROUND = 24, 8  # edges of a quarter of a circle, off by 1e-3 and by 5e-3 of its radius
@@ -51,11 +53,13 @@ def region(rings: list[np.ndarray]):
 
 
 def painted(strokes: list):
-    """What discs of their widths paint along lines or strokes."""
+    """What discs of their widths paint along lines or strokes; what lines with square ends are meant to."""
     return shapely.union_all([part for each in strokes for part in _swept(each)])
 
 
 def _swept(stroke) -> list:
+    if isinstance(stroke, Line) and stroke.wanted_mm:
+        return [region(list(stroke.wanted_mm))]
     bare = _core.Stroke(middle_mm=stroke.middle_mm, half_width=stroke.half_width, closed=stroke.closed)
     line = _core.flatten(bare, 0.01)
     knots = np.array(stroke.half_width)
@@ -84,7 +88,7 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
     shape = shape.simplify(_SIMPLER_MM)
     if _close_pairs(shape, half) > _MOST_PAIRS:
         return []
-    lines = _rings(shape, half)
+    lines = _rings(shape, half, are_squared=least < _SQUARED * half)
     if lines is None:
         return []
     left = unpainted(shape, [*narrow, *lines])
@@ -110,7 +114,7 @@ def _close_pairs(shape, half: float) -> float:
     return float(np.mean(near)) * len(points)
 
 
-def _rings(shape, half: float) -> list[Line] | None:
+def _rings(shape, half: float, are_squared: bool) -> list[Line] | None:
     radius = shapely.maximum_inscribed_circle(shape, 0.01 * half).length
     across = radius - half - _INNERMOST * half
     steps = max(int(np.ceil(across / (_STEP * half) - 0.4)), 0)
@@ -121,7 +125,7 @@ def _rings(shape, half: float) -> list[Line] | None:
         line
         for k in range(steps + 1)
         for points in _inward(shape, half + k * step, _HAIR * half)
-        for line in _passes(points, half, outermost=k == 0)
+        for line in _passes(points, half, shape if k == 0 else None, are_squared)
     ]
 
 
@@ -140,25 +144,37 @@ def _inward(shape, by_mm: float, hair_mm: float) -> list[np.ndarray]:
     ]
 
 
-def _passes(points: np.ndarray, half: float, outermost: bool) -> list[Line]:
+def _passes(points: np.ndarray, half: float, shape, are_squared: bool) -> list[Line]:
     """A ring as lines: closed, from amid its longest stretch on, as the tip of a brush set down there lies on the ring;
-    the outermost, whose edge shows, cut where it turns too sharply for a brush that turns in place."""
+    the outermost, whose edge shows, given the shape, cut where it turns too sharply for a brush that turns in place, or
+    where marks with square ends meet in a corner."""
     ring = _with_sharp_tips(points[:-1], 3 * _HAIR * half)
     corners = _corners(ring, _CORNER_RAD)
-    sharp = _corners(ring, _SHARP_RAD)
+    sharp = _corners(ring, _SQUARE_RAD if are_squared else _SHARP_RAD)
     if not len(corners):
         return [_line(np.roll(ring, -int((ring @ _UPPER_LEFT).argmax()), axis=0), [], half, True)]
-    if not outermost or not len(sharp):
+    if shape is None or not len(sharp):
         ring, corners = _amid_longest(ring, corners)
         return [_line(np.vstack([ring, ring[:1]]), corners, half, True)]
     first = sharp[(ring[sharp] @ _UPPER_LEFT).argmax()]
     sharp, corners = (np.sort((which - first) % len(ring)) for which in (sharp, corners))
     ring = np.roll(ring, -first, axis=0)
     ring = np.vstack([ring, ring[:1]])
-    return [
+    lines = [
         _line(ring[a : b + 1], [int(k - a) for k in corners if a < k < b], half, False)
         for a, b in itertools.pairwise([*sharp, len(ring) - 1])
     ]
+    return [_squared(line, half, shape) for line in lines] if are_squared else lines
+
+
+def _squared(line: Line, half: float, shape) -> Line:
+    """The line, meant to paint into the corners of the shape at its ends as well."""
+    way = _core.flatten(_core.Stroke(middle_mm=line.middle_mm, half_width=line.half_width), 0.01)[:, :2]
+    whole = shapely.buffer(shapely.LineString(way), half, quad_segs=_QUARTER, cap_style="square")
+    parts = shapely.get_parts(shapely.intersection(whole, shape, grid_size=_GRID_MM))
+    part = shapely.orient_polygons(max(parts, key=shapely.area))
+    rings = [np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)]
+    return replace(line, wanted_mm=tuple(_core.unite(rings)))
 
 
 def _corners(ring: np.ndarray, least_rad: float) -> np.ndarray:

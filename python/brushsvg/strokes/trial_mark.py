@@ -28,6 +28,23 @@ def trial_overlap(strokes: list, rings: list[np.ndarray], brush) -> float:
     return common / both
 
 
+def spoiling(strokes: list, tried: list[int], rings: list[np.ndarray], brush) -> set[int]:
+    """Which of the strokes with these numbers paint more beside a shape than they add within it, the others given; the
+    last one first. In pixels."""
+    marks, spoil = trial_marks(strokes, brush), set()
+    some = _core.Marks()
+
+    def misplaced(but: set[int]) -> float:
+        some.passes = [one for k, one in enumerate(marks.passes) if k not in but]
+        return misplaced_seen_mm2(some, rings, brush)
+
+    least = misplaced(spoil) if tried else 0.0
+    for k in reversed(tried):
+        if (without := misplaced({*spoil, k})) <= least:
+            spoil, least = {*spoil, k}, without
+    return spoil
+
+
 def misplaced_mm2(marks, rings: list[np.ndarray], brush) -> float:
     """Area of what is wanted and not painted, and of what is painted and not wanted."""
     mark = outline_of(marks, brush)

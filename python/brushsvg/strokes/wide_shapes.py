@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from .. import _core
 from ..drawing.design import Notice
 from ..errors import Error, need, need_one_of
 from .offset_passes import clamped
-from .trial_mark import trial_overlap
+from .trial_mark import spoiling, trial_overlap
 
 WIDE = ("auto", "clamp", "passes", "refuse")
 # At the nearest width the mark overlaps with a shape by so much, or passes are taken for it.
@@ -19,6 +21,7 @@ BETTER = 0.01  # and passes by so much more
 CLEARLY = 0.1
 # Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
 _WORTH_PASSES = 1 / 0.95
+_BLOT, _MOST_BLOTS = 3.0, 60  # in half widths, a line of a filling that is looked at; of one shape
 UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge lies beside the shape's by more
 
 
@@ -108,6 +111,7 @@ def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int
             continue
         first = min(filling.passes)
         left_over = _left_over(filling)
+        filling = _without_blots(filling, strokes, brush)
         for k in filling.passes:
             passes = [_like(strokes[k], line, lane) for lane, line in enumerate(filling.passes[k], start=1)]
             meant = []
@@ -172,6 +176,31 @@ def _how(passes: list) -> str:
     return f"painted in {len(passes)} passes" if len(passes) > 1 else "painted in one pass"
 
 
+def _without_blots(filling, strokes: list, brush):
+    """The filling without short lines that paint more beside the shape than they add to it: a mark shorter than a
+    footprint lies behind its line."""
+    lines = [(k, lane) for k, of_stroke in filling.passes.items() for lane in range(len(of_stroke))]
+    passes = [_like(strokes[k], filling.passes[k][lane]) for k, lane in lines]
+    greatest = brush.half_width_range_mm()[1]
+    short = [n for n, one in enumerate(passes) if _is_short(one, _BLOT * greatest) and lines[n][1] > 0]
+    if not 0 < len(short) <= _MOST_BLOTS:
+        return filling
+    try:
+        spoil = spoiling([*passes, *filling.narrow], short, filling.rings, brush)
+    except Error:
+        return filling
+    left_out = {lines[n] for n in spoil}
+    kept = {
+        k: [line for lane, line in enumerate(of_stroke) if (k, lane) not in left_out]
+        for k, of_stroke in filling.passes.items()
+    }
+    return replace(filling, passes=kept)
+
+
+def _is_short(stroke, least_mm: float) -> bool:
+    return not stroke.closed and not stroke.wanted_mm and _core.flatten(stroke, 0.05)[-1, 2] < least_mm
+
+
 def _left_over(filling) -> str:
     if not filling.shows:
         return ""
@@ -186,7 +215,7 @@ def _like(stroke, line, lane: int = 1):
         middle_mm=line.middle_mm,
         closed=line.closed,
         half_width=line.half_width,
-        wanted_mm=[],
+        wanted_mm=list(line.wanted_mm),
     )
 
 
