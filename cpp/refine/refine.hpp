@@ -34,7 +34,7 @@ struct RefinedPass {
 /// side. The patch is never pushed, so q = P + r(depth) u holds all along. The
 /// plan is simulated, and kept only where its mark overlaps better by the report's own measure, stays in bounds, and
 /// does not pay for it with an outline that turns more or has thorns: a full turn is worth 0.1 of overlap, a thorn
-/// 0.03. Where the whole step is not calm, parts of it are tried as well. Its miss is that from the drawn middle line,
+/// 0.02. Where the whole step is not calm, parts of it are tried as well. Its miss is that from the drawn middle line,
 /// which it leaves on purpose. Throws Error as compensate() does.
 RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions& options = {});
 

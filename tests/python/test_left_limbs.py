@@ -5,10 +5,13 @@ import pytest
 import shapely
 
 from brushsvg import find_brush
+from brushsvg.drawing.svg import read_svg
 from brushsvg.evaluation import report
 from brushsvg.pipeline.prediction import predict
 from brushsvg.pipeline.preparation import Options, prepare
 from brushsvg.strokes.contour_fill import region
+from brushsvg.strokes.extraction import strokes
+from brushsvg.strokes.wide_shapes import within_reach
 
 SVG = (
     '<svg xmlns="http://www.w3.org/2000/svg" xmlns:b="https://brushsvg.org/ns" width="60mm" height="60mm" '
@@ -115,6 +118,7 @@ def test_it_is_painted_as_often_as_its_shape(tmp_path):
 def test_blunt_corners_and_shapes_in_passes_get_none(tmp_path):
     assert [stroke.id for stroke in prepared(tmp_path, BLOCK).strokes] == ["p"]
     wide = [(3 * x - 40, y) for x, y in FLAG]
-    filled = prepared(tmp_path, wide, wide="passes")
-    assert not any(stroke.wanted_mm for stroke in filled.strokes[1:])
+    filled, brush = prepared(tmp_path, wide, wide="passes"), find_brush("round-6")
+    passes = within_reach(strokes(read_svg((tmp_path / "p.svg").read_bytes()))[0], brush, "passes")[0]
+    assert [stroke.id for stroke in filled.strokes] == [stroke.id for stroke in passes]
     assert [stroke.id for stroke in prepared(tmp_path, FLAG, compensation="none").strokes] == ["p"]
