@@ -81,7 +81,7 @@ def test_refined_strokes_are_those_of_the_command_line(vpype, desk):
     """Of straight lines, since vpype flattens curves, begun as points: refined marks differ most there."""
     pointed = ("--start", "exposed")
     words = ("--compensation", "refined", *pointed)
-    straight = re.sub('<path id="line".*?/>|<circle.*?/>', "", DRAWING).replace('width="3"', 'width="6"')
+    straight = re.sub('<path id="line".*?/>|<circle.*?/>', "", DRAWING).replace('width="3"', 'width="5"')
     straight = straight.replace("H60 V40", "H40")
     (desk / "x.svg").write_text(straight)
     vpype("read", "x.svg", "brushwrite", *words, "out.json", "brushwrite", *pointed, "closed.json", cwd=desk)
