@@ -1,11 +1,14 @@
 """Limbs that are thin beside what they leave are painted, and corners grow none."""
 
+import warnings
+
 import numpy as np
 import pytest
 from svg_text import read
 
 from brushsvg import _core
 from brushsvg.strokes.extraction import strokes
+from brushsvg.strokes.skeleton.cut_ends import run_to_cut
 
 
 def found(d: str):
@@ -103,3 +106,11 @@ def test_the_stem_of_an_a_runs_from_its_top_to_its_foot_beside_the_bowl(top, sla
     assert len(made) == 2, "a bowl and a stem"
     down = [50 - _core.flatten(stroke, 0.05)[[0, -1], 1] for stroke in made]
     assert any(first < top + 4.6 and last > 36 for first, last in down), down
+
+
+def test_a_line_that_comes_back_to_where_it_ends_has_no_way_there():
+    """Out and back by a half width each: without a word of numpy's."""
+    line = np.array([[0.0, 0.0, 2.0], [1.0, 0.0, 2.0], [0.0, 0.0, 2.0]])
+    square = [np.array([[-5.0, -5.0], [5.0, -5.0], [5.0, 5.0], [-5.0, 5.0]])]
+    with warnings.catch_warnings(action="error"):
+        assert run_to_cut(line, square) is line

@@ -75,11 +75,13 @@ def run_to_cut(line: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
     befores = np.column_stack([np.interp(along + back[:, 2], along, column) for column in back.T])
     halves = back[:, 2]
     is_over = (along > LOOKED_AT * halves) & (halves > halves[0]) | (along[-1] < along + halves)
-    is_level = (halves > 0) & (befores[:, 2] <= (1 + LEVEL) * halves)
+    ways_mm = back[:, :2] - befores[:, :2]
+    is_level = (
+        (halves > 0) & ways_mm.any(axis=1) & (befores[:, 2] <= (1 + LEVEL) * halves)
+    )  # no way where the line is back there
     is_level[is_over.argmax() if is_over.any() else len(back) :] = False
     (level,) = is_level.nonzero()
-    axes = back[level, :2] - befores[level, :2]
-    axes /= np.hypot(*axes.T)[:, None]
+    axes = ways_mm[level] / np.hypot(*ways_mm[level].T)[:, None]
     if is_level[0]:
         if _turn(back[0, :2] - back[1, :2], axes[0]) < UNSEEN_RAD:
             return line
