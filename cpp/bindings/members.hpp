@@ -71,7 +71,8 @@ inline constexpr auto members<brushsvg::WidthKnot> =
 template <>
 inline constexpr auto members<brushsvg::Stroke> = std::tuple(
     &brushsvg::Stroke::id, &brushsvg::Stroke::middle_mm, &brushsvg::Stroke::closed, &brushsvg::Stroke::half_width,
-    &brushsvg::Stroke::wanted_mm, &brushsvg::Stroke::layer, &brushsvg::Stroke::colour, &brushsvg::Stroke::settings);
+    &brushsvg::Stroke::wanted_mm, &brushsvg::Stroke::layer, &brushsvg::Stroke::colour, &brushsvg::Stroke::settings,
+    &brushsvg::Stroke::start_covered, &brushsvg::Stroke::end_covered);
 
 template <>
 inline constexpr auto members<brushsvg::Arc> =

@@ -24,8 +24,9 @@ using Eigen::Vector2d;
 /// pixels on one half width. A pointed footprint reaches back by two half widths from its widest section.
 constexpr double kLookedAt = 3.0, kMade = 6.0, kPixels = 8.0;
 /// What another end than the plain one must win, in squares of the half width: of the 1.5 that a pointed beginning
-/// lacks, what one has to look for. Two blunt corners lack 0.43.
-constexpr double kWorthIt = 0.2;
+/// lacks, what one has to look for. Two blunt corners lack 0.43. Of a round cap less shows: the shoulders of a blunt
+/// front beside it.
+constexpr double kWorthIt = 0.2, kWorthRound = 0.05;
 /// And what a full turn more of the mark's outline weighs against it, in squares of the greatest half width: knobs on
 /// the thin ends of drops.
 constexpr double kCalm = 0.3;
@@ -59,9 +60,9 @@ class View {
           wanted_(wanted_coverage({wanted}, window_, px_per_mm_)) {}
 
     /// Whether the mark of another pass wins what is worth it.
-    bool is_better(const Pass& other, const Pass& plain) const {
+    bool is_better(const Pass& other, const Pass& plain, bool is_round = false) const {
         const Coverage now = picture(other), before = picture(plain);
-        const double won = differs(before) - differs(now) - kWorthIt;
+        const double won = differs(before) - differs(now) - (is_round ? kWorthRound : kWorthIt);
         if (!(won > 0.0)) return false;
         const double turned =
             excess_turning(half_painted(now, window_, px_per_mm_), half_painted(before, window_, px_per_mm_));
@@ -121,31 +122,31 @@ bool is_better_squared(const Stroke& wanted, const SquaredDot& dot, const Brush&
     return view.is_better(squared, round);
 }
 
-bool begins_better(const Stroke& wanted, const Stroke& squared, const Stroke& stroke, const Brush& brush,
-                   Beginning start, double step_tolerance) {
+bool begins_better(const Stroke& wanted, const SquaredBeginning& squared, const Stroke& whole, const Stroke& stroke,
+                   const Brush& brush, Beginning start, double step_tolerance) {
     const Line line(stroke, brush);
     bool turns = false;
     Pass plain, other;
     closed_form(stroke, brush, line, start, step_tolerance, turns).into(plain);
-    closed_form(squared, brush, Line(squared, brush), Beginning::exposed, step_tolerance, turns).into(other);
+    closed_form(whole, brush, Line(whole, brush), Beginning::exposed, step_tolerance, turns).into(other);
     const double depth = depth_of(stroke, brush, 0.0), half = brush.half_width(depth),
                  made = kMade * half + 4.0 * brush.lag(depth);
     const View view(wanted, line.at(0.0).middle, half, greatest_half_mm(stroke, half), brush);
     // both up to the same place: from there on they are the same
-    return view.is_better(beginning_of(other, made + way_of(other) - way_of(plain)), beginning_of(plain, made));
+    return view.is_better(beginning_of(other, made + way_of(other) - way_of(plain)), beginning_of(plain, made),
+                          squared.is_round);
 }
 
-Ending best_ending(const Stroke& wanted, const Stroke& lifted, const Stroke& squared, const Brush& brush,
+Ending best_ending(const Stroke& wanted, const Stroke& lifted, const SquaredEnd& squared, const Brush& brush,
                    Beginning start, double step_tolerance) {
-    if (wanted.wanted_mm.empty()) return Ending::lifted;  // a round cap, as the footprint is in front
     const Line line(lifted, brush);
     const double half = brush.half_width(depth_of(lifted, brush, 1.0));
     bool turns = false;
     Pass plain, other;
     closed_form(lifted, brush, line, start, step_tolerance, turns).into(plain);
-    closed_form(squared, brush, Line(squared, brush), start, step_tolerance, turns).into(other);
+    closed_form(squared.stroke, brush, Line(squared.stroke, brush), start, step_tolerance, turns).into(other);
     const View view(wanted, line.at(line.length()).middle, half, greatest_half_mm(lifted, half), brush);
-    return view.is_better(other, plain) ? Ending::squared : Ending::lifted;
+    return view.is_better(other, plain, squared.is_round) ? Ending::squared : Ending::lifted;
 }
 
 }  // namespace brushsvg

@@ -172,12 +172,17 @@ Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateO
             if (choose && plain.dot) plain.instead = Beginning::hidden;
             return plain;
         }
-    if (asked != Beginning::squared && !(choose && !stroke.wanted_mm.empty())) return plain;  // round caps, as fronts
-    const std::optional<SquaredBeginning> squared = squared_beginning(stroke, brush);
+    if (asked == Beginning::exposed) return plain;
+    const std::optional<SquaredBeginning> squared =
+        squared_beginning(stroke, brush, asked == Beginning::squared ? Caps::straight : Caps::round);
     if (!squared || dot_of(stroke, brush)) return plain;
+    if (squared->is_round ? asked == Beginning::squared || stroke.start_covered : asked == Beginning::hidden)
+        return plain;
     Begun begun{squared->stroke, up_to_its_end(squared->stroke, brush), Beginning::exposed, {}, {}};
     if (choose) begun.instead = plain.start;
-    if (choose && !begins_better(stroke, begun.whole, plain.whole, brush, plain.start, step_tolerance)) return plain;
+    if (asked != Beginning::squared &&
+        !begins_better(stroke, *squared, begun.whole, plain.whole, brush, plain.start, step_tolerance))
+        return plain;
     return begun;
 }
 
@@ -186,9 +191,11 @@ std::optional<Stroke> squared_where_asked(const Stroke& stroke, const Stroke& li
                                           const CompensateOptions& options, Beginning start, double step_tolerance) {
     const Ending end = stroke.settings.end ? ending_named(*stroke.settings.end, stroke.id) : options.end;
     if (end == Ending::lifted) return {};
-    const std::optional<SquaredEnd> squared = squared_end(stroke, brush);
-    if (!squared || (end == Ending::automatic &&
-                     best_ending(stroke, lifted, squared->stroke, brush, start, step_tolerance) == Ending::lifted))
+    const std::optional<SquaredEnd> squared =
+        squared_end(stroke, brush, end == Ending::automatic ? Caps::round : Caps::straight);
+    if (!squared || (squared->is_round && (end == Ending::squared || stroke.end_covered)) ||
+        (end == Ending::automatic &&
+         best_ending(stroke, lifted, *squared, brush, start, step_tolerance) == Ending::lifted))
         return {};
     return squared->stroke;
 }

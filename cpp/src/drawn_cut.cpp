@@ -1,5 +1,6 @@
 #include "drawn_cut.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,6 +26,14 @@ constexpr double kBeforeCorner = 0.2;
 constexpr double kSlanted = 0.6, kSteepest = 1.3;
 /// How far from its chord a cut may stray, and within what it is looked for, both in half widths.
 constexpr double kStraight = 0.12, kNearest = 0.2, kFarthest = 2.5;
+/// The same before the middle of a round cap, where it is beside the edge. A mark that leaves later sticks out of it,
+/// sooner leaves a hole.
+constexpr double kLeavesCap = 0.15;
+/// In half widths: within what a cap is looked at, how far it may stray from its circle, and how far the circle may be
+/// from one about the path's end, as wide as the stroke.
+constexpr double kAsideCap = 0.92, kRound = 0.06, kAsWide = 0.2;
+/// A quarter of a circle as a cubic.
+constexpr double kQuarter = 0.5522847498;
 /// A corner beyond 90 degrees is taken in two, so many levers apart, or the mark would swing out of it.
 constexpr double kChamfer = 0.3;
 
@@ -46,6 +55,28 @@ std::optional<double> left_ahead(const Rings& rings, const PathEnd& end, double 
     return nearest;
 }
 
+/// The circle through a drawn end, by least squares; none where it strays from one as wide as the stroke.
+std::optional<Cap> cap_of(const Rings& rings, const PathEnd& end) {
+    constexpr int n = 9;
+    Eigen::Matrix<double, n, 2> at;  // ahead and aside
+    for (int k = 0; k < n; ++k) {
+        const double aside = kAsideCap * (2.0 * k / (n - 1) - 1.0) * end.half_mm;
+        const auto ahead = left_ahead(rings, end, aside);
+        if (!ahead || *ahead > kFarthest * end.half_mm) return {};
+        at.row(k) << *ahead, aside;
+    }
+    Eigen::Matrix<double, n, 3> rows;
+    rows << 2.0 * at, Eigen::Matrix<double, n, 1>::Ones();
+    const Eigen::Vector3d found = rows.colPivHouseholderQr().solve(at.rowwise().squaredNorm());
+    const Vector2d middle = found.head<2>();
+    const double radius = std::sqrt(std::max(0.0, found[2] + middle.squaredNorm()));
+    const auto strays = ((at.rowwise() - middle.transpose()).rowwise().norm().array() - radius).abs();
+    if (strays.maxCoeff() > kRound * end.half_mm || std::abs(radius - end.half_mm) > kAsWide * end.half_mm ||
+        middle.norm() > kAsWide * end.half_mm)
+        return {};
+    return Cap{end.place(middle.x(), middle.y()), radius};
+}
+
 /// Both parts of a cubic (de Casteljau).
 struct Halves {
     Eigen::Matrix<double, 1, 8> before, after;
@@ -62,6 +93,23 @@ Halves split(const Cubics& middle_mm, Index cubic, double t) {
     return out;
 }
 
+Cubics straight(const Vector2d& from_mm, const Vector2d& to_mm) {
+    Cubics out(1, 8);
+    for (int i = 0; i < 4; ++i) out.row(0).segment<2>(2 * i) = from_mm + i / 3.0 * (to_mm - from_mm);
+    return out;
+}
+
+/// Round a cap from left to right, so far inside.
+Cubics half_circle(const Cap& cap, const PathEnd& end, double inside_mm) {
+    const auto place = [&](double ahead, double aside) -> Eigen::RowVector2d {
+        return cap.middle_mm + (cap.radius_mm - inside_mm) * (ahead * end.along + aside * end.left);
+    };
+    Cubics out(2, 8);
+    out << place(0, 1), place(kQuarter, 1), place(1, kQuarter), place(1, 0),  //
+        place(1, 0), place(1, -kQuarter), place(kQuarter, -1), place(0, -1);
+    return out;
+}
+
 }  // namespace
 
 Stroke as_wide_as_painted(const Stroke& stroke, const Brush& brush) {
@@ -71,8 +119,14 @@ Stroke as_wide_as_painted(const Stroke& stroke, const Brush& brush) {
     return out;
 }
 
-std::optional<Cut> cut_of(const Stroke& stroke, const PathEnd& end, double aside_mm) {
-    if (stroke.wanted_mm.empty()) return Cut{end.half_mm, 0.0};
+std::optional<Cut> cut_of(const Stroke& stroke, const PathEnd& end, double aside_mm, Caps caps) {
+    if (stroke.wanted_mm.empty()) {
+        Cut cut{end.half_mm, 0.0};
+        if (caps == Caps::round) cut.cap = Cap{end.at_mm, end.half_mm};
+        return cut;
+    }
+    if (const auto cap = cap_of(stroke.wanted_mm, end))
+        return Cut{(cap->middle_mm - end.at_mm).dot(end.along) + cap->radius_mm, 0.0, cap};
     const auto right = left_ahead(stroke.wanted_mm, end, -aside_mm), left = left_ahead(stroke.wanted_mm, end, aside_mm);
     if (!right || !left) return {};
     const Cut cut{0.5 * (*right + *left), 0.5 * (*right - *left) / aside_mm};
@@ -96,21 +150,29 @@ std::optional<double> half_along_cut_mm(const Brush& brush, double half_mm) {
 }
 
 double leaves_ahead_mm(const Cut& cut, const PathEnd& end) {
+    if (cut.cap) return cut.ahead_mm - (1.0 + kLeavesCap) * cut.cap->radius_mm;
     return cut.ahead_mm - (kLeaves + kSlantedLeaves * slant(cut)) * end.half_mm;
 }
 
-std::vector<Vector2d> way_along(const Cut& cut, const PathEnd& end, double narrow_mm, double lever_mm) {
-    const double steep = std::hypot(1.0, cut.slope), aside = end.half_mm - narrow_mm;
+Cubics way_along(const Cut& cut, const PathEnd& end, const Vector2d& from_mm, double narrow_mm, double lever_mm) {
+    if (cut.cap) {
+        const Cubics round = half_circle(*cut.cap, end, narrow_mm);
+        Cubics way = straight(from_mm, round.row(0).head<2>());
+        append_way(way, round);
+        return way;
+    }
+    const double aside = end.half_mm - narrow_mm;
+    const double steep = std::hypot(1.0, cut.slope);
     const double first = cut.slope > 0.0 ? -aside : aside;
     const auto ahead = [&](double y) { return cut.ahead_mm - cut.slope * y - narrow_mm * steep; };
     const Vector2d a = end.place(ahead(first), first), b = end.place(ahead(-first), -first);
     const double beside =
         std::min(cut.ahead_mm - kBesideEdge * end.half_mm, ahead(first) - kBeforeCorner * end.half_mm);
-    std::vector<Vector2d> way{end.place(beside, first)};
+    Cubics way = straight(from_mm, end.place(beside, first));
     const double chamfer = std::min(kChamfer * slant(cut) * lever_mm, 0.3 * (b - a).norm());
-    if (chamfer > 0.0) way.push_back(a - chamfer * end.along);
-    way.push_back(a + chamfer * (b - a).normalized());
-    way.push_back(b);
+    if (chamfer > 0.0) append(way, a - chamfer * end.along);
+    append(way, a + chamfer * (b - a).normalized());
+    append(way, b);
     return way;
 }
 
@@ -126,10 +188,13 @@ Cubics part_of(const Cubics& middle_mm, const Place& from, const Place& to) {
 }
 
 void append(Cubics& middle_mm, const Vector2d& to_mm) {
-    const Index last = middle_mm.rows();
-    const Vector2d from = middle_mm.row(last - 1).tail<2>();
-    middle_mm.conservativeResize(last + 1, Eigen::NoChange);
-    for (int i = 0; i < 4; ++i) middle_mm.row(last).segment<2>(2 * i) = from + i / 3.0 * (to_mm - from);
+    append_way(middle_mm, straight(middle_mm.row(middle_mm.rows() - 1).tail<2>(), to_mm));
+}
+
+void append_way(Cubics& middle_mm, const Cubics& more_mm) {
+    const Index before = middle_mm.rows();
+    middle_mm.conservativeResize(before + more_mm.rows(), Eigen::NoChange);
+    middle_mm.bottomRows(more_mm.rows()) = more_mm;
 }
 
 }  // namespace brushsvg

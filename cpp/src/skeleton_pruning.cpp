@@ -19,6 +19,8 @@ constexpr double kLeastEnd = 0.5, kEndStandsOut = 1.4;
 // of them.
 constexpr double kStemEnd = 0.5;
 
+bool stands_out(double share, double other) { return share > kLeastEnd && share > kEndStandsOut * other; }
+
 template <typename T>
 void sort_and_thin(std::vector<T>& values) {
     std::sort(values.begin(), values.end());
@@ -65,6 +67,22 @@ void KeptBranches::drop(double least_share, double least_limb) {
             join(p);
             for (std::size_t h : axis_.out[p]) looked_at.push_back(axis_.from[mate_[h]]);
         }
+    }
+    for (std::size_t p = 0; p < axis_.points.size(); ++p)
+        if (axis_.out[p].size() == 1) drop_late_corner(p, least_share, least_limb);
+}
+
+/// A corner whose sides bend is left by branches of its own, which go first. Meanwhile the other corner of the cut may
+/// have gone, and the way to this one counts as the line's.
+void KeptBranches::drop_late_corner(std::size_t end, double least_share, double least_limb) {
+    for (std::size_t h = axis_.out[end][0]; h != VoronoiAxis::none; h = axis_.next[h]) {
+        const std::size_t p = axis_.to(h), back = h ^ 1;
+        if (axis_.out[p].size() != 2 || closes_[p]) return;
+        if (corner_[p] < kLeastCorner || is_end_[p]) continue;
+        const double share = axis_.share(back);
+        if (share >= least_share || is_limb(back, least_share, least_limb) || stands_out(share, corner_[p])) return;
+        take_out({p, share, back, false});
+        return drop_late_corner(p, least_share, least_limb);
     }
 }
 
@@ -118,10 +136,9 @@ void KeptBranches::keep_ends(std::vector<Drop>& drops) {
             continue;
         }
         const double most = drops[j - 1].share, next = j - i > 1 ? drops[j - 2].share : 0.0;
-        const bool stands_out = axis_.out[p].size() == j - i + 1 && most > kLeastEnd && most > kEndStandsOut * next;
-        if (stands_out) is_end_[p] = true;
-        kept.insert(kept.end(), drops.begin() + std::ptrdiff_t(i),
-                    drops.begin() + std::ptrdiff_t(stands_out ? j - 1 : j));
+        const bool is_end = axis_.out[p].size() == j - i + 1 && stands_out(most, next);
+        if (is_end) is_end_[p] = true;
+        kept.insert(kept.end(), drops.begin() + std::ptrdiff_t(i), drops.begin() + std::ptrdiff_t(is_end ? j - 1 : j));
         i = j;
     }
     drops = std::move(kept);

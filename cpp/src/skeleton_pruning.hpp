@@ -39,6 +39,7 @@ class KeptBranches {
     bool is_limb(std::size_t half, double least_share, double least_limb) const;
     /// Where a line would end, its way out to the one corner that stands out stays.
     void keep_ends(std::vector<Drop>& drops);
+    void drop_late_corner(std::size_t end, double least_share, double least_limb);
     void take_out(const Drop& each);
     /// The two branches that leave p become one.
     void join(std::size_t p);

@@ -70,7 +70,7 @@ std::optional<double> set_down_mm(const Stroke& stroke, const Brush& brush, cons
 
 }  // namespace
 
-std::optional<SquaredBeginning> squared_beginning(const Stroke& stroke, const Brush& brush) {
+std::optional<SquaredBeginning> squared_beginning(const Stroke& stroke, const Brush& brush, Caps caps) {
     if (stroke.closed || brush.is_rigid() || !brush.width_follows_depth()) return {};
     const Stroke drawn = as_wide_as_painted(stroke, brush);
     const Line line(drawn, brush);
@@ -80,7 +80,7 @@ std::optional<SquaredBeginning> squared_beginning(const Stroke& stroke, const Br
     const Sample first = line.at(0.0);
     const Vector2d along = -line.tangent(first);
     const PathEnd end{first.middle, along, {-along.y(), along.x()}, half_mm};
-    const auto cut = cut_of(stroke, end, half_mm - *narrow);
+    const auto cut = cut_of(stroke, end, half_mm - *narrow, caps);
     const auto from_mm = set_down_mm(drawn, brush, line, half_mm);
     if (!cut || !from_mm) return {};
 
@@ -88,9 +88,6 @@ std::optional<SquaredBeginning> squared_beginning(const Stroke& stroke, const Br
     const double ahead_mm = leaves_ahead_mm(*cut, end);
     const Sample set_down = line.at(*from_mm), leaves = line.at(std::max(0.0, -ahead_mm)),
                  joins = line.at(kJoins * half_mm);
-    std::vector<Vector2d> way = way_along(*cut, end, *narrow, lever);
-    const Vector2d aside = end.place(-kAlongSide * half_mm, end.left.dot(way.back() - end.at_mm));
-    way.push_back(aside);
 
     Stroke out = drawn;
     out.middle_mm = reversed(part_of(drawn.middle_mm, leaves.place, set_down.place));
@@ -104,22 +101,24 @@ std::optional<SquaredBeginning> squared_beginning(const Stroke& stroke, const Br
         way_mm += ahead_mm;
         widths.then(way_mm, half_mm);
     }
-    for (const Vector2d& to : way) {
-        append(out.middle_mm, to);
-        way_mm += (to - here).norm();
+    Cubics way = way_along(*cut, end, here, *narrow, lever);
+    const Vector2d corner = way.row(way.rows() - 1).tail<2>();
+    const Vector2d aside = end.place(-kAlongSide * half_mm, end.left.dot(corner - end.at_mm));
+    append(way, aside);
+    for (Index i = 0; i < way.rows(); ++i) {
+        way_mm += arc_length(way, i, 0.0, 1.0);
         widths.then(way_mm, *narrow);
-        reach_mm = std::max(reach_mm, (to - end.at_mm).norm() + lever);
-        here = to;
+        reach_mm = std::max(reach_mm, (way.row(i).tail<2>().transpose() - end.at_mm).norm() + lever);
     }
+    append_way(out.middle_mm, way);
     append(out.middle_mm, joins.middle);
-    way_mm += (joins.middle - here).norm();
+    way_mm += (joins.middle - aside).norm();
     widths.along(way_mm, joins.s, length_mm);
     const Cubics on = part_of(drawn.middle_mm, joins.place, {drawn.middle_mm.rows() - 1, 1.0});
-    const Index before = out.middle_mm.rows();
-    out.middle_mm.conservativeResize(before + on.rows(), Eigen::NoChange);
-    out.middle_mm.bottomRows(on.rows()) = on;
+    append_way(out.middle_mm, on);
     out.half_width = widths.knots();
-    return SquaredBeginning{std::move(out), leaves.middle, aside, joins.middle, end.at_mm, -along, reach_mm};
+    return SquaredBeginning{std::move(out), leaves.middle, aside,    joins.middle,
+                            end.at_mm,      -along,        reach_mm, cut->cap.has_value()};
 }
 
 }  // namespace brushsvg

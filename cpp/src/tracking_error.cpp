@@ -171,9 +171,13 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
         if (const std::optional<SquaredDot> dot = squared_dot(stroke, brush))
             return tracking_error_of(marks, widest, whole, tolerance_mm, turns, {}, {},
                                      Surroundings{dot->dot.from_mm, dot->reach_mm});
-    const std::optional<SquaredBeginning> beginning = squared_beginning(stroke, brush);
-    std::optional<SquaredEnd> end = squared_end(stroke, brush);
-    if (end && !ends_squared(marks, widest, *end)) end.reset();
+    const std::optional<SquaredBeginning> beginning = squared_beginning(stroke, brush, Caps::round);
+    std::optional<SquaredEnd> end;
+    for (const Caps caps : {Caps::round, Caps::straight}) {
+        if (end || (caps == Caps::straight && !stroke.wanted_mm.empty())) break;
+        end = squared_end(stroke, brush, caps);
+        if (end && !ends_squared(marks, widest, *end)) end.reset();
+    }
     if (!beginning && !end) return miss;
     return tracking_error_of(marks, widest, end ? stroke : whole, tolerance_mm, turns, beginning, end);
 }

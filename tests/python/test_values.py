@@ -171,6 +171,8 @@ VALUES_OF = {
                 "closed": True,
                 "half_width": [(0, 1), (1, 3)],
                 "wanted_mm": [SQUARE],
+                "start_covered": True,
+                "end_covered": True,
                 "layer": "x",
                 "colour": "#ffffff",
                 "settings": _core.Settings(skip=True),

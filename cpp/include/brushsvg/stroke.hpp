@@ -29,6 +29,7 @@ struct Stroke {
     std::string layer;
     std::string colour;
     Settings settings;
+    bool start_covered = false, end_covered = false;  ///< where it meets others, whose paint lies over that end
 };
 
 /// A place on the middle line: cubic number and its parameter in [0, 1].

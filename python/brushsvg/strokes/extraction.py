@@ -26,6 +26,7 @@ class _Line:
     half_width: list[tuple[float, float]]
     closed: bool
     wanted_mm: list
+    covered: tuple[bool, bool] = (False, False)
 
 
 def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], list[Notice]]:
@@ -115,7 +116,8 @@ def _of_shape(element: Element, grown: bool) -> list[_Line] | None:
             return None
         rings = both
     return [
-        _Line(each.middle_mm, each.half_width, each.closed, each.wanted_mm) for each in outline_strokes(rings)
+        _Line(each.middle_mm, each.half_width, each.closed, each.wanted_mm, each.covered)
+        for each in outline_strokes(rings)
     ]
 
 
@@ -146,6 +148,7 @@ def _of_element(element: Element, name: str, lines: list[_Line]):
                 settings=settings,
             )
             stroke.wanted_mm = line.wanted_mm
+            stroke.start_covered, stroke.end_covered = line.covered
             yield stroke
 
 

@@ -11,6 +11,12 @@ from .junctions import Arm, Crossing
 # Of the shape around a corner, what lines that end beside each other may leave bare beside those that meet: a u's bend
 # is one stroke's.
 NOTCH = 0.01
+# Beside the middle of a bar, in its half widths, where it is looked how far the shape goes on: the outer two in the
+# stem that it meets, so far from its sides and with its far side no more slanted than that. And how much farther the
+# shape has to go on amid the bar, how much at most, and on all of its width. FLAT: cosine of the angle with the stem,
+# at most.
+_BESIDE = np.array([-1.6, -0.7, 0.0, 0.7, 1.6])
+IN_STEM, SLANTED, STUB, LIMB, SHOULDER, FLAT = 0.3, 0.6, 0.35, 1.8, 0.1, 0.5
 _PLACES = 25  # looked at on the way from a corner's disc to where the lines of its arms meet
 _GRID = np.stack(np.meshgrid(*2 * [np.linspace(-1.6, 1.6, 17)]), axis=-1).reshape(-1, 2)
 _AROUND = _GRID[
@@ -32,11 +38,52 @@ def stub(arm: Arm, crossing: Crossing) -> np.ndarray:
     start = arm.line[arm.out]
     if crossing.is_corner:
         return straight(*arm.corner, start)
-    back = -arm.direction
-    centre = crossing.discs[:, :2].mean(axis=0)
-    end = start[:2] + max(float((centre - start[:2]) @ back), 0.0) * back
+    end = _amid(arm, crossing)
+    if arm.beyond_mm is not None:
+        return straight(end - arm.beyond_mm * arm.direction, start[2], start)
     room = (crossing.discs[:, 2] - np.hypot(*(crossing.discs[:, :2] - end).T)).max()
     return straight(end, min(start[2], max(room, 0.3 * start[2])), start)
+
+
+def _amid(arm: Arm, crossing: Crossing) -> np.ndarray:
+    """Straight on along an arm, as far into its crossing as the middle of that lies."""
+    start, back = arm.line[arm.out, :2], -arm.direction
+    return start + max(float((crossing.discs[:, :2].mean(axis=0) - start) @ back), 0.0) * back
+
+
+def find_bars(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
+    """Lines that end at a stem, beyond which the shape goes on a little, too little for a branch of its own, as the
+    bars of t and f do: how far beyond the middle of the stem they run."""
+    ending = [
+        (a, c) for c in crossings if not c.is_corner for a in c.arms if a.mate is None and _crosses(a, c)
+    ]
+    if not ending:
+        return
+    halves = np.array([arm.line[arm.out, 2] for arm, _ in ending])
+    backs = np.array([-arm.direction for arm, _ in ending])
+    lefts = np.column_stack([-backs[:, 1], backs[:, 0]])
+    amid = np.array([_amid(arm, crossing) for arm, crossing in ending])
+    at = amid[:, None] + (halves[:, None] * _BESIDE)[..., None] * lefts[:, None]
+    ways = np.repeat(backs, len(_BESIDE), axis=0)
+    reached = np.array(_core.first_crossings(rings, at.reshape(-1, 2), ways)).reshape(len(ending), -1)
+    stem = reached[:, [0, -1]].max(axis=1)  # its far side, beside the bar
+    sticks_out = (reached[:, 1:-1] > (stem + SHOULDER * halves)[:, None]).all(axis=1)
+    sticks_out &= (reached[:, 2] > stem + STUB * halves) & (reached[:, 2] < stem + LIMB * halves)
+    rooms = np.array(_core.clearance(rings, at[:, [0, -1]].reshape(-1, 2))).reshape(-1, 2)
+    sticks_out &= (rooms > IN_STEM * halves[:, None]).all(axis=1)
+    sticks_out &= np.abs(reached[:, 0] - reached[:, -1]) < SLANTED * halves
+    for k in np.flatnonzero(sticks_out).tolist():
+        ending[k][0].beyond_mm = max(float(reached[k, 2] - halves[k]), 0.0)
+
+
+def _crosses(bar: Arm, crossing: Crossing) -> bool:
+    """Whether a line runs through a crossing, and across the way of an arm that ends there."""
+    for arm in crossing.arms:
+        if arm.mate is not None:
+            along = arm.mate.line[arm.mate.out, :2] - arm.line[arm.out, :2]
+            if abs(along @ bar.direction) < FLAT * np.hypot(*along):
+                return True
+    return False
 
 
 STEPS = 5  # of a straight way to where a line begins

@@ -41,6 +41,7 @@ class Arm:
     mate: Arm | None = None
     other: Arm | None = None  # the same branch from its other end, None where that is free
     corner: tuple[np.ndarray, float] | None = None  # where it begins at a corner, and the half width there
+    beyond_mm: float | None = None  # how far beyond the middle of its crossing it runs; see find_bars
 
     @cached_property
     def direction(self) -> np.ndarray:

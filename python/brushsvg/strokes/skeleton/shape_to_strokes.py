@@ -13,6 +13,7 @@ import numpy as np
 from ... import _core
 from ...errors import Error
 from ...geometry.rings import with_holes
+from ...geometry.rotation import rotation
 from .cut_ends import run_to_cuts
 from .graph import Skeleton, skeleton
 from .shared_corners import with_shared_corners
@@ -30,18 +31,23 @@ LEAST_LIMB = 0.1
 MOST_BRANCHES = 20_000  # of a shape: a millisecond each, where a page of letters has some thousands
 MOST_CUT = 200_000  # points of a shape times its strokes: letters have some thousands
 HAIR = 0.01  # of a stroke's greatest width: no brush paints a point of no width
+# How far round an end it is looked whether others cover it, beyond what of its half width, and how much of that
+# suffices: of a stem below thin serifs less than half, of the outside of a corner a quarter.
+_AHEAD_RAD, _BEYOND_CAP, _COVERED = np.radians(np.linspace(-80, 80, 9)), 1.15, 0.35
 _ROUND = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0, 2 * np.pi, 24, endpoint=False)])
 
 
 @dataclass(frozen=True)
 class OutlineStroke:
     """middle_mm: cubics (n, 8); half_width: [(fraction of arc length, mm)]; wanted_mm: rings of its part of the shape.
-    The parts of all strokes make up the shape; where they cross, it belongs to both."""
+    The parts of all strokes make up the shape; where they cross, it belongs to both. covered: whether its start and its
+    end are covered by others, most of what lies round them being of the shape."""
 
     middle_mm: np.ndarray
     half_width: list[tuple[float, float]]
     closed: bool
     wanted_mm: list[np.ndarray]
+    covered: tuple[bool, bool] = (False, False)
 
 
 def outline_strokes(rings: list[np.ndarray]) -> list[OutlineStroke]:
@@ -66,9 +72,9 @@ def _strokes(area: list[np.ndarray], nodes: np.ndarray, branches: list) -> list[
         ]
     chains = [run_to_cuts(chain, area) for chain in ordered(joined(found.pieces, found))]
     if len(chains) == 1:
-        return [_stroke(chains[0], area)]
+        return [_stroke(chains[0], area, area)]
     cuts = len(chains) * sum(map(len, area)) < MOST_CUT
-    strokes = [_stroke(chain, _part(chain, found, area if cuts else None)) for chain in chains]
+    strokes = [_stroke(chain, _part(chain, found, area if cuts else None), area) for chain in chains]
     return with_shared_corners(strokes, area) if cuts else strokes
 
 
@@ -87,7 +93,7 @@ def _part(chain, found: Skeleton, area: list[np.ndarray] | None) -> list[np.ndar
     return _core.unite([*nearest, *across])
 
 
-def _stroke(chain, wanted_mm) -> OutlineStroke:
+def _stroke(chain, wanted_mm: list[np.ndarray], area: list[np.ndarray]) -> OutlineStroke:
     middles, knots, at_mm = [], [], 0.0
     for piece in chain:
         line = piece.line
@@ -98,7 +104,23 @@ def _stroke(chain, wanted_mm) -> OutlineStroke:
         middles.append(middle)
     least = HAIR * max(half for _, half in knots)
     half_width = [(min(at / at_mm, 1.0) if at_mm > 0 else 0.0, max(half, least)) for at, half in knots]
-    return OutlineStroke(np.vstack(middles), half_width, len(chain) == 1 and chain[0].closed, wanted_mm)
+    closed = len(chain) == 1 and chain[0].closed
+    line = np.vstack([piece.line for piece in chain])
+    covered = (False, False) if closed else (_is_covered(line[::-1], area), _is_covered(line, area))
+    return OutlineStroke(np.vstack(middles), half_width, closed, wanted_mm, covered)
+
+
+def _is_covered(line: np.ndarray, rings: list[np.ndarray]) -> bool:
+    """Whether ahead of the end of a line (k, 3) the outline lies farther off than a cap of its own, in enough of all
+    directions: other strokes paint there."""
+    x, y, half = line[-1]
+    is_back = np.hypot(*(line[:, :2] - (x, y)).T) > half
+    if not is_back.any():
+        return False
+    along = np.array([x, y]) - line[is_back][-1, :2]
+    ways = np.array([along / np.hypot(*along) @ rotation(turn) for turn in _AHEAD_RAD])
+    reached = np.array(_core.first_crossings(rings, np.tile([x, y], (len(ways), 1)), ways))
+    return bool(np.mean(reached > _BEYOND_CAP * half) > _COVERED)
 
 
 def _length_mm(middle_mm: np.ndarray) -> float:

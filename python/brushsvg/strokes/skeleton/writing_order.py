@@ -20,7 +20,7 @@ TOWARDS = np.array([np.cos(np.radians(-60)), np.sin(np.radians(-60))])
 # Strokes are set down wide and lifted thin: what a taper counts for beside the direction.
 TAPER = 0.27
 # So far an arm bends that is written from its stem on; straight ones, as of a K, are written towards it.
-ARCH_RAD = np.radians(18)
+ARCH_RAD = np.radians(15)
 # A piece shorter than this many of its half widths, and than this share of what it meets at a corner, has no direction
 # of its own: a flick.
 FLICK, FLICK_SHARE = 7.0, 0.6

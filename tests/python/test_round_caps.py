@@ -1,0 +1,86 @@
+"""Round ends of wide lines: the front of a footprint is blunt there, so the mark is led round the cap."""
+
+import numpy as np
+import pytest
+import shapely
+from svg_text import read
+
+from brushsvg import _core, find_brush
+from brushsvg.strokes.contour_fill import region
+from brushsvg.strokes.extraction import strokes
+
+MIDDLE = shapely.LineString([(30, 25), (75, 25)])
+
+
+def of(d: str, rest: str = 'fill="black" stroke="none"') -> list:
+    return strokes(read(f'<path id="p" d="{d}" {rest}/>'))[0]
+
+
+def line(width_mm: float) -> list:
+    return of("M30 25H75", f'stroke-linecap="round" stroke-width="{width_mm}"')
+
+
+def capsule(width_mm: float) -> list:
+    half = width_mm / 2
+    arc = f"A{half} {half} 0 0 1"
+    return of(f"M30 {25 - half}H75{arc} 75 {25 + half}H30{arc} 30 {25 - half}Z")
+
+
+def mark(some: list, start: str = "auto", end: str = "auto"):
+    brush = find_brush("round-6")
+    plan = _core.compensate(some, brush, (100, 50), start=start, end=end).plan
+    marks = _core.simulate(plan, brush)
+    _core.trace_outlines(marks, brush)
+    return region(marks.outline_mm), plan
+
+
+def strays_mm(painted, width_mm: float) -> float:
+    """How far the edges of the mark and of the drawn capsule are apart at most."""
+    wanted = MIDDLE.buffer(width_mm / 2, quad_segs=64)
+    points = [shapely.points(shapely.get_coordinates(each)) for each in (painted, wanted)]
+    return float(
+        max(
+            shapely.distance(wanted.boundary, points[0]).max(),
+            shapely.distance(painted.boundary, points[1]).max(),
+        )
+    )
+
+
+@pytest.mark.parametrize("drawn", [line, capsule])
+@pytest.mark.parametrize("width_mm", [7, 8, 8.4])
+def test_both_ends_are_round(drawn, width_mm):
+    painted, _ = mark(drawn(width_mm))
+    assert strays_mm(painted, width_mm) < 0.15
+    blunt, _ = mark(drawn(width_mm), "exposed", "lifted")
+    assert strays_mm(blunt, width_mm) > 0.2
+
+
+def test_a_hidden_beginning_is_round_as_well():
+    painted, _ = mark(line(8), "hidden", "lifted")
+    left = shapely.box(0, 0, 50, 50)
+    beyond = painted.symmetric_difference(MIDDLE.buffer(4, quad_segs=64)).intersection(left)
+    assert beyond.area < 1.0
+
+
+@pytest.mark.parametrize("width_mm", [3, 5, 6])
+def test_narrower_lines_need_no_way_round(width_mm):
+    painted, plan = mark(line(width_mm))
+    assert strays_mm(painted, width_mm) < 0.15
+    assert len(plan.passes[0].poses_mm) < 20
+
+
+def test_squared_ends_of_a_path_with_a_width_alone_are_straight():
+    painted, _ = mark(line(8), "squared", "squared")
+    assert all(painted.contains(shapely.Point(x, y)) for x in (26.8, 78.2) for y in (21.8, 28.2))
+
+
+def test_the_end_of_a_stem_below_its_serif_is_covered_and_others_are_not():
+    made = of("M20 10H50V13H39V37H50V40H20V37H31V13H20Z")
+    (stem,) = [
+        each
+        for each in made
+        if abs(np.diff(each.middle_mm[:, 0]).sum()) + abs(np.ptp(each.middle_mm[:, 0::2])) < 3
+    ]
+    assert stem.start_covered and stem.end_covered
+    for (bar,) in (capsule(8), line(8)):
+        assert not bar.start_covered and not bar.end_covered
