@@ -34,6 +34,7 @@ HIGHER = 0.5
 # A dot is hardly longer than wide, hardly farther above its stem than it is high, and so many times lower than that at
 # least, and narrower at most.
 DOT, STEM = 1.3, 2.5
+ACCENT = 0.4  # of its letter's size
 LONG_DOT = 1.8  # where there are but a dot and a stem
 SLENDER = 1.5  # or so many times as high as wide: a j
 RIGHT = 0.3  # of what it rises, how far a hairline leads to the right at least
@@ -184,13 +185,13 @@ def _is_steep(line: np.ndarray) -> bool:
     return bool(abs(down[1]) > STEEP * np.hypot(*down))
 
 
-def ordered(chains: list[list[Piece]]) -> list[list[Piece]]:
-    """From the upper left to the lower right by their centres; but see _earlier."""
+def ordered(chains: list[list[Piece]], may_be_letter: bool = True) -> list[list[Piece]]:
+    """From the upper left to the lower right by their centres; but see _earlier. may_be_letter: see side_by_side."""
     lines = [np.vstack([piece.line[:, :2] for piece in chain]) for chain in chains]
     centres = np.array([_centre(line) for line in lines])
     by_centre = (centres @ UPPER_LEFT_FIRST).argsort(kind="stable").tolist()
     place = {k: place for place, k in enumerate(by_centre)}
-    earlier = _earlier(chains, lines, centres)
+    earlier = _earlier(chains, lines, centres, may_be_letter)
     later: dict[int, list[int]] = {}
     for k, before in enumerate(earlier):
         for other in before:
@@ -211,7 +212,9 @@ def ordered(chains: list[list[Piece]]) -> list[list[Piece]]:
     return [chains[k] for k in painted]
 
 
-def _earlier(chains: list[list[Piece]], lines: list[np.ndarray], centres: np.ndarray) -> list[set[int]]:
+def _earlier(
+    chains: list[list[Piece]], lines: list[np.ndarray], centres: np.ndarray, may_be_letter: bool
+) -> list[set[int]]:
     """For each chain those that are painted before it: of two that begin at one place the one that leads farther to the
     left, a stem before its bowl; of two that cross as _which_first says; and what it begins on, unless that lies to its
     right, a bowl before the stem behind it, or hardly sticks out to its left, a stem before its arms; a bar from one
@@ -238,7 +241,7 @@ def _earlier(chains: list[list[Piece]], lines: list[np.ndarray], centres: np.nda
         if _is_serif(chains[host], chains[guest]) and not _ends(chains[host]) & _through(chains[guest])
     }
     met = [sum(len(pass_[crossing]) > 1 for crossing in _through(chain)) for chain in chains]
-    is_letter = len(chains) - len(serifs) <= MOST_LINES
+    is_letter = may_be_letter and len(chains) - len(serifs) <= MOST_LINES
     earlier: list[set[int]] = [set() for _ in chains]
     if not is_letter:
         serifs = {}
@@ -320,6 +323,21 @@ def _is_straight(line: np.ndarray) -> bool:
 def _centre(line: np.ndarray) -> np.ndarray:
     weights = steps(line)
     return np.average((line[1:] + line[:-1]) / 2, axis=0, weights=weights) if weights.sum() > 0 else line[0]
+
+
+def side_by_side(boxes: np.ndarray) -> list[bool]:
+    """Of things with bounds (n, 4) x0, y0, x1, y1 which stand in a line of writing: nothing but dots and accents above
+    or below them. Letters do, parts of Chinese characters rarely."""
+    low, high = boxes[:, :2], boxes[:, 2:]
+    sizes = (high - low).max(axis=1)
+
+    def is_alone(k: int) -> bool:
+        shared = np.minimum(high[:, 0], high[k, 0]) - np.maximum(low[:, 0], low[k, 0])
+        stacked = shared > 0.5 * np.minimum(high[:, 0] - low[:, 0], high[k, 0] - low[k, 0])
+        stacked[k] = False
+        return not (stacked & (sizes > ACCENT * sizes[k])).any()
+
+    return [is_alone(k) for k in range(len(boxes))]
 
 
 def in_rows(boxes: np.ndarray) -> list[int]:
