@@ -31,7 +31,7 @@ HARDLY_WIDER = 1.05  # than the brush: what is wider yet may be painted in passe
 
 
 def squared_at_corners(strokes: list, brush) -> list:
-    """The strokes, those of outlines cut at each corner of 60 to 120 degrees where two marks lie nearer to the shape by
+    """The strokes, those of outlines cut at each corner of 50 to 150 degrees where two marks lie nearer to the shape by
     0.15 squares of the half width, in paint missing and too much. The parts of `id` are called id, id~2, id~3 ...; the
     later ones begin pointed, on what those before painted."""
     from .. import _core
