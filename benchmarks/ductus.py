@@ -3,14 +3,22 @@
 The judge is KanjiVG, which also holds how Japanese schools write Latin letters and digits (CC BY-SA 3.0; `pip install
 kanjivg`). A glyph and its writing are laid over each other by their boxes; each place of a painted stroke takes the
 time at which the nearest place is written. A stroke runs right if that time grows along most of it, two strokes follow
-each other right if the middle time of the first is less. Forms that differ (a, g, 1, 4, 7 of many fonts) are judged as
-well as they can be: look at those that are named before believing them.
+each other right if the middle time of the first is less.
+
+KanjiVG's letters have no serifs. So these are told apart: strokes shorter than 0.7 of another one, and than seven of
+its half widths, on which that begins or ends. Main strokes are held against KanjiVG, a serif against its stem, which it
+follows. Dots, up to twice as long as wide, have no direction. Forms that differ (a, g, 1, 4, 7 of many fonts) are
+judged as well as they can be: look at those that are named before believing them.
+
+--characters takes the folder of npm's hanzi-writer-data: 200 of its characters that KanjiVG has with as many strokes,
+each drawn as one shape.
 """
 
 from __future__ import annotations
 
 import argparse
 import importlib.metadata
+import json
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -24,6 +32,9 @@ from brushsvg.strokes.extraction import strokes
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
 DENSE = np.linspace(0.0, 1.0, 60)
+SERIF, SERIF_HALVES = 0.7, 7.0
+DOT = 2.0
+CHARACTERS, SEED = 200, 20260
 
 
 def written(letter: str) -> list[np.ndarray]:
@@ -70,28 +81,85 @@ def judged(painted: list[np.ndarray], reference: list[np.ndarray]) -> tuple[list
     return runs, pairs
 
 
+def lengths_of(lines: list[np.ndarray]) -> list[float]:
+    return [float(np.hypot(*np.diff(line[:, :2], axis=0).T).sum()) for line in lines]
+
+
+def serifs(lines: list[np.ndarray], halves: list[float]) -> dict[int, int]:
+    """Which of lines (n, 2) with half widths are serifs, and of which stem: the longest that begins or ends on each."""
+    lengths = lengths_of(lines)
+    found = {}
+    for k, line in enumerate(lines):
+        for stem in np.argsort(lengths)[::-1].tolist():
+            near = min(np.hypot(*(evenly(line) - end).T).min() for end in lines[stem][[0, -1]])
+            is_short = lengths[k] < min(SERIF * lengths[stem], SERIF_HALVES * halves[stem])
+            if is_short and near < halves[k] + 0.5 * halves[stem]:
+                found[k] = stem
+                break
+    return found
+
+
+def characters(folder: Path) -> str:
+    """How many pairs of strokes of characters drawn as one shape follow each other right, and how many run right."""
+    files = sorted(file for file in folder.glob("*.json") if len(file.stem) == 1)
+    runs, pairs, count = [], [], 0
+    for k in np.random.default_rng(SEED).permutation(len(files)):
+        outlines = json.loads(files[k].read_text(encoding="utf-8"))["strokes"]
+        try:
+            reference = written(files[k].stem)
+        except StopIteration:
+            continue
+        if len(reference) != len(outlines):
+            continue
+        document = (
+            '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1024 1024" width="100mm" height="100mm">'
+        )
+        document += f'<path transform="matrix(1 0 0 -1 0 900)" d="{" ".join(outlines)}"/></svg>'
+        found, _ = strokes(read_svg(document.encode()))
+        lines = [np.asarray(_core.flatten(each, 0.05))[:, :2] for each in found]
+        running, following = judged(lines, reference)
+        runs, pairs, count = runs + running, pairs + following, count + 1
+        if count == CHARACTERS:
+            break
+    return f"{count} characters: runs {np.mean(runs):.4f} of {len(runs)}, pairs {np.mean(pairs):.4f} of {len(pairs)}"
+
+
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("fonts", nargs="+", type=Path)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("fonts", nargs="*", type=Path)
+    parser.add_argument("--characters", type=Path, metavar="FOLDER")
     parser.add_argument("--size", type=float, default=50.0, help="mm to the em")
     options = parser.parse_args()
-    print(f"{'font':<28} {'glyphs':>7} {'runs':>10} {'pairs':>10}   not as written")
+    if options.characters:
+        print(characters(options.characters))
+    if not options.fonts:
+        return
+    print(f"{'font':<28} {'glyphs':>7} {'runs':>10} {'pairs':>10} {'serifs':>8}   not as written")
     for font in options.fonts:
-        right, runs, pairs, wrong = 0, [], [], []
+        right, runs, pairs, behind, wrong = 0, [], [], [], []
         for letter in LETTERS:
             document, _ = text_svg(letter, font.read_bytes(), size_mm=options.size)
             found, _ = strokes(read_svg(document.encode()))
-            lines = [np.asarray(_core.flatten(each, 0.05))[:, :2] for each in found]
-            running, following = judged(lines, written(letter))
+            flat = [np.asarray(_core.flatten(each, 0.05)) for each in found]
+            lines = [line[:, :2] for line in flat]
+            halves = [max(half for _, half in each.half_width) for each in found]
+            apart = serifs(lines, halves)
+            main_ones = [k for k in range(len(lines)) if k not in apart]
+            running, following = judged([lines[k] for k in main_ones], written(letter))
+            long = lengths_of(lines)
+            running = [ok or long[k] < DOT * 2 * halves[k] for k, ok in zip(main_ones, running, strict=True)]
+            behind += [stem < serif for serif, stem in apart.items()]
             runs += running
             pairs += following
             if all(running) and all(following):
                 right += 1
             else:
                 wrong.append(letter)
-        shares = [f"{sum(each)}/{len(each)}" for each in (runs, pairs)]
+        shares = [f"{sum(each)}/{len(each)}" for each in (runs, pairs, behind)]
         print(
-            f"{font.stem[:28]:<28} {right:>4}/62 {shares[0]:>10} {shares[1]:>10}   {' '.join(wrong)}",
+            f"{font.stem[:28]:<28} {right:>4}/62 {shares[0]:>10} {shares[1]:>10} {shares[2]:>8}   {' '.join(wrong)}",
             flush=True,
         )
 

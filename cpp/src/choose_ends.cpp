@@ -105,10 +105,9 @@ Beginning best_beginning(const Stroke& wanted, const Stroke& stroke, const Brush
     const double depth = depth_of(stroke, brush, 0.0), half = brush.half_width(depth),
                  made = kMade * half + 4.0 * brush.lag(depth);
     const View view(wanted, line.at(0.0).middle, half, greatest_half_mm(stroke, half), brush);
-    const bool is_better =
-        dot ? view.is_better(hidden, exposed)
-            : view.is_better(beginning_of(hidden, made + (hides ? 0.0 : way_of(hidden) - way_of(exposed))),
-                             beginning_of(exposed, made));
+    const bool is_better = dot ? view.is_better(hidden, exposed)
+                               : view.is_better(beginning_of(hidden, made + way_of(hidden) - way_of(exposed)),
+                                                beginning_of(exposed, made));
     return is_better ? Beginning::hidden : Beginning::exposed;
 }
 

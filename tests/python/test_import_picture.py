@@ -92,3 +92,10 @@ def test_elements_whose_names_look_like_parts_keep_an_ink_each():
     words = words_of("".join(line(k, 5 + 3 * k) for k in range(1, 7)))
     assert "1-6  icon/1 ... icon/6: 1 mm (6 strokes)" in [word for word, *_ in words]
     assert len({ink for word, *_, ink in words if word.isdigit()}) == 6
+
+
+def test_strokes_that_a_brush_adds_to_a_filled_shape_are_said_to_come():
+    (filled,) = [word for word, *_ in words_of(BODY) if word.startswith("sheet ")]
+    assert ";" in filled and "predict" in filled
+    (lines,) = [word for word, *_ in words_of('<path d="M10 10H60"/>') if word.startswith("sheet ")]
+    assert ";" not in lines

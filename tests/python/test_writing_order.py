@@ -6,7 +6,7 @@ from svg_text import read
 
 from brushsvg import _core
 from brushsvg.strokes.extraction import strokes
-from brushsvg.strokes.skeleton.writing_order import in_rows
+from brushsvg.strokes.skeleton.writing_order import in_rows, side_by_side
 
 # outline, and a place on each line in the order of writing; y down as in the drawing
 LETTERS = {
@@ -37,6 +37,17 @@ LETTERS = {
     "bold 4": ("M22 5H36V30H42V36H36V45H26V36H8V29ZM26 14L16 30H26Z", [(15, 27), (31, 42)]),
     "d": ("M34 3H40V45H34V42A14 14 0 1 1 34 20ZM34 31A8 8 0 1 0 18 31A8 8 0 1 0 34 31Z", [(12, 31), (37, 8)]),
     "cross": ("M22 5H28V22H45V28H28V45H22V28H5V22H22Z", [(10, 25), (25, 10)]),
+    "t": ("M22 5H28V15H38V21H28V45H22V21H12V15H22Z", [(25, 40), (14, 18)]),
+    "x": ("M8 5H15L24 19L34 5H41L28 25L42 45H35L24 30L8 45H0L20 25Z", [(12, 9), (38, 9)]),
+    "I with serifs": ("M12 5H38V9H29V41H38V45H12V41H21V9H12Z", [(25, 25), (15, 7), (15, 43)]),
+    "F with a serif": (
+        "M10 5H42V11H22V22H36V28H22V41H28V45H8V41H14V11H10Z",
+        [(18, 35), (38, 8), (32, 25)],
+    ),
+    "slanted A": (
+        "M24 5H30L44 45H38L34 32H4V26H14L10 45H4L20 5ZM26 14L20 26H31Z",
+        [(12, 38), (39, 38), (6, 29)],
+    ),
     "N": ("M10 5H16L34 34V5H40V45H34L16 16V45H10Z", [(13, 35), (25, 25), (37, 15)]),
 }
 
@@ -70,6 +81,24 @@ def test_an_arm_that_leaves_its_stem_in_an_arch_is_written_from_there(d, first, 
     line = lines_of(d)[-1]
     assert np.hypot(*(line[0] - (first[0], 50 - first[1]))) < 2
     assert np.hypot(*(line[-1] - (last[0], 50 - last[1]))) < 2
+
+
+def test_a_hairline_between_two_stems_is_written_upwards():
+    _, hairline, _ = lines_of("M8 5H14V31L32 8V5H38V45H32V16L14 39V45H8Z")
+    assert np.ptp(hairline[:, 0]) > 10
+    assert hairline[0, 1] < hairline[-1, 1]
+
+
+def test_a_hairline_from_one_stem_down_to_the_next_stays():  # of an N
+    _, slant, _ = lines_of("M8 5H14V8L32 31V5H38V45H32V39L14 16V45H8Z")
+    assert slant[0, 1] > slant[-1, 1]
+
+
+def test_letters_stand_side_by_side_with_dots_and_accents_above_and_parts_of_characters_do_not():
+    stem, dot, letter = (0, 0, 6, 30), (0, 36, 6, 42), (12, 0, 30, 30)
+    assert side_by_side(np.array([stem, dot, letter])) == [True, False, True]
+    roof, below = (0, 30, 30, 36), (2, 0, 28, 25)
+    assert side_by_side(np.array([roof, below])) == [False, False]
 
 
 def test_the_stem_of_a_bold_4_is_no_flick_of_its_slant():

@@ -73,9 +73,10 @@ def _picture(design: Design, strokes: list, notices: list[Notice]) -> _Canvas:
     canvas.text(MARGIN_PX, MARGIN_PX + FONT_PX, design.title or "Drawing as understood", TEXT, 28)
     count = f"{len(strokes)} strokes" if len(strokes) != 1 else "1 stroke"
     warned = f"{len(notices)} warnings" if len(notices) != 1 else "1 warning"
-    canvas.text(
-        MARGIN_PX, MARGIN_PX + FONT_PX + LINE_PX, f"sheet {w:.6g} x {h:.6g} mm, {count}, {warned}", QUIET
-    )
+    # limbs, corners and passes depend on the brush, which is not asked for here
+    more = "; predict shows those that a brush adds" if any(stroke.wanted_mm for stroke in strokes) else ""
+    words = f"sheet {w:.6g} x {h:.6g} mm, {count}, {warned}{more}"
+    canvas.text(MARGIN_PX, MARGIN_PX + FONT_PX + LINE_PX, words, QUIET)
     sheet = place(np.array([[0, 0], [w, 0], [w, h], [0, h]]))
     canvas.area([sheet], SHEET)
     canvas.line(np.vstack([sheet, sheet[:1]]), EDGE, 1.5)

@@ -326,40 +326,27 @@ def _sorted_out(painted, wanted, step):
 
 
 def _widths(painted, done, brush, compensated) -> list[Notice]:
-    """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored. Where
-    that is so at strokes' ends alone, as they are set down and lifted, it is said once for all of them. compensated:
-    tries what is advised, None where one width was asked for."""
+    """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored. Not
+    where that is so at a stroke's ends alone: every brush is set down and lifted through less depth, and who draws a
+    point can do nothing about it. compensated: tries what is advised, None where one width was asked for."""
     laws = (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
     ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
     measured = (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
     pairs = zip(painted, done.plan.passes, strict=True)
-    thin = {
-        stroke.id: stroke for stroke, run in pairs if measured and _thins_out(stroke, run, brush, *measured)
-    }
-    off = {each.where for each in done.warnings if each.code == "depth-not-measured"} - thin.keys()
+    thin = {stroke.id for stroke, run in pairs if measured and _thins_out(stroke, run, brush, *measured)}
+    off = {each.where for each in done.warnings if each.code == "depth-not-measured"} - thin
     advice, lines = "", []
     if compensated is not None and measured and measured[0] < measured[1]:
         lines = [stroke for stroke in painted if stroke.id in off and not stroke.wanted_mm]
         advice = _width_advice(lines[:1], brush, measured, compensated)
     advised = {stroke.id for stroke in lines}
-    is_end = [each.code == "depth-not-measured" and each.where in thin for each in done.warnings]
-    told = [
+    return [
         replace(each, advice=advice if each.where in advised else "")
         if each.code == "depth-not-measured"
         else each
-        for each, end in zip(done.warnings, is_end, strict=True)
-        if not end
+        for each in done.warnings
+        if each.code != "depth-not-measured" or each.where not in thin
     ]
-    ends = [thin[each.where] for each, end in zip(done.warnings, is_end, strict=True) if end]
-    if ends:
-        least = min(half for stroke in ends for _, half in stroke.half_width)
-        count = "1 stroke begins or ends" if len(ends) == 1 else f"{len(ends)} strokes begin or end"
-        sentence = (
-            f"{count} at less depth, from {brush.depth_for_half_width(least, ''):.2g} mm on, than the "
-            f"{measured[0]:g} mm from which on brush {brush.name} was measured"
-        )
-        told.append(Notice("", sentence, code="ends-not-measured"))
-    return told
 
 
 def _width_advice(lines: list, brush, measured: tuple[float, float], compensated) -> str:

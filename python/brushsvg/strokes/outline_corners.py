@@ -14,21 +14,24 @@ from ..geometry.cubics import split
 from .corners import Line, drawn_line, line_stroke
 from .trial_mark import misplaced_mm2, misplaced_seen_mm2, trial_marks
 
-# Turns of less are bends, and of more have two legs side by side, of which the second begins on none of the first.
-LEAST_RAD, MOST_RAD = np.radians(60), np.radians(120)
+# Turns of less are bends, of more a way back over what was painted. Beyond SHARP_RAD two legs lie side by side: a first
+# one that runs square into the corner would stick out of the shape there, so the second begins square.
+LEAST_RAD, SHARP_RAD, MOST_RAD = np.radians(50), np.radians(120), np.radians(150)
 # In half widths: how far from its corner a line is as straight as its leg, and how long a leg is at least, in which
 # a square end has room.
-AWAY, LEG = 1.2, 3.0
+AWAY, FARTHER, LEG = 1.2, 2.4, 2.0
 STUB = 0.2  # and of how little of a leg its direction is known
 # A first leg so much thinner than the second hides no pointed beginning of that; but a squared one its end.
 THIN = 0.65
+REACH = 5.0  # half widths of the wider leg: no corner lies farther on
+ROOM = 0.95  # of a half width: edges are not quite straight
 WORTH = 0.15  # two strokes for one, in squares of the half width: the outer corner of 90 degrees has 0.21
 PLAIN = 0.04  # beside that, what is won is plain in pixels: they are off by 0.013 at most (257 corners of characters)
 HARDLY_WIDER = 1.05  # than the brush: what is wider yet may be painted in passes
 
 
 def squared_at_corners(strokes: list, brush) -> list:
-    """The strokes, those of outlines cut at each corner of 60 to 120 degrees where two marks lie nearer to the shape by
+    """The strokes, those of outlines cut at each corner of 50 to 150 degrees where two marks lie nearer to the shape by
     0.15 squares of the half width, in paint missing and too much. The parts of `id` are called id, id~2, id~3 ...; the
     later ones begin pointed, on what those before painted."""
     from .. import _core
@@ -60,21 +63,22 @@ def _parts(stroke, brush) -> list:
     turning = [k for k in range(1, len(line.cubics)) if LEAST_RAD < line.turn_rad(k) < MOST_RAD]
     length_mm = knots(line.cubics)[:, -1].sum()
     ends_mm = [0.0, *(line.at[k] * length_mm for k in turning), length_mm]
-    corners = [
-        corner
-        for before, at, after in zip(ends_mm, ends_mm[1:], ends_mm[2:], strict=False)
-        if (corner := _corner(line, before, at, after))
+    ways = [
+        [way for away in (AWAY, FARTHER) if (way := _corner(line, *ends, away))]
+        for ends in zip(ends_mm, ends_mm[1:], ends_mm[2:], strict=False)
     ]
-    if not corners:
+    if not any(ways):
         return [stroke]
     whole = trial_marks([_paintable(stroke, brush)], brush)
     better = []
-    for corner in corners:
-        parts = _cut(stroke, line, [corner])
-        if parts:
-            cut = trial_marks([_paintable(part, brush) for part in parts], brush)
-            if _won(whole, cut, stroke.wanted_mm, brush, max(corner.legs_mm)) > WORTH:
-                better.append(corner)
+    for corners in ways:
+        for corner in corners:
+            parts = _cut(stroke, line, [corner])
+            if parts:
+                cut = trial_marks([_paintable(part, brush) for part in parts], brush)
+                if _won(whole, cut, stroke.wanted_mm, brush, max(corner.legs_mm)) > WORTH:
+                    better.append(corner)
+                    break
     return _cut(stroke, line, better) or [stroke] if better else [stroke]
 
 
@@ -100,20 +104,21 @@ class _Corner:
     legs_mm: tuple[float, float]
 
 
-def _corner(line: Line, before_mm: float, at_mm: float, after_mm: float) -> _Corner | None:
-    """A corner with its legs, up to the next ones; none where one of them has no room."""
+def _corner(line: Line, before_mm: float, at_mm: float, after_mm: float, away: float) -> _Corner | None:
+    """A corner with its legs, up to the next ones, straight from so many half widths beside it on; none where one of
+    them has no room."""
     lengths = at_mm - before_mm, after_mm - at_mm
     whole_mm = knots(line.cubics)[:, -1].sum()
     (here,) = _halves(line, at_mm / whole_mm)
     looked_at = [min(LEG * here, length_mm / 2) for length_mm in lengths]
     legs = _halves(line, (at_mm - looked_at[0]) / whole_mm, (at_mm + looked_at[1]) / whole_mm)
-    away = []
+    away_mm = []
     for length_mm, half, other in zip(lengths, legs, legs[::-1], strict=True):
         if length_mm < LEG * half:
             return None
         # the thinner one bends towards a corner as far from it as the other is wide
-        away.append(min(AWAY * max(here, other), length_mm - STUB * half))
-    return _Corner(at_mm, (at_mm - away[0], at_mm + away[1]), (legs[0], legs[1]))
+        away_mm.append(min(away * max(here, other), length_mm - STUB * half))
+    return _Corner(at_mm, (at_mm - away_mm[0], at_mm + away_mm[1]), (legs[0], legs[1]))
 
 
 def _paintable(stroke, brush):
@@ -141,15 +146,17 @@ def _cut(stroke, line: Line, corners: list[_Corner]) -> list:
         if sides is None:
             return []
         done, left, shared = sides
-        end = _end(region(stroke.wanted_mm), first, halves[0])
-        start = _end(region(stroke.wanted_mm), (second[0], -second[1]), halves[1])
+        is_sharp = first[1] @ second[1] < np.cos(SHARP_RAD)
+        shape, reach_mm = region(stroke.wanted_mm), REACH * max(halves)
+        end = (_room if is_sharp else _end)(shape, first, halves[0], reach_mm)
+        start = _end(shape, (second[0], -second[1]), halves[1], reach_mm)
         if end is None or start is None:
             return []
-        is_thin = halves[0] < THIN * halves[1]
-        ways = begun, "lifted" if is_thin else ""
+        hides_none = is_sharp or halves[0] < THIN * halves[1]
+        ways = begun, "lifted" if hides_none else ""
         legs.append((begin_mm, each.away_mm[0], tip, end, shapely.union(done, shared), ways))
         left, tip, begin_mm = shapely.union(left, shared), start, each.away_mm[1]
-        begun = "auto" if is_thin else "exposed"
+        begun = "auto" if hides_none else "exposed"
     legs.append((begin_mm, length_mm, tip, None, left, (begun, "")))
     return [_leg(stroke, line, number, *leg) for number, leg in enumerate(legs, start=1)]
 
@@ -225,17 +232,28 @@ def _shared_out(shape, before, after) -> list:
     return [shapely.difference(shape, second), second]
 
 
-def _end(shape, place, half_mm: float) -> np.ndarray | None:
+def _end(shape, place, half_mm: float, reach_mm: float) -> np.ndarray | None:
     """Where a line that goes straight on from a place ends, half a width before the shape does."""
     import shapely
 
     at, along = place
-    ray = shapely.LineString([at, at + 6 * half_mm * along])
+    ray = shapely.LineString([at, at + 1.2 * reach_mm * along])
     inside = shapely.get_parts(shapely.intersection(ray, shape))
     near = [part for part in inside if shapely.distance(part, shapely.Point(at)) < 1e-6]
-    if not near or not half_mm < near[0].length < 5 * half_mm:
+    if not near or not half_mm < near[0].length < reach_mm:
         return None
     return at + (near[0].length - half_mm) * along
+
+
+def _room(shape, place, half_mm: float, reach_mm: float) -> np.ndarray | None:
+    """The last place straight on from one at which the shape has room for a disc nearly as wide as the line."""
+    import shapely
+
+    at, along = place
+    ways = at + np.linspace(0, reach_mm, 101)[:, None] * along
+    rooms = shapely.distance(shape.boundary, shapely.points(ways))
+    count = int(np.logical_and.accumulate(rooms >= ROOM * half_mm).sum())
+    return ways[count - 1] if count > 1 else None
 
 
 def _leg(stroke, line: Line, lane: int, from_mm: float, to_mm: float, tip, end, shape, ways: tuple[str, str]):

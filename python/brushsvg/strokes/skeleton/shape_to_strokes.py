@@ -17,7 +17,7 @@ from ...geometry.rotation import rotation
 from .cut_ends import run_to_cuts
 from .graph import Skeleton, skeleton
 from .shared_corners import with_shared_corners
-from .writing_order import in_rows, joined, ordered
+from .writing_order import in_rows, joined, ordered, side_by_side
 
 # How far a middle line may leave the medial axis to be smooth, of the half width: less follows every dent of the
 # outline, more shows in the overlap.
@@ -60,17 +60,20 @@ def outline_strokes(rings: list[np.ndarray]) -> list[OutlineStroke]:
             f"its shape branches into {count} lines, more than {MOST_BRANCHES}", code="outline-too-complex"
         )
     boxes = np.array([[*area[0].min(axis=0), *area[0].max(axis=0)] for area in areas]).reshape(-1, 4)
-    return [stroke for k in in_rows(boxes) for stroke in _strokes(areas[k], *axes[k])]
+    alone = side_by_side(boxes)
+    return [stroke for k in in_rows(boxes) for stroke in _strokes(areas[k], *axes[k], alone[k])]
 
 
-def _strokes(area: list[np.ndarray], nodes: np.ndarray, branches: list) -> list[OutlineStroke]:
+def _strokes(
+    area: list[np.ndarray], nodes: np.ndarray, branches: list, is_alone: bool
+) -> list[OutlineStroke]:
     found = skeleton(area, nodes, branches)
     if not found.pieces:  # all of it is one disc, more or less
         return [
             OutlineStroke(np.array([[x, y] * 4]), [(0.0, r)], False, area)
             for x, y, r in found.dabs[:1].tolist()
         ]
-    chains = [run_to_cuts(chain, area) for chain in ordered(joined(found.pieces, found))]
+    chains = [run_to_cuts(chain, area) for chain in ordered(joined(found.pieces, found), is_alone)]
     if len(chains) == 1:
         return [_stroke(chains[0], area, area)]
     cuts = len(chains) * sum(map(len, area)) < MOST_CUT

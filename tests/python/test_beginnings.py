@@ -1,0 +1,54 @@
+"""How strokes begin where nobody asks for anything."""
+
+import numpy as np
+
+from brushsvg import _core, compensate, find_brush
+
+
+def test_a_wide_stroke_that_bends_at_once_begins_round():
+    """Of the round beginning of an S, whose way back is long, too little was painted where both were looked at: the
+    pointed one was taken."""
+    middle = np.array(
+        [
+            [39.8, 53.7, 39.6, 54.6, 39.5, 55.5, 39.2, 56.3],
+            [39.2, 56.3, 38.7, 57.4, 37.8, 58.3, 37.0, 59.1],
+            [37.0, 59.1, 33.4, 62.5, 29.0, 60.5, 26.8, 56.7],
+            [26.8, 56.7, 26.1, 55.5, 25.5, 53.9, 25.4, 52.5],
+            [25.4, 52.5, 25.4, 52.5, 25.6, 50.8, 25.6, 50.8],
+            [25.6, 50.8, 25.6, 50.1, 25.6, 49.7, 25.7, 49.0],
+            [25.7, 49.0, 26.6, 44.5, 32.3, 41.1, 35.9, 38.6],
+            [35.9, 38.6, 39.1, 36.5, 42.3, 33.8, 41.6, 29.5],
+        ]
+    )
+    widths = [
+        (0.0, 4.2),
+        (0.067, 4.2),
+        (0.134, 4.1),
+        (0.184, 3.5),
+        (0.217, 3.3),
+        (0.266, 3.3),
+        (0.383, 3.6),
+        (0.4, 3.6),
+        (0.433, 3.8),
+        (0.466, 3.7),
+        (0.5, 4.0),
+        (0.549, 4.1),
+        (0.583, 4.0),
+        (0.683, 3.6),
+        (0.717, 3.6),
+        (0.783, 3.2),
+        (0.8, 3.2),
+        (0.817, 3.2),
+        (0.867, 3.6),
+        (0.966, 3.9),
+        (1.0, 3.9),
+        (1.0, 3.9),
+    ]
+    stroke = _core.Stroke(middle_mm=middle, half_width=widths)
+    brush = find_brush("round-6")
+    overlaps = {}
+    for start in ("auto", "exposed"):
+        marks = _core.simulate(compensate([stroke], brush, (100, 100), start=start).plan, brush)
+        _core.trace_outlines(marks, brush)
+        overlaps[start] = _core.overlap(marks.outline_mm, _core.wanted_outline(stroke, 0.01))
+    assert overlaps["auto"] > overlaps["exposed"] + 0.02
