@@ -28,21 +28,24 @@ def trial_overlap(strokes: list, rings: list[np.ndarray], brush) -> float:
     return common / both
 
 
-def spoiling(strokes: list, tried: list[int], rings: list[np.ndarray], brush) -> set[int]:
+def spoiling(
+    strokes: list, tried: list[int], rings: list[np.ndarray], brush
+) -> tuple[set[int], float]:
     """Which of the strokes with these numbers paint more beside a shape than they add within it, the others given; the
-    last one first. In pixels."""
+    last one first; and how much the mark of the rest overlaps with the shape. In pixels."""
     marks, spoil = trial_marks(strokes, brush), set()
     some = _core.Marks()
 
-    def misplaced(but: set[int]) -> float:
+    def shared(but: set[int]) -> tuple[float, float]:
         some.passes = [one for k, one in enumerate(marks.passes) if k not in but]
-        return misplaced_seen_mm2(some, rings, brush)
+        return _shared_px(some, rings, brush)[:2]
 
-    least = misplaced(spoil) if tried else 0.0
+    common, both = shared(spoil)
     for k in reversed(tried):
-        if (without := misplaced({*spoil, k})) <= least:
-            spoil, least = {*spoil, k}, without
-    return spoil
+        fewer = shared({*spoil, k})
+        if fewer[1] - fewer[0] <= both - common:
+            spoil, (common, both) = {*spoil, k}, fewer
+    return spoil, common / both
 
 
 def misplaced_mm2(marks, rings: list[np.ndarray], brush) -> float:
