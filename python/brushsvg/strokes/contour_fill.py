@@ -213,20 +213,18 @@ def _no_corners(*_) -> np.ndarray:
 
 
 def _steep_corners(ring: np.ndarray, *_) -> np.ndarray:
-    """Those where lines may end square: cusps of the ring as well, where the shape becomes as narrow as the brush."""
-    return _corners(ring, _SQUARE_RAD)
+    """Corners of about 90 degrees: cusps of the ring as well, where the shape becomes as narrow as the brush."""
+    return np.setdiff1d(_corners(ring, _SQUARE_RAD), _corners(ring, _SHARP_RAD))
 
 
 def _right_corners(ring: np.ndarray, half: float, shape) -> np.ndarray:
     """Corners of a ring where its shape has one of about 90 degrees."""
-    corners = _corners(ring, _SQUARE_RAD)
+    corners = _steep_corners(ring)
     here = ring[corners]
     out = [here - ring[corners - 1], here - ring[(corners + 1) % len(ring)]]
-    out = [each / np.hypot(*each.T)[:, None] for each in out]
-    even = np.abs((out[0] * out[1]).sum(axis=1)) < np.cos(_SQUARE_RAD)
-    tips = shapely.points(here + half * (out[0] + out[1]))
+    tips = shapely.points(here + half * sum(each / np.hypot(*each.T)[:, None] for each in out))
     near = shapely.distance(tips, shapely.multipoints(shapely.get_coordinates(shape))) < _AT_TIP * half
-    return corners[even & near]
+    return corners[near]
 
 
 def _squared(line: Line, half: float, shape, ends: list[bool]) -> Line:

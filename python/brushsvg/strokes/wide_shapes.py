@@ -21,7 +21,7 @@ BETTER = 0.01  # and passes by so much more
 CLEARLY = 0.1
 # Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
 _WORTH_PASSES = 1 / 0.95
-_ALIKE = 0.003  # of overlap: the eye sees no more of it, and pixels are off by 0.002
+_ALIKE = 0.005  # of overlap: less is not worth the direction of writing, or more passes
 _BLOT, _MOST_BLOTS = 3.0, 60  # in half widths, a line of a filling that is looked at; of one shape
 UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge lies beside the shape's by more
 
@@ -126,12 +126,14 @@ def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int
 def _best(ways: list, strokes: list, brush) -> tuple:
     """Of the ways to fill a shape the one whose mark overlaps with it most, without lines that spoil it, and how much:
     passes beside its middle lines, which have the direction of writing, unless others are fewer or plainly better."""
-    tried = [_without_blots(each, strokes, brush) for each in ways]
-    beside, best = tried[0], max(tried, key=lambda each: (each[1], -each[0].unpainted))
-    if best[1] == 0:  # no mark can be told, of a brush that cannot begin or end there
-        return best
-    fewer = best[0].count <= beside[0].count
-    return best if fewer or best[1] > beside[1] + _ALIKE else beside
+    beside, *along = [_without_blots(each, strokes, brush) for each in ways]
+    if not along:
+        return beside
+    best = max(along, key=lambda each: (each[1], -each[0].unpainted))
+    if best[1] == beside[1] == 0:  # of a brush whose marks are refused there
+        return min(beside, best, key=lambda each: each[0].unpainted)
+    worth = _ALIKE if best[0].count > beside[0].count else -_ALIKE if best[0].count < beside[0].count else 0
+    return best if best[1] > beside[1] + worth else beside
 
 
 def _chosen(best: list[tuple], strokes: list, brush, wide: str) -> tuple[dict[int, str], set[int]]:
