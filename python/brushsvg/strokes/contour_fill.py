@@ -41,6 +41,7 @@ _SQUARED = 0.4  # of the greatest width, the least of a brush whose marks can be
 _AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
 _AT_TIP = 0.2  # in half widths: so near to a corner of the shape a corner of 80 to 100 degrees points
 _OFF_CUSP = 0.4  # in half widths
+_PAST, _BLUNT_END = 1.5, 1.2  # a shape ends there if, so far ahead, it has little more than a square, in half widths
 _GRID_MM = 1e-4  # of differences: without one they may fail on edges that all but touch
 _QUARTER, _ROUND = 24, 8  # edges of a quarter of a circle, off by 1e-3 and by 5e-3 of its radius
 _SIMPLER_MM = 0.02  # an edge of the outline costs as much as all the rest
@@ -111,7 +112,7 @@ def _rest_filled(
     shapely.prepare(edge)
     for candidates in ([_rows(stroke, edge, half) for stroke in wide], _axis(shape, half)):
         lengthened = [_lengthened(rows, shape, edge, half) for rows in candidates]
-        found, left = _fill(left, lengthened, least, half)
+        found, left = _fill(left, lengthened, least, half, shape)
         lines += found
     alone = len(lines) == 1 and lines[0].closed
     return [] if alone and _length_mm(lines[0]) < _TURNED_IN * half else lines
@@ -331,7 +332,7 @@ def _evenly(line: np.ndarray, half: float) -> np.ndarray:
 
 
 def _fill(
-    left, candidates: list[np.ndarray], least: float, half: float
+    left, candidates: list[np.ndarray], least: float, half: float, shape
 ) -> tuple[list[Line], shapely.Geometry]:
     """Stretches of the lines that paint what is left, those that paint most of it first, and what they leave."""
     stretches = []
@@ -352,8 +353,27 @@ def _fill(
         without = unpainted(left, [line])
         if left.area - without.area >= _WORTH * half**2:
             left = without
-            made.append(line)
+            made.append(_ending_as(line, rows, shape, half) if least < _SQUARED * half else line)
     return made, left
+
+
+def _ending_as(line: Line, rows: np.ndarray, shape, half: float) -> Line:
+    """The line, meant to paint into the blunt ends of a shape where it ends there."""
+    caps = []
+    for end, inner in ((rows[0], rows[min(3, len(rows) - 1)]), (rows[-1], rows[max(-4, -len(rows))])):
+        along = end[:2] - inner[:2]
+        if end[2] < _WIDE_END * half or not (far := np.hypot(*along)):
+            continue
+        reach = shapely.LineString([end[:2], end[:2] + _PAST * end[2] * along / far])
+        cap = shapely.intersection(reach.buffer(end[2], cap_style="flat"), shape, grid_size=_GRID_MM)
+        if cap.area < _BLUNT_END * 2 * end[2] ** 2:
+            caps.append(cap)
+    if not caps:
+        return line
+    whole = shapely.intersection(shapely.union_all([*_swept(line), *caps]), shape, grid_size=_GRID_MM)
+    part = shapely.orient_polygons(max(shapely.get_parts(whole), key=shapely.area))
+    rings = [np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)]
+    return replace(line, wanted_mm=tuple(_core.unite(rings)))
 
 
 def _slope(rows: np.ndarray) -> float:
