@@ -41,7 +41,10 @@ _SQUARED = 0.4  # of the greatest width, the least of a brush whose marks can be
 _AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
 _AT_TIP = 0.2  # in half widths: so near to a corner of the shape a corner of 80 to 100 degrees points
 _OFF_CUSP = 0.4  # in half widths
-_PAST, _BLUNT_END = 1.5, 1.2  # a shape ends there if, so far ahead, it has little more than a square, in half widths
+_PAST, _BLUNT_END = (
+    1.5,
+    1.2,
+)  # a shape ends where, so far ahead, it has little more than a square, in half widths
 _GRID_MM = 1e-4  # of differences: without one they may fail on edges that all but touch
 _QUARTER, _ROUND = 24, 8  # edges of a quarter of a circle, off by 1e-3 and by 5e-3 of its radius
 _SIMPLER_MM = 0.02  # an edge of the outline costs as much as all the rest
@@ -103,9 +106,7 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
     return [lines for lines in filled if lines]
 
 
-def _rest_filled(
-    lines: list[Line], shape, wide: list, narrow: list, least: float, half: float
-) -> list[Line]:
+def _rest_filled(lines: list[Line], shape, wide: list, narrow: list, least: float, half: float) -> list[Line]:
     """Rings, and lines into what they leave of a shape."""
     left = unpainted(shape, [*narrow, *lines])
     edge = shape.boundary
@@ -186,7 +187,9 @@ def _passes(points: np.ndarray, half: float, shape, squared_at) -> list[Line]:
     lines = []
     for a, b in itertools.pairwise([*sharp, len(ring) - 1]):
         square = [k % (len(ring) - 1) in squared for k in (a, b)]
-        part, turns = _clear_of_cusps(ring[a : b + 1], [int(k - a) for k in corners if a < k < b], half, square)
+        part, turns = _clear_of_cusps(
+            ring[a : b + 1], [int(k - a) for k in corners if a < k < b], half, square
+        )
         line = _line(part, turns, half, False)
         lines.append(_squared(line, half, shape, square) if any(square) else line)
     return lines

@@ -28,9 +28,7 @@ def trial_overlap(strokes: list, rings: list[np.ndarray], brush) -> float:
     return common / both
 
 
-def spoiling(
-    strokes: list, tried: list[int], rings: list[np.ndarray], brush
-) -> tuple[set[int], float]:
+def spoiling(strokes: list, tried: list[int], rings: list[np.ndarray], brush) -> tuple[set[int], float]:
     """Which of the strokes with these numbers paint more beside a shape than they add within it, the others given; the
     last one first; and how much the mark of the rest overlaps with the shape. In pixels."""
     marks, wanted, spoil = trial_marks(strokes, brush), _Wanted(rings), set()
