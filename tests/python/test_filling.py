@@ -231,7 +231,7 @@ def test_a_short_fat_stroke_is_a_ring_without_a_tip(brush):
 
 
 def test_a_stroke_that_its_own_passes_cover_keeps_them_and_its_direction(brush):
-    (stroke,) = of("M10 30Q25 4 50 18T90 15V17Q70 38 48 30T12 32Z")
+    (stroke,) = of("M10 40Q25 10 50 18T90 15Q70 36 48 28T10 40Z")
     passes, wanted, _ = within_reach([stroke], brush, "passes")
     assert [each.id for each in passes] == ["p", "p~2", "p~3"]
     assert passes[0].middle_mm.tolist() == stroke.middle_mm.tolist()
@@ -336,3 +336,12 @@ def test_lines_that_paint_more_beside_a_shape_than_within_it_spoil_it(brush):
     ]
     assert spoiling(lines, [1, 2], rings, brush)[0] == {1}
     assert spoiling(lines, [], rings, brush)[0] == set()
+
+
+def test_a_line_whose_curve_leaves_the_shape_is_no_part_of_a_filling(monkeypatch):
+    """A curve through few places once left a serif by 10 mm, as a bar below the letter."""
+    astray = Line(np.array([[3.5, 2, -6, -3, -16, -8, -26, -13]]), [(0.0, 2.0)])
+    monkeypatch.setitem(contour_passes.__globals__, "_fitted", lambda *_: astray)
+    triangle = shapely.Polygon([(0, 0), (50, 0), (25, 43)])
+    for lines in contour_passes(triangle, [], [], 0.0, HALF_MM):
+        assert painted(lines).difference(triangle.buffer(0.2)).area < 0.1

@@ -353,6 +353,8 @@ def _fill(
     made = []
     for rows in sorted(stretches, key=lambda rows: -_shown(rows, left).sum()):
         line = _fitted(rows, least)
+        if shapely.difference(painted([line]), shape, grid_size=_GRID_MM).area > _WORTH * half**2:
+            continue  # few places may be fitted by a curve that leaves the shape
         without = unpainted(left, [line])
         if left.area - without.area >= _WORTH * half**2:
             left = without

@@ -21,7 +21,7 @@ BETTER = 0.01  # and passes by so much more
 CLEARLY = 0.1
 # Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
 _WORTH_PASSES = 1 / 0.95
-_ALIKE = 0.005  # of overlap: less is not worth the direction of writing, or more passes
+_ALIKE = 0.003  # of overlap: less is not worth the direction of writing, or more passes
 _BLOT, _MOST_BLOTS = 3.0, 60  # in half widths, a line of a filling that is looked at; of one shape
 UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge lies beside the shape's by more
 
