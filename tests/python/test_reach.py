@@ -141,10 +141,11 @@ def test_the_stems_of_a_drawing_are_of_one_weight(brush):
 
 
 def test_passes_are_advised_only_where_they_paint_more(brush):
-    """A short slanted bar of 8.9 mm was said to be painted better by passes, whose discs cover more; their mark does
-    not. Where it is cut straight, they have its corners."""
-    slanted, straight, long = "M10 10H28L30 18.9H12Z", "M10 10H28V18.9H10Z", "M10 10H90V20H10Z"
-    for d, is_advised in ((slanted, False), (straight, True), (long, True)):
+    """Their discs cover more of a leaf that is 8.9 mm wide in its middle, their mark hardly does. Of short bars of that
+    width, cut straight or slanted, they have the corners."""
+    leaf, slanted = "M5 20Q25 2.2 45 20Q25 20 5 20Z", "M10 10H28L30 18.9H12Z"
+    straight, long = "M10 10H28V18.9H10Z", "M10 10H90V20H10Z"
+    for d, is_advised in ((leaf, False), (slanted, True), (straight, True), (long, True)):
         strokes = of(d)
         (notice,) = within_reach(strokes, brush, "clamp")[2]
         assert bool(notice.advice) == is_advised

@@ -39,6 +39,12 @@ _BLUNT = 0.6
 _WIDE_END = 0.5  # in half widths; narrower ends lie in corners
 _SQUARED = 0.4  # of the greatest width, the least of a brush whose marks can begin and end square
 _AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
+_AT_TIP = 0.2  # in half widths: so near to a corner of the shape a corner of 80 to 100 degrees points
+_OFF_CUSP = 0.4  # in half widths
+_PAST, _BLUNT_END = (
+    1.5,
+    1.2,
+)  # a shape ends where, so far ahead, it has little more than a square, in half widths
 _GRID_MM = 1e-4  # of differences: without one they may fail on edges that all but touch
 _QUARTER, _ROUND = 24, 8  # edges of a quarter of a circle, off by 1e-3 and by 5e-3 of its radius
 _SIMPLER_MM = 0.02  # an edge of the outline costs as much as all the rest
@@ -78,8 +84,9 @@ def unpainted(shape, strokes: list):
     return shapely.multipolygons([part for part in shapely.get_parts(left) if part.geom_type == "Polygon"])
 
 
-def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -> list[Line]:
-    """Lines that fill a shape, outermost ring first; nothing for a shape that no lettering has.
+def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -> list[list[Line]]:
+    """Ways to fill a shape, each as lines, outermost ring first: with sides that end square in right-angled corners,
+    where the brush can and the shape has some, and with rings that turn there; none for a shape that no lettering has.
 
     shape: a polygon of shapely; wide, narrow: strokes found for it, those that the brush cannot
     paint and those that are painted anyway; least, half: the brush's half widths [mm].
@@ -88,15 +95,25 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
     shape = shape.simplify(_SIMPLER_MM)
     if _close_pairs(shape, half) > _MOST_PAIRS:
         return []
-    lines = _rings(shape, half, are_squared=least < _SQUARED * half)
-    if lines is None:
+    rings = _rings(shape, half)
+    if rings is None:
         return []
+    kinds = (_right_corners, _steep_corners, _no_corners) if least < _SQUARED * half else (_no_corners,)
+    ways = [_cut(rings, half, shape, squared_at) for squared_at in kinds]
+    counts = [sum(bool(line.wanted_mm) for line in lines) for lines in ways]
+    ways = [lines for k, lines in enumerate(ways) if counts[k] not in counts[k + 1 :]]
+    filled = (_rest_filled(lines, shape, wide, narrow, least, half) for lines in ways)
+    return [lines for lines in filled if lines]
+
+
+def _rest_filled(lines: list[Line], shape, wide: list, narrow: list, least: float, half: float) -> list[Line]:
+    """Rings, and lines into what they leave of a shape."""
     left = unpainted(shape, [*narrow, *lines])
     edge = shape.boundary
     shapely.prepare(edge)
     for candidates in ([_rows(stroke, edge, half) for stroke in wide], _axis(shape, half)):
         lengthened = [_lengthened(rows, shape, edge, half) for rows in candidates]
-        found, left = _fill(left, lengthened, least, half)
+        found, left = _fill(left, lengthened, least, half, shape)
         lines += found
     alone = len(lines) == 1 and lines[0].closed
     return [] if alone and _length_mm(lines[0]) < _TURNED_IN * half else lines
@@ -114,18 +131,23 @@ def _close_pairs(shape, half: float) -> float:
     return float(np.mean(near)) * len(points)
 
 
-def _rings(shape, half: float, are_squared: bool) -> list[Line] | None:
+def _rings(shape, half: float) -> list[list[np.ndarray]] | None:
+    """Rings along the outline, then those farther inside."""
     radius = shapely.maximum_inscribed_circle(shape, 0.01 * half).length
     across = radius - half - _INNERMOST * half
     steps = max(int(np.ceil(across / (_STEP * half) - 0.4)), 0)
     if steps > _MOST_RINGS:
         return None
     step = min(across / max(steps, 1), _STEP * half)
+    return [_inward(shape, half + k * step, _HAIR * half) for k in range(steps + 1)]
+
+
+def _cut(rings: list[list[np.ndarray]], half: float, shape, squared_at) -> list[Line]:
     return [
         line
-        for k in range(steps + 1)
-        for points in _inward(shape, half + k * step, _HAIR * half)
-        for line in _passes(points, half, shape if k == 0 else None, are_squared)
+        for k, of_depth in enumerate(rings)
+        for points in of_depth
+        for line in _passes(points, half, shape if k == 0 else None, squared_at)
     ]
 
 
@@ -144,33 +166,80 @@ def _inward(shape, by_mm: float, hair_mm: float) -> list[np.ndarray]:
     ]
 
 
-def _passes(points: np.ndarray, half: float, shape, are_squared: bool) -> list[Line]:
+def _passes(points: np.ndarray, half: float, shape, squared_at) -> list[Line]:
     """A ring as lines: closed, from amid its longest stretch on, as the tip of a brush set down there lies on the ring;
     the outermost, whose edge shows, given the shape, cut where it turns too sharply for a brush that turns in place, or
     where marks with square ends meet in a corner."""
     ring = _with_sharp_tips(points[:-1], 3 * _HAIR * half)
     corners = _corners(ring, _CORNER_RAD)
-    sharp = _corners(ring, _SQUARE_RAD if are_squared else _SHARP_RAD)
+    sharp = _corners(ring, _SHARP_RAD)
+    squared = _no_corners() if shape is None else squared_at(ring, half, shape)
+    sharp = np.union1d(sharp, squared)
     if not len(corners):
         return [_line(np.roll(ring, -int((ring @ _UPPER_LEFT).argmax()), axis=0), [], half, True)]
     if shape is None or not len(sharp):
         ring, corners = _amid_longest(ring, corners)
         return [_line(np.vstack([ring, ring[:1]]), corners, half, True)]
     first = sharp[(ring[sharp] @ _UPPER_LEFT).argmax()]
-    sharp, corners = (np.sort((which - first) % len(ring)) for which in (sharp, corners))
+    sharp, corners, squared = (np.sort((which - first) % len(ring)) for which in (sharp, corners, squared))
     ring = np.roll(ring, -first, axis=0)
     ring = np.vstack([ring, ring[:1]])
-    lines = [
-        _line(ring[a : b + 1], [int(k - a) for k in corners if a < k < b], half, False)
-        for a, b in itertools.pairwise([*sharp, len(ring) - 1])
+    lines = []
+    for a, b in itertools.pairwise([*sharp, len(ring) - 1]):
+        square = [k % (len(ring) - 1) in squared for k in (a, b)]
+        part, turns = _clear_of_cusps(
+            ring[a : b + 1], [int(k - a) for k in corners if a < k < b], half, square
+        )
+        line = _line(part, turns, half, False)
+        lines.append(_squared(line, half, shape, square) if any(square) else line)
+    return lines
+
+
+def _clear_of_cusps(
+    points: np.ndarray, corners: list[int], half: float, square: list[bool]
+) -> tuple[np.ndarray, list[int]]:
+    """A line of a ring and its corners, shorter at ends that are not square: there the shape is hardly wider than the
+    brush, and a mark that begins or ends beside one edge sticks out of the other."""
+    at = lengths(points)
+    first, last = (0.0 if is_square else _OFF_CUSP * half for is_square in square)
+    if at[-1] < first + last + 2 * half:
+        return points, corners
+    ends = [first, at[-1] - last]
+    inner = np.flatnonzero((at > ends[0]) & (at < ends[1]))
+    places = [[np.interp(end, at, points[:, k]) for k in (0, 1)] for end in ends]
+    return np.vstack([places[0], points[inner], places[1]]), [
+        int(k - inner[0]) + 1 for k in corners if ends[0] < at[k] < ends[1]
     ]
-    return [_squared(line, half, shape) for line in lines] if are_squared else lines
 
 
-def _squared(line: Line, half: float, shape) -> Line:
-    """The line, meant to paint into the corners of the shape at its ends as well."""
+def _no_corners(*_) -> np.ndarray:
+    return np.zeros(0, int)
+
+
+def _steep_corners(ring: np.ndarray, *_) -> np.ndarray:
+    """Corners of about 90 degrees: cusps of the ring as well, where the shape becomes as narrow as the brush."""
+    return np.setdiff1d(_corners(ring, _SQUARE_RAD), _corners(ring, _SHARP_RAD))
+
+
+def _right_corners(ring: np.ndarray, half: float, shape) -> np.ndarray:
+    """Corners of a ring where its shape has one of about 90 degrees."""
+    corners = _steep_corners(ring)
+    here = ring[corners]
+    out = [here - ring[corners - 1], here - ring[(corners + 1) % len(ring)]]
+    tips = shapely.points(here + half * sum(each / np.hypot(*each.T)[:, None] for each in out))
+    near = shapely.distance(tips, shapely.multipoints(shapely.get_coordinates(shape))) < _AT_TIP * half
+    return corners[near]
+
+
+def _squared(line: Line, half: float, shape, ends: list[bool]) -> Line:
+    """The line, meant to paint into the corners of the shape at these of its ends as well, the first, the last."""
     way = _core.flatten(_core.Stroke(middle_mm=line.middle_mm, half_width=line.half_width), 0.01)[:, :2]
-    whole = shapely.buffer(shapely.LineString(way), half, quad_segs=_QUARTER, cap_style="square")
+    whole = shapely.buffer(shapely.LineString(way), half, quad_segs=_QUARTER)
+    for is_square, (end, inner) in zip(ends, (way[:2], way[:-3:-1]), strict=True):
+        if is_square:
+            along = half * (end - inner) / np.hypot(*(end - inner))
+            cap = shapely.LineString([end, end + along]).buffer(half, cap_style="flat")
+            whole = shapely.union(whole, cap)
     parts = shapely.get_parts(shapely.intersection(whole, shape, grid_size=_GRID_MM))
     part = shapely.orient_polygons(max(parts, key=shapely.area))
     rings = [np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)]
@@ -266,7 +335,7 @@ def _evenly(line: np.ndarray, half: float) -> np.ndarray:
 
 
 def _fill(
-    left, candidates: list[np.ndarray], least: float, half: float
+    left, candidates: list[np.ndarray], least: float, half: float, shape
 ) -> tuple[list[Line], shapely.Geometry]:
     """Stretches of the lines that paint what is left, those that paint most of it first, and what they leave."""
     stretches = []
@@ -284,11 +353,32 @@ def _fill(
     made = []
     for rows in sorted(stretches, key=lambda rows: -_shown(rows, left).sum()):
         line = _fitted(rows, least)
+        if shapely.difference(painted([line]), shape, grid_size=_GRID_MM).area > _WORTH * half**2:
+            continue  # few places may be fitted by a curve that leaves the shape
         without = unpainted(left, [line])
         if left.area - without.area >= _WORTH * half**2:
             left = without
-            made.append(line)
+            made.append(_ending_as(line, rows, shape, half) if least < _SQUARED * half else line)
     return made, left
+
+
+def _ending_as(line: Line, rows: np.ndarray, shape, half: float) -> Line:
+    """The line, meant to paint into the blunt ends of a shape where it ends there."""
+    caps = []
+    for end, inner in ((rows[0], rows[min(3, len(rows) - 1)]), (rows[-1], rows[max(-4, -len(rows))])):
+        along = end[:2] - inner[:2]
+        if end[2] < _WIDE_END * half or not (far := np.hypot(*along)):
+            continue
+        reach = shapely.LineString([end[:2], end[:2] + _PAST * end[2] * along / far])
+        cap = shapely.intersection(reach.buffer(end[2], cap_style="flat"), shape, grid_size=_GRID_MM)
+        if cap.area < _BLUNT_END * 2 * end[2] ** 2:
+            caps.append(cap)
+    if not caps:
+        return line
+    whole = shapely.intersection(shapely.union_all([*_swept(line), *caps]), shape, grid_size=_GRID_MM)
+    part = shapely.orient_polygons(max(shapely.get_parts(whole), key=shapely.area))
+    rings = [np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)]
+    return replace(line, wanted_mm=tuple(_core.unite(rings)))
 
 
 def _slope(rows: np.ndarray) -> float:

@@ -12,8 +12,6 @@ from .. import _core
 from .contour_fill import contour_passes, painted, region, unpainted
 from .offset_passes import Line, clamped, offset_passes
 
-# More of the shape covered along its outline is worth the direction of writing, which middle lines have.
-BETTER = 0.01
 _MOST_STROKES = 500
 _SHOWN_SHARE, _SHOWN_GAP_MM = 0.02, 1.0  # what a round brush leaves of blunt corners is less
 
@@ -41,32 +39,31 @@ class Filling:
         return sum(map(len, self.passes.values()))
 
 
-def fillings(strokes: list, wider: list[int], least: float, greatest: float) -> list[Filling]:
-    """How to fill the shapes that strokes wider than the brush, given by their numbers, are of; those that no lettering
-    has are left out."""
+def fillings(strokes: list, wider: list[int], least: float, greatest: float) -> list[list[Filling]]:
+    """The ways to fill each of the shapes that strokes wider than the brush, given by their numbers, are of: beside the
+    middle lines first, then along the outline. Shapes that no lettering has are left out."""
     found, beyond = [], set(wider)
     for shape, members in _shapes(strokes, wider):
         if len(members) > _MOST_STROKES:
             continue
         wide = {k: strokes[k] for k in members if k in beyond}
         narrow = [strokes[k] for k in members if k not in beyond]
-        found.append(_filling(shape, wide, narrow, least, greatest))
+        found.append(_ways(shape, wide, narrow, least, greatest))
     return found
 
 
-def _filling(shape, wide: dict[int, object], narrow: list, least: float, greatest: float) -> Filling:
+def _ways(shape, wide: dict[int, object], narrow: list, least: float, greatest: float) -> list[Filling]:
     beside = {
         k: [clamped(stroke, least, greatest), *offset_passes(stroke, greatest)] for k, stroke in wide.items()
     }
     meant = {k: (Line(s.middle_mm, s.half_width, s.closed), s.wanted_mm) for k, s in wide.items()}
-    along_middles = _tried(shape, beside, meant, narrow)
-    if not (lines := contour_passes(shape, list(wide.values()), narrow, least, greatest)):
-        return along_middles
+    ways = [_tried(shape, beside, meant, narrow)]
     first, *others = wide
     part = _core.unite([ring for stroke in wide.values() for ring in stroke.wanted_mm])
-    passes = {first: lines, **{k: [] for k in others}}
-    along_outline = _tried(shape, passes, {first: (lines[0], _first_share(part, lines))}, narrow)
-    return along_outline if _is_better(along_outline, along_middles) else along_middles
+    for lines in contour_passes(shape, list(wide.values()), narrow, least, greatest):
+        passes = {first: lines, **{k: [] for k in others}}
+        ways.append(_tried(shape, passes, {first: (lines[0], _first_share(part, lines))}, narrow))
+    return ways
 
 
 def _first_share(part: list[np.ndarray], lines: list[Line]) -> list[np.ndarray]:
@@ -83,13 +80,6 @@ def rings_of(shape) -> list[np.ndarray]:
     return _core.unite(
         [np.array(ring.coords)[:-1] for one in polygons for ring in (one.exterior, *one.interiors)]
     )
-
-
-def _is_better(one: Filling, other: Filling) -> bool:
-    if one.unpainted >= other.unpainted:
-        return False
-    mends = other.gap_mm > _SHOWN_GAP_MM and one.gap_mm < other.gap_mm
-    return one.count <= other.count or mends or other.unpainted - one.unpainted > BETTER
 
 
 def _tried(shape, passes, meant, narrow: list) -> Filling:

@@ -24,25 +24,26 @@ def outline_of(marks, brush) -> list[np.ndarray]:
 
 def trial_overlap(strokes: list, rings: list[np.ndarray], brush) -> float:
     """How much that mark overlaps with a shape, to 0.002, in pixels: its outline takes ten times as long."""
-    common, both = _shared_px(trial_marks(strokes, brush), rings, brush)[:2]
+    common, both = _shared_px(trial_marks(strokes, brush), _Wanted(rings), brush)
     return common / both
 
 
-def spoiling(strokes: list, tried: list[int], rings: list[np.ndarray], brush) -> set[int]:
+def spoiling(strokes: list, tried: list[int], rings: list[np.ndarray], brush) -> tuple[set[int], float]:
     """Which of the strokes with these numbers paint more beside a shape than they add within it, the others given; the
-    last one first. In pixels."""
-    marks, spoil = trial_marks(strokes, brush), set()
+    last one first; and how much the mark of the rest overlaps with the shape. In pixels."""
+    marks, wanted, spoil = trial_marks(strokes, brush), _Wanted(rings), set()
     some = _core.Marks()
 
-    def misplaced(but: set[int]) -> float:
+    def shared(but: set[int]) -> tuple[float, float]:
         some.passes = [one for k, one in enumerate(marks.passes) if k not in but]
-        return misplaced_seen_mm2(some, rings, brush)
+        return _shared_px(some, wanted, brush)
 
-    least = misplaced(spoil) if tried else 0.0
+    common, both = shared(spoil)
     for k in reversed(tried):
-        if (without := misplaced({*spoil, k})) <= least:
-            spoil, least = {*spoil, k}, without
-    return spoil
+        fewer = shared({*spoil, k})
+        if fewer[1] - fewer[0] <= both - common:
+            spoil, (common, both) = {*spoil, k}, fewer
+    return spoil, common / both
 
 
 def misplaced_mm2(marks, rings: list[np.ndarray], brush) -> float:
@@ -53,18 +54,26 @@ def misplaced_mm2(marks, rings: list[np.ndarray], brush) -> float:
 
 def misplaced_seen_mm2(marks, rings: list[np.ndarray], brush) -> float:
     """The same in pixels."""
-    common, both, px_per_mm = _shared_px(marks, rings, brush)
-    return (both - common) / px_per_mm**2
+    wanted = _Wanted(rings)
+    common, both = _shared_px(marks, wanted, brush)
+    return (both - common) / wanted.px_per_mm**2
 
 
-def _shared_px(marks, rings: list[np.ndarray], brush) -> tuple[float, float, float]:
-    """What marks and a shape have in common, and what both cover [px]; px/mm."""
-    points = np.vstack(rings)
-    low, size = points.min(axis=0) - _BESIDE_MM, np.ptp(points, axis=0) + 2 * _BESIDE_MM
-    window, px_per_mm = (*low, *size), min(_PX_PER_MM, _SIDE_PX / size.max())
-    wanted = _core.coverage(rings, window, px_per_mm)
-    painted = _core.coverage(marks, brush, window, px_per_mm)
-    return float(np.minimum(wanted, painted).sum()), float(np.maximum(wanted, painted).sum()), px_per_mm
+class _Wanted:
+    """A shape in pixels, how much of each it covers, and the window that they fill."""
+
+    def __init__(self, rings: list[np.ndarray]) -> None:
+        points = np.vstack(rings)
+        low, size = points.min(axis=0) - _BESIDE_MM, np.ptp(points, axis=0) + 2 * _BESIDE_MM
+        self.window, self.px_per_mm = (*low, *size), min(_PX_PER_MM, _SIDE_PX / size.max())
+        self.covered = _core.coverage(rings, self.window, self.px_per_mm)
+
+
+def _shared_px(marks, wanted: _Wanted, brush) -> tuple[float, float]:
+    """What marks and a shape have in common, and what both cover [px]."""
+    painted = _core.coverage(marks, brush, wanted.window, wanted.px_per_mm)
+    common = float(np.minimum(wanted.covered, painted).sum())
+    return common, float(wanted.covered.sum() + painted.sum()) - common
 
 
 def trial_marks(strokes: list, brush):

@@ -21,6 +21,7 @@ BETTER = 0.01  # and passes by so much more
 CLEARLY = 0.1
 # Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
 _WORTH_PASSES = 1 / 0.95
+_ALIKE = 0.003  # of overlap: less is not worth the direction of writing, or more passes
 _BLOT, _MOST_BLOTS = 3.0, 60  # in half widths, a line of a filling that is looked at; of one shape
 UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge lies beside the shape's by more
 
@@ -104,14 +105,13 @@ def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int
     from .fillings import fillings  # with shapely, which is slow to load
 
     done: dict[int, tuple] = {}
-    found = fillings(strokes, wider, *brush.half_width_range_mm())
-    chosen, fillable = ({}, set()) if wide == "passes" else _chosen(found, strokes, brush, wide)
-    for number, filling in enumerate(found):
+    best = [_best(ways, strokes, brush) for ways in fillings(strokes, wider, *brush.half_width_range_mm())]
+    chosen, fillable = ({}, set()) if wide == "passes" else _chosen(best, strokes, brush, wide)
+    for number, (filling, _) in enumerate(best):
         if wide != "passes" and number not in chosen:
             continue
         first = min(filling.passes)
         left_over = _left_over(filling)
-        filling = _without_blots(filling, strokes, brush)
         for k in filling.passes:
             passes = [_like(strokes[k], line, lane) for lane, line in enumerate(filling.passes[k], start=1)]
             meant = []
@@ -123,12 +123,26 @@ def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int
     return done, fillable
 
 
-def _chosen(found: list, strokes: list, brush, wide: str) -> tuple[dict[int, str], set[int]]:
+def _best(ways: list, strokes: list, brush) -> tuple:
+    """Of the ways to fill a shape the one whose mark overlaps with it most, without lines that spoil it, and how much:
+    passes beside its middle lines, which have the direction of writing, unless others are fewer or plainly better."""
+    beside, *along = [_without_blots(each, strokes, brush) for each in ways]
+    if not along:
+        return beside
+    best = max(along, key=lambda each: (each[1], -each[0].unpainted))
+    if best[1] == beside[1] == 0:  # of a brush whose marks are refused there
+        return min(beside, best, key=lambda each: each[0].unpainted)
+    worth = _ALIKE if best[0].count > beside[0].count else -_ALIKE if best[0].count < beside[0].count else 0
+    return best if best[1] > beside[1] + worth else beside
+
+
+def _chosen(best: list[tuple], strokes: list, brush, wide: str) -> tuple[dict[int, str], set[int]]:
     """The fillings that are taken where nobody says which, by their numbers, and why in words: all that paint better,
     if one of their shapes would be painted too badly without, or all of them clearly worse, for the stems of a word
     are of one weight. And of the others, the strokes of shapes that passes paint better; none where all of them
     together hardly win by it."""
-    nearest, filled = _both_ways(found, strokes, brush)
+    found, filled = zip(*best, strict=True)
+    nearest = [_at_nearest(filling, strokes, brush) for filling in found]
     better = [k for k in range(len(found)) if filled[k] > nearest[k] + BETTER]
     areas = [_core.area(each.rings) for each in found]
 
@@ -149,17 +163,10 @@ def _chosen(found: list, strokes: list, brush, wide: str) -> tuple[dict[int, str
     return taken, {stroke for k in better if k in left for stroke in found[k].passes}
 
 
-def _both_ways(found: list, strokes: list, brush) -> tuple[list[float], list[float]]:
-    """How much the marks overlap with each shape, its strokes at the nearest width and in passes."""
-    range_mm = brush.half_width_range_mm()
-    ways = []
-    for filling in found:
-        at_nearest = [_clamped(strokes[k], *range_mm) for k in filling.passes]
-        passes = [_like(strokes[k], line) for k, lines in filling.passes.items() for line in lines]
-        ways.append(
-            [_mark_overlap([*filling.narrow, *some], filling.rings, brush) for some in (at_nearest, passes)]
-        )
-    return [nearest for nearest, _ in ways], [filled for _, filled in ways]
+def _at_nearest(filling, strokes: list, brush) -> float:
+    """How much the mark overlaps with a shape, its strokes painted at the nearest width."""
+    clamped = [_clamped(strokes[k], *brush.half_width_range_mm()) for k in filling.passes]
+    return _mark_overlap([*filling.narrow, *clamped], filling.rings, brush)
 
 
 def _mark_overlap(strokes: list, rings: list, brush) -> float:
@@ -176,25 +183,23 @@ def _how(passes: list) -> str:
     return f"painted in {len(passes)} passes" if len(passes) > 1 else "painted in one pass"
 
 
-def _without_blots(filling, strokes: list, brush):
-    """The filling without short lines that paint more beside the shape than they add to it: a mark shorter than a
-    footprint lies behind its line."""
+def _without_blots(filling, strokes: list, brush) -> tuple:
+    """The filling without short lines that paint more beside the shape than they add to it, as a mark shorter than a
+    footprint lies behind its line; and how much its mark overlaps with the shape, 0 where it is refused."""
     lines = [(k, lane) for k, of_stroke in filling.passes.items() for lane in range(len(of_stroke))]
     passes = [_like(strokes[k], filling.passes[k][lane]) for k, lane in lines]
     greatest = brush.half_width_range_mm()[1]
     short = [n for n, one in enumerate(passes) if _is_short(one, _BLOT * greatest) and lines[n][1] > 0]
-    if not 0 < len(short) <= _MOST_BLOTS:
-        return filling
     try:
-        spoil = spoiling([*passes, *filling.narrow], short, filling.rings, brush)
+        spoil, overlap = spoiling([*passes, *filling.narrow], short[:_MOST_BLOTS], filling.rings, brush)
     except Error:
-        return filling
+        return filling, 0.0
     left_out = {lines[n] for n in spoil}
     kept = {
         k: [line for lane, line in enumerate(of_stroke) if (k, lane) not in left_out]
         for k, of_stroke in filling.passes.items()
     }
-    return replace(filling, passes=kept)
+    return replace(filling, passes=kept), overlap
 
 
 def _is_short(stroke, least_mm: float) -> bool:
