@@ -66,9 +66,9 @@ def test_groups_are_judged_as_each_alone():
     ]
     assert found == alone
     assert len({area.overlap for area in found}) == 4
-    with pytest.raises(Error, match="a group names a stroke that there is not") as refused:
+    with pytest.raises(Error) as told:
         _core.common_areas(marks, strokes, [[0], [1, 5]], brush)
-    assert refused.value.code == "out-of-range"
+    assert told.value.code == "out-of-range"
 
 
 def test_misses_are_those_of_each_pass():
@@ -80,5 +80,6 @@ def test_misses_are_those_of_each_pass():
     pairs = zip(passes, strokes, strict=True)
     assert found == [_core.miss_of(one, stroke, brush, 0.2) for one, stroke in pairs]
     assert [miss.within_tolerance for miss in found] == [True, False, True]
-    with pytest.raises(Error, match="a stroke is needed for each pass"):
+    with pytest.raises(Error) as told:
         _core.misses_of(passes, strokes[:2], brush)
+    assert told.value.code == "sizes-differ"
