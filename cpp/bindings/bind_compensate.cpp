@@ -144,4 +144,17 @@ Error, naming the stroke, for widths or depths out of the brush's reach.)");
     m.def("miss_of", &tracking_error_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"),
           py::arg("tolerance_mm") = 0.05, py::call_guard<Unlocked>(),
           "Miss of one pass against the stroke it should paint, by simulating it.");
+    m.def(
+        "misses_of",
+        [](const std::vector<Pass>& passes, const std::vector<Stroke>& strokes, const Brush& brush,
+           double tolerance_mm) {
+            if (passes.size() != strokes.size()) throw Error("sizes-differ", "a stroke is needed for each pass");
+            std::vector<TrackingError> found(passes.size());
+            in_parallel_chunks(found.size(), 64, py::none(), [&](std::size_t i) {
+                found[i] = tracking_error_of(passes[i], strokes[i], brush, tolerance_mm);
+            });
+            return found;
+        },
+        py::arg("passes"), py::arg("strokes"), py::arg("brush"), py::arg("tolerance_mm") = 0.05,
+        "The same of passes and strokes in turn, on all processors: a Miss each.");
 }

@@ -20,6 +20,9 @@ void bind_mark_overlap(py::module_& m) {
         },
         py::arg("painted"), py::arg("wanted"), py::arg("brush"), py::call_guard<Unlocked>(),
         "What passes of marks and the strokes they should be have in common, counted in pixels: a CommonArea.");
+    m.def("common_areas", &common_areas, py::arg("painted"), py::arg("wanted"), py::arg("groups"), py::arg("brush"),
+          py::call_guard<Unlocked>(),
+          "The same of each of some groups, lists of numbers as touching() gives them: a CommonArea each.");
     m.def(
         "wanted_coverage",
         [](const std::vector<Stroke>& wanted, const std::array<double, 4>& w, double px_per_mm) {

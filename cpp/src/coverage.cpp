@@ -3,17 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
+#include "parallel.hpp"
 #include "rasterizer.hpp"
 #include "sweep.hpp"
 
 namespace brushsvg {
 namespace {
 
-constexpr double kLeastArea = 1e-6;  // mm^2: what rounding leaves of a piece may turn over
+constexpr std::size_t kPassesAtOnce = 32;  // of one processor, at least: fewer are not worth a thread
+constexpr double kLeastArea = 1e-6;        // mm^2: what rounding leaves of a piece may turn over
 
 void require_finite(const Rings& rings) {
     for (const Ring& ring : rings)
@@ -24,13 +28,20 @@ void require_finite(const Rings& rings) {
 }  // namespace
 
 Coverage coverage(const Marks& marks, const Brush& brush, const Window& window, double px_per_mm) {
-    Rasterizer raster(window, px_per_mm);
-    for (const PassMarks& pass : marks.passes)
-        sweep(
-            pass, brush, [&](const Ring& a, const Ring& b) { raster.convex_pair(a, b); },
-            [&](const Ring& ring) { raster.polygon({ring}); },
-            [&](const Ring& piece) { raster.convex_pair(piece, piece); });
-    return raster.coverage();
+    const std::size_t count = marks.passes.size();
+    const std::size_t most = std::max(1u, std::thread::hardware_concurrency());
+    const std::size_t parts = std::clamp<std::size_t>(count / kPassesAtOnce, 1, most);
+    std::vector<Rasterizer> rasters(parts, Rasterizer(window, px_per_mm));
+    on_all_processors(0, parts, [&](std::size_t part) {
+        Rasterizer& raster = rasters[part];
+        for (std::size_t i = part * count / parts; i < (part + 1) * count / parts; ++i)
+            sweep(
+                marks.passes[i], brush, [&](const Ring& a, const Ring& b) { raster.convex_pair(a, b); },
+                [&](const Ring& ring) { raster.polygon({ring}); },
+                [&](const Ring& piece) { raster.convex_pair(piece, piece); });
+    });
+    for (std::size_t part = 1; part < parts; ++part) rasters[0].absorb(rasters[part]);
+    return rasters[0].coverage();
 }
 
 Coverage coverage(const Rings& rings, const Window& window, double px_per_mm) {

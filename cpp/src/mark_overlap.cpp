@@ -74,11 +74,12 @@ double finest_mm(const Stroke& stroke) {
 
 /// A stroke as it was drawn: its outline where it has one, else convex pieces of its path with its width.
 struct Meant {
-    bool is_outline;
+    bool is_outline = false;
     Rings parts;
     std::vector<Box> boxes;
     Box box;
 
+    Meant() = default;
     explicit Meant(const Stroke& stroke) : is_outline(!stroke.wanted_mm.empty()) {
         parts = is_outline ? stroke.wanted_mm : wanted_pieces(stroke, kOutlineMm);
         for (const Ring& part : parts) {
@@ -90,7 +91,11 @@ struct Meant {
     }
 };
 
-std::vector<Meant> meant(const std::vector<Stroke>& wanted) { return {wanted.begin(), wanted.end()}; }
+std::vector<Meant> meant(const std::vector<Stroke>& wanted) {
+    std::vector<Meant> all(wanted.size());
+    on_all_processors(0, all.size(), [&](std::size_t k) { all[k] = Meant(wanted[k]); });
+    return all;
+}
 
 Coverage wanted_pixels(const std::vector<const Meant*>& wanted, const Window& window, double px_per_mm) {
     const Box shown{window.x_mm, window.y_mm, window.x_mm + window.width_mm, window.y_mm + window.height_mm};
@@ -154,12 +159,10 @@ CommonArea common_area(const MarkOverlap& seen) {
 }
 
 CommonArea common_area(const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush) {
-    std::vector<Box> paint;
+    std::vector<Box> paint(painted.size());
+    on_all_processors(0, paint.size(), [&](std::size_t k) { paint[k] = box_of(painted[k], brush); });
     Box box;
-    for (const PassMarks& pass : painted) {
-        paint.push_back(box_of(pass, brush));
-        box.include(paint.back());
-    }
+    for (const Box& each : paint) box.include(each);
     const std::vector<Meant> drawn = meant(wanted);
     for (const Meant& each : drawn) box.include(each.box);
     const Window sheet = with_paper(box);
@@ -190,6 +193,25 @@ CommonArea common_area(const std::vector<PassMarks>& painted, const std::vector<
         all.together_mm2 += tile.together_mm2;
     }
     return all;
+}
+
+std::vector<CommonArea> common_areas(const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted,
+                                     const std::vector<std::vector<std::size_t>>& groups, const Brush& brush) {
+    for (const auto& members : groups)
+        for (const std::size_t k : members)
+            if (k >= painted.size() || k >= wanted.size())
+                throw Error("out-of-range", "a group names a stroke that there is not", "", double(k));
+    std::vector<CommonArea> found(groups.size());
+    on_all_processors(0, found.size(), [&](std::size_t g) {
+        std::vector<PassMarks> marks;
+        std::vector<Stroke> strokes;
+        for (const std::size_t k : groups[g]) {
+            marks.push_back(painted[k]);
+            strokes.push_back(wanted[k]);
+        }
+        found[g] = common_area(marks, strokes, brush);
+    });
+    return found;
 }
 
 Coverage wanted_coverage(const std::vector<Stroke>& wanted, const Window& window, double px_per_mm) {

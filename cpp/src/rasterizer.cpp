@@ -8,6 +8,7 @@
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
+#include "parallel.hpp"
 #include "refuse_unusable.hpp"
 
 namespace brushsvg {
@@ -18,6 +19,7 @@ constexpr double kMostPixels = 4e8;
 constexpr std::array<double, 2> kPxPerMm{1e-6, 1e6};
 // what is left of sums in single precision where nothing is painted
 constexpr float kRounding = 1e-6f;
+constexpr Eigen::Index kPixelsAtOnce = 1 << 18;  // of a part of a picture, which one processor makes
 
 }  // namespace
 
@@ -86,6 +88,12 @@ void Rasterizer::polygon(const Rings& rings) {
     }
 }
 
+void Rasterizer::absorb(const Rasterizer& other) {
+    for (int line = 0; line < lines(); ++line) add(line, other.lo_[line], other.hi_[line]);
+    more_.insert(more_.end(), other.more_.begin(), other.more_.end());
+    parts_.insert(parts_.end(), other.parts_.begin(), other.parts_.end());
+}
+
 Coverage Rasterizer::coverage() {
     const auto by_place = [](const Span& a, const Span& b) {
         return a.line < b.line || (a.line == b.line && a.lo < b.lo);
@@ -93,11 +101,24 @@ Coverage Rasterizer::coverage() {
     std::sort(more_.begin(), more_.end(), by_place);
     std::sort(parts_.begin(), parts_.end(), by_place);
     Coverage out(height_, width_);
+    const Eigen::Index at_once = std::max<Eigen::Index>(1, kPixelsAtOnce / width_);
+    on_all_processors(0, std::size_t((height_ + at_once - 1) / at_once), [&](std::size_t k) {
+        rows(Eigen::Index(k) * at_once, std::min(height_, Eigen::Index(k + 1) * at_once), out);
+    });
+    return out;
+}
+
+void Rasterizer::rows(Eigen::Index first, Eigen::Index last, Coverage& out) const {
     std::vector<float> steps(width_ + 2, 0.0f);
     std::vector<Eigen::Index> changes;  // pixels whose step may differ from zero
-    std::size_t next = 0, next_part = 0;
+    const auto begin_of = [&](const std::vector<Span>& spans) {
+        const auto is_above = [](const Span& span, int line) { return span.line < line; };
+        const int line = int(first) * kLinesPerPixel;
+        return std::size_t(std::lower_bound(spans.begin(), spans.end(), line, is_above) - spans.begin());
+    };
+    std::size_t next = begin_of(more_), next_part = begin_of(parts_);
     std::vector<Span> here, parts;
-    for (Eigen::Index row = 0; row < height_; ++row) {
+    for (Eigen::Index row = first; row < last; ++row) {
         checkpoint(20);
         changes.clear();
         for (int line = int(row) * kLinesPerPixel; line < int(row + 1) * kLinesPerPixel; ++line) {
@@ -130,7 +151,6 @@ Coverage Rasterizer::coverage() {
         }
         fill_until(width_);
     }
-    return out;
 }
 
 void Rasterizer::merge(std::vector<Span>& spans) {
@@ -147,13 +167,13 @@ void Rasterizer::merge(std::vector<Span>& spans) {
 }
 
 void Rasterizer::outside(std::vector<Span>& full, const std::vector<Span>& parts) {
-    edges_.clear();
-    for (const Span& s : full) edges_.insert(edges_.end(), {s.lo, s.hi});
-    for (const Span& s : parts) edges_.insert(edges_.end(), {s.lo, s.hi});
-    std::sort(edges_.begin(), edges_.end());
+    std::vector<float> edges;
+    for (const Span& s : full) edges.insert(edges.end(), {s.lo, s.hi});
+    for (const Span& s : parts) edges.insert(edges.end(), {s.lo, s.hi});
+    std::sort(edges.begin(), edges.end());
     const std::size_t fulls = full.size();
-    for (std::size_t k = 0; k + 1 < edges_.size(); ++k) {
-        const float lo = edges_[k], hi = edges_[k + 1];
+    for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
+        const float lo = edges[k], hi = edges[k + 1];
         if (!(lo < hi)) continue;
         const auto holds = [&](const Span& s) { return s.lo <= lo && s.hi >= hi; };
         if (std::any_of(full.begin(), full.begin() + fulls, holds)) continue;

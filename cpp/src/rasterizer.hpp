@@ -24,6 +24,10 @@ class Rasterizer {
     /// Any polygon, non-zero winding.
     void polygon(const Rings& rings);
 
+    /// What another one of the same picture was given, too. In which order tells nothing.
+    void absorb(const Rasterizer& other);
+
+    /// On all processors where the picture is large.
     Coverage coverage();
 
  private:
@@ -43,9 +47,12 @@ class Rasterizer {
     /// Union of spans of full height.
     static void merge(std::vector<Span>& spans);
 
+    /// Rows from `first` to before `last` of the picture, of sorted spans.
+    void rows(Eigen::Index first, Eigen::Index last, Coverage& out) const;
+
     /// Adds to disjoint full spans what parts of the band paint beside them: at every x the highest part that stands on
     /// the band's lower side and the longest that hangs from its upper one.
-    void outside(std::vector<Span>& full, const std::vector<Span>& parts);
+    static void outside(std::vector<Span>& full, const std::vector<Span>& parts);
 
     double to_x(double x_mm) const { return (x_mm - window_.x_mm) * scale_; }
     double to_y(double y_mm) const { return (window_.y_mm + window_.height_mm - y_mm) * scale_ * kLinesPerPixel; }
@@ -85,7 +92,7 @@ class Rasterizer {
     std::vector<float> lo_, hi_;
     std::vector<Span> more_, parts_;
     std::vector<Point> left_a_, right_a_, left_b_, right_b_, left_, right_;
-    std::vector<float> lo_here_, hi_here_, edges_;
+    std::vector<float> lo_here_, hi_here_;
 };
 
 }  // namespace brushsvg

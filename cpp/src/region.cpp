@@ -13,6 +13,7 @@
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
+#include "chain_union.hpp"
 #include "meanwhile.hpp"
 #include "nearest_on_polyline.hpp"
 #include "star_union.hpp"
@@ -364,7 +365,10 @@ double common_share(const Rings& a, const Rings& b) {
 
 Rings unite(const Rings& rings) {
     require_outer_rings(rings);
-    return heard(united, united_in_sight(rings));
+    const InSight fewer = united_in_sight(rings);
+    const std::optional<Rings> chains = fewer.are_stars ? united_in_chain(fewer.rings, kUnitsPerMm) : std::nullopt;
+    if (chains && chains->size() == 1) return *chains;
+    return heard(united, chains ? *chains : fewer.rings);
 }
 
 Rings fill(const Rings& outlines, FillRule rule) {

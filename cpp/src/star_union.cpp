@@ -140,11 +140,12 @@ Star outermost(std::vector<Star> stars) {
 
 }  // namespace
 
-Rings united_in_sight(const Rings& rings) {
+InSight united_in_sight(const Rings& rings) {
     std::vector<bool> is_outer;
     for (const Ring& ring : rings) is_outer.push_back(ring.rows() >= 3 && signed_area(ring) > 0.0);
     const auto is_alone = [&](std::size_t k) { return is_outer[k] && (k + 1 == rings.size() || is_outer[k + 1]); };
     Rings out;
+    bool are_stars = true;
     std::vector<Star> stars;
     for (std::size_t first = 0; first < rings.size();) {
         std::size_t most = first;
@@ -162,12 +163,15 @@ Rings united_in_sight(const Rings& rings) {
             break;
         }
         if (count < 2) {
-            out.push_back(rings[first]);
+            const Ring& ring = rings[first];
+            stars.resize(1);
+            are_stars = are_stars && is_alone(first) && seen_from(ring.colwise().mean().transpose(), ring, stars[0]);
+            out.push_back(ring);
             count = 1;
         }
         first += count;
     }
-    return out;
+    return {std::move(out), are_stars};
 }
 
 }  // namespace brushsvg

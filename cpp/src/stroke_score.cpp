@@ -26,11 +26,11 @@ constexpr double kMostReach = 1e5;       // pixels; no picture has more across
 /// Sums of values over all squares of so many blocks, from sums over blocks.
 class Squares {
  public:
-    Squares(Index rows, Index columns) : up_(Eigen::MatrixXd::Zero(rows + 1, columns + 1)) {}
+    Squares(Index rows, Index columns) : up_(Sums::Zero(rows + 1, columns + 1)) {}
     double& block(Index row, Index column) { return up_(row + 1, column + 1); }
     void sum_up() {
-        for (Index c = 1; c < up_.cols(); ++c)
-            for (Index r = 1; r < up_.rows(); ++r) up_(r, c) += up_(r - 1, c) + up_(r, c - 1) - up_(r - 1, c - 1);
+        for (Index r = 1; r < up_.rows(); ++r)
+            for (Index c = 1; c < up_.cols(); ++c) up_(r, c) += up_(r - 1, c) + up_(r, c - 1) - up_(r - 1, c - 1);
     }
     /// The largest, and where its first block is.
     double largest(Index size, Index& row, Index& column) const {
@@ -47,7 +47,8 @@ class Squares {
     }
 
  private:
-    Eigen::MatrixXd up_;
+    using Sums = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;  // walked along its rows
+    Sums up_;
 };
 
 /// Share at a place between the middles of pixels, linear in both directions; 0 outside.

@@ -11,7 +11,7 @@ from brushsvg import _core
 from brushsvg.brush.library import find_brush
 from brushsvg.cli import main
 from brushsvg.evaluation import report
-from brushsvg.machine import writer
+from brushsvg.machine import motion, program, writer
 from brushsvg.machine.cell_file import SHIPPED, find_cell
 from brushsvg.pipeline import constant_lag, prediction, preparation
 from brushsvg.planning import travel_order
@@ -157,3 +157,16 @@ def test_a_program_by_way_of_a_plan_is_the_one_of_the_drawing(tmp_path, monkeypa
     parts = [line for line in theirs if "stroke " in line]
     assert any("a+2" in line for line in parts) == (when == "length") and any("a#2" in line for line in parts)
     assert sum("paint: " in line for line in theirs) >= 3
+
+
+def test_what_a_program_has_of_a_stroke_and_its_time_are_asked_once(drawing, tmp_path, monkeypatch):
+    asked, timed = [], []
+    as_written, duration_s = program.as_written, motion._duration_s
+    monkeypatch.setattr(
+        program, "as_written", lambda *args: asked.append(args[0].stroke) or as_written(*args)
+    )
+    monkeypatch.setattr(motion, "_duration_s", lambda made: timed.append(made) or duration_s(made))
+    assert main(["convert", str(drawing), str(tmp_path / "a.ngc"), "--quiet"]) == 0
+    assert asked
+    assert len(asked) == len(set(asked))
+    assert len(timed) == 1

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from brushsvg import Stroke, _core, compensate, find_brush, simulate, trace_outlines
+from brushsvg import Error, Stroke, _core, compensate, find_brush, simulate, trace_outlines
 
 
 def box(x0, y0, x1, y1):
@@ -53,3 +53,33 @@ def test_pixels_agree_with_rings():
         found = _core.common_area(marks.passes[some], strokes[some], brush)
         assert found.overlap == pytest.approx(_core.overlap(painted, wanted), abs=1e-3)
         assert found.together_mm2 == pytest.approx(_core.area(_core.unite([*painted, *wanted])), rel=1e-3)
+
+
+def test_groups_are_judged_as_each_alone():
+    brush = find_brush("round-6")
+    strokes = [straight(f"s{k}", (10, 10 + 9 * k), (40, 12 + 6 * k), 1.0 + 0.2 * k) for k in range(5)]
+    marks = simulate(compensate(strokes, brush, (100, 100)).plan, brush).passes
+    groups = [[0, 1], [2], [1, 4, 3], []]
+    found = _core.common_areas(marks, strokes, groups, brush)
+    alone = [
+        _core.common_area([marks[k] for k in some], [strokes[k] for k in some], brush) for some in groups
+    ]
+    assert found == alone
+    assert len({area.overlap for area in found}) == 4
+    with pytest.raises(Error) as told:
+        _core.common_areas(marks, strokes, [[0], [1, 5]], brush)
+    assert told.value.code == "out-of-range"
+
+
+def test_misses_are_those_of_each_pass():
+    brush = find_brush("round-6")
+    strokes = [straight(f"s{k}", (10, 10 + 9 * k), (40, 12 + 6 * k), 1.0 + 0.2 * k) for k in range(3)]
+    passes = compensate(strokes, brush, (100, 100)).plan.passes
+    passes[1].poses_mm = passes[1].poses_mm + np.array([0, 0.4, 0])
+    found = _core.misses_of(passes, strokes, brush, 0.2)
+    pairs = zip(passes, strokes, strict=True)
+    assert found == [_core.miss_of(one, stroke, brush, 0.2) for one, stroke in pairs]
+    assert [miss.within_tolerance for miss in found] == [True, False, True]
+    with pytest.raises(Error) as told:
+        _core.misses_of(passes, strokes[:2], brush)
+    assert told.value.code == "sizes-differ"

@@ -122,3 +122,31 @@ def test_panels_are_complete_at_one_scale(shape, landscape):
     grey = (np.abs(image.astype(int) - 180).max(axis=2) < 8).sum()
     ink = ((image[..., 0] > 90) & (image[..., 2] < 80)).sum()
     assert ink == pytest.approx(2 * grey, rel=0.1), "one panel wanted, two painted over it"
+
+
+def test_a_page_of_many_strokes_is_painted_by_several_processors_as_each_alone():
+    """In which order tells nothing, where they cross; where none does, the picture is all of theirs."""
+    brush, rng = find_brush("round-6"), np.random.default_rng(2)
+    sheet, count = (400.0, 300.0), 96
+    apart = [((10 + 30 * (k % 12), 15 + 34 * (k // 12)), rng.uniform(-9, 9, 2)) for k in range(count)]
+    crossing = [(rng.uniform(40, 260, 2), rng.uniform(-90, 90, 2)) for _ in range(count)]
+
+    def marks_of(lines):
+        strokes = [
+            Stroke(
+                f"s{k}", np.array([[*a, *a, *(a + way), *(a + way)]], float), half_width=[(0, 1), (1, 1.5)]
+            )
+            for k, (a, way) in enumerate(lines)
+        ]
+        return simulate(compensate(strokes, brush, sheet).plan, brush)
+
+    def picture(marks, passes):
+        some = type(marks)()
+        some.passes = passes
+        return coverage(some, brush, (0, 0, *sheet), 4)
+
+    marks = marks_of(apart)
+    alone = np.max([picture(marks, [each]) for each in marks.passes], axis=0)
+    assert np.abs(picture(marks, marks.passes) - alone).max() < 1e-5  # sums of a row in single precision
+    marks = marks_of(crossing)
+    assert (picture(marks, marks.passes) == picture(marks, marks.passes[::-1])).all()

@@ -33,6 +33,10 @@ CommonArea common_area(const MarkOverlap& seen);
 /// million in all at most.
 CommonArea common_area(const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush);
 
+/// The same of each of some groups, as touching() finds them: numbers of strokes and of the passes that paint them.
+std::vector<CommonArea> common_areas(const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted,
+                                     const std::vector<std::vector<std::size_t>>& groups, const Brush& brush);
+
 /// What strokes should become, as shares of pixels.
 Coverage wanted_coverage(const std::vector<Stroke>& wanted, const Window& window, double px_per_mm);
 

@@ -53,6 +53,7 @@ __all__: list[str] = [
     "check",
     "clearance",
     "common_area",
+    "common_areas",
     "compensate",
     "convex_hull",
     "coverage",
@@ -74,6 +75,7 @@ __all__: list[str] = [
     "lag",
     "medial_axis",
     "miss_of",
+    "misses_of",
     "narrow",
     "overlap",
     "painted_bounds",
@@ -1424,6 +1426,16 @@ def common_area(
     What passes of marks and the strokes they should be have in common, counted in pixels: a CommonArea.
     """
 
+def common_areas(
+    painted: collections.abc.Sequence[PassMarks],
+    wanted: collections.abc.Sequence[Stroke],
+    groups: collections.abc.Sequence[collections.abc.Sequence[int]],
+    brush: Brush,
+) -> list[CommonArea]:
+    """
+    The same of each of some groups, lists of numbers as touching() gives them: a CommonArea each.
+    """
+
 def compensate(
     strokes: collections.abc.Sequence[Stroke],
     brush: Brush,
@@ -1647,6 +1659,16 @@ def miss_of(
 ) -> Miss:
     """
     Miss of one pass against the stroke it should paint, by simulating it.
+    """
+
+def misses_of(
+    passes: collections.abc.Sequence[Pass],
+    strokes: collections.abc.Sequence[Stroke],
+    brush: Brush,
+    tolerance_mm: float = 0.05,
+) -> list[Miss]:
+    """
+    The same of passes and strokes in turn, on all processors: a Miss each.
     """
 
 def narrow(

@@ -117,23 +117,24 @@ def measure(
     if strokes is None:
         rows = tuple(_bare_figures(a_pass) for a_pass in plan.passes)
         return rows, _in_all(rows, None)
-    known = [
-        (trace, stroke) for trace, stroke in zip(marks.passes, strokes, strict=True) if stroke is not None
-    ]
-    found = iter(_core.verdicts([trace for trace, _ in known], [stroke for _, stroke in known], brush))
+    runs, traces = plan.passes, marks.passes
+    known = [k for k, stroke in enumerate(strokes) if stroke is not None]
+    alone = [strokes[k] for k in known]
+    verdicts = _core.verdicts([traces[k] for k in known], alone, brush)
+    misses = _core.misses_of([runs[k] for k in known], alone, brush, tolerance_mm)
+    found = iter(zip(verdicts, misses, strict=True))
     rows = tuple(
         _bare_figures(a_pass)
         if stroke is None
-        else _figures(a_pass, stroke, next(found), brush, tolerance_mm, compensation, unreached)
-        for a_pass, stroke in zip(plan.passes, strokes, strict=True)
+        else _figures(a_pass, stroke, *next(found), brush, tolerance_mm, compensation, unreached)
+        for a_pass, stroke in zip(runs, strokes, strict=True)
     )
-    meant = [stroke for _, stroke in known] if drawn is None else list(drawn)
-    overlap = _core.common_area(marks.passes, meant, brush).overlap if rows else None
+    meant = alone if drawn is None else list(drawn)
+    overlap = _core.common_area(traces, meant, brush).overlap if rows else None
     return rows, _in_all(rows, overlap)
 
 
-def _figures(a_pass, stroke, verdict, brush, tolerance_mm: float, compensation: str, unreached) -> Figures:
-    miss = _core.miss_of(a_pass, stroke, brush, tolerance_mm)
+def _figures(a_pass, stroke, verdict, miss, brush, tolerance_mm, compensation: str, unreached) -> Figures:
     line = _core.flatten(stroke, RING_TOLERANCE_MM)
     worst, place = None, verdict.worst
     if place.area_mm2 >= SMALL_MM2:
@@ -187,12 +188,13 @@ def groups(
 ) -> tuple[Group, ...]:
     """Strokes that touch, each letter judged as one. strokes: one per pass, None for a part of one."""
     known = [pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None]
-    found = []
-    for members in _core.touching([stroke for _, stroke in known]):
-        traces, wanted = zip(*(known[k] for k in members), strict=True)
-        overlap = _core.common_area(traces, wanted, brush).overlap
-        found.append(Group(tuple(stroke.id for stroke in wanted), overlap))
-    return tuple(found)
+    traces, wanted = [trace for trace, _ in known], [stroke for _, stroke in known]
+    together = _core.touching(wanted)
+    areas = _core.common_areas(traces, wanted, together, brush)
+    return tuple(
+        Group(tuple(wanted[k].id for k in members), area.overlap)
+        for members, area in zip(together, areas, strict=True)
+    )
 
 
 def _bare_figures(a_pass) -> Figures:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -93,6 +94,10 @@ class Program:
     touching_mm_s: float
     tilts: bool = False
 
+    @cached_property
+    def duration_s(self) -> float:
+        return _duration_s(self)
+
 
 def rise_over(cell: Cell, sheet_mm, frame: np.ndarray) -> float:
     """The height, in the frame that the paper's frame is given in, of the safe height's highest place [mm]."""
@@ -148,6 +153,10 @@ def via(points_mm: np.ndarray) -> np.ndarray:
 
 def duration_s(program: Program) -> float:
     """Time for the whole program: each move starts and ends at rest, with the cell's acceleration."""
+    return program.duration_s
+
+
+def _duration_s(program: Program) -> float:
     total_s, here = 0.0, None
     for step in (step for section in program.sections() for step in section.steps):
         if isinstance(step, Wait):

@@ -9,12 +9,12 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
-from .cell import Cell, robot_from_paper, unit_mm
+from .cell import Cell, unit_mm
 from .corner_blending import blend_radii, blended
 from .distortion import true_pass
 from .paint_reload import PlanInLoads
-from .program import POSES_AT_ONCE, WHOLE_JOB, Job, Walked, out_of_arm, walked
-from .rounding import as_written
+from .program import POSES_AT_ONCE, WHOLE_JOB, Job, Walked, out_of_arm, walked, written_of
+from .rounding import Written
 from .tool_axes import mixed
 from .workspace_limits import beyond_edges
 
@@ -37,7 +37,11 @@ def look(
     if job.first_stroke > 1 and not left.loads:
         return walk
     found = walk.problems or out_of_arm(walk.made, left.sheet_mm)
-    return replace(walk, problems=found or shifted_by_blends(left, brush, cell, tolerance_mm))
+    is_known = walk.made.cell is cell and not job.z_offset_mm  # asked of the paper where the cell has it
+    written = walk.written if is_known else written_of(loads, cell, WHOLE_JOB)
+    return replace(
+        walk, problems=found or shifted_by_blends(loads, brush, cell, tolerance_mm, job.first_stroke, written)
+    )
 
 
 def within_limits(
@@ -113,9 +117,15 @@ def bounds_mm(marks: _core.Marks, brush: _core.Brush) -> tuple[float, float, flo
 
 
 def shifted_by_blends(
-    loads: PlanInLoads, brush: _core.Brush, cell: Cell, tolerance_mm: float
+    loads: PlanInLoads,
+    brush: _core.Brush,
+    cell: Cell,
+    tolerance_mm: float,
+    first_stroke: int,
+    written: Callable[[int], Written],
 ) -> list[Notice]:
-    """A notice of the stroke where cutting corners as the cell does moves the mark by more than the tolerance.
+    """A notice of the stroke where cutting corners as the cell does moves the mark by more than the tolerance, from one
+    stroke on. written: what a program has of each load, by its number.
 
     The path as it is run is simulated, and where the brush is taut its widest section compared with what was meant.
     """
@@ -124,7 +134,11 @@ def shifted_by_blends(
     # marks are straight between rows: as close as the tolerance asks, or it is their chords that are compared
     rows_mm = min(tolerance_mm / 10, ROWS_MM)
     found = []
-    told = [_as_told(a_pass, cell) for a_pass in loads.loads]
+    told = [
+        _as_told(a_pass, written(number), cell)
+        for number, a_pass in enumerate(loads.loads, 1)
+        if number >= first_stroke
+    ]
     for first, last in _groups(told):
         runs = as_run(told[first:last], lambda poses, arcs: blend_radii(poses, cell.blending, arcs))
         pairs = zip(told[first:last], runs, strict=True)
@@ -147,9 +161,8 @@ def shifted_by_blends(
 ROWS_MM = 0.02  # rows of a mark are as close as that: a coarse tolerance is no reason to look less closely
 
 
-def _as_told(a_pass, cell: Cell):
+def _as_told(a_pass, written: Written, cell: Cell):
     """With the poses and circles that a program has, not rounded."""
-    written = as_written(a_pass, cell, robot_from_paper(cell))
     axes = np.zeros((0, 3)) if written.axes is None else written.axes
     told = _core.Pass(a_pass.stroke, written.told_mm, a_pass.speed_mm_s, arcs=written.arcs, tool_axes=axes)
     return true_pass(told, cell)

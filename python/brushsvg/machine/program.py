@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -50,11 +50,13 @@ POSES_AT_ONCE = 100_000  # what is held twice, whatever the size of a plan; and 
 @dataclass(frozen=True)
 class Walked:
     """A job that was gone through before it is run. job: with its visits; made: all that the machine does, without a
-    header; problems: a notice of the stroke or station for whatever forbids to run it, empty when the robot may."""
+    header; written: what a program has of a load, by its number; problems: a notice of the stroke or station for
+    whatever forbids to run it, empty when the robot may."""
 
     loads: PlanInLoads
     job: Job
     made: Program
+    written: Callable[[int], Written]
     problems: list[Notice]
 
     def allowed(self) -> Program:
@@ -75,11 +77,12 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         job = replace(job, visits=visits(loads, cell, job.first_stroke))
     except Error as unserved:
         problems.append(unserved.notice())
-    made = unchecked_program(loads, brush, cell, job)
+    written = written_of(loads, cell, job)
+    made = unchecked_program(loads, brush, cell, job, written)
     first, count = job.first_stroke, len(loads.loads)
     if count and not 1 <= first <= count:
         sentence = f"stroke {first} is outside the range [1, {count}] of this job"
-        return Walked(loads, job, made, [Notice("", sentence, code="stroke-unknown")])
+        return Walked(loads, job, made, written, [Notice("", sentence, code="stroke-unknown")])
     left = loads.left(first).loads
     if cell.pen and job.z_offset_mm:
         sentence = f"the pen of cell {cell.name} is up or down: no height of the paper can be told"
@@ -106,7 +109,7 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     if problems and cell.reload:  # told of strokes as they were drawn, of one in parts once
         drawn = dict(zip((a_pass.stroke for a_pass in loads.loads), loads.strokes(), strict=True))
         problems = [replace(each, where=drawn.get(each.where, each.where)) for each in problems]
-    return Walked(loads, job, made, list(dict.fromkeys(problems)))
+    return Walked(loads, job, made, written, list(dict.fromkeys(problems)))
 
 
 def _as_run(a_pass, made: Program):
@@ -157,23 +160,44 @@ def out_of_arm(made: Program, sheet_mm) -> list[Notice]:
     return unreachable(made, lambda there: not astray_in(there, sheet_mm))
 
 
-def unchecked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
+def _is_little(loads: PlanInLoads, job: Job) -> bool:
+    left = loads.loads[max(job.first_stroke - 1, 0) :]
+    return sum(len(a_pass.poses_mm) for a_pass in left) <= POSES_KEPT
+
+
+def written_of(loads: PlanInLoads, cell: Cell, job: Job) -> Callable[[int], Written]:
+    """What a program has of each load, by its number from 1 on; made once where that is little."""
+    frame = robot_from_paper(cell, job.z_offset_mm)
+
+    def written(number: int) -> Written:
+        return as_written(loads.loads[number - 1], cell, frame)
+
+    return cache(written) if _is_little(loads, job) else written
+
+
+def unchecked_program(
+    loads: PlanInLoads,
+    brush,
+    cell: Cell,
+    job: Job = WHOLE_JOB,
+    written: Callable[[int], Written] | None = None,
+) -> Program:
     """The same for who only asks how long it takes or wants to see it: limits are not looked at. Its sections are made
     once where they are few: they are walked for limits, time, length and text."""
     frame, count = robot_from_paper(cell, job.z_offset_mm), len(loads.loads)
     left = list(enumerate(loads.loads, 1))[max(job.first_stroke - 1, 0) :]
+    written = written or written_of(loads, cell, job)
 
     def sections() -> Iterator[Section]:
         for number, a_pass in left:
             stations = job.visits[number - 1] if job.visits else ()
             yield from (at_told_speeds(visit(station, brush, cell), cell) for station in stations)
-            moves = _moves(a_pass, as_written(a_pass, cell, frame), brush, cell)
+            moves = _moves(a_pass, written(number), brush, cell)
             yield at_told_speeds(Section(f"stroke {number} of {count}: {a_pass.stroke}", moves), cell)
 
     made = cache(lambda: tuple(sections()))
-    is_little = sum(len(a_pass.poses_mm) for _, a_pass in left) <= POSES_KEPT
     rises_mm = (rise_over(cell, loads.sheet_mm, of) for of in (np.eye(4), frame))
-    walk = (lambda: iter(made())) if is_little else sections
+    walk = (lambda: iter(made())) if _is_little(loads, job) else sections
     tilts = any(axes_of(a_pass) is not None for _, a_pass in left)
     return Program((), cell, frame, walk, *rises_mm, touching_mm_s(brush, cell), tilts)
 
