@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include "brushsvg/student_t.hpp"
 #include "meanwhile.hpp"
@@ -175,11 +173,6 @@ double depart(MarkProblem& fit, const std::vector<PaintedMark>& marks, const Mar
     const Layout from = MarkModel::layout_of(options);
     const MarkLaws laws = fit.model.laws(fit.shared);
     Shares found = shares_of(open, departures_of(open.model, from, laws, options.deepest_mm));
-    if (std::getenv("TR")) {
-        std::fprintf(stderr, "evidence %.2f shares", found.likelier);
-        for (double x : found.of_law) std::fprintf(stderr, " %.4f", x);
-        std::fprintf(stderr, "\n");
-    }
     if (found.likelier < kHeld) found.of_law.fill(0.0);
     fit = with_terms(fit, marks, wider(options, found.of_law));
     const Departures departures = departures_of(fit.model, from, laws, options.deepest_mm);
