@@ -161,7 +161,6 @@ MarkProblem with_terms(const MarkProblem& fit, const std::vector<PaintedMark>& m
 }
 
 double unsurer(double likelier) {
-    if (likelier < kHeld) return 1.0;
     const double wider = std::pow(deviations_of_95(kFreedom) / deviations_of_95(std::nullopt), 2);
     return 1.0 + (wider - 1.0) / (1.0 + std::exp(-likelier));
 }

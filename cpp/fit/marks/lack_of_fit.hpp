@@ -13,7 +13,7 @@ namespace brushsvg::fit {
 double depart(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options);
 
 /// What variances are multiplied by where departing is as much likelier: by Student's t, for by how much laws depart is
-/// found from few numbers; the less, the surer it is that they do not.
+/// found from few numbers; by the less, the surer it is that they do not. Of laws that were never asked: 1.
 double unsurer(double likelier);
 
 /// The same solution with as many numbers a law as the options say, nearest where those are fewer.
