@@ -168,20 +168,24 @@ Solved solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::ve
 
 /// Strokes that land on a slope from height 0 begin the farther on the lower the paper lies, and where they did if it
 /// lies higher: of a height found just below 0 the marks tell less than its own derivatives say. There it is the mean
-/// of both sides' covariances, by how likely the paper lies above.
+/// of both sides' covariances, by how likely the paper lies above: of two halves of normal distributions that meet at 0
+/// the wider one weighs as much more.
 MatrixXd covariance_at_touch(MarkProblem fit) {
     constexpr double kAboveMm = 1e-3, kUnlikely = 1e-3;
     const int height = fit.model.layout().height();
     fit.model.doubt_headings();
     MatrixXd out = covariance(fit);
-    if (fit.shared[height] > 0.0) return out;
-    const double above = 0.5 * std::erfc(-fit.shared[height] / std::sqrt(2.0 * out(height, height)));
-    if (above < kUnlikely) return out;
+    const double found = fit.shared[height], sd = std::sqrt(out(height, height));
+    if (found > 0.0) return out;
+    const double beyond = 0.5 * std::erfc(-found / (std::sqrt(2.0) * sd));  // where the far side is as this one
+    if (beyond < kUnlikely) return out;
     MarkProblem higher = fit;
     higher.shared[height] = kAboveMm;
     const MatrixXd there = covariance(higher);
-    if (there(height, height) > out(height, height)) out += above * (there - out);
-    return out;
+    const double wider = std::sqrt(there(height, height)) / sd;
+    if (!(wider > 1.0)) return out;
+    const double above = 0.5 * wider * std::exp(-0.5 * found * found / (sd * sd));
+    return out + above / (above + 1.0 - beyond) * (there - out);
 }
 
 }  // namespace
