@@ -164,7 +164,9 @@ def main():
     arguments.add_argument(
         "--sheet", type=values.sheet, help="a4, a3, 210x297: the chart that brushsvg lays out on it"
     )
-    arguments.add_argument("--outside", choices=["all", "more", "round-6", *painter.SHAPES, *painter.MORE_SHAPES])
+    arguments.add_argument(
+        "--outside", choices=["all", "more", "round-6", *painter.SHAPES, *painter.MORE_SHAPES]
+    )
     arguments.add_argument("--noise", type=float, help="of the edges, mm (0.1)")
     arguments.add_argument(
         "--family", action="store_true", help="laws that do not depart from their few numbers"

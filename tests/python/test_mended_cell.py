@@ -80,7 +80,9 @@ def test_the_map_of_the_paper_stays():
     now = mended(found(TRUE), MIDDLE, replace(UNDONE, map_mm=rows))
     assert now.map_mm == rows
     cell = write_cell(replace(find_cell("linuxcnc-3axis"), machine=None))
-    assert parse_cell("\n".join([cell, *as_table(now)])).machine == now, "the table that is printed has it, too"
+    assert parse_cell("\n".join([cell, *as_table(now)])).machine == now, (
+        "the table that is printed has it, too"
+    )
 
 
 @pytest.mark.parametrize("along, wanted", [((0, 1), (0.5, 0.2)), ((1, 0), (0.1, 0.6)), (None, (0.1, 0.2))])

@@ -138,12 +138,12 @@ struct Solved {
 /// How sure the distances are is found on the way, wild ones lose their say, and laws depart from their numbers. As the
 /// noise is taken for more as long as they do not, that is asked until it says no more.
 Solved solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
-           const MarkOptions& options) {
+             const MarkOptions& options) {
     start(at, from, marks, options);
     const bool may_depart = options.departing && !options.laws;
     Solved out;
-    // the loss is smooth to some 1e-5 of it: points change from edge to edge. Numbers that only their prior holds move on
-    // for long, by far less than their intervals
+    // the loss is smooth to some 1e-5 of it: points change from edge to edge. Numbers that only their prior holds move
+    // on for long, by far less than their intervals
     constexpr double kLast = 2e-5, kDeparting = 1e-4, kMore = 2.0;
     constexpr int kRounds = 3;
     for (const auto& [loss, tolerance] :
@@ -153,8 +153,7 @@ Solved solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::ve
         at.weighing = weighed(at);
         if (loss == Loss::cauchy) at.find_displaced();
         if (tolerance > kLast) at.leave_slim_aside();
-        if (loss == Loss::tukey && tolerance > kLast && may_depart)
-            out.departing = depart(at, marks, options);
+        if (loss == Loss::tukey && tolerance > kLast && may_depart) out.departing = depart(at, marks, options);
     }
     for (int round = 0; round < kRounds && at.is_departing(); ++round) {
         const double before = out.departing;
