@@ -207,7 +207,10 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     if (!fit.shared.allFinite()) throw Error("fit-failed", "no brush was found that paints these marks");
     out.laws = fit.model.laws(fit.shared);
     const MatrixXd to = fit.model.to_coefficients();
-    const MatrixXd whole = unsurer(solved.departing) * to * covariance_at_touch(fit) * to.transpose();
+    VectorXd wider = VectorXd::Constant(to.rows(), std::sqrt(unsurer(solved.departing)));
+    // a field is told by where marks lie, whatever form the laws have
+    if (fit.model.layout().machine_numbers > 0) wider.tail(kMachine - MachineAt::field).setOnes();
+    const MatrixXd whole = wider.asDiagonal() * to * covariance_at_touch(fit) * to.transpose() * wider.asDiagonal();
     for (Index i = 0; i < whole.rows(); ++i) {
         const VectorXd row = whole.row(i).transpose();
         out.covariance.emplace_back(row.data(), row.data() + row.size());
