@@ -10,7 +10,8 @@ and sheet displaced and turned, and paper at a wrong height. Printed: how often 
 the values of each law at five depths, pooled and each; and how far the lag is off over the range.
 
 With --outside the laws are none of the fit's polynomials: saturating, kinked, power, logistic, floored or wiggling,
-with random numbers; `all` takes them in turn. round-6 is the shipped brush, the same each time.
+with random numbers; `all` takes them in turn. `more` takes four other shapes: stepped, hooked at the touch, capped,
+drawn through random points. round-6 is the shipped brush, the same each time.
 --noise 0 paints clean edges; --family fits without departures from the family.
 """
 
@@ -74,8 +75,8 @@ def brush_for(rng, seed: int, outside: str | None):
         return painter.round_6(
             json.loads((Path(brushsvg.__file__).parent / "data/brushes/round-6.json").read_text())
         )
-    shapes = list(painter.SHAPES)
-    return painter.random_stranger(rng, shapes[seed % len(shapes)] if outside == "all" else outside)
+    taken = {"all": list(painter.SHAPES), "more": list(painter.MORE_SHAPES)}.get(outside, [outside])
+    return painter.random_stranger(rng, taken[seed % len(taken)])
 
 
 def true_value(brush, law: str, depth: float) -> float:
@@ -163,7 +164,9 @@ def main():
     arguments.add_argument(
         "--sheet", type=values.sheet, help="a4, a3, 210x297: the chart that brushsvg lays out on it"
     )
-    arguments.add_argument("--outside", choices=["all", "round-6", *painter.SHAPES])
+    arguments.add_argument(
+        "--outside", choices=["all", "more", "round-6", *painter.SHAPES, *painter.MORE_SHAPES]
+    )
     arguments.add_argument("--noise", type=float, help="of the edges, mm (0.1)")
     arguments.add_argument(
         "--family", action="store_true", help="laws that do not depart from their few numbers"

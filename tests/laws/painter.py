@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import oracle
 import shapely
+from scipy.interpolate import PchipInterpolator
 
 BRISTLES = (
     ((-1.0, -0.5), 1.1),
@@ -157,6 +158,37 @@ def _wiggling(rng):
     return lambda t: value(t) / value(1.0), ()
 
 
+def _stepped(rng):
+    middles, steep = (rng.uniform(0.15, 0.4), rng.uniform(0.6, 0.85)), rng.uniform(10, 20)
+    share = rng.uniform(0.3, 0.7)
+
+    def value(t):
+        first, second = (1 / (1 + np.exp(-steep * (t - at))) for at in middles)
+        return share * first + (1 - share) * second
+
+    return lambda t: (value(t) - value(0.0)) / (value(1.0) - value(0.0)), ()
+
+
+def _hooked(rng):
+    size, length = rng.uniform(0.1, 0.4), rng.uniform(0.06, 0.2)
+    return lambda t: (t + size * (1 - np.exp(-t / length))) / (1 + size * (1 - np.exp(-1 / length))), ()
+
+
+def _capped(rng):
+    at, round_ = rng.uniform(0.4, 0.8), rng.uniform(0.03, 0.1)
+
+    def value(t):
+        return t - round_ * np.log1p(np.exp((t - at) / round_))
+
+    return lambda t: (value(t) - value(0.0)) / (value(1.0) - value(0.0)), ()
+
+
+def _drawn(rng):
+    """Through five points of a curve that rises by a different step between each two, as smooth as it can be."""
+    rise = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 1.0, 5))])
+    return PchipInterpolator(np.linspace(0, 1, 6), rise / rise[-1]), ()
+
+
 SHAPES = {
     "saturating": _saturating,
     "kinked": _kinked,
@@ -165,6 +197,7 @@ SHAPES = {
     "floored": _floored,
     "wiggling": _wiggling,
 }
+MORE_SHAPES = {"stepped": _stepped, "hooked": _hooked, "capped": _capped, "drawn": _drawn}
 
 
 def random_stranger(rng, shape):
@@ -175,7 +208,7 @@ def random_stranger(rng, shape):
     gap, widest = rng.uniform(0.2, 0.6) * deepest, rng.normal(1.8, 0.25) * half
 
     def curve(begin, end, straight):
-        rise, bends = SHAPES[shape](rng)
+        rise, bends = (SHAPES | MORE_SHAPES)[shape](rng)
 
         def value(depth):
             t = np.asarray(depth / deepest)

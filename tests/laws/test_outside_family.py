@@ -69,6 +69,13 @@ def test_intervals_outside_of_the_family_hold_the_truth(strangers):
     assert len(missed) <= 7, missed
 
 
+def test_a_brush_that_marks_hardly_tell_from_the_family():
+    """Hooked near the touch, where another form looks like paper of another height: laws that were held to their few
+    numbers unless departing is plainly likelier held 4 of 9."""
+    found, _ = fitted(painter.random_stranger(np.random.default_rng(2), "hooked"), 2)
+    assert held(found).sum() >= 8, found
+
+
 def test_round_6_paints_its_own_chart():
     """Without noise on its edges: the lag was off by nine half-intervals, the paper by six."""
     found, fit = fitted(round_6(), 1, noise=0.0)

@@ -10,10 +10,10 @@ core = pytest.importorskip("brushsvg._core")
 
 from brushsvg import find_brush  # noqa: E402
 from brushsvg.machine.cell import Machine, Paper, axes_along_paper  # noqa: E402
-from brushsvg.machine.cell_file import find_cell  # noqa: E402
+from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell  # noqa: E402
 from brushsvg.machine.distortion import told_mm, true_mm  # noqa: E402
 from brushsvg.painted.fault_model import BRUSH, MACHINE, PAPER, FaultModel  # noqa: E402
-from brushsvg.painted.mended_cell import mended  # noqa: E402
+from brushsvg.painted.mended_cell import as_table, mended  # noqa: E402
 from brushsvg.painted.next_time import next_corrections  # noqa: E402
 from brushsvg.painted.placing import Placed  # noqa: E402
 
@@ -77,7 +77,12 @@ def test_without_a_table_what_is_found_is_the_table():
 
 def test_the_map_of_the_paper_stays():
     rows = ((0.0, 0.0, 0.1), (50.0, 0.0, 0.2), (0.0, 50.0, 0.0), (50.0, 50.0, -0.1))
-    assert mended(found(TRUE), MIDDLE, replace(UNDONE, map_mm=rows)).map_mm == rows
+    now = mended(found(TRUE), MIDDLE, replace(UNDONE, map_mm=rows))
+    assert now.map_mm == rows
+    cell = write_cell(replace(find_cell("linuxcnc-3axis"), machine=None))
+    assert parse_cell("\n".join([cell, *as_table(now)])).machine == now, (
+        "the table that is printed has it, too"
+    )
 
 
 @pytest.mark.parametrize("along, wanted", [((0, 1), (0.5, 0.2)), ((1, 0), (0.1, 0.6)), (None, (0.1, 0.2))])

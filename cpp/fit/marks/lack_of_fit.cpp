@@ -14,15 +14,13 @@ namespace {
 constexpr int kLaws = 5;                                // lag, tip gap, half width, both ratios of the footprint
 constexpr std::array<int, kLaws> kMore{3, 2, 3, 3, 3};  // numbers more of each law
 constexpr double kFreedom = 3.0;  // how far a law departs is found from as many further numbers of it
-constexpr double kAsked =
-    1.0;  // log of the likelihood that departing must be worth: less comes by chance in the family
-// A brush one of whose laws departs departs in the other lengths, too, if the marks say so or not: without it a floor
-// in the lag was taken for a tip gap, and the lag for sure.
-constexpr int kLengths = 3;  // lag, tip gap, half width
-constexpr double kLeastOfMost = 0.25;
+// log of how much less likely departing must be for laws to keep their few numbers: marks of a brush that departs where
+// they tell little, by how deep its tip is pressed, speak no more against it than chance does
+constexpr double kHeld = -1.25;
+constexpr double kUsual = 0.05;  // share to begin with
 constexpr double kOpen = 3.0;    // share of a law that it may depart by where nothing is known
 constexpr double kSmooth = 0.7;  // the k-th further polynomial is as much smaller as (numbers / k) to this power
-constexpr int kSweeps = 4;
+constexpr int kSweeps = 6;
 
 /// What a law may depart by, as shares of it; 0 first.
 std::vector<double> shares() {
@@ -66,8 +64,33 @@ Departures departures_of(const MarkModel& model, const Layout& from, const MarkL
     return out;
 }
 
-/// Shares by evidence, for each law. The problem must expect nothing.
-std::array<double, kLaws> likeliest(const MarkProblem& at, const Departures& departures) {
+struct Shares {
+    std::array<double, kLaws> of_law;
+    double likelier;  ///< log of how much likelier they make the marks than laws that do not depart
+};
+
+/// What one law departs by when the others depart by `share`: rms over all sizes, by how likely each makes the marks.
+/// It is known beforehand to be 0 in one case of two, else of any order of magnitude.
+template <class Evidence>
+double mean_share(std::array<double, kLaws> share, int law, Evidence&& evidence) {
+    static const std::vector<double> tried = shares();
+    std::vector<double> likely;
+    for (const double one : tried) {
+        share[std::size_t(law)] = one;
+        likely.push_back(evidence(share) - (one > 0.0 ? std::log(double(tried.size() - 1)) : 0.0));
+    }
+    const double most = *std::max_element(likely.begin(), likely.end());
+    double all = 0.0, square = 0.0;
+    for (std::size_t k = 0; k < tried.size(); ++k) {
+        const double weight = std::exp(likely[k] - most);
+        all += weight;
+        square += weight * tried[k] * tried[k];
+    }
+    return std::sqrt(square / all);
+}
+
+/// Shares for each law. The problem must expect nothing.
+Shares shares_of(const MarkProblem& at, const Departures& departures) {
     MarksLoss loss = marks_loss(at);
     const Index g = at.shared.size(), all = loss.gradient.size();
     const MatrixXd& rows = departures.rows;
@@ -102,30 +125,13 @@ std::array<double, kLaws> likeliest(const MarkProblem& at, const Departures& dep
         const VectorXd drawn = sd.cwiseProduct(pull);
         return 0.5 * drawn.dot(factor.solve(drawn)) - 0.5 * factor.vectorD().cwiseMax(1e-12).array().log().sum();
     };
-    const std::vector<double> tried = shares();
-    std::array<double, kLaws> out;
-    out.fill(tried.front());
-    double best = evidence(out);
+    std::array<double, kLaws> none, out;
+    none.fill(0.0);
+    out.fill(kUsual);
+    const double held = evidence(none);
     for (int sweep = 0; sweep < kSweeps; ++sweep)
-        for (int law = 0; law < kLaws; ++law)
-            for (const double share : tried) {
-                std::array<double, kLaws> other = out;
-                other[std::size_t(law)] = share;
-                const double now_there = evidence(other);
-                if (!(now_there > best)) continue;
-                best = now_there;
-                out = other;
-            }
-    if (!(best > kAsked)) {
-        out.fill(0.0);
-        return out;
-    }
-    const double most = *std::max_element(out.begin(), out.begin() + kLengths);
-    for (int law = 0; law < kLengths; ++law) {
-        double& share = out[std::size_t(law)];
-        share = std::max(share, kLeastOfMost * most);
-    }
-    return out;
+        for (int law = 0; law < kLaws; ++law) out[std::size_t(law)] = mean_share(out, law, evidence);
+    return {out, evidence(out) - held};
 }
 
 /// How many numbers each law has where it may depart.
@@ -154,24 +160,25 @@ MarkProblem with_terms(const MarkProblem& fit, const std::vector<PaintedMark>& m
     return out;
 }
 
-double unsurer(const MarkProblem& fit) {
-    if (!fit.is_departing()) return 1.0;
-    return std::pow(deviations_of_95(kFreedom) / deviations_of_95(std::nullopt), 2);
+double unsurer(double likelier) {
+    const double wider = std::pow(deviations_of_95(kFreedom) / deviations_of_95(std::nullopt), 2);
+    return 1.0 + (wider - 1.0) / (1.0 + std::exp(-likelier));
 }
 
-bool depart(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
+double depart(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
     std::array<double, kLaws> share;
     share.fill(1.0);
     const MarkProblem open = with_terms(fit, marks, wider(options, share));
     const Layout from = MarkModel::layout_of(options);
     const MarkLaws laws = fit.model.laws(fit.shared);
-    share = likeliest(open, departures_of(open.model, from, laws, options.deepest_mm));
-    fit = with_terms(fit, marks, wider(options, share));
+    Shares found = shares_of(open, departures_of(open.model, from, laws, options.deepest_mm));
+    if (found.likelier < kHeld) found.of_law.fill(0.0);
+    fit = with_terms(fit, marks, wider(options, found.of_law));
     const Departures departures = departures_of(fit.model, from, laws, options.deepest_mm);
     VectorXd sure = departures.size.cwiseInverse();
-    for (Index i = 0; i < sure.size(); ++i) sure[i] /= share[std::size_t(departures.law[std::size_t(i)])];
+    for (Index i = 0; i < sure.size(); ++i) sure[i] /= found.of_law[std::size_t(departures.law[std::size_t(i)])];
     fit.expect(sure.asDiagonal() * departures.rows);
-    return sure.size() > 0;
+    return found.likelier;
 }
 
 }  // namespace brushsvg::fit

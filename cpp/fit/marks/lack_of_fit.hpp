@@ -6,14 +6,15 @@
 
 namespace brushsvg::fit {
 
-/// Lets laws depart from the numbers that the options give them, if the marks ask for it: by further polynomials, which
-/// are known beforehand to be about 0, to a share of the law that is found by evidence (largest marginal likelihood,
-/// beside the solution). Whether any may; then it must be solved again.
-bool depart(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options);
+/// Lets laws depart from the numbers that the options give them, unless the marks are likelier where they do not: by
+/// further polynomials, which are known beforehand to be about 0, to a share of the law that is found from the marks
+/// (marginal likelihood, beside the solution). Where they may, it must be solved again. Log of how much likelier the
+/// marks are if laws depart.
+double depart(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options);
 
-/// What variances are multiplied by: 1, or of laws that depart by Student's t, for by how much is found from few
-/// numbers.
-double unsurer(const MarkProblem& fit);
+/// What variances are multiplied by where departing is as much likelier: by Student's t, for by how much laws depart is
+/// found from few numbers; by the less, the surer it is that they do not. Of laws that were never asked: 1.
+double unsurer(double likelier);
 
 /// The same solution with as many numbers a law as the options say, nearest where those are fewer.
 MarkProblem with_terms(const MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options);

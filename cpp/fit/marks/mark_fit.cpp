@@ -130,48 +130,61 @@ void expect(MarkProblem& at, const std::optional<MarkLaws>& from, const MarkOpti
     at.leave_slim_aside();
 }
 
-/// Whether it converged. How sure the distances are is found on the way, wild ones lose their say, and laws depart from
-/// their numbers. As the noise is taken for more as long as they do not, that is asked twice.
-bool solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
-           const MarkOptions& options) {
+struct Solved {
+    bool converged = false;
+    double departing = -INFINITY;  ///< log of how much likelier the marks are of laws that depart
+};
+
+/// How sure the distances are is found on the way, wild ones lose their say, and laws depart from their numbers. As the
+/// noise is taken for more as long as they do not, that is asked until it says no more.
+Solved solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
+             const MarkOptions& options) {
     start(at, from, marks, options);
     const bool may_depart = options.departing && !options.laws;
-    bool converged = false, departs = false;
-    // numbers that only their prior holds move on for long, by far less than their intervals
-    constexpr double kLast = 1e-7, kDeparting = 1e-4;
+    Solved out;
+    // the loss is smooth to some 1e-5 of it: points change from edge to edge. Numbers that only their prior holds move
+    // on for long, by far less than their intervals
+    constexpr double kLast = 2e-5, kDeparting = 1e-4, kMore = 2.0;
+    constexpr int kRounds = 3;
     for (const auto& [loss, tolerance] :
-         {std::pair{Loss::cauchy, 1e-4}, std::pair{Loss::tukey, 1e-5}, std::pair{Loss::tukey, kLast}}) {
+         {std::pair{Loss::cauchy, 1e-4}, std::pair{Loss::tukey, 1e-4}, std::pair{Loss::tukey, kLast}}) {
         at.weighing.loss = loss;
-        converged = at.solve(options.most_iterations, departs ? kDeparting : tolerance);
+        out.converged = at.solve(options.most_iterations, at.is_departing() ? kDeparting : tolerance);
         at.weighing = weighed(at);
         if (loss == Loss::cauchy) at.find_displaced();
         if (tolerance > kLast) at.leave_slim_aside();
-        if (loss == Loss::tukey && tolerance > kLast && may_depart) departs = depart(at, marks, options);
+        if (loss == Loss::tukey && tolerance > kLast && may_depart) out.departing = depart(at, marks, options);
     }
-    if (departs) {
-        depart(at, marks, options);
-        converged = at.solve(options.most_iterations, kDeparting);
+    for (int round = 0; round < kRounds && at.is_departing(); ++round) {
+        const double before = out.departing;
+        out.departing = depart(at, marks, options);
+        out.converged = at.solve(options.most_iterations, kDeparting);
         at.weighing = weighed(at);
+        if (out.departing < before + kMore) break;
     }
-    return converged;
+    return out;
 }
 
 /// Strokes that land on a slope from height 0 begin the farther on the lower the paper lies, and where they did if it
 /// lies higher: of a height found just below 0 the marks tell less than its own derivatives say. There it is the mean
-/// of both sides' covariances, by how likely the paper lies above.
+/// of both sides' covariances, by how likely the paper lies above: of two halves of normal distributions that meet at 0
+/// the wider one weighs as much more.
 MatrixXd covariance_at_touch(MarkProblem fit) {
     constexpr double kAboveMm = 1e-3, kUnlikely = 1e-3;
     const int height = fit.model.layout().height();
     fit.model.doubt_headings();
     MatrixXd out = covariance(fit);
-    if (fit.shared[height] > 0.0) return out;
-    const double above = 0.5 * std::erfc(-fit.shared[height] / std::sqrt(2.0 * out(height, height)));
-    if (above < kUnlikely) return out;
+    const double found = fit.shared[height], sd = std::sqrt(out(height, height));
+    if (found > 0.0) return out;
+    const double beyond = 0.5 * std::erfc(-found / (std::sqrt(2.0) * sd));  // where the far side is as this one
+    if (beyond < kUnlikely) return out;
     MarkProblem higher = fit;
     higher.shared[height] = kAboveMm;
     const MatrixXd there = covariance(higher);
-    if (there(height, height) > out(height, height)) out += above * (there - out);
-    return out;
+    const double wider = std::sqrt(there(height, height)) / sd;
+    if (!(wider > 1.0)) return out;
+    const double above = 0.5 * wider * std::exp(-0.5 * found * found / (sd * sd));
+    return out + above / (above + 1.0 - beyond) * (there - out);
 }
 
 }  // namespace
@@ -185,14 +198,19 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     for (Index i = 0; i < fit.model.marks(); ++i) points += fit.model.points(i);
     if (points == 0) throw Error("mark-empty", "there are only specks, no mark");
     MarkFit out;
+    Solved solved;
     if (options.noise_mm)
         expect(fit, from, options);
     else
-        out.converged = solve(fit, from, marks, options);
+        solved = solve(fit, from, marks, options);
+    out.converged = solved.converged;
     if (!fit.shared.allFinite()) throw Error("fit-failed", "no brush was found that paints these marks");
     out.laws = fit.model.laws(fit.shared);
     const MatrixXd to = fit.model.to_coefficients();
-    const MatrixXd whole = unsurer(fit) * to * covariance_at_touch(fit) * to.transpose();
+    VectorXd wider = VectorXd::Constant(to.rows(), std::sqrt(unsurer(solved.departing)));
+    // a field is told by where marks lie, whatever form the laws have
+    if (fit.model.layout().machine_numbers > 0) wider.tail(kMachine - MachineAt::field).setOnes();
+    const MatrixXd whole = wider.asDiagonal() * to * covariance_at_touch(fit) * to.transpose() * wider.asDiagonal();
     for (Index i = 0; i < whole.rows(); ++i) {
         const VectorXd row = whole.row(i).transpose();
         out.covariance.emplace_back(row.data(), row.data() + row.size());

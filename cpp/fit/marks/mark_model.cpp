@@ -150,6 +150,7 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
     : layout_(layout_of(options)),
       deepest_(options.deepest_mm),
       coarse_(coarse),
+      spacing_(options.spacing_mm),
       round_tail_(options.round_tail),
       is_bent_(options.field_mm > 0.0) {
     lag_powers_ = powers_from_controls(layout_.lag - 1, 0.0, deepest_);

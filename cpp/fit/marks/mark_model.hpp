@@ -43,6 +43,7 @@ class MarkModel {
     static Layout layout_of(const MarkOptions& options);
     const Layout& layout() const { return layout_; }
     Index marks() const { return Index(painted_.size()); }
+    double spacing_mm() const { return spacing_; }  ///< between points of an outline
     const std::string& stroke(Index mark) const { return painted_[std::size_t(mark)].stroke; }
     Index points(Index mark) const { return painted_[std::size_t(mark)].point_mm.rows(); }
     Index ring_begin(Index mark, std::size_t ring) const { return painted_[std::size_t(mark)].rings[ring]; }
@@ -117,7 +118,7 @@ class MarkModel {
     std::vector<Painted> painted_;
     mutable std::vector<std::uint64_t> looks_;  ///< of each mark, at instants of its pass: what was spent on it
     Layout layout_;
-    double deepest_, coarse_;
+    double deepest_, coarse_, spacing_;
     bool round_tail_, is_bent_, headings_doubted_ = false;
     MatrixXd lag_powers_, half_powers_;  ///< coefficients of the laws from their unknowns
     Eigen::Vector2d centre_;

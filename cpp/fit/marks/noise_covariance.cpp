@@ -219,8 +219,10 @@ Weighing weighed(const MarkProblem& at) {
         out.together = together;
         whole = sum / std::max(0.3, 1.0 - hat);
     }
-    // of noise below the least, points would count as more than there are
-    const double least = out.slope * out.slope;
+    // of noise below the least, points would count as more than there are; what paint and pictures leave of it even
+    // then forgets itself no faster than edges that are to be expected do
+    const double kept = std::exp(-at.model.spacing_mm() / MarkOptions{}.noise_length_mm);
+    const double least = out.slope * out.slope * (1.0 + kept) / (1.0 - kept);
     if (!(whole > least)) {
         if (whole > 0.1 * least)
             for (double& c : out.together) c *= least / whole;

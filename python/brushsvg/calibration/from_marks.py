@@ -249,13 +249,14 @@ def _farther_out(ring: np.ndarray, by_mm: float) -> np.ndarray:
 
 
 def _likelier_tail(marks: list, options: _core.MarkOptions, start=None) -> tuple[object, float]:
-    """The fit with the tail that fits better, and by how much the round one does. start: laws that are near."""
-    usual = options.widest_per_half
-    options.round_tail = False
+    """The fit with the tail that fits better, and by how much the round one does. start: laws that are near.
+
+    Both are asked for laws that do not depart from their few numbers, which would make up for a wrong tail."""
+    usual, departing = options.widest_per_half, options.departing
+    options.round_tail = options.departing = False
     pointed = _core.fit_marks(marks, start, options)
     options.round_tail, options.widest_per_half = True, _core.Prior(*ROUND_TAIL)
     rounded = _core.fit_marks(marks, pointed.laws, options)
-    options.round_tail, options.widest_per_half = False, usual
     noise = min(pointed.noise_mm, rounded.noise_mm)
     # points that count as one
     alike = max(fit.samples / max(fit.effective_samples, 1.0) for fit in (pointed, rounded))
@@ -265,7 +266,14 @@ def _likelier_tail(marks: list, options: _core.MarkOptions, start=None) -> tuple
         if np.mean(off > OUTLYING) < FOREIGN:
             squares = np.minimum(off, OUTLYING) ** 2
             gain += float(squares[0].sum() - squares[1].sum()) / alike
-    return (rounded if gain > TELLS else pointed), gain
+    fit = rounded if gain > TELLS else pointed
+    if fit is pointed:
+        options.round_tail, options.widest_per_half = False, usual
+    options.departing = departing
+    if departing:
+        fit = _core.fit_marks(marks, fit.laws, options)
+    options.round_tail, options.widest_per_half = False, usual
+    return fit, gain
 
 
 def simulated(made: MarkCalibration, marks: list):

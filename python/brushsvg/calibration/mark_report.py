@@ -109,7 +109,7 @@ def _few_depths(made) -> list[str]:
 
 
 def _departing(made) -> list[str]:
-    """Which laws the usual numbers of coefficients do not follow."""
+    """Which laws have more than the usual numbers of coefficients."""
     laws = made.fit.laws
     departing = [
         name
@@ -125,8 +125,8 @@ def _departing(made) -> list[str]:
     if not departing:
         return []
     return [
-        f"the usual laws do not follow these marks: {', '.join(departing)} have more coefficients, and the intervals "
-        "hold by how much they may still be of another form"
+        f"these marks do not speak for the usual laws: {', '.join(departing)} have more coefficients, and the "
+        "intervals hold by how much they may still be of another form"
     ]
 
 

@@ -77,6 +77,9 @@ def as_table(machine: Machine) -> list[str]:
             f"height_mm = {machine.height_mm:.3f}",
             f"tilt_mm_per_mm = {_pair(machine.tilt_mm_per_mm)}",
         ]
+    if machine.map_mm:
+        rows = ", ".join("[{:.3f}, {:.3f}, {:.4f}]".format(*row) for row in machine.map_mm)
+        lines.append(f"map_mm = [{rows}]")
     if any(machine.backlash_mm):
         lines.append("backlash_mm = [{:.3f}, {:.3f}]".format(*machine.backlash_mm))
     if machine.field_mm:
