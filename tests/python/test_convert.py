@@ -119,7 +119,7 @@ def test_the_loads_of_a_stroke_stay_together_whatever_begins_nearer():
 FEW_COLOURS = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"
 width="120mm" height="70mm" viewBox="0 0 120 70"><title>two</title>
 <g inkscape:groupmode="layer" inkscape:label="one" fill="none" stroke="#000000" stroke-width="3">
-<path id="a" d="M20 50 C40 10 60 10 90 40" data-brushsvg-passes="2"/>
+<path id="a" d="M20 50 C40 10 60 10 90 41" data-brushsvg-passes="2"/>
 <path id="b" d="M20 60 h30 v-20 h-12" stroke="#ff0000" data-brushsvg-reload="true"/></g>
 <g inkscape:groupmode="layer" inkscape:label="two" fill="none" stroke="#000000" stroke-width="2">
 <path id="c" d="M20 20 h80 m0 3 h-80" data-brushsvg-reload="false"/></g></svg>"""

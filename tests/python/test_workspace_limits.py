@@ -360,10 +360,10 @@ def test_a_cut_beginning_that_the_cell_cannot_square_is_hidden_or_exposed(tmp_pa
 
 
 def test_a_stroke_whose_round_beginning_is_too_wide_for_the_sheet_begins_pointed(tmp_path, capsys):
-    """Beside a cap of 7.6 mm the front of a footprint shows by 0.3 mm: beyond the edge, the drawing was refused."""
+    """Beyond the edge by 0.17 mm, the drawing was refused."""
     drawn = (
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80">'
-        '<path id="edge" d="M96.18 45l-18.73 -37.09" stroke="#000" fill="none" stroke-width="7.6"/></svg>'
+        '<path id="edge" d="M96.4 45l-18.73 -37.09" stroke="#000" fill="none" stroke-width="7.6"/></svg>'
     )
     (tmp_path / "a.svg").write_text(drawn, encoding="utf-8")
     drawing, program = str(tmp_path / "a.svg"), str(tmp_path / "a.ngc")

@@ -221,6 +221,8 @@ def _like(stroke, line, lane: int = 1):
         closed=line.closed,
         half_width=line.half_width,
         wanted_mm=list(line.wanted_mm),
+        start_covered=not line.wanted_mm,  # by other passes
+        end_covered=not line.wanted_mm,
     )
 
 
