@@ -10,6 +10,7 @@ from brushsvg import _core, find_brush
 from brushsvg.__main__ import main
 from brushsvg.pipeline.preparation import Options, prepare
 from brushsvg.strokes import corners
+from brushsvg.strokes.contour_fill import region
 from brushsvg.strokes.corners import lifted_at_corners
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.outline_corners import squared_at_corners
@@ -218,3 +219,14 @@ def test_corners_of_outlines_are_cut_unless_said_otherwise(tmp_path):
     assert len(prepare(file, Options()).plan.passes) == 2
     assert len(prepare(file, Options(corners="turn")).plan.passes) == 1
     assert len(prepare(file, Options(end="lifted")).plan.passes) == 1
+
+
+def test_the_sharp_corners_of_a_z_are_filled_by_strokes_of_their_own(brush):
+    """They turn by 133 degrees: as one stroke both were round outside."""
+    whole = of("M10 6H44V12L20 38H44V44H10V38L34 12H10Z", 'fill="black" stroke="none"')
+    shape = region(whole[0].wanted_mm)
+    parts = squared_at_corners(whole, brush)
+    assert (len(whole), len(parts)) == (1, 3)
+    one, three = (region(marks_of(each, brush)) for each in (whole, parts))
+    overlaps = [shape.intersection(mark).area / shape.union(mark).area for mark in (one, three)]
+    assert overlaps[1] > overlaps[0] + 0.01
