@@ -16,7 +16,7 @@ if not hasattr(core, "fit_marks"):
 from brushsvg.brush.confidence import law_band  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
 from brushsvg.calibration.from_file import calibrate  # noqa: E402
-from brushsvg.calibration.from_marks import brush_of, calibrate_marks, expected_marks, height_at  # noqa: E402
+from brushsvg.calibration.from_marks import brush_of, calibrate_marks, expected_marks  # noqa: E402
 from brushsvg.calibration.mark_input import read_painted  # noqa: E402
 from brushsvg.calibration.mark_report import report  # noqa: E402
 from brushsvg.calibration.paint_found import expected_paint  # noqa: E402
@@ -59,11 +59,12 @@ def test_the_rate_and_the_freshly_dipped_brush_come_back(seed, rate, mixed):
     assert plain.half_width(brush.deepest) < 0.9 * half, "taken for marks of a brush always freshly dipped"
     for depth in np.linspace(0.2, 1.0, 5) * brush.deepest:
         assert made.brush.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.03)
-    end = height_at(made.fit) - 2  # widest section and front follow the half width
-    powers = brush.deepest ** np.arange(1, 3)
+    laws = made.fit.laws
+    terms = len(laws.half_width) - 1  # behind those of lag and tip gap, that of no depth left out
+    at = slice(len(laws.lag) + len(laws.tip_gap) - 1, len(laws.lag) + len(laws.tip_gap) - 1 + terms)
+    powers = brush.deepest ** np.arange(1, terms + 1)
     known, alone = (
-        powers @ np.array(each)[end - 2 : end, end - 2 : end] @ powers
-        for each in (made.covariance, made.fit.covariance)
+        powers @ np.array(each)[at, at] @ powers for each in (made.covariance, made.fit.covariance)
     )
     assert known > 1.3 * alone, "what the rate leaves open is in the laws' intervals"
 

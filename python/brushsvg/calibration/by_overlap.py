@@ -225,11 +225,9 @@ class _Search:
             old.widest_per_half + behind,
             old.front_per_half + front,
             old.round_tail,
+            _added(old.widest_by_depth, [behind]) if old.widest_by_depth else [],
+            _added(old.front_by_depth, [front]) if old.front_by_depth else [],
         )
-        if old.widest_by_depth:
-            laws.widest_by_depth = _added(old.widest_by_depth, [behind])
-        if old.front_by_depth:
-            laws.front_by_depth = _added(old.front_by_depth, [front])
         height = float(x[self.at["height"]][0]) if self.has_height else self.height_mm
         return laws, height, x[self.at["shift"]]
 
