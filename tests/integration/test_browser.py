@@ -155,7 +155,8 @@ def test_between_rows_far_apart_the_footprint_is_swept(tmp_path, browser, notch)
         f'{OPEN}<path id="p" d="M15 30H105" stroke="#{COLOUR}" stroke-width="6"/></svg>'
     )
     work = preparation.prepare(
-        tmp_path / "a.svg", preparation.Options(brush=package.find_brush(tmp_path / "brush.json"))
+        tmp_path / "a.svg",
+        preparation.Options(brush=package.find_brush(tmp_path / "brush.json"), start="exposed", end="lifted"),
     )
     marks = prediction.predict(work)
     step_mm = np.linalg.norm(np.diff(marks.passes[0].contact_mm, axis=0), axis=1)

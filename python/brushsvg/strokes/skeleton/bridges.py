@@ -71,7 +71,9 @@ def find_bars(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     sticks_out &= (reached[:, 2] > stem + STUB * halves) & (reached[:, 2] < stem + LIMB * halves)
     rooms = np.array(_core.clearance(rings, at[:, [0, -1]].reshape(-1, 2))).reshape(-1, 2)
     sticks_out &= (rooms > IN_STEM * halves[:, None]).all(axis=1)
-    sticks_out &= np.abs(reached[:, 0] - reached[:, -1]) < SLANTED * halves
+    sticks_out &= (
+        np.ptp(np.nan_to_num(reached[:, [0, -1]], posinf=np.finfo(float).max), axis=1) < SLANTED * halves
+    )
     for k in np.flatnonzero(sticks_out).tolist():
         ending[k][0].beyond_mm = max(float(reached[k, 2] - halves[k]), 0.0)
 
