@@ -5,32 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "brushsvg/region.hpp"
+#include "apart.hpp"
 
 using namespace brushsvg;
-
-namespace {
-
-double length_around(const Rings& rings) {
-    double length = 0.0;
-    for (const Ring& ring : rings)
-        for (Eigen::Index i = 0, n = ring.rows(); i < n; ++i) length += (ring.row((i + 1) % n) - ring.row(i)).norm();
-    return length;
-}
-
-/// How far the outlines of two shapes are apart in the mean [mm], by unions that know nothing of stars.
-double apart(const Rings& a, const Rings& b) {
-    const Rings one = fill(a, FillRule::nonzero), other = fill(b, FillRule::nonzero);
-    return (area(one) + area(other) - 2.0 * area(intersect(one, other))) / length_around(one);
-}
-
-Ring both(const Ring& a, const Ring& b) {
-    Ring points(a.rows() + b.rows(), 2);
-    points << a, b;
-    return points;
-}
-
-}  // namespace
 
 TEST_CASE("rings in sight of a point become one, whatever edges and corners they share") {
     std::mt19937 random(3);
