@@ -1,12 +1,11 @@
 #include "squared_dot.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
+#include "brushsvg/region.hpp"
 #include "drawn_cut.hpp"
 
 namespace brushsvg {
@@ -15,44 +14,84 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// Of more edges a drawn dot is no polygon that is looked at.
-constexpr Index kMostEdges = 2000;
-/// Of its rectangle, what a dot with corners fills: a disc fills 0.785, an octagon 0.83.
-constexpr double kFilled = 0.92;
-/// Where on its first side the way begins, of half its length from the middle: into a corner it would turn by more than
-/// 90 degrees, and swing out of it.
-constexpr double kOnSide = 0.4;
+/// Of the hull of what is drawn, what a dot with corners fills; and what of it no disc as wide paints, in squares of the
+/// half width: a square has 0.86, one with round corners, as pens make them, half of that.
+constexpr double kFilled = 0.92, kCorners = 0.2;
+/// Of the narrow mark's half width: corners that stick out by less are none of their own.
+constexpr double kCornerSticksOut = 0.1;
+/// Where on its longest side the way begins, of its length: into a corner it would turn by more than 90 degrees, and
+/// swing out of it.
+constexpr double kOnSide = 0.7;
 
-/// A rectangle by its middle, the direction of one side, and half of both sides.
-struct Box {
-    Vector2d middle_mm, along;
-    std::array<double, 2> half_mm;
-};
+Vector2d corner(const Ring& ring, Index i) { return ring.row((i + ring.rows()) % ring.rows()).transpose(); }
 
-/// The least rectangle that holds the rings: one of its sides lies on an edge of theirs.
-std::optional<Box> least_box(const Rings& rings) {
-    Index edges = 0;
-    for (const Ring& ring : rings) edges += ring.rows();
-    if (edges == 0 || edges > kMostEdges) return {};
-    std::optional<Box> best;
-    double least = std::numeric_limits<double>::infinity();
-    for (const Ring& of : rings)
-        for (Index i = 0, n = of.rows(); i < n; ++i) {
-            const Vector2d edge = (of.row((i + 1) % n) - of.row(i)).transpose();
-            if (!(edge.norm() > 1e-6)) continue;
-            const Vector2d along = edge.normalized(), left(-along.y(), along.x());
-            Vector2d lo = Vector2d::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
-            for (const Ring& ring : rings) {
-                lo = lo.cwiseMin(Vector2d((ring * along).minCoeff(), (ring * left).minCoeff()));
-                hi = hi.cwiseMax(Vector2d((ring * along).maxCoeff(), (ring * left).maxCoeff()));
+/// How far to the left of an edge a place lies.
+double aside_mm(const Vector2d& from, const Vector2d& to, const Vector2d& at) {
+    const Vector2d along = (to - from).normalized();
+    return along.x() * (at - from).y() - along.y() * (at - from).x();
+}
+
+/// A convex ring without the corners that stick out by less, the least first.
+Ring plainer(Ring convex, double least_mm) {
+    while (convex.rows() > 3) {
+        Index least = 0;
+        double sticks_out_mm = least_mm;
+        for (Index i = 0; i < convex.rows(); ++i) {
+            const double out = -aside_mm(corner(convex, i - 1), corner(convex, i + 1), corner(convex, i));
+            if (out < sticks_out_mm) {
+                sticks_out_mm = out;
+                least = i;
             }
-            const Vector2d size = hi - lo;
-            if (!(size.prod() < least)) continue;
-            least = size.prod();
-            const Vector2d middle = 0.5 * (lo + hi);
-            best = Box{middle.x() * along + middle.y() * left, along, {0.5 * size.x(), 0.5 * size.y()}};
         }
-    return best;
+        if (!(sticks_out_mm < least_mm)) break;
+        const Index after = convex.rows() - least - 1;
+        convex.middleRows(least, after) = convex.bottomRows(after).eval();
+        convex.conservativeResize(convex.rows() - 1, Eigen::NoChange);
+    }
+    return convex;
+}
+
+/// What of a convex ring, counter-clockwise, lies so far within all its edges.
+Ring within_edges(const Ring& convex, double by_mm) {
+    Ring left = convex;
+    for (Index i = 0; i < convex.rows(); ++i) {
+        std::vector<Vector2d> kept;
+        for (Index k = 0; k < left.rows(); ++k) {
+            const Vector2d a = corner(left, k), b = corner(left, k + 1);
+            const double at_a = aside_mm(corner(convex, i), corner(convex, i + 1), a) - by_mm,
+                         at_b = aside_mm(corner(convex, i), corner(convex, i + 1), b) - by_mm;
+            if (at_a >= 0.0) kept.push_back(a);
+            if ((at_a < 0.0) != (at_b < 0.0)) kept.push_back(a + at_a / (at_a - at_b) * (b - a));
+        }
+        left.resize(Index(kept.size()), 2);
+        for (std::size_t k = 0; k < kept.size(); ++k) left.row(Index(k)) = kept[k].transpose();
+    }
+    return left;
+}
+
+/// Once round a convex ring, from a place on its longest side.
+std::vector<Vector2d> way_round(const Ring& convex) {
+    Index longest = 0;
+    const auto length_mm = [&](Index i) { return (corner(convex, i + 1) - corner(convex, i)).norm(); };
+    for (Index i = 1; i < convex.rows(); ++i)
+        if (length_mm(i) > length_mm(longest) + 1e-6) longest = i;
+    const Vector2d first = (1.0 - kOnSide) * corner(convex, longest) + kOnSide * corner(convex, longest + 1);
+    std::vector<Vector2d> out{first};
+    for (Index i = 1; i <= convex.rows(); ++i) out.push_back(corner(convex, longest + i));
+    out.push_back(first);
+    return out;
+}
+
+Ring all_corners(const Rings& rings) {
+    Index count = 0;
+    for (const Ring& ring : rings) count += ring.rows();
+    Ring out(count, 2);
+    count = 0;
+    for (const Ring& ring : rings) {
+        out.middleRows(count, ring.rows()) = ring;
+        count += ring.rows();
+    }
+    return out;
 }
 
 }  // namespace
@@ -60,18 +99,19 @@ std::optional<Box> least_box(const Rings& rings) {
 std::optional<SquaredDot> squared_dot(const Stroke& stroke, const Brush& brush) {
     if (stroke.wanted_mm.empty()) return {};
     const std::optional<Dot> dot = dot_of(stroke, brush);
-    const std::optional<Box> box = dot ? least_box(stroke.wanted_mm) : std::nullopt;
+    if (!dot) return {};
+    const Ring hull = convex_hull(all_corners(stroke.wanted_mm));
+    const double half_mm = std::min(half_width_at(stroke, 0.0), half_width_at(stroke, 1.0));
     double area_mm2 = 0.0;
     for (const Ring& ring : stroke.wanted_mm) area_mm2 += signed_area(ring);
-    if (!box || std::abs(area_mm2) < kFilled * 4.0 * box->half_mm[0] * box->half_mm[1]) return {};
-    const auto narrow = half_along_cut_mm(brush, std::min(box->half_mm[0], box->half_mm[1]));
+    if (area_mm2 < kFilled * signed_area(hull) || area_mm2 < (EIGEN_PI + kCorners) * half_mm * half_mm) return {};
+    const auto narrow = half_along_cut_mm(brush, half_mm);
     if (!narrow) return {};
-    const Vector2d left(-box->along.y(), box->along.x()), at = dot->to_mm;
-    const auto place = [&](double a, double b) -> Vector2d {
-        return box->middle_mm + a * (box->half_mm[0] - *narrow) * box->along + b * (box->half_mm[1] - *narrow) * left;
-    };
-    const std::vector<Vector2d> places{place(1.0, kOnSide), place(1.0, 1.0),  place(-1.0, 1.0),
-                                       place(-1.0, -1.0),   place(1.0, -1.0), place(1.0, kOnSide)};
+    const Ring round = plainer(within_edges(plainer(hull, kCornerSticksOut * *narrow), *narrow),
+                               kCornerSticksOut * *narrow);
+    if (round.rows() < 3) return {};
+    const Vector2d at = dot->to_mm;
+    const std::vector<Vector2d> places = way_round(round);
     const double lever = brush.lever_to_widest(brush.depth_for_half_width(*narrow, stroke.id));
     SquaredDot out{*dot, stroke, lever, (places[0] - at).normalized(), 0.0};
     if (!((places[0] - at).norm() > lever)) return {};

@@ -678,6 +678,33 @@ def test_a_dot_with_corners_is_square(sides, turned_rad, least):
     assert count < before + 75
 
 
+@pytest.mark.parametrize(
+    ("corners", "rounded_mm", "least"),
+    [
+        ([(0, -4), (4.2, 0), (0, 4), (-4.2, 0)], 0.5, 0.97),
+        ([(-1.2, -4), (4.4, -0.6), (1.2, 4), (-4.4, 0.6)], 0.4, 0.95),
+        ([(0, -4), (3.5, -2), (3.5, 2.5), (-3, 3.2), (-3.5, -2)], 0.3, 0.96),
+    ],
+    ids=["diamond", "askew", "of five corners"],
+)
+def test_dots_with_other_corners_have_them(corners, rounded_mm, least):
+    """As in Arabic letters. None fills 0.92 of a rectangle, so that they were discs."""
+    import shapely
+
+    drawn = shapely.Polygon(np.add(corners, 50.0)).buffer(-rounded_mm).buffer(rounded_mm)
+    disc = shapely.maximum_inscribed_circle(drawn, 0.001)
+    stroke = stroke_of(line(disc.coords[0], disc.coords[0]), [(0.0, disc.length)])
+    stroke.wanted_mm = [np.asarray(shapely.geometry.polygon.orient(drawn).exterior.coords)[:-1]]
+
+    def overlap(start):
+        found = core.compensate([stroke], ROUND, (200.0, 200.0), start=start)
+        assert found.misses[0].within_tolerance
+        mark = painted_region(found.plan.passes[0].poses_mm)
+        return (mark & drawn).area / (mark | drawn).area
+
+    assert overlap("auto") > least > overlap("hidden") + 0.1
+
+
 @pytest.mark.parametrize("corners", [8, 90])
 def test_a_dot_without_corners_stays_round(corners):
     angles = np.arange(corners) * 2 * np.pi / corners

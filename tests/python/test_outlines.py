@@ -293,6 +293,46 @@ def test_corners_stay_corners():
     assert ends(ell) == [[13, 8], [37, 42]]
 
 
+def test_a_belly_amid_a_line_is_as_wide_as_it_is():
+    """Its corner leaves a node of the axis there, and from arm to arm of that the width changed evenly: 0.55 of the
+    body stayed blank."""
+    body = shapely.union_all(
+        [shapely.Point(30, 25).buffer(4), shapely.box(30, 25, 33.6, 28.6), shapely.box(10, 24.2, 50, 25.8)]
+    )
+    (line,) = painted(path(polygon(body)))
+    assert max(half for _, half in line.half_width) == pytest.approx(4, abs=0.1)
+    mark = shapely.union_all([shapely.Polygon(ring) for ring in marks([line])])
+    want = shapely.union_all([shapely.Polygon(ring) for ring in line.wanted_mm])
+    assert mark.intersection(want).area > 0.95 * want.area
+
+
+@pytest.mark.parametrize(("turned_deg", "apart_mm"), [(0, 7.8), (12, 7.6), (90, 7.8)])
+def test_dots_that_touch_are_dots(turned_deg, apart_mm):
+    """Two squares that overlap at a corner, as in Arabic letters, were a line with a waist, and lost their corners."""
+    square = shapely.affinity.rotate(shapely.box(27, 22, 33, 28), 45)
+    pair = square | shapely.affinity.translate(square, apart_mm)
+    made = painted(path(polygon(shapely.affinity.rotate(pair, turned_deg))))
+    assert len(made) == 2
+    for dot in made:
+        assert np.ptp(dot.middle_mm.reshape(-1, 2), axis=0).max() == 0
+        assert dot.half_width[0][1] == pytest.approx(3, abs=0.01)
+        assert _core.area(dot.wanted_mm) == pytest.approx(pair.area / 2, rel=0.01)
+    assert _core.area(_core.intersect(made[0].wanted_mm, made[1].wanted_mm)) < 1e-3
+
+
+@pytest.mark.parametrize("waist_mm", [4.4, 2.4])
+def test_a_line_with_a_waist_is_a_line(waist_mm):
+    """Hardly narrower than its ends; or as narrow, but long."""
+    bar = shapely.union_all(
+        [
+            shapely.Point(25, 25).buffer(3),
+            shapely.Point(30 if waist_mm > 3 else 36, 25).buffer(3),
+            shapely.box(25, 25 - waist_mm / 2, 30 if waist_mm > 3 else 36, 25 + waist_mm / 2),
+        ]
+    )
+    assert len(painted(path(polygon(bar)))) == 1
+
+
 def test_a_dot_is_a_dab_and_a_ring_is_closed_and_turns_left_from_the_top():
     (dot,) = painted('<circle id="p" cx="20" cy="20" r="4"/>')
     assert np.ptp(dot.middle_mm) == pytest.approx(10, abs=0.1), "one point, x 20, y 30"

@@ -24,13 +24,27 @@ _AROUND = _GRID[
 ]  # in radii of a corner's disc: where lines that meet there may leave a notch
 
 
-def bridge(a: Arm, b: Arm) -> np.ndarray:
-    """From one arm to the other through a crossing: a cubic along their directions; the width changes evenly."""
+# A belly: a disc so much wider than both arms where they leave it, whose middle lies no farther aside of the straight
+# way between them than so much of its radius. No bend of a line has such a disc, and a knob at one side lies aside.
+BELLY, AMID = 1.25, 0.25
+
+
+def bridge(a: Arm, b: Arm, crossing: Crossing) -> np.ndarray:
+    """From one arm to the other through a crossing: a cubic along their directions; the width changes evenly. Where it
+    is the belly of one line, the line goes on as it lies."""
     p, q = a.line[a.out], b.line[b.out]
+    if crossing.is_corner and _is_belly(crossing.discs[0], p, q):
+        return np.vstack([a.line[: a.out][::-1], b.line[1 : b.out]])
     length = np.hypot(*(q - p)[:2])
     t = np.linspace(0, 1, 10)[1:-1, None]
     c1, c2 = p[:2] - a.direction * length / 3, q[:2] - b.direction * length / 3
     return np.column_stack([at(t, p[:2], c1, c2, q[:2]), (1 - t) * p[2] + t * q[2]])
+
+
+def _is_belly(disc: np.ndarray, p: np.ndarray, q: np.ndarray) -> bool:
+    way, to_middle = (q - p)[:2], (disc - p)[:2]
+    aside_mm = abs(way[0] * to_middle[1] - way[1] * to_middle[0]) / max(np.hypot(*way), 1e-12)
+    return bool(disc[2] > BELLY * max(p[2], q[2]) and aside_mm < AMID * disc[2])
 
 
 def stub(arm: Arm, crossing: Crossing) -> np.ndarray:

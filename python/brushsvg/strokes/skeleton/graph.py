@@ -121,7 +121,7 @@ def _follow(arm: Arm, used: set[int], crossings, from_free_end: bool = False) ->
         if here.mate is None:
             inside.append(stub(here, crossings[here.crossing])[::-1])
             return Piece(np.vstack([*rows, inside[-1]]), (first, here.crossing), branches, inside, through)
-        inside.append(bridge(here, here.mate))
+        inside.append(bridge(here, here.mate, crossings[here.crossing]))
         through.append(here.crossing)
         branches += [*crossings[here.crossing].inner, here.mate.branch]
         here = here.mate
@@ -136,7 +136,7 @@ def _ring(arm: Arm, used: set[int], crossings: list[Crossing]) -> Piece:
     while True:
         used.add(here.branch)
         end = here.other
-        inside.append(bridge(end, end.mate))
+        inside.append(bridge(end, end.mate, crossings[end.crossing]))
         through.append(end.crossing)
         branches += [here.branch, *crossings[end.crossing].inner]
         rows += [_along(here), inside[-1]]

@@ -17,6 +17,7 @@ from ...geometry.rotation import rotation
 from .cut_ends import run_to_cuts
 from .graph import Skeleton, skeleton
 from .shared_corners import with_shared_corners
+from .touching_dots import touching_dots
 from .writing_order import in_rows, joined, ordered, side_by_side
 
 # How far a middle line may leave the medial axis to be smooth, of the half width: less follows every dent of the
@@ -69,16 +70,20 @@ def _strokes(
 ) -> list[OutlineStroke]:
     found = skeleton(area, nodes, branches)
     if not found.pieces:  # all of it is one disc, more or less
-        return [
-            OutlineStroke(np.array([[x, y] * 4]), [(0.0, r)], False, area)
-            for x, y, r in found.dabs[:1].tolist()
-        ]
+        return [_dab(disc, area) for disc in found.dabs[:1]]
+    if dots := touching_dots(found.pieces, area):
+        return [_dab(disc, part) for disc, part in dots]
     chains = [run_to_cuts(chain, area) for chain in ordered(joined(found.pieces, found), is_alone)]
     if len(chains) == 1:
         return [_stroke(chains[0], area, area)]
     cuts = len(chains) * sum(map(len, area)) < MOST_CUT
     strokes = [_stroke(chain, _part(chain, found, area if cuts else None), area) for chain in chains]
     return with_shared_corners(strokes, area) if cuts else strokes
+
+
+def _dab(disc: np.ndarray, wanted_mm: list[np.ndarray]) -> OutlineStroke:
+    x, y, radius = disc.tolist()
+    return OutlineStroke(np.array([[x, y] * 4]), [(0.0, radius)], False, wanted_mm)
 
 
 def _part(chain, found: Skeleton, area: list[np.ndarray] | None) -> list[np.ndarray]:
