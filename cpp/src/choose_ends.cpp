@@ -47,6 +47,13 @@ double way_of(const Pass& pass) {
     return (pass.poses_mm.bottomRows(n - 1) - pass.poses_mm.topRows(n - 1)).rowwise().norm().sum();
 }
 
+double greatest_half_mm(const Stroke& stroke, double half_mm) {
+    for (const WidthKnot& knot : stroke.half_width) half_mm = std::max(half_mm, knot.half_width_mm);
+    return half_mm;
+}
+
+}  // namespace
+
 /// The surroundings of an end, what is wanted there, and how marks compare with it.
 class View {
  public:
@@ -59,10 +66,18 @@ class View {
                   2.0 * kLookedAt * half_mm},
           wanted_(wanted_coverage({wanted}, window_, px_per_mm_)) {}
 
-    /// Whether the mark of another pass wins what is worth it.
-    bool is_better(const Pass& other, const Pass& plain, bool is_round = false) const {
-        const Coverage now = picture(other), before = picture(plain);
-        const double won = differs(before) - differs(now) - (is_round ? kWorthRound : kWorthIt);
+    Coverage picture(const Pass& pass) const {
+        Marks marks;
+        marks.passes = {simulate(pass, brush_, 0.05 * half_mm_)};
+        return coverage(marks, brush_, window_, px_per_mm_);
+    }
+    /// Whether the mark of another pass, made where it is asked for, wins what is worth it.
+    template <class Other>
+    bool is_better(Other&& other, const Coverage& before, bool is_round = false) const {
+        const double worth = is_round ? kWorthRound : kWorthIt, off = differs(before);
+        if (!(off - worth > 0.0)) return false;  // the wanted mark itself would not win it
+        const Coverage now = picture(other());
+        const double won = off - differs(now) - worth;
         if (!(won > 0.0)) return false;
         const double turned =
             excess_turning(half_painted(now, window_, px_per_mm_), half_painted(before, window_, px_per_mm_));
@@ -70,11 +85,6 @@ class View {
     }
 
  private:
-    Coverage picture(const Pass& pass) const {
-        Marks marks;
-        marks.passes = {simulate(pass, brush_, 0.05 * half_mm_)};
-        return coverage(marks, brush_, window_, px_per_mm_);
-    }
     /// From what is wanted, in squares of the half width.
     double differs(const Coverage& seen) const { return (seen - wanted_).cwiseAbs().sum() / (kPixels * kPixels); }
 
@@ -84,30 +94,60 @@ class View {
     Coverage wanted_;
 };
 
-double greatest_half_mm(const Stroke& stroke, double half_mm) {
-    for (const WidthKnot& knot : stroke.half_width) half_mm = std::max(half_mm, knot.half_width_mm);
-    return half_mm;
+Ends::Ends(const Stroke& wanted, const Stroke& stroke, const Brush& brush, double step_tolerance)
+    : wanted_(wanted), stroke_(stroke), brush_(brush), line_(stroke_, brush), step_tolerance_(step_tolerance) {}
+
+Ends::~Ends() = default;
+
+const Pass& Ends::plain(Beginning start) {
+    std::optional<Pass>& pass = start == Beginning::hidden ? hidden_ : exposed_;
+    if (!pass) {
+        bool turns = false;
+        closed_form(stroke_, brush_, line_, start, step_tolerance_, turns).into(pass.emplace());
+    }
+    return *pass;
 }
 
-}  // namespace
+double Ends::made_mm() const {
+    const double depth = depth_of(stroke_, brush_, 0.0);
+    return kMade * brush_.half_width(depth) + 4.0 * brush_.lag(depth);
+}
 
-Beginning best_beginning(const Stroke& wanted, const Stroke& stroke, const Brush& brush, const Line& line,
-                         double step_tolerance) {
-    const double last_mm = painted_stretch(stroke, brush, line.length())[1];
-    const std::optional<Dot> dot = dot_of(wanted, brush);
-    const bool hides = dot || hidden_beginning(stroke, brush, line, InverseLag(line, brush), last_mm, step_tolerance);
-    if (!hides && !turned_beginning(stroke, brush, line)) return Beginning::exposed;
-    bool turns = false;
-    Pass exposed, hidden;
-    closed_form(stroke, brush, line, Beginning::exposed, step_tolerance, turns).into(exposed);
-    (dot ? poses_of(*dot, brush) : closed_form(stroke, brush, line, Beginning::hidden, step_tolerance, turns))
-        .into(hidden);
-    const double depth = depth_of(stroke, brush, 0.0), half = brush.half_width(depth),
-                 made = kMade * half + 4.0 * brush.lag(depth);
-    const View view(wanted, line.at(0.0).middle, half, greatest_half_mm(stroke, half), brush);
-    const bool is_better = dot ? view.is_better(hidden, exposed)
-                               : view.is_better(beginning_of(hidden, made + way_of(hidden) - way_of(exposed)),
-                                                beginning_of(exposed, made));
+const View& Ends::at_beginning() {
+    if (!view_) {
+        const double half = brush_.half_width(depth_of(stroke_, brush_, 0.0));
+        view_ = std::make_unique<View>(wanted_, line_.at(0.0).middle, half, greatest_half_mm(stroke_, half), brush_);
+    }
+    return *view_;
+}
+
+const Coverage& Ends::exposed_picture() {
+    if (!exposed_picture_)
+        exposed_picture_ = at_beginning().picture(beginning_of(plain(Beginning::exposed), made_mm()));
+    return *exposed_picture_;
+}
+
+Beginning Ends::best_beginning() {
+    const double last_mm = painted_stretch(stroke_, brush_, line_.length())[1];
+    const std::optional<Dot> dot = dot_of(wanted_, brush_);
+    const bool hides =
+        dot || hidden_beginning(stroke_, brush_, line_, InverseLag(line_, brush_), last_mm, step_tolerance_);
+    if (!hides && !turned_beginning(stroke_, brush_, line_)) return Beginning::exposed;
+    const Pass& exposed = plain(Beginning::exposed);
+    const View& view = at_beginning();
+    bool is_better = false;
+    if (dot) {
+        Pass hidden;
+        poses_of(*dot, brush_).into(hidden);
+        is_better = view.is_better([&] { return hidden; }, view.picture(exposed));
+    } else {
+        is_better = view.is_better(
+            [&] {
+                const Pass& hidden = plain(Beginning::hidden);
+                return beginning_of(hidden, made_mm() + way_of(hidden) - way_of(exposed));
+            },
+            exposed_picture());
+    }
     return is_better ? Beginning::hidden : Beginning::exposed;
 }
 
@@ -118,34 +158,33 @@ bool is_better_squared(const Stroke& wanted, const SquaredDot& dot, const Brush&
     closed_form(dot, brush, step_tolerance, turns).into(squared);
     const double half = std::min(half_width_at(wanted, 0.0), brush.half_width_range_mm()[1]);
     const View view(wanted, dot.dot.from_mm, half, half, brush);
-    return view.is_better(squared, round);
+    return view.is_better([&] { return squared; }, view.picture(round));
 }
 
-bool begins_better(const Stroke& wanted, const SquaredBeginning& squared, const Stroke& whole, const Stroke& stroke,
-                   const Brush& brush, Beginning start, double step_tolerance) {
-    const Line line(stroke, brush);
-    bool turns = false;
-    Pass plain, other;
-    closed_form(stroke, brush, line, start, step_tolerance, turns).into(plain);
-    closed_form(whole, brush, Line(whole, brush), Beginning::exposed, step_tolerance, turns).into(other);
-    const double depth = depth_of(stroke, brush, 0.0), half = brush.half_width(depth),
-                 made = kMade * half + 4.0 * brush.lag(depth);
-    const View view(wanted, line.at(0.0).middle, half, greatest_half_mm(stroke, half), brush);
-    // both up to the same place: from there on they are the same
-    return view.is_better(beginning_of(other, made + way_of(other) - way_of(plain)), beginning_of(plain, made),
-                          squared.is_round);
+bool Ends::begins_better(const SquaredBeginning& squared, const Stroke& whole, Beginning start) {
+    const Pass& before = plain(start);
+    const View& view = at_beginning();
+    const auto other = [&] {
+        bool turns = false;
+        Pass pass;
+        closed_form(whole, brush_, Line(whole, brush_), Beginning::exposed, step_tolerance_, turns).into(pass);
+        // both up to the same place: from there on they are the same
+        return beginning_of(pass, made_mm() + way_of(pass) - way_of(before));
+    };
+    if (start != Beginning::hidden) return view.is_better(other, exposed_picture(), squared.is_round);
+    return view.is_better(other, view.picture(beginning_of(before, made_mm())), squared.is_round);
 }
 
-Ending best_ending(const Stroke& wanted, const Stroke& lifted, const SquaredEnd& squared, const Brush& brush,
-                   Beginning start, double step_tolerance) {
-    const Line line(lifted, brush);
-    const double half = brush.half_width(depth_of(lifted, brush, 1.0));
-    bool turns = false;
-    Pass plain, other;
-    closed_form(lifted, brush, line, start, step_tolerance, turns).into(plain);
-    closed_form(squared.stroke, brush, Line(squared.stroke, brush), start, step_tolerance, turns).into(other);
-    const View view(wanted, line.at(line.length()).middle, half, greatest_half_mm(lifted, half), brush);
-    return view.is_better(other, plain, squared.is_round) ? Ending::squared : Ending::lifted;
+Ending Ends::best_ending(const SquaredEnd& squared, Beginning start) {
+    const double half = brush_.half_width(depth_of(stroke_, brush_, 1.0));
+    const View view(wanted_, line_.at(line_.length()).middle, half, greatest_half_mm(stroke_, half), brush_);
+    const auto other = [&] {
+        bool turns = false;
+        Pass pass;
+        closed_form(squared.stroke, brush_, Line(squared.stroke, brush_), start, step_tolerance_, turns).into(pass);
+        return pass;
+    };
+    return view.is_better(other, view.picture(plain(start)), squared.is_round) ? Ending::squared : Ending::lifted;
 }
 
 }  // namespace brushsvg

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -153,6 +154,7 @@ struct Begun {
     Beginning start;                   ///< of that line: all of a squared beginning's way is in it
     std::optional<SquaredDot> dot;     ///< instead of that line
     std::optional<Beginning> instead;  ///< what `auto` takes where this one misses the line
+    std::shared_ptr<Ends> ends;        ///< of the stroke as it is, where its beginning is none of a way's
 };
 
 /// A squared beginning where that is asked for and can be, or is chosen: else hidden; else exposed.
@@ -160,9 +162,10 @@ Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateO
                      double step_tolerance) {
     const Beginning asked = stroke.settings.start ? beginning_named(*stroke.settings.start, stroke.id) : options.start;
     const bool choose = asked == Beginning::automatic;
-    Begun plain{stroke, up_to_its_end(stroke, brush), asked, {}, {}};
+    Begun plain{stroke, up_to_its_end(stroke, brush), asked, {}, {}, {}};
+    plain.ends = std::make_shared<Ends>(stroke, plain.whole, brush, step_tolerance);
     if (choose)
-        plain.start = best_beginning(stroke, plain.whole, brush, Line(plain.whole, brush), step_tolerance);
+        plain.start = plain.ends->best_beginning();
     else if (asked == Beginning::squared)
         plain.start = Beginning::hidden;
     if (choose && plain.start == Beginning::hidden) plain.instead = Beginning::exposed;
@@ -178,24 +181,22 @@ Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateO
     if (!squared || dot_of(stroke, brush)) return plain;
     if (squared->is_round ? asked == Beginning::squared || stroke.start_covered : asked == Beginning::hidden)
         return plain;
-    Begun begun{squared->stroke, up_to_its_end(squared->stroke, brush), Beginning::exposed, {}, {}};
+    Begun begun{squared->stroke, up_to_its_end(squared->stroke, brush), Beginning::exposed, {}, {}, {}};
     if (choose) begun.instead = plain.start;
-    if (asked != Beginning::squared &&
-        !begins_better(stroke, *squared, begun.whole, plain.whole, brush, plain.start, step_tolerance))
-        return plain;
+    if (asked != Beginning::squared && !plain.ends->begins_better(*squared, begun.whole, plain.start)) return plain;
+    begun.ends = std::make_shared<Ends>(begun.stroke, begun.whole, brush, step_tolerance);
     return begun;
 }
 
 /// The stroke with its end squared, where that is asked for and can be, or chosen.
-std::optional<Stroke> squared_where_asked(const Stroke& stroke, const Stroke& lifted, const Brush& brush,
-                                          const CompensateOptions& options, Beginning start, double step_tolerance) {
+std::optional<Stroke> squared_where_asked(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
+                                          Ends& ends, Beginning start) {
     const Ending end = stroke.settings.end ? ending_named(*stroke.settings.end, stroke.id) : options.end;
     if (end == Ending::lifted) return {};
     const std::optional<SquaredEnd> squared =
         squared_end(stroke, brush, end == Ending::automatic ? Caps::round : Caps::straight);
     if (!squared || (squared->is_round && (end == Ending::squared || stroke.end_covered)) ||
-        (end == Ending::automatic &&
-         best_ending(stroke, lifted, *squared, brush, start, step_tolerance) == Ending::lifted))
+        (end == Ending::automatic && ends.best_ending(*squared, start) == Ending::lifted))
         return {};
     return squared->stroke;
 }
@@ -243,7 +244,7 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         warn(depths, stroke.id, brush, result.warnings);
     }
     std::optional<Stroke> squared;
-    if (!begun.dot) squared = squared_where_asked(begun.stroke, begun.whole, brush, options, start, step_tolerance);
+    if (!begun.dot) squared = squared_where_asked(begun.stroke, brush, options, *begun.ends, start);
     const Stroke& whole = squared ? *squared : begun.whole;
     const Line whole_line(whole, brush);
     // the plan is simulated before it is handed over; finer steps as long as they help
