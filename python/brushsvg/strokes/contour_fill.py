@@ -37,6 +37,9 @@ _TURNED_IN = 2.0  # half widths round a ring that is all of a filling: in a smal
 # tip runs back out of the corner.
 _BLUNT = 0.6
 _WIDE_END = 0.5  # in half widths; narrower ends lie in corners
+# Corners that turn by more, up to the supplement, end square in a cut so slanted; farthest ahead of a line's end, in half
+# widths, lies such a corner.
+_SLANTED_RAD, _REACH = np.radians(42), 2.6
 _SQUARED = 0.4  # of the greatest width, the least of a brush whose marks can begin and end square
 _AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
 _AT_TIP = 0.2  # in half widths: so near to a corner of the shape a corner of 80 to 100 degrees points
@@ -98,7 +101,7 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
     rings = _rings(shape, half)
     if rings is None:
         return []
-    kinds = (_right_corners, _steep_corners, _no_corners) if least < _SQUARED * half else (_no_corners,)
+    kinds = (_slanted_corners, _right_corners, _steep_corners, _no_corners) if least < _SQUARED * half else (_no_corners,)
     ways = [_cut(rings, half, shape, squared_at) for squared_at in kinds]
     counts = [sum(bool(line.wanted_mm) for line in lines) for lines in ways]
     ways = [lines for k, lines in enumerate(ways) if counts[k] not in counts[k + 1 :]]
@@ -223,11 +226,24 @@ def _steep_corners(ring: np.ndarray, *_) -> np.ndarray:
 
 def _right_corners(ring: np.ndarray, half: float, shape) -> np.ndarray:
     """Corners of a ring where its shape has one of about 90 degrees."""
-    corners = _steep_corners(ring)
+    return _of_shape(_steep_corners(ring), ring, half, shape)
+
+
+def _slanted_corners(ring: np.ndarray, half: float, shape) -> np.ndarray:
+    """Corners of a ring where its shape has one that a square end, cut slantwise, reaches into."""
+    some = np.setdiff1d(_corners(ring, _SLANTED_RAD), _corners(ring, np.pi - _SLANTED_RAD))
+    return _of_shape(some, ring, half, shape)
+
+
+def _of_shape(corners: np.ndarray, ring: np.ndarray, half: float, shape) -> np.ndarray:
+    """Those of the corners of a ring that lie half a width inside of a corner of the shape."""
     here = ring[corners]
     out = [here - ring[corners - 1], here - ring[(corners + 1) % len(ring)]]
-    tips = shapely.points(here + half * sum(each / np.hypot(*each.T)[:, None] for each in out))
-    near = shapely.distance(tips, shapely.multipoints(shapely.get_coordinates(shape))) < _AT_TIP * half
+    u, v = (each / np.hypot(*each.T)[:, None] for each in out)
+    tips = here + half * (u + v) / np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])[:, None]
+    near = shapely.distance(
+        shapely.points(tips), shapely.multipoints(shapely.get_coordinates(shape))
+    ) < _AT_TIP * half
     return corners[near]
 
 
@@ -237,13 +253,19 @@ def _squared(line: Line, half: float, shape, ends: list[bool]) -> Line:
     whole = shapely.buffer(shapely.LineString(way), half, quad_segs=_QUARTER)
     for is_square, (end, inner) in zip(ends, (way[:2], way[:-3:-1]), strict=True):
         if is_square:
-            along = half * (end - inner) / np.hypot(*(end - inner))
+            along = _REACH * half * (end - inner) / np.hypot(*(end - inner))
             cap = shapely.LineString([end, end + along]).buffer(half, cap_style="flat")
+            cap = _beside(shapely.intersection(cap, shape, grid_size=_GRID_MM), end)
             whole = shapely.union(whole, cap)
     parts = shapely.get_parts(shapely.intersection(whole, shape, grid_size=_GRID_MM))
     part = shapely.orient_polygons(max(parts, key=shapely.area))
     rings = [np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)]
     return replace(line, wanted_mm=tuple(_core.unite(rings)))
+
+
+def _beside(parts, place: np.ndarray):
+    """The part that a place lies in."""
+    return min(shapely.get_parts(parts), key=lambda part: shapely.distance(part, shapely.Point(place)))
 
 
 def _corners(ring: np.ndarray, least_rad: float) -> np.ndarray:
@@ -355,10 +377,12 @@ def _fill(
         line = _fitted(rows, least)
         if shapely.difference(painted([line]), shape, grid_size=_GRID_MM).area > _WORTH * half**2:
             continue  # few places may be fitted by a curve that leaves the shape
+        if least < _SQUARED * half:
+            line = _ending_as(line, rows, shape, half)
         without = unpainted(left, [line])
         if left.area - without.area >= _WORTH * half**2:
             left = without
-            made.append(_ending_as(line, rows, shape, half) if least < _SQUARED * half else line)
+            made.append(line)
     return made, left
 
 
