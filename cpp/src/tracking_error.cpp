@@ -33,8 +33,8 @@ struct Surroundings {
     }
 };
 
-/// The direction in which a path begins, and not that of its first chord: half a width before it those are 0.05 mm apart
-/// on an arc of 10 mm.
+/// The direction in which a path begins, and not that of its first chord: half a width before it those are 0.05 mm
+/// apart on an arc of 10 mm.
 Eigen::RowVector2d begins_along(const Cubics& middle_mm) {
     Place first{0, 0.0};
     while (first.cubic + 1 < middle_mm.rows() && tangent_at(middle_mm, first).isZero()) ++first.cubic;

@@ -27,9 +27,9 @@ _UPPER_LEFT = (-0.3, 1.0)
 _CORNER_RAD, _SQUARE_RAD, _SHARP_RAD = np.radians(30), np.radians(80), np.radians(100)
 # Worth a line of its own, in squares of the half width; a corner of 90 degrees has 0.21, of 60 degrees 0.69.
 _WORTH = 0.1
-# Of gaps amid paint, so many half widths from the edge, and of tips larger than this, in its squares, as often: a gap of
-# 0.01 squares is worth a line. Tips are what a mark so narrow, in half widths, leaves at square ends.
-_DEAR, _INSIDE, _TIP, _NARROW = 10, 0.05, 0.02, 0.27
+# Gaps amid paint, so many half widths from the edge, and tips count so many times: a gap of 0.01 squares is worth a
+# line. Tips are what a mark so narrow, in half widths, leaves at square ends, if more than so many squares of them.
+_DEAR, _INSIDE, _NARROW, _TIP = 10, 0.05, 0.27, 0.02
 _SEEN = 0.02  # what a line's disc must show of the unpainted to be a part of it
 _EVEN = 0.25  # between places on a line, in half widths
 # What a line is longer than what it has to paint at either end, in half widths: a mark begins pointed, and one shorter
@@ -40,11 +40,11 @@ _TURNED_IN = 2.0  # half widths round a ring that is all of a filling: in a smal
 # tip runs back out of the corner.
 _BLUNT = 0.6
 _WIDE_END = 0.5  # in half widths; narrower ends lie in corners
-# Corners that turn by more than the first and less than the second end square in a slanted cut: in sharper ones the mark
-# that goes there swings out of the other edge, by 0.5 to 1.2 mm. Farthest ahead of a line's end, in half widths, lies
-# such a corner.
+# Corners that turn by more than the first and less than the second end square in a slanted cut: in sharper ones the
+# mark that goes there swings out of the other edge, by 0.5 to 1.2 mm. Farthest ahead of a line's end, in half widths,
+# lies such a corner.
 _SLANTED_RAD, _POINTED_RAD, _REACH = np.radians(42), np.radians(122), 2.0
-_SET_DOWN = 3.6  # in half widths: on shorter lines is no room for the brush to be set down for a square beginning
+_SET_DOWN = 3.6  # in half widths: on shorter lines is no room to be set down for a square beginning
 _SQUARED = 0.4  # of the greatest width, the least of a brush whose marks can begin and end square
 _AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
 _AT_TIP = 0.2  # in half widths: so near to a corner of the shape a corner of 80 to 100 degrees points
@@ -110,7 +110,11 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
     rings = _rings(shape, half)
     if rings is None:
         return []
-    kinds = (_slanted_corners, _right_corners, _steep_corners, _no_corners) if least < _SQUARED * half else (_no_corners,)
+    kinds = (
+        (_slanted_corners, _right_corners, _steep_corners, _no_corners)
+        if least < _SQUARED * half
+        else (_no_corners,)
+    )
     ways = [_cut(rings, half, shape, squared_at) for squared_at in kinds]
     counts = [sum(bool(line.wanted_mm) for line in lines) for lines in ways]
     ways = [lines for k, lines in enumerate(ways) if counts[k] not in counts[k + 1 :]]
@@ -268,9 +272,10 @@ def _of_shape(corners: np.ndarray, ring: np.ndarray, half: float, shape) -> np.n
     out = [here - ring[corners - 1], here - ring[(corners + 1) % len(ring)]]
     u, v = (each / np.hypot(*each.T)[:, None] for each in out)
     tips = here + half * (u + v) / np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])[:, None]
-    near = shapely.distance(
-        shapely.points(tips), shapely.multipoints(shapely.get_coordinates(shape))
-    ) < _AT_TIP * half
+    near = (
+        shapely.distance(shapely.points(tips), shapely.multipoints(shapely.get_coordinates(shape)))
+        < _AT_TIP * half
+    )
     return corners[near]
 
 
