@@ -33,6 +33,14 @@ struct Surroundings {
     }
 };
 
+/// The direction in which a path begins, and not that of its first chord: half a width before it those are 0.05 mm
+/// apart on an arc of 10 mm.
+Eigen::RowVector2d begins_along(const Cubics& middle_mm) {
+    Place first{0, 0.0};
+    while (first.cubic + 1 < middle_mm.rows() && tangent_at(middle_mm, first).isZero()) ++first.cubic;
+    return tangent_at(middle_mm, first).transpose();
+}
+
 /// Whether a mark was last led to where a squared end's way ends, and not to the drawn path's end.
 bool ends_squared(const PassMarks& marks, const Ring& widest, const SquaredEnd& squared) {
     constexpr double kThere = 0.25;
@@ -99,7 +107,7 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
     // on its way back to a hidden beginning a blunt front goes beyond the path's
     MiddlePolyline longer(line.rows() + 1, 4);
     longer << line.row(0), line;
-    if (line.rows() > 1) longer.row(0).head<2>() -= line(0, 3) * (line.row(1) - line.row(0)).head<2>().normalized();
+    longer.row(0).head<2>() -= line(0, 3) * begins_along(stroke.middle_mm);
     Nearest nearest(line), before_turn(longer);
     // from the first taut row to the last: the landing and a slack lift do not count, a turn in place does, and where
     // the brush turns over it hardly touches

@@ -27,6 +27,9 @@ _UPPER_LEFT = (-0.3, 1.0)
 _CORNER_RAD, _SQUARE_RAD, _SHARP_RAD = np.radians(30), np.radians(80), np.radians(100)
 # Worth a line of its own, in squares of the half width; a corner of 90 degrees has 0.21, of 60 degrees 0.69.
 _WORTH = 0.1
+# Gaps amid paint, so many half widths from the edge, and tips count so many times: a gap of 0.01 squares is worth a
+# line. Tips are what a mark so narrow, in half widths, leaves at square ends, if more than so many squares of them.
+_DEAR, _INSIDE, _NARROW, _TIP = 10, 0.05, 0.27, 0.02
 _SEEN = 0.02  # what a line's disc must show of the unpainted to be a part of it
 _EVEN = 0.25  # between places on a line, in half widths
 # What a line is longer than what it has to paint at either end, in half widths: a mark begins pointed, and one shorter
@@ -37,6 +40,11 @@ _TURNED_IN = 2.0  # half widths round a ring that is all of a filling: in a smal
 # tip runs back out of the corner.
 _BLUNT = 0.6
 _WIDE_END = 0.5  # in half widths; narrower ends lie in corners
+# Corners that turn by more than the first and less than the second end square in a slanted cut: in sharper ones the
+# mark that goes there swings out of the other edge, by 0.5 to 1.2 mm. Farthest ahead of a line's end, in half widths,
+# lies such a corner.
+_SLANTED_RAD, _POINTED_RAD, _REACH = np.radians(42), np.radians(122), 2.0
+_SET_DOWN = 3.6  # in half widths: on shorter lines is no room to be set down for a square beginning
 _SQUARED = 0.4  # of the greatest width, the least of a brush whose marks can begin and end square
 _AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
 _AT_TIP = 0.2  # in half widths: so near to a corner of the shape a corner of 80 to 100 degrees points
@@ -80,8 +88,12 @@ def _swept(stroke) -> list:
 
 def unpainted(shape, strokes: list):
     """What discs of their widths leave of a shape, as polygons."""
-    left = shapely.difference(shape, painted(strokes), grid_size=_GRID_MM)
-    return shapely.multipolygons([part for part in shapely.get_parts(left) if part.geom_type == "Polygon"])
+    return _areas(shapely.difference(shape, painted(strokes), grid_size=_GRID_MM))
+
+
+def _areas(left):
+    """Polygons alone: points and lines are left of edges that touch."""
+    return shapely.MultiPolygon([part for part in shapely.get_parts(left) if part.geom_type == "Polygon"])
 
 
 def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -> list[list[Line]]:
@@ -98,7 +110,11 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
     rings = _rings(shape, half)
     if rings is None:
         return []
-    kinds = (_right_corners, _steep_corners, _no_corners) if least < _SQUARED * half else (_no_corners,)
+    kinds = (
+        (_slanted_corners, _right_corners, _steep_corners, _no_corners)
+        if least < _SQUARED * half
+        else (_no_corners,)
+    )
     ways = [_cut(rings, half, shape, squared_at) for squared_at in kinds]
     counts = [sum(bool(line.wanted_mm) for line in lines) for lines in ways]
     ways = [lines for k, lines in enumerate(ways) if counts[k] not in counts[k + 1 :]]
@@ -110,13 +126,30 @@ def _rest_filled(lines: list[Line], shape, wide: list, narrow: list, least: floa
     """Rings, and lines into what they leave of a shape."""
     left = unpainted(shape, [*narrow, *lines])
     edge = shape.boundary
+    tips = _tips(shape, lines, half)
+    inside = [part for part in shapely.get_parts(left) if shapely.distance(part, edge) > _INSIDE * half]
+    dear = _areas(shapely.union_all([*tips, *inside], grid_size=_GRID_MM))
+    left = _areas(shapely.union(left, dear, grid_size=_GRID_MM))
     shapely.prepare(edge)
     for candidates in ([_rows(stroke, edge, half) for stroke in wide], _axis(shape, half)):
         lengthened = [_lengthened(rows, shape, edge, half) for rows in candidates]
-        found, left = _fill(left, lengthened, least, half, shape)
+        found, left = _fill(left, dear, lengthened, least, half, shape)
         lines += found
     alone = len(lines) == 1 and lines[0].closed
     return [] if alone and _length_mm(lines[0]) < _TURNED_IN * half else lines
+
+
+def _tips(shape, lines: list[Line], half: float) -> list:
+    """What the narrow mark that runs into the shape's corners at square ends of lines leaves of the sharpest."""
+    squared = [region(list(line.wanted_mm)) for line in lines if line.wanted_mm]
+    if not squared:
+        return []
+    narrow = _NARROW * half
+    bare = shapely.difference(
+        shape, shape.buffer(-narrow).buffer(narrow, quad_segs=_QUARTER), grid_size=_GRID_MM
+    )
+    left = shapely.intersection(bare, shapely.union_all(squared), grid_size=_GRID_MM)
+    return [part for part in _areas(left).geoms if part.area > _TIP * half**2]
 
 
 def _length_mm(line: Line) -> float:
@@ -187,6 +220,7 @@ def _passes(points: np.ndarray, half: float, shape, squared_at) -> list[Line]:
     lines = []
     for a, b in itertools.pairwise([*sharp, len(ring) - 1]):
         square = [k % (len(ring) - 1) in squared for k in (a, b)]
+        square[0] = square[0] and length(ring[a : b + 1]) > _SET_DOWN * half
         part, turns = _clear_of_cusps(
             ring[a : b + 1], [int(k - a) for k in corners if a < k < b], half, square
         )
@@ -223,11 +257,25 @@ def _steep_corners(ring: np.ndarray, *_) -> np.ndarray:
 
 def _right_corners(ring: np.ndarray, half: float, shape) -> np.ndarray:
     """Corners of a ring where its shape has one of about 90 degrees."""
-    corners = _steep_corners(ring)
+    return _of_shape(_steep_corners(ring), ring, half, shape)
+
+
+def _slanted_corners(ring: np.ndarray, half: float, shape) -> np.ndarray:
+    """Corners of a ring where its shape has one that a square end, cut slantwise, reaches into."""
+    some = np.setdiff1d(_corners(ring, _SLANTED_RAD), _corners(ring, _POINTED_RAD))
+    return _of_shape(some, ring, half, shape)
+
+
+def _of_shape(corners: np.ndarray, ring: np.ndarray, half: float, shape) -> np.ndarray:
+    """Those of the corners of a ring that lie half a width inside of a corner of the shape."""
     here = ring[corners]
     out = [here - ring[corners - 1], here - ring[(corners + 1) % len(ring)]]
-    tips = shapely.points(here + half * sum(each / np.hypot(*each.T)[:, None] for each in out))
-    near = shapely.distance(tips, shapely.multipoints(shapely.get_coordinates(shape))) < _AT_TIP * half
+    u, v = (each / np.hypot(*each.T)[:, None] for each in out)
+    tips = here + half * (u + v) / np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])[:, None]
+    near = (
+        shapely.distance(shapely.points(tips), shapely.multipoints(shapely.get_coordinates(shape)))
+        < _AT_TIP * half
+    )
     return corners[near]
 
 
@@ -237,13 +285,19 @@ def _squared(line: Line, half: float, shape, ends: list[bool]) -> Line:
     whole = shapely.buffer(shapely.LineString(way), half, quad_segs=_QUARTER)
     for is_square, (end, inner) in zip(ends, (way[:2], way[:-3:-1]), strict=True):
         if is_square:
-            along = half * (end - inner) / np.hypot(*(end - inner))
+            along = _REACH * half * (end - inner) / np.hypot(*(end - inner))
             cap = shapely.LineString([end, end + along]).buffer(half, cap_style="flat")
+            cap = _beside(shapely.intersection(cap, shape, grid_size=_GRID_MM), end)
             whole = shapely.union(whole, cap)
     parts = shapely.get_parts(shapely.intersection(whole, shape, grid_size=_GRID_MM))
     part = shapely.orient_polygons(max(parts, key=shapely.area))
     rings = [np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)]
     return replace(line, wanted_mm=tuple(_core.unite(rings)))
+
+
+def _beside(parts, place: np.ndarray):
+    """The part that a place lies in."""
+    return min(shapely.get_parts(parts), key=lambda part: shapely.distance(part, shapely.Point(place)))
 
 
 def _corners(ring: np.ndarray, least_rad: float) -> np.ndarray:
@@ -335,13 +389,14 @@ def _evenly(line: np.ndarray, half: float) -> np.ndarray:
 
 
 def _fill(
-    left, candidates: list[np.ndarray], least: float, half: float, shape
+    left, dear, candidates: list[np.ndarray], least: float, half: float, shape
 ) -> tuple[list[Line], shapely.Geometry]:
-    """Stretches of the lines that paint what is left, those that paint most of it first, and what they leave."""
+    """Stretches of the lines that paint what is left, those that paint most of it first, and what they leave. dear:
+    what of it shows more than an edge that is a little off: gaps amid paint, tips."""
     stretches = []
     for rows in candidates:
         rows = np.column_stack([rows[:, :2], np.clip(rows[:, 2], None, half)])
-        shown = _shown(rows, left) > _SEEN * half**2
+        shown = _shown(rows, left, dear) > _SEEN * half**2
         more = int(_LANDING / _EVEN)
         for first, last in _runs(shown & (rows[:, 2] >= least), more):
             stretch = rows[first : last + 1]
@@ -351,12 +406,12 @@ def _fill(
                 stretch = np.vstack([_wide(ahead, room)[::-1], stretch, _wide(behind, room)])
             stretches.append(stretch)
     made = []
-    for rows in sorted(stretches, key=lambda rows: -_shown(rows, left).sum()):
+    for rows in sorted(stretches, key=lambda rows: -_shown(rows, left, dear).sum()):
         line = _fitted(rows, least)
         if shapely.difference(painted([line]), shape, grid_size=_GRID_MM).area > _WORTH * half**2:
             continue  # few places may be fitted by a curve that leaves the shape
         without = unpainted(left, [line])
-        if left.area - without.area >= _WORTH * half**2:
+        if _weight(left, dear) - _weight(without, dear) >= _WORTH * half**2:
             left = without
             made.append(_ending_as(line, rows, shape, half) if least < _SQUARED * half else line)
     return made, left
@@ -391,9 +446,15 @@ def _wide(rows: np.ndarray, room: float) -> np.ndarray:
     return rows[: narrow[0]] if len(narrow) else rows
 
 
-def _shown(rows: np.ndarray, left) -> np.ndarray:
+def _shown(rows: np.ndarray, left, dear) -> np.ndarray:
     discs = shapely.buffer(shapely.points(rows[:, :2]), rows[:, 2])
-    return shapely.area(shapely.intersection(discs, left))
+    return _weight(shapely.intersection(discs, left), dear)
+
+
+def _weight(left, dear):
+    if dear.is_empty:
+        return shapely.area(left)
+    return shapely.area(left) + (_DEAR - 1) * shapely.area(shapely.intersection(left, dear))
 
 
 def _runs(wanted: np.ndarray, gap: int) -> list[tuple[int, int]]:
