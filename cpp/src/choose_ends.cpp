@@ -151,14 +151,18 @@ Beginning Ends::best_beginning() {
     return is_better ? Beginning::hidden : Beginning::exposed;
 }
 
-bool is_better_squared(const Stroke& wanted, const SquaredDot& dot, const Brush& brush, double step_tolerance) {
-    bool turns = false;
-    Pass round, squared;
-    poses_of(dot.dot, brush).into(round);
-    closed_form(dot, brush, step_tolerance, turns).into(squared);
-    const double half = std::min(half_width_at(wanted, 0.0), brush.half_width_range_mm()[1]);
-    const View view(wanted, dot.dot.from_mm, half, half, brush);
-    return view.is_better([&] { return squared; }, view.picture(round));
+bool Ends::is_better_squared(const SquaredDot& dot, Beginning start) {
+    const double half = std::min(half_width_at(wanted_, 0.0), brush_.half_width_range_mm()[1]);
+    const View view(wanted_, dot.dot.from_mm, half, half, brush_);
+    Pass round;
+    if (start == Beginning::hidden) poses_of(dot.dot, brush_).into(round);
+    const auto squared = [&] {
+        bool turns = false;
+        Pass pass;
+        closed_form(dot, brush_, step_tolerance_, turns).into(pass);
+        return pass;
+    };
+    return view.is_better(squared, view.picture(start == Beginning::hidden ? round : plain(start)));
 }
 
 bool Ends::begins_better(const SquaredBeginning& squared, const Stroke& whole, Beginning start) {

@@ -26,6 +26,8 @@ class Ends {
     /// Whether a squared one makes the mark begin still better, by more than can hardly be seen. start: how the stroke
     /// begins without it; whole: the stroke with its way, up to its end.
     bool begins_better(const SquaredBeginning& squared, const Stroke& whole, Beginning start);
+    /// Whether a dot with corners is more like the wanted one than what is painted without them, begun as start says.
+    bool is_better_squared(const SquaredDot& dot, Beginning start);
     /// Of that of the stroke, and of that with a squared end.
     Ending best_ending(const SquaredEnd& squared, Beginning start);
 
@@ -43,8 +45,5 @@ class Ends {
     std::optional<Pass> exposed_, hidden_;
     std::optional<Coverage> exposed_picture_;
 };
-
-/// Whether a dot with corners is more like the wanted one than round.
-bool is_better_squared(const Stroke& wanted, const SquaredDot& dot, const Brush& brush, double step_tolerance);
 
 }  // namespace brushsvg

@@ -169,13 +169,15 @@ Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateO
     else if (asked == Beginning::squared)
         plain.start = Beginning::hidden;
     if (choose && plain.start == Beginning::hidden) plain.instead = Beginning::exposed;
-    if (plain.start == Beginning::hidden && asked != Beginning::hidden)
+    if (asked == Beginning::exposed) return plain;
+    if (asked != Beginning::hidden)
         if (auto dot = squared_dot(stroke, brush)) {
-            if (!choose || is_better_squared(stroke, *dot, brush, step_tolerance)) plain.dot = std::move(dot);
-            if (choose && plain.dot) plain.instead = Beginning::hidden;
+            if (choose && !plain.ends->is_better_squared(*dot, plain.start)) return plain;
+            if (choose) plain.instead = plain.start;
+            plain.start = Beginning::hidden;
+            plain.dot = std::move(dot);
             return plain;
         }
-    if (asked == Beginning::exposed) return plain;
     const std::optional<SquaredBeginning> squared =
         squared_beginning(stroke, brush, asked == Beginning::squared ? Caps::straight : Caps::round);
     if (!squared || dot_of(stroke, brush)) return plain;

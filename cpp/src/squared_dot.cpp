@@ -14,8 +14,10 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// Of the hull of what is drawn, what a dot with corners fills; and what of it no disc as wide paints, in squares of the
-/// half width: a square has 0.86, one with round corners, as pens make them, half of that.
+/// A hull of more corners is none of a dot with few.
+constexpr Index kMostCorners = 2000;
+/// Of the hull of what is drawn, what a dot with corners fills; and what of it no disc as wide paints, in squares of
+/// the half width: a square has 0.86, one with round corners, as pens make them, half of that.
 constexpr double kFilled = 0.92, kCorners = 0.2;
 /// Of the narrow mark's half width: corners that stick out by less are none of their own.
 constexpr double kCornerSticksOut = 0.1;
@@ -104,11 +106,12 @@ std::optional<SquaredDot> squared_dot(const Stroke& stroke, const Brush& brush) 
     const double half_mm = std::min(half_width_at(stroke, 0.0), half_width_at(stroke, 1.0));
     double area_mm2 = 0.0;
     for (const Ring& ring : stroke.wanted_mm) area_mm2 += signed_area(ring);
+    if (hull.rows() > kMostCorners) return {};
     if (area_mm2 < kFilled * signed_area(hull) || area_mm2 < (EIGEN_PI + kCorners) * half_mm * half_mm) return {};
     const auto narrow = half_along_cut_mm(brush, half_mm);
     if (!narrow) return {};
-    const Ring round = plainer(within_edges(plainer(hull, kCornerSticksOut * *narrow), *narrow),
-                               kCornerSticksOut * *narrow);
+    const Ring round =
+        plainer(within_edges(plainer(hull, kCornerSticksOut * *narrow), *narrow), kCornerSticksOut * *narrow);
     if (round.rows() < 3) return {};
     const Vector2d at = dot->to_mm;
     const std::vector<Vector2d> places = way_round(round);

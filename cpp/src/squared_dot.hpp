@@ -7,7 +7,7 @@
 
 namespace brushsvg {
 
-/// A dot with corners, as of the i of a sans: turned round on the spot, lifted until it hardly touches, and led on in
+/// A dot with corners, as of the i of a sans or in Arabic letters: turned round on the spot, lifted until it hardly touches, and led on in
 /// the same place as a narrow mark, out to one side and round all of them.
 struct SquaredDot {
     Dot dot;
@@ -17,8 +17,8 @@ struct SquaredDot {
     double reach_mm;  ///< how far from the dot's first place its widest section goes
 };
 
-/// The sides are those of the least rectangle about the drawn outline. None for what is no dot, has no outline or fills
-/// less than 0.92 of that rectangle, and where the brush is too coarse for the narrower mark.
+/// The sides are those of the drawn outline's convex hull. None for what is no dot, has no outline, fills less than 0.92
+/// of that hull or hardly more than a disc, and where the brush is too coarse for the narrower mark.
 std::optional<SquaredDot> squared_dot(const Stroke& stroke, const Brush& brush);
 
 }  // namespace brushsvg

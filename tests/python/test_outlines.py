@@ -294,8 +294,8 @@ def test_corners_stay_corners():
 
 
 def test_a_belly_amid_a_line_is_as_wide_as_it_is():
-    """Its corner leaves a node of the axis there, and from arm to arm of that the width changed evenly: 0.55 of the
-    body stayed blank."""
+    """Its corner leaves a node of the axis there, and from arm to arm of that the width changed evenly: the body was no
+    wider than its arms."""
     body = shapely.union_all(
         [shapely.Point(30, 25).buffer(4), shapely.box(30, 25, 33.6, 28.6), shapely.box(10, 24.2, 50, 25.8)]
     )
