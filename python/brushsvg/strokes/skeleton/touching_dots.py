@@ -12,8 +12,8 @@ WAIST, TO_MIDDLE, LENGTH = 0.65, 1.45, 1.9
 
 
 def touching_dots(pieces: list, area: list[np.ndarray]) -> list[tuple[np.ndarray, list[np.ndarray]]]:
-    """The two dots that a shape consists of, parted across its waist: of each the widest disc (x, y, half width) and its
-    part of the area; none if it is no such shape. area: its outer ring and holes; pieces: of its skeleton."""
+    """The two dots that a shape consists of, parted across its waist: of each the widest disc (x, y, half width) and
+    its part of the area; none if it is no such shape. area: its outer ring and holes; pieces: of its skeleton."""
     if len(pieces) != 1 or len(area) != 1 or pieces[0].closed:
         return []
     line = pieces[0].line
