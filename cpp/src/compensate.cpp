@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
@@ -150,11 +151,11 @@ namespace {
 
 /// How a stroke begins in closed form, and what is led along.
 struct Begun {
-    Stroke stroke, whole;              ///< with the way of a squared beginning; and up to its end
-    Beginning start;                   ///< of that line: all of a squared beginning's way is in it
-    std::optional<SquaredDot> dot;     ///< instead of that line
-    std::optional<Beginning> instead;  ///< what `auto` takes where this one misses the line
-    std::shared_ptr<Ends> ends;        ///< of the stroke as it is, where its beginning is none of a way's
+    Stroke stroke, whole;            ///< with the way of a squared beginning; and up to its end
+    Beginning start;                 ///< of that line: all of a squared beginning's way is in it
+    std::optional<SquaredDot> dot;   ///< instead of that line
+    std::vector<Beginning> instead;  ///< what `auto` tries where this one misses the line
+    std::shared_ptr<Ends> ends;      ///< of the stroke as it is, where its beginning is none of a way's
 };
 
 /// A squared beginning where that is asked for and can be, or is chosen: else hidden; else exposed.
@@ -168,12 +169,12 @@ Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateO
         plain.start = plain.ends->best_beginning();
     else if (asked == Beginning::squared)
         plain.start = Beginning::hidden;
-    if (choose && plain.start == Beginning::hidden) plain.instead = Beginning::exposed;
+    if (choose && plain.start == Beginning::hidden) plain.instead = {Beginning::exposed};
     if (asked == Beginning::exposed) return plain;
-    if (asked != Beginning::hidden)
+    if (asked != Beginning::hidden && !(stroke.start_covered && stroke.end_covered))
         if (auto dot = squared_dot(stroke, brush)) {
             if (choose && !plain.ends->is_better_squared(*dot, plain.start)) return plain;
-            if (choose) plain.instead = plain.start;
+            if (choose) plain.instead.insert(plain.instead.begin(), plain.start);
             plain.start = Beginning::hidden;
             plain.dot = std::move(dot);
             return plain;
@@ -184,7 +185,10 @@ Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateO
     if (squared->is_round ? asked == Beginning::squared || stroke.start_covered : asked == Beginning::hidden)
         return plain;
     Begun begun{squared->stroke, up_to_its_end(squared->stroke, brush), Beginning::exposed, {}, {}, {}};
-    if (choose) begun.instead = plain.start;
+    if (choose) {
+        begun.instead = plain.instead;
+        begun.instead.insert(begun.instead.begin(), plain.start);
+    }
     if (asked != Beginning::squared && !plain.ends->begins_better(*squared, begun.whole, plain.start)) return plain;
     begun.ends = std::make_shared<Ends>(begun.stroke, begun.whole, brush, step_tolerance);
     return begun;
@@ -282,14 +286,15 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
     if (options.few_poses)
         thin_out(result.pass, 0.5, limit_mm, stroke, brush, options.tolerance_mm, result.pass, result.miss);
     result.miss.has_turn_in_place = turns;
-    if (begun.instead && !result.miss.within_tolerance) {
+    for (const Beginning start_instead : begun.instead) {
+        if (result.miss.within_tolerance) break;
         Stroke plain = stroke;
         plain.settings.start.reset();
         CompensateOptions instead = options;
-        instead.start = *begun.instead;
+        instead.start = start_instead;
         CompensatedPass other = at_its_tolerance(plain, brush, instead);
         other.pass.settings = stroke.settings;
-        if (other.miss.largest_mm < result.miss.largest_mm) return other;
+        if (other.miss.largest_mm < result.miss.largest_mm) result = std::move(other);
     }
     return result;
 }

@@ -71,6 +71,17 @@ Ring within_edges(const Ring& convex, double by_mm) {
     return left;
 }
 
+/// Whether all corners lie within a disc that moves from one place to another.
+bool covered_by(const Vector2d& from, const Vector2d& to, double half_mm, const Ring& corners) {
+    const Vector2d way = to - from;
+    for (Index i = 0; i < corners.rows(); ++i) {
+        const Vector2d off = corners.row(i).transpose() - from;
+        const double along = way.squaredNorm() > 0.0 ? std::clamp(off.dot(way) / way.squaredNorm(), 0.0, 1.0) : 0.0;
+        if (!((off - along * way).norm() <= half_mm)) return false;
+    }
+    return true;
+}
+
 /// Once round a convex ring, from a place on its longest side.
 std::vector<Vector2d> way_round(const Ring& convex) {
     Index longest = 0;

@@ -91,13 +91,15 @@ def overlap(strokes, shape, brush) -> float:
     ("d", "is_filled"),
     [
         *((f"M10 10H90V{10 + wide_mm}H10Z", wide_mm > 10) for wide_mm in (8.2, 8.6, 9.0, 10.8, 12.0, 24.0)),
-        ("M44.8 30a5.2 5.2 0 1 0 10.4 0a5.2 5.2 0 1 0 -10.4 0Z", True),
+        ("M44.8 30a5.2 5.2 0 1 0 10.4 0a5.2 5.2 0 1 0 -10.4 0Z", False),
+        ("M41 30a9 9 0 1 0 18 0a9 9 0 1 0 -18 0Z", True),
     ],
 )
 def test_passes_are_taken_where_the_mark_at_the_nearest_width_overlaps_too_little(brush, d, is_filled):
     """Of a bar of 16 mm half was painted, unless passes were asked for; a disc of 9.4 mm became a drop, since a round
     disc of the brush's greatest width covers 0.8 of it.
-    Turned on the spot it is a disc; of 10.4 mm a third stays bare."""
+    Turned on the spot it is a disc; one of 10.4 mm is painted by going round that, of 18 mm something would stay bare
+    between both."""
     made = of(d)
     narrower, _, _ = within_reach(made, brush, "clamp")
     shape = made[0].wanted_mm
