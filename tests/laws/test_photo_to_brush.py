@@ -3,6 +3,7 @@ faults of paint and sheet, photographed by a camera of its own kind. Its lag com
 
 import json
 import re
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
@@ -50,14 +51,14 @@ def marks():
     return {stroke: rings for stroke, _, rings in painted.marks}
 
 
-def photo_of(painted, *things):
+def photo_of(painted, *things, camera=CAMERA):
     """things: rings and their colour, that lie on the paint."""
     sheet = photograph.page(printed())
     for rings in painted.values():
         sheet.paint(rings, BLUE)
     for ring, colour in things:
         sheet.paint([ring], colour)
-    return photograph.photograph(sheet, CAMERA)
+    return photograph.photograph(sheet, camera)
 
 
 @pytest.fixture(scope="module")
@@ -84,6 +85,32 @@ def test_one_photograph_gives_the_brush_back(desk, capsys):
         assert np.mean(np.abs(values - truth) < band) > 0.7, (law, values - truth, band)
     assert off["lag"] < 0.03 and off["half_width"] < 0.03, off
     assert (desk / "read.png").stat().st_size > 10_000
+
+
+def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
+    """By 0.4 mm the brush comes back; by 0.8 mm the markers only hint at it, and marks lie so far aside that the sheet
+    seems to be of another scale."""
+    (tmp_path / "chart.json").write_text(write_chart(printed()))
+    words = [
+        "calibrate",
+        tmp_path / "photo.jpg",
+        "--chart",
+        tmp_path / "chart.json",
+        "-o",
+        tmp_path / "own.json",
+    ]
+    (tmp_path / "photo.jpg").write_bytes(photo_of(marks(), camera=replace(CAMERA, sag_mm=0.4)))
+    assert in_json(capsys, *words)[0] == 0
+    found = find_brush(tmp_path / "own.json")
+    for law in ("lag", "half_width"):
+        truth = TRUTH.law(law)(DEPTHS)
+        values = np.array([getattr(found, law)(depth) for depth in DEPTHS])
+        band = law_band(found, law, DEPTHS)[0]
+        assert np.mean(np.abs(values - truth) < band) >= 0.9, (law, values - truth, band)
+        assert np.abs(values / truth - 1).max() < 0.02, (law, values / truth)
+    (tmp_path / "photo.jpg").write_bytes(photo_of(marks(), camera=replace(CAMERA, sag_mm=0.8)))
+    status, _, told = in_json(capsys, *words)
+    assert status == 1 and are_told([each for _, each in told], "photo-not-flat", "marks-scaled"), told
 
 
 def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, capsys):

@@ -108,3 +108,18 @@ def test_what_it_cannot_do_is_refused(drawing, capsys, toml, code):
     status, _, told = in_json(capsys, *words)
     assert status == 1 and not (folder / "p.jpg").exists(), told
     assert is_told(told, code) if code else len(told) >= 1, told
+
+
+def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, capsys):
+    """simulate-photo prints the page of a job round the chart's plan: its markers are not those of chart.json."""
+    plan, chart, photo, found = (
+        str(tmp_path / name) for name in ("plan.json", "chart.json", "p.jpg", "mine.json")
+    )
+    page = str(tmp_path / "page.svg")
+    assert main(["chart", plan, "--sheet", "a5", "--page", page, "--chart", chart, "--quiet"]) == 0
+    assert main(["simulate-photo", plan, photo, "--quiet"]) == 0
+    status, _, told = in_json(capsys, "calibrate", photo, "--chart", chart, "-o", found)
+    assert status == 1 and is_told(told, "photo-of-another-chart"), told
+    assert "(convert --page, simulate-photo) with --plan and --prior instead of --chart" in str(told)
+    assert main(["calibrate", photo, "--plan", plan, "--prior", "round-6", "-o", found, "--quiet"]) == 0
+    assert json.loads((tmp_path / "mine.json").read_text())["format"] == "brushsvg/brush"
