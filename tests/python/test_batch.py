@@ -285,8 +285,9 @@ def test_what_concerns_all_is_refused_in_one_sentence(desk, items, choices, said
 
 def test_a_missing_drawing_is_a_row_and_tried_again(desk, monkeypatch):
     with threads() as executor:
-        done = brushsvg.batch(["in/1.svg", "gone.svg", "odd.pdf"], "out", executor=executor)
-        assert [row.code for row in done.rows] == ["", "file-unreadable", "drawing-format"]
+        done = brushsvg.batch(["in/1.svg", "gone.svg", "odd.pdf", "folder"], "out", executor=executor)
+        missing = ["", "file-unreadable", "drawing-format", "file-unreadable"]
+        assert [row.code for row in done.rows] == missing
         Path("gone.svg").write_text(drawing(4))
         names = done_again(monkeypatch)
         done = brushsvg.batch(["in/1.svg", "gone.svg", "odd.pdf"], "out", executor=executor)

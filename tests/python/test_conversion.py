@@ -135,6 +135,7 @@ def test_what_a_drawing_says_is_heard_as_the_command_hears_it(desk):
         ({"width": 300}, "width-out-of-reach 300 8.4 a"),
         ({"sheet": (50, 50)}, "tool-off-sheet right a"),
         ({"from_stroke": 7}, "stroke-unknown 7 2"),
+        ({"from_stroke": 1.5}, "wrong-type 1.5"),
         ({"brush": "none"}, "brush-unknown none"),
         ({"cancel": 5}, "wrong-type 5"),
         ({"progress": 5}, "wrong-type 5"),

@@ -111,6 +111,18 @@ def test_a_depth_that_the_pen_has_not_is_refused(poses):
         text_for(plan)
 
 
+def test_who_paints_with_a_brush_that_presses_is_told_of_the_pen_and_it_helps(tmp_path, capsys):
+    (tmp_path / "a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">'
+        '<path id="a" fill="none" stroke="#000" stroke-width="3" d="M20 30Q50 0 80 30"/></svg>'
+    )
+    words = ("convert", tmp_path / "a.svg", tmp_path / "a.hpgl", "--cell", "hpgl-plotter")
+    status, _, told = in_json(capsys, *words)
+    assert status == 1 and is_told(told, "pen-depth --brush rigid")
+    status, _, told = in_json(capsys, *words, "--brush", "rigid")
+    assert status == 0
+
+
 def test_a_height_of_the_paper_cannot_be_told(tmp_path, capsys):
     with refused("pen-depth"):
         text_for(TWO, job=Job(0.1))

@@ -4,7 +4,9 @@ import cv2
 import numpy as np
 from svg_text import read
 
+from brushsvg.drawing import ReadOptions
 from brushsvg.drawing.design import Notice
+from brushsvg.drawing.svg import read_svg
 from brushsvg.pictures.import_picture import overview
 from brushsvg.strokes.extraction import strokes
 
@@ -99,3 +101,30 @@ def test_strokes_that_a_brush_adds_to_a_filled_shape_are_said_to_come():
     assert ";" in filled and "predict" in filled
     (lines,) = [word for word, *_ in words_of('<path d="M10 10H60"/>') if word.startswith("sheet ")]
     assert ";" not in lines
+
+
+def test_lists_stay_on_the_picture_and_entries_lie_on_no_other():
+    """A narrow picture with long names, in the PNG's own font: names of blocks in a DXF are as long."""
+    names = [f"INSERT-93.1.{k}/LWPOLYLINE-8{k}" for k in range(9)]
+    lines = "".join(
+        f'<path id="{name}" d="M{5 + 5 * k} 5v9" stroke-width="{1 + k / 10}"/>'
+        for k, name in enumerate(names)
+    )
+    head = '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="150mm" viewBox="0 0 60 150" stroke="red">'
+    long = Notice("TEXT-95", "the outlines of a font that is not the drawing's " * 4, code="x")
+    design = read_svg(f"{head}{lines}</svg>".encode(), ReadOptions())
+    made, _ = strokes(design)
+    tree = ET.fromstring(overview(".svg", design, made, [long]))
+    width = float(tree.get("width"))
+    rows: dict[float, list] = {}
+    for node in tree.iter("{http://www.w3.org/2000/svg}text"):
+        size = int(node.get("font-size"))
+        (_, _, wide, _) = cv2.getTextSize((1, 1), node.text, (0, 0), cv2.FontFace("sans"), size, 400)
+        rows.setdefault(float(node.get("y")), []).append((float(node.get("x")), wide, node.text))
+    entries = [word for row in rows.values() for *_, word in row if "INSERT" in word]
+    assert len(entries) == 9 and all(word.endswith(" mm") for word in entries)
+    for row in (
+        sorted(row) for row in rows.values() if any("  " in word or "font" in word for *_, word in row)
+    ):
+        for (x, wide, word), (after, *_) in zip(row, [*row[1:], (width, 0, "")], strict=True):
+            assert x + wide < after, word

@@ -81,7 +81,7 @@ def _lines(path: str | os.PathLike[str]) -> list[str]:
 def _drawing(path: Path, name: Path) -> Item:
     def read() -> InMemory:
         extension = path.suffix.lower()
-        if extension not in READERS:
+        if extension not in READERS and (extension or path.exists()):
             known = ", ".join(READERS)
             sentence = f"{extension or 'no extension'} is not a drawing format that is read; known: {known}"
             raise Error(sentence, file=str(path), code="drawing-format")

@@ -190,6 +190,8 @@ def _off_pen(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:
             f"near x {x:.1f}, y {y:.1f} mm the height is {height:.3f} mm: the pen of cell {cell.name} is up or at "
             f"{cell.pen.down_mm:g} mm, and draws at no other height"
         )
+        if np.ptp(poses[drawn, 2]) > PEN_MM:
+            sentence += "; --brush rigid draws as a pen does"
         yield Notice("", sentence, code="pen-depth")
 
 

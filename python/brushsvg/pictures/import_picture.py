@@ -24,7 +24,8 @@ PAPER, SHEET, EDGE, TEXT, QUIET, SHAPE = "#f3f1ec", "#ffffff", "#c9c7c0", "#2225
 WARNING = "#b3401f"
 INKS = ("#2b3a67", "#b3401f", "#2f7d4f", "#8a3ffc", "#c07a00", "#0f7c8a", "#c2185b", "#5d6d1e")
 SHEET_PX, MARGIN_PX, LINE_PX, FONT_PX = 1500, 40, 30, 20
-LISTED, WRAPPED = 120, 120  # strokes in the list, letters in a line
+LISTED = 120  # strokes in the list
+LETTER_PX = 10.0  # room for a letter of the lists, between those of OpenCV's font and of browsers
 APART_PX = 80.0  # between two numbers of one element's dashes
 TOLERANCE_MM = 0.02
 
@@ -151,23 +152,34 @@ def _numbers(canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: li
 
 
 def _list_strokes(canvas: _Canvas, strokes: list, inks: list[str], runs: list[Run], y: float) -> float:
-    columns = 3
-    for k, run in enumerate(runs[:LISTED]):
+    entries = [_entry(strokes, run) for run in runs[:LISTED]]
+    room = _letters(canvas)
+    columns = min(3, max(1, room // (max(map(len, entries), default=0) + 2)))
+    for k, (run, words) in enumerate(zip(runs, entries, strict=False)):
         x = MARGIN_PX + (k % columns) * (canvas.width - 2 * MARGIN_PX) / columns
-        stroke = strokes[run.first]
-        number, names, count = f"{run.first + 1}", stroke.id, ""
-        if run.last > run.first:
-            number, names = f"{number}-{run.last + 1}", f"{names} ... {strokes[run.last].id}"
-            count = f" ({run.last - run.first + 1} strokes)"
-        layer = f", {stroke.layer}" if stroke.layer else ""
-        words = f"{number}  {names}: {width_text(stroke)} mm{count}{layer}"
         ink = inks[run.first] if run.is_one or run.last == run.first else TEXT
-        canvas.text(x, y, words if len(words) <= 46 else words[:43] + "...", ink, 18)
+        canvas.text(x, y, words, ink, 18)
         y += LINE_PX if k % columns == columns - 1 or k == min(len(runs), LISTED) - 1 else 0
     if len(runs) > LISTED:
         canvas.text(MARGIN_PX, y, f"and {len(strokes) - runs[LISTED].first} more", QUIET, 18)
         y += LINE_PX
     return y + LINE_PX / 2
+
+
+def _entry(strokes: list, run: Run) -> str:
+    stroke = strokes[run.first]
+    number, names, count = f"{run.first + 1}", stroke.id, ""
+    if run.last > run.first:
+        number, names = f"{number}-{run.last + 1}", f"{names} ... {strokes[run.last].id}"
+        count = f" ({run.last - run.first + 1} strokes)"
+    layer = f", {stroke.layer}" if stroke.layer else ""
+    words = f"{number}  {names}: {width_text(stroke)} mm{count}{layer}"
+    return words if len(words) <= 46 else words[:43] + "..."
+
+
+def _letters(canvas: _Canvas) -> int:
+    """How many letters of the lists a line has room for."""
+    return int((canvas.width - 2 * MARGIN_PX) / LETTER_PX)
 
 
 def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
@@ -177,7 +189,9 @@ def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
         for notice in summarized(notice for notice in notices if notice.damaged == is_damage)
     ]
     for colour, notice in told[:LISTED]:
-        for line in textwrap.wrap(f"{notice.where}: {notice.told}", WRAPPED, subsequent_indent="    "):
+        for line in textwrap.wrap(
+            f"{notice.where}: {notice.told}", _letters(canvas), subsequent_indent="    "
+        ):
             canvas.text(MARGIN_PX, y, line, colour, 18)
             y += LINE_PX
     if len(told) > LISTED:

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
@@ -123,6 +124,7 @@ def convert(
     for each in formats:
         need(each, str, "an extension, such as '.ngc'")
     need_one_of(order, ORDERS, "order")
+    need(from_stroke, Integral, "a whole number, which from_stroke is")
     first = int(need_number(from_stroke, "from_stroke", 1, 1e8))
     job = Job(chosen.z_offset or 0.0, first)
 

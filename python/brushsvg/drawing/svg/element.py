@@ -69,9 +69,8 @@ class Painted:
         if power is None and width_mm == 0:
             stroke = "none"
         if stroke == "none" and fill == "none":
-            self.notes.add(
-                node, context, "it has neither stroke nor fill: left out", code="neither-stroke-nor-fill"
-            )
+            sentence = f"{self._why_unpainted(properties, tag, width_mm)}: left out"
+            self.notes.add(node, context, sentence, code="neither-stroke-nor-fill")
             return
         if not width_mm <= LARGEST_MM:
             sentence = f"its stroke-width {width_mm:.6g} mm is beyond 1e6 mm: left out"
@@ -109,6 +108,21 @@ class Painted:
                 fill_rule="" if fill == "none" else properties["fill-rule"],
             )
         )
+
+    def _why_unpainted(self, properties: dict[str, str], tag: str, width_mm: float) -> str:
+        """What of a stroke or fill that the drawing does ask for is the cause."""
+        asked = [
+            name
+            for name in ("stroke", "fill")
+            if properties[name] != "none" and (name, tag) != ("fill", "line")
+        ]
+        causes = [
+            "its stroke-width is 0"
+            if name == "stroke" and width_mm == 0
+            else self.paints.why_none(properties, name)
+            for name in asked
+        ]
+        return " and ".join(causes) or "it has neither stroke nor fill"
 
     def bounds(self, node: ET.Element, context: Context) -> tuple[float, float, float, float] | None:
         """(x, y, width, height) of a shape's geometry in its own user units, None if it has none that is sound."""

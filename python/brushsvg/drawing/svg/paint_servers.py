@@ -52,6 +52,13 @@ class Paints:
             told.append(Notice("", f"{name}-opacity is not read: it counts as 1", code="opacity-unread"))
         return colour[:7], told
 
+    def why_none(self, properties: dict[str, str], name: str) -> str:
+        """Why a stroke or fill that is asked for paints nothing."""
+        found = URL.match(properties[name])
+        if found and self._colour(properties[name], name)[0] == "none":
+            return f"the {name}'s paint {found[1].strip()[:40]} is nowhere in the drawing or paints nothing"
+        return f"its {name} is fully transparent"
+
     def _colour(self, value: str, name: str) -> tuple[str, list[Notice]]:
         """A reference to nothing, or to what is no paint, counts as its fallback, as SVG asks."""
         found = URL.match(value)
