@@ -226,6 +226,16 @@ def test_where_lines_cross_they_stay_straight_and_both_have_the_crossing():
     assert _core.area(bar.wanted_mm) == pytest.approx(40 * 6, abs=1.5)
 
 
+@pytest.mark.parametrize(("half_mm", "bar_half_mm"), [(4, 2.5), (5, 3)])
+def test_a_thick_line_that_bends_where_a_thin_one_crosses_it_is_one_stroke(half_mm, bar_half_mm):
+    """The thick line of an x turned by more than 60 degrees in all, and was left as two arms with a gap between them."""
+    thick = shapely.LineString([(6, 19), (24, 19), (36, 31), (54, 31)]).buffer(half_mm, cap_style="flat")
+    thin = shapely.box(30 - bar_half_mm, 7, 30 + bar_half_mm, 43)
+    made = painted(path(polygon(thick.union(thin))))
+    assert len(made) == 2, "the thick line and the thin one"
+    assert _core.overlap(marks(made), wanted(made)) > 0.93  # below 0.9 as two arms
+
+
 def test_bars_come_before_what_hangs_on_them_and_words_from_left_to_right():
     assert [ends(stroke)[0][0] < 20 for stroke in painted(path("M10 5H50V11H33V45H27V11H10Z"))] == [
         True,

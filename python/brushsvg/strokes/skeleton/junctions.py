@@ -180,6 +180,21 @@ def _join(crossing: Crossing) -> None:
     for turn, _, a, b in sorted(turns, key=lambda each: each[:2]):
         if turn < STRAIGHTEST_RAD and a.mate is None and b.mate is None:
             a.mate, b.mate = b, a
+    left = [arm for arm in crossing.arms if arm.mate is None]
+    if len(crossing.arms) == 4 and len(left) == 2:
+        _join_thick(crossing, *left)
+
+
+def _join_thick(crossing: Crossing, a: Arm, b: Arm) -> None:
+    """The arms that are left beside a line that runs through are one line that bends there, as an x has it, if that
+    line parts them and is no wider than either. Joined, thin ones would cut their corners across a thick line."""
+    one, two = (arm.line[arm.out] for arm in crossing.arms if arm.mate is not None)
+    along = two[:2] - one[:2]
+    first, second = (arm.line[arm.out] for arm in (a, b))
+    sides = [along[0] * (y - one[1]) - along[1] * (x - one[0]) for x, y, _ in (first, second)]
+    is_thick = min(first[2], second[2]) >= max(one[2], two[2])
+    if is_thick and sides[0] * sides[1] < 0 and _turn_across(a, b) < STRAIGHTEST_THICK_RAD:
+        a.mate, b.mate = b, a
 
 
 def _turn_across(a: Arm, b: Arm) -> float:
