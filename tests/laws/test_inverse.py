@@ -718,7 +718,12 @@ def test_a_dot_without_corners_stays_round(corners):
 
 @pytest.mark.parametrize(
     ("cubic", "half_width"),
-    [([45, 53, 53, 53, 60, 49, 69, 39], 3.5), ([63, 39, 54, 44, 51, 53, 50, 64], 3.9), ([58, 49, 48, 50, 38, 45, 30, 41], 3.3), ([67, 59, 73, 54, 74, 45, 73, 34], 3.2)],
+    [
+        ([45, 53, 53, 53, 60, 49, 69, 39], 3.5),
+        ([63, 39, 54, 44, 51, 53, 50, 64], 3.9),
+        ([58, 49, 48, 50, 38, 45, 30, 41], 3.3),
+        ([67, 59, 73, 54, 74, 45, 73, 34], 3.2),
+    ],
 )
 def test_auto_hides_nothing_for_which_the_line_would_be_missed(cubic, half_width):
     bent = np.array([cubic], float)

@@ -228,7 +228,7 @@ def test_where_lines_cross_they_stay_straight_and_both_have_the_crossing():
 
 @pytest.mark.parametrize(("half_mm", "bar_half_mm"), [(4, 2.5), (5, 3)])
 def test_a_thick_line_that_bends_where_a_thin_one_crosses_it_is_one_stroke(half_mm, bar_half_mm):
-    """The thick line of an x turned by more than 60 degrees in all, and was left as two arms with a gap between them."""
+    """The thick line of an x turned by more than 60 degrees in all, and was left as two arms with a gap between."""
     thick = shapely.LineString([(6, 19), (24, 19), (36, 31), (54, 31)]).buffer(half_mm, cap_style="flat")
     thin = shapely.box(30 - bar_half_mm, 7, 30 + bar_half_mm, 43)
     made = painted(path(polygon(thick.union(thin))))
