@@ -114,7 +114,9 @@ def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int
         left_over = _left_over(filling)
         for k in filling.passes:
             lines = filling.passes[k]
-            passes = [_like(strokes[k], line, lane, len(lines) > 1) for lane, line in enumerate(lines, start=1)]
+            passes = [
+                _like(strokes[k], line, lane, len(lines) > 1) for lane, line in enumerate(lines, start=1)
+            ]
             meant = []
             if passes:
                 line, rings = filling.meant[k]
