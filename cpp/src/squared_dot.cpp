@@ -21,9 +21,9 @@ constexpr Index kMostCorners = 2000;
 constexpr double kFilled = 0.92, kCorners = 0.2;
 /// Of the narrow mark's half width: corners that stick out by less are none of their own.
 constexpr double kCornerSticksOut = 0.1;
-/// Where on its longest side the way begins, of its length: into a corner it would turn by more than 90 degrees, and
-/// swing out of it.
-constexpr double kOnSide = 0.7;
+/// Where on a side the way begins, of its length: into a corner it would turn by more than 90 degrees, and swing out of
+/// it. And what counts as a long side, of the longest.
+constexpr double kOnSide = 0.7, kLongSide = 0.5;
 
 Vector2d corner(const Ring& ring, Index i) { return ring.row((i + ring.rows()) % ring.rows()).transpose(); }
 
@@ -82,16 +82,24 @@ bool covered_by(const Vector2d& from, const Vector2d& to, double half_mm, const 
     return true;
 }
 
-/// Once round a convex ring, from a place on its longest side.
-std::vector<Vector2d> way_round(const Ring& convex) {
-    Index longest = 0;
+/// Once round a convex ring, from a place on one of its long sides: that which lies most ahead.
+std::vector<Vector2d> way_round(const Ring& convex, const Dot& dot) {
     const auto length_mm = [&](Index i) { return (corner(convex, i + 1) - corner(convex, i)).norm(); };
-    for (Index i = 1; i < convex.rows(); ++i)
-        if (length_mm(i) > length_mm(longest) + 1e-6) longest = i;
-    const Vector2d first = (1.0 - kOnSide) * corner(convex, longest) + kOnSide * corner(convex, longest + 1);
-    std::vector<Vector2d> out{first};
-    for (Index i = 1; i <= convex.rows(); ++i) out.push_back(corner(convex, longest + i));
-    out.push_back(first);
+    const auto place = [&](Index i) -> Vector2d {
+        return (1.0 - kOnSide) * corner(convex, i) + kOnSide * corner(convex, i + 1);
+    };
+    double longest_mm = 0.0, most_ahead = -2.0;
+    for (Index i = 0; i < convex.rows(); ++i) longest_mm = std::max(longest_mm, length_mm(i));
+    Index side = 0;
+    for (Index i = 0; i < convex.rows(); ++i) {
+        const double ahead = (place(i) - dot.to_mm).normalized().dot(dot.heading);
+        if (length_mm(i) < kLongSide * longest_mm || !(ahead > most_ahead)) continue;
+        side = i;
+        most_ahead = ahead;
+    }
+    std::vector<Vector2d> out{place(side)};
+    for (Index i = 1; i <= convex.rows(); ++i) out.push_back(corner(convex, side + i));
+    out.push_back(out.front());
     return out;
 }
 
@@ -125,7 +133,7 @@ std::optional<SquaredDot> squared_dot(const Stroke& stroke, const Brush& brush) 
         plainer(within_edges(plainer(hull, kCornerSticksOut * *narrow), *narrow), kCornerSticksOut * *narrow);
     if (round.rows() < 3) return {};
     const Vector2d at = dot->to_mm;
-    const std::vector<Vector2d> places = way_round(round);
+    const std::vector<Vector2d> places = way_round(round, *dot);
     const double lever = brush.lever_to_widest(brush.depth_for_half_width(*narrow, stroke.id));
     SquaredDot out{*dot, stroke, lever, (places[0] - at).normalized(), 0.0};
     if (!((places[0] - at).norm() > lever)) return {};
