@@ -171,7 +171,7 @@ Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateO
         plain.start = Beginning::hidden;
     if (choose && plain.start == Beginning::hidden) plain.instead = {Beginning::exposed};
     if (asked == Beginning::exposed) return plain;
-    if (asked != Beginning::hidden && !(stroke.start_covered && stroke.end_covered))
+    if (asked != Beginning::hidden)
         if (auto dot = squared_dot(stroke, brush)) {
             if (choose && !plain.ends->is_better_squared(*dot, plain.start)) return plain;
             if (choose) plain.instead.insert(plain.instead.begin(), plain.start);

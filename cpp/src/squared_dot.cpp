@@ -129,9 +129,11 @@ std::optional<SquaredDot> squared_dot(const Stroke& stroke, const Brush& brush) 
     if (area_mm2 < kFilled * signed_area(hull) || area_mm2 < (EIGEN_PI + kCorners) * half_mm * half_mm) return {};
     const auto narrow = half_along_cut_mm(brush, half_mm);
     if (!narrow) return {};
-    const Ring round =
-        plainer(within_edges(plainer(hull, kCornerSticksOut * *narrow), *narrow), kCornerSticksOut * *narrow);
-    if (round.rows() < 3) return {};
+    const Ring plain = plainer(hull, kCornerSticksOut * *narrow);
+    const Ring round = plainer(within_edges(plain, *narrow), kCornerSticksOut * *narrow);
+    const double painted_mm = std::min(half_mm, brush.half_width_range_mm()[1]);
+    if (round.rows() < 3 || !covered_by(dot->from_mm, dot->to_mm, painted_mm, within_edges(plain, 2.0 * *narrow)))
+        return {};
     const Vector2d at = dot->to_mm;
     const std::vector<Vector2d> places = way_round(round, *dot);
     const double lever = brush.lever_to_widest(brush.depth_for_half_width(*narrow, stroke.id));

@@ -113,10 +113,7 @@ def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int
         first = min(filling.passes)
         left_over = _left_over(filling)
         for k in filling.passes:
-            lines = filling.passes[k]
-            passes = [
-                _like(strokes[k], line, lane, len(lines) > 1) for lane, line in enumerate(lines, start=1)
-            ]
+            passes = [_like(strokes[k], line, lane) for lane, line in enumerate(filling.passes[k], start=1)]
             meant = []
             if passes:
                 line, rings = filling.meant[k]
@@ -190,7 +187,7 @@ def _without_blots(filling, strokes: list, brush) -> tuple:
     """The filling without short lines that paint more beside the shape than they add to it, as a mark shorter than a
     footprint lies behind its line; and how much its mark overlaps with the shape, 0 where it is refused."""
     lines = [(k, lane) for k, of_stroke in filling.passes.items() for lane in range(len(of_stroke))]
-    passes = [_like(strokes[k], filling.passes[k][lane], 1, len(filling.passes[k]) > 1) for k, lane in lines]
+    passes = [_like(strokes[k], filling.passes[k][lane]) for k, lane in lines]
     greatest = brush.half_width_range_mm()[1]
     short = [n for n, one in enumerate(passes) if _is_short(one, _BLOT * greatest) and lines[n][1] > 0]
     try:
@@ -216,7 +213,7 @@ def _left_over(filling) -> str:
     return f"; {share} stay unpainted, with gaps up to {filling.gap_mm:.2g} mm wide"
 
 
-def _like(stroke, line, lane: int = 1, is_of_several: bool = False):
+def _like(stroke, line, lane: int = 1):
     of = stroke.origin
     return stroke.replaced(
         id=_core.StrokeId(of.element, of.part, of.repeat, lane),
@@ -224,8 +221,8 @@ def _like(stroke, line, lane: int = 1, is_of_several: bool = False):
         closed=line.closed,
         half_width=line.half_width,
         wanted_mm=list(line.wanted_mm),
-        start_covered=is_of_several or not line.wanted_mm,  # by other passes
-        end_covered=is_of_several or not line.wanted_mm,
+        start_covered=not line.wanted_mm,  # by other passes
+        end_covered=not line.wanted_mm,
     )
 
 
