@@ -705,6 +705,24 @@ def test_dots_with_other_corners_have_them(corners, rounded_mm, least):
     assert overlap("auto") > least > overlap("hidden") + 0.1
 
 
+@pytest.mark.parametrize(("radius_mm", "least"), [(5.2, 0.97), (6.4, 0.97), (6.8, None), (8.0, None)])
+def test_a_disc_wider_than_the_brush_is_gone_round_where_nothing_stays_bare_between(radius_mm, least):
+    import shapely
+
+    drawn = shapely.Point(50, 50).buffer(radius_mm, 64)
+    stroke = stroke_of(line((50, 50), (50, 50)), [(0.0, 4.2)])
+    stroke.wanted_mm = [np.asarray(shapely.geometry.polygon.orient(drawn).exterior.coords)[:-1]]
+    said, hidden = (
+        core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan.passes[0].poses_mm
+        for start in ("auto", "hidden")
+    )
+    if least is None:
+        np.testing.assert_array_equal(said, hidden)
+    else:
+        mark = painted_region(said)
+        assert (mark & drawn).area / (mark | drawn).area > least
+
+
 @pytest.mark.parametrize("corners", [8, 90])
 def test_a_dot_without_corners_stays_round(corners):
     angles = np.arange(corners) * 2 * np.pi / corners
