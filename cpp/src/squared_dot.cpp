@@ -123,8 +123,7 @@ std::optional<SquaredDot> squared_dot(const Stroke& stroke, const Brush& brush) 
     if (!dot) return {};
     const Ring hull = convex_hull(all_corners(stroke.wanted_mm));
     const double half_mm = std::min(half_width_at(stroke, 0.0), half_width_at(stroke, 1.0));
-    double area_mm2 = 0.0;
-    for (const Ring& ring : stroke.wanted_mm) area_mm2 += signed_area(ring);
+    const double area_mm2 = area(stroke.wanted_mm);
     if (hull.rows() > kMostCorners) return {};
     if (area_mm2 < kFilled * signed_area(hull) || area_mm2 < (EIGEN_PI + kCorners) * half_mm * half_mm) return {};
     const auto narrow = half_along_cut_mm(brush, half_mm);

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
+from ...geometry.polylines import lengths
 
 # Half width of the waist, of the smaller dot's. Of each dot's half width: how far its middle lies from the waist, at
 # most, as the corner of a square does from its own, and how long its line is beyond the waist.
@@ -38,7 +39,7 @@ def touching_dots(pieces: list, area: list[np.ndarray]) -> list[tuple[np.ndarray
 
 def _is_dot(side: np.ndarray) -> bool:
     """Of a line's rows from the waist on."""
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(side[:, :2], axis=0).T))])
+    way = lengths(side[:, :2])
     widest = int(np.argmax(side[:, 2]))
     half = side[widest, 2]
     return bool(way[widest] < TO_MIDDLE * half and way[-1] < LENGTH * half)
