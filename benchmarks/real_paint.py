@@ -17,7 +17,7 @@ Ours twice: `edges` is what `brushsvg calibrate` does, `overlap` what it does wi
 with the same laws to the largest mean of `fixed` and `shift`, with footprints held round as long as the strokes do not
 speak against it. Numbers: lag 2, tip gap 1, half width 2, the footprint's shape 2, height of the paper 1, the set's
 displacement 2 (at one depth lag 1, half width 1, no height); `edges` also a shift for each fitted stroke. --machine:
-with the machine's numbers beside: lean 2, axes 3, which `overlap` leaves as edges found them.
+for `edges` as well, lean 2, axes 3. `overlap` always looks for lean, 2 (none at one depth), and a map of the ways, 4.
 
 First comes what can be had at all. Two strokes of nearly equal commands overlap less than 1: they are carried on to
 equal commands along a straight line in the way's and the depth's distance. What each misses to the other lies between
@@ -32,6 +32,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from copy import copy
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -285,8 +286,11 @@ def fit_ours(strokes, name, machine=()):
 def by_overlap(strokes, fit, options):
     """What `calibrate --aim overlap` makes of the edges' fit: a fit of the same kind, and what is said of it."""
     targets = [_target(stroke, fit) for stroke in strokes]
+    options = copy(options)
+    machine_found.ask_for(options, ("lean", "axes"))
     found = largest_overlap(targets, fit.laws, fit.height_mm, options, fit.shift_mm)
-    return _like(fit, laws=found.laws, height_mm=found.height_mm, shift_mm=found.shift_mm), found
+    changed = {name: getattr(found, name) for name in ("laws", "height_mm", "shift_mm", "led")}
+    return _like(fit, **changed), found
 
 
 def _like(fit, **changed):
@@ -332,7 +336,7 @@ def _as_run(stroke: Stroke, fit) -> np.ndarray:
     at, depth = poses[:, :2] - fit.centre_mm, np.maximum(fit.height_mm - poses[:, 2:], 0.0)
     poses[:, :2] += np.column_stack([axes[0] * at[:, 0] + axes[2] * at[:, 1], axes[1] * at[:, 1]])
     poses[:, :2] += depth * lean
-    return poses
+    return fit.led.way(poses, fit.height_mm) if hasattr(fit, "led") else poses
 
 
 def _moved(stroke: Stroke, fit) -> _core.Pass:
@@ -435,6 +439,7 @@ def laws_in_words(fit) -> str:
         + f"; widest {laws.widest_per_half:.2f} h from the tip, front {laws.front_per_half:.2f} h; paper "
         f"{fit.height_mm:+.2f} mm; shift {fit.shift_mm[0]:+.2f} {fit.shift_mm[1]:+.2f} mm; lean {lean[0]:+.3f} "
         f"{lean[1]:+.3f} mm/mm; scale {1 + axes[0]:.4f} {1 + axes[1]:.4f}, skew {axes[2]:+.4f}"
+        + (f"; beside it {np.round(fit.led.lean_mm_per_mm, 3)}, {np.round(fit.led.map, 4)}" if hasattr(fit, "led") else "")
     )
 
 

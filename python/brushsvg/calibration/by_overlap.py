@@ -9,6 +9,9 @@ Where marks lie aside by chance, a wider brush overlaps more than the true one: 
 paint may be. So half of the aim is the overlap where each mark may move by what displacements are expected to be: there
 the true width overlaps most. See docs/calibration.md.
 
+What the machine does besides is changed with the laws, in one search, where it is asked for (lean, axes): found before
+or after them, lean is what lag makes of it.
+
 Lag and footprint tell little apart where the brush hardly turns, so that a footprint that is not round has its price,
 as for the edges: squares of what it is off, weighed against overlaps as if those scattered normally.
 """
@@ -39,8 +42,20 @@ FEW = 30  # marks on which the search begins
 SCATTER, ROUND = 0.1, (0.4, 0.3, 0.4)
 ROUGHLY_MM = 0.2  # rows of a mark while searching; the area changes by 0.05 %
 LAG_TERMS, HALF_TERMS = 2, 2  # numbers by which laws change, where the edges' have as many
-STEPS = {"lag": 0.8, "tip_gap": 0.4, "half_width": 0.4, "shape": 0.2, "height": 0.4, "shift": 0.4}
-FIRST, LAST = 260, 200  # overlaps looked at, from each start on few marks, from the best on all
+# By how much ways are scaled, skewed and turned at all, per mm: robot and camera are not one frame
+MAP = 0.03
+STEPS = {
+    "lag": 0.8,
+    "tip_gap": 0.4,
+    "half_width": 0.4,
+    "shape": 0.2,
+    "height": 0.4,
+    "shift": 0.4,
+    "lean": 0.2,
+    "map": MAP,
+}
+# Overlaps looked at, from each start on few marks, from the best on all, and with the machine's numbers
+FIRST, LAST, MACHINE = 260, 200, 350
 HIGHEST_MM, WIDEST_MM, LEAST_LAG_MM, LEAST_SHAPE = 6.0, 20.0, 0.02, 0.1  # outside: no brush, no paper
 EVERY = 20  # looks between two words on how far it is
 
@@ -54,6 +69,23 @@ class Target:
     paint: np.ndarray
     window_mm: tuple[float, float, float, float]
     px_per_mm: float
+
+
+@dataclass(frozen=True, eq=False)
+class Led:
+    """How a machine runs a way besides what edges told of it: aside by lean_mm_per_mm (2,) of depth, and by map
+    (2, 2) times the way from centre_mm (2,), mm per mm."""
+
+    lean_mm_per_mm: np.ndarray
+    map: np.ndarray
+    centre_mm: np.ndarray
+
+    def way(self, poses_mm: np.ndarray, height_mm: float) -> np.ndarray:
+        """poses_mm (n, 3) as it runs them over paper of this height."""
+        poses = np.array(poses_mm)
+        depth = np.maximum(height_mm - poses[:, 2:], 0.0)
+        poses[:, :2] += (poses[:, :2] - self.centre_mm) @ self.map.T + depth * self.lean_mm_per_mm
+        return poses
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -110,7 +142,10 @@ def by_overlap(
         fit.centre_mm,
         found.height_mm,
         tuple(
-            PlacedMark(np.array(miss.way_mm), tuple((miss.displacement_mm - found.shift_mm).tolist()))
+            PlacedMark(
+                found.led.way(np.array(miss.way_mm), found.height_mm),
+                tuple((miss.displacement_mm - found.shift_mm).tolist()),
+            )
             for miss in fit.marks
         ),
     )
@@ -133,12 +168,13 @@ def _target(mark, miss, made: MarkCalibration) -> Target:
 
 @dataclass(frozen=True, eq=False)
 class Predicting:
-    """What overlaps most: laws as a fit of marks has them, height of the paper, displacement of all marks; the overlap
-    by edges and now, and how many numbers were changed."""
+    """What overlaps most: laws as a fit of marks has them, height of the paper, displacement of all marks, what the
+    machine does besides; the overlap by edges and now, and how many numbers were changed."""
 
     laws: _core.MarkLaws
     height_mm: float
     shift_mm: np.ndarray
+    led: Led
     before: float
     overlap: float
     numbers: int
@@ -154,9 +190,9 @@ def largest_overlap(
 ) -> Predicting:
     """laws, height_mm, shift_mm: what edges told, which the search starts at. progress: is told how many of how many
     overlaps were looked at."""
-    search = _Search(laws, height_mm, shift_mm, options, len(targets))
+    search = _Search(laws, height_mm, shift_mm, options, targets)
     starts = [search.begin, search.disc()] if laws.round_tail else [search.begin]
-    most, looks = len(starts) * FIRST + LAST, 0
+    most, looks = len(starts) * FIRST + LAST + MACHINE * bool(len(search.machine)), 0
 
     def loss_on(chosen: list[Target]):
         def loss(x) -> float:
@@ -172,6 +208,9 @@ def largest_overlap(
     found = [_simplex(few, start, search.steps, FIRST) for start in starts]
     best = min(found, key=lambda one: one.fun)
     best = _simplex(loss_on(targets), best.x, 0.4 * search.steps, LAST)
+    if len(search.machine):
+        steps = 0.5 * np.concatenate([search.steps, search.machine])
+        best = _simplex(loss_on(targets), search.whole(best.x), steps, MACHINE)
     return Predicting(
         *search.read(best.x),
         search.overlap(search.begin, targets),
@@ -183,8 +222,8 @@ def largest_overlap(
 class _Search:
     """The numbers that are changed, as one vector, and what it costs."""
 
-    def __init__(self, laws, height_mm: float, shift_mm, options, count: int):
-        self.laws, self.height_mm, self.count = laws, height_mm, count
+    def __init__(self, laws, height_mm: float, shift_mm, options, targets: list[Target]):
+        self.laws, self.height_mm, self.count = laws, height_mm, len(targets)
         self.deepest_mm = deepest = options.deepest_mm
         self.farthest_mm = FARTHEST * options.displacement_mm
         lag, half = min(LAG_TERMS, len(laws.lag)), min(HALF_TERMS, len(laws.half_width) - 1)
@@ -205,6 +244,18 @@ class _Search:
             name: slice(end - len(each), end) for (name, each), end in zip(parts.items(), ends, strict=True)
         }
         self.steps = np.concatenate([np.full(len(each), STEPS[name]) for name, each in parts.items()])
+        # lean is a shift where all depths are one
+        sizes = {
+            "lean": 2 if options.lean_mm_per_mm > 0 and self.has_height else 0,
+            "map": 4 if options.axes > 0 else 0,
+        }
+        end = len(self.begin)
+        for name, size in sizes.items():
+            self.at[name] = slice(end, end + size)
+            end += size
+        self.machine = np.concatenate([np.full(size, STEPS[name]) for name, size in sizes.items()])
+        self.lean_sigma = options.lean_mm_per_mm
+        self.centre_mm = np.vstack([target.poses_mm[:, :2] for target in targets]).mean(axis=0)
         # a round tail's length in half widths is that of a disc, a pointed one's what it usually is
         self.usual_shape = np.array([1.0 if laws.round_tail else options.widest_per_half.value, 1.0])
 
@@ -213,9 +264,16 @@ class _Search:
         x[self.at["tip_gap"]], x[self.at["shape"]] = x[self.at["half_width"]].sum(), 1.0
         return x
 
-    def read(self, x) -> tuple[_core.MarkLaws, float, np.ndarray]:
-        """Laws, height of the paper, displacement."""
-        change, deepest, old = x - self.begin, self.deepest_mm, self.laws
+    def whole(self, x) -> np.ndarray:
+        """With the machine's numbers, 0 where they are not looked for yet."""
+        out = np.zeros(len(self.begin) + len(self.machine))
+        out[: len(x)] = x
+        return out
+
+    def read(self, x) -> tuple[_core.MarkLaws, float, np.ndarray, Led]:
+        """Laws, height of the paper, displacement, machine."""
+        x = self.whole(x)
+        change, deepest, old = x[: len(self.begin)] - self.begin, self.deepest_mm, self.laws
         half = np.cumsum(change[self.at["half_width"]])
         behind, front = change[self.at["shape"]]
         laws = _core.MarkLaws(
@@ -229,13 +287,19 @@ class _Search:
             _added(old.front_by_depth, [front]) if old.front_by_depth else [],
         )
         height = float(x[self.at["height"]][0]) if self.has_height else self.height_mm
-        return laws, height, x[self.at["shift"]]
+        lean, by_map = x[self.at["lean"]], x[self.at["map"]]
+        led = Led(
+            lean if len(lean) else np.zeros(2),
+            by_map.reshape(2, 2) if len(by_map) else np.zeros((2, 2)),
+            self.centre_mm,
+        )
+        return laws, height, x[self.at["shift"]], led
 
     def loss(self, x, targets: list[Target]) -> float:
-        laws, height, shift = self.read(x)
+        laws, height, shift, led = self.read(x)
         if self._impossible(x, laws, height):
             return 1.0
-        pictures = predicted(targets, laws, height, shift, self.deepest_mm)
+        pictures = predicted(_led(targets, led, height), laws, height, shift, self.deepest_mm)
         return 1 - self._aim(targets, pictures) + self._price(x)
 
     def _aim(self, targets: list[Target], pictures) -> float:
@@ -247,18 +311,20 @@ class _Search:
         return ((1 - SHIFTED) * lying + SHIFTED * moved) / len(targets)
 
     def overlap(self, x, targets: list[Target]) -> float:
-        laws, height, shift = self.read(x)
-        pictures = predicted(targets, laws, height, shift, self.deepest_mm)
+        laws, height, shift, led = self.read(x)
+        pictures = predicted(_led(targets, led, height), laws, height, shift, self.deepest_mm)
         return float(np.mean([soft_overlap(a.paint, b) for a, b in zip(targets, pictures, strict=True)]))
 
     def _price(self, x) -> float:
-        """Of a footprint that is not round."""
+        """Of a footprint that is not round, and of a machine that does not as it is told."""
         behind, front = x[self.at["shape"]]
         friction = x[self.at["tip_gap"]][0] / max(0.1, x[self.at["half_width"]].sum()) - behind
         if not self.laws.round_tail:
             friction = 0.0  # drops hold no disc
         off = np.array([behind - self.usual_shape[0], front - self.usual_shape[1], friction]) / ROUND
-        return SCATTER / (2 * self.count) * float(off @ off)
+        x = self.whole(x)
+        lean, by_map = x[self.at["lean"]] / (self.lean_sigma or 1.0), x[self.at["map"]] / MAP
+        return SCATTER / (2 * self.count) * float(off @ off + lean @ lean + by_map @ by_map)
 
     def _impossible(self, x, laws, height: float) -> bool:
         """Laws that no brush has: a lag below 0, a width that falls, on all depths that the paper's height makes."""
@@ -271,6 +337,12 @@ class _Search:
         depths = np.linspace(0, self.deepest_mm + max(0.0, height), 12)
         half, lag = polyval(depths, laws.half_width), polyval(depths, laws.lag)
         return bool(lag.min() < LEAST_LAG_MM or np.diff(half).min() < 0 or half[-1] > WIDEST_MM)
+
+
+def _led(targets: list[Target], led: Led, height_mm: float) -> list[Target]:
+    if not (led.lean_mm_per_mm.any() or led.map.any()):
+        return targets
+    return [replace(target, poses_mm=led.way(target.poses_mm, height_mm)) for target in targets]
 
 
 def _simplex(loss, x, steps, most: int):

@@ -34,9 +34,22 @@ def report(made) -> str:
         f"({edges.fit.height_mm:+.2f} mm by edges)",
         f"painted and predicted marks overlap by {now_lying:.3f} where they lie, by {now_moved:.3f} with the "
         f"displacements of the edges' fit taken away; by edges {lying:.3f} and {moved:.3f}",
+        *_machine(found),
         "no intervals: those of the edges' fit do not hold for these laws",
     ]
     return "\n".join([*lines, ""])
+
+
+def _machine(found) -> list[str]:
+    led = found.led
+    lines = []
+    if led.lean_mm_per_mm.any():
+        x, y = led.lean_mm_per_mm
+        lines.append(f"lean: {x:+.3f} and {y:+.3f} mm per mm of depth in x and y beside what edges told")
+    if led.map.any():
+        (a, b), (c, d) = led.map
+        lines.append(f"ways: {a:+.4f} and {b:+.4f} mm in x, {c:+.4f} and {d:+.4f} in y per mm in x and y beside it")
+    return lines
 
 
 def report_picture(made, suffix: str) -> bytes:
