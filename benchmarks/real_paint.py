@@ -439,7 +439,11 @@ def laws_in_words(fit) -> str:
         + f"; widest {laws.widest_per_half:.2f} h from the tip, front {laws.front_per_half:.2f} h; paper "
         f"{fit.height_mm:+.2f} mm; shift {fit.shift_mm[0]:+.2f} {fit.shift_mm[1]:+.2f} mm; lean {lean[0]:+.3f} "
         f"{lean[1]:+.3f} mm/mm; scale {1 + axes[0]:.4f} {1 + axes[1]:.4f}, skew {axes[2]:+.4f}"
-        + (f"; beside it {np.round(fit.led.lean_mm_per_mm, 3)}, {np.round(fit.led.map, 4)}" if hasattr(fit, "led") else "")
+        + (
+            f"; beside it {np.round(fit.led.lean_mm_per_mm, 3)}, {np.round(fit.led.map, 4)}"
+            if hasattr(fit, "led")
+            else ""
+        )
     )
 
 

@@ -48,7 +48,9 @@ def _machine(found) -> list[str]:
         lines.append(f"lean: {x:+.3f} and {y:+.3f} mm per mm of depth in x and y beside what edges told")
     if led.map.any():
         (a, b), (c, d) = led.map
-        lines.append(f"ways: {a:+.4f} and {b:+.4f} mm in x, {c:+.4f} and {d:+.4f} in y per mm in x and y beside it")
+        lines.append(
+            f"ways: {a:+.4f} and {b:+.4f} mm in x, {c:+.4f} and {d:+.4f} in y per mm in x and y beside it"
+        )
     return lines
 
 
