@@ -210,7 +210,17 @@ def largest_overlap(
     best = _simplex(loss_on(targets), best.x, 0.4 * search.steps, LAST)
     if len(search.machine):
         steps = 0.5 * np.concatenate([search.steps, search.machine])
-        best = _simplex(loss_on(targets), search.whole(best.x), steps, MACHINE)
+        whole, alone = search.whole(best.x), np.zeros(len(steps), bool)
+        alone[search.at["shift"]] = alone[len(search.begin) :] = True
+
+        def among(x) -> np.ndarray:
+            out = whole.copy()
+            out[alone] = x
+            return out
+
+        loss = loss_on(targets)
+        first = _simplex(lambda x: loss(among(x)), whole[alone], 2 * steps[alone], MACHINE // 2)
+        best = _simplex(loss, among(first.x), steps, MACHINE // 2)
     return Predicting(
         *search.read(best.x),
         search.overlap(search.begin, targets),
