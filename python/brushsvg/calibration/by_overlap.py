@@ -54,8 +54,9 @@ STEPS = {
     "lean": 0.2,
     "map": MAP,
 }
-# Overlaps looked at, from each start on few marks, from the best on all, and with the machine's numbers
-FIRST, LAST, MACHINE = 260, 200, 350
+FIRST, LAST = 260, 200  # overlaps looked at, from each start on few marks, and from the best on all
+# With the machine's numbers pictures are registered first: blurs, steps at each, differences as shares of STEPS
+BLURS_PX, ROUNDS, NEAR = (6, 2), 6, 0.1
 HIGHEST_MM, WIDEST_MM, LEAST_LAG_MM, LEAST_SHAPE = 6.0, 20.0, 0.02, 0.1  # outside: no brush, no paper
 EVERY = 20  # looks between two words on how far it is
 
@@ -192,35 +193,28 @@ def largest_overlap(
     overlaps were looked at."""
     search = _Search(laws, height_mm, shift_mm, options, targets)
     starts = [search.begin, search.disc()] if laws.round_tail else [search.begin]
-    most, looks = len(starts) * FIRST + LAST + MACHINE * bool(len(search.machine)), 0
+    registering = len(BLURS_PX) * ROUNDS * (1 + len(search.steps)) if search.has_machine else 0
+    most, looks = len(starts) * (registering + FIRST) + LAST, 0
+
+    def look() -> None:
+        nonlocal looks
+        looks += 1
+        if looks % EVERY == 0:
+            progress(min(looks, most), most)
 
     def loss_on(chosen: list[Target]):
         def loss(x) -> float:
-            nonlocal looks
-            looks += 1
-            if looks % EVERY == 0:
-                progress(min(looks, most), most)
+            look()
             return search.loss(x, chosen)
 
         return loss
 
-    few = loss_on(targets[:: max(1, len(targets) // FEW)])
-    found = [_simplex(few, start, search.steps, FIRST) for start in starts]
+    few = targets[:: max(1, len(targets) // FEW)]
+    if search.has_machine:
+        starts = [_registered(search, start, few, look) for start in starts]
+    found = [_simplex(loss_on(few), start, search.steps * (0.4 if search.has_machine else 1), FIRST) for start in starts]
     best = min(found, key=lambda one: one.fun)
     best = _simplex(loss_on(targets), best.x, 0.4 * search.steps, LAST)
-    if len(search.machine):
-        steps = 0.5 * np.concatenate([search.steps, search.machine])
-        whole, alone = search.whole(best.x), np.zeros(len(steps), bool)
-        alone[search.at["shift"]] = alone[len(search.begin) :] = True
-
-        def among(x) -> np.ndarray:
-            out = whole.copy()
-            out[alone] = x
-            return out
-
-        loss = loss_on(targets)
-        first = _simplex(lambda x: loss(among(x)), whole[alone], 2 * steps[alone], MACHINE // 2)
-        best = _simplex(loss, among(first.x), steps, MACHINE // 2)
     return Predicting(
         *search.read(best.x),
         search.overlap(search.begin, targets),
@@ -248,22 +242,16 @@ class _Search:
             "height": [height_mm] if self.has_height else [],
             "shift": shift_mm,
         }
+        # lean is a shift where all depths are one
+        parts["lean"] = np.zeros(2 if options.lean_mm_per_mm > 0 and self.has_height else 0)
+        parts["map"] = np.zeros(4 if options.axes > 0 else 0)
         self.begin = np.concatenate([np.asarray(each, float) for each in parts.values()])
         ends = np.cumsum([len(each) for each in parts.values()])
         self.at = {
             name: slice(end - len(each), end) for (name, each), end in zip(parts.items(), ends, strict=True)
         }
         self.steps = np.concatenate([np.full(len(each), STEPS[name]) for name, each in parts.items()])
-        # lean is a shift where all depths are one
-        sizes = {
-            "lean": 2 if options.lean_mm_per_mm > 0 and self.has_height else 0,
-            "map": 4 if options.axes > 0 else 0,
-        }
-        end = len(self.begin)
-        for name, size in sizes.items():
-            self.at[name] = slice(end, end + size)
-            end += size
-        self.machine = np.concatenate([np.full(size, STEPS[name]) for name, size in sizes.items()])
+        self.has_machine = bool(len(parts["lean"]) + len(parts["map"]))
         self.lean_sigma = options.lean_mm_per_mm
         self.centre_mm = np.vstack([target.poses_mm[:, :2] for target in targets]).mean(axis=0)
         # a round tail's length in half widths is that of a disc, a pointed one's what it usually is
@@ -274,16 +262,9 @@ class _Search:
         x[self.at["tip_gap"]], x[self.at["shape"]] = x[self.at["half_width"]].sum(), 1.0
         return x
 
-    def whole(self, x) -> np.ndarray:
-        """With the machine's numbers, 0 where they are not looked for yet."""
-        out = np.zeros(len(self.begin) + len(self.machine))
-        out[: len(x)] = x
-        return out
-
     def read(self, x) -> tuple[_core.MarkLaws, float, np.ndarray, Led]:
         """Laws, height of the paper, displacement, machine."""
-        x = self.whole(x)
-        change, deepest, old = x[: len(self.begin)] - self.begin, self.deepest_mm, self.laws
+        change, deepest, old = x - self.begin, self.deepest_mm, self.laws
         half = np.cumsum(change[self.at["half_width"]])
         behind, front = change[self.at["shape"]]
         laws = _core.MarkLaws(
@@ -310,7 +291,20 @@ class _Search:
         if self._impossible(x, laws, height):
             return 1.0
         pictures = predicted(_led(targets, led, height), laws, height, shift, self.deepest_mm)
-        return 1 - self._aim(targets, pictures) + self._price(x)
+        return 1 - self._aim(targets, pictures) + float(self._price(x) @ self._price(x)) / self.count
+
+    def differences(self, x, targets: list[Target], blur_px: int) -> np.ndarray | None:
+        """Of predicted and painted pixels, blurred; squares are shares of each mark's paint, and the price. None where
+        there is no such brush."""
+        laws, height, shift, led = self.read(x)
+        if self._impossible(x, laws, height):
+            return None
+        pictures = predicted(_led(targets, led, height), laws, height, shift, self.deepest_mm)
+        out = [
+            blur_px / np.sqrt(target.paint.sum()) * _blurred(picture - target.paint, blur_px).ravel()
+            for target, picture in zip(targets, pictures, strict=True)
+        ]
+        return np.concatenate([*out, self._price(x)])
 
     def _aim(self, targets: list[Target], pictures) -> float:
         """Mean overlap, where marks lie and where each may move, in shares."""
@@ -325,16 +319,16 @@ class _Search:
         pictures = predicted(_led(targets, led, height), laws, height, shift, self.deepest_mm)
         return float(np.mean([soft_overlap(a.paint, b) for a, b in zip(targets, pictures, strict=True)]))
 
-    def _price(self, x) -> float:
-        """Of a footprint that is not round, and of a machine that does not as it is told."""
+    def _price(self, x) -> np.ndarray:
+        """Of a footprint that is not round, and of a machine that does not as it is told: its squares over all marks
+        are what it costs."""
         behind, front = x[self.at["shape"]]
         friction = x[self.at["tip_gap"]][0] / max(0.1, x[self.at["half_width"]].sum()) - behind
         if not self.laws.round_tail:
             friction = 0.0  # drops hold no disc
         off = np.array([behind - self.usual_shape[0], front - self.usual_shape[1], friction]) / ROUND
-        x = self.whole(x)
         lean, by_map = x[self.at["lean"]] / (self.lean_sigma or 1.0), x[self.at["map"]] / MAP
-        return SCATTER / (2 * self.count) * float(off @ off + lean @ lean + by_map @ by_map)
+        return np.sqrt(SCATTER / 2) * np.concatenate([off, lean, by_map])
 
     def _impossible(self, x, laws, height: float) -> bool:
         """Laws that no brush has: a lag below 0, a width that falls, on all depths that the paper's height makes."""
@@ -353,6 +347,42 @@ def _led(targets: list[Target], led: Led, height_mm: float) -> list[Target]:
     if not (led.lean_mm_per_mm.any() or led.map.any()):
         return targets
     return [replace(target, poses_mm=led.way(target.poses_mm, height_mm)) for target in targets]
+
+
+def _registered(search: _Search, x, targets: list[Target], look: Callable[[], None]) -> np.ndarray:
+    """Least squares of predicted less painted pixels, blurred pictures first, by forward differences: as pictures are
+    registered. A simplex of so many numbers stops where lag is what lean should be."""
+    from scipy.optimize import least_squares
+
+    for blur_px in BLURS_PX:
+
+        def differences(x, blur_px=blur_px):
+            look()
+            return search.differences(x, targets, blur_px)
+
+        begin = differences(x)
+        if begin is None:
+            return x
+
+        def or_far(x, begin=begin, differences=differences):
+            found = differences(x)
+            return np.ones(len(begin)) if found is None else found
+
+        def slopes(x, differences=differences):
+            now, out = differences(x), []
+            for d in np.diag(NEAR * search.steps):
+                there, sign = differences(x + d), 1.0
+                if there is None:
+                    there, sign = differences(x - d), -1.0
+                out.append(np.zeros(len(now)) if there is None else sign * (there - now) / d.sum())
+            return np.column_stack(out)
+
+        x = least_squares(or_far, x, slopes, x_scale=search.steps, max_nfev=ROUNDS, ftol=1e-3).x
+    return x
+
+
+def _blurred(picture, blur_px: int) -> np.ndarray:
+    return cv2.GaussianBlur(np.float64(picture), (0, 0), blur_px)[::blur_px, ::blur_px]
 
 
 def _simplex(loss, x, steps, most: int):
