@@ -10,7 +10,8 @@ paint may be. So half of the aim is the overlap where each mark may move by what
 the true width overlaps most. See docs/calibration.md.
 
 What the machine does besides is changed with the laws, in one search, where it is asked for (lean, axes): found before
-or after them, lean is what lag makes of it.
+or after them, lean is what lag makes of it. A simplex of so many numbers stops too early: pictures of predicted and
+painted marks are registered first, by least squares.
 
 Lag and footprint tell little apart where the brush hardly turns, so that a footprint that is not round has its price,
 as for the edges: squares of what it is off, weighed against overlaps as if those scattered normally.
@@ -210,9 +211,10 @@ def largest_overlap(
         return loss
 
     few = targets[:: max(1, len(targets) // FEW)]
+    steps = search.steps
     if search.has_machine:
-        starts = [_registered(search, start, few, look) for start in starts]
-    found = [_simplex(loss_on(few), start, search.steps * (0.4 if search.has_machine else 1), FIRST) for start in starts]
+        starts, steps = [_registered(search, start, few, look) for start in starts], 0.4 * search.steps
+    found = [_simplex(loss_on(few), start, steps, FIRST) for start in starts]
     best = min(found, key=lambda one: one.fun)
     best = _simplex(loss_on(targets), best.x, 0.4 * search.steps, LAST)
     return Predicting(
@@ -350,8 +352,8 @@ def _led(targets: list[Target], led: Led, height_mm: float) -> list[Target]:
 
 
 def _registered(search: _Search, x, targets: list[Target], look: Callable[[], None]) -> np.ndarray:
-    """Least squares of predicted less painted pixels, blurred pictures first, by forward differences: as pictures are
-    registered. A simplex of so many numbers stops where lag is what lean should be."""
+    """Least squares of predicted less painted pixels, blurred pictures first, by forward differences, as
+    pictures are registered."""
     from scipy.optimize import least_squares
 
     for blur_px in BLURS_PX:

@@ -34,22 +34,27 @@ def report(made) -> str:
         f"({edges.fit.height_mm:+.2f} mm by edges)",
         f"painted and predicted marks overlap by {now_lying:.3f} where they lie, by {now_moved:.3f} with the "
         f"displacements of the edges' fit taken away; by edges {lying:.3f} and {moved:.3f}",
-        *_machine(found),
+        *_machine(edges, found.led),
         "no intervals: those of the edges' fit do not hold for these laws",
     ]
     return "\n".join([*lines, ""])
 
 
-def _machine(found) -> list[str]:
-    led = found.led
-    lines = []
+def _machine(edges, led) -> list[str]:
+    """What edges told of it and what came beside."""
+    lines, was = [], edges.fit.machine
     if led.lean_mm_per_mm.any():
-        x, y = led.lean_mm_per_mm
-        lines.append(f"lean: {x:+.3f} and {y:+.3f} mm per mm of depth in x and y beside what edges told")
-    if led.map.any():
-        (a, b), (c, d) = led.map
+        x, y = led.lean_mm_per_mm + was.lean_mm_per_mm
         lines.append(
-            f"ways: {a:+.4f} and {b:+.4f} mm in x, {c:+.4f} and {d:+.4f} in y per mm in x and y beside it"
+            f"lean: {x:+.3f} and {y:+.3f} mm per mm of depth in x and y "
+            "({:+.3f} and {:+.3f} by edges)".format(*was.lean_mm_per_mm)
+        )
+    if led.map.any():
+        axes = np.array([[was.scale[0], was.skew], [0.0, was.scale[1]]])
+        (a, b), (c, d) = (np.eye(2) + led.map) @ axes - np.eye(2)
+        lines.append(
+            f"ways: {a:+.4f} and {b:+.4f} mm in x, {c:+.4f} and {d:+.4f} in y per mm in x and y (scale "
+            f"{was.scale[0]:.4f} and {was.scale[1]:.4f}, skew {was.skew:+.4f} by edges)"
         )
     return lines
 
