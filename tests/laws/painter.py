@@ -435,3 +435,24 @@ def _noisy(rng, ring, faults, step=0.25):
     spectrum = np.maximum(np.fft.rfft(np.exp(-distance / faults.noise_length)).real, 0.0)
     noise = np.fft.irfft(np.fft.rfft(rng.normal(size=n)) * np.sqrt(spectrum), n) * faults.noise
     return points + noise[:, None] * np.column_stack([along[:, 1], -along[:, 0]])
+
+
+def dense(poses, arcs):
+    """Poses of a pass, its arcs in short steps, by the angle between neighbours seen from the centre."""
+    arcs = {k: arc for arc in arcs for k in range(arc.first, arc.last)}
+    out = [poses[:1]]
+    for k in range(len(poses) - 1):
+        angle, count = 0.0, max(2, int(np.hypot(*(poses[k + 1] - poses[k])[:2]) / 0.5) + 1)
+        if k in arcs:
+            centre, way = np.array(arcs[k].centre_mm), np.sign(arcs[k].direction)
+            spoke, last = ((poses[j, :2] - centre) @ [1, 1j] for j in (k, k + 1))
+            angle = np.angle(last / spoke)
+            angle += 2 * np.pi * way * (np.sign(angle) != way)
+            count = 2 + int(abs(angle * spoke) / 0.5)
+        share = np.linspace(0, 1, count)[1:, None]
+        steps = poses[k] + share * (poses[k + 1] - poses[k])
+        if angle:
+            place = spoke * np.exp(1j * angle * share[:, 0])
+            steps[:, :2] = centre + np.column_stack([place.real, place.imag])
+        out.append(steps)
+    return np.vstack(out)
