@@ -24,8 +24,8 @@ _ROOM |= dict.fromkeys(("right", "upper"), "tell the sheet's size with --sheet W
 
 @dataclass(frozen=True)
 class Foreign:
-    """plan: a pass for each time that the brush touches; problems: a notice for each limit that it breaks; warnings: what
-    is assumed."""
+    """plan: a pass for each time that the brush touches; problems: a notice for each limit that it breaks; warnings:
+    what is assumed."""
 
     plan: object
     marks: object
@@ -89,7 +89,7 @@ def _outside(some: list[Way], cell: Cell, sheet_mm) -> list[Notice]:
 
 
 def _left_down(some: list[Way], cell: Cell) -> list[Notice]:
-    """A notice where the last line leaves the brush on the paper; a servo's last M5 is no way, so of these nothing is said."""
+    """A notice where the last line leaves the brush on the paper. Of a servo nothing is said: its last M5 is no way."""
     height_mm = float(some[-1].points_mm[-1, 2])
     if cell.servo is not None or not height_mm < 0:
         return []
