@@ -75,11 +75,12 @@ class Crossing:
     @property
     def has_hump(self) -> bool:
         """Whether the end of a stem sticks out beside the neck of an arm, as an n's beside its arch; not that of two
-        legs, as of an A."""
+        legs, as of an A, nor beside a flag."""
         if not self.is_corner or self.dropped <= STEM_END or _are_legs(*self.arms):
             return False
-        thin, wide = sorted(arm.line[arm.out, 2] for arm in self.arms)
-        return bool(thin < NECK * wide)
+        thin, wide = sorted(self.arms, key=lambda arm: arm.line[arm.out, 2])
+        is_neck = thin.line[thin.out, 2] < NECK * wide.line[wide.out, 2]
+        return bool(is_neck and length(thin.line[:, :2]) > length(wide.line[:, :2]))
 
 
 def crossings_of(nodes, lines, ends, degree) -> tuple[list[Crossing], list[Arm]]:
