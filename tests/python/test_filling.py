@@ -8,11 +8,13 @@ from svg_text import read
 
 from brushsvg import _core, find_brush
 from brushsvg.calibration.from_widths import new_brush
-from brushsvg.strokes.contour_fill import contour_passes, painted, region
+from brushsvg.strokes import rest_lines
+from brushsvg.strokes.contour_fill import contour_passes
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.fillings import fillings
 from brushsvg.strokes.offset_passes import Line
 from brushsvg.strokes.skeleton import shape_to_strokes
+from brushsvg.strokes.swept_areas import painted, region
 from brushsvg.strokes.trial_mark import spoiling
 from brushsvg.strokes.wide_shapes import within_reach
 
@@ -346,7 +348,7 @@ def test_lines_that_paint_more_beside_a_shape_than_within_it_spoil_it(brush):
 def test_a_line_whose_curve_leaves_the_shape_is_no_part_of_a_filling(monkeypatch):
     """A curve through few places once left a serif by 10 mm, as a bar below the letter."""
     astray = Line(np.array([[3.5, 2, -6, -3, -16, -8, -26, -13]]), [(0.0, 2.0)])
-    monkeypatch.setitem(contour_passes.__globals__, "_fitted", lambda *_: astray)
+    monkeypatch.setattr(rest_lines, "_fitted", lambda *_: astray)
     triangle = shapely.Polygon([(0, 0), (50, 0), (25, 43)])
     for lines in contour_passes(triangle, [], [], 0.0, HALF_MM):
         assert painted(lines).difference(triangle.buffer(0.2)).area < 0.1

@@ -9,8 +9,9 @@ import numpy as np
 import shapely
 
 from .. import _core
-from .contour_fill import contour_passes, painted, region, unpainted
+from .contour_fill import contour_passes
 from .offset_passes import Line, clamped, offset_passes
+from .swept_areas import painted, region, unpainted
 
 _MOST_STROKES = 500
 _SHOWN_SHARE, _SHOWN_GAP_MM = 0.02, 1.0  # what a round brush leaves of blunt corners is less
