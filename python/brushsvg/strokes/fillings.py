@@ -11,7 +11,7 @@ import shapely
 from .. import _core
 from .contour_fill import contour_passes
 from .offset_passes import Line, clamped, offset_passes
-from .swept_areas import painted, region, unpainted
+from .swept_areas import painted, region, rings_of, unpainted
 
 _MOST_STROKES = 500
 _SHOWN_SHARE, _SHOWN_GAP_MM = 0.02, 1.0  # what a round brush leaves of blunt corners is less
@@ -72,15 +72,6 @@ def _first_share(part: list[np.ndarray], lines: list[Line]) -> list[np.ndarray]:
     whole = region(part)
     share = shapely.union(shapely.intersection(painted(lines[:1]), whole), unpainted(whole, lines))
     return rings_of(share)
-
-
-def rings_of(shape) -> list[np.ndarray]:
-    polygons = [
-        one for one in shapely.get_parts(shapely.orient_polygons(shape)) if one.geom_type == "Polygon"
-    ]
-    return _core.unite(
-        [np.array(ring.coords)[:-1] for one in polygons for ring in (one.exterior, *one.interiors)]
-    )
 
 
 def _tried(shape, passes, meant, narrow: list) -> Filling:

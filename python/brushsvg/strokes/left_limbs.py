@@ -51,8 +51,7 @@ def _without(stroke, element: str, limbs_mm: list[np.ndarray]):
         return stroke
     import shapely
 
-    from .fillings import rings_of
-    from .swept_areas import region
+    from .swept_areas import region, rings_of
 
     left = shapely.difference(region(stroke.wanted_mm), region(limbs_mm))
     return stroke.replaced(wanted_mm=rings_of(left)) if left.area > 0 else stroke

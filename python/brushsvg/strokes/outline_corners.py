@@ -257,7 +257,7 @@ def _room(shape, place, half_mm: float, reach_mm: float) -> np.ndarray | None:
 
 
 def _leg(stroke, line: Line, lane: int, from_mm: float, to_mm: float, tip, end, shape, ways: tuple[str, str]):
-    from .fillings import rings_of
+    from .swept_areas import rings_of
 
     cubics, halves = line.stretch(from_mm, to_mm)
     length_mm = knots(cubics)[:, -1].sum()

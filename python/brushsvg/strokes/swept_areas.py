@@ -21,6 +21,16 @@ def region(rings: list[np.ndarray]):
     return shapely.union_all(parts)
 
 
+def rings_of(shape) -> list[np.ndarray]:
+    """The same the other way round."""
+    polygons = [
+        one for one in shapely.get_parts(shapely.orient_polygons(shape)) if one.geom_type == "Polygon"
+    ]
+    return _core.unite(
+        [np.array(ring.coords)[:-1] for one in polygons for ring in (one.exterior, *one.interiors)]
+    )
+
+
 def painted(strokes: list):
     """What discs of their widths paint along lines or strokes; what lines with square ends are meant to."""
     return shapely.union_all([part for each in strokes for part in swept(each)])

@@ -7,8 +7,8 @@ import numpy as np
 from .. import _core
 
 _ANY_SHEET_MM = (1e6, 1e6)
-_BESIDE_MM = 5.0  # of a shape: no paint lies farther out
-_PX_PER_MM, _SIDE_PX = 6.0, 2000
+BESIDE_MM = 5.0  # of a shape: no paint lies farther out
+PX_PER_MM, SIDE_PX = 6.0, 2000
 _TOLERANCE_MM = 0.05  # as plans have by default: a coarser one blurs what corners look like
 
 
@@ -64,8 +64,8 @@ class _Wanted:
 
     def __init__(self, rings: list[np.ndarray]) -> None:
         points = np.vstack(rings)
-        low, size = points.min(axis=0) - _BESIDE_MM, np.ptp(points, axis=0) + 2 * _BESIDE_MM
-        self.window, self.px_per_mm = (*low, *size), min(_PX_PER_MM, _SIDE_PX / size.max())
+        low, size = points.min(axis=0) - BESIDE_MM, np.ptp(points, axis=0) + 2 * BESIDE_MM
+        self.window, self.px_per_mm = (*low, *size), min(PX_PER_MM, SIDE_PX / size.max())
         self.covered = _core.coverage(rings, self.window, self.px_per_mm)
 
 
