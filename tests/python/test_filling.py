@@ -149,6 +149,12 @@ def test_a_ring_begins_amid_an_edge_as_its_tip_would_stick_out_of_a_corner(brush
     assert np.hypot(*(inside - start).T).min() > 6
 
 
+STAR_OF_SIX = "M" + "L".join(
+    f"{45 + far * np.sin(turn):.4f} {45 - far * np.cos(turn):.4f}"
+    for turn, far in zip(np.pi * np.arange(12) / 6, [38, 20] * 6, strict=True)
+)
+
+
 def paint_of(passes, brush):
     """What the brush paints of passes, in closed form, as shapely sees it."""
     made = _core.compensate(passes, brush, (100, 60), "closed", 0.05, None, start="auto", end="auto")
@@ -158,10 +164,15 @@ def paint_of(passes, brush):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["star", "arrow", "bow-tie"])
-def test_marks_do_not_bulge_where_a_shape_becomes_as_narrow_as_the_brush(brush, name):
-    """A line of a ring that ended in its cusp stuck out by up to 0.8 mm, of the edge that it does not run along."""
-    made = of(SHAPES[name])
+@pytest.mark.parametrize(
+    "d",
+    [SHAPES["star"], SHAPES["arrow"], SHAPES["bow-tie"], STAR_OF_SIX + "Z"],
+    ids=["star", "arrow", "bow-tie", "star of six"],
+)
+def test_marks_do_not_bulge_where_a_shape_becomes_as_narrow_as_the_brush(brush, d):
+    """A line of a ring that ended in its cusp stuck out by up to 0.8 mm, of the edge that it does not run along; a star
+    of six by 0.4 mm where a line begins square."""
+    made = of(d)
     shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm]))
     paint = paint_of(within_reach(made, brush, "passes")[0], brush)
     places = shapely.points(shapely.get_coordinates(paint))

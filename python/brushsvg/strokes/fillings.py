@@ -74,6 +74,16 @@ def _first_share(part: list[np.ndarray], lines: list[Line]) -> list[np.ndarray]:
     return rings_of(share)
 
 
+def with_lines(filling: Filling, passes: dict[int, list[Line]]) -> Filling:
+    """The filling with these lines in place of its own."""
+    meant = {
+        k: (passes[k][0] if line is filling.passes[k][0] else line, rings)
+        for k, (line, rings) in filling.meant.items()
+        if passes[k]
+    }
+    return _tried(region(filling.rings), passes, meant, filling.narrow)
+
+
 def _tried(shape, passes, meant, narrow: list) -> Filling:
     left = unpainted(shape, [*narrow, *(line for lines in passes.values() for line in lines)])
     rings = rings_of(shape)

@@ -141,6 +141,7 @@ def _mended(filling, overlap: float, strokes: list, brush) -> tuple:
     """The filling without marks that stick out of the shape where other lines help, and how much its mark overlaps with
     it then."""
     from .bulges import mended
+    from .fillings import with_lines
 
     numbers = [(k, lane) for k, of_stroke in filling.passes.items() for lane in range(len(of_stroke))]
     lines = [filling.passes[k][lane] for k, lane in numbers]
@@ -156,12 +157,7 @@ def _mended(filling, overlap: float, strokes: list, brush) -> tuple:
     passes: dict[int, list] = {k: [] for k in filling.passes}
     for (k, _), line in zip(numbers, made, strict=True):
         passes[k] += [line] if line else []
-    meant = {
-        k: (passes[k][0] if line is filling.passes[k][0] else line, rings)
-        for k, (line, rings) in filling.meant.items()
-        if passes[k]
-    }
-    kept = replace(filling, passes=passes, meant=meant)
+    kept = with_lines(filling, passes)
     painted = [
         _like(strokes[k], line, lane) for k, some in passes.items() for lane, line in enumerate(some, 1)
     ]
