@@ -36,8 +36,8 @@ from brushsvg.drawing.text import text_svg
 from brushsvg.geometry.rings import signed_area
 from brushsvg.pipeline.prediction import predict
 from brushsvg.pipeline.preparation import Options, prepare
-from brushsvg.strokes.contour_fill import region, unpainted
 from brushsvg.strokes.skeleton import filled
+from brushsvg.strokes.swept_areas import region, unpainted
 from brushsvg.strokes.wide_shapes import within_reach
 
 GLYPHS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
