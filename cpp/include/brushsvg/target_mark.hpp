@@ -1,5 +1,6 @@
 #pragma once
 
+#include "brushsvg/coverage.hpp"
 #include "brushsvg/region.hpp"
 #include "brushsvg/stroke.hpp"
 
@@ -13,5 +14,8 @@ Rings wanted_outline(const Stroke& stroke, double tolerance_mm = 0.005);
 /// Convex counter-clockwise rings whose union is the path with its width and round caps, whatever `wanted_mm` says:
 /// enough for a picture, at a fraction of the outline's cost.
 Rings wanted_pieces(const Stroke& stroke, double tolerance_mm = 0.005);
+
+/// Those of them that may show in a part of the paper, in the same order.
+Rings wanted_pieces_near(const Stroke& stroke, const Window& window, double tolerance_mm = 0.005);
 
 }  // namespace brushsvg
