@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "brushsvg/brush.hpp"
-#include "brushsvg/coverage.hpp"
 #include "brushsvg/marks.hpp"
 #include "brushsvg/plan.hpp"
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "brushsvg/coverage.hpp"
 #include "brushsvg/region.hpp"
 #include "brushsvg/stroke.hpp"
 
