@@ -68,7 +68,7 @@ class View {
 
     Coverage picture(const Pass& pass) const {
         Marks marks;
-        marks.passes = {simulate(pass, brush_, 0.05 * half_mm_)};
+        marks.passes.push_back(simulate_near(pass, brush_, window_, 0.05 * half_mm_));
         return coverage(marks, brush_, window_, px_per_mm_);
     }
     /// Whether the mark of another pass, made where it is asked for, wins what is worth it.
