@@ -104,7 +104,9 @@ def _unnamed(name: str, source: str) -> Item:
     """A drawing that is refused when it is its turn, since its files cannot have its name."""
 
     def read() -> InMemory:
-        sentence = f"{name[:60]} cannot be the name of a file that is written: it holds more than printed letters"
+        sentence = (
+            f"{name[:60]} cannot be the name of a file that is written: it holds more than printed letters"
+        )
         raise Error(sentence, code="name-invalid", advice="rename the drawing")
 
     return Item(name, source, "", read)

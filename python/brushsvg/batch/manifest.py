@@ -134,7 +134,9 @@ class Manifest:
         for row in self._by_name.get(item.name, []):
             here = [file for file in row.files.items() if self._lies_there(file)]
             if here and row.path not in ("", path) and (self.folder / row.path).exists():
-                sentence = f"{here[0][0]} was made of {row.source}: that of {item.source} would be written over it"
+                sentence = (
+                    f"{here[0][0]} was made of {row.source}: that of {item.source} would be written over it"
+                )
                 raise Error(sentence, file=str(self.folder), code="name-taken", advice="give another --out")
 
     def remove_outdated(self, row: Row) -> list[str]:
@@ -142,7 +144,9 @@ class Manifest:
         removed: list[str] = []
         if row.figures:
             return removed
-        for file in dict.fromkeys(file for each in self._by_name.get(row.name, []) for file in each.files.items()):
+        for file in dict.fromkeys(
+            file for each in self._by_name.get(row.name, []) for file in each.files.items()
+        ):
             if self._lies_there(file):
                 try:
                     (self.folder / file[0]).unlink()

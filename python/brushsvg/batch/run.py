@@ -39,8 +39,8 @@ BYTES_AT_ONCE = 64 * 2**20
 @dataclass(frozen=True)
 class Batch:
     """rows: one for each drawing, in their order; resumed: how many of them an earlier run had done; files: the tables
-    and contact sheets; removed: programs and pictures below the folder that an earlier run had made of drawings that are
-    refused now."""
+    and contact sheets; removed: programs and pictures, below the folder, that an earlier run had made of drawings that
+    are refused now."""
 
     rows: tuple[Row, ...]
     resumed: int
@@ -115,8 +115,7 @@ def batch(
     try:
         keys = [way.key(item) for item in listed]
         rows: list[Row | None] = [
-            manifest.done(key, item) if item.digest else None
-            for key, item in zip(keys, listed, strict=True)
+            manifest.done(key, item) if item.digest else None for key, item in zip(keys, listed, strict=True)
         ]
         resumed = len(listed) - rows.count(None)
         left = [index for index, row in enumerate(rows) if row is None]

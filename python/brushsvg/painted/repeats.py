@@ -11,7 +11,7 @@ import numpy as np
 from .. import _core, json_fields
 from ..errors import Error
 from ..files import read_bytes
-from ..geometry.polylines import lengths
+from ..geometry.polylines import evenly
 from ..geometry.rotation import rotation
 from .comparison import LEAST_MARKS, Comparison
 from .next_time import UNSEEN
@@ -148,9 +148,7 @@ def _copies(plan) -> list[list[str]]:
 
 def _along(poses_mm: np.ndarray) -> np.ndarray:
     """(n, 3) from its beginning, at places that part the way into equal lengths."""
-    at_mm = lengths(poses_mm)
-    places = np.linspace(0.0, at_mm[-1], ALONG)
-    way = np.column_stack([np.interp(places, at_mm, column) for column in poses_mm.T])
+    way = evenly(poses_mm, ALONG)
     way[:, :2] -= poses_mm[0, :2]
     return way
 

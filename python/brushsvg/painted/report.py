@@ -151,7 +151,7 @@ def as_json(
 
 
 def _told(correction: Correction | None) -> dict | None:
-    keys = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm")
+    keys = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm", "way_mm")
     return {key: getattr(correction, key) for key in keys} if correction else None
 
 
