@@ -18,7 +18,9 @@ from .next_time import aside_mm
 
 LEAST_BLOT_MM2 = 1.0
 HEAD = ("stroke", "wanted", "predicted", "x", "y", "off", "turn", "wider", "began", "ended", "missing")
-WORSE = " (less: the middles of marks tell that place, which missing paint, the brush and the machine move, too)"
+WORSE = (
+    " (less: the middles of marks tell that place, which missing paint, the brush and the machine move, too)"
+)
 
 
 @dataclass(frozen=True)
