@@ -27,7 +27,7 @@ from brushsvg.machine.cell import Reload, Station
 from brushsvg.machine.cell_file import cell_names, find_cell
 from brushsvg.machine.paint_reload import in_loads, visits
 from brushsvg.machine.posts import POSTS
-from brushsvg.strokes.contour_fill import region
+from brushsvg.strokes.swept_areas import region
 
 A4, A5, LETTER = (210.0, 297.0), (148.0, 210.0), (215.9, 279.4)
 PX_PER_MM = 8
