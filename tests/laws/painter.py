@@ -189,6 +189,29 @@ def _drawn(rng):
     return PchipInterpolator(np.linspace(0, 1, 6), rise / rise[-1]), ()
 
 
+def _polyline(rng):
+    """Four straight pieces that meet at random depths and rise by random steps."""
+    at = np.sort(rng.uniform(0.1, 0.9, 3))
+    rise = np.cumsum(rng.uniform(0.1, 1.0, 4))
+    corners = np.concatenate([[0.0], at, [1.0]])
+    return lambda t: np.interp(t, corners, np.concatenate([[0.0], rise / rise[-1]])), tuple(at)
+
+
+def _hyperbolic(rng):
+    """t / (t + c), as enzymes and adsorption saturate."""
+    half_way = rng.uniform(0.2, 1.0)
+    return lambda t: t * (1 + half_way) / (t + half_way), ()
+
+
+def _tanh(rng):
+    middle, length = rng.uniform(-0.1, 0.5), rng.uniform(0.25, 0.6)
+
+    def value(t):
+        return np.tanh((t - middle) / length)
+
+    return lambda t: (value(t) - value(0.0)) / (value(1.0) - value(0.0)), ()
+
+
 SHAPES = {
     "saturating": _saturating,
     "kinked": _kinked,
@@ -198,6 +221,8 @@ SHAPES = {
     "wiggling": _wiggling,
 }
 MORE_SHAPES = {"stepped": _stepped, "hooked": _hooked, "capped": _capped, "drawn": _drawn}
+# nothing was ever settled on these
+UNSEEN_SHAPES = {"polyline": _polyline, "hyperbolic": _hyperbolic, "tanh": _tanh}
 
 
 def random_stranger(rng, shape):
@@ -208,7 +233,7 @@ def random_stranger(rng, shape):
     gap, widest = rng.uniform(0.2, 0.6) * deepest, rng.normal(1.8, 0.25) * half
 
     def curve(begin, end, straight):
-        rise, bends = (SHAPES | MORE_SHAPES)[shape](rng)
+        rise, bends = (SHAPES | MORE_SHAPES | UNSEEN_SHAPES)[shape](rng)
 
         def value(depth):
             t = np.asarray(depth / deepest)
