@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from diagnostics import in_json, is_told
 
+from brushsvg.brush.library import find_brush
 from brushsvg.cli import main
 
 pytestmark = pytest.mark.long  # sheets are rendered and read
@@ -191,3 +192,23 @@ def test_a_photograph_that_is_given_twice_is_refused(letters, capsys):
             status, _, told = in_json(capsys, *words)
             assert status == 1 and told[-1][0] == str(photos[-1]), told
             assert is_told(told, "photo-twice 3.jpg"), told
+
+
+def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
+    """Of a studio in which nothing is amiss the brush that was named comes back; from the plan alone it would be
+    another page."""
+    plan, chart, photo, found = (
+        str(tmp_path / name) for name in ("plan.json", "chart.json", "p.jpg", "own.json")
+    )
+    assert main(["chart", plan, "--brush", "round-6", "--sheet", "a5", "--chart", chart]) == 0
+    (tmp_path / "studio.toml").write_text(HEAD)
+    assert main(["simulate-photo", chart, photo, "--studio", str(tmp_path / "studio.toml")]) == 0
+    assert main(["calibrate", photo, "--chart", chart, "-o", found]) == 0
+    own, true, depths = find_brush(found), find_brush("round-6"), np.linspace(3, 10, 8)
+    for law in ("lag", "half_width"):
+        values, truth = (np.array([getattr(each, law)(d) for d in depths]) for each in (own, true))
+        assert np.abs(values / truth - 1).max() < 0.03, (law, values / truth)
+    capsys.readouterr()
+    status, _, told = in_json(capsys, "calibrate", photo, "--chart", plan, "-o", found)
+    assert status == 1 and is_told([each for _, each in told], "format-unknown")
+    assert "brushsvg chart writes with --chart FILE" in told[-1][1].sentence, told

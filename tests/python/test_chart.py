@@ -441,11 +441,11 @@ def test_it_says_how_sure_the_paint_will_be(tmp_path, capsys):
         assert main(["chart", str(tmp_path / "p.json"), "--sheet", "a5", *flags]) == 0
         return capsys.readouterr().out
 
-    assert int(re.search(r"depth tells (\d+) %", told()).group(1)) > 55
+    assert int(re.search(r"cannot tell: .*depth explains (\d+) %", told()).group(1)) > 55
     halves = []
     for noise in ("0.1", "0.2"):
         found = re.search(
-            r"narrowing per metre \+- ([\d.]+); depth tells (\d+) %.* last for (\d+) mm",
+            r"narrowing per metre \+- ([\d.]+); depth explains (\d+) %.* last for (\d+) mm",
             told("--paint", "--noise", noise),
         )
         half, share, way = map(float, found.groups())
