@@ -48,8 +48,8 @@ def _of_paint(told: Expected) -> list[str]:
     alike = f"depth explains {100 * told.told_by_depth:.0f} % of how far each stroke is from the dip"
     if told.is_refused:
         return [
-            "Whether marks narrow as paint runs out, this chart cannot tell: its strokes go from shallow to deep, so that "
-            f"less paint looks like less depth ({alike}); chart --paint has another order"
+            "Whether marks narrow as paint runs out, this chart cannot tell: its strokes go from shallow to deep, so "
+            f"that less paint looks like less depth ({alike}); chart --paint has another order"
         ]
     return [
         "Of paint that runs out, with calibrate --paint, painted with one load:",
