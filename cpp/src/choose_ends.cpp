@@ -108,9 +108,7 @@ Ends::Ends(const Stroke& wanted, const Stroke& stroke, const Brush& brush, doubl
 Ends::~Ends() = default;
 
 const Pass& Ends::plain(Beginning start) {
-    std::optional<Pass>& pass = start == Beginning::hidden   ? hidden_
-                                : start == Beginning::turned ? turned_
-                                                             : exposed_;
+    std::optional<Pass>& pass = start == Beginning::hidden ? hidden_ : start == Beginning::turned ? turned_ : exposed_;
     if (!pass) {
         bool turns = false;
         closed_form(stroke_, brush_, line_, start, step_tolerance_, turns).into(pass.emplace());
