@@ -108,6 +108,6 @@ def test_a_ball_is_turned_round_its_middle_where_the_line_begins_beside_it():
     brush = find_brush("round-6")
     stroke = ball(3.5, 2.8, 0.7)
     middle = 100 + 3.5 * np.array([np.cos(0.08 * 4.5), np.sin(0.08 * 4.5)])
-    marks = _core.simulate(compensate([stroke], brush, (200, 200)).plan, brush)
+    marks = _core.simulate(compensate([stroke], brush, (200, 200), start="auto").plan, brush)
     assert np.hypot(*(marks.passes[0].contact_mm[0] - middle)) < 0.1
     assert overlap(stroke, brush, "auto") > 0.95
