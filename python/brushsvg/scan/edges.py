@@ -16,7 +16,7 @@ BROADEST_MM = 31  # paint is narrower: what is darker over less than this is not
 PAPER = 0.92  # of the light round about: darker is paint
 # times that what is darker than its surroundings covers as much as what is lighter, where paint is lighter: white marks
 # have a dark surrounding as wide as BROADEST_MM, and black ones a white one
-CLEARLY = 1.2
+CLEARLY = 1.5
 SMOOTH_MM = 8.0  # over which the light changes; shorter, and it would follow the stain round wet paint
 STRAY_MM = 6.0  # a mark lies no farther from its box
 FAINTEST = 0.12  # share of the light that paint takes away at least
