@@ -9,7 +9,8 @@ its shape.
   overlap   common area over joint area of mark and shape, mean over the glyphs, and the least
   notices   how many, in all
   thorns    corners of the mark beyond 20 degrees that stick out of the shape by more than 0.3 mm
-  turning   how much the mark's outline turns more than the shape's, full turns per glyph
+  turning   how much the mark's outline turns more than the shape's, full turns per glyph; rings below 0.01 mm2 are
+            pinholes, and left out
 
 Each font is painted so large that the stem of its l is nearly as wide as the brush paints, at most 100 mm to the em.
 FONT is a file, TrueType, OpenType or WOFF; --pictures writes a page of all glyphs per font.
@@ -32,10 +33,11 @@ import shapely
 from brushsvg import find_brush
 from brushsvg.drawing.svg import read_svg
 from brushsvg.drawing.text import text_svg
+from brushsvg.geometry.rings import signed_area
 from brushsvg.pipeline.prediction import predict
 from brushsvg.pipeline.preparation import Options, prepare
-from brushsvg.strokes.contour_fill import region, unpainted
 from brushsvg.strokes.skeleton import filled
+from brushsvg.strokes.swept_areas import region, unpainted
 from brushsvg.strokes.wide_shapes import within_reach
 
 GLYPHS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
@@ -45,6 +47,7 @@ LOST_SHARE = 0.03
 EDGE_MM = 0.3  # how far a mark's edge may lie beside the shape's and both are one
 THORN_RAD = np.radians(20)
 EVEN_MM = 0.5  # what an outline turns within less is an angle of its polygon
+PINHOLE_MM2 = 0.01  # a ring that nobody sees, and that would count a whole turn
 PX_PER_MM, COLUMNS = 6, 11
 
 
@@ -134,7 +137,7 @@ def _thorns(rings, shape) -> int:
 def _turned(rings) -> float:
     """How much outlines turn in all, looked at every half millimetre."""
     total = 0.0
-    for ring in map(_simpler, rings):
+    for ring in map(_simpler, (ring for ring in rings if abs(signed_area(ring)) >= PINHOLE_MM2)):
         line = shapely.LinearRing(ring)
         at = np.linspace(0, line.length, max(int(line.length / EVEN_MM), 3), endpoint=False)
         places = shapely.get_coordinates(shapely.line_interpolate_point(line, at))

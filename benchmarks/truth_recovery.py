@@ -11,7 +11,8 @@ the values of each law at five depths, pooled and each; and how far the lag is o
 
 With --outside the laws are none of the fit's polynomials: saturating, kinked, power, logistic, floored or wiggling,
 with random numbers; `all` takes them in turn. `more` takes four other shapes: stepped, hooked at the touch, capped,
-drawn through random points. round-6 is the shipped brush, the same each time.
+drawn through random points; `unseen` three on which nothing was settled: polyline, hyperbolic, tanh. round-6 is the
+shipped brush, the same each time.
 --noise 0 paints clean edges; --family fits without departures from the family.
 """
 
@@ -75,7 +76,8 @@ def brush_for(rng, seed: int, outside: str | None):
         return painter.round_6(
             json.loads((Path(brushsvg.__file__).parent / "data/brushes/round-6.json").read_text())
         )
-    taken = {"all": list(painter.SHAPES), "more": list(painter.MORE_SHAPES)}.get(outside, [outside])
+    groups = {"all": painter.SHAPES, "more": painter.MORE_SHAPES, "unseen": painter.UNSEEN_SHAPES}
+    taken = list(groups.get(outside, [outside]))
     return painter.random_stranger(rng, taken[seed % len(taken)])
 
 
@@ -165,7 +167,13 @@ def main():
         "--sheet", type=values.sheet, help="a4, a3, 210x297: the chart that brushsvg lays out on it"
     )
     arguments.add_argument(
-        "--outside", choices=["all", "more", "round-6", *painter.SHAPES, *painter.MORE_SHAPES]
+        "--outside",
+        choices=[
+            *("all", "more", "unseen", "round-6"),
+            *painter.SHAPES,
+            *painter.MORE_SHAPES,
+            *painter.UNSEEN_SHAPES,
+        ],
     )
     arguments.add_argument("--noise", type=float, help="of the edges, mm (0.1)")
     arguments.add_argument(

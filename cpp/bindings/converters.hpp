@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,10 +62,16 @@ namespace pybind11::detail {
 
 using DoubleArray = array_t<double, array::c_style | array::forcecast>;
 
+/// Values that are masked are nan: what lies below a mask nobody meant.
+inline object unmasked(handle source) {
+    if (!isinstance<array>(source) || !hasattr(source, "filled")) return reinterpret_borrow<object>(source);
+    return source.attr("astype")("float64").attr("filled")(std::numeric_limits<double>::quiet_NaN());
+}
+
 /// An array of numbers, or null for anything else: complex ones, dates and words would only seem to be numbers, and
 /// None would be nan.
 inline DoubleArray numbers_of(handle source) {
-    const auto found = reinterpret_steal<object>(array::ensure(source).release());
+    const auto found = reinterpret_steal<object>(array::ensure(unmasked(source)).release());
     if (!found || std::string("biuf").find(array(found).dtype().kind()) == std::string::npos)
         return reinterpret_steal<DoubleArray>(handle());
     const auto values = reinterpret_borrow<array>(found);

@@ -30,6 +30,8 @@ constexpr double kWorthIt = 0.2, kWorthRound = 0.05;
 /// And what a full turn more of the mark's outline weighs against it, in squares of the greatest half width: knobs on
 /// the thin ends of drops.
 constexpr double kCalm = 0.3;
+/// Half widths of its beginning after which a line is so much thinner where it begins in a ball.
+constexpr double kOfBall = 3.0, kThinner = 0.85;
 
 /// The pass up to where its path is so long, the brush left on the paper.
 Pass beginning_of(const Pass& pass, double length_mm) {
@@ -52,6 +54,12 @@ double greatest_half_mm(const Stroke& stroke, double half_mm) {
     return half_mm;
 }
 
+/// Whether the line begins wider than it goes on: elsewhere a disc is no better than what a hidden beginning paints.
+bool is_ball(const Stroke& stroke, double length_mm) {
+    const double half_mm = half_width_at(stroke, 0.0);
+    return half_width_at(stroke, std::min(1.0, kOfBall * half_mm / length_mm)) < kThinner * half_mm;
+}
+
 }  // namespace
 
 /// The surroundings of an end, what is wanted there, and how marks compare with it.
@@ -68,7 +76,7 @@ class View {
 
     Coverage picture(const Pass& pass) const {
         Marks marks;
-        marks.passes = {simulate(pass, brush_, 0.05 * half_mm_)};
+        marks.passes.push_back(simulate_near(pass, brush_, window_, 0.05 * half_mm_));
         return coverage(marks, brush_, window_, px_per_mm_);
     }
     /// Whether the mark of another pass, made where it is asked for, wins what is worth it.
@@ -100,7 +108,7 @@ Ends::Ends(const Stroke& wanted, const Stroke& stroke, const Brush& brush, doubl
 Ends::~Ends() = default;
 
 const Pass& Ends::plain(Beginning start) {
-    std::optional<Pass>& pass = start == Beginning::hidden ? hidden_ : exposed_;
+    std::optional<Pass>& pass = start == Beginning::hidden ? hidden_ : start == Beginning::turned ? turned_ : exposed_;
     if (!pass) {
         bool turns = false;
         closed_form(stroke_, brush_, line_, start, step_tolerance_, turns).into(pass.emplace());
@@ -132,23 +140,25 @@ Beginning Ends::best_beginning() {
     const std::optional<Dot> dot = dot_of(wanted_, brush_);
     const bool hides =
         dot || hidden_beginning(stroke_, brush_, line_, InverseLag(line_, brush_), last_mm, step_tolerance_);
-    if (!hides && !turned_beginning(stroke_, brush_, line_)) return Beginning::exposed;
+    const auto turns = [&] { return turned_beginning(stroke_, brush_, line_).has_value(); };
+    if (!hides && !turns()) return Beginning::exposed;
     const Pass& exposed = plain(Beginning::exposed);
     const View& view = at_beginning();
-    bool is_better = false;
     if (dot) {
         Pass hidden;
         poses_of(*dot, brush_).into(hidden);
-        is_better = view.is_better([&] { return hidden; }, view.picture(exposed));
-    } else {
-        is_better = view.is_better(
-            [&] {
-                const Pass& hidden = plain(Beginning::hidden);
-                return beginning_of(hidden, made_mm() + way_of(hidden) - way_of(exposed));
-            },
-            exposed_picture());
+        return view.is_better([&] { return hidden; }, view.picture(exposed)) ? Beginning::hidden : Beginning::exposed;
     }
-    return is_better ? Beginning::hidden : Beginning::exposed;
+    // both up to the same place: from there on they are the same
+    const auto begun = [&](Beginning start) {
+        const Pass& pass = plain(start);
+        return beginning_of(pass, made_mm() + way_of(pass) - way_of(exposed));
+    };
+    if (!view.is_better([&] { return begun(Beginning::hidden); }, exposed_picture())) return Beginning::exposed;
+    if (!hides || !is_ball(stroke_, line_.length()) || !turns()) return Beginning::hidden;
+    return view.is_better([&] { return begun(Beginning::turned); }, view.picture(begun(Beginning::hidden)))
+               ? Beginning::turned
+               : Beginning::hidden;
 }
 
 bool Ends::is_better_squared(const SquaredDot& dot, Beginning start) {
@@ -175,7 +185,7 @@ bool Ends::begins_better(const SquaredBeginning& squared, const Stroke& whole, B
         // both up to the same place: from there on they are the same
         return beginning_of(pass, made_mm() + way_of(pass) - way_of(before));
     };
-    if (start != Beginning::hidden) return view.is_better(other, exposed_picture(), squared.is_round);
+    if (start == Beginning::exposed) return view.is_better(other, exposed_picture(), squared.is_round);
     return view.is_better(other, view.picture(beginning_of(before, made_mm())), squared.is_round);
 }
 

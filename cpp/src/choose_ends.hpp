@@ -42,7 +42,7 @@ class Ends {
     Line line_;
     double step_tolerance_;
     std::unique_ptr<View> view_;
-    std::optional<Pass> exposed_, hidden_;
+    std::optional<Pass> exposed_, hidden_, turned_;
     std::optional<Coverage> exposed_picture_;
 };
 

@@ -85,7 +85,8 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
     std::optional<HiddenBeginning> hidden;
     if (start == Beginning::hidden) hidden = hidden_beginning(stroke, brush, line, inverse, s1, step_tolerance);
     std::optional<TurnedBeginning> turned;
-    if (start == Beginning::hidden && !hidden) turned = turned_beginning(stroke, brush, line);
+    if (start == Beginning::turned || (start == Beginning::hidden && !hidden))
+        turned = turned_beginning(stroke, brush, line);
     std::optional<Vector2d> first;
     if (hidden) {
         s0 = hidden->on_from_mm;

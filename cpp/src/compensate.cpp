@@ -169,7 +169,8 @@ Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateO
         plain.start = plain.ends->best_beginning();
     else if (asked == Beginning::squared)
         plain.start = Beginning::hidden;
-    if (choose && plain.start == Beginning::hidden) plain.instead = {Beginning::exposed};
+    if (plain.start == Beginning::turned) plain.instead = {Beginning::hidden};
+    if (choose && plain.start != Beginning::exposed) plain.instead.push_back(Beginning::exposed);
     if (asked == Beginning::exposed) return plain;
     if (asked != Beginning::hidden)
         if (auto dot = squared_dot(stroke, brush)) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -29,8 +28,7 @@ void require_finite(const Rings& rings) {
 
 Coverage coverage(const Marks& marks, const Brush& brush, const Window& window, double px_per_mm) {
     const std::size_t count = marks.passes.size();
-    const std::size_t most = std::max(1u, std::thread::hardware_concurrency());
-    const std::size_t parts = std::clamp<std::size_t>(count / kPassesAtOnce, 1, most);
+    const std::size_t parts = std::clamp<std::size_t>(count / kPassesAtOnce, 1, processors());
     std::vector<Rasterizer> rasters(parts, Rasterizer(window, px_per_mm));
     on_all_processors(0, parts, [&](std::size_t part) {
         Rasterizer& raster = rasters[part];
@@ -38,7 +36,8 @@ Coverage coverage(const Marks& marks, const Brush& brush, const Window& window, 
             sweep(
                 marks.passes[i], brush, [&](const Ring& a, const Ring& b) { raster.convex_pair(a, b); },
                 [&](const Ring& ring) { raster.polygon({ring}); },
-                [&](const Ring& piece) { raster.convex_pair(piece, piece); });
+                [&](const Ring& piece) { raster.convex_pair(piece, piece); },
+                [&](const auto& low, const auto& high) { return raster.is_beside(low, high); });
     });
     for (std::size_t part = 1; part < parts; ++part) rasters[0].absorb(rasters[part]);
     return rasters[0].coverage();
@@ -141,7 +140,12 @@ std::array<double, 4> painted_bounds(const PassMarks& marks, const Brush& brush)
         box = {std::min(box[0], ring.col(0).minCoeff()), std::min(box[1], ring.col(1).minCoeff()),
                std::max(box[2], ring.col(0).maxCoeff()), std::max(box[3], ring.col(1).maxCoeff())};
     };
-    sweep(marks, brush, [&](const Ring&, const Ring& b) { include(b); }, include, [](const Ring&) {});
+    // what lies within what is known already tells nothing
+    sweep(
+        marks, brush, [&](const Ring&, const Ring& b) { include(b); }, include, [](const Ring&) {},
+        [&](const auto& low, const auto& high) {
+            return low.x() >= box[0] && low.y() >= box[1] && high.x() <= box[2] && high.y() <= box[3];
+        });
     return box;
 }
 

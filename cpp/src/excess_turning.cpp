@@ -15,6 +15,9 @@ using Line = bg::model::linestring<Point>;
 using Shape = bg::model::multi_polygon<bg::model::polygon<Point, false, false>>;
 
 constexpr double kToleranceMm = 0.1;
+// Smaller rings are pinholes between footprints side by side, which paint closes and nobody sees: each would count a
+// whole turn. The finest line of round-6 leaves rings a hundred times as large.
+constexpr double kPinholeMm2 = 0.01;
 constexpr double kTwoPi = 6.28318530717958648;
 // What is more than a waver of the edge, and a bend of it rather than a curve.
 constexpr double kThornToleranceMm = 0.05, kThornRad = kTwoPi * 20.0 / 360.0, kOutsideMm = 0.3;
@@ -57,7 +60,8 @@ double turns(const Ring& ring) {
 
 double turns(const Rings& rings) {
     double sum = 0.0;
-    for (const Ring& ring : rings) sum += turns(ring);
+    for (const Ring& ring : rings)
+        if (std::abs(signed_area(ring)) >= kPinholeMm2) sum += turns(ring);
     return sum;
 }
 

@@ -80,8 +80,11 @@ struct Meant {
     Box box;
 
     Meant() = default;
-    explicit Meant(const Stroke& stroke) : is_outline(!stroke.wanted_mm.empty()) {
-        parts = is_outline ? stroke.wanted_mm : wanted_pieces(stroke, kOutlineMm);
+    /// window: of what shows in a part of the paper alone.
+    explicit Meant(const Stroke& stroke, const Window* window = nullptr) : is_outline(!stroke.wanted_mm.empty()) {
+        parts = is_outline ? stroke.wanted_mm
+                : window   ? wanted_pieces_near(stroke, *window, kOutlineMm)
+                           : wanted_pieces(stroke, kOutlineMm);
         for (const Ring& part : parts) {
             boxes.push_back(box_of(part));
             box.include(boxes.back());
@@ -91,9 +94,9 @@ struct Meant {
     }
 };
 
-std::vector<Meant> meant(const std::vector<Stroke>& wanted) {
+std::vector<Meant> meant(const std::vector<Stroke>& wanted, const Window* window = nullptr) {
     std::vector<Meant> all(wanted.size());
-    on_all_processors(0, all.size(), [&](std::size_t k) { all[k] = Meant(wanted[k]); });
+    on_all_processors(0, all.size(), [&](std::size_t k) { all[k] = Meant(wanted[k], window); });
     return all;
 }
 
@@ -215,7 +218,7 @@ std::vector<CommonArea> common_areas(const std::vector<PassMarks>& painted, cons
 }
 
 Coverage wanted_coverage(const std::vector<Stroke>& wanted, const Window& window, double px_per_mm) {
-    return wanted_pixels(all_of(meant(wanted)), window, px_per_mm);
+    return wanted_pixels(all_of(meant(wanted, &window)), window, px_per_mm);
 }
 
 std::vector<std::vector<std::size_t>> touching(const std::vector<Stroke>& wanted) {

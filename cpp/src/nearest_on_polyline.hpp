@@ -42,6 +42,7 @@ class Nearest {
         for (Eigen::Index i = 0; i < std::max<Eigen::Index>(1, line.rows() - 1); i += kFan) {
             const Eigen::Index n = std::min<Eigen::Index>(kFan + 1, line.rows() - i);
             if (n <= 0) break;
+            pieces_.push_back(pieces_from(i, n));
             const Eigen::Vector2d lo = line.block(i, 0, n, 2).colwise().minCoeff().transpose();
             const Eigen::Vector2d hi = line.block(i, 0, n, 2).colwise().maxCoeff().transpose();
             levels_[0].push_back({lo, hi});
@@ -72,6 +73,11 @@ class Nearest {
 
         double distance(const Eigen::Vector2d& p) const { return (lo - p).cwiseMax(p - hi).cwiseMax(0.0).norm(); }
     };
+    /// Of one block, side by side: vector instructions look at several at once.
+    using Numbers = Eigen::Array<double, kFan, 1>;
+    struct Pieces {
+        Numbers x, y, dx, dy, squared;
+    };
     void look(std::size_t level, std::size_t k, const Eigen::Vector2d& p, double& best) {
         if (levels_[level][k].distance(p) >= best) return;
         if (level > 0) {
@@ -86,18 +92,29 @@ class Nearest {
     }
     Eigen::Vector2d point(Eigen::Index i) const { return {line_(i, 0), line_(i, 1)}; }
     double in_block(std::size_t k, const Eigen::Vector2d& p) const {
-        const Eigen::Index first = Eigen::Index(k) * kFan,
-                           last = std::min<Eigen::Index>(first + kFan, line_.rows() - 1);
-        double best = (p - point(first)).squaredNorm();
-        for (Eigen::Index i = first; i < last; ++i) {
-            const Eigen::Vector2d a = point(i), d = point(i + 1) - a;
+        const Pieces& all = pieces_[k];
+        const Numbers x = p.x() - all.x, y = p.y() - all.y;
+        const Numbers t = ((x * all.dx + y * all.dy) / all.squared).max(0.0).min(1.0);
+        return std::sqrt(
+            std::min(x[0] * x[0] + y[0] * y[0], ((x - t * all.dx).square() + (y - t * all.dy).square()).minCoeff()));
+    }
+    /// Of `n` points from one on. Behind the last piece, and where one has no length, there are points.
+    Pieces pieces_from(Eigen::Index first, Eigen::Index n) const {
+        Pieces out;
+        for (Eigen::Index k = 0; k < kFan; ++k) {
+            const Eigen::Vector2d a = point(first + std::min(k, n - 1)), d = point(first + std::min(k + 1, n - 1)) - a;
             const double squared = d.squaredNorm();
-            const double t = squared > 0.0 ? std::clamp((p - a).dot(d) / squared, 0.0, 1.0) : 0.0;
-            best = std::min(best, (p - a - t * d).squaredNorm());
+            const bool is_point = !(squared > 0.0);
+            out.x[k] = a.x();
+            out.y[k] = a.y();
+            out.dx[k] = is_point ? 0.0 : d.x();
+            out.dy[k] = is_point ? 0.0 : d.y();
+            out.squared[k] = is_point ? 1.0 : squared;
         }
-        return std::sqrt(best);
+        return out;
     }
     const Polyline& line_;
+    std::vector<Pieces> pieces_;
     std::vector<std::vector<Block>> levels_;  ///< boxes of kFan segments, then of kFan boxes of the level before
     std::size_t last_ = 0;
 };

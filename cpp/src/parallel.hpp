@@ -14,6 +14,12 @@
 
 namespace brushsvg {
 
+/// Asked once: the system reads a file each time, a thirtieth of a page's convert.
+inline std::size_t processors() {
+    static const std::size_t count = std::max(1u, std::thread::hardware_concurrency());
+    return count;
+}
+
 /// work(i) for i in [begin, end) on all processors; of several errors the first stroke's is thrown.
 template <class Work>
 void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
@@ -30,7 +36,7 @@ void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
     };
     std::mutex mutex;
     std::condition_variable ended;
-    const std::size_t threads = std::min<std::size_t>(std::thread::hardware_concurrency(), end - begin);
+    const std::size_t threads = std::min(processors(), end - begin);
     std::size_t running = threads > 1 ? threads - 1 : 0;  // counted before the first one ends
     std::vector<std::thread> others;
     for (std::size_t k = 1; k < threads; ++k) {

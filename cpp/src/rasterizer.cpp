@@ -42,16 +42,16 @@ Rasterizer::Rasterizer(const Window& window, double px_per_mm) : window_(window)
     hi_.assign(height_ * kLinesPerPixel, -std::numeric_limits<float>::infinity());
 }
 
-bool Rasterizer::is_beside(const Ring& a, const Ring& b) const {
-    const auto low = a.colwise().minCoeff().cwiseMin(b.colwise().minCoeff()).eval();
-    const auto high = a.colwise().maxCoeff().cwiseMax(b.colwise().maxCoeff()).eval();
+bool Rasterizer::is_beside(const Eigen::RowVector2d& low, const Eigen::RowVector2d& high) const {
     return to_x(high.x()) <= 0.0 || to_x(low.x()) >= double(width_) || to_y(low.y()) <= 0.0 ||
            to_y(high.y()) >= double(lines());
 }
 
 void Rasterizer::convex_pair(const Ring& a, const Ring& b) {
     checkpoint(5);
-    if (is_beside(a, b)) return;
+    if (is_beside(a.colwise().minCoeff().cwiseMin(b.colwise().minCoeff()),
+                  a.colwise().maxCoeff().cwiseMax(b.colwise().maxCoeff())))
+        return;
     if (&a == &b) {
         chains(a, nullptr);
     } else {

@@ -18,6 +18,10 @@ class Rasterizer {
  public:
     Rasterizer(const Window& window, double px_per_mm);
 
+    /// Whether a box, from its lower left to its upper right corner, lies on one side of the picture: nothing of it
+    /// shows.
+    bool is_beside(const Eigen::RowVector2d& low, const Eigen::RowVector2d& high) const;
+
     /// The hull of two convex counter-clockwise rings, or one, given twice.
     void convex_pair(const Ring& a, const Ring& b);
 
@@ -62,9 +66,6 @@ class Rasterizer {
 
     /// Coverage from x to the right end, as differences between neighbouring pixels: of the one returned and the next.
     Eigen::Index step(std::vector<float>& steps, float x, float weight) const;
-
-    /// Whether the hull of two rings lies on one side of the picture: nothing of it shows.
-    bool is_beside(const Ring& a, const Ring& b) const;
 
     void add(int line, float lo, float hi);
     /// Spans of the lines from `first` on, one each. Where all touch what is there, which is the rule along a stroke,

@@ -89,9 +89,10 @@ struct AxisWay {
 
 class Tracer {
  public:
-    Tracer(const Brush& brush, double tolerance_mm, bool for_outlines, const Pass& pass, const AxisWay& way,
-           PassMarks& out)
+    Tracer(const Brush& brush, double tolerance_mm, bool for_outlines, const Window* window, const Pass& pass,
+           const AxisWay& way, PassMarks& out)
         : brush_(brush),
+          window_(window),
           lean_(way.lean),
           law_(make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]))),
           extents_(brush),
@@ -221,11 +222,23 @@ class Tracer {
         double ta = begin;
         for (double tb : ends) {
             Instant b = instant(piece, m, start, begin, tb);
-            split(piece, m, start, begin, ta, a, tb, b, 0);
+            if (!is_beside(a, b, m)) split(piece, m, start, begin, ta, a, tb, b, 0);
             if (tb < end) row(m.tcp(tb), m.depth(tb), b.state, tb);
             a = std::move(b);
             ta = tb;
         }
+    }
+
+    /// Whether a footprint on its way from one instant to the next is on one side of the window. Both of them are
+    /// within their corners; on the way none is farther out than the way is long, twice over.
+    template <class Motion>
+    bool is_beside(const Instant& a, const Instant& b, const Motion& m) const {
+        if (!window_ || !moved_) return false;
+        const double about = 2.0 * (m.length + std::abs(m.depth_by) + tolerance_);
+        const Vec2<double> low = a.corners.rowwise().minCoeff().cwiseMin(b.corners.rowwise().minCoeff()),
+                           high = a.corners.rowwise().maxCoeff().cwiseMax(b.corners.rowwise().maxCoeff());
+        return high.x() + about < window_->x_mm || low.x() - about > window_->x_mm + window_->width_mm + tolerance_ ||
+               high.y() + about < window_->y_mm || low.y() - about > window_->y_mm + window_->height_mm + tolerance_;
     }
 
     /// A landing can end with the lever drawn out to a rounding error: it is dragged from there, not from the next
@@ -336,7 +349,8 @@ class Tracer {
     }
 
     const Brush& brush_;
-    const Ring& lean_;  ///< per pose; empty: upright
+    const Window* window_;  ///< beside which no rows are wanted but those of ends; none: there is no such place
+    const Ring& lean_;      ///< per pose; empty: upright
     LagLaw<double> law_;
     Extents extents_;
     std::vector<double> kinks_;
@@ -387,7 +401,10 @@ void refuse_bad_poses(const Pass& pass, const Brush& brush) {
 
 }  // namespace
 
-PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm, bool for_outlines) {
+namespace {
+
+PassMarks simulated(const Pass& pass, const Brush& brush, double tolerance_mm, bool for_outlines,
+                    const Window* window) {
     require_usable(brush);
     require_tolerance(tolerance_mm, pass.stroke);
     refuse_bad_poses(pass, brush);
@@ -396,13 +413,23 @@ PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm, bo
     PassMarks marks;
     marks.stroke = pass.stroke;
     const AxisWay way(pass);
-    Tracer tracer(brush, tolerance_mm, for_outlines, pass, way, marks);
+    Tracer tracer(brush, tolerance_mm, for_outlines, window, pass, way, marks);
     if (const Poses& poses = way.poses_mm; poses.rows() > 0) {
         if (poses(0, 2) > 0.0) tracer.begin_above(poses.row(0).head<2>().transpose(), poses(0, 2));
         walk_pass<double>(ToldWay<double>{poses, pass.arcs, 0.0}, false, tracer);
     }
     tracer.finish();
     return marks;
+}
+
+}  // namespace
+
+PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm, bool for_outlines) {
+    return simulated(pass, brush, tolerance_mm, for_outlines, nullptr);
+}
+
+PassMarks simulate_near(const Pass& pass, const Brush& brush, const Window& window, double tolerance_mm) {
+    return simulated(pass, brush, tolerance_mm, true, &window);
 }
 
 Marks simulate(const Plan& plan, const Brush& brush, double tolerance_mm) {

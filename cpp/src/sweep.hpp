@@ -1,6 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "brushsvg/brush.hpp"
@@ -53,11 +58,58 @@ void swept_by_edge(const Eigen::RowVector2d& a, const Eigen::RowVector2d& b, con
     }
 }
 
+/// What sweep() is told where all of it is asked for.
+struct Everywhere {};
+
+/// A box about an outline, its tip at (0, 0) and its axis +x.
+struct OutlineBox {
+    double back = 0.0, front = 0.0, side = 0.0;
+
+    OutlineBox towards(const OutlineBox& other, double share) const {
+        return {back + share * (other.back - back), front + share * (other.front - front),
+                side + share * (other.side - side)};
+    }
+};
+
+/// Such boxes of a whole table, blended as footprint_at() blends the outlines.
+class OutlineBoxes {
+ public:
+    explicit OutlineBoxes(const FootprintTable& table) : dragged_(all(table.dragged)), pressed_(all(table.pressed)) {}
+
+    OutlineBox at(double depth_mm, double pull) const {
+        const OutlineBox dragged = blended(dragged_, depth_mm);
+        return pressed_.size() < 2 || !(pull < 1.0) ? dragged : blended(pressed_, depth_mm).towards(dragged, pull);
+    }
+
+ private:
+    using Boxes = std::vector<std::pair<double, OutlineBox>>;  // from depth 0 on, where there is none
+
+    static Boxes all(const std::vector<Footprint>& shapes) {
+        Boxes boxes{{0.0, {}}};
+        for (const Footprint& shape : shapes)
+            boxes.push_back({shape.depth_mm,
+                             {shape.outline_mm.col(0).minCoeff(), shape.outline_mm.col(0).maxCoeff(),
+                              shape.outline_mm.col(1).cwiseAbs().maxCoeff()}});
+        return boxes;
+    }
+    static OutlineBox blended(const Boxes& boxes, double depth_mm) {
+        std::size_t k = 1;
+        while (k < boxes.size() && boxes[k].first < depth_mm) ++k;
+        if (k == boxes.size()) return boxes.back().second;
+        const auto& [above, box] = boxes[k];
+        const auto& [below, before] = boxes[k - 1];
+        return before.towards(box, (depth_mm - below) / (above - below));
+    }
+    Boxes dragged_, pressed_;
+};
+
 /// The painted area of a pass as simple polygons, counter-clockwise: for every two neighbouring rows what the footprint
 /// sweeps between them. `convex(a, b)` is called with the footprint at both rows when every outline is convex (the
 /// swept area is their hull), else `polygon(ring)` for the footprint and `piece(ring)`, convex, for each edge's sweep.
-template <class Convex, class Polygon, class Piece>
-void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&& polygon, Piece&& piece) {
+/// Convex ones of which `is_beside(low, high)` says that their box is not asked for are not made.
+template <class Convex, class Polygon, class Piece, class IsBeside = Everywhere>
+void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&& polygon, Piece&& piece,
+           [[maybe_unused]] IsBeside&& is_beside = {}) {
     require_usable(brush);
     require_usable(marks);
     bool all_convex = true;
@@ -81,22 +133,63 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
         }
         return ring;
     };
-    Ring before;
+    constexpr bool is_everywhere = std::is_same_v<std::decay_t<IsBeside>, Everywhere>;
+    const bool leaves_out = !is_everywhere && all_convex && marks.lean_mm_per_mm.rows() == 0;
+    std::optional<OutlineBoxes> boxes;
+    if (leaves_out) boxes.emplace(brush.footprints);
+    using P = Eigen::RowVector2d;
+    const auto box_of = [&](std::size_t i, P& low, P& high) {  // of the footprint at a row, and a hair more
+        const double d = marks.depth_mm[i], pull = marks.pull[i], hair = 1e-6;
+        if (!(pull >= 0.0 && pull <= 1.0)) {
+            constexpr double inf = std::numeric_limits<double>::infinity();
+            low.setConstant(-inf);
+            high.setConstant(inf);
+            return;
+        }
+        const OutlineBox box = boxes->at(d, pull);
+        const double c = std::cos(marks.heading_rad[i]), s = std::sin(marks.heading_rad[i]), b = brush.tip_gap(d);
+        const P u(c, s), there = marks.contact_mm.row(Eigen::Index(i)), back = there + (box.back - b) * u,
+                         front = there + (box.front - b) * u, side(box.side * std::abs(s), box.side * std::abs(c));
+        low = (back.cwiseMin(front) - side).array() - hair;
+        high = (back.cwiseMax(front) + side).array() + hair;
+    };
+    Ring before;           // none where it was left out
+    bool is_down = false;  // in the row before
+    [[maybe_unused]] P low_before, high_before;
     for (std::size_t i = 0; i < marks.pose.size(); ++i) {
         if (marks.depth_mm[i] < 0.0) {  // lifted
-            before.resize(0, 2);
+            is_down = false;
             continue;
         }
         checkpoint(5);
+        // where the heading flips over at once (the TCP passing over the patch) nothing is swept in between
+        const bool flipped = is_down && std::cos(marks.heading_rad[i] - marks.heading_rad[i - 1]) < 0.8;
+        if constexpr (!is_everywhere) {
+            if (leaves_out) {
+                P low, high;
+                box_of(i, low, high);
+                const P here_low = low, here_high = high;
+                if (is_down && !flipped) {
+                    low = low.cwiseMin(low_before);
+                    high = high.cwiseMax(high_before);
+                }
+                low_before = here_low;
+                high_before = here_high;
+                if (is_beside(low, high)) {
+                    before.resize(0, 2);
+                    is_down = true;
+                    continue;
+                }
+                if (is_down && !flipped && before.rows() == 0) before = placed(i - 1);
+            }
+        }
         Ring now = placed(i);
-        if (before.rows() == 0) {
+        if (!is_down) {
             if (all_convex)
                 convex(now, now);
             else
                 polygon(now);
         } else {
-            // where the heading flips over at once (the TCP passing over the patch) nothing is swept in between
-            const bool flipped = std::cos(marks.heading_rad[i] - marks.heading_rad[i - 1]) < 0.8;
             if (all_convex && !flipped) {
                 convex(before, now);
             } else if (all_convex) {
@@ -110,6 +203,7 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
             }
         }
         before = std::move(now);
+        is_down = true;
     }
 }
 

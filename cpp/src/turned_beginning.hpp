@@ -8,7 +8,8 @@
 namespace brushsvg {
 
 /// A stroke that begins with a dot, as a comma or the ball of an f: turned round on the spot, lifted until it hardly
-/// touches, and pressed anew in the same place, where P rests until the widest section goes on along the line.
+/// touches, and pressed anew in the same place, where P rests until the widest section goes on along the line. That
+/// is where the line is widest, if it begins just beside that.
 struct TurnedBeginning {
     Eigen::Vector2d at_mm;  ///< where P rests
     double depth_mm;        ///< while it turns

@@ -2,22 +2,29 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "brushsvg/simulate.hpp"
+#include "rasterizer.hpp"
 #include "round6.hpp"
+#include "sweep.hpp"
 
 using namespace brushsvg;
 
 namespace {
 
-Marks marks_of(const Brush& brush, double tolerance_mm) {
-    Plan plan;
+Pass pass_of_marks() {
     Pass pass;
     pass.stroke = "s";
     pass.poses_mm.resize(6, 3);
     pass.poses_mm << 20, 20, 0, 26, 20, -4, 60, 20, -4, 60, 50, -5, 20, 30, -3, 22, 30, 0;
-    plan.passes = {pass};
+    return pass;
+}
+
+Marks marks_of(const Brush& brush, double tolerance_mm) {
+    Plan plan;
+    plan.passes = {pass_of_marks()};
     return simulate(plan, brush, tolerance_mm);
 }
 
@@ -76,12 +83,15 @@ TEST_CASE("bounds hold every ring") {
     const Marks marks = marks_of(brush, 0.02);
     const auto [left, bottom, right, top] = painted_bounds(marks.passes[0], brush);
     const Rings rings = outline(marks.passes[0], brush);
+    double farthest = 0.0;
     for (const Ring& ring : rings) {
+        farthest = std::max(farthest, ring.col(0).maxCoeff());
         CHECK(ring.col(0).minCoeff() >= left - 1e-4);
         CHECK(ring.col(1).minCoeff() >= bottom - 1e-4);
         CHECK(ring.col(0).maxCoeff() <= right + 1e-4);
         CHECK(ring.col(1).maxCoeff() <= top + 1e-4);
     }
+    CHECK(right == doctest::Approx(farthest).epsilon(1e-5));
 }
 
 TEST_CASE("a picture that cannot be made is refused") {
@@ -97,4 +107,30 @@ TEST_CASE("coverage of convex pieces that lie over each other is that of their u
     const Coverage found = coverage_of_pieces({a, b}, window, 1.7);
     CHECK(found.sum() / (1.7 * 1.7) == doctest::Approx(14.0).epsilon(0.002));
     CHECK((found - coverage(unite({a, b}), window, 1.7)).cwiseAbs().maxCoeff() < 0.13);
+}
+
+TEST_CASE("a picture of a part of the paper is made of what lies there, to the last bit as of all") {
+    for (const Brush& brush : {shipped("round-6"), crescent_brush()}) {
+        const Marks all = marks_of(brush, 0.1);
+        const auto rows = [](const Marks& marks) { return marks.passes[0].pose.size(); };
+        // what lies beside the window cancels out of shapes that are not convex but for rounding
+        const float hair = is_convex(brush.footprints.dragged[0].outline_mm) ? 0.0f : 1e-5f;
+        std::size_t fewest = rows(all);
+        for (double x = 10.0; x < 70.0; x += 7.0)
+            for (double y = 10.0; y < 60.0; y += 7.0) {
+                const Window window{x, y, 6.0, 6.0};
+                Rasterizer whole(window, 8.0);
+                sweep(
+                    all.passes[0], brush, [&](const Ring& a, const Ring& b) { whole.convex_pair(a, b); },
+                    [&](const Ring& ring) { whole.polygon({ring}); },
+                    [&](const Ring& piece) { whole.convex_pair(piece, piece); });
+                const Coverage expected = whole.coverage();
+                CHECK(coverage(all, brush, window, 8.0) == expected);
+                Marks near;
+                near.passes = {simulate_near(pass_of_marks(), brush, window, 0.1)};
+                CHECK((coverage(near, brush, window, 8.0) - expected).cwiseAbs().maxCoeff() <= hair);
+                fewest = std::min(fewest, rows(near));
+            }
+        CHECK(fewest < rows(all));
+    }
 }

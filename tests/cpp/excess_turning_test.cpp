@@ -51,6 +51,17 @@ TEST_CASE("a hole counts like an outline") {
     CHECK(excess_turning({wavy(0.0, 0), hole}, {wavy(0.0, 0)}) == doctest::Approx(1.0).epsilon(1e-9));
 }
 
+TEST_CASE("a pinhole below a hundredth of a square millimetre does not count, a larger one does") {
+    const auto slit = [](double width_mm) { return corners({{0, 0}, {0, 0.2}, {width_mm, 0.2}, {width_mm, 0}}); };
+    const Rings disc{wavy(0.0, 0)};
+    CHECK(excess_turning({disc[0], slit(0.045)}, disc) == 0.0);
+    CHECK(excess_turning({disc[0], slit(0.2)}, disc) == doctest::Approx(1.0).epsilon(1e-9));
+    Ring curl(4, 2);  // crooked, so that no tolerance makes it a line
+    curl << 0, 0, 0, 0.3, 0.02, 0.02, 0.3, 0;
+    CHECK(std::abs(signed_area(curl)) < 0.01);
+    CHECK(excess_turning({disc[0], curl}, disc) == 0.0);
+}
+
 TEST_CASE("thorns are sharp, point outwards and stick out of what was wanted, or into a hole of it") {
     const auto square_with = [](double peak) {
         return Rings{corners({{0, 0}, {10, 0}, {10, 10}, {5.5, 10}, {5, 10 + peak}, {4.5, 10}, {0, 10}})};

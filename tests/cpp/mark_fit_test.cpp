@@ -239,21 +239,30 @@ TEST_CASE("laws with footprints that no brush has predict nothing: their instant
     }
 }
 
-TEST_CASE("marks that no brush paints are refused by counted work, and one of them is named") {
+TEST_CASE("marks that no brush paints are refused, and one of them is named") {
     Poses poses(4, 3);
     poses << 0, 0, 0, 12, 0, -3, 30, 0, -3, 30, 25, -3;
-    Ring star(24, 2);
+    Ring star(24, 2), square(4, 2);
     for (Eigen::Index k = 0; k < star.rows(); ++k) {
         const double angle = 2.0 * M_PI / 24.0 * double(k), radius = k % 2 ? 30.0 : 4.0;
         star.row(k) << 15.0 + radius * std::cos(angle), 10.0 + radius * std::sin(angle);
     }
-    try {
-        fit_marks({{"a star", poses, {star}}}, std::nullopt, {});
-        FAIL("a brush was found that paints a star");
-    } catch (const Error& refusal) {
-        CHECK(refusal.where() == "a star");
-        CHECK(std::string(refusal.what()).find("no brush was found that paints these marks") != std::string::npos);
-    }
+    square << 0, 0, 40, 0, 40, 40, 0, 40;
+    const auto refused = [&](const Ring& ring) {
+        try {
+            fit_marks({{"this one", poses, {ring}}}, std::nullopt, {});
+        } catch (const Error& refusal) {
+            CHECK(refusal.where() == "this one");
+            return std::string(refusal.what());
+        }
+        return std::string("fitted");
+    };
+    // a fit is found, of edges that err by 8 mm
+    CHECK(refused(star).find("their edges lie off by more (standard deviation) than they are wide") !=
+          std::string::npos);
+    // none is: huge footprints lie on each other, and the work is counted
+    CHECK(refused(square).find("no brush was found that paints these marks, least of all this one") !=
+          std::string::npos);
 }
 
 TEST_CASE("what cannot be fitted is refused") {

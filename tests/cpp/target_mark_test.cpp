@@ -48,3 +48,24 @@ TEST_CASE("pieces of the wanted mark cover it, as convex rings") {
     }
     CHECK(overlap(unite(pieces), wanted_outline(s)) == doctest::Approx(1.0));
 }
+
+TEST_CASE("pieces near a window are those of all that meet it, and few more") {
+    Stroke curved = stroke_of(polyline({V(20, 20), V(55, 50)}), {{0.0, 0.4}, {0.5, 2.0}, {1.0, 3.0}});
+    curved.middle_mm.resize(1, 8);
+    curved.middle_mm << 20, 20, 60, 0, 0, 60, 55, 50;
+    const Rings all = wanted_pieces(curved, 0.01);
+    for (double x = 0.0; x < 60.0; x += 6.0) {
+        const Window window{x, 25.0, 6.0, 6.0};
+        const Rings near = wanted_pieces_near(curved, window, 0.01);
+        CHECK(near.size() < all.size());
+        std::size_t next = 0;
+        for (const Ring& piece : all) {
+            const bool meets = piece.col(0).minCoeff() <= x + 6.0 && piece.col(0).maxCoeff() >= x &&
+                               piece.col(1).minCoeff() <= 31.0 && piece.col(1).maxCoeff() >= 25.0;
+            const bool is_next = next < near.size() && near[next].rows() == piece.rows() && near[next] == piece;
+            CHECK((is_next || !meets));
+            next += is_next;
+        }
+        CHECK(next == near.size());
+    }
+}

@@ -2,9 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "brushsvg/compensate.hpp"
+#include "nearest_on_polyline.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;
@@ -67,4 +70,26 @@ TEST_CASE("a pass that never pulls the brush tight misses nothing") {
     pass.poses_mm.resize(2, 3);
     pass.poses_mm << 50, 50, 0, 52, 50, 0;
     CHECK(tracking_error_of(pass, stroke, brush, 0.05).largest_mm == 0.0);
+}
+
+TEST_CASE("the distance to a polyline is that to its nearest piece, looked at one by one") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> anywhere(-20.0, 20.0);
+    for (const Eigen::Index n : {1, 2, 3, 16, 17, 18, 40, 700}) {
+        Ring line(n, 2);
+        for (Eigen::Index i = 0; i < n; ++i)
+            line.row(i) << (i % 7 == 3 ? line.row(i - 1).eval()
+                                       : Eigen::RowVector2d(anywhere(random), anywhere(random)));
+        Nearest<Ring> nearest(line);
+        for (int k = 0; k < 50; ++k) {
+            const V p(anywhere(random), anywhere(random));
+            double least = (p - line.row(0).transpose()).norm();
+            for (Eigen::Index i = 0; i + 1 < n; ++i) {
+                const V a = line.row(i).transpose(), d = line.row(i + 1).transpose() - a;
+                const double t = d.norm() > 0.0 ? std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
+                least = std::min(least, (p - a - t * d).norm());
+            }
+            CHECK(nearest.distance(p) == doctest::Approx(least).epsilon(1e-14));
+        }
+    }
 }

@@ -183,7 +183,7 @@ def test_no_limb_is_lost(lettering, kind, weight, em_mm):
     """Connected pieces of a letter that neither paint nor a disc of any stroke reaches, beyond 3 % of it."""
     import shapely
 
-    from brushsvg.strokes.contour_fill import region, unpainted
+    from brushsvg.strokes.swept_areas import region, unpainted
 
     brush, lost = find_brush("round-6"), []
     for text in LIMBS:

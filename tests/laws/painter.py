@@ -189,6 +189,29 @@ def _drawn(rng):
     return PchipInterpolator(np.linspace(0, 1, 6), rise / rise[-1]), ()
 
 
+def _polyline(rng):
+    """Four straight pieces that meet at random depths and rise by random steps."""
+    at = np.sort(rng.uniform(0.1, 0.9, 3))
+    rise = np.cumsum(rng.uniform(0.1, 1.0, 4))
+    corners = np.concatenate([[0.0], at, [1.0]])
+    return lambda t: np.interp(t, corners, np.concatenate([[0.0], rise / rise[-1]])), tuple(at)
+
+
+def _hyperbolic(rng):
+    """t / (t + c), as enzymes and adsorption saturate."""
+    half_way = rng.uniform(0.2, 1.0)
+    return lambda t: t * (1 + half_way) / (t + half_way), ()
+
+
+def _tanh(rng):
+    middle, length = rng.uniform(-0.1, 0.5), rng.uniform(0.25, 0.6)
+
+    def value(t):
+        return np.tanh((t - middle) / length)
+
+    return lambda t: (value(t) - value(0.0)) / (value(1.0) - value(0.0)), ()
+
+
 SHAPES = {
     "saturating": _saturating,
     "kinked": _kinked,
@@ -198,6 +221,8 @@ SHAPES = {
     "wiggling": _wiggling,
 }
 MORE_SHAPES = {"stepped": _stepped, "hooked": _hooked, "capped": _capped, "drawn": _drawn}
+# nothing was ever settled on these
+UNSEEN_SHAPES = {"polyline": _polyline, "hyperbolic": _hyperbolic, "tanh": _tanh}
 
 
 def random_stranger(rng, shape):
@@ -208,7 +233,7 @@ def random_stranger(rng, shape):
     gap, widest = rng.uniform(0.2, 0.6) * deepest, rng.normal(1.8, 0.25) * half
 
     def curve(begin, end, straight):
-        rise, bends = (SHAPES | MORE_SHAPES)[shape](rng)
+        rise, bends = (SHAPES | MORE_SHAPES | UNSEEN_SHAPES)[shape](rng)
 
         def value(depth):
             t = np.asarray(depth / deepest)
@@ -435,3 +460,24 @@ def _noisy(rng, ring, faults, step=0.25):
     spectrum = np.maximum(np.fft.rfft(np.exp(-distance / faults.noise_length)).real, 0.0)
     noise = np.fft.irfft(np.fft.rfft(rng.normal(size=n)) * np.sqrt(spectrum), n) * faults.noise
     return points + noise[:, None] * np.column_stack([along[:, 1], -along[:, 0]])
+
+
+def dense(poses, arcs):
+    """Poses of a pass, its arcs in short steps, by the angle between neighbours seen from the centre."""
+    arcs = {k: arc for arc in arcs for k in range(arc.first, arc.last)}
+    out = [poses[:1]]
+    for k in range(len(poses) - 1):
+        angle, count = 0.0, max(2, int(np.hypot(*(poses[k + 1] - poses[k])[:2]) / 0.5) + 1)
+        if k in arcs:
+            centre, way = np.array(arcs[k].centre_mm), np.sign(arcs[k].direction)
+            spoke, last = ((poses[j, :2] - centre) @ [1, 1j] for j in (k, k + 1))
+            angle = np.angle(last / spoke)
+            angle += 2 * np.pi * way * (np.sign(angle) != way)
+            count = 2 + int(abs(angle * spoke) / 0.5)
+        share = np.linspace(0, 1, count)[1:, None]
+        steps = poses[k] + share * (poses[k + 1] - poses[k])
+        if angle:
+            place = spoke * np.exp(1j * angle * share[:, 0])
+            steps[:, :2] = centre + np.column_stack([place.real, place.imag])
+        out.append(steps)
+    return np.vstack(out)

@@ -91,27 +91,6 @@ def random_amiss(rng, names, sheet_mm):
     )
 
 
-def dense(poses, arcs):
-    """Poses of a pass, its arcs in short steps, by the angle between neighbours seen from the centre."""
-    arcs = {k: arc for arc in arcs for k in range(arc.first, arc.last)}
-    out = [poses[:1]]
-    for k in range(len(poses) - 1):
-        angle, count = 0.0, max(2, int(np.hypot(*(poses[k + 1] - poses[k])[:2]) / 0.5) + 1)
-        if k in arcs:
-            centre, way = np.array(arcs[k].centre_mm), np.sign(arcs[k].direction)
-            spoke, last = ((poses[j, :2] - centre) @ [1, 1j] for j in (k, k + 1))
-            angle = np.angle(last / spoke)
-            angle += 2 * np.pi * way * (np.sign(angle) != way)
-            count = 2 + int(abs(angle * spoke) / 0.5)
-        share = np.linspace(0, 1, count)[1:, None]
-        steps = poses[k] + share * (poses[k + 1] - poses[k])
-        if angle:
-            place = spoke * np.exp(1j * angle * share[:, 0])
-            steps[:, :2] = centre + np.column_stack([place.real, place.imag])
-        out.append(steps)
-    return np.vstack(out)
-
-
 def told_by(program, sheet_mm):
     """What a program for LinuxCNC tells the machine of each stroke, from the air on: every place that it names, those
     of circles close together."""
@@ -141,7 +120,7 @@ def ran(plan, amiss):
     middle = 0.5 * np.array(plan.sheet_mm)
     play, last, out = np.zeros(2), None, []
     for one in plan.passes:
-        poses = dense(np.array(one.poses_mm), one.arcs)
+        poses = painter.dense(np.array(one.poses_mm), one.arcs)
         place = poses[:, :2].copy()
         for k, here in enumerate(poses[:, :2]):  # the slide stands still while the screw crosses its play
             play = np.clip(

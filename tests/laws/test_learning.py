@@ -58,27 +58,6 @@ def known_brush(sure):
     return brush
 
 
-def along(one):
-    """Poses of a pass, its arcs in short steps, by the angle between neighbours seen from the centre."""
-    poses, arcs = np.array(one.poses_mm), {k: arc for arc in one.arcs for k in range(arc.first, arc.last)}
-    out = [poses[:1]]
-    for k in range(len(poses) - 1):
-        angle, count = 0.0, 2
-        if k in arcs:
-            centre, way = np.array(arcs[k].centre_mm), np.sign(arcs[k].direction)
-            spoke, last = ((poses[j, :2] - centre) @ [1, 1j] for j in (k, k + 1))
-            angle = np.angle(last / spoke)
-            angle += 2 * np.pi * way * (np.sign(angle) != way)
-            count += int(abs(angle * spoke) / 0.8)
-        share = np.linspace(0, 1, count)[1:, None]
-        steps = poses[k] + share * (poses[k + 1] - poses[k])
-        if angle:
-            place = spoke * np.exp(1j * angle * share[:, 0])
-            steps[:, :2] = centre + np.column_stack([place.real, place.imag])
-        out.append(steps)
-    return np.vstack(out)
-
-
 class Studio:
     """A folder with a drawing, a brush file, the plan, and the photograph of what another brush painted of it."""
 
@@ -101,7 +80,7 @@ class Studio:
 
     def paint(self, seed, truth, plan="word.json", photo="photo.jpg", faults=FAULTS):
         plan = read_plan(self.folder / plan)
-        strokes = [(one.stroke, along(one)) for one in plan.passes]
+        strokes = [(one.stroke, painter.dense(np.array(one.poses_mm), one.arcs)) for one in plan.passes]
         painted = painter.paint(np.random.default_rng(seed), truth, strokes, faults)
         page = job_page(plan)
         sheet = photograph.page(page.printed)

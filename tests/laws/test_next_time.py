@@ -153,6 +153,20 @@ def test_corrections_are_those_of_this_job(tmp_path, capsys):
             capsys, "convert", tmp_path / name, tmp_path / "a.ngc", "--corrections", found
         )
         assert status == 1 and is_told(told, "corrections-of-another-job", "bow"), told
+    (tmp_path / "wider.svg").write_text(
+        DRAWING.replace('M16 58 L70 54" stroke-width="3"', 'M16 58 L70 54" stroke-width="4"')
+    )
+    (tmp_path / "bent.svg").write_text(DRAWING.replace("C24 6 48 6 56 28", "C24 7 48 5 56 28"))
+    for name, stroke, flags in (
+        ("wider.svg", "line", ()),
+        ("bent.svg", "bow", ()),
+        ("five.svg", "line", ("--width", "4")),
+        ("five.svg", "bow", ("--width", "3")),
+        ("five.svg", "bow", ("--compensation", "constant")),
+    ):
+        words = ("convert", tmp_path / name, tmp_path / "a.ngc", "--corrections", found, *flags)
+        status, _, told = in_json(capsys, *words)
+        assert status == 1 and is_told(told, "corrections-of-another-job", stroke), (name, flags, told)
     words = ("convert", drawing, tmp_path / "a.ngc", "--corrections", found)
     assert in_json(capsys, *words)[0] == 0
     status, _, told = in_json(capsys, "check", tmp_path / "a.ngc", drawing)
@@ -203,6 +217,8 @@ def test_corrections_are_taken_back_once(tmp_path, capsys):
         (lambda row: row.update(turn_deg="2"), "not-a-number"),
         (lambda row: row.pop("middle_mm"), "wrong-type"),
         (lambda row: row.update(start_mm=[1.0]), "wrong-type"),
+        (lambda row: row.update(way_mm=[[1.0, 1.0, 0.0]]), "wrong-type"),
+        (lambda row: row.update(way_mm=[[1.0, "1", 0.0]] * 9), "not-a-number"),
         (lambda row: None, "stroke-twice"),
     ],
 )

@@ -89,7 +89,7 @@ def test_one_photograph_gives_the_brush_back(desk, capsys):
 
 def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
     """By 0.4 mm the brush comes back; by 0.8 mm the markers only hint at it, and marks lie so far aside that the sheet
-    seems to be of another scale."""
+    seems to be of another scale: it is told that paper which bulges does that, too."""
     (tmp_path / "chart.json").write_text(write_chart(printed()))
     words = [
         "calibrate",
@@ -111,6 +111,7 @@ def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
     (tmp_path / "photo.jpg").write_bytes(photo_of(marks(), camera=replace(CAMERA, sag_mm=0.8)))
     status, _, told = in_json(capsys, *words)
     assert status == 1 and are_told([each for _, each in told], "photo-not-flat", "marks-scaled"), told
+    assert "bulge" in told[-1][1].sentence, told
 
 
 def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, capsys):

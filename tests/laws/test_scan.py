@@ -460,6 +460,9 @@ def test_photographs_of_one_sheet_are_averaged_and_must_agree():
     with refused("photo-markers-missing") as refusal:
         read_chart_photos(a5(), [photos[0], ("grey.jpg", photograph.encoded(np.full_like(small(), 120)))])
     assert refusal.value.file == "grey.jpg"
+    with refused("photo-twice 0.jpg") as refusal:
+        read_chart_photos(a5(), [*photos, ("again.jpg", jpegs[0])])
+    assert refusal.value.file == "again.jpg"
 
 
 # The bar --------------------------------------------------------------------------------------------

@@ -1,12 +1,15 @@
 """simulate-photo: what its studio says is amiss is what compare sees, and it cannot be taken for a photograph."""
 
 import json
+import re
+from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
 from diagnostics import in_json, is_told
 
+from brushsvg.brush.library import find_brush
 from brushsvg.cli import main
 
 pytestmark = pytest.mark.long  # sheets are rendered and read
@@ -14,6 +17,7 @@ DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="80mm"
 <title>six</title><g fill="none" stroke="#000" stroke-width="3">
 <path id="a" d="M20 20 L50 16"/><path id="b" d="M100 20 L70 24"/><path id="c" d="M20 40 C30 60 40 60 50 40"/>
 <path id="d" d="M100 60 L70 50"/><path id="e" d="M60 30 L62 66"/><path id="f" d="M14 70 L50 68 L50 60"/></g></svg>"""
+EXAMPLE = Path(__file__).parents[2] / "examples/robot.svg"  # letters whose strokes touch
 HEAD = 'format = "brushsvg/studio"\nversion = 1\n'
 
 
@@ -123,3 +127,87 @@ def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, ca
     assert "(convert --page, simulate-photo) with --plan and --prior instead of --chart" in str(told)
     assert main(["calibrate", photo, "--plan", plan, "--prior", "round-6", "-o", found, "--quiet"]) == 0
     assert json.loads((tmp_path / "mine.json").read_text())["format"] == "brushsvg/brush"
+
+
+@pytest.fixture(scope="module")
+def letters(tmp_path_factory):
+    """A word whose strokes touch each other, its plan, and two sheets of studios in which much is amiss."""
+    folder = tmp_path_factory.mktemp("letters")
+    for words in (
+        ("convert", EXAMPLE, folder / "word.json"),
+        ("simulate-photo", EXAMPLE, folder / "3.jpg", "--seed", "3"),
+        ("simulate-photo", EXAMPLE, folder / "4.jpg", "--seed", "4"),
+    ):
+        assert main([*map(str, words), "--quiet"]) == 0
+    return folder
+
+
+def test_where_no_stroke_lies_alone_a_chart_is_advised(letters, drawing, capsys):
+    """Never what would be refused: from the same photograph no brush is learnt."""
+    words = ("--plan", letters / "word.json", "--prior", "round-6", "-o", letters / "u.json")
+    status, _, told = in_json(capsys, "calibrate", letters / "3.jpg", *words)
+    assert status == 1 and is_told(told, "marks-touch 9 7 2 30"), told
+    assert "calibrate --chart" in told[-1][1].advice
+    status, text, _ = in_json(capsys, "compare", letters / "3.jpg", EXAMPLE)
+    (first,) = (line for line in text.splitlines() if line.startswith("Mend first"))
+    assert status == 0 and "brush" in first and "--prior" not in first and "calibrate --chart" in first
+    as_it_lies, placed = (float(each) for each in re.search(r"by (0\.\d+); .*? by (0\.\d+)", text).groups())
+    assert placed < as_it_lies and "(less: " in text
+    main(["simulate-photo", str(drawing), str(letters / "six.jpg"), "--seed", "5", "--quiet"])
+    status, text, _ = in_json(capsys, "compare", letters / "six.jpg", drawing)
+    as_it_lies, placed = (float(each) for each in re.search(r"by (0\.\d+); .*? by (0\.\d+)", text).groups())
+    assert placed > as_it_lies and "(less: " not in text and "calibrate --chart" not in text
+
+
+def test_strokes_that_repeats_tells_nothing_of_are_named(letters, capsys):
+    words = ("compare", letters / "3.jpg", letters / "4.jpg", EXAMPLE, "--sheets")
+    status, text, _ = in_json(capsys, *words, "--json")
+    found = json.loads(text)
+    names = {each["stroke"] for each in json.loads((letters / "word.json").read_text())["passes"]}
+    seen, unseen = {row["stroke"] for row in found["strokes"]}, set(found["not_seen_twice"])
+    assert status == 0 and seen and unseen and seen | unseen == names and not seen & unseen
+    text = in_json(capsys, *words)[1]
+    (line,) = (line for line in text.splitlines() if line.startswith("Not told"))
+    assert f"{len(unseen)} strokes" in line and all(name in line for name in unseen)
+
+
+def test_a_photograph_that_is_given_twice_is_refused(letters, capsys):
+    copy = letters / "copy.jpg"
+    copy.write_bytes((letters / "3.jpg").read_bytes())
+    for photos in ((letters / "3.jpg", letters / "3.jpg"), (letters / "3.jpg", letters / "4.jpg", copy)):
+        for words in (
+            ("compare", *photos, EXAMPLE),
+            ("compare", *photos, EXAMPLE, "--sheets"),
+            (
+                "calibrate",
+                *photos,
+                "--plan",
+                letters / "word.json",
+                "--prior",
+                "round-6",
+                "-o",
+                letters / "u.json",
+            ),
+        ):
+            status, _, told = in_json(capsys, *words)
+            assert status == 1 and told[-1][0] == str(photos[-1]), told
+            assert is_told(told, "photo-twice 3.jpg"), told
+
+
+def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
+    """Of a studio in which nothing is amiss the brush that was named comes back; from the plan alone it would be
+    another page."""
+    plan, chart, photo, found = (
+        str(tmp_path / name) for name in ("plan.json", "chart.json", "p.jpg", "own.json")
+    )
+    assert main(["chart", plan, "--brush", "round-6", "--sheet", "a5", "--chart", chart]) == 0
+    (tmp_path / "studio.toml").write_text(HEAD)
+    assert main(["simulate-photo", chart, photo, "--studio", str(tmp_path / "studio.toml")]) == 0
+    assert main(["calibrate", photo, "--chart", chart, "-o", found]) == 0
+    own, true, depths = find_brush(found), find_brush("round-6"), np.linspace(3, 10, 8)
+    for law in ("lag", "half_width"):
+        values, truth = (np.array([getattr(each, law)(d) for d in depths]) for each in (own, true))
+        assert np.abs(values / truth - 1).max() < 0.05, (law, values / truth)
+    capsys.readouterr()
+    status, _, told = in_json(capsys, "calibrate", photo, "--chart", plan, "-o", found)
+    assert status == 1 and is_told([each for _, each in told], "format-unknown '--chart FILE'"), told

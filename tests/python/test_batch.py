@@ -15,7 +15,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from diagnostics import are_told, in_json, refused
+from diagnostics import are_told, in_json, is_told, refused
 from test_conversion import LINE, PAGE
 
 import brushsvg
@@ -180,6 +180,89 @@ def test_a_line_that_was_left_half_is_that_drawing_again(desk, monkeypatch):
         names = done_again(monkeypatch)
         brushsvg.batch(["in"], "out", executor=executor)
     assert names == ["below/wide"] and Path("out/manifest.jsonl").read_bytes() == whole
+
+
+def test_nothing_outdated_stays_under_a_refused_row(desk, capsys):
+    """What an earlier run made of it is removed, also where that row is not done again; an edited file is kept."""
+    with threads() as executor:
+        brushsvg.batch(["in"], "out", executor=executor)
+        Path("in/1.svg").write_text(drawing(1, width=30))
+        Path("in/2.svg").write_text(drawing(2, width=30))
+        Path("out/programs/2.ngc").write_text("mine")
+        done = brushsvg.batch(["in"], "out", executor=executor)
+        removed = ("pictures/1.png", "pictures/2.png", "programs/1.ngc")
+        assert tuple(sorted(done.removed)) == removed
+        there = contents()
+        assert not there.keys() & set(removed) and there["programs/2.ngc"] == b"mine"
+        assert {"programs/0.ngc", "pictures/0.png"} <= there.keys()
+        refused_once = Path("out/manifest.jsonl").read_bytes()
+        Path("in/1.svg").write_text(drawing(1))
+        brushsvg.batch(["in"], "out", executor=executor)
+        with open("out/manifest.jsonl", "ab") as file:  # as a run that was ended left it
+            file.writelines(refused_once.splitlines(keepends=True)[1:])
+    Path("in/1.svg").write_text(drawing(1, width=30))
+    status, _, told = in_json(capsys, "batch", "in", "--out", "out", "--jobs", "1")
+    assert status == 1 and is_told(told, "outdated-removed") and "programs/1.ngc" not in contents()
+
+
+def test_a_drawing_of_the_same_name_is_not_written_over_another(desk, monkeypatch):
+    Path("more").mkdir()
+    Path("more/1.svg").write_text(drawing(9))
+    with threads() as executor:
+        brushsvg.batch(["in"], "out", executor=executor)
+        before = contents()
+        with refused("name-taken in/1.svg more/1.svg programs/1.ngc"):
+            brushsvg.batch(["more"], "out", executor=executor)
+        assert contents() == before
+        monkeypatch.chdir("in")  # typed from elsewhere it is the same drawing
+        Path("1.svg").write_text(drawing(5))
+        assert not brushsvg.batch(["1.svg"], "../out", executor=executor).refused
+        Path("1.svg").unlink()
+        assert not brushsvg.batch(["../more"], "../out", executor=executor).refused
+
+
+def test_two_of_one_name_say_the_way_out(desk):
+    Path("more/below").mkdir(parents=True)
+    Path("more/1.svg").write_text(drawing(9))
+    Path("more/below/1.svg").write_text(drawing(9))
+    Path("in/1.dxf").write_text("")
+    for items, advice in (
+        (["in/1.svg", "more/1.svg"], "give one of them to a batch of its own, with another --out"),
+        (["in/1.svg", "in/1.svg"], "it is one drawing: give it once"),
+        (["in/1.svg", "in/1.dxf"], "rename one of them"),
+        (["more", "more/below"], "more/below/1.svg is given twice, as below/1 and 1: leave its folder out"),
+    ):
+        with refused("name-taken") as caught:
+            brushsvg.batch(items, "out", jobs=1)
+        assert caught.value.advice == advice
+
+
+@pytest.mark.parametrize("name", ["a\nb.svg", "a\x1bb.svg", "a\udce9b.svg"])
+def test_a_name_that_cannot_be_printed_is_a_row(desk, capsys, name):
+    Path("in", name).write_text(drawing(0))
+    status, _, told = in_json(capsys, "batch", "in", "--out", "out", "--jobs", "1")
+    shown = name.encode("unicode_escape", "surrogatepass").decode()
+    assert status == 1 and f"in/{shown}" in {notice.where for _, notice in told}
+    assert "programs/1.ngc" in contents()
+    table = list(csv.DictReader(Path("out/table.csv").read_text().splitlines()))
+    assert [(each["source"], each["code"]) for each in table if each["code"]] == [
+        (f"in/{shown}", "name-invalid"),
+        ("in/below/wide.svg", "width-out-of-reach"),
+    ]
+
+
+def test_equal_drawings_are_each_done_once(desk, monkeypatch):
+    Path("in/also.svg").write_text(drawing(1))
+    with threads() as executor:
+        brushsvg.batch(["in"], "out", executor=executor)
+        names, before = done_again(monkeypatch), contents()
+        done = brushsvg.batch(["in"], "out", executor=executor)
+    assert names == [] and done.resumed == 5 and contents() == before
+    Path("words.txt").write_text("T\nT\nTT\n")
+    with threads() as executor:
+        for _ in range(2):
+            done = brushsvg.batch(words("words.txt", FONT.encode()), "set", executor=executor)
+    assert done.resumed == 3 and not done.refused
 
 
 def test_two_runs_do_not_write_to_one_folder(desk):

@@ -87,3 +87,27 @@ def test_arcs_begin_and_end_as_the_best_of_all_that_can_be_asked_for():
         if lost > 0.005:
             worse.append((radius_mm, width_mm, lost))
     assert len(worse) <= 5, worse
+
+
+def ball(radius_mm, half_mm, before):
+    """A line round a bend that begins in a ball, before its middle: narrower there by that share."""
+    widths = [(0.0, before), (0.08, 1.0), (0.25, 0.6), (0.4, 0.4), (1.0, 0.8)]
+    line = arc(radius_mm, 1.0, 0.0, 4.5)
+    return line.replaced(half_width=[(at, half * half_mm) for at, half in widths])
+
+
+def test_a_ball_at_the_beginning_is_turned_round_where_that_is_better_than_going_back():
+    brush = find_brush("round-6")
+    for half_mm in (2.2, 2.8):
+        stroke = ball(5.0, half_mm, 1.0)
+        assert overlap(stroke, brush, "auto") > overlap(stroke, brush, "hidden") + 0.01
+
+
+def test_a_ball_is_turned_round_its_middle_where_the_line_begins_beside_it():
+    """Turned about the line's first point, as wide as it is there, it left a crescent of the ball of a c."""
+    brush = find_brush("round-6")
+    stroke = ball(3.5, 2.8, 0.7)
+    middle = 100 + 3.5 * np.array([np.cos(0.08 * 4.5), np.sin(0.08 * 4.5)])
+    marks = _core.simulate(compensate([stroke], brush, (200, 200), start="auto").plan, brush)
+    assert np.hypot(*(marks.passes[0].contact_mm[0] - middle)) < 0.1
+    assert overlap(stroke, brush, "auto") > 0.95

@@ -27,7 +27,7 @@ from brushsvg.machine.cell import Reload, Station
 from brushsvg.machine.cell_file import cell_names, find_cell
 from brushsvg.machine.paint_reload import in_loads, visits
 from brushsvg.machine.posts import POSTS
-from brushsvg.strokes.contour_fill import region
+from brushsvg.strokes.swept_areas import region
 
 A4, A5, LETTER = (210.0, 297.0), (148.0, 210.0), (215.9, 279.4)
 PX_PER_MM = 8
@@ -441,11 +441,11 @@ def test_it_says_how_sure_the_paint_will_be(tmp_path, capsys):
         assert main(["chart", str(tmp_path / "p.json"), "--sheet", "a5", *flags]) == 0
         return capsys.readouterr().out
 
-    assert int(re.search(r"depth tells (\d+) %", told()).group(1)) > 55
+    assert int(re.search(r"cannot tell: .*depth explains (\d+) %", told()).group(1)) > 55
     halves = []
     for noise in ("0.1", "0.2"):
         found = re.search(
-            r"narrowing per metre \+- ([\d.]+); depth tells (\d+) %.* last for (\d+) mm",
+            r"narrowing per metre \+- ([\d.]+); depth explains (\d+) %.* last for (\d+) mm",
             told("--paint", "--noise", noise),
         )
         half, share, way = map(float, found.groups())

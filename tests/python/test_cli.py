@@ -435,6 +435,11 @@ def test_wrong_usage(desk, capsys, words):
     assert listing(desk) == before
 
 
+def test_scan_says_that_it_takes_one_picture(desk, capsys):
+    status, _, (said,) = run(capsys, *"scan p.jpg q.jpg --chart c.json -o out.json".split())
+    assert status == 2 and "one picture" in said
+
+
 @pytest.mark.parametrize("command", ["convert a.svg", "border a.svg", "height", "chart"])
 @pytest.mark.parametrize(
     ("out", "flags", "cells"),

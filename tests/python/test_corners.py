@@ -10,10 +10,10 @@ from brushsvg import _core, find_brush
 from brushsvg.__main__ import main
 from brushsvg.pipeline.preparation import Options, prepare
 from brushsvg.strokes import corners
-from brushsvg.strokes.contour_fill import region
 from brushsvg.strokes.corners import lifted_at_corners
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.outline_corners import squared_at_corners
+from brushsvg.strokes.swept_areas import region
 from brushsvg.strokes.trial_mark import trial_mark
 
 LINE = 'fill="none" stroke="black" stroke-width="4"'

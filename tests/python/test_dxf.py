@@ -283,6 +283,18 @@ def test_a_drawing_without_units_asks_for_them():
             assert element.subpaths[0].cubics[-1, 3].tolist() == pytest.approx([2 * mm, 0], rel=0, abs=1e-12)
 
 
+def test_a_drawing_too_large_for_its_unit_is_doubted():
+    """ezdxf and others write metres where nobody chose a unit."""
+
+    def line(unit, length, **more):
+        return read(drawing(lambda m: m.add_line((0, 0), (0, length)), unit), **more).notices
+
+    assert are_told(line(6, 100), "unit-doubtful metres '100 m' --units")
+    assert are_told(line(1, 250), "unit-doubtful inches '6.35 m'")
+    assert line(6, 4.9) == line(4, 9000) == ()
+    assert are_told(line(6, 100, units="mm"), "unit-overruled")
+
+
 def test_units_asked_for_win_and_say_so():
     design = read(drawing(lambda m: m.add_line((0, 0), (2, 0)), units=1), units="mm")
     assert design.elements[0].subpaths[0].cubics[-1, 3].tolist() == [2, 0]

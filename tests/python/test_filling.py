@@ -8,11 +8,13 @@ from svg_text import read
 
 from brushsvg import _core, find_brush
 from brushsvg.calibration.from_widths import new_brush
-from brushsvg.strokes.contour_fill import contour_passes, painted, region
+from brushsvg.strokes import rest_lines
+from brushsvg.strokes.contour_fill import contour_passes
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.fillings import fillings
 from brushsvg.strokes.offset_passes import Line
 from brushsvg.strokes.skeleton import shape_to_strokes
+from brushsvg.strokes.swept_areas import painted, region
 from brushsvg.strokes.trial_mark import spoiling
 from brushsvg.strokes.wide_shapes import within_reach
 
@@ -147,6 +149,12 @@ def test_a_ring_begins_amid_an_edge_as_its_tip_would_stick_out_of_a_corner(brush
     assert np.hypot(*(inside - start).T).min() > 6
 
 
+STAR_OF_SIX = "M" + "L".join(
+    f"{45 + far * np.sin(turn):.4f} {45 - far * np.cos(turn):.4f}"
+    for turn, far in zip(np.pi * np.arange(12) / 6, [38, 20] * 6, strict=True)
+)
+
+
 def paint_of(passes, brush):
     """What the brush paints of passes, in closed form, as shapely sees it."""
     made = _core.compensate(passes, brush, (100, 60), "closed", 0.05, None, start="auto", end="auto")
@@ -156,10 +164,15 @@ def paint_of(passes, brush):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["star", "arrow", "bow-tie"])
-def test_marks_do_not_bulge_where_a_shape_becomes_as_narrow_as_the_brush(brush, name):
-    """A line of a ring that ended in its cusp stuck out by up to 0.8 mm, of the edge that it does not run along."""
-    made = of(SHAPES[name])
+@pytest.mark.parametrize(
+    "d",
+    [SHAPES["star"], SHAPES["arrow"], SHAPES["bow-tie"], STAR_OF_SIX + "Z"],
+    ids=["star", "arrow", "bow-tie", "star of six"],
+)
+def test_marks_do_not_bulge_where_a_shape_becomes_as_narrow_as_the_brush(brush, d):
+    """A line of a ring that ended in its cusp stuck out by up to 0.8 mm, of the edge that it does not run along; a star
+    of six by 0.4 mm where a line begins square."""
+    made = of(d)
     shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm]))
     paint = paint_of(within_reach(made, brush, "passes")[0], brush)
     places = shapely.points(shapely.get_coordinates(paint))
@@ -346,7 +359,7 @@ def test_lines_that_paint_more_beside_a_shape_than_within_it_spoil_it(brush):
 def test_a_line_whose_curve_leaves_the_shape_is_no_part_of_a_filling(monkeypatch):
     """A curve through few places once left a serif by 10 mm, as a bar below the letter."""
     astray = Line(np.array([[3.5, 2, -6, -3, -16, -8, -26, -13]]), [(0.0, 2.0)])
-    monkeypatch.setitem(contour_passes.__globals__, "_fitted", lambda *_: astray)
+    monkeypatch.setattr(rest_lines, "_fitted", lambda *_: astray)
     triangle = shapely.Polygon([(0, 0), (50, 0), (25, 43)])
     for lines in contour_passes(triangle, [], [], 0.0, HALF_MM):
         assert painted(lines).difference(triangle.buffer(0.2)).area < 0.1

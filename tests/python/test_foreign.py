@@ -124,13 +124,23 @@ def test_check_predicts_what_a_brush_paints(desk, capsys):
         ("F40", "F400", "speed-out-of-range 169.3"),
         ("Z-0.1", "Z-0.5", "depth-out-of-range 12.700"),
         ("G1 X2 Y1 F40", "G0 X2 Y1", "rapid-too-low 6"),
-        ("X2.5", "X9", "mark-off-sheet right"),
+        ("X2.5", "X9", "mark-off-sheet 'right edge' --sheet"),
+        ("G0 X1 Y2", "G0 X-1 Y2", "mark-off-sheet 'left edge' 'move the program'"),
+        ("G0 Z0.2\nM2", "M2", "ends-on-paper 13 -2.54"),
     ],
 )
 def test_check_refuses_what_is_dangerous(desk, capsys, old, new, told):
     (desk / "bad.gcode").write_text(INCHES.replace(old, new))
     status, _, said = in_json(capsys, "check", "bad.gcode", "--sheet", "90x80")
     assert status == 1 and is_told(said, told)
+
+
+def test_a_unit_that_is_not_named_is_told(desk, capsys):
+    (desk / "f.gcode").write_text("G0 Z5\nG0 X30 Y30\nG1 Z-1 F300\nG1 X60 F600\nG0 Z5\n")
+    status, _, said = in_json(capsys, "check", "f.gcode")
+    assert status == 0 and is_told(said, "unit-assumed 1 millimetres")
+    (desk / "f.gcode").write_text("G21\n" + (desk / "f.gcode").read_text())
+    assert in_json(capsys, "check", "f.gcode")[2] == []
 
 
 @pytest.mark.parametrize("name", ["inches.gcode", "servo.nc"])

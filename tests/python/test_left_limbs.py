@@ -9,8 +9,8 @@ from brushsvg.drawing.svg import read_svg
 from brushsvg.evaluation import report
 from brushsvg.pipeline.prediction import predict
 from brushsvg.pipeline.preparation import Options, prepare
-from brushsvg.strokes.contour_fill import region
 from brushsvg.strokes.extraction import strokes
+from brushsvg.strokes.swept_areas import region
 from brushsvg.strokes.wide_shapes import within_reach
 
 SVG = (

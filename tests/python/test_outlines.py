@@ -259,6 +259,20 @@ def test_a_stem_runs_up_to_its_serif_where_the_bowl_leaves_it_right_below():
     )  # 0.855 with the stem bent into the bowl
 
 
+@pytest.mark.parametrize(("top", "valley"), [(6, 24), (7, 24)])
+def test_a_stem_that_sticks_out_beside_its_arch_is_a_stroke_of_its_own(top, valley):
+    """The humps of a script's n and m: too blunt for a branch of their own, they were lost where the short stem was
+    taken for the flick of its arch, which turned at the corner below them."""
+    stem = f"M10 44V{top + 18}C10 {top + 10} 13 {top} 17 {top}C20 {top} 22 {top + 4} {valley} 12"
+    made = painted(path(f"{stem}C28 9 31 8 35 8C43 8 46 14 46 20V44H38V24C38 13 26 12 18 30V44Z"))
+    assert len(made) == 2, "the stem, and the arch from it on"
+    stem_line, arch_line = sorted((_core.flatten(each, 0.01) for each in made), key=lambda line: line[-1, 0])
+    assert stem_line[0, 1] > stem_line[-1, 1], "one writes it down"
+    assert stem_line[0, 1] > arch_line[0, 1] + 5, "it begins in the hump"
+    letter = wanted(made)
+    assert _core.area(_core.intersect(marks(made), letter)) > 0.93 * _core.area(letter)
+
+
 def test_a_blob_with_holes_that_is_but_one_crossing_is_painted():
     disc = "M{0} 25A{1} {1} 0 1 0 {2} 25A{1} {1} 0 1 0 {0} 25Z".format
     made = painted(

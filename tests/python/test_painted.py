@@ -149,6 +149,12 @@ def bent(mark, **changes):
         (None, marks(), "plan", "key-missing"),
         ({"passes": plan()["passes"] * 2}, marks(), "plan", "stroke-twice"),
         (
+            {"passes": [p | {"settings": {"kind": "dab"}} for p in plan()["passes"]]},
+            marks(),
+            "plan",
+            "dabs-tell-no-lag calibrate",
+        ),
+        (
             {"passes": [p for p in plan()["passes"] if "straight" in p["stroke"]]},
             [m for m in marks() if "straight" in m["stroke"]],
             "plan",

@@ -6,8 +6,8 @@ import shapely
 from svg_text import read
 
 from brushsvg import _core, find_brush
-from brushsvg.strokes.contour_fill import region
 from brushsvg.strokes.extraction import strokes
+from brushsvg.strokes.swept_areas import region
 
 MIDDLE = shapely.LineString([(30, 25), (75, 25)])
 

@@ -148,6 +148,8 @@ def test_a_long_zigzag_keeps_its_teeth():
         ([(5, 5), (9, 9)], 0, "out-of-range"),
         ([(5, 5), (9, 9)], [3, -1], "out-of-range 1"),
         ([(5, 5), (9, 9)], np.inf, "out-of-range"),
+        (np.ma.masked_equal([(5, 5), (9, 8), (9, 9)], 8), 3, "geometry-out-of-range 1"),
+        ([(5, 5), (9, 9)], np.ma.masked_equal([3, 4], 4), "out-of-range 1"),
         ([(5, 5), (9, 9)], [3, 3, 3], "sizes-differ 2 3"),
     ],
 )

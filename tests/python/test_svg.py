@@ -770,10 +770,12 @@ def test_files(tmp_path):
     (tmp_path / "titled.svg").write_text(drawing.replace("<path", "<title> My\n word </title><path", 1))
     assert read_drawing(str(tmp_path / "titled.svg")).title == "My word"
     (tmp_path / "folder.svg").mkdir()
+    (tmp_path / "folder").mkdir()
     (tmp_path / "drawing.txt").write_text(drawing)
     for name, said in (
         ("missing.svg", "file-unreadable"),
         ("folder.svg", "file-unreadable directory"),
+        ("folder", "file-unreadable directory"),
         ("drawing.txt", "drawing-format .txt .svg"),
         ("drawing", "drawing-format 'no extension'"),
     ):

@@ -120,7 +120,7 @@ def test_a_box_is_measured_once(monkeypatch):
 def test_white_is_told():
     """What it hides is painted, too: paint is not cut off by what lies on top."""
     for fill, stroke in (("white", "blue"), ("white", "none"), ("blue", "#fff")):
-        assert are_told(told(painted(fill, stroke)), "white-paint p")
+        assert are_told(told(painted(fill, stroke)), "white-paint p data-brushsvg-skip")
     assert told(painted("#fefefe", "none")) == []
 
 

@@ -76,7 +76,7 @@ def test_what_the_mark_leaves_of_a_blunt_beginning_is_named_with_its_place_and_s
     """A seventh of a short stem stays blank beside its pointed beginning, and nothing said so."""
     import shapely
 
-    from brushsvg.strokes.contour_fill import region
+    from brushsvg.strokes.swept_areas import region
 
     work = prepared(tmp_path, BLOCK, start="exposed")
     assert work.unreached == ()

@@ -21,6 +21,7 @@ constexpr double kDeepestMm = 1000.0;  // deeper is damage, and its powers overf
 constexpr double kMostPlaces = 2e5, kMostPoints = 2e5;
 constexpr double kPlaceMm = 0.15;      // no two places of a prediction lie farther apart along the way
 constexpr double kMostCertain = 1e12;  // of a law's coefficient: 1 over its standard deviation
+constexpr double kLeastWideMm = 0.3;   // a pen's line, of which a picture's edges may err by as much
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// `name`: of the option, a normal distribution's sigma.
@@ -72,6 +73,11 @@ void refuse_law_prior(const MarkOptions& options) {
     }
 }
 
+double around_mm(const Ring& ring) {
+    return (ring.row(0) - ring.row(ring.rows() - 1)).norm() +
+           (ring.bottomRows(ring.rows() - 1) - ring.topRows(ring.rows() - 1)).rowwise().norm().sum();
+}
+
 void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const MarkOptions& options) {
     if (marks.empty()) throw Error("measurement-missing", "there is no painted mark");
     for (const auto& [terms, name] : {std::pair{options.lag_terms, "lag"}, std::pair{options.tip_gap_terms, "tip_gap"},
@@ -98,8 +104,7 @@ void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const M
             for (const double mm : ring.reshaped())
                 require_within(mm, {-kLargestMm, kLargestMm}, "a coordinate of an outline", mark.stroke);
             area += signed_area(ring);
-            around += (ring.row(0) - ring.row(ring.rows() - 1)).norm() +
-                      (ring.bottomRows(ring.rows() - 1) - ring.topRows(ring.rows() - 1)).rowwise().norm().sum();
+            around += around_mm(ring);
         }
         if (area < 0.0)
             throw Error("outline-clockwise",
@@ -114,6 +119,25 @@ void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const M
     }
     require_within(way, {0.0, kMostPlaces}, "the number of places along the strokes");
     require_within(around / options.spacing_mm, {0.0, kMostPoints}, "the number of points along the outlines");
+}
+
+/// Edges that err by more than the marks are wide are those of no brush.
+void refuse_unlike_any(const std::vector<PaintedMark>& marks, const MarkFit& fit) {
+    double area = 0.0, around = 0.0;
+    for (const PaintedMark& mark : marks)
+        for (const Ring& ring : mark.outline_mm) {
+            area += signed_area(ring);
+            around += around_mm(ring);
+        }
+    const double wide = 2.0 * area / std::max(around, 1e-9);  // of strips
+    if (fit.noise_mm <= std::max(wide, kLeastWideMm)) return;
+    std::size_t worst = 0;
+    for (std::size_t i = 0; i < fit.marks.size(); ++i)
+        if (fit.marks[i].rms_mm > fit.marks[worst].rms_mm) worst = i;
+    throw Error("fit-failed",
+                "no brush was found that paints these marks: their edges lie off by more (standard deviation) than "
+                "they are wide, those of this one most: is it the mark of this stroke, in mm?",
+                marks[worst].stroke, fit.noise_mm, std::array<double, 2>{0.0, wide});
 }
 
 /// What is to expect of edges this uncertain, which forget themselves as exp(-s / length).
@@ -243,6 +267,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
         out.samples += double(distance.size());
         out.marks.push_back(std::move(miss));
     }
+    if (!options.noise_mm) refuse_unlike_any(marks, out);
     out.left_aside = aside / std::max(1.0, out.samples);
     out.slim = slim / std::max(1.0, out.samples);
     // repeats divide squares, of which the loss lets through the slope's share

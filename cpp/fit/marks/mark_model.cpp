@@ -16,7 +16,7 @@ constexpr double kLeastRingMm2 = 0.2;  // specks
 constexpr double kLeastReachMm = 5.0;  // of a field: over less, what is smooth is the same everywhere
 // Looks at instants in a whole fit, for each place and point there is. Marks of a brush take two to ten thousand;
 // those that no brush paints, where huge footprints lie on each other, took millions, and minutes.
-constexpr double kMostLooks = 1e7, kMostLooksEach = 1.5e4;
+constexpr double kMostLooks = 2e7, kMostLooksEach = 3e4;
 // And of one mark: about as many as a sheet of fifty strokes takes. 9 m of jumps to and fro, painted as a brush would,
 // took ten times as many, and a minute.
 constexpr double kMostLooksOfOne = 2e8;

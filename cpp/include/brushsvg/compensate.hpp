@@ -26,8 +26,10 @@ enum class Beginning {
     hidden,   ///< set down inside of the stroke, back to its beginning, turned over: round, as a footprint is in front
               ///< (a dot: turned round on the spot)
     squared,  ///< on its way back a narrower mark goes into one corner, along the cut into the other, and turns there
-    automatic,  ///< hidden, or squared, where the mark lies better on the wanted one there for it, by more than can
-                ///< hardly be seen
+    turned,   ///< turned round on the spot like a dot, then on along the line; `hidden` and `auto` take it, none asks
+              ///< for it
+    automatic,  ///< hidden, turned or squared, where the mark lies better on the wanted one there for it, by more than
+                ///< can hardly be seen
 };
 inline constexpr std::array<std::pair<std::string_view, Beginning>, 4> kBeginnings{{{"exposed", Beginning::exposed},
                                                                                     {"hidden", Beginning::hidden},

@@ -13,11 +13,6 @@ namespace [[gnu::visibility("default")]] brushsvg {
 /// Fraction of each pixel that is painted; row 0 is the top of the window.
 using Coverage = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Part of the paper that an image shows [mm]: lower left corner and size.
-struct Window {
-    double x_mm, y_mm, width_mm, height_mm;
-};
-
 /// Anti-aliased picture of the union of all footprints.
 Coverage coverage(const Marks& marks, const Brush& brush, const Window& window, double px_per_mm);
 

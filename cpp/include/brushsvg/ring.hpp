@@ -11,6 +11,11 @@ using Ring = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 /// Outer rings counter-clockwise, holes clockwise.
 using Rings = std::vector<Ring>;
 
+/// Part of the paper that an image shows [mm]: lower left corner and size.
+struct Window {
+    double x_mm, y_mm, width_mm, height_mm;
+};
+
 /// Area [mm^2], negative for a clockwise ring.
 double signed_area(const Ring& ring);
 

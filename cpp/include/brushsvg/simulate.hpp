@@ -16,6 +16,11 @@ namespace [[gnu::visibility("default")]] brushsvg {
 /// not finite, and when all poses are above the paper. `for_outlines` false leaves out the rows that only the
 /// footprint's shape needs, not its motion: quick, enough for widest_points().
 PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm = 0.02, bool for_outlines = true);
+
+/// For a picture of a part of the paper: as closely there alone. Moves that paint nothing of it have rows at their
+/// ends.
+PassMarks simulate_near(const Pass& pass, const Brush& brush, const Window& window, double tolerance_mm = 0.02);
+
 Marks simulate(const Plan& plan, const Brush& brush, double tolerance_mm = 0.02);
 
 /// Centre of the widest section at every row [mm]: m = p + e(d) u.

@@ -14,4 +14,7 @@ Rings wanted_outline(const Stroke& stroke, double tolerance_mm = 0.005);
 /// enough for a picture, at a fraction of the outline's cost.
 Rings wanted_pieces(const Stroke& stroke, double tolerance_mm = 0.005);
 
+/// Those of them that may show in a part of the paper, in the same order.
+Rings wanted_pieces_near(const Stroke& stroke, const Window& window, double tolerance_mm = 0.005);
+
 }  // namespace brushsvg

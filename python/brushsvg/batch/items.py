@@ -24,12 +24,14 @@ MOST_LETTERS = 60  # of a word, in the name of its files
 @dataclass(frozen=True)
 class Item:
     """One drawing. name: of its files, without extension, below the batch's folder; source: what a person calls it;
-    read: it, when it is its turn; digest: of all that it depends on; "" where it cannot be read, which `read` tells."""
+    read: it, when it is its turn; digest: of all that it depends on; "" where it cannot be read, which `read` tells;
+    path: where it lies, absolute; "" where it is no file."""
 
     name: str
     source: str
     digest: str
     read: Callable[[], InMemory]
+    path: str = ""
 
 
 def drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
@@ -79,6 +81,10 @@ def _lines(path: str | os.PathLike[str]) -> list[str]:
 
 
 def _drawing(path: Path, name: Path) -> Item:
+    stem = name.with_suffix("").as_posix() if name.name else ""
+    if not stem.isprintable():
+        return _unnamed(_printable(stem), _printable(str(path)))
+
     def read() -> InMemory:
         extension = path.suffix.lower()
         if extension not in READERS and (extension or path.exists()):
@@ -91,8 +97,27 @@ def _drawing(path: Path, name: Path) -> Item:
         digest = hashlib.sha256(f"{path.suffix.lower()}\n".encode() + read_bytes(path)).hexdigest()
     except Error:
         digest = ""
-    stem = name.with_suffix("").as_posix() if name.name else ""
-    return Item(stem, str(path), digest, read)
+    return Item(stem, str(path), digest, read, os.path.realpath(path))
+
+
+def _unnamed(name: str, source: str) -> Item:
+    """A drawing that is refused when it is its turn, since its files cannot have its name."""
+
+    def read() -> InMemory:
+        sentence = (
+            f"{name[:60]} cannot be the name of a file that is written: it holds more than printed letters"
+        )
+        raise Error(sentence, code="name-invalid", advice="rename the drawing")
+
+    return Item(name, source, "", read)
+
+
+def _printable(text: str) -> str:
+    """With what is not printed, as the end of a line, written as in Python."""
+    return "".join(
+        each if each.isprintable() else each.encode("unicode_escape", "surrogatepass").decode()
+        for each in text
+    )
 
 
 def words(
@@ -175,4 +200,17 @@ def _told_apart(items: list[Item]) -> None:
         other = by_name.setdefault(item.name.casefold(), item)
         if other is not item:
             sentence = f"{other.source} and {item.source} would both be written as {item.name}"
-            raise Error(sentence, code="name-taken", advice="give them in two batches")
+            raise Error(sentence, code="name-taken", advice=_way_out(other, item, items))
+
+
+def _way_out(one: Item, other: Item, items: list[Item]) -> str:
+    """What helps where two drawings have one name."""
+    if one.path and one.path == other.path:
+        return "it is one drawing: give it once"
+    for each in (other, one):
+        names = [item.name for item in items if each.path and item.path == each.path]
+        if len(names) > 1:
+            return f"{each.source} is given twice, as {' and '.join(names)}: leave its folder out"
+    if one.path and os.path.dirname(one.path) == os.path.dirname(other.path):
+        return "rename one of them"
+    return "give one of them to a batch of its own, with another --out"

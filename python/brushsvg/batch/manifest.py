@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ..errors import Error, Notice
 from ..files import read_bytes, reason, write_files
+from .items import Item
 from .one import Figures, sha256
 
 try:
@@ -28,7 +29,7 @@ class Row:
 
     name: of its files; source: what a person calls it; figures: None where it was refused, for the reason in code,
     where (the element) and sentence; notices: warnings; files: path below the batch's folder to sha256; key: sha256 of
-    all that it depends on.
+    all that it depends on; path: of the drawing, from the batch's folder, "" where it is no file.
     """
 
     name: str
@@ -40,6 +41,7 @@ class Row:
     sentence: str = ""
     notices: tuple[Notice, ...] = ()
     files: dict[str, str] = field(default_factory=dict)
+    path: str = ""
 
     @property
     def told(self) -> str:
@@ -66,8 +68,9 @@ class Manifest:
 
     def __init__(self, folder: Path):
         self.folder, self.path = folder, folder / NAME
-        self.rows: dict[str, Row] = {}
+        self._by_name: dict[str, list[Row]] = {}
         try:
+            self._place = os.path.realpath(folder)
             folder.mkdir(parents=True, exist_ok=True)
             self._file = open(self.path, "ab")  # noqa: SIM115
         except (OSError, ValueError) as problem:
@@ -98,7 +101,8 @@ class Manifest:
         if said != FORMAT:
             sentence = f"this is not a manifest of {FORMAT['format']}, version {FORMAT['version']}"
             raise Error(sentence, file=str(self.path), code="format-unknown")
-        self.rows = {row.key: row for row in map(_row, lines) if row}
+        for row in filter(None, map(_row, lines)):
+            self._by_name.setdefault(row.name, []).append(row)
         if lines and lines[-1]:
             self._add("\n")  # what was left half stays a line of its own
 
@@ -110,12 +114,47 @@ class Manifest:
         """After its files were written."""
         self._add(as_line(row))
 
-    def done(self, key: str, name: str, source: str) -> Row | None:
+    def done(self, key: str, item: Item) -> Row | None:
         """The row of what is done already and lies there as it was written."""
-        row = self.rows.get(key)
-        if row is None or row.name != name or not all(map(self._lies_there, row.files.items())):
-            return None
-        return replace(row, source=source)
+        for row in self._by_name.get(item.name, []):
+            if row.key == key and all(map(self._lies_there, row.files.items())):
+                return replace(row, source=item.source, path=self.way_to(item))
+        return None
+
+    def way_to(self, item: Item) -> str:
+        """The path of the drawing, from this folder: the same wherever the command is typed."""
+        try:
+            return Path(os.path.relpath(item.path, self._place)).as_posix() if item.path else ""
+        except ValueError:  # Windows: another drive
+            return item.path
+
+    def refuse_other_drawing(self, item: Item) -> None:
+        """Error where what lies there under this name was made of another drawing, which lies there still."""
+        path = self.way_to(item)
+        for row in self._by_name.get(item.name, []):
+            here = [file for file in row.files.items() if self._lies_there(file)]
+            if here and row.path not in ("", path) and (self.folder / row.path).exists():
+                sentence = (
+                    f"{here[0][0]} was made of {row.source}: that of {item.source} would be written over it"
+                )
+                raise Error(sentence, file=str(self.folder), code="name-taken", advice="give another --out")
+
+    def remove_outdated(self, row: Row) -> list[str]:
+        """Files that were made under the name of what is refused, as they were written, are removed: their paths."""
+        removed: list[str] = []
+        if row.figures:
+            return removed
+        for file in dict.fromkeys(
+            file for each in self._by_name.get(row.name, []) for file in each.files.items()
+        ):
+            if self._lies_there(file):
+                try:
+                    (self.folder / file[0]).unlink()
+                except OSError as problem:
+                    sentence = f"an outdated file cannot be removed: {reason(problem)}"
+                    raise Error(sentence, file=str(self.folder / file[0]), code="file-unwritable") from None
+                removed.append(file[0])
+        return removed
 
     def _lies_there(self, file: tuple[str, str]) -> bool:
         try:

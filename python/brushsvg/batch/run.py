@@ -39,11 +39,13 @@ BYTES_AT_ONCE = 64 * 2**20
 @dataclass(frozen=True)
 class Batch:
     """rows: one for each drawing, in their order; resumed: how many of them an earlier run had done; files: the tables
-    and contact sheets."""
+    and contact sheets; removed: programs and pictures, below the folder, that an earlier run had made of drawings that
+    are refused now."""
 
     rows: tuple[Row, ...]
     resumed: int
     files: tuple[str, ...]
+    removed: tuple[str, ...] = ()
 
     @property
     def refused(self) -> tuple[Row, ...]:
@@ -70,7 +72,7 @@ def batch(
 
     items: paths of drawings, folders, patterns with * and lists (.txt), and pairs of a name and an SVG document.
     out: the folder: programs/NAME.ngc, pictures/NAME.png, manifest.jsonl, table.csv, contact-1.png ...; a drawing that
-    is refused is a row with its sentence and code, and stops nothing.
+    is refused is a row with its sentence and code, and stops nothing; what an earlier run made of it is removed.
     executor: any of concurrent.futures; it is given functions and values that can be pickled, and is not shut down.
     jobs: without it, the number of processes, by default one for each processor (a script that starts them needs
     `if __name__ == "__main__":`); cluster: the address of a scheduler of Dask's instead. The rows and files are the
@@ -78,8 +80,8 @@ def batch(
     format: extension of the programs, by default the first of the cell's language; parquet: table.parquet, too.
     progress, cancel, order, lenient, choices: as for convert; corrections are for one drawing alone.
 
-    Raises Error for what concerns all: the folder, items of one name, a brush, a cell; CancelledError once cancel says
-    so, and what is done stays done.
+    Raises Error for what concerns all: the folder, items of one name, files there that were made of another drawing of
+    that name, a brush, a cell; CancelledError once cancel says so, and what is done stays done.
     """
     need(out, (str, os.PathLike), "a path, which out is")
     need(format, str, "an extension, such as '.ngc'")
@@ -113,11 +115,13 @@ def batch(
     try:
         keys = [way.key(item) for item in listed]
         rows: list[Row | None] = [
-            manifest.done(key, item.name, item.source) if item.digest else None
-            for key, item in zip(keys, listed, strict=True)
+            manifest.done(key, item) if item.digest else None for key, item in zip(keys, listed, strict=True)
         ]
         resumed = len(listed) - rows.count(None)
         left = [index for index, row in enumerate(rows) if row is None]
+        for index in left:
+            manifest.refuse_other_drawing(listed[index])
+        removed = [path for row in rows if row for path in manifest.remove_outdated(row)]
         tell = _told(len(listed), resumed, progress or (lambda text: None))
         with ExitStack() as stack:
             is_ours = executor is None and cluster is None
@@ -125,14 +129,16 @@ def batch(
                 place = executors.cluster(cluster) if cluster else executors.processes(min(count, len(left)))
                 executor = stack.enter_context(place)
             for index, done in _each_made(executor, is_ours, left, listed, way, is_over):
-                rows[index] = _kept(folder, listed[index], keys[index], done)
-                manifest.add(rows[index])
-                tell(rows[index])
+                row = _kept(folder, listed[index], keys[index], done)
+                row = rows[index] = replace(row, path=manifest.way_to(listed[index]))
+                removed += manifest.remove_outdated(row)
+                manifest.add(row)
+                tell(row)
         manifest.finish(rows)
         files = _summary(folder, rows, parquet)
     finally:
         manifest.close()
-    return Batch(tuple(rows), resumed, tuple(files))
+    return Batch(tuple(rows), resumed, tuple(files), tuple(removed))
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ STRAIGHT_RAD = 0.35  # strokes that turn less in all say nothing of the lag that
 UPRIGHT = "brushes are found from marks of a brush held upright"
 PAINTED_MM = 5.0  # a depth counts where this much was painted at it
 DEPTH_BINS = 20
+DAB = "dab"  # the kind of stroke, in a plan's settings, that is set down and taken up without a way
 UNITS = ((1 / 1000, "metres"), (1 / 25.4, "inches"), (0.1, "centimetres"), (25.4, "points or pixels"))
 # How a sheet may lie: plan to sheet, and what to say
 LAID = (
@@ -128,6 +129,13 @@ def _passes(plan, read) -> dict[str, _core.Pass]:
         if name in out:
             raise Error(
                 f"two passes paint stroke {name!r}: give each its own name", "plan", code="stroke-twice"
+            )
+        if one.settings.kind == DAB:
+            raise Error(
+                f"{name!r} is a dab: dabs tell the outline of the brush, but no lag",
+                "plan",
+                code="dabs-tell-no-lag",
+                advice="brushsvg calibrate PHOTO --chart CHART.json --brush BRUSH",
             )
         out[name] = one
     return out

@@ -148,6 +148,8 @@ def _opened(path) -> tuple:
         extension = os.path.splitext(path)[1]
         reader = READERS.get(extension.lower())
         if reader is None:
+            if os.path.isdir(path):
+                raise Error("this is a directory, not a file", file=os.fspath(path), code="file-unreadable")
             known = ", ".join(READERS)
             raise Error(
                 f"{extension or 'no extension'} is not a drawing format that is read; known: {known}",

@@ -18,3 +18,10 @@ def lengths(points: np.ndarray) -> np.ndarray:
 
 def length(points: np.ndarray) -> float:
     return float(steps(points).sum())
+
+
+def evenly(points: np.ndarray, count: int) -> np.ndarray:
+    """(count, d) places on the polyline through (n, d) points that part it into equal lengths."""
+    at = lengths(points)
+    places = np.linspace(0.0, at[-1], count)
+    return np.column_stack([np.interp(places, at, column) for column in points.T])

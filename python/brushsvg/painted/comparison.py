@@ -13,7 +13,7 @@ from ..geometry.rings import centroid
 from ..scan.edges import Room, paint_seen
 from ..scan.flatten import Flat, flatten
 from ..scan.markers import Printed, View, find_view
-from ..scan.photo import read_photo
+from ..scan.photo import read_photo, refuse_twice
 from ..scan.whole_page import refuse_cropped, refuse_unsure
 from .job_page import JobPage, box_ring
 from .placing import NOWHERE, Canvas, Placed, grown, place
@@ -87,7 +87,8 @@ class Comparison:
 
 def compare_photos(page: JobPage, strokes: list[Wanted], photos: list[tuple[str, bytes]]) -> Comparison:
     """photos: names and what their files hold, of one painted sheet; their paint is averaged. Error in one sentence,
-    with the file, where a photograph cannot be read or shows another job."""
+    with the file, where a photograph cannot be read, is given twice or shows another job."""
+    refuse_twice(photos)
     reads = []
     for name, data in photos:
         try:
@@ -102,6 +103,12 @@ def compare_photos(page: JobPage, strokes: list[Wanted], photos: list[tuple[str,
     _refuse_other_sheets(painted, photos)
     mean = np.mean(painted, axis=0).astype(np.float32)
     return replace(compare_paint(strokes, mean, canvas, photos[0][0]), view=view, flat=flat, paint=paint)
+
+
+def compare_sheets(page: JobPage, strokes: list[Wanted], photos: list[tuple[str, bytes]]) -> list[Comparison]:
+    """Each photograph of another sheet. Error as for compare_photos."""
+    refuse_twice(photos)
+    return [compare_photos(page, strokes, [photo]) for photo in photos]
 
 
 def compare_paint(strokes: list[Wanted], painted: np.ndarray, canvas: Canvas, name: str) -> Comparison:

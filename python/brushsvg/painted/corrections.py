@@ -13,6 +13,7 @@ import numpy as np
 from .. import _core, json_fields
 from ..errors import Error
 from ..files import read_bytes
+from ..geometry.polylines import evenly
 from ..geometry.rotation import rotation
 from ..machine.cell import Machine
 from ..machine.pass_way import on_way
@@ -23,7 +24,8 @@ BESIDE = "beside_machine"  # of the file: what is left of each stroke once the c
 MARK = "corrections"  # of a plan that was corrected: the key, with how many strokes were
 MOST_WIDER_MM = 1.0  # of each edge: a mark that is off by more is another brush's
 MOST_MM, MOST_DEG = 3.0, 3.0  # a mark that lies farther off does so for a reason that is to be found
-START_MM = 0.1  # where the same stroke begins
+SAME_MM = 0.1  # where the same stroke begins, and where its way leads, in depth as well: less is within a correction
+PLACES = 9  # of a way, equal lengths apart
 OTHER_LAG_MM = 5.0  # the same where another brush leads it: a lag of 20 mm is not a quarter off
 
 
@@ -32,7 +34,8 @@ class Correction:
     """A stroke, whose way begins at start_mm of the sheet, is turned counter-clockwise by turn_deg about middle_mm and
     shifted by shift_mm, its edges led wider_mm farther out: what is left once the brush of brush_sha256 and the machine
     of machine_sha256 ("" where that is not known) are known. replanned: the sheet was painted by a plan for another
-    brush, so that strokes began elsewhere."""
+    brush, so that strokes began elsewhere. way_mm: places of the TCP as it was planned, see `way_of`, () where that is
+    not known."""
 
     stroke: str
     start_mm: tuple[float, float]
@@ -43,11 +46,18 @@ class Correction:
     replanned: bool = False
     machine_sha256: str = ""
     wider_mm: float = 0.0
+    way_mm: tuple[tuple[float, ...], ...] = ()
 
     def moved(self, points_mm: np.ndarray) -> np.ndarray:
         """(n, 2) places on the sheet, led elsewhere."""
         turned = (points_mm - self.middle_mm) @ rotation(math.radians(self.turn_deg))
         return turned + self.middle_mm + self.shift_mm
+
+
+def way_of(a_pass) -> tuple[tuple[float, ...], ...]:
+    """Nine places (x, y, z) [mm] of its TCP, equal lengths apart, the first and the last pose among them."""
+    places = evenly(np.array(a_pass.poses_mm, dtype=float), PLACES)
+    return tuple(tuple(place) for place in places.tolist())
 
 
 def machine_sha256(machine: Machine | None) -> str:
@@ -110,8 +120,10 @@ def refuse_corrected(plan) -> None:
 def _led(a_pass, correction: Correction, brush):
     poses = np.array(a_pass.poses_mm, dtype=float)
     away_mm = math.dist(poses[0, :2], correction.start_mm)
-    if away_mm > (OTHER_LAG_MM if correction.replanned else START_MM):
+    if away_mm > (OTHER_LAG_MM if correction.replanned else SAME_MM):
         raise _of_another_job(a_pass.stroke, f"it begins {away_mm:.2f} mm from where they say")
+    if correction.way_mm and not correction.replanned:
+        _refuse_other_way(a_pass, np.array(correction.way_mm))
     if correction.wider_mm:
         a_pass = wider(a_pass, correction.wider_mm, brush)
         poses = np.array(a_pass.poses_mm, dtype=float)
@@ -121,6 +133,17 @@ def _led(a_pass, correction: Correction, brush):
         for arc in a_pass.arcs
     ]
     return on_way(a_pass, poses, arcs)
+
+
+def _refuse_other_way(a_pass, known_mm: np.ndarray) -> None:
+    """Where the brush is led elsewhere, deeper or less deep than when the sheet was painted."""
+    off = np.array(way_of(a_pass)) - known_mm
+    aside_mm, deeper_mm = np.hypot(*off.T[:2]).max(), np.abs(off[:, 2]).max()
+    if max(aside_mm, deeper_mm) > SAME_MM:
+        how = f"{aside_mm:.2f} mm aside" if aside_mm > deeper_mm else f"{deeper_mm:.2f} mm higher or lower"
+        raise _of_another_job(
+            a_pass.stroke, f"the brush is led up to {how} of where it was, as by another width or tolerance"
+        )
 
 
 def _of_another_job(stroke: str, why: str) -> Error:
@@ -194,4 +217,19 @@ def _read(row: dict, where: str) -> Correction:
     json_fields.number(math.hypot(*shift_mm), f"{at}.shift_mm", 0.0, MOST_MM)
     turn_deg = json_fields.number(said.get("turn_deg"), f"{at}.turn_deg", -MOST_DEG, MOST_DEG)
     wider_mm = json_fields.number(said.get("wider_mm", 0.0), f"{at}.wider_mm", -MOST_WIDER_MM, MOST_WIDER_MM)
-    return Correction(stroke, *places, shift_mm, turn_deg, wider_mm=wider_mm)
+    return Correction(
+        stroke,
+        *places,
+        shift_mm,
+        turn_deg,
+        wider_mm=wider_mm,
+        way_mm=_way(said.get("way_mm"), f"{at}.way_mm"),
+    )
+
+
+def _way(said, at: str) -> tuple[tuple[float, ...], ...]:
+    if said is None:  # of a file from before it was written
+        return ()
+    if not isinstance(said, list) or len(said) != PLACES:
+        raise Error(f"this must be a list of {PLACES} places", at, code="wrong-type")
+    return tuple(json_fields.numbers(place, f"{at}[{k}]", 3) for k, place in enumerate(said))

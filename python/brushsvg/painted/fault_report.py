@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..machine.cell import Machine
 from .fault_model import BRUSH, MACHINE, PAPER, SHEET
 from .faults import DRY, OWN, Faults, Found, Share
+from .job_marks import PAINT_A_CHART
 from .mended_cell import as_table
 
 MEND = {
@@ -15,14 +16,16 @@ MEND = {
     OWN: "correct each stroke: convert --corrections; several sheets tell what of it repeats (compare --sheets)",
     DRY: "let the brush fetch paint earlier: [paint] of the cell",
 }
+NONE_ALONE = f"no stroke of this sheet lies alone with its paint whole, to learn from; {PAINT_A_CHART}"
 
 
 def told(share: Share) -> str:
     return f"{share.cause}: {share.gain:+.3f} ({share.low:+.3f} to {share.high:+.3f})"
 
 
-def in_words(faults: Faults | None, machine: Machine | None) -> list[str]:
-    """machine: of the cell, as the next job should be told it."""
+def in_words(faults: Faults | None, machine: Machine | None, any_alone: bool = True) -> list[str]:
+    """machine: of the cell, as the next job should be told it; any_alone: whether a brush could learn from a stroke of
+    this sheet."""
     if faults is None:
         sentence = (
             "What the difference is made of is not told: too few strokes, or too few edges that lie free."
@@ -52,7 +55,8 @@ def in_words(faults: Faults | None, machine: Machine | None) -> list[str]:
         lines.append("Nothing is certain to gain anything when it is mended alone.")
     else:
         gain = next(share.gain for share in faults.shares if share.cause == faults.first)
-        lines.append(f"Mend first: {faults.first}, which gains {gain:.3f}: {MEND[faults.first]}.")
+        how = MEND[faults.first] if any_alone or faults.first != BRUSH else NONE_ALONE
+        lines.append(f"Mend first: {faults.first}, which gains {gain:.3f}: {how}.")
     if machine:
         lines += [
             "",

@@ -11,7 +11,7 @@ from ..calibration.chart.photograph import EDGE_PX
 from ..calibration.from_prior import Updated, marks_beside_a_prior, update_brush
 from ..errors import Error, Notice
 from .comparison import Comparison, Wanted, compare_photos
-from .job_marks import DRY, JobMarks, job_marks
+from .job_marks import DRY, PAINT_A_CHART, JobMarks, job_marks
 from .job_page import job_page
 
 ROUNDS = 2  # marks that are not where the prior has them may be found where the updated brush has them
@@ -40,8 +40,7 @@ def learn(
         found = compare_photos(page, strokes, photos)
         marks = job_marks(found, page, strokes)
         if not marks.rings:
-            sentence = "no stroke of this job lies alone with its paint whole: nothing is learnt from it"
-            raise Error(sentence, file=photos[0][0], code="marks-touch")
+            raise _nothing_told(marks, photos[0][0])
         if best and len(marks.rings) <= len(best[1].rings):
             break
         edge_mm = EDGE_PX / found.view.px_per_mm
@@ -67,6 +66,15 @@ def _painted(plan, marks: JobMarks):
             for k, rings in marks.rings.items()
         ]
     )
+
+
+def _nothing_told(marks: JobMarks, name: str) -> Error:
+    touching, dry = len(marks.touching), len(marks.dry)
+    sentence = (
+        f"no stroke of this job lies alone with its paint whole: of {touching + dry} {touching} share their paint with "
+        f"others, and {dry} are not found or lack paint on more than {100 * DRY:g} %: nothing is learnt from it"
+    )
+    return Error(sentence, file=name, code="marks-touch", advice=PAINT_A_CHART)
 
 
 def _left_out(found: Comparison, marks: JobMarks, strokes: list[Wanted]):

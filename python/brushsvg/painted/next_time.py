@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import Error, Notice
 from ..geometry.rotation import rotation
 from .comparison import LEAST_MARKS, Compared, Comparison
-from .corrections import MOST_DEG, MOST_MM, MOST_WIDER_MM, Correction
+from .corrections import MOST_DEG, MOST_MM, MOST_WIDER_MM, Correction, way_of
 from .led_width import refuse_width
 
 # Of what was seen so much is taken back as repeats: a brush set down twice is taken to lie 0.1 mm elsewhere in x and in
@@ -35,8 +35,8 @@ def next_corrections(
     certain was seen keeps its own, one that would be led too far has none, which is told; so is a width that the
     brush cannot paint, which stays as it was predicted."""
     passes = {a_pass.stroke: a_pass for a_pass in plan.passes}
-    starts = {name: tuple(map(float, a_pass.poses_mm[0][:2])) for name, a_pass in passes.items()}
-    made, notices = {each.stroke: replace(each, start_mm=starts[each.stroke]) for each in before}, []
+    ways = {name: way_of(a_pass) for name, a_pass in passes.items()}
+    made, notices = {each.stroke: _along(each, ways[each.stroke]) for each in before}, []
     if found.spread_mm is None:
         return made, notices
     for row in found.strokes:
@@ -49,7 +49,7 @@ def next_corrections(
             )
             notices.append(Notice(row.stroke, sentence, code="mark-unlike"))
             continue
-        correction = _next(row, found, starts[row.stroke], made.get(row.stroke))
+        correction = _next(row, found, ways[row.stroke], made.get(row.stroke))
         try:
             if correction.wider_mm:
                 refuse_width(passes[row.stroke], correction.wider_mm, brush)
@@ -100,7 +100,12 @@ def _repeats(aside_mm: np.ndarray, found: Comparison) -> float:
     return min(max(of_all, its_own, LEAST_SHARE), MOST_SHARE)
 
 
-def _next(row: Compared, found: Comparison, start_mm, before: Correction | None) -> Correction:
+def _along(correction: Correction, way_mm) -> Correction:
+    """The same, with where its stroke is led now."""
+    return replace(correction, start_mm=way_mm[0][:2], way_mm=way_mm)
+
+
+def _next(row: Compared, found: Comparison, way_mm, before: Correction | None) -> Correction:
     aside, sheet = aside_mm(row, found), found.common
     share = _repeats(aside, found)
     off = share * aside
@@ -108,11 +113,12 @@ def _next(row: Compared, found: Comparison, start_mm, before: Correction | None)
     shift = np.array(before.shift_mm) - off if before else -off
     return Correction(
         row.stroke,
-        start_mm,
+        way_mm[0][:2],
         row.middle_mm,
         (float(shift[0]), float(shift[1])),
         (before.turn_deg if before else 0.0) - turn_deg,
         wider_mm=_width(row, before.wider_mm if before else 0.0),
+        way_mm=way_mm,
     )
 
 

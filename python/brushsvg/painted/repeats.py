@@ -11,7 +11,7 @@ import numpy as np
 from .. import _core, json_fields
 from ..errors import Error
 from ..files import read_bytes
-from ..geometry.polylines import lengths
+from ..geometry.polylines import evenly
 from ..geometry.rotation import rotation
 from .comparison import LEAST_MARKS, Comparison
 from .next_time import UNSEEN
@@ -58,7 +58,7 @@ class Approach:
 class Repeats:
     """displacement_mm: standard deviation in x and in y of where the same stroke lies, with its 95 % interval; away_mm:
     (n,) of each one, how far from its mean; over_sheets: else over copies on one, which their places
-    move, too."""
+    move, too; once: strokes that were seen once or not at all, of which nothing is told."""
 
     rows: tuple[Spread, ...]
     displacement_mm: float
@@ -68,6 +68,7 @@ class Repeats:
     approaches: tuple[Approach, ...]
     sheets: int
     over_sheets: bool
+    once: tuple[str, ...] = ()
 
 
 def repeats(plan, sheets: list[Comparison]) -> Repeats:
@@ -76,10 +77,11 @@ def repeats(plan, sheets: list[Comparison]) -> Repeats:
     names = [one.stroke for one in plan.passes]
     over_sheets = len(sheets) > 1
     groups = [[name] for name in names] if over_sheets else _copies(plan)
-    rows, away, squares, seen, used = [], [], 0.0, 0, 0
+    rows, once, away, squares, seen, used = [], [], [], 0.0, 0, 0
     for group in groups:
         values = [each[name] for each in places for name in group if name in each]
         if len(values) < 2:
+            once += group
             continue
         at = np.array([value[:2] for value in values])
         off = at - at.mean(axis=0)
@@ -114,7 +116,9 @@ def repeats(plan, sheets: list[Comparison]) -> Repeats:
         raise Error(sentence, code="too-few-repeats")
     low, high = (sigma * math.sqrt(freedom / _chi_square(freedom, side)) for side in (1.96, -1.96))
     approaches = tuple(_approach(plan, places, axis) for axis in (0, 1))
-    return Repeats(tuple(rows), sigma, low, high, np.concatenate(away), approaches, len(sheets), over_sheets)
+    return Repeats(
+        tuple(rows), sigma, low, high, np.concatenate(away), approaches, len(sheets), over_sheets, tuple(once)
+    )
 
 
 def _places(found: Comparison) -> dict[str, tuple[float, float, float]]:
@@ -148,9 +152,7 @@ def _copies(plan) -> list[list[str]]:
 
 def _along(poses_mm: np.ndarray) -> np.ndarray:
     """(n, 3) from its beginning, at places that part the way into equal lengths."""
-    at_mm = lengths(poses_mm)
-    places = np.linspace(0.0, at_mm[-1], ALONG)
-    way = np.column_stack([np.interp(places, at_mm, column) for column in poses_mm.T])
+    way = evenly(poses_mm, ALONG)
     way[:, :2] -= poses_mm[0, :2]
     return way
 
@@ -208,6 +210,13 @@ def as_text(title: str, found: Repeats) -> str:
             f"{row.stroke.ljust(width)}  {row.count:4d}  {x:+6.2f}  {y:+6.2f}  {row.spread_mm:6.3f}  "
             f"{row.farthest_mm:8.2f}  {row.wider_mm:5.3f}"
         )
+    if found.once:
+        count = f"{len(found.once)} stroke{'s' * (len(found.once) != 1)}"
+        lines += [
+            "",
+            f"Not told, since not seen twice (not found, or more than {100 * UNSEEN:g} % of the mark without paint): "
+            f"{count}: {', '.join(found.once)}.",
+        ]
     lines += [
         "",
         f"The same stroke lies {found.displacement_mm:.3f} mm aside in x and in y (standard deviation, 95 % interval "
@@ -251,6 +260,7 @@ def as_json(title: str, found: Repeats) -> str:
             one.axis: None if one.value_mm is None else [round(one.value_mm, 4), round(one.half_mm, 4)]
             for one in found.approaches
         },
+        "not_seen_twice": list(found.once),
         "histogram": [{"to_mm": round(edge, 4), "count": count} for edge, count in histogram(found)],
         "strokes": [
             {

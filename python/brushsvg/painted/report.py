@@ -18,6 +18,9 @@ from .next_time import aside_mm
 
 LEAST_BLOT_MM2 = 1.0
 HEAD = ("stroke", "wanted", "predicted", "x", "y", "off", "turn", "wider", "began", "ended", "missing")
+WORSE = (
+    " (less: the middles of marks tell that place, which missing paint, the brush and the machine move, too)"
+)
 
 
 @dataclass(frozen=True)
@@ -36,8 +39,9 @@ def as_text(
     faults: Faults | None,
     ends: dict[str, Ends],
     machine: Machine | None = None,
+    any_alone: bool = True,
 ) -> str:
-    """ends: by stroke; machine: of the cell, as the next job should be told it."""
+    """ends: by stroke; machine: of the cell, as the next job should be told it; any_alone: see in_words."""
     rows = [HEAD, *(_row(stroke, ends.get(stroke.stroke, UNSEEN)) for stroke in found.strokes)]
     widths = [max(len(row[k]) for row in rows) for k in range(len(HEAD))]
     table = [
@@ -56,8 +60,8 @@ def as_text(
         table[0],
         *table[1:],
         "",
-        f"All paint overlaps with {what} by {as_it_lies:.3f}; with the sheet's place put right by {placed:.3f}, with "
-        f"each stroke's by {each:.3f}.",
+        f"All paint overlaps with {what} by {as_it_lies:.3f}; with the sheet's place put right by {placed:.3f}"
+        f"{WORSE if round(placed, 3) < round(as_it_lies, 3) else ''}, with each stroke's by {each:.3f}.",
         f"The sheet lies x {common.shift_mm[0]:+.2f}, y {common.shift_mm[1]:+.2f} mm aside at the middle of its marks, "
         f"x {middle[0]:.1f}, y {middle[1]:.1f} mm, turned by {math.degrees(common.turn_rad):+.2f} degrees."
         + (f" Beyond that, strokes lie {spread:.2f} mm (rms) aside." if spread is not None else ""),
@@ -71,7 +75,7 @@ def as_text(
         "from the prediction in mm; turn in degrees; wider: of each edge, in mm; began, ended: how much later on its",
         "way than wanted, in mm; missing: share of the mark, where it lies, without paint; -: not to be told from its",
         "neighbours.",
-        *in_words(faults, machine),
+        *in_words(faults, machine, any_alone),
     ]
     return "\n".join(lines) + "\n"
 
@@ -151,7 +155,7 @@ def as_json(
 
 
 def _told(correction: Correction | None) -> dict | None:
-    keys = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm")
+    keys = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm", "way_mm")
     return {key: getattr(correction, key) for key in keys} if correction else None
 
 

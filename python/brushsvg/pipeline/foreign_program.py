@@ -16,15 +16,21 @@ from ..machine.preflight import off_sheet
 from ..machine.workspace_limits import ROUNDING_MM, astray, broken_limits
 
 MARGIN_MM = 20.0
+_ROOM = dict.fromkeys(
+    ("left", "lower"), "its zero is the sheet's lower left corner: move the program's lines"
+)
+_ROOM |= dict.fromkeys(("right", "upper"), "tell the sheet's size with --sheet WxH")
 
 
 @dataclass(frozen=True)
 class Foreign:
-    """plan: a pass for each time that the brush touches; problems: a notice for each limit that it breaks."""
+    """plan: a pass for each time that the brush touches; problems: a notice for each limit that it breaks; warnings:
+    what is assumed."""
 
     plan: object
     marks: object
     problems: tuple[Notice, ...]
+    warnings: tuple[Notice, ...] = ()
 
 
 def foreign_program(text: str, brush, cell: Cell, sheet_mm=None) -> Foreign:
@@ -32,7 +38,8 @@ def foreign_program(text: str, brush, cell: Cell, sheet_mm=None) -> Foreign:
     default the sheet ends 20 mm beyond what is painted. A pen that goes by M3 and M5 goes as the cell's servo does; M5
     lifts it.
 
-    Error for lines not read, places never named, a pen without a servo in the cell, and where nothing touches.
+    Error for lines not read, places never named, a pen without a servo in the cell, and where nothing
+    touches.
     """
     some = ways(text)
     passes, careless = _touches(some, cell)
@@ -46,11 +53,19 @@ def foreign_program(text: str, brush, cell: Cell, sheet_mm=None) -> Foreign:
     marks = _core.simulate(plan, brush)
     problems = [
         *careless,
+        *_left_down(some, cell),
         *outside,
         *broken_limits(passes, sheet_mm, brush, cell),
-        *off_sheet(marks, brush, sheet_mm),
+        *(replace(notice, advice=_ROOM[notice.about]) for notice in off_sheet(marks, brush, sheet_mm)),
     ]
-    return Foreign(plan, marks, tuple(dict.fromkeys(problems)))
+    return Foreign(plan, marks, tuple(dict.fromkeys(problems)), _assumed(some))
+
+
+def _assumed(some: list[Way]) -> tuple[Notice, ...]:
+    if some[0].unit_told:
+        return ()
+    sentence = "neither G20 nor G21 stands before it: its numbers count as millimetres"
+    return (Notice(f"line {some[0].line}", sentence, code="unit-assumed"),)
 
 
 def _outside(some: list[Way], cell: Cell, sheet_mm) -> list[Notice]:
@@ -71,6 +86,17 @@ def _outside(some: list[Way], cell: Cell, sheet_mm) -> list[Notice]:
         for line, path in zip(lines, paths, strict=True)
         for notice in astray(straight([path]), frame, cell, sheet_mm, slack_mm)
     ]
+
+
+def _left_down(some: list[Way], cell: Cell) -> list[Notice]:
+    """A notice where the last line leaves the brush on the paper. Of a servo nothing is said: its last M5 is no way."""
+    height_mm = float(some[-1].points_mm[-1, 2])
+    if cell.servo is not None or not height_mm < 0:
+        return []
+    sentence = (
+        f"the program ends with the brush on the paper, at z {height_mm:.4g} mm: lift it behind its last line"
+    )
+    return [Notice(f"line {some[-1].line}", sentence, code="ends-on-paper")]
 
 
 def _touches(some: list[Way], cell: Cell) -> tuple[list, list[Notice]]:

@@ -42,7 +42,7 @@ def outside(wanted, passes, brush) -> list[Notice]:
         return []
     import shapely
 
-    from ..strokes.contour_fill import region
+    from ..strokes.swept_areas import region
 
     marks = _core.simulate(_core.Plan(sheet_mm=(1.0, 1.0), passes=[run for _, run in looked_at]), brush)
     _core.trace_outlines(marks, brush)

@@ -37,6 +37,18 @@ LIGHT = np.where(
 ).astype(np.float32)
 
 
+def refuse_twice(photos: list[tuple[str, bytes]]) -> None:
+    """photos: names and what their files hold. Error where one is given twice: it would count as two looks."""
+    known: dict[bytes, str] = {}
+    for name, data in photos:
+        if data in known:
+            sentence = (
+                f"this is the very photograph that {known[data]} is, and tells nothing more: give it once"
+            )
+            raise Error(sentence, file=name, code="photo-twice")
+        known[data] = name
+
+
 def read_photo(data: bytes) -> np.ndarray:
     """Pixels (rows, columns, 3) of 8 bits, blue first, turned upright as the camera was held."""
     if data[4:8] == b"ftyp" and data[8:12] in HEIC:

@@ -9,8 +9,9 @@ import numpy as np
 import shapely
 
 from .. import _core
-from .contour_fill import contour_passes, painted, region, unpainted
+from .contour_fill import contour_passes
 from .offset_passes import Line, clamped, offset_passes
+from .swept_areas import painted, region, rings_of, unpainted
 
 _MOST_STROKES = 500
 _SHOWN_SHARE, _SHOWN_GAP_MM = 0.02, 1.0  # what a round brush leaves of blunt corners is less
@@ -73,13 +74,14 @@ def _first_share(part: list[np.ndarray], lines: list[Line]) -> list[np.ndarray]:
     return rings_of(share)
 
 
-def rings_of(shape) -> list[np.ndarray]:
-    polygons = [
-        one for one in shapely.get_parts(shapely.orient_polygons(shape)) if one.geom_type == "Polygon"
-    ]
-    return _core.unite(
-        [np.array(ring.coords)[:-1] for one in polygons for ring in (one.exterior, *one.interiors)]
-    )
+def with_lines(filling: Filling, passes: dict[int, list[Line]]) -> Filling:
+    """The filling with these lines in place of its own."""
+    meant = {
+        k: (passes[k][0] if line is filling.passes[k][0] else line, rings)
+        for k, (line, rings) in filling.meant.items()
+        if passes[k]
+    }
+    return _tried(region(filling.rings), passes, meant, filling.narrow)
 
 
 def _tried(shape, passes, meant, narrow: list) -> Filling:

@@ -51,8 +51,7 @@ def _without(stroke, element: str, limbs_mm: list[np.ndarray]):
         return stroke
     import shapely
 
-    from .contour_fill import region
-    from .fillings import rings_of
+    from .swept_areas import region, rings_of
 
     left = shapely.difference(region(stroke.wanted_mm), region(limbs_mm))
     return stroke.replaced(wanted_mm=rings_of(left)) if left.area > 0 else stroke
@@ -140,7 +139,7 @@ def _limb_towards(place: np.ndarray, piece: Blank, own: list, shape: list[np.nda
     it; None where it has none."""
     import shapely
 
-    from .contour_fill import region
+    from .swept_areas import region
 
     lines, there = _middle_lines(own), shapely.Point(place)
     host = int(shapely.distance(lines, there).argmin())

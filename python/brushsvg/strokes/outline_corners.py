@@ -131,7 +131,7 @@ def _cut(stroke, line: Line, corners: list[_Corner]) -> list:
     """The stroke in parts, cut at corners; empty where its shape does not fall into two at each."""
     import shapely
 
-    from .contour_fill import region
+    from .swept_areas import region
 
     length_mm = knots(line.cubics)[:, -1].sum()
     legs, left, tip = [], region(stroke.wanted_mm), None
@@ -188,7 +188,7 @@ def _meet(first, second) -> np.ndarray | None:
 def _swept(line: Line, from_mm: float, to_mm: float):
     """What discs as wide as the line cover between two arc lengths."""
     from .. import _core
-    from .contour_fill import region
+    from .swept_areas import region
 
     return region(_core.wanted_outline(line_stroke(Line(*line.stretch(from_mm, to_mm))), 0.01))
 
@@ -257,7 +257,7 @@ def _room(shape, place, half_mm: float, reach_mm: float) -> np.ndarray | None:
 
 
 def _leg(stroke, line: Line, lane: int, from_mm: float, to_mm: float, tip, end, shape, ways: tuple[str, str]):
-    from .fillings import rings_of
+    from .swept_areas import rings_of
 
     cubics, halves = line.stretch(from_mm, to_mm)
     length_mm = knots(cubics)[:, -1].sum()

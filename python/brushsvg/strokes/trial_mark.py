@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from .. import _core
@@ -9,6 +11,7 @@ from .. import _core
 _ANY_SHEET_MM = (1e6, 1e6)
 _BESIDE_MM = 5.0  # of a shape: no paint lies farther out
 _PX_PER_MM, _SIDE_PX = 6.0, 2000
+SEEN_MM = 0.15  # paint farther outside of a shape is a bulge, blank farther inside a notch
 _TOLERANCE_MM = 0.05  # as plans have by default: a coarser one blurs what corners look like
 
 
@@ -24,14 +27,14 @@ def outline_of(marks, brush) -> list[np.ndarray]:
 
 def trial_overlap(strokes: list, rings: list[np.ndarray], brush) -> float:
     """How much that mark overlaps with a shape, to 0.002, in pixels: its outline takes ten times as long."""
-    common, both = _shared_px(trial_marks(strokes, brush), _Wanted(rings), brush)
+    common, both = _shared_px(trial_marks(strokes, brush), Wanted(rings), brush)
     return common / both
 
 
 def spoiling(strokes: list, tried: list[int], rings: list[np.ndarray], brush) -> tuple[set[int], float]:
     """Which of the strokes with these numbers paint more beside a shape than they add within it, the others given; the
     last one first; and how much the mark of the rest overlaps with the shape. In pixels."""
-    marks, wanted, spoil = trial_marks(strokes, brush), _Wanted(rings), set()
+    marks, wanted, spoil = trial_marks(strokes, brush), Wanted(rings), set()
     some = _core.Marks()
 
     def shared(but: set[int]) -> tuple[float, float]:
@@ -54,12 +57,12 @@ def misplaced_mm2(marks, rings: list[np.ndarray], brush) -> float:
 
 def misplaced_seen_mm2(marks, rings: list[np.ndarray], brush) -> float:
     """The same in pixels."""
-    wanted = _Wanted(rings)
+    wanted = Wanted(rings)
     common, both = _shared_px(marks, wanted, brush)
     return (both - common) / wanted.px_per_mm**2
 
 
-class _Wanted:
+class Wanted:
     """A shape in pixels, how much of each it covers, and the window that they fill."""
 
     def __init__(self, rings: list[np.ndarray]) -> None:
@@ -67,9 +70,37 @@ class _Wanted:
         low, size = points.min(axis=0) - _BESIDE_MM, np.ptp(points, axis=0) + 2 * _BESIDE_MM
         self.window, self.px_per_mm = (*low, *size), min(_PX_PER_MM, _SIDE_PX / size.max())
         self.covered = _core.coverage(rings, self.window, self.px_per_mm)
+        self._rings = rings
+
+    def painted(self, passes: list, brush) -> np.ndarray:
+        """How much of each pixel passes of marks cover."""
+        marks = _core.Marks()
+        marks.passes = passes
+        return _core.coverage(marks, brush, self.window, self.px_per_mm)
+
+    @cached_property
+    def _farther_and_nearer(self) -> list[np.ndarray]:
+        """The same of the shape SEEN_MM larger, and smaller."""
+        from .swept_areas import region, rings_of  # with shapely, which is slow to load
+
+        shape = region(self._rings)
+        moved = [rings_of(shape.buffer(by_mm)) for by_mm in (SEEN_MM, -SEEN_MM)]
+        return [_core.coverage(rings, self.window, self.px_per_mm) for rings in moved]
+
+    def bulge_mm2(self, painted: np.ndarray) -> float:
+        """Area of paint farther outside of the shape than SEEN_MM."""
+        return float(np.maximum(painted - self._farther_and_nearer[0], 0).sum()) / self.px_per_mm**2
+
+    def notch_mm2(self, painted: np.ndarray) -> float:
+        """Blank area farther inside of it."""
+        return float(np.maximum(self._farther_and_nearer[1] - painted, 0).sum()) / self.px_per_mm**2
+
+    def misplaced_mm2(self, painted: np.ndarray) -> float:
+        """Area that is painted and not wanted, or wanted and not painted."""
+        return float(np.abs(painted - self.covered).sum()) / self.px_per_mm**2
 
 
-def _shared_px(marks, wanted: _Wanted, brush) -> tuple[float, float]:
+def _shared_px(marks, wanted: Wanted, brush) -> tuple[float, float]:
     """What marks and a shape have in common, and what both cover [px]."""
     painted = _core.coverage(marks, brush, wanted.window, wanted.px_per_mm)
     common = float(np.minimum(wanted.covered, painted).sum())

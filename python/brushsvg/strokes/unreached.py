@@ -136,7 +136,7 @@ def _left(rings: list[np.ndarray], covered: list[np.ndarray], least: float, leas
         return []
     import shapely
 
-    from .contour_fill import region
+    from .swept_areas import region
 
     left = shapely.difference(region(rings), region(covered)).buffer(-_EDGE_MM).buffer(_EDGE_MM)
     return _large(left, least, least_half)
@@ -223,7 +223,7 @@ def _missed(
 ) -> list[Blank]:
     import shapely
 
-    from .contour_fill import region
+    from .swept_areas import region
 
     _core.trace_outlines(marks, brush)
     shape = region(rings)

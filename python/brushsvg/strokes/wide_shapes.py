@@ -105,7 +105,8 @@ def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int
     from .fillings import fillings  # with shapely, which is slow to load
 
     done: dict[int, tuple] = {}
-    best = [_best(ways, strokes, brush) for ways in fillings(strokes, wider, *brush.half_width_range_mm())]
+    found = fillings(strokes, wider, *brush.half_width_range_mm())
+    best = [_mended(*_best(ways, strokes, brush), strokes, brush) for ways in found]
     chosen, fillable = ({}, set()) if wide == "passes" else _chosen(best, strokes, brush, wide)
     for number, (filling, _) in enumerate(best):
         if wide != "passes" and number not in chosen:
@@ -134,6 +135,33 @@ def _best(ways: list, strokes: list, brush) -> tuple:
         return min(beside, best, key=lambda each: each[0].unpainted)
     worth = _ALIKE if best[0].count > beside[0].count else -_ALIKE if best[0].count < beside[0].count else 0
     return best if best[1] > beside[1] + worth else beside
+
+
+def _mended(filling, overlap: float, strokes: list, brush) -> tuple:
+    """The filling without marks that stick out of the shape where other lines help, and how much its mark overlaps with
+    it then."""
+    from .bulges import mended
+    from .fillings import with_lines
+
+    numbers = [(k, lane) for k, of_stroke in filling.passes.items() for lane in range(len(of_stroke))]
+    lines = [filling.passes[k][lane] for k, lane in numbers]
+
+    def as_stroke(n: int, line):
+        return _like(strokes[numbers[n][0]], line, numbers[n][1] + 1)
+
+    if not overlap:
+        return filling, overlap
+    made = mended(lines, filling.narrow, filling.rings, brush, as_stroke)
+    if all(new is old for new, old in zip(made, lines, strict=True)):
+        return filling, overlap
+    passes: dict[int, list] = {k: [] for k in filling.passes}
+    for (k, _), line in zip(numbers, made, strict=True):
+        passes[k] += [line] if line else []
+    kept = with_lines(filling, passes)
+    painted = [
+        _like(strokes[k], line, lane) for k, some in passes.items() for lane, line in enumerate(some, 1)
+    ]
+    return kept, _mark_overlap([*painted, *filling.narrow], filling.rings, brush)
 
 
 def _chosen(best: list[tuple], strokes: list, brush, wide: str) -> tuple[dict[int, str], set[int]]:

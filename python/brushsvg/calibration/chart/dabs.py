@@ -14,8 +14,8 @@ import numpy as np
 from ... import _core
 from ...errors import Error
 from ..dab_outlines import Dab
+from ..mark_input import DAB as KIND
 
-KIND = "dab"
 HEADINGS_DEG = (
     0.0,
     180.0,

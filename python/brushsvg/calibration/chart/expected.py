@@ -45,10 +45,13 @@ def chart_report(chart, brush, noise_mm: float) -> str:
 
 
 def _of_paint(told: Expected) -> list[str]:
-    share = f"depth tells {100 * told.told_by_depth:.0f} % of how the way since the dip grows"
+    alike = f"depth explains {100 * told.told_by_depth:.0f} % of how far each stroke is from the dip"
     if told.is_refused:
-        return ["Of paint that runs out nothing, as " + share + ": chart --paint has another order"]
+        return [
+            "Whether marks narrow as paint runs out, this chart cannot tell: its strokes go from shallow to deep, so "
+            f"that less paint looks like less depth ({alike}); chart --paint has another order"
+        ]
     return [
         "Of paint that runs out, with calibrate --paint, painted with one load:",
-        f"  narrowing per metre +- {told.half_per_m:.2g}; {share}; the load has to last for {told.way_mm:.0f} mm",
+        f"  narrowing per metre +- {told.half_per_m:.2g}; {alike}; the load has to last for {told.way_mm:.0f} mm",
     ]

@@ -45,9 +45,24 @@ def write_chart(chart: Chart) -> str:
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
+def is_chart(data: bytes) -> bool:
+    """Whether a file says that it is a chart.json, in whatever state."""
+    try:
+        content = json.loads(data)
+    except (ValueError, RecursionError):
+        return False
+    return isinstance(content, dict) and content.get("format") == FORMAT
+
+
 def read_chart(data: bytes) -> Chart:
     """Error names the key. Charts of before have no id, no bar and no labels."""
-    content = json_fields.document(data, FORMAT, VERSION)
+    try:
+        content = json_fields.document(data, FORMAT, VERSION)
+    except Error as refusal:
+        if refusal.code != "format-unknown":
+            raise
+        sentence = f"{refusal.sentence}: a chart file is what brushsvg chart writes with --chart FILE"
+        raise Error(sentence, refusal.where, code=refusal.code) from None
     dictionary = content.get("dictionary")
     if not isinstance(dictionary, str) or dictionary not in DICTIONARIES:
         raise Error(f"the markers must be of {' or '.join(DICTIONARIES)}", "dictionary", code="chart-markers")

@@ -13,7 +13,7 @@ from ...errors import Error, Notice
 from ...scan.edges import Marks, Room, find_marks, told_apart
 from ...scan.flatten import Flat, flatten
 from ...scan.markers import TOO_WHITE, Printed, View, find_view
-from ...scan.photo import grey_light, jpeg_quality, read_photo, refuse_dark_paper
+from ...scan.photo import grey_light, jpeg_quality, read_photo, refuse_dark_paper, refuse_twice
 from ...scan.place_by_strokes import find_scan_view
 from ...scan.whole_page import refuse_cropped, refuse_unsure
 from .layout import Chart
@@ -68,6 +68,7 @@ def read_chart_photos(
     printed += [lies(ring) for ring in bar_rings(chart.bar, beyond_mm=0.5)] if chart.bar else []
     labels = [lies(np.reshape(label_box(label), (2, 2))).ravel() for label in chart.labels]
     rooms = [Room(stroke.id, stroke.box_mm) for stroke in chart.strokes]
+    refuse_twice(photos)
     reads: list[Read] = []
     for name, data in photos:
         try:

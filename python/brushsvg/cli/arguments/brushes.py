@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import argparse
+
 from ...drawing import READERS
 from . import values
 from .flags import add_looks, add_quiet, add_z_offset, plans_and_programs
@@ -220,6 +222,7 @@ def _check_update(args) -> None:
 def add_scan(commands) -> None:
     scan = commands.add_parser("scan", help="read the strokes from a photograph of a painted chart")
     scan.add_argument("input", metavar="IN", help=f"a photograph of a painted chart ({' '.join(PHOTOS)})")
+    scan.add_argument("more", nargs="*", help=argparse.SUPPRESS)
     scan.add_argument(
         "-o",
         metavar="FILE",
@@ -233,6 +236,8 @@ def add_scan(commands) -> None:
 
 
 def _check_scan(args) -> None:
+    if args.more:
+        args.parser.error("scan takes one picture; calibrate takes several of one sheet")
     _check_photos(args, [args.input], [(args.output, (".json",))])
 
 

@@ -188,5 +188,7 @@ def add_layout(command: argparse.ArgumentParser) -> None:
     size.add_argument(
         "--fit", metavar="WxH", type=values.size, help="scale the marks to this size, centred on the sheet"
     )
-    size.add_argument("--scale", metavar="FACTOR", type=values.scale, help="scale the drawing, widths too")
+    size.add_argument(
+        "--scale", metavar="FACTOR", type=values.scale, help="scale it, widths too: 1.5 or 150%%"
+    )
     add("--origin", metavar="X,Y", type=values.point, help="where the lower left corner of the marks lies")

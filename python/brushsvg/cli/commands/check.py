@@ -132,6 +132,7 @@ def _check_foreign(args, text: str) -> None:
     cell = cell_of(args.cell)
     brush = brush_of(args.brush) or find_brush(preparation.DEFAULT_BRUSH)
     found = foreign_program(text, brush, cell, args.sheet)
+    warn(args.program, found.warnings)
     shown = preparation.Work("", brush, found.plan, None, (), preparation.Options(cell=cell), ())
     if args.preview:
         outlined = prediction.outlined(found.marks, brush, stage)

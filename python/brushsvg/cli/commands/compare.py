@@ -30,7 +30,9 @@ def compare_files(args) -> None:
     from ...painted.beside_machine import beside_machine as left_beside
     from ...painted.comparison import Wanted, compare_photos
     from ...painted.ends import ends_of
+    from ...painted.fault_model import BRUSH
     from ...painted.faults import whose_fault
+    from ...painted.job_marks import job_marks
     from ...painted.job_page import job_page
     from ...painted.mended_cell import mended, sure
     from ...painted.next_time import farther, next_corrections
@@ -77,11 +79,11 @@ def compare_files(args) -> None:
         beside = machine_sha256(machine), next_corrections(rest, work.plan, before, work.brush)[0]
     ends = ends_of(found, strokes, work.strokes or ())
     made_with = Made(work.brush.sha256, work.plan.brush_sha256, machine_sha256(undone))
+    any_alone = faults is None or faults.first != BRUSH or bool(job_marks(found, page, strokes).rings)
+    as_words = as_text(title, found, faults, ends, machine, any_alone)
     as_figures = as_json(title, found, corrections, faults, ends, made_with, beside)
     if args.output:
-        files[args.output] = (
-            as_figures if suffix_of(args.output) == ".json" else as_text(title, found, faults, ends, machine)
-        )
+        files[args.output] = as_figures if suffix_of(args.output) == ".json" else as_words
     if args.picture:
         files[args.picture] = comparison_png(page, strokes, found, title, faults)
     if args.mended_cell:
@@ -94,7 +96,7 @@ def compare_files(args) -> None:
             warn(args.mended_cell, [Notice("machine", sentence, code="cell-unchanged")])
     if files:
         write(args, files)
-    tell(as_figures if args.json else as_text(title, found, faults, ends, machine))
+    tell(as_figures if args.json else as_words)
     reached = found.overlap_wanted if found.overlap_wanted is not None else found.overlap_predicted
     if args.at_least is not None and reached < args.at_least:
         raise RefusedError(
@@ -116,16 +118,15 @@ def _cell_text(cell) -> str:
 
 def _repeats(args, work, page, plan, strokes) -> None:
     """How well the same strokes lie on several sheets, or copies of strokes on one."""
-    from ...painted.comparison import compare_photos
+    from ...painted.comparison import compare_sheets
     from ...painted.repeats import as_json, as_text, repeats
     from ...painted.repeats_picture import repeats_png
 
-    sheets = []
-    for path in args.photos:
-        with about(path):
-            stage("reading the photographs")
-            sheets.append(compare_photos(page, strokes, [(path, read_bytes(path))]))
-            warn(path, list(sheets[-1].notices))
+    with about(args.photos[0]):
+        stage("reading the photographs")
+        sheets = compare_sheets(page, strokes, [(path, read_bytes(path)) for path in args.photos])
+    for path, sheet in zip(args.photos, sheets, strict=True):
+        warn(path, list(sheet.notices))
     with about(args.photos[0]):
         found = repeats(plan, sheets)
     title, files = work.title or "untitled", {}

@@ -5,13 +5,13 @@ from __future__ import annotations
 from ...files import read_bytes
 from ..console import about, stage, tell, warn
 from ..steps.options import brush_of, settled, typed
-from ..steps.output_places import check_places, write
+from ..steps.output_places import check_places, suffix_of, write
 from ..steps.prepared import prepare
 
 
 def simulate_photo_file(args) -> None:
     from ...machine.paint_reload import fetched_mm
-    from ...painted.job_page import job_page
+    from ...painted.job_page import JobPage, job_page
     from ...simulated.painting import painted
     from ...simulated.photo import simulated_photo
     from ...simulated.studio import random_studio, read_studio, write_studio
@@ -20,7 +20,8 @@ def simulate_photo_file(args) -> None:
     if args.studio is not None:
         with about(args.studio):
             studio = read_studio(read_bytes(args.studio))
-    work = prepare(settled(typed(args), args.input))
+    chart = _chart(args.input)
+    work = prepare(settled(typed(args), args.input), plan=chart and chart.plan)
     warn(args.input, work.notices)
     if args.studio is None:
         studio = random_studio(args.seed, work.plan.sheet_mm)
@@ -36,7 +37,19 @@ def simulate_photo_file(args) -> None:
             fetched_mm(work.plan, brush, work.options.cell),
         )
         stage("photographing")
-        made = simulated_photo(job_page(work.plan, work.title), strokes, studio, args.seed)
+        page = JobPage(chart, 0.0, ()) if chart else job_page(work.plan, work.title)
+        made = simulated_photo(page, strokes, studio, args.seed)
     write(args, {args.output: made}, len(strokes), more="simulated")
     if args.studio is None and not args.quiet:
         tell(write_studio(studio))
+
+
+def _chart(path: str):
+    """The chart that chart --chart wrote; None for a drawing or a plan."""
+    from ...calibration.chart.file import is_chart, read_chart
+
+    if suffix_of(path) != ".json":
+        return None
+    data = read_bytes(path)
+    with about(path):
+        return read_chart(data) if is_chart(data) else None

@@ -17,11 +17,14 @@ from ..console import about, stage, warn
 from .options import options_of
 
 
-def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False) -> preparation.Work:
+def prepare(
+    chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False, plan=None
+) -> preparation.Work:
+    """plan: what the input holds, where that is a file of another kind."""
     warn(chosen.input, without_effect(chosen))
     options = options_of(chosen, cell, brush)
     with about(chosen.input):
-        return preparation.prepare(chosen.input, options, stage, partly)
+        return preparation.prepare(plan or chosen.input, options, stage, partly)
 
 
 @dataclass(frozen=True)

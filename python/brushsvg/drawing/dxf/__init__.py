@@ -9,8 +9,8 @@ from .entity_walk import Walk
 from .file import open_dxf
 from .linetypes import Dashes
 from .pieces_to_elements import anew, chained, element_of
-from .placement import anchored, in_range, with_margin
-from .units import unit_of
+from .placement import anchored, extents, in_range, with_margin
+from .units import large_for_its_unit, unit_of
 
 _FLAT_MM = 1e-3
 
@@ -38,5 +38,8 @@ def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     dashes = Dashes()
     elements = [dashes.cut(element_of(piece), piece.pen, anew(piece)) for piece in chained(pieces)]
     notices += dashes.notices
+    if options.units is None:
+        least, greatest = extents(elements)
+        notices += large_for_its_unit(document, float((greatest - least).max()))
     sheet_mm, placed = (options.sheet_mm, tuple(elements)) if options.sheet_mm else with_margin(elements)
     return Design(sheet_mm, placed, tuple(notices), layers=walk.pens.hidden())

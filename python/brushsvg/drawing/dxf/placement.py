@@ -45,13 +45,13 @@ def in_range(pieces: list[Piece]) -> tuple[list[Piece], list[Notice]]:
 
 def with_margin(elements: list[Element]) -> tuple[tuple[float, float], tuple[Element, ...]]:
     """The sheet that holds all that is drawn, widths included, and 20 mm around it; the elements moved onto it."""
-    least, greatest = _extents(elements)
+    least, greatest = extents(elements)
     shift = MARGIN_MM - least
     width, height = (greatest + shift + MARGIN_MM).tolist()
     return (width, height), tuple(_moved(element, shift) for element in elements)
 
 
-def _extents(elements: list[Element]) -> tuple[np.ndarray, np.ndarray]:
+def extents(elements: list[Element]) -> tuple[np.ndarray, np.ndarray]:
     """Lower left and upper right corner of what is drawn, half the widths included."""
     cubics, halves = [], []
     for element in elements:

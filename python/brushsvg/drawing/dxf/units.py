@@ -36,6 +36,7 @@ _UNITS = {
     23: ("US survey yards", 3 * _SURVEY_FOOT_MM),
     24: ("US survey miles", 5280 * _SURVEY_FOOT_MM),
 }
+_LARGE_MM = 5000.0  # no brush paints so far
 _ASKED_FOR = {"mm": _UNITS[4], "in": _UNITS[1]}
 
 
@@ -60,3 +61,13 @@ def unit_of(document, asked_for: str | None) -> tuple[float, list[Notice]]:
             code="unit-overruled",
         )
     ]
+
+
+def large_for_its_unit(document, size_mm: float) -> list[Notice]:
+    """A notice of a drawing whose longer side is beyond all sheets, and whose numbers may be of a smaller unit."""
+    name, drawn = _UNITS[document.header["$INSUNITS"]]
+    if drawn <= 1 or size_mm <= _LARGE_MM:
+        return []
+    sentence = f"the drawing is {size_mm / 1000:.4g} m large, since its unit is {name}"
+    advice = "--units mm reads its numbers as millimetres"
+    return [Notice("$INSUNITS", sentence, code="unit-doubtful", advice=advice)]

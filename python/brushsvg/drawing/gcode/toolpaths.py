@@ -27,13 +27,15 @@ LARGEST_MM = 1e6
 @dataclass(frozen=True)
 class Way:
     """One move, as points (n, 3) [mm] from where the tool is; rapid: by G0; turn: 1 or -1 of a circle about a centre,
-    counter-clockwise or not; power: what M3 or M4 holds while it goes, None behind M5 and before either."""
+    counter-clockwise or not; power: what M3 or M4 holds while it goes, None behind M5 and before either; unit_told:
+    whether G20 or G21 stands before it, without which its numbers count as millimetres."""
 
     line: int
     points_mm: np.ndarray
     rapid: bool
     speed_mm_s: float
     power: float | None
+    unit_told: bool
     centre_mm: tuple[float, float] | None = None
     turn: int = 0
 
@@ -89,7 +91,8 @@ class _Reader:
         self.ways: list[Way] = []
         self.at = np.full(3, np.nan)  # where the tool is before, nobody knows
         self.shift = np.zeros(3)
-        self.mm, self.absolute, self.absolute_centres = 1.0, True, False
+        self.mm, self.unit_told = 1.0, False
+        self.absolute, self.absolute_centres = True, False
         self.motion, self.feed_mm_s = None, 0.0
         self.power, self.on, self.ended = 0.0, False, False
         self.percents, self.ways_before = 0, 0
@@ -145,14 +148,15 @@ class _Reader:
     def _dot(self, number: int, power: float | None) -> None:
         """Where a pen goes down and up again without a move."""
         if power is not None and len(self.ways) == self.ways_before and np.isfinite(self.at[:2]).all():
-            self.ways.append(Way(number, np.array([self.at, self.at]), False, self.feed_mm_s, power))
+            here = np.array([self.at, self.at])
+            self.ways.append(Way(number, here, False, self.feed_mm_s, power, self.unit_told))
         self.ways_before = len(self.ways)
 
     def _mode(self, number: int, line: str, letter: str, code: float, values: dict) -> None:
         if letter == "G" and code in (0, 1, 2, 3):
             self.motion = int(code)
         elif letter == "G" and code in (20, 21):
-            self.mm = 25.4 if code == 20 else 1.0
+            self.mm, self.unit_told = 25.4 if code == 20 else 1.0, True
         elif letter == "G" and code in (90, 91):
             self.absolute = code == 90
         elif letter == "G" and code in (90.1, 91.1):
@@ -187,7 +191,8 @@ class _Reader:
                 end[k] = told + self.shift[k] if self.absolute else self.at[k] + told
         if np.abs(np.nan_to_num(end)).max() > LARGEST_MM:
             raise Error(f"line {number}: {line.strip()[:40]!r} leads beyond 1e6 mm", code="line-unread")
-        way = Way(number, np.array([start, end]), self.motion == 0, self.feed_mm_s, self._pen())
+        straight = np.array([start, end])
+        way = Way(number, straight, self.motion == 0, self.feed_mm_s, self._pen(), self.unit_told)
         if self.motion in (2, 3):
             way = self._circle(number, line, way, values)
         if way.turn or not np.array_equal(start, end, equal_nan=True):

@@ -87,7 +87,8 @@ class Painted:
             self.notes.add(node, context, each.sentence, code=each.code, about=each.about)
         if _WHITE in (fill, stroke):
             sentence = (
-                "it is white, and painted like any colour: what it hides in the drawing is painted, too"
+                "it is white, and painted like any colour: what it hides in the drawing is painted, too; "
+                'data-brushsvg-skip="yes" on it leaves it out'
             )
             self.notes.add(node, context, sentence, code="white-paint")
         if properties["fill"] and "none" not in (fill, stroke) and fill != stroke:

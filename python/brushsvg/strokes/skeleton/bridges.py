@@ -11,6 +11,9 @@ from .junctions import Arm, Crossing
 # Of the shape around a corner, what lines that end beside each other may leave bare beside those that meet: a u's bend
 # is one stroke's.
 NOTCH = 0.01
+# Of a line's width, what there must be room for where it begins: at the end of a stem that sticks out at a corner less,
+# as of an n with a hump, which narrows towards its top. Farther up a straight stem would have to be a wedge.
+WHOLE, IN_HUMP = 0.95, 0.5
 # Beside the middle of a bar, in its half widths, where it is looked how far the shape goes on: the outer two in the
 # stem that it meets, so far from its sides and with its far side no more slanted than that. And how much farther the
 # shape has to go on amid the bar, how much at most, and on all of its width. FLAT: cosine of the angle with the stem,
@@ -127,7 +130,17 @@ def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
         disc = crossing.discs[0, 2]
         widths = [arm.line[arm.out, 2] for arm in crossing.arms]
         meet = _farthest(along[0], rooms[k, 0], max(widths), disc) or (crossing.discs[0, :2], disc)
-        own = [_farthest(along[n], rooms[k, n], widths[n - 1], disc) or meet for n in (1, 2)]
+        own = [
+            _farthest(
+                along[n],
+                rooms[k, n],
+                widths[n - 1],
+                disc,
+                IN_HUMP if crossing.has_hump and widths[n - 1] == max(widths) else WHOLE,
+            )
+            or meet
+            for n in (1, 2)
+        ]
         bare = [_bare(crossing, ends, around[k][inside[k]]) for ends in (own, [meet, meet])]
         crossing.corner = meet
         for arm, end in zip(crossing.arms, own if bare[0] < bare[1] + NOTCH else [meet, meet], strict=True):
@@ -145,10 +158,10 @@ def _bare(crossing: Crossing, ends: list[tuple[np.ndarray, float]], around: np.n
 
 
 def _farthest(
-    along: np.ndarray, room: np.ndarray, wide: float, disc: float
+    along: np.ndarray, room: np.ndarray, wide: float, disc: float, least: float = WHOLE
 ) -> tuple[np.ndarray, float] | None:
-    """The last place up to which there is room for the brush, and the half width there."""
-    last = int(np.logical_and.accumulate(room >= 0.95 * min(wide, disc)).sum()) - 1
+    """The last place up to which there is room for so much of the brush, and the half width there."""
+    last = int(np.logical_and.accumulate(room >= least * min(wide, disc)).sum()) - 1
     return (along[last], min(float(room[last]), 1.2 * wide)) if last >= 0 else None
 
 

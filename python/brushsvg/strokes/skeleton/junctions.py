@@ -72,6 +72,16 @@ class Crossing:
     def is_corner(self) -> bool:
         return len(self.arms) == 2
 
+    @property
+    def has_hump(self) -> bool:
+        """Whether the end of a stem sticks out beside the neck of an arm, as an n's beside its arch; not that of two
+        legs, as of an A, nor beside a flag."""
+        if not self.is_corner or self.dropped <= STEM_END or _are_legs(*self.arms):
+            return False
+        thin, wide = sorted(self.arms, key=lambda arm: arm.line[arm.out, 2])
+        is_neck = thin.line[thin.out, 2] < NECK * wide.line[wide.out, 2]
+        return bool(is_neck and length(thin.line[:, :2]) > length(wide.line[:, :2]))
+
 
 def crossings_of(nodes, lines, ends, degree) -> tuple[list[Crossing], list[Arm]]:
     """All crossings and their arms, those that are one line mated. nodes (n, 4), lines and ends (two nodes) per branch,
@@ -113,12 +123,16 @@ def _leave_out_tip(crossing: Crossing) -> None:
     for tip in crossing.arms:
         one, two = (arm for arm in crossing.arms if arm is not tip)
         least, most = sorted(_turn(-leg.direction, tip.direction) for leg in (one, two))
-        is_amid = one.direction @ two.direction > ACUTE and SIDED * most < least < np.pi / 2
+        is_amid = _are_legs(one, two) and SIDED * most < least < np.pi / 2
         if tip.other is None and is_amid and np.hypot(*tip.line[-1, :2] - (x, y)) < radius:
             crossing.arms = [one, two]
             crossing.inner.append(tip.branch)
             crossing.has_tip = True
             return
+
+
+def _are_legs(one: Arm, two: Arm) -> bool:
+    return bool(one.direction @ two.direction > ACUTE)
 
 
 def _merged(nodes, lines, ends, degree) -> tuple[dict[int, list[int]], set[int]]:

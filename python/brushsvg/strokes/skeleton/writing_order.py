@@ -119,7 +119,7 @@ def joined(pieces: list[Piece], skeleton: Skeleton) -> list[list[Piece]]:
         (i, side_i), (j, side_j) = here
         if side_i == side_j:  # both begin or both end here
             turned = _flick(chains, long, i, j)
-            if turned is None:
+            if turned is None or (crossing.has_hump and _is_steep(chains[turned][0].line)):
                 continue
             chains[turned] = [reversed_(piece) for piece in reversed(chains[turned])]
             side_i = side_i if turned == j else 1 - side_i

@@ -1,0 +1,211 @@
+"""Rings along the outline of a shape and farther inside, and the lines that they are cut into: where the brush would
+turn too sharply, and at corners that lines end square in."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import shapely
+
+from .. import _core
+from ..geometry.polylines import length, lengths
+from .offset_passes import FITTED, Line
+from .swept_areas import GRID_MM, QUARTER
+
+# From ring to ring at most, in half widths: at corners of 90 degrees a step of 1.7 leaves a gap, of 60 one of 1.5.
+_STEP = 1.5
+_INNERMOST = 0.9  # in half widths, from the innermost ring to the shape's middle: it covers that
+_HAIR = 0.05  # in half widths: no ring round a place narrower than that, a line along its middle covers it
+_UPPER_LEFT = (-0.3, 1.0)
+_CORNER_RAD, _SQUARE_RAD, _SHARP_RAD = np.radians(30), np.radians(80), np.radians(100)
+# Corners that turn by more than the first and less than the second end square in a slanted cut: in sharper ones the
+# mark that goes there swings out of the other edge, by 0.5 to 1.2 mm. Farthest ahead of a line's end, in half widths,
+# lies such a corner.
+_SLANTED_RAD, _POINTED_RAD, _REACH = np.radians(42), np.radians(122), 2.0
+_SET_DOWN = 3.6  # in half widths: on shorter lines is no room to be set down for a square beginning
+_AT_TIP = 0.2  # in half widths: so near to a corner of the shape a corner of 80 to 100 degrees points
+_OFF_CUSP = 0.4  # in half widths
+_ROUND = 8  # edges of a quarter of a circle, off by 5e-3 of its radius
+_MOST_RINGS = 400  # with more, the middle lines have to do
+
+
+def rings_inward(shape, half: float) -> list[list[np.ndarray]] | None:
+    """Rings along the outline, then those farther inside."""
+    radius = shapely.maximum_inscribed_circle(shape, 0.01 * half).length
+    across = radius - half - _INNERMOST * half
+    steps = max(int(np.ceil(across / (_STEP * half) - 0.4)), 0)
+    if steps > _MOST_RINGS:
+        return None
+    step = min(across / max(steps, 1), _STEP * half)
+    return [_inward(shape, half + k * step, _HAIR * half) for k in range(steps + 1)]
+
+
+def cut(rings: list[list[np.ndarray]], half: float, shape, squared_at) -> list[Line]:
+    return [
+        line
+        for k, of_depth in enumerate(rings)
+        for points in of_depth
+        for line in _passes(points, half, shape if k == 0 else None, squared_at)
+    ]
+
+
+def _inward(shape, by_mm: float, hair_mm: float) -> list[np.ndarray]:
+    """Rings of the shape moved inward, its hairs left out; outer ones counter-clockwise, from the upper left."""
+    without_hairs = shape.buffer(-by_mm - hair_mm, quad_segs=_ROUND).buffer(
+        1.01 * hair_mm, join_style="mitre", mitre_limit=10
+    )
+    moved = shape.buffer(-by_mm, quad_segs=_ROUND).intersection(without_hairs).simplify(0.003)
+    return [
+        np.array(ring.coords)
+        for polygon in shapely.get_parts(shapely.orient_polygons(moved))
+        if polygon.area > hair_mm**2
+        for ring in (polygon.exterior, *polygon.interiors)
+        if len(ring.coords) > 3
+    ]
+
+
+def _passes(points: np.ndarray, half: float, shape, squared_at) -> list[Line]:
+    """A ring as lines: closed, from amid its longest stretch on, as the tip of a brush set down there lies on the ring;
+    the outermost, whose edge shows, given the shape, cut where it turns too sharply for a brush that turns in place, or
+    where marks with square ends meet in a corner."""
+    ring = _with_sharp_tips(points[:-1], 3 * _HAIR * half)
+    corners = _corners(ring, _CORNER_RAD)
+    sharp = _corners(ring, _SHARP_RAD)
+    squared = no_corners() if shape is None else squared_at(ring, half, shape)
+    sharp = np.union1d(sharp, squared)
+    if not len(corners):
+        return [_line(np.roll(ring, -int((ring @ _UPPER_LEFT).argmax()), axis=0), [], half, True)]
+    if shape is None or not len(sharp):
+        ring, corners = _amid_longest(ring, corners)
+        return [_line(np.vstack([ring, ring[:1]]), corners, half, True)]
+    first = sharp[(ring[sharp] @ _UPPER_LEFT).argmax()]
+    sharp, corners, squared = (np.sort((which - first) % len(ring)) for which in (sharp, corners, squared))
+    ring = np.roll(ring, -first, axis=0)
+    ring = np.vstack([ring, ring[:1]])
+    lines = []
+    for a, b in itertools.pairwise([*sharp, len(ring) - 1]):
+        square = [k % (len(ring) - 1) in squared for k in (a, b)]
+        square[0] = square[0] and length(ring[a : b + 1]) > _SET_DOWN * half
+        part, turns = _clear_of_cusps(
+            ring[a : b + 1], [int(k - a) for k in corners if a < k < b], half, square
+        )
+        line = _line(part, turns, half, False)
+        lines.append(_squared(line, half, shape, square) if any(square) else line)
+    return lines
+
+
+def _clear_of_cusps(
+    points: np.ndarray, corners: list[int], half: float, square: list[bool]
+) -> tuple[np.ndarray, list[int]]:
+    """A line of a ring and its corners, shorter at ends that are not square: there the shape is hardly wider than the
+    brush, and a mark that begins or ends beside one edge sticks out of the other."""
+    at = lengths(points)
+    first, last = (0.0 if is_square else _OFF_CUSP * half for is_square in square)
+    if at[-1] < first + last + 2 * half:
+        return points, corners
+    ends = [first, at[-1] - last]
+    inner = np.flatnonzero((at > ends[0]) & (at < ends[1]))
+    places = [[np.interp(end, at, points[:, k]) for k in (0, 1)] for end in ends]
+    return np.vstack([places[0], points[inner], places[1]]), [
+        int(k - inner[0]) + 1 for k in corners if ends[0] < at[k] < ends[1]
+    ]
+
+
+def no_corners(*_) -> np.ndarray:
+    return np.zeros(0, int)
+
+
+def steep_corners(ring: np.ndarray, *_) -> np.ndarray:
+    """Corners of about 90 degrees: cusps of the ring as well, where the shape becomes as narrow as the brush."""
+    return np.setdiff1d(_corners(ring, _SQUARE_RAD), _corners(ring, _SHARP_RAD))
+
+
+def right_corners(ring: np.ndarray, half: float, shape) -> np.ndarray:
+    """Corners of a ring where its shape has one of about 90 degrees."""
+    return _of_shape(steep_corners(ring), ring, half, shape)
+
+
+def slanted_corners(ring: np.ndarray, half: float, shape) -> np.ndarray:
+    """Corners of a ring where its shape has one that a square end, cut slantwise, reaches into."""
+    some = np.setdiff1d(_corners(ring, _SLANTED_RAD), _corners(ring, _POINTED_RAD))
+    return _of_shape(some, ring, half, shape)
+
+
+def _of_shape(corners: np.ndarray, ring: np.ndarray, half: float, shape) -> np.ndarray:
+    """Those of the corners of a ring that lie half a width inside of a corner of the shape."""
+    here = ring[corners]
+    out = [here - ring[corners - 1], here - ring[(corners + 1) % len(ring)]]
+    u, v = (each / np.hypot(*each.T)[:, None] for each in out)
+    tips = here + half * (u + v) / np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])[:, None]
+    near = (
+        shapely.distance(shapely.points(tips), shapely.multipoints(shapely.get_coordinates(shape)))
+        < _AT_TIP * half
+    )
+    return corners[near]
+
+
+def _squared(line: Line, half: float, shape, ends: list[bool]) -> Line:
+    """The line, meant to paint into the corners of the shape at these of its ends as well, the first, the last."""
+    way = _core.flatten(_core.Stroke(middle_mm=line.middle_mm, half_width=line.half_width), 0.01)[:, :2]
+    whole = shapely.buffer(shapely.LineString(way), half, quad_segs=QUARTER)
+    for is_square, (end, inner) in zip(ends, (way[:2], way[:-3:-1]), strict=True):
+        if is_square:
+            along = _REACH * half * (end - inner) / np.hypot(*(end - inner))
+            cap = shapely.LineString([end, end + along]).buffer(half, cap_style="flat")
+            cap = _beside(shapely.intersection(cap, shape, grid_size=GRID_MM), end)
+            whole = shapely.union(whole, cap)
+    parts = shapely.get_parts(shapely.intersection(whole, shape, grid_size=GRID_MM))
+    part = shapely.orient_polygons(max(parts, key=shapely.area))
+    rings = [np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)]
+    return replace(line, wanted_mm=tuple(_core.unite(rings)))
+
+
+def _beside(parts, place: np.ndarray):
+    """The part that a place lies in."""
+    return min(shapely.get_parts(parts), key=lambda part: shapely.distance(part, shapely.Point(place)))
+
+
+def _corners(ring: np.ndarray, least_rad: float) -> np.ndarray:
+    edges = np.roll(ring, -1, axis=0) - ring
+    before = np.roll(edges, 1, axis=0)
+    cross = before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0]
+    return np.flatnonzero(np.abs(np.arctan2(cross, (before * edges).sum(axis=1))) > least_rad)
+
+
+def _with_sharp_tips(ring: np.ndarray, wide_mm: float) -> np.ndarray:
+    """Where a corner follows another so closely that both are one tip, the first alone."""
+    corners = _corners(ring, _CORNER_RAD)
+    following = np.roll(corners, -1)
+    steps = (following - corners) % len(ring)
+    near = (np.hypot(*(ring[following] - ring[corners]).T) < wide_mm) & (steps <= 3)
+    kept = np.ones(len(ring), bool)
+    for corner, count in zip(corners[near], steps[near], strict=True):
+        kept[(corner + 1 + np.arange(count)) % len(ring)] = False
+    return ring[kept] if kept.sum() >= 3 else ring
+
+
+def _amid_longest(ring: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, list[int]]:
+    """The ring from the middle of its longest stretch between corners on, and its corners then."""
+    ring, corners = np.roll(ring, -corners[0], axis=0), corners - corners[0]
+    at = lengths(np.vstack([ring, ring[:1]]))
+    ends = np.append(at[corners], at[-1])
+    longest = int(np.diff(ends).round(3).argmax())
+    middle = (ends[longest] + ends[longest + 1]) / 2
+    place = [np.interp(middle, at, np.append(ring[:, k], ring[0, k])) for k in (0, 1)]
+    after = int(np.searchsorted(at[:-1], middle))
+    return np.vstack([place, ring[after:], ring[:after]]), sorted(
+        int((k - after) % len(ring)) + 1 for k in corners
+    )
+
+
+def _line(points: np.ndarray, corners: list[int], half: float, closed: bool) -> Line:
+    if closed and not len(corners):
+        points = np.vstack([points, points[:1]])
+    rows = np.column_stack([points, np.full(len(points), half)])
+    middles = [
+        _core.fit_curve(rows[a : b + 1], FITTED * half, closed and not corners)[0]
+        for a, b in itertools.pairwise([0, *corners, len(rows) - 1])
+    ]
+    return Line(np.vstack(middles), [(0.0, half)], closed)
