@@ -37,7 +37,11 @@ def painted(aside_mm, lean=(0.0, 0.0), by_map=((0.0, 0.0), (0.0, 0.0)), **faults
     strokes = painter.chart_strokes(brush.deepest, 3)
     centre = np.vstack([poses for _, poses in strokes])[:, :2].mean(axis=0)
     led = [
-        (name, poses + np.pad((poses[:, :2] - centre) @ np.transpose(by_map) - poses[:, 2:] * lean, ((0, 0), (0, 1))))
+        (
+            name,
+            poses
+            + np.pad((poses[:, :2] - centre) @ np.transpose(by_map) - poses[:, 2:] * lean, ((0, 0), (0, 1))),
+        )
         for name, poses in strokes
     ]
     painted = painter.paint(rng, brush, led, painter.Faults(displacement=aside_mm, **faults), painter.swept)
@@ -92,7 +96,9 @@ def test_a_map_that_edges_did_not_look_for_comes_back_with_the_turn():
     by_map = np.array([[0.01, -0.03], [0.05, 0.012]])
     _, marks = painted(ASIDE_LITTLE_MM, by_map=by_map, turn=0.0, height=0.1)
     made = brushsvg.calibrate(marks, "b")
-    untold = SimpleNamespace(laws=made.fit.laws, turn_rad=0.0, shift_mm=(0.0, 0.0), centre_mm=made.fit.centre_mm)
+    untold = SimpleNamespace(
+        laws=made.fit.laws, turn_rad=0.0, shift_mm=(0.0, 0.0), centre_mm=made.fit.centre_mm
+    )
     assert machine_beside(made, untold).led.map == pytest.approx(by_map, abs=0.006)
 
 
@@ -102,7 +108,9 @@ def machine_beside(made, fit=None):
     options.deepest_mm = made.brush.depth_range_mm[1]
     machine_found.ask_for(options, ("lean", "axes"))
     edges = SimpleNamespace(brush=made.brush, fit=fit or made.fit)
-    targets = [by_overlap._target(*each, edges) for each in zip(made.painted.marks, made.fit.marks, strict=True)]
+    targets = [
+        by_overlap._target(*each, edges) for each in zip(made.painted.marks, made.fit.marks, strict=True)
+    ]
     return by_overlap.largest_overlap(targets, made.fit.laws, made.fit.height_mm, options)
 
 
