@@ -85,7 +85,7 @@ def test_marks_overlap_no_less_than_by_edges_and_no_interval_is_claimed():
 
 
 def test_lean_that_edges_did_not_look_for_comes_back():
-    # a simplex that all numbers began at 0 held lean for lag: 0.06 and -0.18
+    # a simplex alone held lean for lag: 0.06 and -0.18
     _, marks = painted(ASIDE_LITTLE_MM, lean=(0.3, -0.2), turn=0.0, height=0.1)
     led = machine_beside(brushsvg.calibrate(marks, "b")).led
     assert led.lean_mm_per_mm == pytest.approx((0.3, -0.2), abs=0.08)
