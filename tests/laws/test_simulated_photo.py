@@ -207,8 +207,7 @@ def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
     own, true, depths = find_brush(found), find_brush("round-6"), np.linspace(3, 10, 8)
     for law in ("lag", "half_width"):
         values, truth = (np.array([getattr(each, law)(d) for d in depths]) for each in (own, true))
-        assert np.abs(values / truth - 1).max() < 0.03, (law, values / truth)
+        assert np.abs(values / truth - 1).max() < 0.05, (law, values / truth)
     capsys.readouterr()
     status, _, told = in_json(capsys, "calibrate", photo, "--chart", plan, "-o", found)
-    assert status == 1 and is_told([each for _, each in told], "format-unknown")
-    assert "brushsvg chart writes with --chart FILE" in told[-1][1].sentence, told
+    assert status == 1 and is_told([each for _, each in told], "format-unknown '--chart FILE'"), told

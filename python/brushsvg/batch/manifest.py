@@ -69,8 +69,8 @@ class Manifest:
     def __init__(self, folder: Path):
         self.folder, self.path = folder, folder / NAME
         self._by_name: dict[str, list[Row]] = {}
-        self._place = os.path.realpath(folder)
         try:
+            self._place = os.path.realpath(folder)
             folder.mkdir(parents=True, exist_ok=True)
             self._file = open(self.path, "ab")  # noqa: SIM115
         except (OSError, ValueError) as problem:
