@@ -130,6 +130,21 @@ def test_marks_are_found_however_the_sheet_lies(turn_deg, dpi):
     assert abs((shown - turn_deg + 180) % 360 - 180) < 0.6 and "24 strokes" in told(found)
 
 
+@pytest.mark.parametrize("margin_mm", [0, 10, 20])
+def test_light_paint_on_dark_paper_is_read_however_much_of_it_is_bare(margin_mm):
+    """With 10 mm of bare paper around, what is dark between marks was taken for the paint."""
+    fine = 300 / 25.4
+    light = blurred(300, paper=0.06, colour=(0.5, 0.5, 0.5))
+    light = cv2.resize(light, None, fx=fine / photograph.TEXELS, fy=fine / photograph.TEXELS)
+    margin = [round(margin_mm * fine)] * 4
+    light = cv2.copyMakeBorder(light, *margin, cv2.BORDER_CONSTANT, value=(0.06, 0.06, 0.06))
+    light += np.float32(0.02) * grain(light.shape)
+    found = read(photograph.coded(light))
+    assert not found.marks.missing and not found.marks.joined
+    _, scale, _, left = similarity_off(found)
+    assert abs(scale - 1) < 5e-4 and left < 0.03, (scale, left)
+
+
 @pytest.mark.parametrize("at_mm", [(12, 10), (150, 10), (12, 150), (150, 140)])
 def test_a_small_sheet_is_found_anywhere_on_a_large_glass(at_mm):
     """Shifts farther than half of what the match repeats over are no shifts back."""

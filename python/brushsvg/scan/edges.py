@@ -14,9 +14,6 @@ from .photo import LIGHT
 
 BROADEST_MM = 31  # paint is narrower: what is darker over less than this is not the light
 PAPER = 0.92  # of the light round about: darker is paint
-# times that what is darker than its surroundings covers as much as what is lighter, where paint is lighter: white marks
-# have a dark surrounding as wide as BROADEST_MM, and black ones a white one
-CLEARLY = 1.5
 SMOOTH_MM = 8.0  # over which the light changes; shorter, and it would follow the stain round wet paint
 STRAY_MM = 6.0  # a mark lies no farther from its box
 FAINTEST = 0.12  # share of the light that paint takes away at least
@@ -96,7 +93,7 @@ def paint_seen(flat: Flat, print_: np.ndarray, rooms: list[Room], labels_mm=()) 
 
 def _paper(light: np.ndarray, print_: np.ndarray, px_per_mm: float) -> tuple[np.ndarray, bool]:
     """What bare paper would show at every pixel: the light of the paper round about, at a pixel per mm; and whether
-    paint is lighter than it: then what is lighter than its surroundings covers less than what is darker."""
+    paint is lighter than it: paper is what most of the surroundings are."""
     rows, columns = light.shape[:2]
     size = (max(8, round(columns / px_per_mm)), max(8, round(rows / px_per_mm)))
     coarse = cv2.resize(light, size, interpolation=cv2.INTER_AREA)
@@ -107,7 +104,11 @@ def _paper(light: np.ndarray, print_: np.ndarray, px_per_mm: float) -> tuple[np.
     dark = cv2.morphologyEx(no_print, cv2.MORPH_OPEN, kernel, borderType=cv2.BORDER_REPLICATE)
     darker = ((coarse / np.maximum(bright, 1e-3)).min(axis=2) <= PAPER) & ~covered
     lighter = ((dark / np.maximum(coarse, 1e-3)).min(axis=2) <= PAPER) & ~covered
-    is_lighter = CLEARLY * int(lighter.sum()) < int(darker.sum())
+    numbers = np.uint8(np.round(255 * np.sqrt(np.clip(coarse, 0, 1))))
+    usual = np.float32([cv2.medianBlur(each, BROADEST_MM) for each in cv2.split(numbers)]).transpose(1, 2, 0)
+    ratio = (numbers + 1.0) / (usual + 1.0)
+    below, above = ((each > 1 / np.sqrt(PAPER)).any(axis=2) & ~covered for each in (1 / ratio, ratio))
+    is_lighter = int(above.sum()) > int(below.sum())
     around, bare = (dark, ~lighter & ~covered) if is_lighter else (bright, ~darker & ~covered)
     weight = cv2.GaussianBlur(bare.astype(np.float32), None, SMOOTH_MM)
     mean = cv2.GaussianBlur(coarse * bare[..., None].astype(np.float32), None, SMOOTH_MM)
