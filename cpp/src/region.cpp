@@ -62,12 +62,6 @@ Ring to_ring(Iterator begin, Iterator end, bool counter_clockwise) {
     return ring;
 }
 
-double length_around(const Ring& ring) {
-    double length = (ring.row(0) - ring.row(ring.rows() - 1)).norm();
-    for (Eigen::Index i = 1; i < ring.rows(); ++i) length += (ring.row(i) - ring.row(i - 1)).norm();
-    return length;
-}
-
 Rings to_rings(const Set& set) {
     std::vector<PolygonWithHoles> polygons;
     set.get(polygons);

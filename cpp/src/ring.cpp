@@ -13,4 +13,10 @@ double signed_area(const Ring& ring) {
     return 0.5 * twice;
 }
 
+double length_around(const Ring& ring) {
+    double length = (ring.row(0) - ring.row(ring.rows() - 1)).norm();
+    for (Eigen::Index i = 1; i < ring.rows(); ++i) length += (ring.row(i) - ring.row(i - 1)).norm();
+    return length;
+}
+
 }  // namespace brushsvg

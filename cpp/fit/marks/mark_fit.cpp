@@ -73,11 +73,6 @@ void refuse_law_prior(const MarkOptions& options) {
     }
 }
 
-double around_mm(const Ring& ring) {
-    return (ring.row(0) - ring.row(ring.rows() - 1)).norm() +
-           (ring.bottomRows(ring.rows() - 1) - ring.topRows(ring.rows() - 1)).rowwise().norm().sum();
-}
-
 void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const MarkOptions& options) {
     if (marks.empty()) throw Error("measurement-missing", "there is no painted mark");
     for (const auto& [terms, name] : {std::pair{options.lag_terms, "lag"}, std::pair{options.tip_gap_terms, "tip_gap"},
@@ -104,7 +99,7 @@ void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const M
             for (const double mm : ring.reshaped())
                 require_within(mm, {-kLargestMm, kLargestMm}, "a coordinate of an outline", mark.stroke);
             area += signed_area(ring);
-            around += around_mm(ring);
+            around += length_around(ring);
         }
         if (area < 0.0)
             throw Error("outline-clockwise",
@@ -127,7 +122,7 @@ void refuse_unlike_any(const std::vector<PaintedMark>& marks, const MarkFit& fit
     for (const PaintedMark& mark : marks)
         for (const Ring& ring : mark.outline_mm) {
             area += signed_area(ring);
-            around += around_mm(ring);
+            around += length_around(ring);
         }
     const double wide = 2.0 * area / std::max(around, 1e-9);  // of strips
     if (fit.noise_mm <= std::max(wide, kLeastWideMm)) return;

@@ -19,4 +19,7 @@ struct Window {
 /// Area [mm^2], negative for a clockwise ring.
 double signed_area(const Ring& ring);
 
+/// Length of a ring, from its last point to its first as well [mm].
+double length_around(const Ring& ring);
+
 }  // namespace brushsvg

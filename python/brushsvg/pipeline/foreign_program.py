@@ -38,8 +38,7 @@ def foreign_program(text: str, brush, cell: Cell, sheet_mm=None) -> Foreign:
     default the sheet ends 20 mm beyond what is painted. A pen that goes by M3 and M5 goes as the cell's servo does; M5
     lifts it.
 
-    Error for lines not read, places never named, a pen without a servo in the cell, and where nothing
-    touches.
+    Error for lines not read, places never named, a pen without a servo in the cell, and where nothing touches.
     """
     some = ways(text)
     passes, careless = _touches(some, cell)

@@ -99,22 +99,29 @@ def _paper(light: np.ndarray, print_: np.ndarray, px_per_mm: float) -> tuple[np.
     coarse = cv2.resize(light, size, interpolation=cv2.INTER_AREA)
     covered = cv2.resize(print_.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (BROADEST_MM, BROADEST_MM))
-    no_print = np.where(covered[..., None], np.float32(1.0), coarse)
-    bright = cv2.morphologyEx(coarse, cv2.MORPH_CLOSE, kernel, borderType=cv2.BORDER_REPLICATE)
-    dark = cv2.morphologyEx(no_print, cv2.MORPH_OPEN, kernel, borderType=cv2.BORDER_REPLICATE)
-    darker = ((coarse / np.maximum(bright, 1e-3)).min(axis=2) <= PAPER) & ~covered
-    lighter = ((dark / np.maximum(coarse, 1e-3)).min(axis=2) <= PAPER) & ~covered
-    numbers = np.uint8(np.round(255 * np.sqrt(np.clip(coarse, 0, 1))))
-    usual = np.float32([cv2.medianBlur(each, BROADEST_MM) for each in cv2.split(numbers)]).transpose(1, 2, 0)
-    ratio = (numbers + 1.0) / (usual + 1.0)
-    below, above = ((each > 1 / np.sqrt(PAPER)).any(axis=2) & ~covered for each in (1 / ratio, ratio))
-    is_lighter = int(above.sum()) > int(below.sum())
-    around, bare = (dark, ~lighter & ~covered) if is_lighter else (bright, ~darker & ~covered)
+    is_lighter = _is_lighter(coarse, covered)
+    if is_lighter:
+        no_print = np.where(covered[..., None], np.float32(1.0), coarse)
+        around = cv2.morphologyEx(no_print, cv2.MORPH_OPEN, kernel, borderType=cv2.BORDER_REPLICATE)
+        share = around / np.maximum(coarse, 1e-3)
+    else:
+        around = cv2.morphologyEx(coarse, cv2.MORPH_CLOSE, kernel, borderType=cv2.BORDER_REPLICATE)
+        share = coarse / np.maximum(around, 1e-3)
+    bare = (share.min(axis=2) > PAPER) & ~covered
     weight = cv2.GaussianBlur(bare.astype(np.float32), None, SMOOTH_MM)
     mean = cv2.GaussianBlur(coarse * bare[..., None].astype(np.float32), None, SMOOTH_MM)
     is_lit = weight[..., None] > 0.02
     even = np.where(is_lit, mean / np.maximum(weight[..., None], 1e-6), around).astype(np.float32)
     return cv2.resize(even, (columns, rows), interpolation=cv2.INTER_LINEAR), is_lighter
+
+
+def _is_lighter(coarse: np.ndarray, covered: np.ndarray) -> bool:
+    """Whether what is lighter than most of its surroundings covers more than what is darker, by a pixel per mm."""
+    numbers = np.uint8(np.round(255 * np.sqrt(np.clip(coarse, 0, 1))))  # a median of so many takes 8 bits
+    usual = np.dstack([cv2.medianBlur(each, BROADEST_MM) for each in cv2.split(numbers)])
+    ratio = (numbers + 1.0) / (usual + 1.0)
+    darker, lighter = ((each > 1 / np.sqrt(PAPER)).any(axis=2) & ~covered for each in (1 / ratio, ratio))
+    return int(lighter.sum()) > int(darker.sum())
 
 
 def _contrast(taken: np.ndarray) -> np.ndarray:

@@ -58,8 +58,7 @@ def misplaced_mm2(marks, rings: list[np.ndarray], brush) -> float:
 def misplaced_seen_mm2(marks, rings: list[np.ndarray], brush) -> float:
     """The same in pixels."""
     wanted = Wanted(rings)
-    common, both = _shared_px(marks, wanted, brush)
-    return (both - common) / wanted.px_per_mm**2
+    return wanted.misplaced_mm2(wanted.painted(marks.passes, brush))
 
 
 class Wanted:
@@ -102,7 +101,7 @@ class Wanted:
 
 def _shared_px(marks, wanted: Wanted, brush) -> tuple[float, float]:
     """What marks and a shape have in common, and what both cover [px]."""
-    painted = _core.coverage(marks, brush, wanted.window, wanted.px_per_mm)
+    painted = wanted.painted(marks.passes, brush)
     common = float(np.minimum(wanted.covered, painted).sum())
     return common, float(wanted.covered.sum() + painted.sum()) - common
 
