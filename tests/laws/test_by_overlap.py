@@ -142,7 +142,7 @@ def targets_of(strokes, brush, aside=lambda k: np.zeros(2), leant=lambda k: 0.0)
 
 def round_brush(lag) -> painter.TrueBrush:
     return painter.TrueBrush(
-        4.0, np.array(lag), np.array([0, 0.6]), np.array([0, 0.6]), 1.0, 1.0, round_tail=True
+        4.0, np.array(lag), np.array([0, 0.6]), np.array([0, 0.6, 0.0]), 1.0, 1.0, round_tail=True
     )
 
 
@@ -159,16 +159,26 @@ def told(brush) -> object:
 
 def test_at_one_depth_the_lag_at_the_touch_comes_back_from_how_marks_end():
     # a lift draws the mark on by 4 mm; held to the lag of the depth, it drew none
-    brush = round_brush([2.0, 1.0])
+    found = by_one_depth(round_brush([2.0, 1.0]))
+    assert found(0.0) == pytest.approx(2.0, abs=0.8)
+    assert found(4.0) == pytest.approx(6.0, abs=0.3)
+
+
+def test_a_pen_has_no_lag_at_the_touch_either():
+    found = by_one_depth(round_brush([0.02, 0.0]))
+    assert found(0.0) < 0.2
+    assert found(4.0) < 0.2
+
+
+def by_one_depth(brush):
+    """The lag by marks painted at the greatest depth, set down and lifted on the spot."""
     strokes = [
         (name, np.column_stack([poses[:, :2], np.full(len(poses), -brush.deepest)]))
         for name, poses in painter.chart_strokes(brush.deepest, 2)
     ]
-    begin = Begin(laws(brush, [6.0]), 0.0)
-    found = overlap_choice.largest_overlap(targets_of(strokes, brush), begin, told(brush), "laws")
-    lag = np.polynomial.Polynomial(found.laws.lag)
-    assert lag(0.0) == pytest.approx(2.0, abs=0.8)
-    assert lag(brush.deepest) == pytest.approx(6.0, abs=0.3)
+    begin = Begin(laws(brush, [float(brush.law("lag")(brush.deepest))]), 0.0)
+    found = overlap_choice.largest_overlap(targets_of(strokes, brush), begin, told(brush))
+    return np.polynomial.Polynomial(found.laws.lag)
 
 
 def test_the_lever_of_a_tilted_tool_comes_back():
@@ -195,6 +205,7 @@ def test_what_is_changed_is_what_predicts_marks_that_had_no_part_and_the_report_
         for (name, poses), target in zip(strokes, targets, strict=True)
     ]
     options = told(brush)
+    options.height_mm = core.Prior(0.0, 0.2)
     options.lag_terms, options.half_width_terms, options.round_tail = 2, 2, True
     options.widest_per_half, options.turn_rad = core.Prior(1.0, 0.4), 0.0
     machine_found.ask_for(options, ("lean",))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from .. import _core
 from ..errors import Error
 from .from_marks import ROUND_TAIL
 from .machine_found import PARTS
-from .overlap_search import KINDS, Begin, Led, Search, Target, each_kind, few_of, polished
+from .overlap_search import Begin, Led, Search, Target, best_from, each_kind, few_of, middle_of, polished
 
 HALVES = (
     30  # marks from which on two parts do; fewer are parted in three, so that each fit has enough of them
@@ -65,40 +65,59 @@ def best_predicting(
         if looks % EVERY == 0:
             progress(looks)
 
-    parts, left_out = _left_out(marks, targets, begin.laws.round_tail, options, look)
-    kind = max(left_out, key=lambda one: sum(left_out[one])) if left_out else None
-    return largest_overlap(targets, begin, options, kind, look, parts, left_out)
+    tried = _tried(marks, targets, begin.laws.round_tail, options, look)
+    if not tried:
+        return largest_overlap(targets, begin, options, look)
+    left_out = {kind: np.vstack([one.overlaps for one in tried[kind]]).mean(axis=0) for kind in tried}
+    kind = max(left_out, key=lambda one: left_out[one].sum())
+    search = Search(begin, options, targets, middle_of(targets))
+    starts = [one.x for one in tried[kind] if len(one.x) == len(search.begin)]
+    if starts:
+        x = best_from(search, kind, starts, few_of(targets), look)
+        found = _predicting(search, kind, x, targets, look)
+    else:  # fewer marks told fewer numbers of a law
+        found = largest_overlap(targets, begin, options, look, kind)
+    means = {one: (float(lying), float(moved)) for one, (lying, moved) in left_out.items()}
+    return replace(found, parts=len(tried["edges"]), left_out=means)
 
 
 def largest_overlap(
     targets: list[Target],
     begin: Begin,
     options: _core.MarkOptions,
-    kind: str | None = None,
     look: Callable[[], None] = lambda: None,
-    parts: int = 0,
-    left_out: dict[str, tuple[float, float]] | None = None,
+    last: str | None = None,
 ) -> Predicting:
-    """By one kind of search; None: by the one that may change most."""
-    search = Search(begin, options, targets)
-    found, x = "edges", search.begin
-    for found, x in each_kind(search, few_of(targets), look):  # noqa: B007
-        if found == kind:
+    """By the kind of search that may change most, or by this one."""
+    search = Search(begin, options, targets, middle_of(targets))
+    kind, x = "edges", search.begin
+    for kind, x in each_kind(search, few_of(targets), look):  # noqa: B007
+        if kind == last:
             break
-    x = polished(search, found, x, targets, look)
-    before, now = (search.overlaps(each, targets)[:, 0].mean() for each in (search.begin, x))
-    return Predicting(
-        *search.read(x), float(before), float(now), search.changed(found), found, parts, left_out or {}
-    )
+    return _predicting(search, kind, x, targets, look)
 
 
-def _left_out(marks, targets, round_tail: bool, options, look) -> tuple[int, dict[str, tuple[float, float]]]:
-    """In how many parts, and the overlaps of marks left out by kind."""
+def _predicting(search: Search, kind: str, x, targets: list[Target], look) -> Predicting:
+    x = polished(search, kind, x, targets, look)
+    before, now = (float(search.overlaps(each, targets)[:, 0].mean()) for each in (search.begin, x))
+    return Predicting(*search.read(x), before, now, search.changed(kind), kind, 0, {})
+
+
+@dataclass(frozen=True, eq=False)
+class _Tried:
+    """What a search without a part of the marks ended with, and how the marks of that part overlap with it (n, 2)."""
+
+    x: np.ndarray
+    overlaps: np.ndarray
+
+
+def _tried(marks, targets: list[Target], round_tail: bool, options, look) -> dict[str, list[_Tried]]:
+    """Each kind of search without each part of the marks; empty where they are too few."""
     parts = 2 if len(marks) >= HALVES else 3
     if len(marks) < LEAST:
-        return 0, {}
-    edges, part = _of_edges(options, round_tail), np.arange(len(marks)) % parts
-    found: dict[str, list[np.ndarray]] = {}
+        return {}
+    edges, part, middle = _of_edges(options, round_tail), np.arange(len(marks)) % parts, middle_of(targets)
+    found: dict[str, list[_Tried]] = {}
     for k in range(parts):
         taught = [one for one, at in zip(targets, part, strict=True) if at != k]
         out = [one for one, at in zip(targets, part, strict=True) if at == k]
@@ -106,12 +125,11 @@ def _left_out(marks, targets, round_tail: bool, options, look) -> tuple[int, dic
             of_others = [one for one, at in zip(marks, part, strict=True) if at != k]
             fit = _core.fit_marks(of_others, None, edges)
         except Error:
-            return 0, {}
-        search = Search(Begin(fit.laws, fit.height_mm, fit.shift_mm), options, taught)
+            return {}
+        search = Search(Begin(fit.laws, fit.height_mm, fit.shift_mm), options, taught, middle)
         for kind, x in each_kind(search, few_of(taught), look):
-            found.setdefault(kind, []).append(search.overlaps(x, out))
-    means = {kind: np.vstack(found[kind]).mean(axis=0) for kind in KINDS if kind in found}
-    return parts, {kind: (float(lying), float(moved)) for kind, (lying, moved) in means.items()}
+            found.setdefault(kind, []).append(_Tried(x, search.overlaps(x, out)))
+    return {kind: each for kind, each in found.items() if len(each) == parts}
 
 
 def _of_edges(options: _core.MarkOptions, round_tail: bool) -> _core.MarkOptions:

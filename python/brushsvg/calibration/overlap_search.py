@@ -110,7 +110,7 @@ class Begin:
 class Search:
     """The numbers that are changed, as one vector, and what it costs."""
 
-    def __init__(self, begin: Begin, options: _core.MarkOptions, targets: list[Target]):
+    def __init__(self, begin: Begin, options: _core.MarkOptions, targets: list[Target], centre_mm):
         laws, height_mm = begin.laws, begin.height_mm
         self.laws, self.height_mm, self.count = laws, height_mm, len(targets)
         self.deepest_mm = deepest = options.deepest_mm
@@ -118,6 +118,7 @@ class Search:
         half = min(HALF_TERMS, len(laws.half_width) - 1)
         self.lag_at = np.linspace(0, deepest, LAG_TERMS)
         self.half_at = np.linspace(0, deepest, half + 1)
+        self.one_depth = len(laws.lag) == 1
         self.has_height = options.height_mm.sigma > 0
         parts = {
             "lag": polyval(self.lag_at, laws.lag),
@@ -139,14 +140,14 @@ class Search:
         self.steps = np.concatenate([np.full(len(each), STEPS[name]) for name, each in parts.items()])
         self.has_machine = bool(len(parts["lean"]) + len(parts["map"]))
         self.lean_sigma = options.lean_mm_per_mm
-        self.centre_mm = np.vstack([target.poses_mm[:, :2] for target in targets]).mean(axis=0)
+        self.centre_mm = centre_mm
         # a round tail's length in half widths is that of a disc, a pointed one's what it usually is
         self.usual_shape = np.array([1.0 if laws.round_tail else options.widest_per_half.value, 1.0])
 
     def disc(self) -> np.ndarray:
         x = self.as_disc(self.begin)
-        if len(self.laws.lag) == 1:
-            x[self.at["lag"]][0] *= TOUCH
+        if self.one_depth:
+            x[self.at["lag"]][0] = max(TOUCH * x[self.at["lag"]][0], LEAST_LAG_MM)
         return x
 
     def as_disc(self, x) -> np.ndarray:
@@ -235,11 +236,13 @@ class Search:
         return np.sqrt(SCATTER / 2) * np.concatenate([off, lean, by_map, x[self.at["lever"]] / LEVER_MM])
 
     def _impossible(self, x, laws, height: float) -> bool:
-        """Laws that no brush has: a lag below 0, a width that falls, on all depths that the paper's height makes."""
+        """Laws that no brush has: a lag below 0, a width that falls, on all depths that the paper's height makes; a lag
+        at the touch that is longer than at the one depth, which no mark would show."""
         if (
             abs(height) > HIGHEST_MM
             or x[self.at["shape"]].min() < LEAST_SHAPE
             or x[self.at["half_width"]][0] <= 0
+            or (self.one_depth and np.diff(x[self.at["lag"]])[0] < 0)
         ):
             return True
         depths = np.linspace(0, self.deepest_mm + max(0.0, height), 12)
@@ -279,7 +282,7 @@ def each_kind(
     if len(search.begin[search.at["lever"]]):
         leant = search.without("lag", "tip_gap", "half_width", "shape", "height", "lean", "map")
         x = _simplex(loss, x, steps, leant, LEVER).all_x
-        yield "lever", _best_of(loss, [x], 0.4 * steps, search.without(*HELD["lever"]))
+        yield "lever", _simplex(loss, x, 0.4 * steps, search.without(*HELD["lever"]), BETTER).all_x
 
 
 def _best_of(loss, starts: list[np.ndarray], steps, free) -> np.ndarray:
@@ -300,6 +303,25 @@ def polished(search: Search, kind: str, x, targets: list[Target], look: Callable
 
     found = _simplex(loss, x, 0.4 * search.steps, search.without(*HELD[kind]), LAST).all_x
     return search.as_disc(found) if kind == "disc" else found
+
+
+def middle_of(targets: list[Target]) -> np.ndarray:
+    """What a map of ways leaves where it is."""
+    return np.vstack([target.poses_mm[:, :2] for target in targets]).mean(axis=0)
+
+
+def best_from(
+    search: Search, kind: str, starts: list[np.ndarray], few: list[Target], look: Callable[[], None]
+):
+    """The numbers of one kind that overlap most, from what such searches with a part of the marks ended with."""
+
+    def loss(x) -> float:
+        look()
+        return search.loss(search.as_disc(x) if kind == "disc" else x, few)
+
+    if kind == "edges":
+        return search.begin
+    return _best_of(loss, starts, 0.4 * search.steps, search.without(*HELD[kind]))
 
 
 def few_of(targets: list[Target]) -> list[Target]:
