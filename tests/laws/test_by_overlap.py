@@ -120,10 +120,23 @@ def machine_beside(made, fit=None):
 def test_the_report_says_lean_and_map_of_edges_and_overlap_together():
     lean, by_map = (0.3, -0.2), ((0.02, 0.01), (0.0, -0.02))
     _, marks = painted(ASIDE_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
-    text = report(brushsvg.calibrate(marks, "b", aim="overlap", machine=("lean", "axes")))
+    made = brushsvg.calibrate(marks, "b", machine=("lean", "axes"))
+    text = report(by_overlap._calibrated(made, machine_beside(made)))
     said = {line.split(":")[0]: NUMBER.findall(line) for line in text.splitlines()}
     assert np.array(said["lean"][:2], float) == pytest.approx(lean, abs=0.08)
     assert np.array(said["ways"][:4], float) == pytest.approx(np.ravel(by_map), abs=0.006)
+
+
+def test_edges_that_know_the_machine_predict_best_and_keep_their_intervals():
+    lean, by_map = (0.3, -0.2), ((0.02, 0.01), (0.0, -0.02))
+    _, marks = painted(ASIDE_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
+    made = brushsvg.calibrate(marks, "b", aim="overlap", machine=("lean", "axes"))
+    assert made.found.kind == "edges"
+    assert all(made.brush.lag.half_interval_95)
+    assert np.array(made.brush.covariance).size
+    text = report(made)
+    assert "chosen: what edges told" in text
+    assert "no intervals" not in text
 
 
 def targets_of(strokes, brush, aside=lambda k: np.zeros(2), leant=lambda k: 0.0):

@@ -35,7 +35,7 @@ class OverlapCalibration(ArrayValue):
 
     @property
     def brush(self) -> _core.Brush:
-        """Without intervals: those of the edges are not its own."""
+        """Without intervals where it is not that of the edges, since theirs are not its own."""
         return self.made.brush
 
     def __repr__(self) -> str:
@@ -62,8 +62,14 @@ def by_overlap(
         options,
         lambda looks: progress(f"looked at {looks} sets of overlaps"),
     )
+    return _calibrated(made, found)
+
+
+def _calibrated(made: MarkCalibration, found: Predicting) -> OverlapCalibration:
+    """Where edges are chosen, their brush with its intervals."""
     if found.kind == "edges":
         return OverlapCalibration(made, made, found)
+    fit, count = made.fit, sum(not miss.outlier for miss in made.fit.marks)
     brush = brush_of(found.laws, made.brush.name, made.brush.depth_range_mm)
     brush.max_speed_mm_s = made.brush.max_speed_mm_s
     for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
@@ -71,7 +77,7 @@ def by_overlap(
         told = _core.Profile(
             was.coefficients,
             calibrated_mm=(0.0, made.painted.deepest_mm),
-            source=f"Fitted to {len(targets)} painted marks, to the largest overlap; without intervals.",
+            source=f"Fitted to {count} painted marks, to the largest overlap; without intervals.",
             floor=was.floor,
             floor_slope=was.floor_slope,
         )
