@@ -17,16 +17,16 @@ Ours twice: `edges` is what `brushsvg calibrate` does, `overlap` what it does wi
 with the same laws to the largest mean of `fixed` and `shift`, with footprints held round as long as the strokes do not
 speak against it. Numbers: lag 2, tip gap 1, half width 2, the footprint's shape 2, height of the paper 1, the set's
 displacement 2 (at one depth lag 1, half width 1, no height); `edges` also a shift for each fitted stroke. --machine:
-for `edges` as well, lean 2, axes 3. What `overlap` changes
-is chosen by strokes fitted that were left out: nothing, a dragged disc, laws (at one depth lag 2), those with lean, 2
-(none at one depth), and a map of the ways, 4, those with a lever of the file's tilt, 2.
+for `edges` as well, lean 2, axes 3. What `overlap` changes is chosen by fitted strokes that are left out in turn:
+nothing; a dragged disc; laws (at one depth lag 2); those with lean, 2 (none at one depth), and a map of the ways, 4;
+those with a lever of the file's tilt, 2.
 
 First comes what can be had at all. Two strokes of nearly equal commands overlap less than 1: they are carried on to
 equal commands along a straight line in the way's and the depth's distance. What each misses to the other lies between
 both; a model that is right about the mean of many such strokes misses 1/sqrt(2) of it. --ceilings prints no more.
 
---tilt: the same brush with the tool tilted as the file says, once `overlap` is fitted, without its lever. Which way a positive tilt leans
-the file does not say: all four are tried, as a tilted plan is simulated. Then a lever of two numbers, found on the
+--tilt: the same brush with the tool tilted as the file says, once `overlap` is fitted, without its lever. Which way a
+positive tilt leans the file does not say: all four are tried, as a tilted plan is simulated. Then a lever of two numbers, found on the
 strokes fitted: the mark lies lever tan(tilt) elsewhere, as of a tool that turns about another point than its tip.
 """
 
