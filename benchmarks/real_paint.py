@@ -26,8 +26,9 @@ equal commands along a straight line in the way's and the depth's distance. What
 both; a model that is right about the mean of many such strokes misses 1/sqrt(2) of it. --ceilings prints no more.
 
 --tilt: the same brush with the tool tilted as the file says, once `overlap` is fitted, without its lever. Which way a
-positive tilt leans the file does not say: all four are tried, as a tilted plan is simulated. Then a lever of two numbers, found on the
-strokes fitted: the mark lies lever tan(tilt) elsewhere, as of a tool that turns about another point than its tip.
+positive tilt leans the file does not say: all four are tried, as a tilted plan is simulated. Then a lever of two
+numbers, found on the strokes fitted: the mark lies lever tan(tilt) elsewhere, as of a tool that turns about another
+point than its tip.
 """
 
 from __future__ import annotations
