@@ -61,12 +61,10 @@ def chosen_in_words(found) -> str:
             f"changed: {KINDS[found.kind]}; the marks are too few to be parted, so whether that predicts further ones "
             "better than edges do is not known"
         )
-    told = "; ".join(
-        f"{KINDS[kind]} {lying:.3f} and {moved:.3f}" for kind, (lying, moved) in found.left_out.items()
-    )
+    told = "; ".join(f"{KINDS[kind]} {sum(both) / 2:.3f}" for kind, both in found.left_out.items())
     return (
         f"chosen: {KINDS[found.kind]}, since so marks that had no part in the fit overlap most, each of {found.parts} "
-        f"parts predicted by the others (where they lie, and where each may move): {told}"
+        f"parts predicted by the others (mean of where they lie and where each may move): {told}"
     )
 
 
