@@ -177,12 +177,6 @@ def test_at_one_depth_the_lag_at_the_touch_comes_back_from_how_marks_end():
     assert found(4.0) == pytest.approx(6.0, abs=0.3)
 
 
-def test_a_pen_has_no_lag_at_the_touch_either():
-    found = by_one_depth(round_brush([0.02, 0.0]))
-    assert found(0.0) < 0.2
-    assert found(4.0) < 0.2
-
-
 def by_one_depth(brush):
     """The lag by marks painted at the greatest depth, set down and lifted on the spot."""
     strokes = [
