@@ -20,9 +20,7 @@ from .from_marks import ROUND_TAIL
 from .machine_found import PARTS
 from .overlap_search import Begin, Led, Search, Target, best_from, each_kind, few_of, middle_of, polished
 
-HALVES = (
-    30  # marks from which on two parts do; fewer are parted in three, so that each fit has enough of them
-)
+HALVES = 30  # marks from which on two parts do; fewer are parted in three: each fit needs enough of them
 LEAST = 9  # marks; the edges of fewer, parted, leave laws open
 EVERY = 20  # looks between two words on how far it is
 
