@@ -110,7 +110,7 @@ def convert(
     docs/python.md has them in a table.
 
     Raises Error, with a code of docs/diagnostics.md, for what cannot be read, painted or run; of several reasons it
-    tells the first, its notes the others.
+    tells the first, its notes the others, its notices what was to be warned of.
     """
     chosen = chosen_of(drawing, choices)
     beside = {"preview": preview, "report": report, "page": page}
@@ -178,7 +178,7 @@ def _converted(
             wants_rings = suffix_of(paths.get("preview")) == ".svg"
             marks = tries[formats[0]].marks if tries else None
             tries[suffix] = tried(work, suffix, job, order, lenient, wants_rings, stage, marks)
-            _refuse(tries[suffix].problems)
+            _refuse(tries[suffix].problems, work.notices)
         one = tries[formats[0]]
         stage("writing the program")
         texts: dict[str, str] = {}
@@ -208,13 +208,14 @@ def first_format(cell: Cell) -> str:
     return post.extensions[0] if post else ".json"
 
 
-def _refuse(problems: list[Notice]) -> None:
-    """Error for the first, with the others as notes."""
+def _refuse(problems: list[Notice], notices: tuple[Notice, ...]) -> None:
+    """Error for the first, with the others as notes. notices: what is to be warned of."""
     if problems:
         first, *others = problems
         error = Error(first.sentence, first.where, code=first.code, advice=first.advice)
         for other in others:
             error.add_note(": ".join(filter(None, (other.where, other.told))))
+        error.notices = notices
         raise error
 
 

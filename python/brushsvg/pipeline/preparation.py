@@ -132,8 +132,19 @@ def prepare(
     brush = options.brush or find_brush(DEFAULT_BRUSH)
     _check_speed(brush, options)
     design = layout.arrange(_design(source, options.reading), options.layout)
+    notices = [*mistyped_keys(brush), *design.notices]
+    try:
+        return _planned(design, brush, options, stage, partly, notices)
+    except Error as refusal:
+        refusal.notices = tuple(notices)
+        raise
+
+
+def _planned(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> Work:
+    """The work of a drawing that was read. notices: what was told of it; what else is found is added."""
     stage("finding strokes")
-    strokes, notices = strokes_of(design, options.paths_as)
+    strokes, found = strokes_of(design, options.paths_as)
+    notices += found
     if options.join:
         strokes, joints = joined(strokes)
         notices += joints
@@ -187,8 +198,7 @@ def prepare(
         plan.passes, tracking_errors, moved = better.passes, better.tracking_errors, better.moved
         notices += [told] if (told := better.nothing_moved()) else []
     plan = _at_speed(_with_speeds(plan, strokes), options)
-    told = _widths(painted, done, brush, compensated if options.layout.width_mm is None else None)
-    notices = [*mistyped_keys(brush), *design.notices, *notices, *told]
+    notices += _widths(painted, done, brush, compensated if options.layout.width_mm is None else None)
     notices += _other_brushes(strokes, brush)
     without = {notice.where for notice in refused}
     planned = [stroke for stroke in drawn if stroke.id not in without]
