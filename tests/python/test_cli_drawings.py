@@ -63,7 +63,9 @@ def test_what_was_told_of_a_drawing_stands_before_its_refusal(desk, capsys):
     (desk / "thick.dxf").write_text(head + "0\nSECTION\n2\nENTITIES\n" + line + "0\nENDSEC\n0\nEOF\n")
     for command in ("convert", "predict", "report"):
         status, _, said = in_json(capsys, command, "thick.dxf", *({"report": ()}.get(command, ("x.json",))))
-        assert status == 1 and [is_told([each], "unit-doubtful metres") for each in said] == [True, False], said
+        assert status == 1 and [is_told([each], "unit-doubtful metres") for each in said] == [True, False], (
+            said
+        )
         assert is_told(said[1:], "width-out-of-reach 100.000")
     with pytest.raises(brushsvg.Error) as caught:
         brushsvg.convert("thick.dxf")

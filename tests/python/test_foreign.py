@@ -195,7 +195,14 @@ def test_a_full_circle_is_drawn(desk, capsys, line):
 
 @pytest.mark.parametrize(
     ("end", "is_down"),
-    [("M5\n", False), ("", True), ("M2\n", False), ("M30\n", False), ("M5\nM3 S500\n", True), ("S0\n", False)],
+    [
+        ("M5\n", False),
+        ("", True),
+        ("M2\n", False),
+        ("M30\n", False),
+        ("M5\nM3 S500\n", True),
+        ("S0\n", False),
+    ],
 )
 def test_a_servo_that_is_down_behind_the_last_line_is_told(desk, capsys, end, is_down):
     """Its last word is no move; the end of a program lets go of what M3 holds, as M5 does."""

@@ -93,7 +93,9 @@ def _print(sheet: Sheet, page: JobPage) -> None:
         room = (right - left) * sheet.texels
         scale = room / wide
         thick = round(1.5 * scale)
-        scale *= room / cv2.getTextSize(label.text, cv2.FONT_HERSHEY_SIMPLEX, scale, thick)[0][0]  # bold is wider
+        scale *= (
+            room / cv2.getTextSize(label.text, cv2.FONT_HERSHEY_SIMPLEX, scale, thick)[0][0]
+        )  # bold is wider
         size = math.ceil((tall + under) * scale) + 4, math.ceil(1.3 * wide * scale) + 4
         at = 2, math.ceil(tall * scale) + 2
         letters = np.zeros(size, np.uint8)
