@@ -107,7 +107,7 @@ def test_letters_of_the_page_end_where_its_layout_has_them(monkeypatch):
         photo._print(sheet, page)
         dark = np.abs(sheet.shown - bare).max(axis=2) > 0
         for label in page.printed.labels:
-            left, bottom, right, top = np.array(label_box(label)) * texels
+            _, bottom, right, top = np.array(label_box(label)) * texels
             rows = slice(round(page.size_mm[1] * texels - top), round(page.size_mm[1] * texels - bottom))
             beyond = dark[rows, round(right + texels) : round(right + 3 * texels)]
             assert not beyond.any(), (label.text, texels)

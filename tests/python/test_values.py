@@ -437,7 +437,7 @@ def test_what_was_never_made_has_nothing_to_show(kind):
     fields = [name for name, field in inspect.getmembers(kind) if isinstance(field, property)]
     asks = [lambda name=name: getattr(unmade, name) for name in fields]
     asks += [lambda: repr(unmade)] if kind.__repr__ is not object.__repr__ else []
-    asks += [lambda: pickle.dumps(unmade), lambda: unmade == unmade] if kind in VALUES_OF else []  # noqa: PLR0124
+    asks += [lambda: pickle.dumps(unmade), lambda: unmade == unmade] if kind in VALUES_OF else []
     assert asks, "there is something to ask of each"
     for ask in asks:
         with pytest.raises(TypeError, match="never made"):

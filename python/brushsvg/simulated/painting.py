@@ -19,7 +19,6 @@ from ..machine.paint_reload import dips_without_cell
 from ..machine.pass_way import on_way
 from .studio import Studio
 
-
 LOWER_MM = 0.02  # more than the tilt's and scale's part in a change of height
 
 

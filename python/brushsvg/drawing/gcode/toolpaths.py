@@ -27,8 +27,8 @@ LARGEST_MM = 1e6
 @dataclass(frozen=True)
 class Way:
     """One move, as points (n, 3) [mm] from where the tool is; rapid: by G0; turn: 1 or -1 of a circle about a centre,
-    counter-clockwise or not; power: what M3 or M4 holds while it goes, None behind M5 or S0 and before either; unit_told:
-    whether G20 or G21 stands before it, without which its numbers count as millimetres."""
+    counter-clockwise or not; power: what M3 or M4 holds while it goes, None behind M5 or S0 and before either;
+    unit_told: whether G20 or G21 stands before it, without which its numbers count as millimetres."""
 
     line: int
     points_mm: np.ndarray
@@ -47,8 +47,8 @@ def ways(text: str) -> list[Way]:
 
 
 def ways_and_end(text: str) -> tuple[list[Way], float | None]:
-    """The same, and what M3, M4 or M280 holds behind the last line. M2 and M30 end what M3 holds, as M5 does, and leave a
-    servo of M280 where it is."""
+    """The same, and what M3, M4 or M280 holds behind the last line. M2 and M30 end what M3 holds, as M5 does, and
+    leave a servo of M280 where it is."""
     reader = _Reader()
     for number, line in enumerate(text.splitlines(), 1):
         reader.line(number, line)
@@ -71,8 +71,8 @@ def _sinks(way: Way, turn: int = 1) -> bool:
 def pen_is_down(some: list[Way]) -> list[bool]:
     """For each way whether the pen is on the paper all along it. Error where nothing tells.
 
-    By M3 and M5 where there is either: down is what holds on no rapid way, and with neither M5 nor M3 S0. Else by height:
-    down is below all rapid ways to the side; without these, below the middle of the highest and the lowest way.
+    By M3 and M5 where there is either: down is what holds on no rapid way, and with neither M5 nor M3 S0. Else by
+    height: down is below all rapid ways to the side; without these, below the middle of the highest and the lowest way.
     """
     across = [way for way in some if np.ptp(way.points_mm[:, :2], axis=0).any()]
     if any(way.power is not None for way in some):
