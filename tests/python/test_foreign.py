@@ -244,6 +244,7 @@ def test_a_pen_that_goes_down_and_up_again_draws_a_dot(desk, capsys, pen):
         ("G0 Z5\nG0 X50 Y50\nG1 Z-1\nG1 X60\nG0 Z5\n", "speed-out-of-range 4 0"),
         ("G0 Z5\nG0 X50 Y50\nG1 Z-1 F300\nG1 X60 F0\nG0 Z5\n", "speed-out-of-range 4 0"),
         ("G0 Z5\nG0 X50 Y50\nG1 Z-1 F300\nG0 X60\nG0 Z5\n", "rapid-too-low 4"),
+        ("G0 Z5\nG0 X50 Y50\nG1 Z-4 F300\nG0 X90 Z1\nG0 Z5\n", "rapid-too-low 4"),  # most of the way touches
         ("G1 Z-1 F300\nG0 X50\nG0 Z5\n", "line-incomplete 1"),
         ("G0 Z5\nG1 Z-1 F300\nG1 X50 Y50\nG0 Z5\n", "line-incomplete 2"),
         ("M3 S500\nG1 X50 Y10 F600\nM5\n", "line-incomplete 2"),

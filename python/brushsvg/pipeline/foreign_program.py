@@ -132,7 +132,8 @@ def _touches(some: list[Way], cell: Cell) -> tuple[list, list[Notice]]:
             if not poses:
                 name = f"line {way.line}"
             poses += [pose for pose in ends if not poses or not np.array_equal(pose, poses[-1])]
-            if way.rapid and min(start[2], end[2]) < 0 and (end[2] <= start[2]):
+            is_lift = end[2] > start[2] and np.array_equal(start[:2], end[:2])
+            if way.rapid and min(start[2], end[2]) < 0 and not is_lift:
                 sentence = "a rapid move while the brush touches"
                 careless.append(Notice(f"line {way.line}", sentence, code="rapid-too-low"))
             elif not way.rapid and not np.array_equal(start[:2], end[:2]):
