@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from diagnostics import agrees, in_json, is_told, read
+from diagnostics import agrees, in_json, is_told, read, refused
 
 import brushsvg
 from brushsvg.cli import main
@@ -360,3 +360,19 @@ def test_a_dot_is_warned_of_by_the_depth_that_it_is_turned_at(desk, capsys):
             each["stroke"] for each, d in zip(passes, depths, strict=True) if d < 1.0
         ]
         assert len(thin) == count
+
+
+def test_a_line_too_wide_is_refused_before_shapes_take_their_time(desk, monkeypatch):
+    """Twelve letters of a metre were filled first."""
+    from brushsvg.pipeline import preparation
+
+    monkeypatch.setattr(preparation, "within_reach", lambda *_: pytest.fail("shapes were filled"))
+    (desk / "wide.svg").write_text(DRAWING.replace('id="b"', 'id="b" stroke-width="12"'))
+    for compensation in ("none", "constant", "closed", "refined"):
+        with refused("width-out-of-reach 12.000", "b"):
+            brushsvg.convert("wide.svg", compensation=compensation)
+    monkeypatch.undo()
+    for compensation in ("none", "constant", "closed"):  # as planning has it
+        with refused("width-out-of-reach 12.000", "b"):
+            strokes = brushsvg.strokes(brushsvg.read_drawing("wide.svg"))[0]
+            brushsvg.compensate(strokes, brushsvg.find_brush("round-6"), (160, 90), compensation)

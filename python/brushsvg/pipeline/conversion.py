@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from .preparation import Source
 
 ORDERS = ("drawn", "nearest")
+MOST_LOWERED_MM = 2.0  # by --z-offset, without a word: the strokes of `brushsvg height` try 1 mm
 FORMATS = {
     "preview": (".png", ".svg"),
     "report": (".txt", ".json"),
@@ -252,11 +253,30 @@ class Tried:
         brush, cell = self.work.brush, self.cell
         out_of_turn = _out_of_turn(self.work, self.order, first)
         beyond = beyond_field(self.loads.loads, cell) if self.is_program else []
-        return [*without_paint(brush, cell), *out_of_turn, *too_long(self.loads, brush, cell), *pens, *beyond]
+        low = _lowered(self.walk.job.z_offset_mm) if self.is_program else []
+        return [
+            *without_paint(brush, cell),
+            *out_of_turn,
+            *too_long(self.loads, brush, cell),
+            *pens,
+            *beyond,
+            *low,
+        ]
 
     def time_s(self) -> float | None:
         """How long the machine takes for the program, or for one of the plan."""
         return time_written_s(self.suffix, self.work.plan, self.walk, self.work.brush, self.work.options.cell)
+
+
+def _lowered(z_offset_mm: float) -> list[Notice]:
+    """A notice where the tool goes so much farther down than the paper was taught that it may be a slip."""
+    if z_offset_mm > -MOST_LOWERED_MM:
+        return []
+    sentence = (
+        f"the tool goes {-z_offset_mm:g} mm farther down than where the cell has the paper, which the strokes of "
+        "`brushsvg height` seldom ask for"
+    )
+    return [Notice("z_offset", sentence, code="unusual-value", about="z_offset")]
 
 
 def _out_of_turn(work: preparation.Work, order: str, first_stroke: int) -> list[Notice]:

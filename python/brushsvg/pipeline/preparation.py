@@ -158,6 +158,8 @@ def _planned(design: Design, brush, options: Options, stage, partly: bool, notic
         strokes, _, refused, left_out = _sorted_out(
             strokes, strokes, lambda some: within_reach(some, brush, options.wide)
         )
+    if not partly:
+        _refuse_wide_lines(strokes, brush)
     painted, strokes, clamped = within_reach(strokes, brush, options.wide)
     notices += clamped
     if leads:
@@ -227,6 +229,13 @@ def _planned(design: Design, brush, options: Options, stage, partly: bool, notic
         tuple(notice.where for notice in astray),
         known,
     )
+
+
+def _refuse_wide_lines(strokes: list, brush) -> None:
+    """Error for the first line that the brush cannot paint, before the time is taken that shapes do."""
+    for stroke in strokes if brush.width_follows_depth() else ():
+        if not stroke.wanted_mm:
+            brush.depth_for_half_width(max(half for _, half in stroke.half_width), stroke.id)
 
 
 def _design(source, reading: drawing.ReadOptions) -> Design:
