@@ -374,5 +374,5 @@ def test_a_line_too_wide_is_refused_before_shapes_take_their_time(desk, monkeypa
     monkeypatch.undo()
     for compensation in ("none", "constant", "closed"):  # as planning has it
         with refused("width-out-of-reach 12.000", "b"):
-            strokes = brushsvg.strokes(brushsvg.read_drawing("wide.svg"))[0]
+            strokes = brushsvg.strokes(brushsvg.read_drawing(desk / "wide.svg"))[0]
             brushsvg.compensate(strokes, brushsvg.find_brush("round-6"), (160, 90), compensation)

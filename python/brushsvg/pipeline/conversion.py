@@ -37,6 +37,7 @@ from .choices import (
     suffix_of,
     without_effect,
 )
+from .work import Work, nearest_first
 
 if TYPE_CHECKING:
     from .preparation import Source
@@ -227,7 +228,7 @@ class Tried:
     forbids to write it, one for each kind."""
 
     suffix: str
-    work: preparation.Work
+    work: Work
     cell: Cell
     notes: tuple[str, ...]
     marks: object
@@ -279,7 +280,7 @@ def _lowered(z_offset_mm: float) -> list[Notice]:
     return [Notice("z_offset", sentence, code="unusual-value", about="z_offset")]
 
 
-def _out_of_turn(work: preparation.Work, order: str, first_stroke: int) -> list[Notice]:
+def _out_of_turn(work: Work, order: str, first_stroke: int) -> list[Notice]:
     """A notice where strokes are pressed for paint that is left of others than those that are painted before them."""
     is_pressed = work.brush.paint and work.strokes is not None
     if not is_pressed or work.options.compensation not in ("closed", "refined"):
@@ -299,7 +300,7 @@ def _out_of_turn(work: preparation.Work, order: str, first_stroke: int) -> list[
 
 
 def tried(
-    work: preparation.Work,
+    work: Work,
     suffix: str,
     job: Job = WHOLE_JOB,
     order: str = "drawn",
@@ -315,7 +316,7 @@ def tried(
     cell = writer.painting_cell(suffix, cell)
     notes = outputs.notes(work)
     if order == "nearest":
-        work, notes = preparation.nearest_first(work), (*notes, "order: nearest first")
+        work, notes = nearest_first(work), (*notes, "order: nearest first")
     if suffix != ".json":
         with concerning(path):
             writer.post_for(suffix, cell)
