@@ -2,6 +2,18 @@
 #include "bindings.hpp"
 #include "brushsvg/error.hpp"
 
+/// Who asks for what a value holds that __new__ alone has made, or whose constructor refused its arguments, as a
+/// debugger does that shows it, reads a TypeError. pybind11 would hand out memory that nobody has filled.
+static void refuse_what_was_never_made(const py::module_& m) {
+    for (const auto& [name, what] : py::cast<py::dict>(m.attr("__dict__"))) {
+        if (!py::isinstance<py::type>(what)) continue;
+        if (auto* known = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(what.ptr())))
+            known->operator_new = [](std::size_t) -> void* {
+                throw py::type_error("this value was never made: its constructor was not called, or refused");
+            };
+    }
+}
+
 PYBIND11_MODULE(_core, m) {
     m.doc() = "The brush: simulation, inverse, marks. Millimetres, radians, paper frame.";
     m.attr("__version__") = BRUSHSVG_VERSION;
@@ -45,4 +57,5 @@ PYBIND11_MODULE(_core, m) {
     bind_fit(m);
     bind_mark_fit(m);
 #endif
+    refuse_what_was_never_made(m);
 }

@@ -21,7 +21,10 @@ class Error(ValueError):
     file: the file it is about, None where only the caller knows.
     code: of what kind it is.
     advice: what helps who types commands, "" where the sentence says it all: other programs word it their own way.
+    notices: warnings of the same drawing that were found before it was refused.
     """
+
+    notices: tuple[Notice, ...] = ()
 
     def __init__(
         self,

@@ -80,6 +80,39 @@ def test_the_same_seed_is_the_same_photograph_and_its_studio_is_told(drawing, ca
     assert (folder / "d.jpg").read_bytes() == c
 
 
+def test_no_seed_draws_paper_that_a_chart_cannot_be_painted_on(tmp_path, capsys, monkeypatch):
+    """It presses to the end of the brush's range, and half of the seeds had the paper higher than it was taught."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["chart", "c.ngc", "--sheet", "a5", "--chart", "c.json", "--quiet"]) == 0
+    for seed in (2, 3):  # refused, and not, as it was
+        assert main(["simulate-photo", "c.json", "p.jpg", "--seed", str(seed)]) == 0, capsys.readouterr().err
+    Path("s.toml").write_text(HEAD + "[machine]\nheight_mm = 1.0\n")
+    status, _, said = in_json(capsys, "simulate-photo", "c.json", "p.jpg", "--studio", "s.toml")
+    assert status == 1 and is_told(said, "depth-out-of-range 11.000 machine.height_mm")
+
+
+def test_letters_of_the_page_end_where_its_layout_has_them(monkeypatch):
+    """Bold ones are wider than measured: the title of an A5 chart ran into a marker."""
+    from brushsvg.calibration.chart.layout import chart
+    from brushsvg.calibration.chart.page import label_box
+    from brushsvg.painted.job_page import JobPage
+    from brushsvg.simulated import photo
+    from brushsvg.simulated.camera import Sheet
+
+    page = JobPage(chart(find_brush("round-6"), (148, 210)), 0.0, ())
+    for texels in (5.0, 20.0):
+        sheet = Sheet(page.size_mm, 1, texels)
+        bare = sheet.shown.copy()
+        monkeypatch.setattr(sheet, "paint", lambda *_: None)
+        photo._print(sheet, page)
+        dark = np.abs(sheet.shown - bare).max(axis=2) > 0
+        for label in page.printed.labels:
+            _, bottom, right, top = np.array(label_box(label)) * texels
+            rows = slice(round(page.size_mm[1] * texels - top), round(page.size_mm[1] * texels - bottom))
+            beyond = dark[rows, round(right + texels) : round(right + 3 * texels)]
+            assert not beyond.any(), (label.text, texels)
+
+
 def test_it_says_that_it_is_simulated(drawing):
     """White letters on a dark red strip, from edge to edge."""
     folder = drawing.parent

@@ -14,6 +14,7 @@ from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import read_chart_photos, remarks
 from brushsvg.errors import Error
+from brushsvg.scan.markers import Printed, find_view
 
 CAMERA = Camera(size_px=(950, 1300), blur_px=0.6)
 
@@ -158,3 +159,40 @@ def test_something_over_the_edge_of_one_marker_does_not_bend_the_sheet():
     assert found.view.residual_mm < 0.04
     for stroke, rings in painted_marks().items():
         assert off_mm(found.marks.outlines_mm[stroke], rings)[1] < 0.15, stroke
+
+
+@pytest.mark.parametrize("deg", [8, 30])
+def test_white_round_a_picture_that_was_turned_is_no_light_of_the_page(deg):
+    """As programs fill it up: it was called overexposed."""
+    rows, columns = good().shape[:2]
+    wide = int(np.hypot(rows, columns))
+    turn = cv2.getRotationMatrix2D((columns / 2, rows / 2), deg, 1)
+    turn[:, 2] += [(wide - columns) / 2, (wide - rows) / 2]
+    turned = cv2.warpAffine(good(), turn, (wide, wide), flags=cv2.INTER_CUBIC, borderValue=(255, 255, 255))
+    found = read_chart_photos(a5(), [("", photograph.encoded(turned))])
+    assert not remarks(found) and not found.marks.missing
+
+
+@pytest.mark.parametrize(
+    ("cut", "sag_mm", "code"),
+    [
+        ((0, 1350), 0.0, "photo-cropped"),
+        ((210, 1500), 0.0, "photo-cropped"),
+        ((0, 1350), 1.5, "photo-not-flat"),
+    ],
+)
+def test_a_picture_that_was_cut_on_one_side_is_not_paper_that_bulges(cut, sag_mm, code):
+    """All markers are on it still, and the lens's middle is no more in its own."""
+    a4 = chart(find_brush("round-6"), (210.0, 297.0))
+    corners = {marker.id: np.array(marker.corners_mm) for marker in a4.markers}
+    printed = Printed((210.0, 297.0), corners, a4.dictionary)
+    camera = Camera(
+        size_px=(1500, 2100), blur_px=0.6, fill=0.8, bend=-0.07, tilt_deg=(3.0, 2.0), sag_mm=sag_mm
+    )
+    whole = photograph.exposed(photograph.page(a4), camera)
+    assert sag_mm or len(find_view(whole, printed).seen) == 8
+    if cut[0]:
+        whole = np.ascontiguousarray(whole[cut[0] :])
+    with pytest.raises(Error) as refusal:
+        find_view(np.ascontiguousarray(whole[:, : cut[1]]), printed)
+    assert refusal.value.code == code

@@ -251,6 +251,27 @@ def test_a_name_that_cannot_be_printed_is_a_row(desk, capsys, name):
     ]
 
 
+def test_another_batch_into_the_folder_leaves_what_is_known_of_the_first(desk, monkeypatch):
+    """Its rows were lost: all was done again, and a drawing of the same name written over another."""
+    first, second = ["in/0.svg", "in/below/wide.svg"], ["in/1.svg", "in/2.svg"]
+    brushsvg.batch(first, "out", jobs=1, wide="refuse")
+    brushsvg.batch(second, "out", jobs=1, wide="refuse")
+    rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
+    assert [row["name"] for row in rows] == ["1", "2", "0", "wide"], "its own first"
+    assert "0.svg" not in Path("out/table.csv").read_text()
+    names = done_again(monkeypatch)
+    assert brushsvg.batch(first, "out", jobs=1, wide="refuse").resumed == 2 and names == []
+    Path("other").mkdir()
+    Path("other/1.svg").write_text(drawing(3))
+    with refused("name-taken 1.svg --out"):
+        brushsvg.batch(["other/1.svg"], "out", jobs=1)
+    for name in ("in/below/wide.svg", "out/programs/2.ngc", "out/pictures/2.png"):
+        Path(name).unlink()
+    brushsvg.batch(["in/1.svg"], "out", jobs=1, wide="refuse")
+    rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
+    assert [row["name"] for row in rows] == ["1", "0"], "of what lies there no more nothing is kept"
+
+
 def test_equal_drawings_are_each_done_once(desk, monkeypatch):
     Path("in/also.svg").write_text(drawing(1))
     with threads() as executor:

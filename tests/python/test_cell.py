@@ -301,7 +301,7 @@ def test_paper_that_was_taught_for_a_servo_lies_level_with_it():
         ([(0, 0, 0), (99, 0, 0), (99, 3, 0)], "paper-taught 3.0"),
         ([(0, 0, 0), (99, 0, 0), (0, 99, 0), (99, 99, 0.8)], "paper-not-flat 0.80"),
         ([(0, 0, 0), (99, 0, 0), (0, 99, 9)], "paper-tilted 5.19"),
-        ([(0, 0, 0), (0, 99, 0), (99, 0, 0)], "paper-tilted 180.00"),
+        ([(0, 0, 0), (0, 99, 0), (99, 0, 0)], "paper-tilted 180.00 left"),
     ],
 )
 def test_badly_taught_points_are_refused(points, said):

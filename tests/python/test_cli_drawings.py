@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from diagnostics import agrees, in_json, is_told, read
+from diagnostics import agrees, in_json, is_told, read, refused
 
 import brushsvg
 from brushsvg.cli import main
@@ -39,7 +39,7 @@ def plan(desk, capsys, *words, drawing="d.svg"):
 
 
 def refusal(capsys, *words):
-    status, _, ((_, told),) = in_json(capsys, *words)
+    status, _, (*_, (_, told)) = in_json(capsys, *words)
     assert status == 1
     return told
 
@@ -54,6 +54,30 @@ def test_layers_and_selections(desk, capsys):
     assert agrees(told, "layer-unknown Blue Ink Red", "layer")
     told = refusal(capsys, "convert", "d.svg", "x.json", "--select", "#c")
     assert agrees(told, "selector-matches-nothing #c")
+
+
+def test_what_was_told_of_a_drawing_stands_before_its_refusal(desk, capsys):
+    """A thick line in metres that were none: the width was refused, and nobody heard of the unit."""
+    head = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n"
+    line = "0\nLWPOLYLINE\n8\nINK\n90\n2\n70\n0\n43\n0.1\n10\n0\n20\n0\n10\n9\n20\n0\n"
+    (desk / "thick.dxf").write_text(head + "0\nSECTION\n2\nENTITIES\n" + line + "0\nENDSEC\n0\nEOF\n")
+    for command in ("convert", "predict", "report"):
+        status, _, said = in_json(capsys, command, "thick.dxf", *({"report": ()}.get(command, ("x.json",))))
+        assert status == 1 and [is_told([each], "unit-doubtful metres") for each in said] == [True, False], (
+            said
+        )
+        assert is_told(said[1:], "width-out-of-reach 100.000")
+    with pytest.raises(brushsvg.Error) as caught:
+        brushsvg.convert("thick.dxf")
+    assert agrees(caught.value.notices[0], "unit-doubtful metres")
+    (row,) = brushsvg.batch(["thick.dxf"], "painted", jobs=1).rows
+    assert row.figures is None and agrees(row.notices[0], "unit-doubtful metres")
+
+
+def test_what_was_told_stands_before_what_no_machine_runs(desk):
+    with pytest.raises(brushsvg.Error) as caught:
+        brushsvg.convert("d.svg", origin=(-20, 0))
+    assert caught.value.code == "mark-off-sheet" and agrees(caught.value.notices[0], "text-unread", "t")
 
 
 def test_an_empty_choice_is_wrong_usage(desk, capsys):
@@ -336,3 +360,19 @@ def test_a_dot_is_warned_of_by_the_depth_that_it_is_turned_at(desk, capsys):
             each["stroke"] for each, d in zip(passes, depths, strict=True) if d < 1.0
         ]
         assert len(thin) == count
+
+
+def test_a_line_too_wide_is_refused_before_shapes_take_their_time(desk, monkeypatch):
+    """Twelve letters of a metre were filled first."""
+    from brushsvg.pipeline import preparation
+
+    monkeypatch.setattr(preparation, "within_reach", lambda *_: pytest.fail("shapes were filled"))
+    (desk / "wide.svg").write_text(DRAWING.replace('id="b"', 'id="b" stroke-width="12"'))
+    for compensation in ("none", "constant", "closed", "refined"):
+        with refused("width-out-of-reach 12.000", "b"):
+            brushsvg.convert("wide.svg", compensation=compensation)
+    monkeypatch.undo()
+    for compensation in ("none", "constant", "closed"):  # as planning has it
+        with refused("width-out-of-reach 12.000", "b"):
+            strokes = brushsvg.strokes(brushsvg.read_drawing(desk / "wide.svg"))[0]
+            brushsvg.compensate(strokes, brushsvg.find_brush("round-6"), (160, 90), compensation)

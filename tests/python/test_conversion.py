@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 import ezdxf
 import pytest
 import svgpathtools
-from diagnostics import refused
+from diagnostics import agrees, refused
 
 import brushsvg
 from brushsvg.cli import main
@@ -65,6 +65,18 @@ def test_it_does_what_the_command_does(desk, out, flags, choices):
     assert sorted(done.files) == sorted(names) and done.files[0] == out
     assert list(done.texts) == [Path(out).suffix] and done.text.encode() == by_command[out]
     assert f"{done.figures.total.overlap:.3f}" in by_command["o.txt"].decode()
+
+
+@pytest.mark.parametrize(("z_offset", "is_told"), [(-20, True), (-2, True), (-1, False), (20, False)])
+def test_a_tool_that_is_told_far_below_the_paper_is_warned_of(desk, z_offset, is_told):
+    """--z-offset -3 for -0.3: the brush is crushed, or the table, and nothing said a word."""
+    told = [
+        notice
+        for notice in brushsvg.convert("two.svg", z_offset=z_offset).notices
+        if notice.where == "z_offset"
+    ]
+    assert [agrees(each, f"unusual-value {-z_offset} cell") for each in told] == [True] * is_told
+    assert not brushsvg.convert("two.svg", formats=[".json"]).notices
 
 
 def test_nothing_is_written_where_no_path_is_given(desk):

@@ -193,10 +193,38 @@ def test_a_full_circle_is_drawn(desk, capsys, line):
     assert status == 0 and re.search(r"circle|line 4", out)
 
 
+@pytest.mark.parametrize(
+    ("end", "is_down"),
+    [
+        ("M5\n", False),
+        ("", True),
+        ("M2\n", False),
+        ("M30\n", False),
+        ("M5\nM3 S500\n", True),
+        ("S0\n", False),
+    ],
+)
+def test_a_servo_that_is_down_behind_the_last_line_is_told(desk, capsys, end, is_down):
+    """Its last word is no move; the end of a program lets go of what M3 holds, as M5 does."""
+    assert SERVO.endswith("M5\n")
+    (desk / "end.nc").write_text(SERVO.removesuffix("M5\n") + end)
+    status, _, said = in_json(capsys, "check", "end.nc", "--cell", "grbl-servo", "--sheet", "120x100")
+    assert status == is_down and is_told(said, "ends-on-paper 12 z") == is_down, said
+
+
 DOTS = {
     "z": "G0 Z5\nG0 X60 Y60\nG1 Z-2 F300\nG0 Z5\nG0 X70\nG1 Z-1\nG4 P0.2\nG0 Z5\n",
     "servo": "M5\nG0 X60 Y60\nM3 S500\nG4 P0.2\nM5\nG0 X70\nM3 S500\nM5\n",
 }
+
+
+def test_m3_s0_is_up_and_an_angle_of_0_is_one():
+    """grbl stops at S0 as at M5: with the cell's table S0 was the deepest. A servo of Marlin's may be down at 0."""
+    off = "G21 G90\nM3 S0\nG1 F900 X10 Y10\nM3 S500\nG1 X40\nS0\nG1 X60\nM3 S500\nG1 Y30\nS0\n"
+    assert drawn(off) == drawn(off.replace("M3 S0", "M5").replace("\nS0", "\nM5")) != []
+    angle = "G21 G90\nM280 P0 S90\nG0 X10 Y10\nM280 P0 S0\nG1 X40 F900\nM280 P0 S90\n"
+    assert drawn(angle) == drawn(angle.replace("S0", "S10")) != []
+    assert [way.power for way in ways(angle)][-1] == 0.0
 
 
 @pytest.mark.parametrize("pen", DOTS)
@@ -216,6 +244,7 @@ def test_a_pen_that_goes_down_and_up_again_draws_a_dot(desk, capsys, pen):
         ("G0 Z5\nG0 X50 Y50\nG1 Z-1\nG1 X60\nG0 Z5\n", "speed-out-of-range 4 0"),
         ("G0 Z5\nG0 X50 Y50\nG1 Z-1 F300\nG1 X60 F0\nG0 Z5\n", "speed-out-of-range 4 0"),
         ("G0 Z5\nG0 X50 Y50\nG1 Z-1 F300\nG0 X60\nG0 Z5\n", "rapid-too-low 4"),
+        ("G0 Z5\nG0 X50 Y50\nG1 Z-4 F300\nG0 X90 Z1\nG0 Z5\n", "rapid-too-low 4"),  # most of the way touches
         ("G1 Z-1 F300\nG0 X50\nG0 Z5\n", "line-incomplete 1"),
         ("G0 Z5\nG1 Z-1 F300\nG1 X50 Y50\nG0 Z5\n", "line-incomplete 2"),
         ("M3 S500\nG1 X50 Y10 F600\nM5\n", "line-incomplete 2"),

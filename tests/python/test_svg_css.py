@@ -53,6 +53,60 @@ def test_rules(css, mm):
     assert width(css) == mm
 
 
+MM = 96 / 25.4  # px
+
+
+@pytest.mark.parametrize(
+    ("value", "px"),
+    [
+        ("calc(1mm + 2px)", MM + 2),
+        ("calc(2 * (3px - 1px) / 4 + 1PX)", 2),
+        ("CALC(3 * 2)", 6),
+        ("min(3px, 1mm)", 3),
+        ("max(3px, 1mm, .1px)", MM),
+        ("clamp(1px, 5px, 2mm)", 5),
+        ("clamp(1px, 9px, 2mm)", 2 * MM),
+        ("calc(0.5em * 2)", 16),
+        ("calc(min(3px, 1mm) + max(1px, 2px))", 5),
+        ("calc(1px/**/ + 1px)", 2),
+        ("calc(3px - -1px)", 4),
+        ("calc(100% / 2)", 0.5 * (100**2 + 50**2) ** 0.5 / 2**0.5),
+    ],
+)
+def test_lengths_are_computed(value, px):
+    assert width(f"path{{stroke-width:{value}}}") == pytest.approx(px)
+    assert width(f":root{{--w:{value}}} path{{stroke-width:var(--w)}}") == pytest.approx(px)
+    (circle,) = read(f'<circle cx="20" cy="20" style="r:{value.replace("3 * 2", "6px")}"/>').elements
+    assert circle.subpaths[0].cubics[..., 0].max() == pytest.approx(20 + px)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        *("calc(50% - 1px)", "calc(1px+1px)", "calc(1px +1px)", "calc(1px * 1px)", "calc(1px / 0)", "calc()"),
+        *(
+            "calc(1px + 1)",
+            "calc(2 / 1px)",
+            "clamp(1px, 2px)",
+            "min()",
+            "calc(1 px)",
+            "calc(+ 1px)",
+            "sin(1)",
+        ),
+        *(
+            "calc(1px,2px)",
+            "calc(1furlong)",
+            "calc(1px) calc(1px)",
+            "calc(" * 400 + "1px" + ")" * 400,
+            "calc(1e999px)",
+        ),
+    ],
+)
+def test_what_comes_to_no_one_length_is_damage_as_before(value):
+    design = read(f"<style>path{{stroke-width:{value}}}</style>{P}")
+    assert are_told(design.notices, "stroke-width-invalid") and design.notices[0].damaged
+
+
 def test_attribute_rule_style_and_importance():
     body = '<path id="p" d="M0 0H5" stroke-width="2"{}/>'
     assert width("", body.format("")) == 2

@@ -437,6 +437,20 @@ def test_what_another_version_pickled_is_refused():
         _core.Arc.__new__(_core.Arc).__setstate__(state[:-1])
 
 
+@pytest.mark.parametrize("kind", [kind for kind in vars(_core).values() if isinstance(kind, type)])
+def test_what_was_never_made_has_nothing_to_show(kind):
+    """As a debugger shows it, or pytest, whose constructor refused its arguments: memory nobody had filled was read."""
+    unmade = kind.__new__(kind)
+    fields = [name for name, field in inspect.getmembers(kind) if isinstance(field, property)]
+    asks = [lambda name=name: getattr(unmade, name) for name in fields]
+    asks += [lambda: repr(unmade)] if kind.__repr__ is not object.__repr__ else []
+    asks += [lambda: pickle.dumps(unmade), lambda: unmade == unmade] if kind in VALUES_OF else []
+    assert asks, "there is something to ask of each"
+    for ask in asks:
+        with pytest.raises(TypeError, match="never made"):
+            ask()
+
+
 def test_repr_says_sizes_and_units():
     told = [
         (BRUSH, "round-6", "0 to 10 mm", "3.1 to 13.7 mm", "8.4 mm"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
@@ -162,9 +162,17 @@ class Manifest:
         except Error:
             return False
 
-    def finish(self, rows: Iterable[Row]) -> None:
-        """The rows of the whole batch in its order, and no others."""
-        write_files({self.path: "".join([json.dumps(FORMAT) + "\n", *map(as_line, rows)])})
+    def finish(self, rows: Sequence[Row]) -> None:
+        """The rows of the whole batch in its order, then the last of each other name whose files or whose drawing still
+        lie there: another batch into this folder goes on where it ended, and no other drawing takes its names."""
+        ours = {row.name for row in rows}
+        others = [each[-1] for name, each in self._by_name.items() if name not in ours]
+        kept = [row for row in others if self._is_there(row)]
+        write_files({self.path: "".join([json.dumps(FORMAT) + "\n", *map(as_line, [*rows, *kept])])})
+
+    def _is_there(self, row: Row) -> bool:
+        names = row.files or ([row.path] if row.path else [])
+        return any((self.folder / name).exists() for name in names)
 
     def close(self) -> None:
         self._file.close()

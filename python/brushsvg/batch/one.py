@@ -89,7 +89,7 @@ def made(task: Task) -> Made:
     try:
         done = _made(task)
     except Error as refusal:
-        done = Made(None, {}, b"", refusal.where, str(refusal), refusal.code)
+        done = Made(None, {}, b"", refusal.where, str(refusal), refusal.code, refusal.notices)
     except Exception as mistake:  # of ours: the others are painted all the same
         sentence = f"this should not happen, please report it: {type(mistake).__name__} {mistake}"
         done = Made(None, {}, b"", sentence=sentence, code="unexpected")

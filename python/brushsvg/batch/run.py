@@ -235,7 +235,7 @@ def _result(future: Future, item: Item, version: str) -> Made:
 def _kept(folder: Path, item: Item, key: str, done: Made) -> Row:
     """Its row, once its files are written, all or none."""
     if done.figures is None:
-        return Row(item.name, item.source, key, None, done.code, done.where, done.sentence)
+        return Row(item.name, item.source, key, None, done.code, done.where, done.sentence, done.notices)
     main = next(iter(done.texts))
     place = Path(PROGRAMS, item.name) if len(done.texts) > 1 else Path(PROGRAMS, item.name).parent
     stem = Path(item.name).name

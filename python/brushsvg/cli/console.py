@@ -22,10 +22,12 @@ class RefusedError(Exception):
 
 @contextmanager
 def about(file: str):
-    """Lets a user's error inside be reported as one of this file, unless the error names another."""
+    """Lets a user's error inside be reported as one of this file, unless the error names another, behind what is to be
+    warned of."""
     try:
         yield
     except Error as problem:
+        warn(file, problem.notices)
         raise RefusedError(problem.file or file, [problem.notice()]) from None
 
 

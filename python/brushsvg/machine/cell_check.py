@@ -201,6 +201,9 @@ def _check_paper(cell: Cell) -> None:
             f"the paper leans {tilt_deg:.2f} degrees, outside the range [0, {limit_deg:g}] degrees of tilt_limit_deg",
             where="paper",
             code="paper-tilted",
+            advice="seen from above, the third point lies to the left of the way from the first to the second"
+            if cell.paper.taught_mm and tilt_deg > 90
+            else "",
         )
 
 

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from .preparation import Source
 
 ORDERS = ("drawn", "nearest")
+MOST_LOWERED_MM = 2.0  # by --z-offset, without a word: the strokes of `brushsvg height` try 1 mm
 FORMATS = {
     "preview": (".png", ".svg"),
     "report": (".txt", ".json"),
@@ -111,7 +112,7 @@ def convert(
     docs/python.md has them in a table.
 
     Raises Error, with a code of docs/diagnostics.md, for what cannot be read, painted or run; of several reasons it
-    tells the first, its notes the others.
+    tells the first, its notes the others, its notices what was to be warned of.
     """
     chosen = chosen_of(drawing, choices)
     beside = {"preview": preview, "report": report, "page": page}
@@ -179,7 +180,7 @@ def _converted(
             wants_rings = suffix_of(paths.get("preview")) == ".svg"
             marks = tries[formats[0]].marks if tries else None
             tries[suffix] = tried(work, suffix, job, order, lenient, wants_rings, stage, marks)
-            _refuse(tries[suffix].problems)
+            _refuse(tries[suffix].problems, work.notices)
         one = tries[formats[0]]
         stage("writing the program")
         texts: dict[str, str] = {}
@@ -209,13 +210,14 @@ def first_format(cell: Cell) -> str:
     return post.extensions[0] if post else ".json"
 
 
-def _refuse(problems: list[Notice]) -> None:
-    """Error for the first, with the others as notes."""
+def _refuse(problems: list[Notice], notices: tuple[Notice, ...]) -> None:
+    """Error for the first, with the others as notes. notices: what is to be warned of."""
     if problems:
         first, *others = problems
         error = Error(first.sentence, first.where, code=first.code, advice=first.advice)
         for other in others:
             error.add_note(": ".join(filter(None, (other.where, other.told))))
+        error.notices = notices
         raise error
 
 
@@ -252,11 +254,30 @@ class Tried:
         brush, cell = self.work.brush, self.cell
         out_of_turn = _out_of_turn(self.work, self.order, first)
         beyond = beyond_field(self.loads.loads, cell) if self.is_program else []
-        return [*without_paint(brush, cell), *out_of_turn, *too_long(self.loads, brush, cell), *pens, *beyond]
+        low = _lowered(self.walk.job.z_offset_mm) if self.is_program else []
+        return [
+            *without_paint(brush, cell),
+            *out_of_turn,
+            *too_long(self.loads, brush, cell),
+            *pens,
+            *beyond,
+            *low,
+        ]
 
     def time_s(self) -> float | None:
         """How long the machine takes for the program, or for one of the plan."""
         return time_written_s(self.suffix, self.work.plan, self.walk, self.work.brush, self.work.options.cell)
+
+
+def _lowered(z_offset_mm: float) -> list[Notice]:
+    """A notice where the tool goes so much farther down than the paper was taught that it may be a slip."""
+    if z_offset_mm > -MOST_LOWERED_MM:
+        return []
+    sentence = (
+        f"the tool goes {-z_offset_mm:g} mm farther down than where the cell has the paper, which the strokes of "
+        "`brushsvg height` seldom ask for"
+    )
+    return [Notice("z_offset", sentence, code="unusual-value", about="z_offset")]
 
 
 def _out_of_turn(work: Work, order: str, first_stroke: int) -> list[Notice]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import _core
-from ..drawing.gcode.toolpaths import CHORD_MM, Way, ways
+from ..drawing.gcode.toolpaths import CHORD_MM, Way, ways_and_end
 from ..errors import Error, Notice
 from ..machine.cell import Cell, robot_from_paper
 from ..machine.move_extents import ways as straight
@@ -40,7 +40,7 @@ def foreign_program(text: str, brush, cell: Cell, sheet_mm=None) -> Foreign:
 
     Error for lines not read, places never named, a pen without a servo in the cell, and where nothing touches.
     """
-    some = ways(text)
+    some, power = ways_and_end(text)
     passes, careless = _touches(some, cell)
     outside = _outside(some, cell, sheet_mm)
     if not passes:
@@ -52,7 +52,7 @@ def foreign_program(text: str, brush, cell: Cell, sheet_mm=None) -> Foreign:
     marks = _core.simulate(plan, brush)
     problems = [
         *careless,
-        *_left_down(some, cell),
+        *_left_down(some, power, cell),
         *outside,
         *broken_limits(passes, sheet_mm, brush, cell),
         *(replace(notice, advice=_ROOM[notice.about]) for notice in off_sheet(marks, brush, sheet_mm)),
@@ -87,10 +87,10 @@ def _outside(some: list[Way], cell: Cell, sheet_mm) -> list[Notice]:
     ]
 
 
-def _left_down(some: list[Way], cell: Cell) -> list[Notice]:
-    """A notice where the last line leaves the brush on the paper. Of a servo nothing is said: its last M5 is no way."""
-    height_mm = float(some[-1].points_mm[-1, 2])
-    if cell.servo is not None or not height_mm < 0:
+def _left_down(some: list[Way], power: float | None, cell: Cell) -> list[Notice]:
+    """A notice where the program leaves the brush on the paper; power: what a servo holds behind its last line."""
+    height_mm = _servo_mm(power, cell) if cell.servo else float(some[-1].points_mm[-1, 2])
+    if not height_mm < 0:
         return []
     sentence = (
         f"the program ends with the brush on the paper, at z {height_mm:.4g} mm: lift it behind its last line"
@@ -132,7 +132,8 @@ def _touches(some: list[Way], cell: Cell) -> tuple[list, list[Notice]]:
             if not poses:
                 name = f"line {way.line}"
             poses += [pose for pose in ends if not poses or not np.array_equal(pose, poses[-1])]
-            if way.rapid and min(start[2], end[2]) < 0 and (end[2] <= start[2]):
+            is_lift = end[2] > start[2] and np.array_equal(start[:2], end[:2])
+            if way.rapid and min(start[2], end[2]) < 0 and not is_lift:
                 sentence = "a rapid move while the brush touches"
                 careless.append(Notice(f"line {way.line}", sentence, code="rapid-too-low"))
             elif not way.rapid and not np.array_equal(start[:2], end[:2]):
@@ -170,6 +171,12 @@ def _at_heights(way, cell: Cell) -> np.ndarray:
             advice="--cell grbl-servo, or one of your own",
         )
     if cell.servo is not None:
-        highest = max(height for height, _ in cell.servo.table)
-        points[:, 2] = highest if way.power is None else height_at(cell.servo, way.power)
+        points[:, 2] = _servo_mm(way.power, cell)
     return points
+
+
+def _servo_mm(power: float | None, cell: Cell) -> float:
+    """The height that a value of the servo gives; without one it is up."""
+    if power is None:
+        return max(height for height, _ in cell.servo.table)
+    return height_at(cell.servo, power)

@@ -58,20 +58,30 @@ def prepare(
     brush = options.brush or find_brush(DEFAULT_BRUSH)
     _check_speed(brush, options)
     design = layout.arrange(_design(source, options.reading), options.layout)
+    notices = [*mistyped_keys(brush), *design.notices]
+    try:
+        return _planned(design, brush, options, stage, partly, notices)
+    except Error as refusal:
+        refusal.notices = tuple(notices)
+        raise
+
+
+def _planned(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> Work:
+    """The work of a drawing that was read. notices: what was told of it; what else is found is added."""
     stage("finding strokes")
     found, of_strokes = _found(design, brush, options)
+    notices += of_strokes
+    if not partly:
+        _refuse_wide_lines(found, brush)
     lines = _within_reach(found, brush, options, partly)
+    notices += lines.notices
     compensated = compensation_by(brush, design.sheet_mm, options, stage)
     lines, done = _compensated(lines, compensated, partly)
     way = _refined(_way(lines, done, brush, compensated, options, stage), brush, compensated, options)
     way.plan = _at_speed(_with_speeds(way.plan, lines.wanted), options)
     advised = compensated if options.layout.width_mm is None else None
     bare, blank, astray = _beside_shapes(lines, way, brush, options)
-    notices = (
-        *mistyped_keys(brush),
-        *design.notices,
-        *of_strokes,
-        *lines.notices,
+    notices += (
         *way.notices,
         *warnings_with_advice(way.painted, way.done, brush, advised),
         *_other_brushes(lines.wanted, brush),
@@ -86,7 +96,7 @@ def prepare(
         lines.wanted,
         tuple(way.tracking_errors),
         options,
-        notices,
+        tuple(notices),
         tuple(lines.refused),
         tuple(lines.left_out),
         tuple(lines.drawn),
@@ -220,6 +230,13 @@ def _beside_shapes(lines: _Lines, way: _Way, brush, options: Options) -> tuple[l
         bare = left_blank(bare, way.painted, traces, brush)
         blank = missed(planned, way.painted, traces, bare, brush)
     return bare, blank, _astray(way, brush, options)
+
+
+def _refuse_wide_lines(strokes: list, brush) -> None:
+    """Error for the first line that the brush cannot paint, before the time is taken that shapes do."""
+    for stroke in strokes if brush.width_follows_depth() else ():
+        if not stroke.wanted_mm:
+            brush.depth_for_half_width(max(half for _, half in stroke.half_width), stroke.id)
 
 
 def _design(source, reading: drawing.ReadOptions) -> Design:

@@ -26,6 +26,9 @@ MOST_BLUR_MM = 0.3  # standard deviation: half way is then still half way, but n
 # moves them by 0.4. Half of it is remarked on.
 MOST_MM, MOST_MM_OF_FEW, MANY, MOST_PX = 0.12, 0.06, 8, 0.2
 COVERED = 2.0  # times the limit that one marker is off, and the others within: something lies on its edge
+# Shares of half the picture's diagonal: how finely the middle of a lens is looked for, and how much of a picture counts
+# as cut off
+CUT_STEPS, LEAST_CUT = np.array([0.2, 0.08, 0.03]), 0.05
 TOO_WHITE = 0.5  # share of the brightest parts that are as white as can be
 UNPRINTED = "of a flatbed's scan of a sheet on which nothing is printed, give --dpi"
 # Where no marker is found, edges over more of the picture's longer side are the reason: a module is lost in them
@@ -50,7 +53,7 @@ class View:
     residual_mm: rms distance of the markers' corners from where the view has them, and worst, the marker where it is
     largest, with its own; unsure_mm: standard deviation of the least certain place on the sheet, by its corners;
     blur_mm: standard deviation of the blur, from the markers' edges, across or down, whichever is more; white: share of
-    the picture's brightest parts that are as white as can be.
+    the sheet's brightest parts that are as white as can be.
     """
 
     homography: np.ndarray
@@ -96,12 +99,23 @@ def find_view(pixels: np.ndarray, printed: Printed) -> View:
     try:
         view = _without_a_covered_one(_fitted(corners, printed, pixels.shape), corners, printed, pixels.shape)
         blur_mm = float(np.median(blurs)) / view.px_per_mm
-        view = replace(view, blur_mm=blur_mm, white=white_share(light))
+        view = replace(view, blur_mm=blur_mm, white=white_share(_of_sheet(light, view, printed)))
         _refuse_unmeasurable(view, printed)
-    except Error:  # markers along one edge of the page tell its view badly
+    except Error as refusal:  # markers along one edge of the page tell its view badly
         _refuse_cropped(found, printed, light.shape)
+        if refusal.code == "photo-not-flat":
+            _refuse_cut(corners, printed, pixels.shape, view)
         raise
     return view
+
+
+def _of_sheet(light: np.ndarray, view: View, printed: Printed) -> np.ndarray:
+    """The light of the sheet, (n, 1): round it lies a table, or what a picture was filled up with that was turned."""
+    share = np.linspace(0.02, 0.98, 200)
+    x, y = np.meshgrid(share * printed.sheet_mm[0], share * printed.sheet_mm[1])
+    column, row = view.to_px(np.column_stack([x.ravel(), y.ravel()])).round().T
+    inside = (row >= 0) & (row < light.shape[0]) & (column >= 0) & (column < light.shape[1])
+    return light[row[inside].astype(int), column[inside].astype(int)][:, None]
 
 
 def _modules(dictionary: str) -> int:
@@ -169,7 +183,7 @@ def _of_this_chart(pixels: np.ndarray, light: np.ndarray, printed: Printed) -> d
 
 
 def _refuse_cropped(found: dict[int, np.ndarray], printed: Printed, shape) -> None:
-    """Where most of the other markers lie beyond the picture, as the corners of these few have it."""
+    """Where half of the other markers or more lie beyond the picture, as the corners of these few have it."""
     others = [c.mean(axis=0) for number, c in printed.corners_mm.items() if number not in found]
     if not others:
         return
@@ -179,11 +193,29 @@ def _refuse_cropped(found: dict[int, np.ndarray], printed: Printed, shape) -> No
         return
     px = np.array(others) * (1, -1) @ roughly[:, :2].T + roughly[:, 2]
     beyond = (px < 0).any(axis=1) | (px > np.array(shape[1::-1]) - 1).any(axis=1)
-    if beyond.mean() > 0.5:
+    if beyond.mean() >= 0.5:
         raise Error(
             f"the page is cropped: only {len(found)} of its {len(printed.corners_mm)} markers ({_listed(found)}) are "
             "in the picture, others lie beyond its edge: photograph the whole page",
             value=len(found),
+            code="photo-cropped",
+        )
+
+
+def _refuse_cut(corners: dict[int, np.ndarray], printed: Printed, shape, view: View) -> None:
+    """Where the sheet is flat to a lens whose middle is not the picture's, which cameras have there."""
+    at = np.zeros(2)
+    for step in CUT_STEPS * view.radius_px:
+        places = [at + step * np.array([i, j]) for i in range(-2, 3) for j in range(-2, 3)]
+        fits = [_fitted(corners, printed, shape, place) for place in places]
+        best = min(range(len(fits)), key=lambda k: fits[k].residual_mm)
+        at, view = places[best], fits[best]
+    cut = 2 * np.abs(at)
+    if view.residual_mm < view.most_residual_mm / 2 and cut.max() > LEAST_CUT * view.radius_px:
+        raise Error(
+            f"about {cut[0]:.0f} x {cut[1]:.0f} pixels of the picture were cut off, as the lens's middle has it: give "
+            "it whole, as the camera took it",
+            value=float(cut.max()),
             code="photo-cropped",
         )
 
@@ -273,13 +305,14 @@ def _meet(one, other) -> np.ndarray:
     return np.linalg.solve(normals, [one[1], other[1]])
 
 
-def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape) -> View:
-    """Least squares of all corners."""
+def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape, aside_px=(0.0, 0.0)) -> View:
+    """Least squares of all corners. aside_px: where the lens's middle lies from the picture's."""
     ids = tuple(sorted(corners))
     mm = np.vstack([printed.corners_mm[i] for i in ids])
     px = np.vstack([corners[i] for i in ids])
     middle = np.array([(shape[1] - 1) / 2, (shape[0] - 1) / 2])
     radius = float(np.hypot(*middle))
+    middle = middle + aside_px
     centre, size = np.array(printed.sheet_mm) / 2, max(printed.sheet_mm) / 2
     to_unit = np.array([[1 / size, 0, -centre[0] / size], [0, 1 / size, -centre[1] / size], [0, 0, 1]])
     start, _ = cv2.findHomography((mm - centre) / size, (px - middle) / radius)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .. import _core
 from ..brush.perturbed import with_factors
+from ..errors import Error
 from ..geometry.rotation import rotation
 from ..machine.arc_chords import with_chords
 from ..machine.as_run import as_run
@@ -17,6 +18,8 @@ from ..machine.distortion import in_lines_mm, told_mm
 from ..machine.paint_reload import dips_without_cell
 from ..machine.pass_way import on_way
 from .studio import Studio
+
+LOWER_MM = 0.02  # more than the tilt's and scale's part in a change of height
 
 
 @dataclass(frozen=True)
@@ -36,16 +39,21 @@ def painted(
     range."""
     off = studio.machine
     middle = 0.5 * np.array(plan.sheet_mm)
-    over_sheet = {
-        "field_mm": (off.field_x_mm, off.field_y_mm),
-        "field_middle_mm": tuple(middle),
-        "field_reach_mm": tuple(middle),
-    }
-    bent = over_sheet if np.any(over_sheet["field_mm"]) else {}
-    machine = Machine(off.lean_mm_per_mm, off.scale, off.skew, off.height_mm, off.tilt_mm_per_mm, **bent)
     brush = with_factors(brush, {"lag": (studio.brush.lag,), "half_width": (studio.brush.half_width,)})
-    run = as_run([_told(one, undone) for one in plan.passes], machine, off.backlash_mm)
-    marks = _core.simulate(_core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, run), brush)
+    run = _as_run(plan, studio, undone)
+    try:
+        marks = _core.simulate(_core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, run), brush)
+    except Error as refusal:
+        if refusal.code == "depth-out-of-range" and _deepest_mm(plan.passes) <= brush.depth_range_mm[1]:
+            refusal = Error(
+                f"{refusal.sentence}, as high as the studio's paper lies there",
+                refusal.where,
+                refusal.value,
+                refusal.range,
+                code=refusal.code,
+                advice="give machine.height_mm a lower value",
+            )
+        raise refusal from None
     if brush.paint:
         _core.narrow(marks, brush.paint, dips_mm or dips_without_cell(plan.passes))
     _core.trace_outlines(marks, brush)
@@ -68,6 +76,34 @@ def painted(
             )
         )
     return out
+
+
+def low_enough(studio: Studio, plan, brush, undone: Machine | None) -> Studio:
+    """The studio, its paper so low that no stroke is pressed beyond the brush's range, if none is asked to be."""
+    most_mm = brush.depth_range_mm[1]
+    beyond = _deepest_mm(_as_run(plan, studio, undone)) - most_mm
+    if beyond <= 0 or _deepest_mm(plan.passes) > most_mm:
+        return studio
+    height_mm = round(studio.machine.height_mm - beyond - LOWER_MM, 4)
+    return replace(studio, machine=replace(studio.machine, height_mm=height_mm))
+
+
+def _deepest_mm(passes) -> float:
+    return max((-float(np.min(np.asarray(one.poses_mm)[:, 2])) for one in passes), default=0.0)
+
+
+def _as_run(plan, studio: Studio, undone: Machine | None) -> list:
+    """The passes as the studio's machine runs them."""
+    off = studio.machine
+    middle = 0.5 * np.array(plan.sheet_mm)
+    over_sheet = {
+        "field_mm": (off.field_x_mm, off.field_y_mm),
+        "field_middle_mm": tuple(middle),
+        "field_reach_mm": tuple(middle),
+    }
+    bent = over_sheet if np.any(over_sheet["field_mm"]) else {}
+    machine = Machine(off.lean_mm_per_mm, off.scale, off.skew, off.height_mm, off.tilt_mm_per_mm, **bent)
+    return as_run([_told(one, undone) for one in plan.passes], machine, off.backlash_mm)
 
 
 def _told(a_pass, undone: Machine | None):

@@ -90,13 +90,16 @@ def _print(sheet: Sheet, page: JobPage) -> None:
     for label in printed.labels:
         left, _, right, _ = label_box(label)
         (wide, tall), under = cv2.getTextSize(label.text, cv2.FONT_HERSHEY_SIMPLEX, 1.0, 1)
-        scale = (right - left) * sheet.texels / wide
+        room = (right - left) * sheet.texels
+        scale = room / wide
+        thick = round(1.5 * scale)
+        scale *= (
+            room / cv2.getTextSize(label.text, cv2.FONT_HERSHEY_SIMPLEX, scale, thick)[0][0]
+        )  # bold is wider
         size = math.ceil((tall + under) * scale) + 4, math.ceil(1.3 * wide * scale) + 4
         at = 2, math.ceil(tall * scale) + 2
         letters = np.zeros(size, np.uint8)
-        cv2.putText(
-            letters, label.text, at, cv2.FONT_HERSHEY_SIMPLEX, scale, 255, round(1.5 * scale), cv2.LINE_AA
-        )
+        cv2.putText(letters, label.text, at, cv2.FONT_HERSHEY_SIMPLEX, scale, 255, thick, cv2.LINE_AA)
         row = round((page.size_mm[1] - label.at_mm[1]) * sheet.texels) - at[1]
         column = round(left * sheet.texels) - at[0]
         here = sheet.shown[row : row + size[0], column : column + size[1]]

@@ -12,7 +12,7 @@ from ..steps.prepared import prepare
 def simulate_photo_file(args) -> None:
     from ...machine.paint_reload import fetched_mm
     from ...painted.job_page import JobPage, job_page
-    from ...simulated.painting import painted
+    from ...simulated.painting import low_enough, painted
     from ...simulated.photo import simulated_photo
     from ...simulated.studio import random_studio, read_studio, write_studio
 
@@ -23,9 +23,10 @@ def simulate_photo_file(args) -> None:
     chart = _chart(args.input)
     work = prepare(settled(typed(args), args.input), plan=chart and chart.plan)
     warn(args.input, work.notices)
+    brush = brush_of(args.true_brush) or work.brush
     if args.studio is None:
         studio = random_studio(args.seed, work.plan.sheet_mm)
-    brush = brush_of(args.true_brush) or work.brush
+        studio = low_enough(studio, work.plan, brush, work.options.cell.machine)
     with about(args.input):
         stage("painting")
         strokes = painted(

@@ -27,8 +27,8 @@ LARGEST_MM = 1e6
 @dataclass(frozen=True)
 class Way:
     """One move, as points (n, 3) [mm] from where the tool is; rapid: by G0; turn: 1 or -1 of a circle about a centre,
-    counter-clockwise or not; power: what M3 or M4 holds while it goes, None behind M5 and before either; unit_told:
-    whether G20 or G21 stands before it, without which its numbers count as millimetres."""
+    counter-clockwise or not; power: what M3 or M4 holds while it goes, None behind M5 or S0 and before either;
+    unit_told: whether G20 or G21 stands before it, without which its numbers count as millimetres."""
 
     line: int
     points_mm: np.ndarray
@@ -43,10 +43,16 @@ class Way:
 def ways(text: str) -> list[Way]:
     """All moves to the side or up and down, in order; a way that leads nowhere is a dot: there the pen goes down and up
     again. Error with the line for what is not read."""
+    return ways_and_end(text)[0]
+
+
+def ways_and_end(text: str) -> tuple[list[Way], float | None]:
+    """The same, and what M3, M4 or M280 holds behind the last line. M2 and M30 end what M3 holds, as M5 does, and
+    leave a servo of M280 where it is."""
     reader = _Reader()
     for number, line in enumerate(text.splitlines(), 1):
         reader.line(number, line)
-    return list(_with_dots(reader.ways))
+    return list(_with_dots(reader.ways)), reader.pen()
 
 
 def _with_dots(some: list[Way]) -> Iterator[Way]:
@@ -65,12 +71,12 @@ def _sinks(way: Way, turn: int = 1) -> bool:
 def pen_is_down(some: list[Way]) -> list[bool]:
     """For each way whether the pen is on the paper all along it. Error where nothing tells.
 
-    By M3 and M5 where there is either: down is what holds on no rapid way, and with neither M5 nor S0. Else by height:
-    down is below all rapid ways to the side; without these, below the middle of the highest and the lowest way.
+    By M3 and M5 where there is either: down is what holds on no rapid way, and with neither M5 nor M3 S0. Else by
+    height: down is below all rapid ways to the side; without these, below the middle of the highest and the lowest way.
     """
     across = [way for way in some if np.ptp(way.points_mm[:, :2], axis=0).any()]
     if any(way.power is not None for way in some):
-        up = {way.power for way in across if way.rapid} | {None, 0.0}
+        up = {way.power for way in across if way.rapid} | {None}
         return [not way.rapid and way.power not in up for way in some]
     heights = [float(way.points_mm[:, 2].max()) for way in across]
     heights += [float(way.points_mm[-1, 2]) for way in some if not np.ptp(way.points_mm, axis=0).any()]
@@ -94,7 +100,7 @@ class _Reader:
         self.mm, self.unit_told = 1.0, False
         self.absolute, self.absolute_centres = True, False
         self.motion, self.feed_mm_s = None, 0.0
-        self.power, self.on, self.ended = 0.0, False, False
+        self.power, self.on, self.by_angle, self.ended = 0.0, False, False, False
         self.percents, self.ways_before = 0, 0
 
     def line(self, number: int, line: str) -> None:
@@ -125,7 +131,7 @@ class _Reader:
         ):
             raise _unread(number, line)
         values = {letter: value for letter, value in words if letter not in "GMNT"}
-        power = self._pen()
+        power = self.pen()
         for letter, code_number in words:
             if letter in "GM":
                 self._mode(number, line, letter, code_number, values)
@@ -133,7 +139,7 @@ class _Reader:
             self.feed_mm_s = values["F"] * self.mm / 60
         if "S" in values and not any(word in (("G", 4.0), ("M", 280.0)) for word in words):
             self.power = values["S"]
-        if self._pen() != power:
+        if self.pen() != power:
             self._dot(number, power)
         if 4 in codes and set("XYZIJ") & set(values):  # a wait by some, a way behind it by others
             raise _unread(number, line)
@@ -142,8 +148,9 @@ class _Reader:
         if set("XYZ") & set(values) or (self.motion in (2, 3) and set("IJ") & set(values)):
             self._move(number, line, values)
 
-    def _pen(self) -> float | None:
-        return self.power if self.on else None
+    def pen(self) -> float | None:
+        """What M3, M4 or M280 holds, None where the pen is up: M3 S0 lets go as M5 does, and 0 is an angle of M280."""
+        return self.power if self.on and (self.power or self.by_angle) else None
 
     def _dot(self, number: int, power: float | None) -> None:
         """Where a pen goes down and up again without a move."""
@@ -172,12 +179,13 @@ class _Reader:
             for axis in "XYZ":
                 values.pop(axis, None)
         elif letter == "M" and code in (3, 4, 5):
-            self.on = code != 5
+            self.on, self.by_angle = code != 5, False
         elif letter == "M" and code == 280 and "S" in values:  # a servo's angle
-            self.on, self.power = True, values["S"]
+            self.on, self.power, self.by_angle = True, values["S"], True
         elif code not in _PASSED_OVER[letter]:
             raise _unread(number, line)
         self.ended = letter == "M" and code in (2, 30)
+        self.on = self.on and (self.by_angle or not self.ended)
 
     def _move(self, number: int, line: str, values: dict) -> None:
         if self.motion is None:
@@ -192,7 +200,7 @@ class _Reader:
         if np.abs(np.nan_to_num(end)).max() > LARGEST_MM:
             raise Error(f"line {number}: {line.strip()[:40]!r} leads beyond 1e6 mm", code="line-unread")
         straight = np.array([start, end])
-        way = Way(number, straight, self.motion == 0, self.feed_mm_s, self._pen(), self.unit_told)
+        way = Way(number, straight, self.motion == 0, self.feed_mm_s, self.pen(), self.unit_told)
         if self.motion in (2, 3):
             way = self._circle(number, line, way, values)
         if way.turn or not np.array_equal(start, end, equal_nan=True):

@@ -9,6 +9,7 @@ from operator import itemgetter
 from ...errors import Notice
 from ...units import FONT_PX, NUMBER
 from .css_declarations import Declaration, declarations
+from .css_math import computed_length
 from .css_values import computed, path_text, problem_of, substituted
 
 INHERITED = {
@@ -54,6 +55,7 @@ _GEOMETRY = frozenset(
     "transform transform-origin transform-box translate rotate scale d x y width height cx cy r rx ry".split()
 )
 _LENGTHS = frozenset("x y width height cx cy r rx ry".split())
+_COMPUTED = ("font-size", "stroke-width", "stroke-dashoffset")
 _BARE_NUMBER = re.compile(NUMBER)  # a length in an attribute, and in CSS none unless it is 0
 _OLD_PREFIX = "-webkit-"  # still means the same where nothing else does
 _PREFIXED = frozenset(
@@ -115,6 +117,8 @@ def cascade(
                         is_damage = name == "stroke-width" or name in _GEOMETRY
                         problems.append(Notice("", sentence, is_damage, code="css-invalid", about=name))
                     break
+            if "(" in value and (name in _LENGTHS or name in _COMPUTED):
+                value = computed_length(value)
             if name == "d":
                 if (text := path_text(value)) is not None:
                     geometry[name] = text
