@@ -2,6 +2,7 @@
 differs from its file, photographed by a camera of its own kind."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import painter
@@ -20,6 +21,8 @@ from brushsvg.brush.confidence import LAWS, law_band  # noqa: E402
 from brushsvg.brush.library import save_brush  # noqa: E402
 from brushsvg.calibration.from_marks import brush_of  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
+from brushsvg.painted import learning  # noqa: E402
+from brushsvg.painted.job_marks import job_marks  # noqa: E402
 from brushsvg.painted.job_page import job_page  # noqa: E402
 from brushsvg.pipeline.json_files import read_plan  # noqa: E402
 
@@ -195,6 +198,20 @@ def test_strokes_that_share_paint_are_left_out_by_name(tmp_path, capsys):
     assert named == ["line", "slash"], told
     brush = studio.brush()
     assert abs(brush.lag(4.0) / (1.05 * polyval(4.0, LAG)) - 1) < 0.03
+
+
+def test_a_second_look_that_finds_no_lone_stroke_leaves_what_the_first_told(tmp_path, capsys, monkeypatch):
+    studio = Studio(tmp_path, WORD + '<path id="slash" d="M20 84 L44 66" stroke-width="3"/>')
+    studio.paint(5, true_brush(1.05, 0.95))
+    looks = []
+
+    def seen_once(*of):
+        looks.append(job_marks(*of))
+        return replace(looks[0], rings={} if looks[1:] else looks[0].rings)
+
+    monkeypatch.setattr(learning, "job_marks", seen_once)
+    assert in_json(capsys, *studio.words())[0] == 0 and len(looks) == 2
+    assert abs(studio.brush().lag(4.0) / (1.05 * polyval(4.0, LAG)) - 1) < 0.03
 
 
 def test_the_plan_of_a_corrected_word_says_where_the_tool_went(tmp_path, capsys):

@@ -12,6 +12,10 @@ namespace brushsvg::fit {
 /// marks are if laws depart.
 double depart(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options);
 
+/// The same solution, its laws expected to depart by as much as curves of other forms do, unless the marks speak
+/// against it; not by any order of magnitude alike. They must depart.
+MarkProblem of_usual_departures(const MarkProblem& fit, const MarkOptions& options);
+
 /// What variances are multiplied by where departing is as much likelier: by Student's t, for by how much laws depart is
 /// found from few numbers; by the less, the surer it is that they do not. Of laws that were never asked: 1.
 double unsurer(double likelier);

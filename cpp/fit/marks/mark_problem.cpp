@@ -275,6 +275,7 @@ VectorXd MarkProblem::known_gradient() const {
     if (displacement_mm_ > 0.0)
         for (Index i = 0; i < model.marks(); ++i)
             out.segment<2>(g + 2 * i) = own[std::size_t(i)] / (displacement_mm_ * displacement_mm_);
+    if (law_rows_.rows() > 0) out.head(g) += law_rows_.transpose() * (law_rows_ * (shared - law_mean_));
     return out;
 }
 

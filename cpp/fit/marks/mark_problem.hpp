@@ -33,8 +33,7 @@ class MarkProblem {
     bool is_departing() const { return departs_; }
     /// Adds the information of the priors, over every shared unknown and then both displacements of every mark.
     void add_known(MatrixXd& to) const;
-
-    /// Gradient of the priors over the same unknowns; of those of expect() and of LawPrior none.
+    /// Gradient of the priors over the same unknowns.
     VectorXd known_gradient() const;
 
     MarkModel model;

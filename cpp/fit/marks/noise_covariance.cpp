@@ -251,6 +251,16 @@ MarksLoss marks_loss(const MarkProblem& at) {
     return out;
 }
 
+VectorXd off_least(const MarkProblem& at) {
+    MarksLoss loss = marks_loss(at);
+    at.add_known(loss.slope);
+    const VectorXd unit = loss.slope.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+    const MatrixXd scaled = unit.asDiagonal() * loss.slope * unit.asDiagonal();
+    const VectorXd pull = unit.cwiseProduct(loss.gradient + at.known_gradient());
+    const VectorXd step = asking_meanwhile([scaled, pull]() -> VectorXd { return scaled.ldlt().solve(pull); });
+    return unit.cwiseProduct(step).head(at.shared.size());
+}
+
 MatrixXd covariance(const MarkProblem& at) {
     const Weighing& weighing = at.weighing;
     std::vector<Seen> marks = look(at);

@@ -16,6 +16,9 @@ struct MarksLoss {
 };
 MarksLoss marks_loss(const MarkProblem& at);
 
+/// How far the shared unknowns are from where the loss and the priors would be least if the loss were a parabola.
+VectorXd off_least(const MarkProblem& at);
+
 /// Of the shared unknowns, priors included: A^-1 (M + P) A^-1 with A the slope of the loss, M the sum of
 /// J_i c(|i - k|) J_k^T over points i, k of one outline, c the weighing's autocovariance, and P from the priors.
 MatrixXd covariance(const MarkProblem& at);

@@ -39,10 +39,10 @@ def learn(
         strokes = _strokes(plan, predicted)
         found = compare_photos(page, strokes, photos)
         marks = job_marks(found, page, strokes)
-        if not marks.rings:
-            raise _nothing_told(marks, photos[0][0])
         if best and len(marks.rings) <= len(best[1].rings):
             break
+        if not marks.rings:
+            raise _nothing_told(marks, photos[0][0])
         edge_mm = EDGE_PX / found.view.px_per_mm
         updated = update_brush(_painted(plan, marks), brush, name, edge_mm, machine, displacement_mm)
         best, predicted = (updated, marks, found), updated.brush
