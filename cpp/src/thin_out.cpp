@@ -356,7 +356,8 @@ Pass thinned(const Pass& pass, const Brush& brush, const LagLaw<double>& law, co
     return out;
 }
 
-/// Farthest that the middle of a mark, its widest points, lies from that of another, from the first taut row to the last.
+/// Farthest that the middle of a mark, its widest points, lies from that of another, from the first taut row to the
+/// last.
 double apart(const PassMarks& marks, const Ring& widest, const Ring& middle) {
     Nearest<Ring> nearest(middle);
     const Index n = Index(marks.taut.size());
@@ -386,8 +387,7 @@ Pass thin_out(const Pass& pass, const Brush& brush, double tolerance_mm) {
         const PassMarks now = simulate(trial, brush, exact_mm, false);
         const Ring there = widest_points(now, brush);
         // both ways: a mark that lacks a part is nowhere beside what it should be
-        if (apart(now, there, middle) <= tolerance_mm && apart(marks, middle, there) <= tolerance_mm)
-            return trial;
+        if (apart(now, there, middle) <= tolerance_mm && apart(marks, middle, there) <= tolerance_mm) return trial;
     }
     return pass;
 }
