@@ -43,24 +43,24 @@ void require_outlines(const std::vector<Footprint>& shapes, Eigen::Index vertice
     double depth = 0.0;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const Ring& outline = shapes[i].outline_mm;
-        const std::string here = where + ("[" + std::to_string(i) + "]");
+        const auto here = [&] { return where + ("[" + std::to_string(i) + "]"); };
         if (!(shapes[i].depth_mm > depth && shapes[i].depth_mm <= kLargestLawMm))
             throw Error("not-ascending",
                         format("depth %.3f mm is not greater than the one before, %.3f mm, and at most 1000 mm",
                                shapes[i].depth_mm, depth),
-                        here, shapes[i].depth_mm);
+                        here(), shapes[i].depth_mm);
         depth = shapes[i].depth_mm;
         if (outline.rows() < 3 || outline.rows() != vertices)
             throw Error("footprint-invalid",
                         format("the outline has %.0f vertices; all need as many as the first one, at least 3",
                                double(outline.rows())),
-                        here);
+                        here());
         const double largest = outline.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
         if (!(largest <= kLargestLawMm))
             throw Error("out-of-range",
                         format("the outline reaches %.4g mm from the tip; no brush is larger than %.0f mm", largest,
                                kLargestLawMm),
-                        here, largest, std::array<double, 2>{0.0, kLargestLawMm});
+                        here(), largest, std::array<double, 2>{0.0, kLargestLawMm});
     }
 }
 

@@ -23,6 +23,10 @@ constexpr double kGapMm = 0.01;
 
 /// What parameters at a length are told to: 47 halves of a cubic, less than a hair of a metre of it.
 constexpr double kParameterStep = 0x1p-47;
+/// Such steps that are looked at where Newton's way ends: rounding ends it beside the right one now and then.
+constexpr int kStepsBeside = 4;
+/// After a step of Newton's that is no longer than this the next one leads there to rounding.
+constexpr double kLastStep = 1e-6;
 
 void require_cubic(const Cubics& c, Index i) {
     if (i < 0 || i >= c.rows())
@@ -44,6 +48,13 @@ struct Derivative {
     Vector2d operator()(double t) const {
         const double u = 1.0 - t;
         return 3.0 * (u * u * a + 2.0 * u * t * b + t * t * d);
+    }
+    /// |B'(t)| of several, to the same bits.
+    template <class Numbers>
+    Numbers sizes(const Numbers& t) const {
+        const Numbers u = 1.0 - t, p = u * u, q = 2.0 * u * t, r = t * t;
+        const Numbers x = 3.0 * (p * a.x() + q * b.x() + r * d.x()), y = 3.0 * (p * a.y() + q * b.y() + r * d.y());
+        return (x * x + y * y).sqrt();
     }
 };
 
@@ -84,7 +95,10 @@ double arc_length(const Cubics& c, Index i, double t0, double t1) {
     double sum = 0.0;
     for (int k = 0; k < n; ++k) {
         const double a = t0 + (t1 - t0) * k / n, half = 0.5 * (t1 - t0) / n;
-        for (int j = 0; j < 5; ++j) sum += w[j] * half * derivative(a + half * (1.0 + x[j])).norm();
+        Eigen::Array<double, 6, 1> t;  // all nodes at once by vector instructions, and one that is not counted
+        for (int j = 0; j < 6; ++j) t[j] = a + half * (1.0 + x[std::min(j, 4)]);
+        const Eigen::Array<double, 6, 1> speed = derivative.sizes(t);
+        for (int j = 0; j < 5; ++j) sum += w[j] * half * speed[j];
     }
     return sum;
 }
@@ -94,17 +108,31 @@ double parameter_at(const Cubics& c, Index i, double length_mm) {
     const double whole = arc_length(c, i, 0.0, 1.0);
     if (!(length_mm < whole)) return 1.0;
     const auto is_before = [&](double t) { return arc_length(c, i, 0.0, t) < length_mm; };
-    // Newton's way to it; at a cusp it leads nowhere
+    // Newton's way to it, by the length of each step, and once more by all of it; at a cusp it leads nowhere
     const Derivative derivative(c, i);
-    double t = length_mm / whole, step = 1.0;
-    for (int k = 0; k < 8 && std::abs(step) > 1e-11; ++k) {
-        step = (length_mm - arc_length(c, i, 0.0, t)) / derivative(t).norm();
+    double t = length_mm / whole, missing = length_mm - arc_length(c, i, 0.0, t);
+    for (int k = 0; k < 8; ++k) {
+        const double before = t, step = missing / derivative(t).norm();
         t += step;
         if (!(t > 0.0 && t < 1.0)) break;
+        const bool is_last = std::abs(step) < kLastStep;
+        missing = is_last ? length_mm - arc_length(c, i, 0.0, t) : missing - arc_length(c, i, before, t);
+        if (!is_last) continue;
+        t += missing / derivative(t).norm();
+        break;
     }
     // never before the place, not by a rounding error: a lever that is drawn out by none is loose for a move
     double a = std::floor(t / kParameterStep) * kParameterStep, b = a + kParameterStep;
-    if (!(a >= 0.0 && b <= 1.0 && is_before(a) && !is_before(b))) a = 0.0, b = 1.0;
+    bool holds = false;
+    for (int k = 0; !holds && k < kStepsBeside && a >= 0.0 && b <= 1.0; ++k) {
+        if (!is_before(a))
+            b = a, a -= kParameterStep;
+        else if (is_before(b))
+            a = b, b += kParameterStep;
+        else
+            holds = true;
+    }
+    if (!holds) a = 0.0, b = 1.0;
     while (b - a > kParameterStep) {
         const double middle = 0.5 * (a + b);
         (is_before(middle) ? a : b) = middle;

@@ -314,8 +314,8 @@ class Walk {
     Edges edges_;        ///< of the mark there
 };
 
-Pass thinned(const Pass& pass, const Brush& brush, const TracedPass& was, double tolerance_mm) {
-    const LagLaw<double> law = make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
+Pass thinned(const Pass& pass, const Brush& brush, const LagLaw<double>& law, const TracedPass& was,
+             double tolerance_mm) {
     const Index n = pass.poses_mm.rows();
     std::vector<Vector3d> poses;
     std::vector<Index> now(n, 0);  // where the poses that stay are
@@ -356,9 +356,9 @@ Pass thinned(const Pass& pass, const Brush& brush, const TracedPass& was, double
     return out;
 }
 
-/// Farthest that the middle of a mark lies from that of another, from the first taut row to the last.
-double apart(const PassMarks& marks, const Brush& brush, const Ring& middle) {
-    const Ring widest = widest_points(marks, brush);
+/// Farthest that the middle of a mark, its widest points, lies from that of another, from the first taut row to the
+/// last.
+double apart(const PassMarks& marks, const Ring& widest, const Ring& middle) {
     Nearest<Ring> nearest(middle);
     const Index n = Index(marks.taut.size());
     Index begin = 0, end = n;
@@ -378,15 +378,16 @@ Pass thin_out(const Pass& pass, const Brush& brush, double tolerance_mm) {
     const double exact_mm = std::min(0.02, 0.1 * tolerance_mm);
     const PassMarks marks = simulate(pass, brush, exact_mm, false);
     if (pass.poses_mm.rows() < 4) return pass;
-    const TracedPass was(pass, brush, marks);
     const Ring middle = widest_points(marks, brush);
+    const LagLaw<double> law = make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
+    const TracedPass was(pass, brush, law, marks, middle);
     // what is found move by move adds up over a bend and at the ends; smaller steps where it was too much
     for (const double share : {0.95, 0.7, 0.4, 0.2, 0.1}) {
-        const Pass trial = thinned(pass, brush, was, share * tolerance_mm);
+        const Pass trial = thinned(pass, brush, law, was, share * tolerance_mm);
         const PassMarks now = simulate(trial, brush, exact_mm, false);
+        const Ring there = widest_points(now, brush);
         // both ways: a mark that lacks a part is nowhere beside what it should be
-        if (apart(now, brush, middle) <= tolerance_mm && apart(marks, brush, widest_points(now, brush)) <= tolerance_mm)
-            return trial;
+        if (apart(now, there, middle) <= tolerance_mm && apart(marks, middle, there) <= tolerance_mm) return trial;
     }
     return pass;
 }

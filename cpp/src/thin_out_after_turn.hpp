@@ -8,11 +8,14 @@
 
 namespace brushsvg {
 
+constexpr double kCoarseMm = 1.0;
+
 /// thin_out() of what follows the last time that the brush turns over: where P rests then, fewer poses would put the
 /// brush down beside it.
 inline Pass thin_out_after_turn(const Pass& pass, const Brush& brush, double tolerance_mm) {
     using Eigen::Index;
-    const PassMarks marks = simulate(pass, brush, 0.02, false);
+    // where the brush is loose there are rows however coarse they are
+    const PassMarks marks = simulate(pass, brush, kCoarseMm, false);
     const std::vector<TurnOver> turns = turns_over(marks);
     if (turns.empty()) return thin_out(pass, brush, tolerance_mm);
     Index kept = Index(std::ceil(marks.pose[turns.back().first]));  // the last pose where it is pressed least

@@ -60,7 +60,8 @@ double corner_between(const Edges& before, const Edges& after) {
     return greatest;
 }
 
-TracedPass::TracedPass(const Pass& pass, const Brush& brush, const PassMarks& marks) {
+TracedPass::TracedPass(const Pass& pass, const Brush& brush, const LagLaw<double>& law, const PassMarks& marks,
+                       const Ring& widest) {
     const Index n = pass.poses_mm.rows();
     tcp = pass.poses_mm.leftCols<2>();
     middle.resize(n, 2);
@@ -70,7 +71,7 @@ TracedPass::TracedPass(const Pass& pass, const Brush& brush, const PassMarks& ma
     heading.resize(n);
     taut.assign(n, false);
     dragged.assign(n, true);
-    trace(marks, brush);
+    trace(marks, widest);
     for (Index i = 0; i < n; ++i) {
         depth[i] = -pass.poses_mm(i, 2);
         deepest = std::max(deepest, depth[i]);
@@ -83,11 +84,10 @@ TracedPass::TracedPass(const Pass& pass, const Brush& brush, const PassMarks& ma
         for (Index i = arc.first; i < arc.last; ++i) dragged[i] = false;
     level.resize(n);
     for (Index i = n; i-- > 0;) level[i] = i + 1 < n && depth[i + 1] == depth[i] ? level[i + 1] : i;
-    find_edges(brush);
+    find_edges(brush, law);
 }
 
-void TracedPass::trace(const PassMarks& marks, const Brush& brush) {
-    const Ring widest = widest_points(marks, brush);
+void TracedPass::trace(const PassMarks& marks, const Ring& widest) {
     const Index n = tcp.rows();
     for (std::size_t row = 0; row < marks.pose.size(); ++row) {
         const double pose = marks.pose[row];
@@ -105,8 +105,7 @@ void TracedPass::trace(const PassMarks& marks, const Brush& brush) {
     }
 }
 
-void TracedPass::find_edges(const Brush& brush) {
-    const LagLaw<double> law = make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
+void TracedPass::find_edges(const Brush& brush, const LagLaw<double>& law) {
     const Index n = tcp.rows();
     reaching.resize(n);
     leaving.resize(n);

@@ -35,15 +35,17 @@ struct TracedPass {
     std::vector<Eigen::Index> level;       ///< the last pose that is reached at this depth
     std::vector<Edges> reaching, leaving;  ///< at the pose; both half way between where the path only bends
 
-    TracedPass(const Pass& pass, const Brush& brush, const PassMarks& marks);
+    /// widest: widest_points() of the marks.
+    TracedPass(const Pass& pass, const Brush& brush, const LagLaw<double>& law, const PassMarks& marks,
+               const Ring& widest);
 
     Eigen::Vector3d pose(Eigen::Index i) const { return {tcp(i, 0), tcp(i, 1), depth[i]}; }
     /// Where the TCP was after a way: x, y, depth. `near`: a pose to look from.
     Eigen::Vector3d at(double s, Eigen::Index near) const;
 
  private:
-    void trace(const PassMarks& marks, const Brush& brush);
-    void find_edges(const Brush& brush);
+    void trace(const PassMarks& marks, const Ring& widest);
+    void find_edges(const Brush& brush, const LagLaw<double>& law);
 };
 
 }  // namespace brushsvg
