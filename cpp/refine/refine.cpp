@@ -169,7 +169,7 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
         return anywhere || (stays(after.painted_bounds, before.painted_bounds, 0.0) &&
                             stays(after.tool_bounds, before.tool_bounds, kBeyondSheetMm));
     };
-    double best_aim = before.aim(), most = before.overlap, overlap = before.overlap;
+    double best_aim = before.aim(), most = before.overlap, overlap = 0.0;
     Pass best;
     const auto go = [&](double turn, double trust) {
         Eigen::VectorXd start = Eigen::VectorXd::Zero(path.unknowns());
