@@ -1,7 +1,6 @@
 #include "outline_fit.hpp"
 
-#include <ceres/ceres.h>
-
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +11,7 @@ namespace brushsvg::fit {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
@@ -28,6 +28,11 @@ constexpr double kSquared = 0.06;
 // Weights that keep an unknown where the outline says nothing of it: of its bends along the way, of turns, of longer
 // steps. At half of them some strokes end in a place they cannot leave, at twice as much nothing changes.
 constexpr double kBends = 0.1, kTurns = 0.05, kLonger = 0.1;
+
+// Steps by Levenberg and Marquardt, damped as Ceres does it (Madsen, Nielsen, Tingleff, Methods for non-linear least
+// squares problems, 2004, 3.2): which share of what was promised a step must win, and which
+// gain cannot be seen. Ceres itself knows nothing of how a control shifts all that is behind it.
+constexpr double kLeastKept = 1e-3, kSeen = 1e-4;
 
 /// Places along rings, evenly spaced.
 struct Places {
@@ -62,98 +67,134 @@ Root root(double d, double c) {
     return {d * over, over * (1.0 - 0.5 * d * d / s)};
 }
 
-class Outlines : public ceres::CostFunction {
+/// A sum of squares, and near which unknowns it is what: f + g^T d + d^T H d / 2.
+struct Near {
+    double value = 0.0;
+    VectorXd slope;
+    MatrixXd curvature;  ///< J^T J (Gauss, Newton)
+};
+
+/// Half the sum of squares of what is to be least.
+class Outlines {
  public:
     Outlines(const PatchPath& path, const Brush& brush, const Rings& wanted, double width)
-        : path_(path), edge_(brush, kCornersOff * width), wanted_(wanted), squared_(kSquared * width) {
-        edge_.place(path.base());
-        corners_ = edge_.footprint(0).size();
-        places_ = places_along(wanted, kSpacing * width);
-        near_.assign(places_.at.size(), 0);
-        const int k = path.controls();
-        set_num_residuals(int(places_.at.size()) + 2 * int(corners_) + 3 * (k - 2) + 2 * k);
-        mutable_parameter_block_sizes()->push_back(path.unknowns());
+        : path_(path),
+          edge_(brush, kCornersOff * width),
+          wanted_(wanted),
+          squared_(kSquared * width),
+          places_(places_along(wanted, kSpacing * width)),
+          near_(places_.at.size()),
+          keeping_(MatrixXd::Zero(path.unknowns(), path.unknowns())) {
+        const Index controls = path.controls(), turns = 2, longer = turns + controls, deeper = longer + controls;
+        const Eigen::Vector3d bend(kBends, -2.0 * kBends, kBends);
+        for (const Index first : {turns, longer, deeper})
+            for (Index at = first; at + 2 < first + controls; ++at)
+                keeping_.block<3, 3>(at, at) += bend * bend.transpose();
+        keeping_.diagonal().segment(turns, controls).array() += kTurns * kTurns;
+        keeping_.diagonal().segment(longer, controls).array() += kLonger * kLonger;
     }
 
-    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    double value(const VectorXd& x) {
         checkpoint(500);
-        const int n = path_.unknowns();
-        const VectorXd x = Eigen::Map<const VectorXd>(parameters[0], n);
-        const bool derive = jacobians && jacobians[0];
-        Eigen::Map<Rows> out(derive ? jacobians[0] : nullptr, derive ? num_residuals() : 0, n);
-        if (derive) out.setZero();
-        PatchPath::Slopes slopes;
-        const PatchSamples samples = derive ? path_.at(x, slopes) : path_.at(x);
-        edge_.place(samples);
+        samples_ = path_.at(x);
+        edge_.place(samples_);
+        pulls_.clear();
+        double sum = 0.0;
         const double weight = std::sqrt(places_.spacing_mm);
-        int row = 0;
-        for (std::size_t j = 0; j < places_.at.size(); ++j, ++row) {
-            const EdgePoint found = edge_.nearest(places_.at[j], near_[j]);
-            near_[j] = found.sample;
-            const Root f = root(found.distance_mm, squared_);
-            residuals[row] = weight * f.value;
-            if (derive)
-                out.row(row) = weight * f.slope * chained(edge_.slope(places_.at[j], found), found.sample, slopes);
+        const auto add = [&](const EdgePoint& where, double distance_mm, const Vector2d& from) {
+            const Root f = root(distance_mm, squared_);
+            sum += weight * weight * f.value * f.value;
+            pulls_.push_back({where, from, weight * f.value, weight * f.slope});
+        };
+        for (std::size_t j = 0; j < places_.at.size(); ++j) {
+            near_[j] = edge_.nearest(places_.at[j], near_[j].sample);
+            add(near_[j], near_[j].distance_mm, places_.at[j]);
         }
+        of_places_ = pulls_.size();
         // the wanted outline sees no tail that runs far out of it: the first and the last footprint must not
-        for (const std::size_t i : {std::size_t(0), samples.size() - 1})
-            for (Index k = 0; k < corners_; ++k, ++row) {
+        for (const std::size_t i : {std::size_t(0), samples_.size() - 1})
+            for (Index k = 0; k < edge_.corners(); ++k) {
                 EdgePoint corner;
                 corner.sample = i;
                 corner.edge = k;
-                const Vector2d p = edge_.footprint(i).place(k, 0.0);
+                const Vector2d p = edge_.place_of(corner);
                 const EdgePoint found = wanted_.nearest(p);
-                const Root f = root(std::max(0.0, found.distance_mm), squared_);
-                residuals[row] = weight * f.value;
-                if (derive && found.distance_mm > 0.0)
-                    out.row(row) =
-                        weight * f.slope * chained(edge_.moves(corner, wanted_.outwards(p, found)), i, slopes);
+                if (found.distance_mm > 0.0) add(corner, found.distance_mm, wanted_.outwards(p, found));
             }
-        const int k = path_.controls(), turns = 2, longer = 2 + k;
-        for (int first : {turns, longer, 2 + 2 * k})
-            for (int at = first + 1; at + 1 < first + k; ++at, ++row) {
-                residuals[row] = kBends * (x[at - 1] - 2.0 * x[at] + x[at + 1]);
-                if (derive) out.row(row).segment(at - 1, 3) << kBends, -2.0 * kBends, kBends;
-            }
-        for (const auto& [first, small] : {std::pair(turns, kTurns), std::pair(longer, kLonger)})
-            for (int at = first; at < first + k; ++at, ++row) {
-                residuals[row] = small * x[at];
-                if (derive) out(row, at) = small;
-            }
-        return true;
+        return 0.5 * (sum + x.dot(keeping_ * x));
+    }
+
+    /// About the unknowns of which the value was asked last.
+    Near near(const VectorXd& x) const {
+        std::vector<SampleSlope> slopes(samples_.size(), SampleSlope::Zero());
+        std::vector<Eigen::Matrix4d> squares(samples_.size(), Eigen::Matrix4d::Zero());
+        for (std::size_t j = 0; j < pulls_.size(); ++j) {
+            const Pull& pull = pulls_[j];
+            const SampleSlope by =
+                pull.slope * (j < of_places_ ? edge_.slope(pull.from, pull.where) : edge_.moves(pull.where, pull.from));
+            slopes[pull.where.sample] += pull.value * by;
+            squares[pull.where.sample] += by * by.transpose();
+        }
+        Near out;
+        out.slope = path_.slope(samples_, slopes);
+        out.curvature = path_.curvature(samples_, squares);
+        out.slope += keeping_ * x;
+        out.curvature += keeping_;
+        return out;
     }
 
  private:
-    /// By the unknowns, for one of the samples.
-    static Eigen::RowVectorXd chained(const EdgeSlope& d, std::size_t sample, const PatchPath::Slopes& by) {
-        const Index i = Index(sample);
-        return d.x * by.x.row(i) + d.y * by.y.row(i) + d.heading * by.heading.row(i) + d.depth * by.depth.row(i);
-    }
+    /// One of the squares, and how it grows with the distance.
+    struct Pull {
+        EdgePoint where;
+        Vector2d from;  ///< the place whose distance it is; of a corner, the direction that is outwards
+        double value, slope;
+    };
 
-    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const PatchPath& path_;
-    mutable PaintedEdge edge_;
+    PaintedEdge edge_;
     Edges wanted_;
-    Index corners_;
     double squared_;
     Places places_;
-    mutable std::vector<std::size_t> near_;  ///< whose footprint was nearest the last time
+    std::vector<EdgePoint> near_;  ///< what was nearest the last time
+    MatrixXd keeping_;             ///< the squares that keep unknowns where the outline says nothing of them
+    PatchSamples samples_;
+    std::vector<Pull> pulls_;
+    std::size_t of_places_ = 0;
 };
 
 }  // namespace
 
 VectorXd fit_outline(const PatchPath& path, const Brush& brush, const Rings& wanted, double width, int iterations,
-                     VectorXd x) {
-    ceres::Problem problem;
-    problem.AddResidualBlock(new Outlines(path, brush, wanted, width), nullptr, x.data());
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
-    options.max_num_iterations = iterations;
-    options.function_tolerance = 1e-4;  // a smaller gain cannot be seen
-    options.logging_type = ceres::SILENT;
-    options.num_threads = 1;  // strokes run side by side, and sums keep their order
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
+                     VectorXd x, double trust) {
+    Outlines outlines(path, brush, wanted, width);
+    double value = outlines.value(x);
+    Near near = outlines.near(x);
+    double distrust = 2.0;
+    const VectorXd scale = (1.0 + near.curvature.diagonal().array().sqrt()).inverse();  // of each unknown
+    for (int iteration = 0; iteration < iterations; ++iteration) {
+        const VectorXd diagonal =
+            (near.curvature.diagonal().array() * scale.array().square()).max(1e-6) / (trust * scale.array().square());
+        MatrixXd damped = near.curvature;
+        damped.diagonal() += diagonal;
+        const VectorXd step = -damped.llt().solve(near.slope);
+        const double promised = -step.dot(near.slope + 0.5 * near.curvature * step);
+        const VectorXd moved = x + step;
+        const double now = outlines.value(moved), won = value - now;
+        const bool is_small = std::abs(won) <= kSeen * value;
+        if (won > kLeastKept * promised) {
+            x = moved;
+            value = now;
+            if (is_small) break;
+            near = outlines.near(x);
+            trust /= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * won / promised - 1.0, 3));
+            distrust = 2.0;
+        } else {
+            if (is_small) break;
+            trust /= distrust;
+            distrust *= 2.0;
+        }
+    }
     return x;
 }
 

@@ -10,8 +10,8 @@ namespace brushsvg::fit {
 
 /// Unknowns of the path with which the outline of its mark lies best on rings: the sum of the distances of the rings'
 /// points to it is least, and with it about the area that only one of both holds. `width_mm`: of the mark, about;
-/// `x`: where to begin.
+/// `x`: where to begin; `trust`: how large the first step may be, one over its damping.
 Eigen::VectorXd fit_outline(const PatchPath& path, const Brush& brush, const Rings& wanted_mm, double width_mm,
-                            int iterations, Eigen::VectorXd x);
+                            int iterations, Eigen::VectorXd x, double trust);
 
 }  // namespace brushsvg::fit

@@ -10,6 +10,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
+constexpr double kPi = 3.14159265358979323846;
 /// What is rounded where a box is held against an edge [mm].
 constexpr double kRounding = 1e-9;
 
@@ -40,41 +41,89 @@ Ring outline_about_contact(const FootprintTable& table, const Brush& brush, doub
     return ring;
 }
 
+/// Edges that are looked at as one where they are far away, and footprints.
+constexpr Index kEdgesTogether = 16;
+constexpr std::size_t kSamplesTogether = 8;
+
+/// Unit vectors, half a turn in even steps: heading and across first.
+template <int n>
+std::array<Vector2d, n> even_axes() {
+    std::array<Vector2d, n> axes;
+    for (int k = 0; k < n; ++k) {
+        const int even = k % 2 * (n / 2) + k / 2;
+        axes[std::size_t(k)] = {std::cos(kPi * even / n), std::sin(kPi * even / n)};
+    }
+    return axes;
+}
+
 }  // namespace
 
 Edges::Edges(const Rings& rings) {
     Index n = 0;
     for (const Ring& ring : rings) n += ring.rows();
-    for (auto* column : {&ax_, &ay_, &bx_, &by_}) column->resize(n);
+    resize(n);
     Index first = 0;
     for (const Ring& ring : rings) {
-        const Index rows = ring.rows();
-        for (Index k = 0; k < rows; ++k) {
-            const Index next = k + 1 == rows ? 0 : k + 1;
-            ax_[first + k] = ring(k, 0);
-            ay_[first + k] = ring(k, 1);
-            bx_[first + k] = ring(next, 0) - ring(k, 0);
-            by_[first + k] = ring(next, 1) - ring(k, 1);
-        }
-        first += rows;
+        put(ring, first);
+        first += ring.rows();
     }
+    gather();
+}
+
+void Edges::set(const Ring& ring) {
+    resize(ring.rows());
+    put(ring, 0);
+    gather();
+}
+
+void Edges::resize(Index n) {
+    for (auto* column : {&ax_, &ay_, &bx_, &by_, &over_length2_, &x_per_y_}) column->resize(n);
+}
+
+void Edges::put(const Ring& ring, Index first) {
+    const Index n = ring.rows();
+    if (n == 0) return;
+    ax_.segment(first, n) = ring.col(0);
+    ay_.segment(first, n) = ring.col(1);
+    bx_.segment(first, n - 1) = (ring.col(0).tail(n - 1) - ring.col(0).head(n - 1)).array();
+    by_.segment(first, n - 1) = (ring.col(1).tail(n - 1) - ring.col(1).head(n - 1)).array();
+    bx_[first + n - 1] = ring(0, 0) - ring(n - 1, 0);
+    by_[first + n - 1] = ring(0, 1) - ring(n - 1, 1);
+}
+
+void Edges::gather() {
+    const Index n = size();
     over_length2_ = (bx_.square() + by_.square()).max(1e-18).inverse();
     x_per_y_ = (by_.abs() > 1e-12).select(bx_ / by_, 0.0);
+    parts_.clear();
+    for (Index from = 0; from < n; from += kEdgesTogether) {
+        const Index count = std::min(kEdgesTogether, n - from);
+        const auto ax = ax_.segment(from, count), ay = ay_.segment(from, count);
+        const auto to_x = ax + bx_.segment(from, count), to_y = ay + by_.segment(from, count);
+        parts_.push_back({from, from + count, ax.min(to_x).minCoeff(), ay.min(to_y).minCoeff(), ax.max(to_x).maxCoeff(),
+                          ay.max(to_y).maxCoeff()});
+    }
 }
 
 EdgePoint Edges::nearest(const Vector2d& p) const {
     EdgePoint found;
     double best = 1e300;
     int crossed = 0;
-    for (Index k = 0; k < ax_.size(); ++k) {
-        const double px = p.x() - ax_[k], py = p.y() - ay_[k], bx = bx_[k], by = by_[k];
-        const double t = std::min(1.0, std::max(0.0, (px * bx + py * by) * over_length2_[k]));
-        const double dx = px - t * bx, dy = py - t * by, d2 = dx * dx + dy * dy;
-        const bool better = d2 < best;
-        best = better ? d2 : best;
-        found.t = better ? t : found.t;
-        found.edge = better ? k : found.edge;
-        crossed += int((py < 0.0) != (py < by)) & int(px < x_per_y_[k] * py);
+    for (const Some& part : parts_) {
+        const double beside_x = std::max({part.left - p.x(), p.x() - part.right, 0.0});
+        const double beside_y = std::max({part.bottom - p.y(), p.y() - part.top, 0.0});
+        // not nearer, and nothing that a ray from the point to the right meets
+        if (beside_x * beside_x + beside_y * beside_y > best && (beside_y > 0.0 || p.x() > part.right)) continue;
+        for (Index k = part.first; k < part.last; ++k) {
+            const double px = p.x() - ax_[k], py = p.y() - ay_[k], bx = bx_[k], by = by_[k];
+            const double t = std::min(1.0, std::max(0.0, (px * bx + py * by) * over_length2_[k]));
+            const double dx = px - t * bx, dy = py - t * by, d2 = dx * dx + dy * dy;
+            const bool better = d2 < best;
+            best = better ? d2 : best;
+            found.t = better ? t : found.t;
+            found.edge = better ? k : found.edge;
+            crossed += int((py < 0.0) != (py < by)) & int(px < x_per_y_[k] * py);
+        }
     }
     found.distance_mm = crossed % 2 ? -std::sqrt(best) : std::sqrt(best);
     return found;
@@ -107,52 +156,82 @@ PaintedEdge::PaintedEdge(const Brush& brush, double tolerance_mm) : brush_(brush
     }
 }
 
+double PaintedEdge::Placed::at_least_mm(const Vector2d& seen) const {
+    static const std::array<Vector2d, kAxes> axes = even_axes<kAxes>();
+    double least = -1e300;
+    for (std::size_t k = 0; k < kAxes; ++k) {
+        const double along = seen.dot(axes[k]);
+        least = std::max(least, std::max(along - ahead[k], behind[k] - along));
+    }
+    return least;
+}
+
 void PaintedEdge::place(const PatchSamples& samples) {
-    samples_ = samples;
-    footprints_.resize(samples.size());
-    boxes_.resize(samples.size());
+    static const std::array<Vector2d, kAxes> axes = even_axes<kAxes>();
+    placed_.resize(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        const double c = std::cos(samples[i].heading_rad), s = std::sin(samples[i].heading_rad);
-        Eigen::Matrix2d turn;  // of rows
-        turn << c, s, -s, c;
-        const Ring outline = outline_about_contact(few_, brush_, samples[i].depth_mm);
-        const Eigen::RowVector2d least = outline.colwise().minCoeff(), most = outline.colwise().maxCoeff();
-        boxes_[i] = {samples[i].contact_mm, {c, s}, least.x(), most.x(), least.y(), most.y()};
-        Ring ring = outline * turn;
-        ring.rowwise() += samples[i].contact_mm.transpose();
-        footprints_[i] = Edges({ring});
+        Placed& placed = placed_[i];
+        placed.contact = samples[i].contact_mm;
+        placed.heading = {std::cos(samples[i].heading_rad), std::sin(samples[i].heading_rad)};
+        placed.depth = samples[i].depth_mm;
+        const Ring outline = outline_about_contact(few_, brush_, placed.depth);
+        placed.outline.set(outline);
+        placed.by_depth.resize(0, 2);
+        placed.reach = outline.rowwise().norm().maxCoeff();
+        for (std::size_t k = 0; k < kAxes; ++k) {
+            const Eigen::VectorXd along = outline * axes[k];
+            placed.ahead[k] = along.maxCoeff();
+            placed.behind[k] = along.minCoeff();
+        }
+    }
+    groups_.clear();
+    for (std::size_t first = 0; first < placed_.size(); first += kSamplesTogether) {
+        const std::size_t last = std::min(first + kSamplesTogether, placed_.size());
+        Together group{first, last, placed_[(first + last) / 2].contact, 0.0};
+        for (std::size_t i = first; i < last; ++i)
+            group.radius = std::max(group.radius, (placed_[i].contact - group.middle).norm() + placed_[i].reach);
+        groups_.push_back(group);
     }
 }
 
 EdgePoint PaintedEdge::nearest(const Vector2d& p, std::size_t near) const {
-    EdgePoint best = footprints_[near].nearest(p);
+    EdgePoint best = placed_[near].outline.nearest(placed_[near].seen_from(p));
     best.sample = near;
-    for (std::size_t i = 0; i < footprints_.size(); ++i) {
-        if (i == near || boxes_[i].at_least_mm(p) >= best.distance_mm + kRounding) continue;
-        EdgePoint other = footprints_[i].nearest(p);
-        if (other.distance_mm >= best.distance_mm) continue;
-        best = other;
-        best.sample = i;
+    for (const Together& group : groups_) {
+        if ((p - group.middle).norm() - group.radius >= best.distance_mm + kRounding) continue;
+        for (std::size_t i = group.first; i < group.last; ++i) {
+            const Vector2d seen = placed_[i].seen_from(p);
+            if (i == near || placed_[i].at_least_mm(seen) >= best.distance_mm + kRounding) continue;
+            EdgePoint other = placed_[i].outline.nearest(seen);
+            if (other.distance_mm >= best.distance_mm) continue;
+            best = other;
+            best.sample = i;
+        }
     }
     return best;
 }
 
-EdgeSlope PaintedEdge::slope(const Vector2d& p, const EdgePoint& found) const {
-    return moves(found, -footprints_[found.sample].outwards(p, found));
+Vector2d PaintedEdge::place_of(const EdgePoint& place) const {
+    const Placed& at = placed_[place.sample];
+    return at.contact + at.on_paper(at.outline.place(place.edge, place.t));
 }
 
-EdgeSlope PaintedEdge::moves(const EdgePoint& place, const Vector2d& direction) const {
-    const PatchSample& s = samples_[place.sample];
-    const Edges& edges = footprints_[place.sample];
-    const Index k = place.edge, next = k + 1 == edges.size() ? 0 : k + 1;
-    const Vector2d arm = edges.place(k, place.t) - s.contact_mm;
+SampleSlope PaintedEdge::slope(const Vector2d& p, const EdgePoint& found) const {
+    const Placed& at = placed_[found.sample];
+    return moves(found, -at.on_paper(at.outline.outwards(at.seen_from(p), found)));
+}
+
+SampleSlope PaintedEdge::moves(const EdgePoint& place, const Vector2d& direction) const {
+    const Placed& at = placed_[place.sample];
+    const Vector2d arm = at.on_paper(at.outline.place(place.edge, place.t));
     constexpr double kStepMm = 1e-4;
-    const auto spot = [&](double depth) {
-        const Ring r = outline_about_contact(few_, brush_, depth);
-        return Vector2d((r.row(k) + place.t * (r.row(next) - r.row(k))).transpose());
-    };
+    if (at.by_depth.rows() == 0)
+        at.by_depth =
+            (outline_about_contact(few_, brush_, at.depth + kStepMm) - outline_about_contact(few_, brush_, at.depth)) /
+            kStepMm;
+    const Index k = place.edge, next = k + 1 == at.by_depth.rows() ? 0 : k + 1;
     const Vector2d by_depth =
-        Eigen::Rotation2Dd(s.heading_rad) * Vector2d((spot(s.depth_mm + kStepMm) - spot(s.depth_mm)) / kStepMm);
+        at.on_paper((at.by_depth.row(k) + place.t * (at.by_depth.row(next) - at.by_depth.row(k))).transpose());
     return {direction.x(), direction.y(), direction.y() * arm.x() - direction.x() * arm.y(), direction.dot(by_depth)};
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "brushsvg/brush.hpp"
@@ -22,6 +22,7 @@ class Edges {
  public:
     Edges() = default;
     explicit Edges(const Rings& rings);
+    void set(const Ring& ring);
 
     EdgePoint nearest(const Eigen::Vector2d& point_mm) const;
     Eigen::Index size() const { return ax_.size(); }
@@ -32,28 +33,22 @@ class Edges {
     Eigen::Vector2d outwards(const Eigen::Vector2d& point_mm, const EdgePoint& found) const;
 
  private:
+    /// Some edges in a row, within a box.
+    struct Some {
+        Eigen::Index first, last;
+        double left, bottom, right, top;
+    };
+
+    void resize(Eigen::Index n);
+    void put(const Ring& ring, Eigen::Index first);
+    void gather();
+
     Eigen::ArrayXd ax_, ay_, bx_, by_, over_length2_, x_per_y_;
+    std::vector<Some> parts_;
 };
 
-/// A box along the heading, about what a footprint paints.
-struct HeadedBox {
-    Eigen::Vector2d contact_mm, heading;
-    double back_mm, front_mm, right_mm, left_mm;  ///< from the contact, along the heading and across
-
-    /// No place in the box is nearer to the point; where the point is inside, none of its edge deeper.
-    double at_least_mm(const Eigen::Vector2d& point_mm) const {
-        const Eigen::Vector2d from = point_mm - contact_mm;
-        const double along = from.dot(heading), across = heading.x() * from.y() - heading.y() * from.x();
-        return std::max(std::max(back_mm - along, along - front_mm), std::max(right_mm - across, across - left_mm));
-    }
-};
-
-/// How a distance grows when the patch is moved, turned, pressed.
-struct EdgeSlope {
-    double x, y;     ///< per mm
-    double heading;  ///< mm per rad
-    double depth;    ///< per mm
-};
+/// What of a sum grows with a sample's x, y, heading and depth: per mm, per rad.
+using SampleSlope = Eigen::Vector4d;
 
 /// What the brush paints on its way, as footprints side by side: the signed distance from their union.
 ///
@@ -68,17 +63,44 @@ class PaintedEdge {
     void place(const PatchSamples& samples);
     /// `near`: a sample to begin with, the nearest known.
     EdgePoint nearest(const Eigen::Vector2d& point_mm, std::size_t near) const;
-    EdgeSlope slope(const Eigen::Vector2d& point_mm, const EdgePoint& found) const;
+    /// How the distance of a point that was found grows.
+    SampleSlope slope(const Eigen::Vector2d& point_mm, const EdgePoint& found) const;
     /// How far a place on a footprint's outline moves in a direction.
-    EdgeSlope moves(const EdgePoint& place, const Eigen::Vector2d& direction) const;
-    const Edges& footprint(std::size_t sample) const { return footprints_[sample]; }
+    SampleSlope moves(const EdgePoint& place, const Eigen::Vector2d& direction) const;
+    Eigen::Vector2d place_of(const EdgePoint& place) const;
+    Eigen::Index corners() const { return few_.vertex_count(); }
 
  private:
+    static constexpr int kAxes = 8;
+    /// A footprint about its contact, heading along +x, and how far it reaches along axes and against them.
+    struct Placed {
+        Eigen::Vector2d contact, heading;
+        Edges outline;
+        std::array<double, kAxes> ahead, behind;
+        double depth, reach;
+        mutable Ring by_depth;  ///< how the outline grows, once it was asked for
+
+        Eigen::Vector2d seen_from(const Eigen::Vector2d& p) const {
+            const Eigen::Vector2d from = p - contact;
+            return {from.dot(heading), heading.x() * from.y() - heading.y() * from.x()};
+        }
+        Eigen::Vector2d on_paper(const Eigen::Vector2d& v) const {
+            return {heading.x() * v.x() - heading.y() * v.y(), heading.y() * v.x() + heading.x() * v.y()};
+        }
+        /// No place of the footprint is nearer to the point; where that is inside, none of its edge deeper.
+        double at_least_mm(const Eigen::Vector2d& seen) const;
+    };
+    /// Neighbours, within a circle.
+    struct Together {
+        std::size_t first, last;
+        Eigen::Vector2d middle;
+        double radius;
+    };
+
     const Brush& brush_;
     FootprintTable few_;
-    PatchSamples samples_;
-    std::vector<Edges> footprints_;
-    std::vector<HeadedBox> boxes_;  ///< about each
+    std::vector<Placed> placed_;
+    std::vector<Together> groups_;
 };
 
 }  // namespace brushsvg::fit

@@ -25,34 +25,6 @@ constexpr double kTurnedOver = -0.5, kRestsMm = 0.01;
 /// A dab is given some way, or no factor could make it a stroke.
 constexpr double kLeastWayMm = 1.0;
 
-/// Values of n uniform cubic B-splines at t in [0, 1].
-void splines(double t, int n, Eigen::Ref<Eigen::RowVectorXd> out) {
-    out.setZero();
-    if (n < 4) {  // Bernstein: constant, linear, quadratic
-        const double u = 1.0 - t;
-        if (n == 1) out << 1.0;
-        if (n == 2) out << u, t;
-        if (n == 3) out << u * u, 2.0 * u * t, t * t;
-        return;
-    }
-    // clamped knots: the first control is the value at the start
-    const int spans = n - 3;
-    const int k = std::clamp(int(t * spans), 0, spans - 1);
-    const auto knot = [&](int i) { return double(std::clamp(i - 3, 0, spans)) / spans; };
-    std::array<double, 4> b{1.0, 0.0, 0.0, 0.0};
-    for (int degree = 1; degree <= 3; ++degree) {  // Cox and de Boor
-        double saved = 0.0;
-        for (int r = 0; r < degree; ++r) {
-            const double right = knot(k + 3 + r + 1) - t, left = t - knot(k + 3 + 1 - degree + r);
-            const double part = b[r] / (right + left);
-            b[r] = saved + right * part;
-            saved = left * part;
-        }
-        b[degree] = saved;
-    }
-    for (int i = 0; i < 4; ++i) out[k + i] = b[i];
-}
-
 double unwrapped(double angle, double near) { return angle - 2.0 * kPi * std::round((angle - near) / (2.0 * kPi)); }
 
 PatchSample between(const PatchSample& a, const PatchSample& b, double c) {
@@ -64,58 +36,118 @@ Vector2d direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
 }  // namespace
 
+PatchPath::Splines PatchPath::splines_at(double t, int controls) {
+    // clamped knots: the first control is the value at the start
+    const int spans = controls - 3;
+    const int k = std::clamp(int(t * spans), 0, spans - 1);
+    const auto knot = [&](int i) { return double(std::clamp(i - 3, 0, spans)) / spans; };
+    Splines out{k, {1.0, 0.0, 0.0, 0.0}};
+    for (int degree = 1; degree <= 3; ++degree) {  // Cox and de Boor
+        double saved = 0.0;
+        for (int r = 0; r < degree; ++r) {
+            const double right = knot(k + 3 + r + 1) - t, left = t - knot(k + 3 + 1 - degree + r);
+            const double part = out.value[r] / (right + left);
+            out.value[r] = saved + right * part;
+            saved = left * part;
+        }
+        out.value[degree] = saved;
+    }
+    return out;
+}
+
 PatchPath::PatchPath(PatchSamples base, int controls, const std::array<double, 2>& depths_mm)
     : base_(std::move(base)), controls_(controls), depths_mm_(depths_mm) {
-    const Index n = Index(base_.size());
-    here_.resize(n, controls);
-    between_.resize(n - 1, controls);
-    Eigen::RowVectorXd row(controls);
-    for (Index i = 0; i < n; ++i) {
-        splines(double(i) / double(n - 1), controls, row);
-        here_.row(i) = row;
-        if (i + 1 == n) break;
-        splines((double(i) + 0.5) / double(n - 1), controls, row);
-        between_.row(i) = row;
+    const double steps = double(base_.size() - 1);
+    for (std::size_t i = 0; i < base_.size(); ++i) {
+        here_.push_back(splines_at(double(i) / steps, controls));
+        if (i + 1 < base_.size()) between_.push_back(splines_at((double(i) + 0.5) / steps, controls));
     }
 }
 
 PatchSamples PatchPath::at(const VectorXd& x) const {
-    const Index k = controls_;
-    const VectorXd turn = here_ * x.segment(2, k), deeper = here_ * x.segment(2 + 2 * k, k);
-    const VectorXd turn_step = between_ * x.segment(2, k), longer = between_ * x.segment(2 + k, k);
+    const Index turns = 2, longer = turns + controls_, deeper = longer + controls_;
     PatchSamples out = base_;
     Vector2d contact = base_[0].contact_mm + x.head<2>();
-    for (Index i = 0; i < Index(base_.size()); ++i) {
+    for (std::size_t i = 0; i < base_.size(); ++i) {
         out[i].contact_mm = contact;
-        out[i].heading_rad += turn[i];
+        out[i].heading_rad += here_[i].of(x, turns);
         if (depths_mm_[0] < depths_mm_[1])
-            out[i].depth_mm = std::clamp(out[i].depth_mm + deeper[i], depths_mm_[0], depths_mm_[1]);
-        if (i + 1 == Index(base_.size())) break;
+            out[i].depth_mm = std::clamp(out[i].depth_mm + here_[i].of(x, deeper), depths_mm_[0], depths_mm_[1]);
+        if (i + 1 == base_.size()) break;
         const Vector2d step = base_[i + 1].contact_mm - base_[i].contact_mm;
-        contact += std::exp(longer[i]) * (Eigen::Rotation2Dd(turn_step[i]) * step);
+        contact += std::exp(between_[i].of(x, longer)) * (Eigen::Rotation2Dd(between_[i].of(x, turns)) * step);
     }
     return out;
 }
 
-PatchSamples PatchPath::at(const VectorXd& x, Slopes& slopes) const {
-    const PatchSamples out = at(x);
-    const Index n = Index(out.size()), k = controls_, all = unknowns();
-    slopes.x = slopes.y = slopes.heading = slopes.depth = MatrixXd::Zero(n, all);
-    slopes.heading.middleCols(2, k) = here_;
-    slopes.x(0, 0) = slopes.y(0, 1) = 1.0;
-    for (Index i = 0; i < n; ++i) {
-        if (out[i].depth_mm > depths_mm_[0] && out[i].depth_mm < depths_mm_[1])
-            slopes.depth.row(i).segment(2 + 2 * k, k) = here_.row(i);
-        if (i + 1 == n) break;
-        const Vector2d step = out[i + 1].contact_mm - out[i].contact_mm;
-        slopes.x.row(i + 1) = slopes.x.row(i);
-        slopes.y.row(i + 1) = slopes.y.row(i);
-        slopes.x.row(i + 1).segment(2, k) -= step.y() * between_.row(i);
-        slopes.y.row(i + 1).segment(2, k) += step.x() * between_.row(i);
-        slopes.x.row(i + 1).segment(2 + k, k) += step.x() * between_.row(i);
-        slopes.y.row(i + 1).segment(2 + k, k) += step.y() * between_.row(i);
+VectorXd PatchPath::slope(const PatchSamples& samples, const std::vector<Eigen::Vector4d>& by_samples) const {
+    const Index turns = 2, longer = turns + controls_, deeper = longer + controls_;
+    VectorXd out = VectorXd::Zero(unknowns());
+    Vector2d behind = Vector2d::Zero();  // by the contacts of all samples behind a step
+    for (std::size_t i = samples.size(); i-- > 0;) {
+        if (i + 1 < samples.size()) {
+            const Vector2d step = samples[i + 1].contact_mm - samples[i].contact_mm;
+            const Splines& s = between_[i];
+            out.segment<4>(turns + s.first) += (step.x() * behind.y() - step.y() * behind.x()) * s.value;
+            out.segment<4>(longer + s.first) += step.dot(behind) * s.value;
+        }
+        behind += by_samples[i].head<2>();
+        const Splines& s = here_[i];
+        out.segment<4>(turns + s.first) += by_samples[i][2] * s.value;
+        if (is_free(samples[i].depth_mm)) out.segment<4>(deeper + s.first) += by_samples[i][3] * s.value;
     }
+    out.head<2>() = behind;
     return out;
+}
+
+MatrixXd PatchPath::curvature(const PatchSamples& samples, const std::vector<Eigen::Matrix4d>& by_samples) const {
+    // A contact's slopes are X_i = X_0 + D_0 + .. + D_(i-1), by the steps up to it. With C_l = P_(l+1) + .. of the
+    // contacts' blocks P, sum X_i^T P_i X_i = X_0^T C_(-1) X_0 + sum X_l^T C_l D_l + its transpose + D_l^T C_l D_l.
+    const Index turns = 2, longer = turns + controls_, deeper = longer + controls_, n = unknowns();
+    std::vector<Eigen::Matrix2d> behind(samples.size(), Eigen::Matrix2d::Zero());
+    for (std::size_t i = samples.size() - 1; i-- > 0;)
+        behind[i] = behind[i + 1] + by_samples[i + 1].topLeftCorner<2, 2>();
+    MatrixXd half = MatrixXd::Zero(n, n);     // what its transpose is to be added to
+    MatrixXd contact = MatrixXd::Zero(n, 2);  // X_i, a column for x and one for y
+    contact(0, 0) = contact(1, 1) = 1.0;
+    half.topLeftCorner<2, 2>() = 0.5 * (behind[0] + by_samples[0].topLeftCorner<2, 2>());
+    Index reached = 2;  // of the turns' unknowns, those that the contact knows
+    // adds X_i^T v to the column of an unknown
+    const auto add = [&](Index unknown, const Vector2d& v) {
+        half.col(unknown).head(reached) += contact.topRows(reached) * v;
+        half.col(unknown).segment(longer, reached - turns) += contact.middleRows(longer, reached - turns) * v;
+    };
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const Splines& s = here_[i];
+        const Eigen::Matrix4d& by = by_samples[i];
+        const bool free = is_free(samples[i].depth_mm);
+        const Eigen::Matrix4d square = s.value * s.value.transpose();
+        const Index turn = turns + s.first, deep = deeper + s.first;
+        half.block<4, 4>(turn, turn) += 0.5 * by(2, 2) * square;
+        for (Index k = 0; k < 4; ++k) add(turn + k, s.value[k] * by.block<2, 1>(0, 2));
+        if (free) {
+            half.block<4, 4>(turn, deep) += by(2, 3) * square;
+            half.block<4, 4>(deep, deep) += 0.5 * by(3, 3) * square;
+            for (Index k = 0; k < 4; ++k) add(deep + k, s.value[k] * by.block<2, 1>(0, 3));
+        }
+        if (i + 1 == samples.size()) break;
+        const Vector2d along = samples[i + 1].contact_mm - samples[i].contact_mm, across(-along.y(), along.x());
+        const Vector2d by_turn = behind[i] * across, by_length = behind[i] * along;
+        const Splines& t = between_[i];
+        const Eigen::Matrix4d both = t.value * t.value.transpose();
+        const Index turned = turns + t.first, lengthened = longer + t.first;
+        for (Index k = 0; k < 4; ++k) {
+            add(turned + k, t.value[k] * by_turn);
+            add(lengthened + k, t.value[k] * by_length);
+        }
+        half.block<4, 4>(turned, turned) += 0.5 * across.dot(by_turn) * both;
+        half.block<4, 4>(turned, lengthened) += across.dot(by_length) * both;
+        half.block<4, 4>(lengthened, lengthened) += 0.5 * along.dot(by_length) * both;
+        contact.block<4, 2>(turned, 0) += t.value * across.transpose();
+        contact.block<4, 2>(lengthened, 0) += t.value * along.transpose();
+        reached = std::max(reached, turned + 4);
+    }
+    return half + half.transpose();
 }
 
 double way_of(const PatchSamples& samples) {

@@ -22,7 +22,7 @@ using PatchSamples = std::vector<PatchSample>;
 /// turned [rad], by which factor steps are longer [log], by how much the brush is pressed deeper [mm].
 class PatchPath {
  public:
-    /// `depths_mm`: what the depth is kept to. Equal: the depth stays as it is.
+    /// At least four controls. `depths_mm`: what the depth is kept to. Equal: the depth stays as it is.
     PatchPath(PatchSamples base, int controls, const std::array<double, 2>& depths_mm);
 
     int unknowns() const { return 2 + 3 * controls_; }
@@ -30,17 +30,30 @@ class PatchPath {
     const PatchSamples& base() const { return base_; }
     PatchSamples at(const Eigen::VectorXd& x) const;
 
-    /// Derivatives by the unknowns, a row per sample: of the contact's x and y, of the heading, of the depth.
-    struct Slopes {
-        Eigen::MatrixXd x, y, heading, depth;
-    };
-    PatchSamples at(const Eigen::VectorXd& x, Slopes& slopes) const;
+    /// How a sum grows with the unknowns, given how it does with each sample's x, y, heading and depth: S^T g of the
+    /// samples' slopes S. `samples`: those at these unknowns.
+    Eigen::VectorXd slope(const PatchSamples& samples, const std::vector<Eigen::Vector4d>& by_samples) const;
+
+    /// The same of sums of squares, S^T M S with a symmetric block of M for each sample. A control moves its
+    /// neighbourhood and shifts all of the way behind it, so that n samples and k controls cost n k, not n k^2.
+    Eigen::MatrixXd curvature(const PatchSamples& samples, const std::vector<Eigen::Matrix4d>& by_samples) const;
 
  private:
+    /// Values of those splines that are not zero at a place, from the first of them on.
+    struct Splines {
+        Eigen::Index first = 0;
+        Eigen::Vector4d value = Eigen::Vector4d::Zero();
+        double of(const Eigen::VectorXd& x, Eigen::Index controls_from) const {
+            return value.dot(x.segment<4>(controls_from + first));
+        }
+    };
+    static Splines splines_at(double t, int controls);
+    bool is_free(double depth_mm) const { return depth_mm > depths_mm_[0] && depth_mm < depths_mm_[1]; }
+
     PatchSamples base_;
     int controls_;
     std::array<double, 2> depths_mm_;
-    Eigen::MatrixXd here_, between_;  ///< values of the splines at the samples and half way between them
+    std::vector<Splines> here_, between_;  ///< at the samples, and half way from each to the next
 };
 
 /// Length of the patch's way [mm].

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "all_poses.hpp"
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/excess_turning.hpp"
 #include "brushsvg/mark_overlap.hpp"
@@ -31,12 +32,18 @@ constexpr double kLeastDepthMm = 0.2;
 constexpr double kBeyondSheetMm = 30.0;
 // A blunt beginning needs a patch that comes in from the side, which no small step finds: where the overlap stays below
 // what is good, the way is turned at its beginning by so much [rad] and tried again.
-constexpr std::array<double, 3> kFirstTurns{0.0, 1.2, -1.2};
-constexpr double kGood = 0.93;
+constexpr double kFirstTurn = 1.2, kGood = 0.93;
+// How large the first step may be. Where so much more of overlap was seen, but in no mark that is calm enough, smaller
+// steps find another: without, a bar of 12 mm keeps its pointed beginning.
+constexpr double kTrust = 1e4, kLessTrust = 3e2, kMissed = 0.01;
 // Shares of the tolerance: of the tool's chords, and of what fewer poses may change of the mark. At twice as much of
 // the latter a tenth of them is saved, and the overlap loses as much again (0.0025 on characters) as it did (0.0006).
 constexpr double kChords = 0.2, kThinned = 0.5;
 constexpr double kRingTolerance = 0.01;  // as in the report
+// Pixels of what is tried: on half the width of the mark, for each mm, and in all. The report's lie elsewhere, and may
+// count so much more or less of overlap.
+constexpr double kAcrossPx = 6.0, kMostPx = 4e6, kPixelsErr = 0.005;
+constexpr std::array<double, 2> kPxPerMm{8.0, 40.0};
 // Of overlap, what a full turn of the mark's outline and what a thorn is worth: curls and thorns cover more, and the
 // eye sees them first. At 0.15 and 0.03 strokes of characters lose 0.003 of overlap, at half of these marks of letters
 // turn more than in closed form. Letters as a whole are looked at in Python (planning/touching_strokes.py).
@@ -77,27 +84,59 @@ std::array<double, 4> box_of(const Poses& poses) {
     return {poses.col(0).minCoeff(), poses.col(1).minCoeff(), poses.col(0).maxCoeff(), poses.col(1).maxCoeff()};
 }
 
-/// A pass and how well it paints its stroke: what the report says, pixel by pixel, so that no plan is kept that the
-/// report finds worse.
+/// What is wanted of a stroke, in pixels as well: made once for all that is tried.
+struct Target {
+    Rings outline;
+    Window window{};
+    double px_per_mm = 0.0, area_mm2 = 0.0;
+    Coverage pixels;
+
+    Target(Rings wanted, double half_width_mm) : outline(std::move(wanted)), area_mm2(area(outline)) {
+        Eigen::RowVector2d low = outline[0].colwise().minCoeff(), high = outline[0].colwise().maxCoeff();
+        for (const Ring& ring : outline) {
+            low = low.cwiseMin(ring.colwise().minCoeff());
+            high = high.cwiseMax(ring.colwise().maxCoeff());
+        }
+        window = {low.x(), low.y(), high.x() - low.x(), high.y() - low.y()};
+        px_per_mm = std::min(std::clamp(kAcrossPx / half_width_mm, kPxPerMm[0], kPxPerMm[1]),
+                             std::sqrt(kMostPx / (window.width_mm * window.height_mm)));
+        pixels = coverage(outline, window, px_per_mm);
+    }
+    double overlap_with(const Rings& mark) const {
+        const Coverage painted = coverage(mark, window, px_per_mm);
+        double common = 0.0;
+        for (Eigen::Index row = 0; row < pixels.rows(); ++row)
+            common += pixels.row(row).cwiseMin(painted.row(row)).sum();
+        common /= px_per_mm * px_per_mm;
+        return common / (area_mm2 + area(mark) - common);
+    }
+};
+
+/// A pass and how well it paints its stroke.
 struct Tried {
     std::array<double, 4> painted_bounds, tool_bounds;
     double overlap, turning;  ///< the latter of the mark's outline beyond the wanted one [full turns]
     int thorns;
-    Tried(const Pass& pass, const Stroke& stroke, const Rings& wanted, const Brush& brush, Beginning start) {
+    Tried(const Pass& pass, const Target& target, const Brush& brush, Beginning start) {
         const PassMarks marks = simulate(pass, brush);
         painted_bounds = brushsvg::painted_bounds(marks, brush);
         tool_bounds = box_of(pass.poses_mm);
-        overlap = common_area(mark_overlap({marks}, {stroke}, brush)).overlap();
         const Rings mark = outline(marks, brush);
-        turning = excess_turning(mark, wanted);
+        overlap = target.overlap_with(mark);
+        turning = excess_turning(mark, target.outline);
         // the point of a beginning that is to be exposed was asked for
-        thorns = std::max(0, brushsvg::thorns(mark, wanted) - (start == Beginning::exposed ? 1 : 0));
+        thorns = std::max(0, brushsvg::thorns(mark, target.outline) - (start == Beginning::exposed ? 1 : 0));
     }
     /// Turning counts below none as well: the pieces of a letter that strokes are to paint are ragged where others were
     /// cut from them, so that every mark turns less.
     double aim() const { return overlap - kCalm * turning - kThorn * thorns; }
     bool is_as_calm_as(const Tried& other) const { return turning <= other.turning && thorns <= other.thorns; }
 };
+
+/// As the report counts it.
+double reported_overlap(const Pass& pass, const Stroke& stroke, const Brush& brush) {
+    return common_area(mark_overlap({simulate(pass, brush)}, {stroke}, brush)).overlap();
+}
 
 }  // namespace
 
@@ -106,9 +145,9 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
     CompensateOptions how{Compensation::closed, options.tolerance_mm, {}, options.speed_mm_s};
     how.start = options.start;
     how.end = options.end;
-    closed.plan = compensate(stroke, brush, how);
-    how.few_poses = false;  // poses that lie beside the path would be taken for its bends
-    const Pass dense = compensate(stroke, brush, how).pass;
+    WithAllPoses made = compensate_with_all_poses(stroke, brush, how);
+    closed.plan = std::move(made.plan);
+    const Pass& dense = made.all_poses;  // of few poses those beside the path would be taken for its bends
     const double half_width = mean_half_width(stroke, brush);
     const PatchSamples base = patch_path(dense, brush, kStep * half_width, kMostSamples);
     const Rings wanted = wanted_outline(stroke, kRingTolerance);
@@ -122,38 +161,53 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
         return beyond(box, options.sheet_mm) <= std::max(reach, beyond(before, options.sheet_mm));
     };
     const bool anywhere = options.sheet_mm == std::array<double, 2>{0.0, 0.0};
-    const Tried before(closed.plan.pass, stroke, wanted, brush, options.start);
+    if (is_dot(simulate(dense, brush, 0.02, false))) return closed;  // round already
+    const Target target(wanted, half_width);
+    const Tried before(closed.plan.pass, target, brush, options.start);
     closed.overlap = closed.overlap_closed = before.overlap;
-    if (is_dot(simulate(dense, brush))) return closed;  // round already
-    double best_aim = before.aim(), most = before.overlap;
-    RefinedPass best = closed;
-    for (double turn : kFirstTurns) {
+    const auto in_bounds = [&](const Tried& after) {
+        return anywhere || (stays(after.painted_bounds, before.painted_bounds, 0.0) &&
+                            stays(after.tool_bounds, before.tool_bounds, kBeyondSheetMm));
+    };
+    double best_aim = before.aim(), most = before.overlap, overlap = 0.0;
+    Pass best;
+    const auto go = [&](double turn, double trust) {
         Eigen::VectorXd start = Eigen::VectorXd::Zero(path.unknowns());
         start[2] = turn;
         start[3] = 0.3 * turn;
-        const Eigen::VectorXd x = fit_outline(path, brush, wanted, 2.0 * half_width, options.iterations, start);
+        const Eigen::VectorXd x = fit_outline(path, brush, wanted, 2.0 * half_width, options.iterations, start, trust);
         for (double part : kParts) {
-            RefinedPass moved = closed;
-            moved.bettered = true;
-            moved.plan.pass.arcs.clear();
-            moved.plan.pass.poses_mm = poses_along(path.at(part * x), brush, kChords * options.tolerance_mm);
-            moved.plan.pass = thin_out_after_turn(moved.plan.pass, brush, kThinned * options.tolerance_mm);
-            const Tried after(moved.plan.pass, stroke, wanted, brush, options.start);
-            moved.overlap = after.overlap;
-            const bool in_bounds = anywhere || (stays(after.painted_bounds, before.painted_bounds, 0.0) &&
-                                                stays(after.tool_bounds, before.tool_bounds, kBeyondSheetMm));
-            if (in_bounds) most = std::max(most, after.overlap);
-            const bool is_better = in_bounds && after.overlap > before.overlap;
+            Pass moved = closed.plan.pass;
+            moved.arcs.clear();
+            moved.poses_mm = poses_along(path.at(part * x), brush, kChords * options.tolerance_mm);
+            moved = thin_out_after_turn(moved, brush, kThinned * options.tolerance_mm);
+            const Tried after(moved, target, brush, options.start);
+            if (!in_bounds(after)) continue;
+            most = std::max(most, after.overlap);
+            const bool is_better = after.overlap > before.overlap;
             if (is_better && after.aim() > best_aim) {
                 best = moved;
                 best_aim = after.aim();
+                overlap = after.overlap;
             }
             if (is_better && after.is_as_calm_as(before)) break;
         }
-        if (most >= kGood) break;
-    }
-    if (best.bettered) best.plan.miss = tracking_error_of(best.plan.pass, stroke, brush, options.tolerance_mm);
-    return best;
+    };
+    go(0.0, kTrust);
+    if (best.poses_mm.rows() == 0 && most > before.overlap + kMissed) go(0.0, kLessTrust);
+    for (const double turn : {kFirstTurn, -kFirstTurn})
+        if (most < kGood) go(turn, kTrust);
+    if (best.poses_mm.rows() == 0) return closed;
+    // nothing is kept that the report finds worse: its pixels lie elsewhere
+    if (overlap < before.overlap + kPixelsErr &&
+        !(reported_overlap(best, stroke, brush) > reported_overlap(closed.plan.pass, stroke, brush)))
+        return closed;
+    RefinedPass done = closed;
+    done.plan.pass = std::move(best);
+    done.plan.miss = tracking_error_of(done.plan.pass, stroke, brush, options.tolerance_mm);
+    done.overlap = overlap;
+    done.bettered = true;
+    return done;
 }
 
 }  // namespace brushsvg::fit

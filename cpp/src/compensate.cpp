@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "all_poses.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag_arc.hpp"
@@ -208,7 +209,50 @@ std::optional<Stroke> squared_where_asked(const Stroke& stroke, const Brush& bru
     return squared->stroke;
 }
 
-CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
+/// A pass by poses at all steps of the closed form, as fine as the tolerance asks for, or by few of them. `plain`: what
+/// it is called; `poses_by(step_tolerance, turns)`: the closed form.
+template <class PosesBy>
+CompensatedPass led(const Pass& plain, bool few_poses, const Stroke& stroke, const Brush& brush, double tolerance_mm,
+                    PosesBy&& poses_by) {
+    CompensatedPass result;
+    result.pass = plain;
+    double step_tolerance = 0.5 * tolerance_mm;
+    // the plan is simulated before it is handed over; finer steps as long as they help
+    if (few_poses) step_tolerance = std::min(kStepShare * step_tolerance, kMostStepToleranceMm);
+    for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {
+        bool turns = false;
+        Pass trial = plain;
+        poses_by(step_tolerance, turns).into(trial);
+        if (few_poses && thin_out(trial, kThinShare, kSurely * tolerance_mm, stroke, brush, tolerance_mm, result.pass,
+                                  result.miss)) {
+            result.miss.has_turn_in_place = turns;
+            return result;
+        }
+        TrackingError miss = tracking_error_of(trial, stroke, brush, tolerance_mm);
+        miss.has_turn_in_place = turns;
+        const bool better = attempt == 0 || miss.largest_mm < 0.95 * result.miss.largest_mm;
+        if (better) {
+            result.miss = miss;
+            result.pass = trial;
+        }
+        // rows of the check lie a little off the truth between them; fewer poses need more to spare
+        const bool sure = !few_poses && miss.largest_mm <= 0.9 * tolerance_mm;
+        if (sure || ((turns || (few_poses && result.miss.within_tolerance)) && !better) ||
+            trial.poses_mm.rows() >= Index(kMostSamples))
+            break;
+    }
+    // a line that cannot be followed to the tolerance: as well as with all poses, then, but for a hair
+    const bool turns = result.miss.has_turn_in_place;
+    const double missed_mm = result.miss.largest_mm;
+    const double limit_mm = missed_mm <= tolerance_mm ? tolerance_mm : missed_mm + kHairShare * tolerance_mm;
+    if (few_poses) thin_out(result.pass, 0.5, limit_mm, stroke, brush, tolerance_mm, result.pass, result.miss);
+    result.miss.has_turn_in_place = turns;
+    return result;
+}
+
+/// `all_poses`: where to, if it is asked for.
+CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
+                                 Pass* all_poses = nullptr) {
     check(stroke);
     require_usable(brush);
     require_tolerance(options.tolerance_mm, stroke.id);
@@ -245,6 +289,7 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         if (!begun.dot) {
             poses_of(*dot, brush).into(pass);
             result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
+            if (all_poses) *all_poses = pass;
             return result;
         }
     } else {
@@ -254,56 +299,34 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
     if (!begun.dot) squared = squared_where_asked(begun.stroke, brush, options, *begun.ends, start);
     const Stroke& whole = squared ? *squared : begun.whole;
     const Line whole_line(whole, brush);
-    // the plan is simulated before it is handed over; finer steps as long as they help
-    if (options.few_poses) step_tolerance = std::min(kStepShare * step_tolerance, kMostStepToleranceMm);
-    for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {
-        bool turns = false;
-        Pass trial = pass;
-        (begun.dot ? closed_form(*begun.dot, brush, step_tolerance, turns)
-                   : closed_form(whole, brush, whole_line, start, step_tolerance, turns))
-            .into(trial);
-        if (options.few_poses && thin_out(trial, kThinShare, kSurely * options.tolerance_mm, stroke, brush,
-                                          options.tolerance_mm, result.pass, result.miss)) {
-            result.miss.has_turn_in_place = turns;
-            return result;
-        }
-        TrackingError miss = tracking_error_of(trial, stroke, brush, options.tolerance_mm);
-        miss.has_turn_in_place = turns;
-        const bool better = attempt == 0 || miss.largest_mm < 0.95 * result.miss.largest_mm;
-        if (better) {
-            result.miss = miss;
-            pass = trial;
-        }
-        // rows of the check lie a little off the truth between them; fewer poses need more to spare
-        const bool sure = !options.few_poses && miss.largest_mm <= 0.9 * options.tolerance_mm;
-        if (sure || ((turns || (options.few_poses && result.miss.within_tolerance)) && !better) ||
-            trial.poses_mm.rows() >= Index(kMostSamples))
-            break;
-    }
-    // a line that cannot be followed to the tolerance: as well as with all poses, then, but for a hair
-    const bool turns = result.miss.has_turn_in_place;
-    const double missed_mm = result.miss.largest_mm, tolerance_mm = options.tolerance_mm;
-    const double limit_mm = missed_mm <= tolerance_mm ? tolerance_mm : missed_mm + kHairShare * tolerance_mm;
-    if (options.few_poses)
-        thin_out(result.pass, 0.5, limit_mm, stroke, brush, options.tolerance_mm, result.pass, result.miss);
-    result.miss.has_turn_in_place = turns;
+    const auto poses_by = [&](double steps, bool& turns) {
+        return begun.dot ? closed_form(*begun.dot, brush, steps, turns)
+                         : closed_form(whole, brush, whole_line, start, steps, turns);
+    };
+    const Pass plain = pass;
+    CompensatedPass done = led(plain, options.few_poses, stroke, brush, options.tolerance_mm, poses_by);
+    pass = std::move(done.pass);
+    result.miss = done.miss;
+    if (all_poses) *all_poses = led(plain, false, stroke, brush, options.tolerance_mm, poses_by).pass;
     for (const Beginning start_instead : begun.instead) {
         if (result.miss.within_tolerance) break;
-        Stroke plain = stroke;
-        plain.settings.start.reset();
+        Stroke unsaid = stroke;
+        unsaid.settings.start.reset();
         CompensateOptions instead = options;
         instead.start = start_instead;
-        CompensatedPass other = at_its_tolerance(plain, brush, instead);
+        Pass its_poses;
+        CompensatedPass other = at_its_tolerance(unsaid, brush, instead, all_poses ? &its_poses : nullptr);
         other.pass.settings = stroke.settings;
-        if (other.miss.largest_mm < result.miss.largest_mm) result = std::move(other);
+        if (!(other.miss.largest_mm < result.miss.largest_mm)) continue;
+        result = std::move(other);
+        if (all_poses) *all_poses = std::move(its_poses);
     }
     return result;
 }
 
-}  // namespace
-
-CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
-    CompensatedPass result = at_its_tolerance(stroke, brush, options);
+CompensatedPass compensated(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
+                            Pass* all_poses) {
+    CompensatedPass result = at_its_tolerance(stroke, brush, options, all_poses);
     if (options.method != Compensation::closed || !options.few_poses) return result;
     // who goes as far as he may in each move does not always get there in the fewest
     for (const double finer_mm : kFinerTolerancesMm) {
@@ -318,6 +341,18 @@ CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const Compe
         result = finer;
     }
     return result;
+}
+
+}  // namespace
+
+CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
+    return compensated(stroke, brush, options, nullptr);
+}
+
+WithAllPoses compensate_with_all_poses(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
+    WithAllPoses both;
+    both.plan = compensated(stroke, brush, options, &both.all_poses);
+    return both;
 }
 
 }  // namespace brushsvg

@@ -100,26 +100,31 @@ TEST_CASE("slopes of way and edge are those of differences") {
     const double h = 1e-6;
     for (int trial = 0; trial < 3; ++trial) {
         const Eigen::VectorXd x = 0.3 * anything(path.unknowns(), random);
-        PatchPath::Slopes slopes;
-        const PatchSamples samples = path.at(x, slopes);
-        for (int k = 0; k < path.unknowns(); ++k) {
-            const PatchSamples after = path.at(x + h * Eigen::VectorXd::Unit(path.unknowns(), k));
-            for (std::size_t i = 0; i < samples.size(); i += 7) {
+        const PatchSamples samples = path.at(x);
+        // of one sample's x, y, heading or depth: a row of all slopes
+        const auto row = [&](std::size_t sample, int of) {
+            std::vector<Eigen::Vector4d> one(samples.size(), Eigen::Vector4d::Zero());
+            one[sample][of] = 1.0;
+            return path.slope(samples, one);
+        };
+        for (std::size_t i = 0; i < samples.size(); i += 7) {
+            const Eigen::VectorXd by_x = row(i, 0), by_y = row(i, 1), by_heading = row(i, 2), by_depth = row(i, 3);
+            for (int k = 0; k < path.unknowns(); ++k) {
+                const PatchSamples after = path.at(x + h * Eigen::VectorXd::Unit(path.unknowns(), k));
                 const V moved = (after[i].contact_mm - samples[i].contact_mm) / h;
-                const auto row = Eigen::Index(i);
-                CHECK(moved.x() == doctest::Approx(slopes.x(row, k)).epsilon(1e-4).scale(1.0));
-                CHECK(moved.y() == doctest::Approx(slopes.y(row, k)).epsilon(1e-4).scale(1.0));
+                CHECK(moved.x() == doctest::Approx(by_x[k]).epsilon(1e-4).scale(1.0));
+                CHECK(moved.y() == doctest::Approx(by_y[k]).epsilon(1e-4).scale(1.0));
                 CHECK((after[i].heading_rad - samples[i].heading_rad) / h ==
-                      doctest::Approx(slopes.heading(row, k)).epsilon(1e-4).scale(1.0));
+                      doctest::Approx(by_heading[k]).epsilon(1e-4).scale(1.0));
                 CHECK((after[i].depth_mm - samples[i].depth_mm) / h ==
-                      doctest::Approx(slopes.depth(row, k)).epsilon(1e-4).scale(1.0));
+                      doctest::Approx(by_depth[k]).epsilon(1e-4).scale(1.0));
             }
         }
         for (Eigen::Index j = 0; j < wanted[0].rows(); j += 3) {
             const V p = wanted[0].row(j).transpose();
             edge.place(samples);
             const EdgePoint found = edge.nearest(p, 0);
-            const EdgeSlope slope = edge.slope(p, found);
+            const SampleSlope slope = edge.slope(p, found);
             const auto difference = [&](PatchSample change) {
                 PatchSamples after = samples;
                 PatchSample& one = after[found.sample];
@@ -129,11 +134,69 @@ TEST_CASE("slopes of way and edge are those of differences") {
                 edge.place(after);
                 return (edge.nearest(p, found.sample).distance_mm - found.distance_mm) / h;
             };
-            CHECK(difference({V(h, 0), 0, 0}) == doctest::Approx(slope.x).epsilon(1e-3).scale(1.0));
-            CHECK(difference({V(0, h), 0, 0}) == doctest::Approx(slope.y).epsilon(1e-3).scale(1.0));
-            CHECK(difference({V(0, 0), h, 0}) == doctest::Approx(slope.heading).epsilon(1e-3).scale(1.0));
-            CHECK(difference({V(0, 0), 0, h}) == doctest::Approx(slope.depth).epsilon(1e-3).scale(1.0));
+            CHECK(difference({V(h, 0), 0, 0}) == doctest::Approx(slope.x()).epsilon(1e-3).scale(1.0));
+            CHECK(difference({V(0, h), 0, 0}) == doctest::Approx(slope.y()).epsilon(1e-3).scale(1.0));
+            CHECK(difference({V(0, 0), h, 0}) == doctest::Approx(slope[2]).epsilon(1e-3).scale(1.0));
+            CHECK(difference({V(0, 0), 0, h}) == doctest::Approx(slope[3]).epsilon(1e-3).scale(1.0));
         }
+    }
+}
+
+TEST_CASE("squares of slopes add up as those of the whole table of slopes, at both ends of what depths may be") {
+    const Brush brush = shipped("round-6");
+    std::mt19937 random(9);
+    for (const Stroke& s : {line(), corner(), curve()}) {
+        const PatchPath path = path_of(s, brush, 9);
+        PatchSamples samples = path.at(0.3 * anything(path.unknowns(), random));
+        samples[2].depth_mm = 0.5;
+        samples[5].depth_mm = 10.0;
+        std::vector<Eigen::Matrix4d> blocks;
+        Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(path.unknowns(), path.unknowns());
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const Eigen::Matrix4d root = Eigen::Map<const Eigen::Matrix4d>(anything(16, random).data());
+            blocks.push_back(root.transpose() * root);
+            Eigen::MatrixXd slopes(4, path.unknowns());
+            for (int of = 0; of < 4; ++of) {
+                std::vector<Eigen::Vector4d> one(samples.size(), Eigen::Vector4d::Zero());
+                one[i][of] = 1.0;
+                slopes.row(of) = path.slope(samples, one).transpose();
+            }
+            expected += slopes.transpose() * blocks.back() * slopes;
+        }
+        CHECK((path.curvature(samples, blocks) - expected).cwiseAbs().maxCoeff() <
+              1e-12 * expected.cwiseAbs().maxCoeff());
+    }
+}
+
+TEST_CASE("what is nearest is so of all edges, whichever are left out") {
+    const Brush brush = shipped("round-6");
+    std::mt19937 random(10);
+    std::uniform_real_distribution<double> place(10.0, 60.0);
+    const PatchPath path = path_of(curve(), brush, 8);
+    const PatchSamples samples = path.at(0.3 * anything(path.unknowns(), random));
+    PaintedEdge edge(brush, 0.02);
+    edge.place(samples);
+    const Rings wanted = wanted_outline(curve(), 0.01);
+    const Edges edges(wanted);
+    for (int trial = 0; trial < 300; ++trial) {
+        const V p(place(random), place(random));
+        double least = 1e9, other = 1e9;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            PaintedEdge alone(brush, 0.02);
+            alone.place({samples[i]});
+            least = std::min(least, alone.nearest(p, 0).distance_mm);
+        }
+        CHECK(edge.nearest(p, std::size_t(trial) % samples.size()).distance_mm == doctest::Approx(least).epsilon(1e-9));
+        int crossed = 0;
+        for (const Ring& ring : wanted)
+            for (Eigen::Index i = 0; i < ring.rows(); ++i) {
+                const V a = ring.row(i).transpose(), b = ring.row((i + 1) % ring.rows()).transpose();
+                const double t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+                other = std::min(other, (p - a - t * (b - a)).norm());
+                crossed += (a.y() > p.y()) != (b.y() > p.y()) &&
+                           p.x() < a.x() + (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y());
+            }
+        CHECK(edges.nearest(p).distance_mm == doctest::Approx(crossed % 2 ? -other : other).epsilon(1e-9));
     }
 }
 
