@@ -138,10 +138,12 @@ def prepare(
         strokes, joints = joined(strokes)
         notices += joints
     leads = options.compensation in ("closed", "refined")
-    if options.corners == "auto" and leads:
+    may_lift = options.corners == "auto" and leads
+    fills_corners = may_lift and (options.start, options.end) == ("auto", "auto")
+    if may_lift:
         strokes = lifted_at_corners(strokes, brush)
-        if (options.start, options.end) == ("auto", "auto"):
-            strokes = squared_at_corners(strokes, brush)
+    if fills_corners:
+        strokes = squared_at_corners(strokes, brush)
     refused, left_out, drawn = [], [], tuple(strokes)
     if partly and options.wide == "refuse":
         strokes, _, refused, left_out = _sorted_out(
@@ -150,7 +152,7 @@ def prepare(
     painted, strokes, clamped = within_reach(strokes, brush, options.wide)
     notices += clamped
     if leads:
-        drawn, painted, strokes = with_left_limbs(list(drawn), painted, strokes, brush)
+        drawn, painted, strokes = with_left_limbs(list(drawn), painted, strokes, brush, fills_corners)
     compensated = _way(brush, design.sheet_mm, options, stage)
     try:
         done = compensated(painted)
