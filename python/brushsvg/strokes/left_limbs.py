@@ -18,7 +18,7 @@ _BY_DISCS = {_LIMB_SHARE: 0.02, _CORNER_SHARE: 0.002}
 _WORTH = 0.4
 # By how many full turns the outline of a mark may turn more for a piece that is a smaller share of its shape: a stroke
 # into a knob along its stem makes a blob, which the eye minds more.
-_CALM = (0.03, 0.6), (0.06, 0.9)
+_CALM = (0.03, 0.7), (0.06, 0.9)
 _MOST = 4  # strokes added to an element: a logo of one path may have many limbs
 _ROUND = -0.85  # half width won per length where a limb ends round or square: there its line ends
 _EVEN_MM = 0.1
@@ -164,7 +164,9 @@ def _limb_towards(place: np.ndarray, piece: Blank, own: list, shape: list[np.nda
     area = region(shape)
     halves = np.where(shapely.intersects(area, points), shapely.distance(area.boundary, points), 0.0)
     is_out = at > np.hypot(*(np.array(piece.at_mm) - root))
+    reach_mm = ((np.vstack(piece.rings) - root) @ onward).max() / to_place  # beyond, others have painted
     is_end = (halves < finest(brush)) | (is_out & (np.gradient(halves, at) < _ROUND))
+    is_end |= is_out & (at + halves > reach_mm)
     count = int(is_end.argmax()) if is_end.any() else len(at)
     if count < 3:
         return None

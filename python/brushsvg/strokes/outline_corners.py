@@ -12,7 +12,7 @@ from ..errors import need
 from ..geometry.arc_length import knots, parameters_at
 from ..geometry.cubics import split
 from .corners import Line, drawn_line, line_stroke
-from .trial_mark import misplaced_mm2, misplaced_seen_mm2, trial_marks
+from .trial_mark import Wanted, misplaced_mm2, trial_marks
 
 # Turns of less are bends, of more a way back over what was painted. Beyond SHARP_RAD two legs lie side by side: a first
 # one that runs square into the corner would stick out of the shape there, so the second begins square.
@@ -27,6 +27,7 @@ REACH = 5.0  # half widths of the wider leg: no corner lies farther on
 LIKE, OFF = 0.25, 0.1  # of an outline, to be a leg's edge: its slope at most, and how far off, in half widths
 ROOM = 0.95  # of a half width: edges are not quite straight
 WORTH = 0.15  # two strokes for one, in squares of the half width: the outer corner of 90 degrees has 0.21
+BULGES = 3.0  # how many times what sticks out of the shape counts more: the eye minds it more
 PLAIN = 0.04  # beside that, what is won is plain in pixels: they are off by 0.013 at most (257 corners of characters)
 HARDLY_WIDER = 1.05  # than the brush: what is wider yet may be painted in passes
 
@@ -71,45 +72,65 @@ def _parts(stroke, brush) -> list:
     ]
     if not any(ways):
         return [stroke]
-    whole = trial_marks([_paintable(stroke, brush)], brush)
-    better = []
-    for corners in ways:
-        won = []
-        for begins, less in (("exposed", 0.0), ("auto", PLAIN)):
-            for corner in corners:
-                tried = replace(corner, begins=begins)
-                parts = _cut(stroke, line, [tried])
-                if parts and parts[1].settings.start == begins:
-                    cut = trial_marks([_paintable(part, brush) for part in parts], brush)
-                    half = max(corner.legs_mm)
-                    won.append((_won(whole, cut, stroke.wanted_mm, brush, half) - less, tried))
-        most, corner = max(won, key=lambda each: each[0], default=(0.0, None))
-        if most > WORTH:
-            better.append(corner)
+    wanted = Wanted(stroke.wanted_mm)
+    better: list[_Corner] = []
+    best = _seen([stroke], wanted, brush)
+    for corners in filter(None, ways):
+
+        def won(corner: _Corner, than: _Seen = best) -> tuple[float, _Corner, _Seen]:
+            parts = _cut(stroke, line, [*better, corner])
+            if not parts:
+                return 0.0, corner, than
+            seen = _seen(parts, wanted, brush)
+            return _won(than, seen, stroke.wanted_mm, brush, max(corner.legs_mm)), corner, seen
+
+        tried = [won(each) for corner in corners for each in (corner, replace(corner, is_edge=True))]
+        most = max(tried, key=lambda each: each[0])
+        squared = won(replace(most[1], begins="auto")) if most[0] > 0 else most
+        if squared[0] > most[0] + PLAIN:
+            most = squared
+        if most[0] > WORTH:
+            better.append(most[1])
+            best = most[2]
     return _cut(stroke, line, better) or [stroke] if better else [stroke]
 
 
-def _won(whole, cut, wanted_mm: list, brush, half_mm: float) -> float:
-    """What marks of parts are nearer to a shape than one of the whole, in squares of the half width."""
-    seen = _nearer(misplaced_seen_mm2, whole, cut, wanted_mm, brush) / half_mm**2
-    if abs(seen - WORTH) > PLAIN:
-        return seen
-    return _nearer(misplaced_mm2, whole, cut, wanted_mm, brush) / half_mm**2
+@dataclass(frozen=True)
+class _Seen:
+    """A mark, and how much of it is out of place and bulges out of its shape, in pixels [mm2]."""
+
+    marks: object
+    misplaced_mm2: float
+    bulge_mm2: float
 
 
-def _nearer(misplaced, whole, cut, wanted_mm: list, brush) -> float:
-    return misplaced(whole, wanted_mm, brush) - misplaced(cut, wanted_mm, brush)
+def _seen(parts: list, wanted: Wanted, brush) -> _Seen:
+    marks = trial_marks([_paintable(part, brush) for part in parts], brush)
+    painted = wanted.painted(marks.passes, brush)
+    return _Seen(marks, wanted.misplaced_mm2(painted), wanted.bulge_mm2(painted))
+
+
+def _won(whole: _Seen, cut: _Seen, wanted_mm: list, brush, half_mm: float) -> float:
+    """What a mark of parts is nearer to a shape than one of the whole, in squares of the half width; less what it bulges
+    out of it more."""
+    more = BULGES * max(cut.bulge_mm2 - whole.bulge_mm2, 0.0)
+    won = (whole.misplaced_mm2 - cut.misplaced_mm2 - more) / half_mm**2
+    if abs(won - WORTH) > PLAIN:
+        return won
+    exactly = misplaced_mm2(whole.marks, wanted_mm, brush) - misplaced_mm2(cut.marks, wanted_mm, brush)
+    return (exactly - more) / half_mm**2
 
 
 @dataclass(frozen=True)
 class _Corner:
     """Arc lengths of a corner, and before and after it, where the line is as straight as its legs; half their widths
-    there."""
+    there; how the leg after it begins, where the one before hides that; whether legs run on along the outline's edge."""
 
     at_mm: float
     away_mm: tuple[float, float]
     legs_mm: tuple[float, float]
     begins: str = "exposed"
+    is_edge: bool = False
 
 
 def _corner(
@@ -149,11 +170,12 @@ def _cut(stroke, line: Line, corners: list[_Corner]) -> list:
     for each in corners:
         halves = _halves(line, *(beside_mm / length_mm for beside_mm in each.away_mm))
         first, second = (_at(line, beside_mm) for beside_mm in each.away_mm)
-        side = np.sign(second[1][0] * first[1][1] - second[1][1] * first[1][0])  # of the corner's outside
-        first, second = (
-            _along_edge(*leg, half, side, stroke.wanted_mm)
-            for leg, half in zip((first, second), halves, strict=True)
-        )
+        if each.is_edge:
+            outside = np.sign(second[1][0] * first[1][1] - second[1][1] * first[1][0])
+            first, second = (
+                _along_edge(*leg, half, outside, stroke.wanted_mm)
+                for leg, half in zip((first, second), halves, strict=True)
+            )
         corner = _meet(first, second)
         if corner is None:
             return []
