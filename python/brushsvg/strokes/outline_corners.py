@@ -84,7 +84,7 @@ def _parts(stroke, brush) -> list:
             seen = _seen(parts, wanted, brush)
             return _won(than, seen, stroke.wanted_mm, brush, max(corner.legs_mm)), corner, seen
 
-        tried = [won(each) for corner in corners for each in (corner, replace(corner, is_edge=True))]
+        tried = [won(replace(corner, on_edge=ways)) for corner in corners for ways in corner.ways_on_edge()]
         most = max(tried, key=lambda each: each[0])
         squared = won(replace(most[1], begins="auto")) if most[0] > 0 else most
         if squared[0] > most[0] + PLAIN:
@@ -124,13 +124,19 @@ def _won(whole: _Seen, cut: _Seen, wanted_mm: list, brush, half_mm: float) -> fl
 @dataclass(frozen=True)
 class _Corner:
     """Arc lengths of a corner, and before and after it, where the line is as straight as its legs; half their widths
-    there; how the leg after it begins, where the one before hides that; whether legs run on along the outline's edge."""
+    there; how the leg after it begins, where the one before hides that; whether either leg runs on along the outline's
+    edge, and not along its axis."""
 
     at_mm: float
     away_mm: tuple[float, float]
     legs_mm: tuple[float, float]
     begins: str = "exposed"
-    is_edge: bool = False
+    on_edge: tuple[bool, bool] = (False, False)
+
+    def ways_on_edge(self) -> list[tuple[bool, bool]]:
+        """On neither, on that of the thinner leg, whose axis bends all along where it is short, and on both."""
+        thinner = self.legs_mm[0] < self.legs_mm[1]
+        return [(False, False), (thinner, not thinner), (True, True)]
 
 
 def _corner(
@@ -170,12 +176,11 @@ def _cut(stroke, line: Line, corners: list[_Corner]) -> list:
     for each in corners:
         halves = _halves(line, *(beside_mm / length_mm for beside_mm in each.away_mm))
         first, second = (_at(line, beside_mm) for beside_mm in each.away_mm)
-        if each.is_edge:
-            outside = np.sign(second[1][0] * first[1][1] - second[1][1] * first[1][0])
-            first, second = (
-                _along_edge(*leg, half, outside, stroke.wanted_mm)
-                for leg, half in zip((first, second), halves, strict=True)
-            )
+        outside = np.sign(second[1][0] * first[1][1] - second[1][1] * first[1][0])
+        first, second = (
+            _along_edge(*leg, half, outside, stroke.wanted_mm) if is_on_edge else leg
+            for leg, half, is_on_edge in zip((first, second), halves, each.on_edge, strict=True)
+        )
         corner = _meet(first, second)
         if corner is None:
             return []
