@@ -30,8 +30,9 @@ from letters import GLYPHS, fitting_mm
 from brushsvg import find_brush
 from brushsvg.drawing.svg import read_svg
 from brushsvg.drawing.text import text_svg
+from brushsvg.pipeline.options import Options
 from brushsvg.pipeline.prediction import predict
-from brushsvg.pipeline.preparation import Options, prepare
+from brushsvg.pipeline.preparation import prepare
 from brushsvg.strokes.skeleton import filled
 
 WORDS = Path("/usr/share/dict/american-english")

@@ -44,7 +44,8 @@ from brushsvg.evaluation.report import wanted_rings
 from brushsvg.machine.cell_file import find_cell, write_cell
 from brushsvg.painted.job_page import job_page
 from brushsvg.pipeline.json_files import read_plan
-from brushsvg.pipeline.preparation import Options, prepare
+from brushsvg.pipeline.options import Options
+from brushsvg.pipeline.preparation import prepare
 
 STROKES_A_LOAD = 2
 SURE_GAIN = 0.005

@@ -18,12 +18,14 @@ from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.pictures.panels_png import MIDDLE_LINE, Panel, panels_png
 from brushsvg.pipeline import constant_lag, outputs, prediction, preparation
+from brushsvg.pipeline.options import Options
+from brushsvg.pipeline.work import Work
 
 
 def main(drawing: Path, directory: Path) -> None:
     cell = find_cell()
     ways = ("none", "constant", "closed", "refined")
-    works = {how: preparation.prepare(drawing, preparation.Options(compensation=how)) for how in ways}
+    works = {how: preparation.prepare(drawing, Options(compensation=how)) for how in ways}
     work = works["closed"]
     works["best"] = constant_lag.best_constant(work)
     marks = {how: prediction.predict(works[how]) for how in works}
@@ -61,7 +63,7 @@ def main(drawing: Path, directory: Path) -> None:
 
 
 def three_panels(
-    works: dict[str, preparation.Work], marks: dict[str, brushsvg.Marks], totals: dict[str, report.Figures]
+    works: dict[str, Work], marks: dict[str, brushsvg.Marks], totals: dict[str, report.Figures]
 ) -> bytes:
     """Three panels: what was drawn, what is painted without and with compensation."""
     work = works["closed"]

@@ -16,8 +16,9 @@ import numpy as np
 from brushsvg import find_brush
 from brushsvg.drawing.svg import read_svg
 from brushsvg.drawing.text import text_svg
+from brushsvg.pipeline.options import Options
 from brushsvg.pipeline.prediction import predict
-from brushsvg.pipeline.preparation import Options, prepare
+from brushsvg.pipeline.preparation import prepare
 from brushsvg.strokes.skeleton import filled
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))

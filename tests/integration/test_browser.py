@@ -16,6 +16,7 @@ from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.writer import whole_program
 from brushsvg.pictures.timeline import timeline
 from brushsvg.pipeline import outputs, prediction, preparation
+from brushsvg.pipeline.options import Options
 
 SIZE = (1300, 860)
 COLOUR = "1b1b3a"  # of all strokes of the demo's drawing
@@ -156,7 +157,7 @@ def test_between_rows_far_apart_the_footprint_is_swept(tmp_path, browser, notch)
     )
     work = preparation.prepare(
         tmp_path / "a.svg",
-        preparation.Options(brush=package.find_brush(tmp_path / "brush.json"), start="exposed", end="lifted"),
+        Options(brush=package.find_brush(tmp_path / "brush.json"), start="exposed", end="lifted"),
     )
     marks = prediction.predict(work)
     step_mm = np.linalg.norm(np.diff(marks.passes[0].contact_mm, axis=0), axis=1)

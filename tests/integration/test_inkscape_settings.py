@@ -7,7 +7,7 @@ from command import SOUND, brushsvg
 from plugin import SOURCE, sentence
 
 from brushsvg.machine.cell_file import DEFAULT_CELL
-from brushsvg.pipeline.preparation import DEFAULT_BRUSH, Options
+from brushsvg.pipeline.options import DEFAULT_BRUSH, Options
 
 MACHINES = (
     f"{DEFAULT_CELL}, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120, for Python xarm6, "

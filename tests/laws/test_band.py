@@ -10,6 +10,7 @@ from brushsvg.calibration.from_measurements import calibrate
 from brushsvg.calibration.measurements import Measurements, Row
 from brushsvg.evaluation import uncertainty
 from brushsvg.pipeline import prediction, preparation
+from brushsvg.pipeline.options import Options
 
 LAWS = uncertainty.LAWS
 DRAWN = 400
@@ -50,7 +51,7 @@ def brush():
 
 @pytest.fixture(scope="module")
 def painted(brush):
-    work = preparation.prepare("examples/vincent.svg", preparation.Options(brush=brush, start="exposed"))
+    work = preparation.prepare("examples/vincent.svg", Options(brush=brush, start="exposed"))
     marks = prediction.predict(work)
     rng = np.random.default_rng(9)
     mean = np.concatenate([getattr(brush, law).coefficients for law in LAWS])

@@ -30,7 +30,8 @@ from brushsvg.calibration.lag_by_outlines import lag_by_outlines  # noqa: E402
 from brushsvg.calibration.lag_by_outlines_report import report  # noqa: E402
 from brushsvg.calibration.mark_input import read_painted  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
-from brushsvg.pipeline.preparation import Options, prepare  # noqa: E402
+from brushsvg.pipeline.options import Options  # noqa: E402
+from brushsvg.pipeline.preparation import prepare  # noqa: E402
 
 pytestmark = pytest.mark.long
 

@@ -25,7 +25,8 @@ from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.program import Job
 from brushsvg.pipeline.choices import CHOICES, ONE_OF, RANGES, Given
 from brushsvg.pipeline.conversion import tried
-from brushsvg.pipeline.preparation import Options, prepare
+from brushsvg.pipeline.options import Options
+from brushsvg.pipeline.preparation import prepare
 
 PAGE = '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60"{}>{}</svg>'
 LINE = '<path id="{}" d="M{} 40 C40 10 60 10 {} 30" fill="none" stroke="{}" stroke-width="{}"/>'

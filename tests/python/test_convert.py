@@ -14,6 +14,8 @@ from brushsvg.evaluation import report
 from brushsvg.machine import motion, program, writer
 from brushsvg.machine.cell_file import SHIPPED, find_cell
 from brushsvg.pipeline import constant_lag, prediction, preparation
+from brushsvg.pipeline.options import Options
+from brushsvg.pipeline.work import nearest_first
 from brushsvg.planning import travel_order
 
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
@@ -39,7 +41,7 @@ def test_the_best_constant_lag_is_the_best_of_all(drawing):
     assert best.options.lag_mm % 0.25 == 0
     there = total(best).overlap
     for lag_mm in (0.0, best.options.lag_mm - 1, best.options.lag_mm + 1, 13.0):
-        options = preparation.Options(compensation="constant", lag_mm=lag_mm)
+        options = Options(compensation="constant", lag_mm=lag_mm)
         assert total(preparation.prepare(drawing, options)).overlap < there
     again = preparation.prepare(drawing, best.options)
     assert [p.poses_mm.tolist() for p in again.plan.passes] == [p.poses_mm.tolist() for p in best.plan.passes]
@@ -47,14 +49,12 @@ def test_the_best_constant_lag_is_the_best_of_all(drawing):
 
 
 def test_the_best_constant_lag_of_a_pen_is_none(drawing):
-    work = preparation.prepare(drawing, preparation.Options(brush=find_brush("rigid")))
+    work = preparation.prepare(drawing, Options(brush=find_brush("rigid")))
     assert constant_lag.best_constant(work).options.lag_mm == 0
 
 
 def test_the_comparison_is_a_table(drawing):
-    works = {
-        how: preparation.prepare(drawing, preparation.Options(compensation=how)) for how in ("none", "closed")
-    }
+    works = {how: preparation.prepare(drawing, Options(compensation=how)) for how in ("none", "closed")}
     totals = {how: total(work) for how, work in works.items()}
     lines = report.comparison_text(list(totals.items())).splitlines()
     assert re.split("  +", lines[2]) == ["compensation", "overlap", "centre mean", "largest"]
@@ -97,7 +97,7 @@ def test_the_nearest_first_leaves_the_work_as_it_was(tmp_path):
         + "</svg>"
     )
     work = preparation.prepare(path)
-    moved = preparation.nearest_first(work)
+    moved = nearest_first(work)
     assert [p.stroke for p in moved.plan.passes] == [s.id for s in moved.strokes] == ["a", "near", "far"]
     assert [p.stroke for p in work.plan.passes] == [s.id for s in work.strokes] == ["a", "far", "near"]
     assert moved.plan.sheet_mm == work.plan.sheet_mm and moved.plan.brush_sha256 == work.plan.brush_sha256

@@ -8,7 +8,8 @@ from svg_text import read
 
 from brushsvg import _core, find_brush
 from brushsvg.__main__ import main
-from brushsvg.pipeline.preparation import Options, prepare
+from brushsvg.pipeline.options import Options
+from brushsvg.pipeline.preparation import prepare
 from brushsvg.strokes import corners, outline_corners
 from brushsvg.strokes.corners import lifted_at_corners
 from brushsvg.strokes.extraction import strokes

@@ -7,8 +7,9 @@ import shapely
 from brushsvg import find_brush
 from brushsvg.drawing.svg import read_svg
 from brushsvg.evaluation import report
+from brushsvg.pipeline.options import Options
 from brushsvg.pipeline.prediction import predict
-from brushsvg.pipeline.preparation import Options, prepare
+from brushsvg.pipeline.preparation import prepare
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.swept_areas import region
 from brushsvg.strokes.wide_shapes import within_reach

@@ -17,8 +17,9 @@ from brushsvg.machine.cell_file import find_cell, write_cell
 from brushsvg.machine.paint_reload import in_loads, visits
 from brushsvg.machine.program import Job
 from brushsvg.pipeline.conversion import tried
+from brushsvg.pipeline.options import Options
 from brushsvg.pipeline.prediction import marks_of
-from brushsvg.pipeline.preparation import Options, prepare
+from brushsvg.pipeline.preparation import prepare
 
 COUNT = 60
 

@@ -10,6 +10,7 @@ import pytest
 from brushsvg import Stroke, _core, find_brush
 from brushsvg.cli import main
 from brushsvg.pipeline import other_sizes, prediction, preparation
+from brushsvg.pipeline.options import Options
 from brushsvg.planning import size_advice
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">
@@ -75,7 +76,7 @@ def said(tmp_path, text, **options):
     """(overlap at a scale, advice) of a drawing."""
     path = tmp_path / "said.svg"
     path.write_text(text)
-    work = preparation.prepare(path, preparation.Options(**options), partly=True)
+    work = preparation.prepare(path, Options(**options), partly=True)
     marks = prediction.predict(work, outlines=False)
     return _core.common_area(marks.passes, work.strokes, work.brush).overlap, other_sizes.advice(work)
 

@@ -16,6 +16,7 @@ from brushsvg.machine.motion import Wait, distances, duration_s
 from brushsvg.machine.writer import whole_program
 from brushsvg.pictures.timeline import HAND_PAUSE_S, timeline
 from brushsvg.pipeline import prediction, preparation
+from brushsvg.pipeline.options import Options
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">
 <path id="line" d="M20 40 C40 10 60 10 90 30 L60 50" fill="none" stroke="#203060" stroke-width="3"/>
@@ -36,9 +37,7 @@ def works(tmp_path_factory):
     file.write_text(DRAWING)
 
     def make(how="closed", brush="round-6"):
-        work = preparation.prepare(
-            file, preparation.Options(brush=library.find_brush(brush), compensation=how)
-        )
+        work = preparation.prepare(file, Options(brush=library.find_brush(brush), compensation=how))
         return work, prediction.predict(work, outlines=False)
 
     return make

@@ -7,8 +7,9 @@ from diagnostics import agrees, is_told
 from brushsvg import _core, find_brush
 from brushsvg.evaluation import report
 from brushsvg.pipeline import outputs
+from brushsvg.pipeline.options import Options
 from brushsvg.pipeline.prediction import predict
-from brushsvg.pipeline.preparation import Options, prepare
+from brushsvg.pipeline.preparation import prepare
 from brushsvg.strokes.unreached import Blank, notices, unreached
 from brushsvg.strokes.wide_shapes import within_reach
 

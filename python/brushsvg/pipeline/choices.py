@@ -16,7 +16,7 @@ from ..errors import Error, Notice, need, need_number, need_one_of
 from ..machine.cell import Cell
 from ..machine.cell_file import cell_names, find_cell, parse_cell, write_cell
 from ..painted.corrections import Correction, read_corrections
-from .preparation import Options
+from .options import Options
 
 LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
 MADE_FLAGS = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end")

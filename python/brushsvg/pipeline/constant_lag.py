@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..strokes.wide_shapes import within_reach
-from .preparation import Work
+from .work import Work
 
 
 def best_constant(work: Work, step_mm: float = 0.25) -> Work:

@@ -37,6 +37,7 @@ from .choices import (
     suffix_of,
     without_effect,
 )
+from .work import Work, nearest_first
 
 if TYPE_CHECKING:
     from .preparation import Source
@@ -225,7 +226,7 @@ class Tried:
     forbids to write it, one for each kind."""
 
     suffix: str
-    work: preparation.Work
+    work: Work
     cell: Cell
     notes: tuple[str, ...]
     marks: object
@@ -258,7 +259,7 @@ class Tried:
         return time_written_s(self.suffix, self.work.plan, self.walk, self.work.brush, self.work.options.cell)
 
 
-def _out_of_turn(work: preparation.Work, order: str, first_stroke: int) -> list[Notice]:
+def _out_of_turn(work: Work, order: str, first_stroke: int) -> list[Notice]:
     """A notice where strokes are pressed for paint that is left of others than those that are painted before them."""
     is_pressed = work.brush.paint and work.strokes is not None
     if not is_pressed or work.options.compensation not in ("closed", "refined"):
@@ -278,7 +279,7 @@ def _out_of_turn(work: preparation.Work, order: str, first_stroke: int) -> list[
 
 
 def tried(
-    work: preparation.Work,
+    work: Work,
     suffix: str,
     job: Job = WHOLE_JOB,
     order: str = "drawn",
@@ -294,7 +295,7 @@ def tried(
     cell = writer.painting_cell(suffix, cell)
     notes = outputs.notes(work)
     if order == "nearest":
-        work, notes = preparation.nearest_first(work), (*notes, "order: nearest first")
+        work, notes = nearest_first(work), (*notes, "order: nearest first")
     if suffix != ".json":
         with concerning(path):
             writer.post_for(suffix, cell)

@@ -6,8 +6,9 @@ import os
 from dataclasses import dataclass, replace
 
 from ..evaluation import report
+from .options import Options
 from .prediction import predict
-from .preparation import Options, prepare
+from .preparation import prepare
 
 
 @dataclass(frozen=True)

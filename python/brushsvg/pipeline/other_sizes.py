@@ -8,7 +8,9 @@ from .. import _core
 from ..planning import size_advice
 from ..planning.refinement import refined
 from ..strokes.wide_shapes import within_reach
-from .preparation import Options, Work, _way
+from .compensated import compensation_by
+from .options import Options
+from .work import Work
 
 
 def advice(work: Work) -> str:
@@ -32,7 +34,7 @@ def advice(work: Work) -> str:
 
 def _trial(brush, options: Options):
     """From strokes to (marks, what they should become), made as a drawing is, but on no sheet and for no machine."""
-    compensated = _way(brush, None, options)
+    compensated = compensation_by(brush, None, options)
 
     def made(strokes):
         painted, wanted, _ = within_reach(strokes, brush, options.wide)

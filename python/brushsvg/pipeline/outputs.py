@@ -19,7 +19,8 @@ from ..pictures.animation import animation
 from ..pictures.marks_svg import marks_svg
 from ..pictures.overlap_svg import overlap_svg
 from ..pictures.timeline import timeline
-from .preparation import Options, Work
+from .options import Options
+from .work import Work
 
 SHOWN_MM = 0.02  # how exactly a page shows what was wanted: less cannot be seen
 

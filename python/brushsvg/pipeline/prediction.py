@@ -8,7 +8,7 @@ from collections.abc import Callable
 from .. import _core
 from ..machine.cell import Cell
 from ..machine.paint_reload import fetched_mm
-from .preparation import Work
+from .work import Work
 
 
 def predict(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,12 +15,11 @@ from ..brush.library import find_brush, mistyped_keys
 from ..drawing import layout
 from ..drawing.design import Design, Notice
 from ..errors import Error
-from ..machine.cell import LEAST_SPEED_MM_S, Cell
-from ..machine.paint_reload import PlanInLoads, fetched_mm, in_loads, is_later_part
-from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look, within_limits
-from ..machine.program import POSES_KEPT, WHOLE_JOB, Job, Walked
-from ..painted.corrections import Correction, beside_machine, corrected
-from ..planning import travel_order
+from ..machine.cell import LEAST_SPEED_MM_S
+from ..machine.paint_reload import fetched_mm, in_loads
+from ..machine.preflight import look
+from ..machine.program import Job
+from ..painted.corrections import corrected
 from ..planning.paint_running_out import pressed_deeper
 from ..planning.refinement import refined
 from ..strokes.corners import lifted_at_corners
@@ -32,92 +30,20 @@ from ..strokes.outline_corners import squared_at_corners
 from ..strokes.unreached import left_blank, missed, unreached
 from ..strokes.unreached import notices as blank_notices
 from ..strokes.wide_shapes import within_reach
+from .compensated import begun_within_reach, compensation_by
 from .json_files import read_plan
+from .options import DEFAULT_BRUSH, DEFAULTS, Options
 from .paint_astray import off_middle_line, outside
+from .width_advice import warnings_with_advice
+from .work import Known, Work
 
 if TYPE_CHECKING:
     Source = drawing.Source | Design | _core.Plan
 
-DEFAULT_BRUSH = "round-6"
-
-
-@dataclass(frozen=True)
-class Options:
-    """What may be chosen. brush None: round-6, or the one a plan names; the rest has no effect on a plan."""
-
-    brush: _core.Brush | None = None
-    reading: drawing.ReadOptions = drawing.AS_DRAWN
-    layout: layout.Layout = layout.AS_DRAWN
-    compensation: str = "closed"
-    lag_mm: float | None = None
-    tolerance_mm: float = DEFAULT_TOLERANCE_MM
-    speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
-    speed_of_all_mm_s: float | None = None  # whatever the drawing or the plan says
-    start: str = "auto"  # of strokes, where the drawing does not say: "exposed", "hidden", "squared", "auto"
-    end: str = "auto"  # the same: "lifted", "squared", "auto"
-    paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
-    wide: str = "auto"  # outlines wider than the brush: "auto", "clamp", "passes", "refuse"
-    corners: str = "auto"  # "auto": lifted at sharp corners where the mark is better; "turn": never
-    join: bool = False  # lines that meet end to end are one stroke
-    cell: Cell | None = None  # whose limits no refined stroke breaks, unless its closed form does
-    z_offset_mm: float = 0.0  # of the paper, against the cell's
-    corrections: tuple[Correction, ...] = ()  # by which a painted sheet showed that strokes lie elsewhere
-
-    def __post_init__(self):
-        if self.cell is not None:  # from here on it is as exact as the plan
-            object.__setattr__(self, "cell", as_exact_as(self.cell, self.tolerance_mm))
-        left = beside_machine(self.corrections, self.cell.machine if self.cell else None)
-        object.__setattr__(self, "corrections", left)
-
-
-@dataclass(frozen=True)
-class Known:
-    """What was found of a plan as it then was, a copy: its marks, without outlines and freshly dipped, and limits."""
-
-    plan: _core.Plan
-    marks: _core.Marks
-    walk: Walked
-
-
-@dataclass(frozen=True)
-class Work:
-    """A file understood: strokes is None where IN was a plan, which does not say what was wanted.
-
-    plan: with corrections. tracking_errors: one per pass of the plan without them, () for a plan read from a file;
-    refused: strokes that were left out.
-    """
-
-    title: str
-    brush: _core.Brush
-    plan: _core.Plan
-    strokes: list[_core.Stroke] | None
-    tracking_errors: tuple
-    options: Options
-    notices: tuple[Notice, ...]
-    refused: tuple[Notice, ...] = ()
-    left_out: tuple = ()  # the strokes that were refused, as they were wanted
-    drawn: tuple = ()  # all strokes, before they were brought within the brush's reach
-    unreached: tuple = ()  # pieces of filled shapes that no stroke reaches
-    missed: tuple = ()  # pieces that strokes reach and the mark does not
-    astray: tuple = ()  # names of strokes whose paint lies visibly elsewhere
-    known: Known | None = None  # of the plan, or of what it was before something of it changed
-
-    def marks(self) -> _core.Marks | None:
-        """Of the plan, where they are known: not to be changed."""
-        return self.known.marks if self._is_known() else None
-
-    def walk(self, cell: Cell, job: Job = WHOLE_JOB) -> Walked | None:
-        """The plan with the limits that it breaks, where these are known of such a job."""
-        known = self.known.walk if self._is_known() else None
-        return known if known and cell == self.options.cell and replace(known.job, visits=()) == job else None
-
-    def _is_known(self) -> bool:
-        return self.known is not None and not self.brush.paint and self.known.plan == self.plan
-
 
 def prepare(
     source: Source,
-    options: Options = Options(),
+    options: Options = DEFAULTS,
     stage: Callable[[str], object] = lambda text: None,
     partly: bool = False,
 ) -> Work:
@@ -133,92 +59,172 @@ def prepare(
     _check_speed(brush, options)
     design = layout.arrange(_design(source, options.reading), options.layout)
     stage("finding strokes")
+    found, of_strokes = _found(design, brush, options)
+    lines = _within_reach(found, brush, options, partly)
+    compensated = compensation_by(brush, design.sheet_mm, options, stage)
+    lines, done = _compensated(lines, compensated, partly)
+    way = _refined(_way(lines, done, brush, compensated, options, stage), brush, compensated, options)
+    way.plan = _at_speed(_with_speeds(way.plan, lines.wanted), options)
+    advised = compensated if options.layout.width_mm is None else None
+    bare, blank, astray = _beside_shapes(lines, way, brush, options)
+    notices = (
+        *mistyped_keys(brush),
+        *design.notices,
+        *of_strokes,
+        *lines.notices,
+        *way.notices,
+        *warnings_with_advice(way.painted, way.done, brush, advised),
+        *_other_brushes(lines.wanted, brush),
+        *blank_notices(bare),
+        *blank_notices(blank, is_reached=True),
+        *(astray if _leads(options) else []),
+    )
+    return Work(
+        design.title,
+        brush,
+        corrected(way.plan, options.corrections, brush),
+        lines.wanted,
+        tuple(way.tracking_errors),
+        options,
+        notices,
+        tuple(lines.refused),
+        tuple(lines.left_out),
+        tuple(lines.drawn),
+        tuple(bare),
+        tuple(blank),
+        tuple(notice.where for notice in astray),
+        way.known,
+    )
+
+
+def _leads(options: Options) -> bool:
+    """Whether the tool leads the paint, or goes where the lines are."""
+    return options.compensation in ("closed", "refined")
+
+
+@dataclass(frozen=True)
+class _Lines:
+    """Strokes as they were found, as the brush will paint them, and what each of these should become; what is told of
+    them, why some were refused, and what those should have become."""
+
+    drawn: list
+    painted: list
+    wanted: list
+    notices: list[Notice]
+    refused: list[Notice]
+    left_out: list
+
+
+@dataclass
+class _Way:
+    """How lines are painted. painted, wanted: as in _Lines, pressed deeper where paint runs out; done: what
+    compensation said; moved: which strokes refinement moved."""
+
+    painted: list
+    wanted: list
+    done: _core.Compensated
+    plan: _core.Plan
+    tracking_errors: list
+    moved: list[bool]
+    notices: list[Notice]
+    known: Known | None
+
+
+def _found(design: Design, brush, options: Options) -> tuple[list, list[Notice]]:
+    """A design's strokes, joined, lifted and cut at their corners as is asked for."""
     strokes, notices = strokes_of(design, options.paths_as)
     if options.join:
         strokes, joints = joined(strokes)
         notices += joints
-    leads = options.compensation in ("closed", "refined")
-    may_lift = options.corners == "auto" and leads
-    fills_corners = may_lift and (options.start, options.end) == ("auto", "auto")
-    if may_lift:
+    if options.corners == "auto" and _leads(options):
         strokes = lifted_at_corners(strokes, brush)
-    if fills_corners:
-        strokes = squared_at_corners(strokes, brush)
-    refused, left_out, drawn = [], [], tuple(strokes)
+        if _fills_corners(options):
+            strokes = squared_at_corners(strokes, brush)
+    return strokes, notices
+
+
+def _fills_corners(options: Options) -> bool:
+    """Whether strokes may begin, end and turn as fills the corners of a shape."""
+    return (options.start, options.end, options.corners) == ("auto", "auto", "auto")
+
+
+def _within_reach(found: list, brush, options: Options, partly: bool) -> _Lines:
+    """No wider than the brush, with strokes for limbs that have none."""
+    strokes, refused, left_out = found, [], []
     if partly and options.wide == "refuse":
         strokes, _, refused, left_out = _sorted_out(
             strokes, strokes, lambda some: within_reach(some, brush, options.wide)
         )
-    painted, strokes, clamped = within_reach(strokes, brush, options.wide)
-    notices += clamped
-    if leads:
-        drawn, painted, strokes = with_left_limbs(list(drawn), painted, strokes, brush, fills_corners)
-    compensated = _way(brush, design.sheet_mm, options, stage)
+    painted, wanted, notices = within_reach(strokes, brush, options.wide)
+    drawn = list(found)
+    if _leads(options):
+        drawn, painted, wanted = with_left_limbs(drawn, painted, wanted, brush, _fills_corners(options))
+    return _Lines(drawn, painted, wanted, notices, refused, left_out)
+
+
+def _compensated(lines: _Lines, compensated, partly: bool) -> tuple[_Lines, _core.Compensated]:
     try:
-        done = compensated(painted)
+        return lines, compensated(lines.painted)
     except Error:
         if not partly:
             raise
-        painted, strokes, why, which = _sorted_out(painted, strokes, compensated)
-        refused += why
-        left_out += which
-        done = compensated(painted)
-    known = None
-    if options.cell is not None and leads:
-        fitting, known = _begun_within_reach(painted, brush, done.plan, compensated, options, stage)
+    painted, wanted, refused, left_out = _sorted_out(lines.painted, lines.wanted, compensated)
+    lines = replace(
+        lines,
+        painted=painted,
+        wanted=wanted,
+        refused=lines.refused + refused,
+        left_out=lines.left_out + left_out,
+    )
+    return lines, compensated(painted)
+
+
+def _way(lines: _Lines, done, brush, compensated, options: Options, stage) -> _Way:
+    """Begun where the tool may be, and pressed deeper as paint runs out."""
+    painted, wanted, notices, known, cell = lines.painted, lines.wanted, [], None, options.cell
+    if cell is not None and _leads(options):
+        fitting, known = begun_within_reach(painted, brush, done.plan, compensated, options, stage)
         if fitting is not painted:
             painted, done = fitting, compensated(fitting)
-    asked = strokes
-    if brush.paint and brush.width_follows_depth() and leads:
-        cell = options.cell
+    if brush.paint and brush.width_follows_depth() and _leads(options):
         lowest_mm = cell.heights.lowest_mm if cell else -np.inf
-        pressed = pressed_deeper(
-            painted,
-            strokes,
-            brush,
-            done,
-            compensated,
-            lambda plan: fetched_mm(plan, brush, cell),
-            lowest_mm,
-        )
-        painted, asked, done = pressed.painted, pressed.wanted, pressed.done
-        notices += pressed.told
-    plan, tracking_errors, moved = done.plan, done.misses, [False] * len(painted)
-    if options.compensation == "refined":
-        better = refined(painted, asked, brush, done, compensated, _forbidden(brush, options))
-        plan.passes, tracking_errors, moved = better.passes, better.tracking_errors, better.moved
-        notices += [told] if (told := better.nothing_moved()) else []
-    plan = _at_speed(_with_speeds(plan, strokes), options)
-    told = _widths(painted, done, brush, compensated if options.layout.width_mm is None else None)
-    notices = [*mistyped_keys(brush), *design.notices, *notices, *told]
-    notices += _other_brushes(strokes, brush)
-    without = {notice.where for notice in refused}
-    planned = [stroke for stroke in drawn if stroke.id not in without]
-    bare, blank = unreached(planned, painted, brush), []
-    if leads and any(stroke.wanted_mm for stroke in planned):  # of shapes alone it is asked what stays blank
-        traces = _core.simulate(plan, brush).passes
-        bare = left_blank(bare, painted, traces, brush)
-        blank = missed(planned, painted, traces, bare, brush)
-    notices += blank_notices(bare)
-    astray = _astray(painted, asked, plan, tracking_errors, moved, brush, options)
-    if leads:
-        notices += blank_notices(blank, is_reached=True) + astray
-    return Work(
-        design.title,
-        brush,
-        corrected(plan, options.corrections, brush),
-        strokes,
-        tuple(tracking_errors),
-        options,
-        tuple(notices),
-        tuple(refused),
-        tuple(left_out),
-        tuple(drawn),
-        tuple(bare),
-        tuple(blank),
-        tuple(notice.where for notice in astray),
-        known,
+
+        def fetched(plan):
+            return fetched_mm(plan, brush, cell)
+
+        pressed = pressed_deeper(painted, wanted, brush, done, compensated, fetched, lowest_mm)
+        painted, wanted, done = pressed.painted, pressed.wanted, pressed.done
+        notices = pressed.told
+    return _Way(painted, wanted, done, done.plan, done.misses, [False] * len(painted), notices, known)
+
+
+def _refined(way: _Way, brush, compensated, options: Options) -> _Way:
+    """The same, or moved where the mark lies better, if that is asked for."""
+    if options.compensation != "refined":
+        return way
+    forbidden = _forbidden(brush, options)
+    better = refined(way.painted, way.wanted, brush, way.done, compensated, forbidden)
+    way.plan.passes = better.passes
+    told = better.nothing_moved()
+    return replace(
+        way,
+        tracking_errors=better.tracking_errors,
+        moved=better.moved,
+        notices=[*way.notices, *([told] if told else [])],
     )
+
+
+def _beside_shapes(lines: _Lines, way: _Way, brush, options: Options) -> tuple[list, list, list[Notice]]:
+    """Pieces of shapes that no stroke reaches, those that strokes reach and their marks do not, and which strokes lie
+    where nobody wants them."""
+    refused = {notice.where for notice in lines.refused}
+    planned = [stroke for stroke in lines.drawn if stroke.id not in refused]
+    bare, blank = unreached(planned, way.painted, brush), []
+    if _leads(options) and any(stroke.wanted_mm for stroke in planned):
+        traces = _core.simulate(way.plan, brush).passes
+        bare = left_blank(bare, way.painted, traces, brush)
+        blank = missed(planned, way.painted, traces, bare, brush)
+    return bare, blank, _astray(way, brush, options)
 
 
 def _design(source, reading: drawing.ReadOptions) -> Design:
@@ -228,75 +234,6 @@ def _design(source, reading: drawing.ReadOptions) -> Design:
         sentence = "units and select are for reading: a Design was read already"
         raise Error(sentence, code="options-contradict")
     return source if reading.sheet_mm is None else replace(source, sheet_mm=reading.sheet_mm)
-
-
-def _way(brush, sheet_mm, options: Options, stage=lambda text: None):
-    """What compensates strokes, by default as the options ask for, or in closed form where that is to be refined."""
-    first = "closed" if options.compensation == "refined" else options.compensation
-
-    def compensated(some, method=first):
-        return _core.compensate(
-            some,
-            brush,
-            sheet_mm,
-            method,
-            options.tolerance_mm,
-            options.lag_mm,
-            options.speed_mm_s,
-            progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
-            start=options.start,
-            end=options.end,
-        )
-
-    return compensated
-
-
-def _begun_within_reach(
-    painted: list, brush, plan, compensated, options: Options, stage
-) -> tuple[list, Known | None]:
-    """The strokes, those plain that choose how they begin or end, cannot be run as they chose, and can plain: lifted,
-    or hidden or exposed as well. A hidden beginning is landed on the far side, from where the tool may not be, and its
-    round front may be wider than what is wanted; at a squared beginning or end the tool runs aside. The list itself
-    where there are none. And what was found of the plan, where that was asked and is little enough to be kept.
-    """
-
-    def tried(of) -> Known:
-        loads = in_loads(of, brush, options.cell)
-        marks = _core.simulate(
-            of, brush, progress=lambda now, all_: stage(f"simulated {now} of {all_} strokes")
-        )
-        walk = within_limits(loads, brush, marks, options.cell, Job(options.z_offset_mm))
-        return Known(copy(of), marks, walk)
-
-    def astray(of: Known) -> set[str]:
-        return {problem.where for problem in of.walk.problems}
-
-    choosing = [stroke for stroke in painted if "auto" in _ends(stroke, options)]
-    if not choosing:
-        return painted, None
-    whole = tried(plan)
-    left = {stroke.id for stroke in choosing} & astray(whole)
-    found = {}
-    lifted = {"end": "lifted"}
-    for plain in (lifted, {"start": "hidden"}, {**lifted, "start": "hidden"}, {**lifted, "start": "exposed"}):
-        some = {stroke.id: _plain(stroke, options, plain) for stroke in choosing if stroke.id in left}
-        fits = some.keys() - astray(tried(compensated(list(some.values())).plan)) if some else set()
-        found |= {name: some[name] for name in fits}
-        left -= fits
-    is_little = sum(len(run.poses_mm) for run in plan.passes) <= POSES_KEPT
-    fitting = [found.get(stroke.id, stroke) for stroke in painted] if found else painted
-    return fitting, whole if is_little and not found else None
-
-
-def _ends(stroke, options: Options) -> tuple[str, str]:
-    return stroke.settings.start or options.start, stroke.settings.end or options.end
-
-
-def _plain(stroke, options: Options, plain: dict[str, str]):
-    """The stroke as it is told to begin and end, where it would choose."""
-    said = {name: getattr(stroke.settings, name) or getattr(options, name) for name in plain}
-    chosen = {name: plain[name] for name, value in said.items() if value == "auto"}
-    return stroke.replaced(settings=stroke.settings.replaced(**chosen))
 
 
 def _forbidden(brush, options: Options):
@@ -325,60 +262,6 @@ def _sorted_out(painted, wanted, step):
         else:
             sound.append(pair)
     return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused, left_out
-
-
-def _widths(painted, done, brush, compensated) -> list[Notice]:
-    """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored. Not
-    where that is so at a stroke's ends alone: every brush is set down and lifted through less depth, and who draws a
-    point can do nothing about it. compensated: tries what is advised, None where one width was asked for."""
-    laws = (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
-    ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
-    measured = (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
-    pairs = zip(painted, done.plan.passes, strict=True)
-    thin = {stroke.id for stroke, run in pairs if measured and _thins_out(stroke, run, brush, *measured)}
-    off = {each.where for each in done.warnings if each.code == "depth-not-measured"} - thin
-    advice, lines = "", []
-    if compensated is not None and measured and measured[0] < measured[1]:
-        lines = [stroke for stroke in painted if stroke.id in off and not stroke.wanted_mm]
-        advice = _width_advice(lines[:1], brush, measured, compensated)
-    advised = {stroke.id for stroke in lines}
-    return [
-        replace(each, advice=advice if each.where in advised else "")
-        if each.code == "depth-not-measured"
-        else each
-        for each in done.warnings
-        if each.code != "depth-not-measured" or each.where not in thin
-    ]
-
-
-def _width_advice(lines: list, brush, measured: tuple[float, float], compensated) -> str:
-    """Which widths keep a line within the depths that were measured; "" where the middle one of them does not."""
-    halves = [brush.half_width(depth) for depth in measured]
-    same = [stroke.replaced(half_width=[(0.0, sum(halves) / 2)]) for stroke in lines]
-    try:
-        helps = bool(same) and not any(
-            each.code == "depth-not-measured" for each in compensated(same).warnings
-        )
-    except Error:
-        helps = False
-    if not helps:
-        return ""
-    least, greatest = (2 * half for half in halves)
-    return f"--width MM, from {least:.2g} to {greatest:.2g}, gives all strokes one width that was measured"
-
-
-def _thins_out(stroke, run, brush, least_mm: float, greatest_mm: float) -> bool:
-    """Whether a stroke is pressed less than was measured at its ends alone, no farther in than it is wide. run: its
-    pass; a dot, which is turned round on the spot, is pressed less than a line as wide."""
-    if -np.asarray(run.poses_mm)[:, 2].min() < least_mm:
-        return False
-    half = max(half for _, half in stroke.half_width)
-    if stroke.closed or brush.depth_for_half_width(half, stroke.id) > greatest_mm:
-        return False
-    length_mm = _core.flatten(stroke, 0.1)[-1, 2]
-    end = min(2 * half / max(length_mm, 1e-9), 0.5)
-    inside = np.interp(np.linspace(end, 1 - end, 101), *np.array(stroke.half_width).T)
-    return bool((inside >= brush.half_width(least_mm)).all())
 
 
 def _with_speeds(plan, strokes):
@@ -424,19 +307,20 @@ def _other_brushes(strokes, brush) -> list[Notice]:
     ]
 
 
-def _astray(painted, wanted, plan, tracking_errors, moved, brush, options: Options) -> list[Notice]:
+def _astray(way: _Way, brush, options: Options) -> list[Notice]:
     """Of strokes that lie where nobody wants them. Who drew a shape drew no middle line, and refinement leaves it on
     purpose: there the paint is judged."""
-    shapes = {stroke.origin.element for stroke in wanted if stroke.wanted_mm}
+    shapes = {stroke.origin.element for stroke in way.wanted if stroke.wanted_mm}
     by_paint = [
-        is_moved or stroke.origin.element in shapes for stroke, is_moved in zip(wanted, moved, strict=True)
+        is_moved or stroke.origin.element in shapes
+        for stroke, is_moved in zip(way.wanted, way.moved, strict=True)
     ]
-    lines = [None if by else stroke for stroke, by in zip(painted, by_paint, strict=True)]
-    off = [by and not miss.within_tolerance for by, miss in zip(by_paint, tracking_errors, strict=True)]
-    runs = [run if is_off else None for run, is_off in zip(plan.passes, off, strict=True)]
+    lines = [None if by else stroke for stroke, by in zip(way.painted, by_paint, strict=True)]
+    off = [by and not miss.within_tolerance for by, miss in zip(by_paint, way.tracking_errors, strict=True)]
+    runs = [run if is_off else None for run, is_off in zip(way.plan.passes, off, strict=True)]
     return [
-        *off_middle_line(lines, tracking_errors, brush, options.tolerance_mm),
-        *outside(wanted, runs, brush),
+        *off_middle_line(lines, way.tracking_errors, brush, options.tolerance_mm),
+        *outside(way.wanted, runs, brush),
     ]
 
 
@@ -462,28 +346,3 @@ def _prepare_plan(plan, options: Options) -> Work:
     _check_speed(brush, options)
     plan = _at_speed(plan, options)
     return Work("", brush, corrected(plan, options.corrections, brush), None, (), options, tuple(notices))
-
-
-def whole_strokes(work: Work, loads: PlanInLoads) -> list:
-    """For each of the work's loads the stroke that it paints whole; None for the parts of one."""
-    whole, left = [], iter(work.strokes)
-    for a_pass in loads.loads:
-        if is_later_part(a_pass):
-            whole[-1:] = [None, None]
-        else:
-            whole.append(next(left))
-    return whole
-
-
-def nearest_first(work: Work) -> Work:
-    """The work with its strokes in the order of the shortest way from the end of one to the start of the next.
-
-    Only strokes that follow each other in one layer change places; none is painted backwards.
-    """
-    passes = work.plan.passes
-    order = travel_order.nearest_first(passes)
-    was = work.plan
-    plan = _core.Plan(was.brush, was.brush_sha256, was.sheet_mm, [passes[k] for k in order], was.extra)
-    strokes = None if work.strokes is None else [work.strokes[k] for k in order]
-    tracking_errors = tuple(work.tracking_errors[k] for k in order) if work.tracking_errors else ()
-    return replace(work, plan=plan, strokes=strokes, tracking_errors=tracking_errors)

@@ -12,7 +12,8 @@ from brushsvg.cli.arguments.parser import parse
 from brushsvg.cli.commands import check as command
 from brushsvg.cli.commands import convert_file
 from brushsvg.cli.console import RefusedError
-from brushsvg.pipeline import outputs, preparation
+from brushsvg.pipeline import outputs
+from brushsvg.pipeline.work import Work
 
 CRASHED = "this should not happen"
 
@@ -32,7 +33,7 @@ def quick_check():
 
     What it prepares of a drawing is kept, the figures that it tells are not made: neither decides what it refuses.
     """
-    known: dict[tuple, preparation.Work] = {}
+    known: dict[tuple, Work] = {}
     cells: dict[tuple, object] = {}
     asked: dict[tuple, object] = {}
     names = "prepare", "exact_cell", "tell", "outputs", "report"

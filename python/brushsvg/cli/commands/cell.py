@@ -14,7 +14,7 @@ from ...machine.describe_cell import cell_page
 from ...machine.paint_reload import in_loads
 from ...machine.posts import POSTS
 from ...machine.writer import whole_program
-from ...pipeline.preparation import DEFAULT_BRUSH
+from ...pipeline.options import DEFAULT_BRUSH
 from ..console import RefusedError, about, stage, tell, warn
 from ..steps.options import brush_of, exact_cell, typed
 from ..steps.output_places import check_places, suffix_of, tell_list, write

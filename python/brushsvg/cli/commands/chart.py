@@ -7,8 +7,8 @@ from ...brush.library import find_brush
 from ...machine import preflight, writer
 from ...machine.paint_reload import in_loads
 from ...machine.program import Job
-from ...pipeline import preparation
 from ...pipeline.conversion import time_written_s
+from ...pipeline.options import DEFAULT_BRUSH
 from ...text_summary import summarized
 from ..arguments.values import EDGE_NOISE_MM
 from ..console import RefusedError, about, stage, tell
@@ -27,7 +27,7 @@ def chart_file(args) -> None:
     chosen = typed(args)
     if args.drawing:
         chosen = settled(chosen, args.drawing, alone=True)
-    brush = brush_of(chosen.brush) or find_brush(preparation.DEFAULT_BRUSH)
+    brush = brush_of(chosen.brush) or find_brush(DEFAULT_BRUSH)
     suffix, cell = suffix_of(args.output), exact_cell(chosen.cell)
     with about(args.output):
         if suffix != ".json":

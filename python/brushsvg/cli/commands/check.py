@@ -18,9 +18,11 @@ from ...machine.paint_reload import in_loads
 from ...machine.posts import GCODE
 from ...machine.program import out_of_arm
 from ...machine.writer import beside
-from ...pipeline import outputs, prediction, preparation
+from ...pipeline import outputs, prediction
 from ...pipeline.choices import LAYOUT_FLAGS, MADE_FLAGS
 from ...pipeline.foreign_program import foreign_program
+from ...pipeline.options import DEFAULT_BRUSH, Options
+from ...pipeline.work import Work, nearest_first, whole_strokes
 from ...text_summary import summarized
 from ...units import clock
 from ..console import RefusedError, about, stage, tell, warn
@@ -89,14 +91,14 @@ def check_file(args) -> None:
             problems = problems + unlike
             speeds = None if None in which else [loads.loads[k].speed_mm_s for k in which]
             if work.strokes is not None:
-                whole = preparation.whole_strokes(work, loads)
+                whole = whole_strokes(work, loads)
                 strokes = None if None in which else [whole[k] for k in which]
                 drawn = work.strokes if made.first_stroke == 1 else None
         told = against_regenerated.Told(*_told_by(made, work))
         again = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, told, speeds)
         least_s = None
         if again and speeds is None:  # feeds may have been lowered since its time was told
-            usual_mm_s = min(preparation.Options.speed_mm_s, again.touching_mm_s)
+            usual_mm_s = min(Options.speed_mm_s, again.touching_mm_s)
             fastest = [max(a_pass.speed_mm_s, usual_mm_s) for a_pass in ran.plan.passes]
             least_s = duration_s(
                 against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, None, fastest)
@@ -105,7 +107,7 @@ def check_file(args) -> None:
         problems = problems + ([Notice("", changed, code="program-changed")] if changed else [])
         if again and not problems:
             problems = out_of_arm(again, sheet_mm)
-        shown = preparation.Work(made.title, brush, ran.plan, strokes, (), preparation.Options(), ())
+        shown = Work(made.title, brush, ran.plan, strokes, (), Options(), ())
         if args.preview:
             outlined = prediction.outlined(ran.marks, brush, stage)
             picture = outputs.picture(suffix_of(args.preview), shown, outlined)
@@ -130,10 +132,10 @@ def _check_foreign(args, text: str) -> None:
             sentence = f"brushsvg did not write it: --{flag} would change nothing"
             raise Error(sentence, code="flag-without-effect")
     cell = cell_of(args.cell)
-    brush = brush_of(args.brush) or find_brush(preparation.DEFAULT_BRUSH)
+    brush = brush_of(args.brush) or find_brush(DEFAULT_BRUSH)
     found = foreign_program(text, brush, cell, args.sheet)
     warn(args.program, found.warnings)
-    shown = preparation.Work("", brush, found.plan, None, (), preparation.Options(cell=cell), ())
+    shown = Work("", brush, found.plan, None, (), Options(cell=cell), ())
     if args.preview:
         outlined = prediction.outlined(found.marks, brush, stage)
         picture = outputs.picture(suffix_of(args.preview), shown, outlined)
@@ -149,7 +151,7 @@ def _check_foreign(args, text: str) -> None:
         )
 
 
-def _told_by(made, work: preparation.Work | None) -> tuple[str, tuple[str, ...]]:
+def _told_by(made, work: Work | None) -> tuple[str, tuple[str, ...]]:
     """Title and notes that a program's header should have: its drawing's, or its own where nobody knows better, as of a
     program that was made of a plan."""
     if (
@@ -206,7 +208,7 @@ def _check_job(args, text: str, made, read, cell: Cell, brush, z_offset_mm: floa
     _refuse_or_allow(args, problems, work is None and made.border_mm)
 
 
-def _border_notices(made, work: preparation.Work) -> list[Notice]:
+def _border_notices(made, work: Work) -> list[Notice]:
     """A sentence where an air run does not go round what a drawing's paint needs."""
     from ...machine.setup_programs import around
 
@@ -233,7 +235,7 @@ def _refuse_or_allow(args, problems: list[Notice], is_alone: bool) -> None:
         tell(f"{args.program}: nothing forbids to run it{known}\n")
 
 
-def _as_made(args, made, cell: Cell, brush) -> preparation.Work:
+def _as_made(args, made, cell: Cell, brush) -> Work:
     """The drawing or plan that a program should paint, prepared as its header says; what of it is left out, or painted
     otherwise, is told again: this is the last look."""
     if made.is_corrected and args.corrections is None:
@@ -259,4 +261,4 @@ def _as_made(args, made, cell: Cell, brush) -> preparation.Work:
         )
     work = prepare(chosen, cell, brush)
     warn(args.input, work.notices)
-    return preparation.nearest_first(work) if made.nearest_first else work
+    return nearest_first(work) if made.nearest_first else work

@@ -7,7 +7,7 @@ from dataclasses import replace
 from ...brush.library import find_brush
 from ...machine import header_lines, writer
 from ...machine.motion import duration_s
-from ...pipeline import preparation
+from ...pipeline.options import DEFAULT_BRUSH
 from ..console import about
 from ..steps.options import brush_of, exact_cell, warn_of_cell
 from ..steps.output_places import check_places, suffix_of, write
@@ -20,7 +20,7 @@ def first_run_file(args) -> None:
 
     check_places(args.output)
     cell = exact_cell(args.input)
-    brush = brush_of(args.brush) or find_brush(preparation.DEFAULT_BRUSH)
+    brush = brush_of(args.brush) or find_brush(DEFAULT_BRUSH)
     with about(args.output):
         post = writer.post_for(suffix_of(args.output), cell)
     with about(cell.name):

@@ -6,8 +6,9 @@ from ...brush.library import brush_names, find_brush
 from ...drawing import read_drawing
 from ...drawing.layout import arrange
 from ...evaluation import report
-from ...pipeline import other_brushes, other_sizes, outputs, preparation
+from ...pipeline import other_brushes, other_sizes, outputs
 from ...pipeline.choices import layout_of, reading_of
+from ...pipeline.options import DEFAULT_BRUSH
 from ...text_summary import summarized
 from ..console import RefusedError, about, stage, tell
 from ..steps.options import options_of, settled, typed
@@ -48,7 +49,7 @@ def report_file(args) -> None:
 
 def _all_brushes(args) -> None:
     # whatever brush the drawing asks for
-    chosen = settled(typed(args, brush=preparation.DEFAULT_BRUSH), args.input)
+    chosen = settled(typed(args, brush=DEFAULT_BRUSH), args.input)
     asked = [*brush_names(), *(name for name in args.brush or () if name not in brush_names())]
     brushes = []
     for name in asked:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from ...machine.cell import Cell
 from ...machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as
 from ...painted.corrections import Correction
-from ...pipeline import choices, preparation
+from ...pipeline import choices
 from ...pipeline.choices import CHOICES, Choices
 from ...pipeline.conversion import of_arm, of_cell
+from ...pipeline.options import Options
 from ..console import about, warn
 from .output_places import suffix_of
 
@@ -42,7 +43,7 @@ def exact_cell(name: str | None, tolerance_mm: float | None = None) -> Cell:
     return as_exact_as(cell_of(name), tolerance_mm or DEFAULT_TOLERANCE_MM)
 
 
-def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> preparation.Options:
+def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:
     with about(""):  # errors name the brush, cell or file
         return choices.options_of(chosen, cell, brush)
 

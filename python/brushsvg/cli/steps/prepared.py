@@ -13,13 +13,12 @@ from ...machine.paint_reload import PlanInLoads, in_loads, too_long, visits
 from ...machine.program import Walked
 from ...pipeline import prediction, preparation
 from ...pipeline.choices import Choices, without_effect
+from ...pipeline.work import Work
 from ..console import about, stage, warn
 from .options import options_of
 
 
-def prepare(
-    chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False, plan=None
-) -> preparation.Work:
+def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False, plan=None) -> Work:
     """plan: what the input holds, where that is a file of another kind."""
     warn(chosen.input, without_effect(chosen))
     options = options_of(chosen, cell, brush)
@@ -32,7 +31,7 @@ class Looked:
     """marks: of the strokes, or of the loads where those are looked at; walk: of the loads, None where no stroke is
     left; forbidden: which of the warnings forbid to run a program: to someone who looks they only warn."""
 
-    work: preparation.Work
+    work: Work
     loads: PlanInLoads
     marks: object
     walk: Walked | None

@@ -1,0 +1,81 @@
+"""Strokes to a plan as options ask for, and strokes begun where the tool may be."""
+
+from __future__ import annotations
+
+from copy import copy
+
+from .. import _core
+from ..machine.paint_reload import in_loads
+from ..machine.preflight import within_limits
+from ..machine.program import POSES_KEPT, Job
+from .options import Options
+from .work import Known
+
+
+def compensation_by(brush, sheet_mm, options: Options, stage=lambda text: None):
+    """What compensates strokes, by default as the options ask for, or in closed form where that is to be refined."""
+    first = "closed" if options.compensation == "refined" else options.compensation
+
+    def compensated(some, method=first):
+        return _core.compensate(
+            some,
+            brush,
+            sheet_mm,
+            method,
+            options.tolerance_mm,
+            options.lag_mm,
+            options.speed_mm_s,
+            progress=lambda now, all_: stage(f"compensated {now} of {all_} strokes"),
+            start=options.start,
+            end=options.end,
+        )
+
+    return compensated
+
+
+def begun_within_reach(
+    painted: list, brush, plan, compensated, options: Options, stage
+) -> tuple[list, Known | None]:
+    """The strokes, those plain that choose how they begin or end, cannot be run as they chose, and can plain: lifted,
+    or hidden or exposed as well. A hidden beginning is landed on the far side, from where the tool may not be, and its
+    round front may be wider than what is wanted; at a squared beginning or end the tool runs aside. The list itself
+    where there are none. And what was found of the plan, where that was asked and is little enough to be kept.
+    """
+
+    def tried(of) -> Known:
+        loads = in_loads(of, brush, options.cell)
+        marks = _core.simulate(
+            of, brush, progress=lambda now, all_: stage(f"simulated {now} of {all_} strokes")
+        )
+        walk = within_limits(loads, brush, marks, options.cell, Job(options.z_offset_mm))
+        return Known(copy(of), marks, walk)
+
+    def astray(of: Known) -> set[str]:
+        return {problem.where for problem in of.walk.problems}
+
+    choosing = [stroke for stroke in painted if "auto" in _ends(stroke, options)]
+    if not choosing:
+        return painted, None
+    whole = tried(plan)
+    left = {stroke.id for stroke in choosing} & astray(whole)
+    found = {}
+    lifted = {"end": "lifted"}
+    for plain in (lifted, {"start": "hidden"}, {**lifted, "start": "hidden"}, {**lifted, "start": "exposed"}):
+        some = {stroke.id: _plain(stroke, options, plain) for stroke in choosing if stroke.id in left}
+        fits = some.keys() - astray(tried(compensated(list(some.values())).plan)) if some else set()
+        found |= {name: some[name] for name in fits}
+        left -= fits
+    is_little = sum(len(run.poses_mm) for run in plan.passes) <= POSES_KEPT
+    fitting = [found.get(stroke.id, stroke) for stroke in painted] if found else painted
+    return fitting, whole if is_little and not found else None
+
+
+def _ends(stroke, options: Options) -> tuple[str, str]:
+    return stroke.settings.start or options.start, stroke.settings.end or options.end
+
+
+def _plain(stroke, options: Options, plain: dict[str, str]):
+    """The stroke as it is told to begin and end, where it would choose."""
+    said = {name: getattr(stroke.settings, name) or getattr(options, name) for name in plain}
+    chosen = {name: plain[name] for name, value in said.items() if value == "auto"}
+    return stroke.replaced(settings=stroke.settings.replaced(**chosen))
