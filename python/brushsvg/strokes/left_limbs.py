@@ -30,8 +30,8 @@ def with_left_limbs(
     drawn: list, painted: list, wanted: list, brush, are_corners_filled: bool
 ) -> tuple[list, list, list]:
     """All three lists, with a stroke more for each large blank piece that one paints, of more than 3 % of its shape, or
-    0.5 % where corners are filled too. It comes behind those of its element, and is called as the stroke that it leaves,
-    with a lane of its own.
+    0.5 % where corners are filled too. It comes behind those of its element, and is called as the stroke that it
+    leaves, with a lane of its own.
 
     drawn: strokes as they were found; painted, wanted: as within_reach returns them, strokes to paint and what each
     should become.
@@ -66,8 +66,8 @@ def _without(stroke, element: str, limbs_mm: list[np.ndarray]):
 
 
 def _limbs(element: str, drawn: list, painted: list, brush, least: float) -> list:
-    """Strokes into the blank pieces of an element from such a share of it on, each as often as its others are painted, with the rings of what it
-    paints of the shape, its piece with it, and of the piece."""
+    """Strokes into the blank pieces of an element from such a share of it on, each as often as its others are painted,
+    with the rings of what it paints of the shape, its piece with it, and of the piece."""
     every = [stroke for stroke in painted if stroke.origin.element == element]
     own = [stroke for stroke in every if stroke.origin.repeat == 1]
     if not own:

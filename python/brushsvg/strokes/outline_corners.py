@@ -84,8 +84,9 @@ def _parts(stroke, brush) -> list:
             seen = _seen(parts, wanted, brush)
             return _won(than, seen, stroke.wanted_mm, brush, max(corner.legs_mm)), corner, seen
 
-        tried = [won(replace(corner, on_edge=ways)) for corner in corners for ways in corner.ways_on_edge()]
-        most = max(tried, key=lambda each: each[0])
+        tried = [won(replace(each, on_edge=on_edge)) for each in corners for on_edge in each.ways_on_edge()]
+        highest = max(each[0] for each in tried)
+        most = next(each for each in tried if each[0] >= highest - PLAIN)  # what is tried first strays least
         squared = won(replace(most[1], begins="auto")) if most[0] > 0 else most
         if squared[0] > most[0] + PLAIN:
             most = squared
@@ -111,8 +112,8 @@ def _seen(parts: list, wanted: Wanted, brush) -> _Seen:
 
 
 def _won(whole: _Seen, cut: _Seen, wanted_mm: list, brush, half_mm: float) -> float:
-    """What a mark of parts is nearer to a shape than one of the whole, in squares of the half width; less what it bulges
-    out of it more."""
+    """What a mark of parts is nearer to a shape than one of the whole, in squares of the half width; less what it
+    bulges out of it more."""
     more = BULGES * max(cut.bulge_mm2 - whole.bulge_mm2, 0.0)
     won = (whole.misplaced_mm2 - cut.misplaced_mm2 - more) / half_mm**2
     if abs(won - WORTH) > PLAIN:

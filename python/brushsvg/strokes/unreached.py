@@ -187,9 +187,7 @@ def missed(drawn: list, painted: list, traces: list, known: list[Blank], brush) 
     return found
 
 
-def may_miss(
-    rings: list[np.ndarray], marks, brush, share: float, known: list[list[np.ndarray]] = ()
-) -> bool:
+def may_miss(rings: list[np.ndarray], marks, brush, share: float, known: list[list[np.ndarray]] = ()) -> bool:
     """Whether `blank_of_mark` may find anything, beside pieces whose rings are known: a look in pixels, which takes a
     tenth of the time of outlines."""
     least = share * _core.area(rings)
