@@ -27,7 +27,7 @@ REACH = 5.0  # half widths of the wider leg: no corner lies farther on
 LIKE, OFF = 0.25, 0.1  # of an outline, to be a leg's edge: its slope at most, and how far off, in half widths
 ROOM = 0.95  # of a half width: edges are not quite straight
 WORTH = 0.15  # two strokes for one, in squares of the half width: the outer corner of 90 degrees has 0.21
-BULGES = 3.0  # how many times what sticks out of the shape counts more: the eye minds it more
+BULGES = 6.0  # how many times what sticks out of the shape counts more: the eye minds it more
 PLAIN = 0.04  # beside that, what is won is plain in pixels: they are off by 0.013 at most (257 corners of characters)
 HARDLY_WIDER = 1.05  # than the brush: what is wider yet may be painted in passes
 
