@@ -51,6 +51,7 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .machine.writer import write_program
     from .pictures.marks_png import marks_png
     from .pictures.marks_svg import marks_svg
+    from .pipeline.checking import Check, check
     from .pipeline.conversion import Conversion, convert
     from .pipeline.json_files import read_marks, read_plan
     from .strokes.corners import lifted_at_corners
@@ -81,6 +82,8 @@ _HOME = {
     "new_brush": "calibration.from_widths",
     "calibrate": "calibration.from_file",
     "chart": "calibration.chart.layout",
+    "Check": "pipeline.checking",
+    "check": "pipeline.checking",
     "Conversion": "pipeline.conversion",
     "convert": "pipeline.conversion",
     "Batch": "batch.run",
@@ -128,6 +131,7 @@ __all__ = [
     "Batch",
     "Brush",
     "Cell",
+    "Check",
     "Compensated",
     "Conversion",
     "Error",
@@ -149,6 +153,7 @@ __all__ = [
     "calibrate",
     "cell_names",
     "chart",
+    "check",
     "compensate",
     "convert",
     "coverage",

@@ -242,6 +242,7 @@ ARGUMENTS = {
     "Cell": [],
     "Compensated": [],
     "Conversion": [],
+    "Check": [],
     "Error": [["a sentence", *TEXTS], ["", *NUMBERS], [None, *NUMBERS], [None, *NUMBERS]],
     "Footprint": [[3.0, *NUMBERS], [[[0, 0], [4, -2], [6, 0], [4, 2]], [], [[NAN, 0]] * 3, [[1e300, 0]] * 3]],
     "FootprintTable": [
@@ -292,6 +293,10 @@ ARGUMENTS = {
         [0.05, *NUMBERS],
         [None, *NUMBERS],
         [20.0, *NUMBERS],
+    ],
+    "check": [
+        lambda: [sound_program(), FOLDER / "d.svg", *PATHS],
+        lambda: [None, *designs(), *plans(), *PATHS],
     ],
     "convert": [lambda: [FOLDER / "d.svg", *designs(), *plans(), *PATHS], [None, FOLDER / "o.ngc", *PATHS]],
     "coverage": [
@@ -380,6 +385,11 @@ ARGUMENTS = {
     "laws.tip_offset": [ANGLES, WAYS, WAYS],
     "write_program": [[FOLDER / "p.ngc", *PATHS], plans, brushes, ["", *TEXTS], cells],
 }
+
+
+def sound_program():
+    brushsvg.convert(FOLDER / "d.svg", FOLDER / "sound.ngc")
+    return FOLDER / "sound.ngc"
 
 
 def read_options():

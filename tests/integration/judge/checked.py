@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import types
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from brushsvg import _core
@@ -12,7 +13,7 @@ from brushsvg.cli.arguments.parser import parse
 from brushsvg.cli.commands import check as command
 from brushsvg.cli.commands import convert_file
 from brushsvg.cli.console import RefusedError
-from brushsvg.pipeline import outputs
+from brushsvg.pipeline import checking, choices, outputs, preparation
 from brushsvg.pipeline.work import Work
 
 CRASHED = "this should not happen"
@@ -34,15 +35,22 @@ def quick_check():
     What it prepares of a drawing is kept, the figures that it tells are not made: neither decides what it refuses.
     """
     known: dict[tuple, Work] = {}
-    cells: dict[tuple, object] = {}
+    cells: dict[str, object] = {}
     asked: dict[tuple, object] = {}
-    names = "prepare", "exact_cell", "tell", "outputs", "report"
-    whole = {name: getattr(command, name) for name in names}
+    before = {
+        checking: {name: getattr(checking, name) for name in ("preparation", "cell_of", "outputs")},
+        command: {name: getattr(command, name) for name in ("tell", "report")},
+    }
 
-    def prepare(chosen, cell, brush):
-        key = (repr(chosen), cell.name, brush.name)
+    def prepare(source, options, stage):
+        key = (
+            str(source),
+            repr(replace(options, cell=None, brush=None)),
+            options.cell.name,
+            options.brush.name,
+        )
         if key not in known:
-            known[key] = whole["prepare"](chosen, cell, brush)
+            known[key] = preparation.prepare(source, options, stage)
         work, plan = known[key], known[key].plan
         work = copy.copy(work)  # a plan may be put in another order
         object.__setattr__(
@@ -50,10 +58,10 @@ def quick_check():
         )
         return work
 
-    def exact_cell(name, tolerance_mm):
-        if (name, tolerance_mm) not in cells:
-            cells[name, tolerance_mm] = whole["exact_cell"](name, tolerance_mm)
-        return cells[name, tolerance_mm]
+    def cell_of(name):
+        if name not in cells:
+            cells[name] = choices.cell_of(name)
+        return cells[name]
 
     def refusals(*words) -> list[str]:
         if words not in asked:
@@ -66,14 +74,15 @@ def quick_check():
             return [f"{CRASHED}: {type(mistake).__name__} {mistake}"]
         return []
 
-    command.prepare, command.exact_cell, command.tell = prepare, exact_cell, lambda text: None
-    command.outputs = types.SimpleNamespace(notes=outputs.notes, reported=lambda *_, **__: None)
-    command.report = types.SimpleNamespace(as_text=lambda *_: "")
+    checking.preparation, checking.cell_of = types.SimpleNamespace(prepare=prepare), cell_of
+    checking.outputs = types.SimpleNamespace(notes=outputs.notes, reported=lambda *_, **__: None)
+    command.tell, command.report = lambda text: None, types.SimpleNamespace(as_text=lambda *_: "")
     try:
         yield refusals
     finally:
-        for name, before in whole.items():
-            setattr(command, name, before)
+        for module, names in before.items():
+            for name, value in names.items():
+                setattr(module, name, value)
 
 
 def put(path: Path, text: str) -> Path:

@@ -7,7 +7,7 @@ from ...machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as
 from ...painted.corrections import Correction
 from ...pipeline import choices
 from ...pipeline.choices import CHOICES, Choices
-from ...pipeline.conversion import of_arm, of_cell
+from ...pipeline.conversion import of_cell
 from ...pipeline.options import Options
 from ..console import about, warn
 from .output_places import suffix_of
@@ -38,9 +38,9 @@ def corrections_of(path: str | None) -> tuple[Correction, ...]:
         return choices.corrections_of(path)
 
 
-def exact_cell(name: str | None, tolerance_mm: float | None = None) -> Cell:
+def exact_cell(name: str | None) -> Cell:
     """The machine for what is prepared with no Options, which would make it as exact."""
-    return as_exact_as(cell_of(name), tolerance_mm or DEFAULT_TOLERANCE_MM)
+    return as_exact_as(cell_of(name), DEFAULT_TOLERANCE_MM)
 
 
 def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:
@@ -52,7 +52,3 @@ def warn_of_cell(args, cell: Cell) -> None:
     """Of what makes a program less sure than it looks: a paper that nobody taught, an arm that is not followed."""
     if suffix_of(args.output) != ".json":
         warn(cell.name, of_cell(cell))
-
-
-def warn_of_arm(cell: Cell) -> None:
-    warn(cell.name, of_arm(cell))

@@ -1,0 +1,107 @@
+"""brushsvg.check: what the command does, in one call from Python."""
+
+import json
+from concurrent.futures import CancelledError
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from diagnostics import in_json, is_told, refused
+
+import brushsvg
+
+PAGE = '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">{}</svg>'
+LINE = '<path id="{}" d="M{} 40 C40 10 60 10 {} 30" fill="none" stroke="black" stroke-width="{}"/>'
+TWO = PAGE.format(LINE.format("a", 20, 90, 3) + LINE.format("b", 30, 100, 4))
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    """A folder with a drawing and its program."""
+    monkeypatch.chdir(tmp_path)
+    Path("two.svg").write_text(TWO)
+    brushsvg.convert("two.svg", "two.ngc")
+    return tmp_path
+
+
+def test_a_sound_program_with_its_drawing(desk):
+    made = brushsvg.convert("two.svg", figures=True)
+    found = brushsvg.check("two.ngc", "two.svg")
+    assert (found.job, found.problems, found.is_compared, found.is_foreign) == ("painting", (), True, False)
+    assert found.time_s == pytest.approx(made.time_s, abs=0.01)
+    assert found.figures.total.overlap == pytest.approx(made.figures.total.overlap, abs=1e-3)
+    for ours, theirs in zip(found.plan.passes, made.plan.passes, strict=True):
+        assert np.abs(ours.poses_mm[-1] - theirs.poses_mm[-1]).max() < 2e-3
+
+
+def test_it_says_what_the_command_says(desk, capsys):
+    lines = Path("two.ngc").read_text().splitlines(keepends=True)
+    Path("short.ngc").write_text("".join(line for line in lines if not line.startswith("G2 ")))
+    status, _, told = in_json(capsys, "check", "short.ngc", "two.svg")
+    found = brushsvg.check("short.ngc", "two.svg")
+    assert status == 1 and found.problems
+    assert {problem.code for problem in found.problems} == {each.code for _, each in told}
+
+    _, output, _ = in_json(capsys, "check", "two.ngc", "two.svg", "--json")
+    alone = brushsvg.check(desk / "two.ngc")
+    assert not alone.is_compared
+    told = json.loads(output)["total"]["overlap"]
+    assert brushsvg.check("two.ngc", "two.svg").figures.total.overlap == pytest.approx(told, abs=1e-3)
+
+
+def test_notices_are_returned_and_not_printed(desk, capsys):
+    white = LINE.format("w", 20, 90, 3).replace("black", "white")
+    Path("white.svg").write_text(PAGE.format(white))
+    brushsvg.convert("white.svg", "white.ngc")
+    found = brushsvg.check("white.ngc", "white.svg")
+    assert found.notices and capsys.readouterr() == ("", "")
+    assert is_told(found.notices, "white-paint", "w")
+
+
+def test_a_program_of_others_paints_with_a_brush(desk):
+    Path("pen.ngc").write_text("G21 G90\nG0 Z5\nG0 X20 Y20\nG1 Z-3 F600\nG1 X80 Y20\nG0 Z5\nM2\n")
+    found = brushsvg.check("pen.ngc", sheet=(120, 60))
+    assert found.is_foreign and found.time_s is None and len(found.plan.passes) == 1
+    assert brushsvg.check("pen.ngc", sheet=(120, 21)).problems[0].code == "mark-off-sheet"
+    with refused("nothing-to-compare"):
+        brushsvg.check("pen.ngc", "two.svg")
+
+
+def test_a_program_before_the_first_stroke(desk, capsys):
+    assert in_json(capsys, "border", "two.svg", "border.ngc")[0] == 0
+    found = brushsvg.check("border.ngc", "two.svg")
+    left, bottom, right, top = found.border_mm
+    assert (found.job, found.problems, found.plan, found.figures) == ("border", (), None, None)
+    assert 15 < left < 25 < 90 < right < 120 and 10 < bottom < top < 60
+    moved = TWO.replace("M20 40", "M5 50")
+    Path("moved.svg").write_text(moved)
+    assert is_told(brushsvg.check("border.ngc", "moved.svg").problems, "border-elsewhere")
+
+
+def test_what_cannot_be_read_or_changes_nothing_is_refused(desk):
+    with refused("file-unreadable") as caught:
+        brushsvg.check("none.ngc")
+    assert caught.value.file == "none.ngc"
+    with refused("flag-without-effect", "tolerance"):
+        brushsvg.check("two.ngc", "two.svg", tolerance=0.2)
+    with refused("options-contradict", "corrections"):
+        brushsvg.check("two.ngc", corrections="c.json")
+    Path("bad.svg").write_text("<svg")
+    with refused("not-xml") as caught:
+        brushsvg.check("two.ngc", "bad.svg")
+    assert caught.value.file == "bad.svg"
+
+
+def test_an_open_drawing_and_a_plan(desk):
+    design = brushsvg.read_drawing("two.svg")
+    assert brushsvg.check("two.ngc", design).problems == ()
+    made = brushsvg.convert("two.svg", "two.json")
+    assert brushsvg.check("two.ngc", made.plan).problems == ()
+    other = replace(design, elements=design.elements[:1])
+    assert brushsvg.check("two.ngc", other).problems
+
+
+def test_it_is_given_up(desk):
+    with pytest.raises(CancelledError):
+        brushsvg.check("two.ngc", "two.svg", cancel=lambda: True)
