@@ -10,10 +10,9 @@ from ..errors import Error
 from .trial_mark import outline_of, trial_mark, trial_marks
 from .unreached import MISSED_SHARE, Blank, blank_of_mark, elements_with_blanks, finest, may_miss
 
-# What of a shape a blank piece is at least: a limb, or a corner that one sees. And what discs leave where a mark leaves
-# as much.
-_LIMB_SHARE, _CORNER_SHARE = MISSED_SHARE, 0.005
-_BY_DISCS = {_LIMB_SHARE: 0.02, _CORNER_SHARE: 0.002}
+# What of a shape a corner is at least that one sees, and in squares of the brush's greatest half width: smaller ones in
+# each stroke of a character would take a third more strokes. What discs leave where a mark leaves as much as that.
+_CORNER_SHARE, _CORNER, _BY_DISCS = 0.005, 0.1, 0.4
 # Of a blank piece, what its stroke paints of the shape less what it paints beside it: else it is not worth its poses.
 _WORTH = 0.4
 # By how many full turns the outline of a mark may turn more for a piece that is a smaller share of its shape: a stroke
@@ -29,15 +28,21 @@ _SWEPT_MM = 0.02
 def with_left_limbs(
     drawn: list, painted: list, wanted: list, brush, are_corners_filled: bool
 ) -> tuple[list, list, list]:
-    """All three lists, with a stroke more for each large blank piece that one paints, of more than 3 % of its shape, or
-    0.5 % where corners are filled too. It comes behind those of its element, and is called as the stroke that it
-    leaves, with a lane of its own.
+    """All three lists, with a stroke more for each large blank piece that one paints: of more than 3 % of its shape, or
+    0.5 % where corners are filled too and the brush is not too large for that. It comes behind those of its element,
+    and is called as the stroke that it leaves, with a lane of its own.
 
     drawn: strokes as they were found; painted, wanted: as within_reach returns them, strokes to paint and what each
     should become.
     """
-    least = _CORNER_SHARE if are_corners_filled else _LIMB_SHARE
-    for element in elements_with_blanks(drawn, painted, brush, _BY_DISCS[least]):
+    corner_mm2 = _CORNER * brush.half_width_range_mm()[1] ** 2
+
+    def least(shape: list[np.ndarray]) -> float:
+        """The share of a shape from which on its pieces count."""
+        share = max(_CORNER_SHARE, corner_mm2 / _core.area(shape))
+        return min(share, MISSED_SHARE) if are_corners_filled else MISSED_SHARE
+
+    for element in elements_with_blanks(drawn, painted, brush, lambda shape: _BY_DISCS * least(shape)):
         limbs = _limbs(element, drawn, painted, brush, least)
         if limbs:
             meant = [limb.replaced(wanted_mm=own_mm) for limb, own_mm, _ in limbs]
@@ -65,8 +70,8 @@ def _without(stroke, element: str, limbs_mm: list[np.ndarray]):
     return stroke.replaced(wanted_mm=rings_of(left)) if left.area > 0 else stroke
 
 
-def _limbs(element: str, drawn: list, painted: list, brush, least: float) -> list:
-    """Strokes into the blank pieces of an element from such a share of it on, each as often as its others are painted,
+def _limbs(element: str, drawn: list, painted: list, brush, least) -> list:
+    """Strokes into the blank pieces of an element from the least share on, each as often as its others are painted,
     with the rings of what it paints of the shape, its piece with it, and of the piece."""
     every = [stroke for stroke in painted if stroke.origin.element == element]
     own = [stroke for stroke in every if stroke.origin.repeat == 1]
@@ -75,18 +80,19 @@ def _limbs(element: str, drawn: list, painted: list, brush, least: float) -> lis
     shape = _core.unite(
         [ring for stroke in drawn if stroke.origin.element == element for ring in stroke.wanted_mm]
     )
+    share = least(shape)
     try:
         marks = trial_marks(own, brush)
     except Error:
         return []  # which is told when the plan is made
-    if not may_miss(shape, marks, brush, least):
+    if not may_miss(shape, marks, brush, share):
         return []
     mark = outline_of(marks, brush)
     limbs: list = []
     refused: list[Blank] = []
     while len(limbs) + len(refused) < _MOST:
         known = [*mark, *(ring for piece in refused for ring in piece.rings)]
-        piece = next(iter(blank_of_mark(element, shape, known, brush, least)), None)
+        piece = next(iter(blank_of_mark(element, shape, known, brush, share)), None)
         if piece is None:
             break
         ways = [

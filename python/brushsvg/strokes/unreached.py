@@ -53,12 +53,13 @@ def unreached(drawn: list, painted: list, brush) -> list[Blank]:
     ]
 
 
-def elements_with_blanks(drawn: list, painted: list, brush, share: float) -> list[str]:
-    """The elements of whose shapes discs leave a piece of more than such a share, in a corner too."""
+def elements_with_blanks(drawn: list, painted: list, brush, share) -> list[str]:
+    """The elements of whose shapes discs leave a piece, in a corner too, of more than the share that it makes of their
+    rings."""
     return [
         element
         for element, rings, strokes in _shapes(drawn, painted, brush)
-        if _left_by_discs(rings, strokes, share * _core.area(rings), finest(brush))
+        if _left_by_discs(rings, strokes, share(rings) * _core.area(rings), finest(brush))
     ]
 
 
