@@ -17,15 +17,18 @@ Ours twice: `edges` is what `brushsvg calibrate` does, `overlap` what it does wi
 with the same laws to the largest mean of `fixed` and `shift`, with footprints held round as long as the strokes do not
 speak against it. Numbers: lag 2, tip gap 1, half width 2, the footprint's shape 2, height of the paper 1, the set's
 displacement 2 (at one depth lag 1, half width 1, no height); `edges` also a shift for each fitted stroke. --machine:
-for `edges` as well, lean 2, axes 3. `overlap` always looks for lean, 2 (none at one depth), and a map of the ways, 4.
+for `edges` as well, lean 2, axes 3. What `overlap` changes is chosen by fitted strokes that are left out in turn:
+nothing; a dragged disc; laws (at one depth lag 2); those with lean, 2 (none at one depth), and a map of the ways, 4;
+those with a lever of the file's tilt, 2.
 
 First comes what can be had at all. Two strokes of nearly equal commands overlap less than 1: they are carried on to
 equal commands along a straight line in the way's and the depth's distance. What each misses to the other lies between
 both; a model that is right about the mean of many such strokes misses 1/sqrt(2) of it. --ceilings prints no more.
 
---tilt: the same brush with the tool tilted as the file says, once `overlap` is fitted. Which way a positive tilt leans
-the file does not say: all four are tried, as a tilted plan is simulated. Then a lever of two numbers, found on the
-strokes fitted: the mark lies lever tan(tilt) elsewhere, as of a tool that turns about another point than its tip.
+--tilt: the same brush with the tool tilted as the file says, once `overlap` is fitted, without its lever. Which way a
+positive tilt leans the file does not say: all four are tried, as a tilted plan is simulated. Then a lever of two
+numbers, found on the strokes fitted: the mark lies lever tan(tilt) elsewhere, as of a tool that turns about another
+point than its tip.
 """
 
 from __future__ import annotations
@@ -33,7 +36,7 @@ from __future__ import annotations
 import argparse
 import time
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -45,15 +48,10 @@ from scipy.optimize import minimize
 
 from brushsvg import _core
 from brushsvg.calibration import machine_found
-from brushsvg.calibration.by_overlap import (
-    Target,
-    best_shift,
-    largest_overlap,
-    on_paper,
-    predicted,
-    soft_overlap,
-)
+from brushsvg.calibration.by_overlap_report import chosen_in_words
 from brushsvg.calibration.from_marks import brush_of
+from brushsvg.calibration.overlap_choice import best_predicting
+from brushsvg.calibration.overlap_search import Begin, Target, best_shift, on_paper, predicted, soft_overlap
 from brushsvg.cli.arguments import values
 from brushsvg.scan.mask_contours import mask_outlines
 
@@ -262,13 +260,19 @@ def fit_disc(strokes, lag_terms) -> np.ndarray:
 # Ours -----------------------------------------------------------------------------------------------
 
 
-def fit_ours(strokes, name, machine=()):
-    painted = []
-    for k, stroke in enumerate(strokes):
+def painted_marks(strokes, ways) -> list:
+    """As the fit of marks takes them; a stroke without paint has none."""
+    out = []
+    for k, (stroke, way) in enumerate(zip(strokes, ways, strict=True)):
         left, bottom, _, height = stroke.window
         rings = mask_outlines(stroke.paint, LEVEL, stroke.px, (left, bottom + height))
         if rings:
-            painted.append(_core.PaintedMark(str(k), stroke.poses, rings))
+            out.append(_core.PaintedMark(str(k), way, rings))
+    return out
+
+
+def fit_ours(strokes, name, machine=()):
+    painted = painted_marks(strokes, [stroke.poses for stroke in strokes])
     options = _core.MarkOptions()
     depths = np.concatenate([s.poses[:, 2] for s in strokes])
     options.deepest_mm = float(-depths.min()) or 1.0
@@ -285,10 +289,12 @@ def fit_ours(strokes, name, machine=()):
 
 def by_overlap(strokes, fit, options):
     """What `calibrate --aim overlap` makes of the edges' fit: a fit of the same kind, and what is said of it."""
+    strokes = [stroke for stroke in strokes if stroke.mask.any()]
     targets = [_target(stroke, fit) for stroke in strokes]
+    marks = painted_marks(strokes, [target.poses_mm for target in targets])
     options = copy(options)
     machine_found.ask_for(options, ("lean", "axes"))
-    found = largest_overlap(targets, fit.laws, fit.height_mm, options, fit.shift_mm)
+    found = best_predicting(marks, targets, Begin(fit.laws, fit.height_mm, fit.shift_mm), options)
     changed = {name: getattr(found, name) for name in ("laws", "height_mm", "shift_mm", "led")}
     return _like(fit, **changed), found
 
@@ -321,7 +327,7 @@ def _coarse(stroke: Stroke) -> tuple[np.ndarray, tuple]:
 
 def _target(stroke: Stroke, fit) -> Target:
     paint, window = _coarse(stroke)
-    return Target(_as_run(stroke, fit), paint, window, 0.5 / stroke.px)
+    return Target(_as_run(stroke, fit), paint, window, 0.5 / stroke.px, np.tan(stroke.tilt_rad))
 
 
 def brush_for(strokes, fit, options) -> _core.Brush:
@@ -336,7 +342,7 @@ def _as_run(stroke: Stroke, fit) -> np.ndarray:
     at, depth = poses[:, :2] - fit.centre_mm, np.maximum(fit.height_mm - poses[:, 2:], 0.0)
     poses[:, :2] += np.column_stack([axes[0] * at[:, 0] + axes[2] * at[:, 1], axes[1] * at[:, 1]])
     poses[:, :2] += depth * lean
-    return fit.led.way(poses, fit.height_mm) if hasattr(fit, "led") else poses
+    return fit.led.way(poses, fit.height_mm, np.tan(stroke.tilt_rad)) if hasattr(fit, "led") else poses
 
 
 def _moved(stroke: Stroke, fit) -> _core.Pass:
@@ -355,6 +361,8 @@ def our_marks(strokes, fit, options, led=_moved) -> list[np.ndarray]:
 
 
 def tilt_words(seen, unseen, fit, options):
+    fit = _like(fit, led=replace(fit.led, lever_mm=np.zeros(2)))
+
     def leant(towards):
         def led(stroke, fit):
             one = _moved(stroke, fit)
@@ -440,7 +448,8 @@ def laws_in_words(fit) -> str:
         f"{fit.height_mm:+.2f} mm; shift {fit.shift_mm[0]:+.2f} {fit.shift_mm[1]:+.2f} mm; lean {lean[0]:+.3f} "
         f"{lean[1]:+.3f} mm/mm; scale {1 + axes[0]:.4f} {1 + axes[1]:.4f}, skew {axes[2]:+.4f}"
         + (
-            f"; beside it {np.round(fit.led.lean_mm_per_mm, 3)}, {np.round(fit.led.map, 4)}"
+            f"; beside it {np.round(fit.led.lean_mm_per_mm, 3)}, {np.round(fit.led.map, 4)}, "
+            f"lever {np.round(fit.led.lever_mm, 1)}"
             if hasattr(fit, "led")
             else ""
         )
@@ -541,6 +550,7 @@ def main():
             f"{found.overlap:.3f} on the strokes fitted; {found.numbers} numbers)",
             flush=True,
         )
+        print(f"    {chosen_in_words(found)}")
         if args.tilt and any(stroke.tilt_rad for stroke in strokes):
             for line in tilt_words(seen, unseen, best, options):
                 print(f"    {line}", flush=True)

@@ -2,6 +2,7 @@
 
 import re
 from copy import copy
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
@@ -14,8 +15,9 @@ if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
 import brushsvg  # noqa: E402
-from brushsvg.calibration import by_overlap, machine_found  # noqa: E402
-from brushsvg.calibration.by_overlap_report import report  # noqa: E402
+from brushsvg.calibration import by_overlap, machine_found, overlap_choice  # noqa: E402
+from brushsvg.calibration.by_overlap_report import chosen_in_words, report  # noqa: E402
+from brushsvg.calibration.overlap_search import Begin, Target  # noqa: E402
 
 pytestmark = pytest.mark.long
 
@@ -109,15 +111,133 @@ def machine_beside(made, fit=None):
     machine_found.ask_for(options, ("lean", "axes"))
     edges = SimpleNamespace(brush=made.brush, fit=fit or made.fit)
     targets = [
-        by_overlap._target(*each, edges) for each in zip(made.painted.marks, made.fit.marks, strict=True)
+        by_overlap._target(by_overlap._seen(*each, edges), edges)
+        for each in zip(made.painted.marks, made.fit.marks, strict=True)
     ]
-    return by_overlap.largest_overlap(targets, made.fit.laws, made.fit.height_mm, options)
+    return overlap_choice.largest_overlap(targets, Begin(made.fit.laws, made.fit.height_mm), options)
 
 
 def test_the_report_says_lean_and_map_of_edges_and_overlap_together():
     lean, by_map = (0.3, -0.2), ((0.02, 0.01), (0.0, -0.02))
     _, marks = painted(ASIDE_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
-    text = report(brushsvg.calibrate(marks, "b", aim="overlap", machine=("lean", "axes")))
+    made = brushsvg.calibrate(marks, "b", machine=("lean", "axes"))
+    text = report(by_overlap._calibrated(made, machine_beside(made)))
     said = {line.split(":")[0]: NUMBER.findall(line) for line in text.splitlines()}
     assert np.array(said["lean"][:2], float) == pytest.approx(lean, abs=0.08)
     assert np.array(said["ways"][:4], float) == pytest.approx(np.ravel(by_map), abs=0.006)
+
+
+def test_edges_that_know_the_machine_predict_best_and_keep_their_intervals():
+    lean, by_map = (0.3, -0.2), ((0.02, 0.01), (0.0, -0.02))
+    _, marks = painted(ASIDE_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
+    made = brushsvg.calibrate(marks, "b", aim="overlap", machine=("lean", "axes"))
+    assert made.found.kind == "edges"
+    assert all(made.brush.lag.half_interval_95)
+    assert np.array(made.brush.covariance).size
+    text = report(made)
+    assert "chosen: what edges told" in text
+    assert "no intervals" not in text
+
+
+def targets_of(strokes, brush, aside=lambda k: np.zeros(2), leant=lambda k: 0.0):
+    """What the brush paints, each mark moved, without faults of edges."""
+    faults = painter.Faults(0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+    sheet = painter.paint(np.random.default_rng(1), brush, strokes, faults, painter.swept)
+    out = []
+    for k, (_, poses, rings) in enumerate(sheet.marks):
+        moved = [np.asarray(ring) + aside(k) for ring in rings]
+        seen = np.vstack([poses[:, :2], *moved])
+        corner, size = seen.min(axis=0) - 12.0, np.ceil(2 * np.ptp(seen, axis=0) + 48.0) / 2
+        window = (*corner.tolist(), *size.tolist())
+        out.append(Target(np.asarray(poses), core.coverage(moved, window, 2.0), window, 2.0, leant(k)))
+    return out
+
+
+def round_brush(lag) -> painter.TrueBrush:
+    return painter.TrueBrush(
+        4.0, np.array(lag), np.array([0, 0.6]), np.array([0, 0.6, 0.0]), 1.0, 1.0, round_tail=True
+    )
+
+
+def laws(brush, lag) -> object:
+    return core.MarkLaws(lag, brush.tip_gap.tolist(), brush.half_width.tolist(), 1.0, 1.0, True)
+
+
+def told(brush) -> object:
+    options = core.MarkOptions()
+    options.deepest_mm, options.displacement_mm = brush.deepest, 1.5
+    options.height_mm = core.Prior(0.0, 0.0)
+    return options
+
+
+def test_at_one_depth_the_lag_at_the_touch_comes_back_from_how_marks_end():
+    # a lift draws the mark on by 4 mm; held to the lag of the depth, it drew none
+    found = by_one_depth(round_brush([2.0, 1.0]))
+    assert found(0.0) == pytest.approx(2.0, abs=0.8)
+    assert found(4.0) == pytest.approx(6.0, abs=0.3)
+
+
+def by_one_depth(brush):
+    """The lag by marks painted at the greatest depth, set down and lifted on the spot."""
+    strokes = [
+        (name, np.column_stack([poses[:, :2], np.full(len(poses), -brush.deepest)]))
+        for name, poses in painter.chart_strokes(brush.deepest, 2)
+    ]
+    begin = Begin(laws(brush, [float(brush.law("lag")(brush.deepest))]), 0.0)
+    found = overlap_choice.largest_overlap(targets_of(strokes, brush), begin, told(brush))
+    return np.polynomial.Polynomial(found.laws.lag)
+
+
+def test_the_lever_of_a_tilted_tool_comes_back():
+    brush, lever = round_brush([1.0, 1.0]), np.array([12.0, -7.0])
+    strokes = painter.chart_strokes(brush.deepest, 2)
+    leant = 0.1 * np.random.default_rng(2).standard_normal(len(strokes))
+    targets = targets_of(strokes, brush, lambda k: leant[k] * lever, lambda k: leant[k])
+    found = overlap_choice.largest_overlap(targets, Begin(laws(brush, [1.0, 1.0]), 0.0), told(brush))
+    assert found.kind == "lever"
+    assert found.led.lever_mm == pytest.approx(lever, abs=1.5)
+
+
+def test_what_is_changed_is_what_predicts_marks_that_had_no_part_and_the_report_says_so():
+    # lean that edges are not asked for: laws alone cannot make up for it on marks left out
+    brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 3)
+    lean, moved = np.array([0.9, -0.7]), np.random.default_rng(4).normal(0, 0.3, (len(strokes), 2))
+    led = [(name, poses + np.pad(-poses[:, 2:] * lean, ((0, 0), (0, 1)))) for name, poses in strokes]
+    targets = [
+        replace(target, poses_mm=poses)
+        for target, (_, poses) in zip(targets_of(led, brush, lambda k: moved[k]), strokes, strict=True)
+    ]
+    marks = [
+        core.PaintedMark(name, poses, outlines(target))
+        for (name, poses), target in zip(strokes, targets, strict=True)
+    ]
+    options = told(brush)
+    options.height_mm = core.Prior(0.0, 0.2)
+    options.lag_terms, options.half_width_terms, options.round_tail = 2, 2, True
+    options.widest_per_half, options.turn_rad = core.Prior(1.0, 0.4), 0.0
+    machine_found.ask_for(options, ("lean",))
+    found = overlap_choice.best_predicting(marks, targets, Begin(laws(brush, [1.0, 1.0]), 0.0), options)
+    assert found.kind == "machine"
+    assert found.led.lean_mm_per_mm == pytest.approx(lean, abs=0.15)
+    assert sum(found.left_out["machine"]) > sum(found.left_out["laws"]) + 0.02
+    assert "chosen: laws, footprint and machine" in chosen_in_words(found)
+
+
+def outlines(target):
+    from brushsvg.scan.mask_contours import mask_outlines
+
+    left, bottom, _, height = target.window_mm
+    paint = np.uint8(np.round(255 * target.paint))
+    return mask_outlines(paint, 127, 1 / target.px_per_mm, (left, bottom + height))
+
+
+def test_of_few_marks_it_is_not_known_what_predicts():
+    brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 1)
+    targets = targets_of(strokes, brush)
+    marks = [
+        core.PaintedMark(name, poses, outlines(target))
+        for (name, poses), target in zip(strokes, targets, strict=True)
+    ]
+    found = overlap_choice.best_predicting(marks, targets, Begin(laws(brush, [1.0, 1.0]), 0.0), told(brush))
+    assert (found.kind, found.parts, found.left_out) == ("laws", 0, {})
+    assert "too few" in chosen_in_words(found)

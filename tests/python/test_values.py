@@ -316,10 +316,17 @@ VALUES_OF = {
         brushsvg.convert(read(f'<path id="a" d="M30 {y}h20" fill="none" stroke="red" stroke-width="2"/>'))
         for y in (30, 31)
     ],
+    "Check": lambda folder: [checked(folder, 30), checked(folder, 31)],
     "Batch": lambda _: [brushsvg.Batch((), 0, ()), brushsvg.Batch((), 1, ("a.csv",))],
     "Calibration": lambda folder: [calibrated(folder), calibrated(folder, 0.1)],
 }
 NAMES = {each if isinstance(each, str) else each.__name__: values for each, values in VALUES_OF.items()}
+
+
+def checked(folder, y):
+    line = read(f'<path id="a" d="M30 {y}h20" fill="none" stroke="red" stroke-width="2"/>')
+    brushsvg.convert(line, folder / f"{y}.ngc")
+    return brushsvg.check(folder / f"{y}.ngc", line)
 
 
 def another(value, name):

@@ -7,11 +7,15 @@ import numpy as np
 from ..brush.describe import LAWS, polynomial
 from ..brush.plot import brush_picture
 from .mark_report import TABLE_ROWS, overlaps
+from .mark_report import report as of_edges
+from .mark_report import report_picture as picture_of_edges
 
 
 def report(made) -> str:
     """The text that `brushsvg calibrate --aim overlap` prints. made: by_overlap.OverlapCalibration."""
     brush, edges, found = made.brush, made.by_edges, made.found
+    if found.kind == "edges":
+        return of_edges(edges) + chosen_in_words(found) + "\n"
     lines = [
         f"brush {brush.name}, depth {brush.depth_range_mm[0]:g} to {brush.depth_range_mm[1]:g} mm, from "
         f"{len(edges.painted.marks)} painted marks, to the largest overlap",
@@ -30,6 +34,7 @@ def report(made) -> str:
     lines += [
         "  in brackets: by edges, which calibrate without --aim overlap writes, with intervals",
         "",
+        chosen_in_words(found),
         f"the paper lies {abs(found.height_mm):.2f} mm {way} than the plan took it to be "
         f"({edges.fit.height_mm:+.2f} mm by edges)",
         f"painted and predicted marks overlap by {now_lying:.3f} where they lie, by {now_moved:.3f} with the "
@@ -38,6 +43,29 @@ def report(made) -> str:
         "no intervals: those of the edges' fit do not hold for these laws",
     ]
     return "\n".join([*lines, ""])
+
+
+KINDS = {
+    "edges": "what edges told",
+    "disc": "a dragged disc",
+    "laws": "laws and footprint",
+    "machine": "laws, footprint and machine",
+    "lever": "those and the lever of a tilted tool",
+}
+
+
+def chosen_in_words(found) -> str:
+    """What the search was to change, and why: found is overlap_choice.Predicting."""
+    if not found.left_out:
+        return (
+            f"changed: {KINDS[found.kind]}; the marks are too few to be parted, so whether that predicts further ones "
+            "better than edges do is not known"
+        )
+    told = "; ".join(f"{KINDS[kind]} {sum(both) / 2:.3f}" for kind, both in found.left_out.items())
+    return (
+        f"chosen: {KINDS[found.kind]}, since so marks that had no part in the fit overlap most, each of {found.parts} "
+        f"parts predicted by the others (mean of where they lie and where each may move): {told}"
+    )
 
 
 def _machine(edges, led) -> list[str]:
@@ -60,5 +88,7 @@ def _machine(edges, led) -> list[str]:
 
 
 def report_picture(made, suffix: str) -> bytes:
-    """The laws, without bands."""
+    """The laws, without bands where edges alone were not chosen."""
+    if made.found.kind == "edges":
+        return picture_of_edges(made.by_edges, suffix)
     return brush_picture(made.brush, suffix)

@@ -97,8 +97,8 @@ def add_calibrate(commands) -> None:
         "--aim",
         choices=("edges", "overlap"),
         default="edges",
-        help="of painted marks: fit the edges of the usual mark, or go on from there to the largest overlap, which "
-        "predicts further marks best and has no intervals; default: edges",
+        help="of painted marks: fit the edges of the usual mark, or go on from there to the largest overlap, if that "
+        "predicts marks left out better; it has no intervals; default: edges",
     )
     fit.add_argument(
         "--norm",
