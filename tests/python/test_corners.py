@@ -10,7 +10,7 @@ from brushsvg import _core, find_brush
 from brushsvg.__main__ import main
 from brushsvg.pipeline.options import Options
 from brushsvg.pipeline.preparation import prepare
-from brushsvg.strokes import corners
+from brushsvg.strokes import corners, outline_corners
 from brushsvg.strokes.corners import lifted_at_corners
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.outline_corners import squared_at_corners
@@ -202,6 +202,41 @@ def test_the_flag_of_a_serif_is_thinner_than_its_stem_and_their_corner_is_filled
 
     assert _core.area(_core.intersect(corner, stroke.wanted_mm)) == pytest.approx(16, abs=0.1)
     assert bare_mm2([flag, stem]) < 0.25 * bare_mm2([stroke])
+
+
+FEET = ["M17 5H25V45H12V42.3H17Z", "M17 5H25V45H14.2V43H17Z"]
+FLAG_AND_FOOT = "M12 5H25V19.3H30V22H17V7.7H12Z"
+
+
+@pytest.mark.parametrize(("d", "thin"), [(FEET[0], [1]), (FEET[1], [1]), (FLAG_AND_FOOT, [0, 2])])
+def test_a_stem_and_its_serifs_are_strokes_along_their_edges_that_fill_their_corners(brush, d, thin):
+    """Serifs were led aslant, since the axis of one as short bends all along, and began pointed amid the corner; the
+    thinner one was not cut, since its line turns by less than 50 degrees there."""
+    whole = of(d, FILL)
+    parts = squared_at_corners(whole, brush)
+    assert (len(whole), len(parts)) == (1, 1 + len(thin))
+    for k in thin:
+        cubics = parts[k].middle_mm
+        onward = cubics[:, 6:] - cubics[:, :2]
+        along = onward[np.hypot(*onward.T).argmax()]
+        assert abs(along[1]) < 0.02 * abs(along[0])
+    assert_is_whole(whole[0], parts, brush)
+
+
+def test_two_corners_of_one_leg_take_no_more_of_it_than_there_is(brush, monkeypatch):
+    """Each looked for its straight leg up to the other one: the stem ran back, and a round blot stuck out beside it."""
+    whole = of(FLAG_AND_FOOT, FILL)
+    monkeypatch.setattr(outline_corners, "AWAY", 2.4)
+    parts = squared_at_corners(whole, brush)
+    assert len(parts) == 3
+    assert_is_whole(whole[0], parts, brush)
+
+
+def assert_is_whole(stroke, parts, brush):
+    """Nothing that one sees is missing, or sticks out."""
+    shape, mark = region(stroke.wanted_mm), region(trial_mark(parts, brush))
+    assert mark.difference(shape.buffer(0.3)).area < 0.05
+    assert shape.difference(mark).buffer(-0.3).buffer(0.3).area < 0.002 * shape.area
 
 
 def test_bends_and_shapes_wider_than_the_brush_stay_one_stroke(brush):

@@ -23,9 +23,9 @@ APEX = [(20, 16), (30, 3), (30, 50), (22, 50), (22, 16)]
 BLOCK = [(20, 5), (28, 5), (28, 30), (20, 30)]
 
 
-def prepared(tmp_path, corners, attributes="", **options):
+def prepared(tmp_path, outline, attributes="", **options):
     file = tmp_path / "p.svg"
-    points = " ".join(f"{x} {y}" for x, y in corners)
+    points = " ".join(f"{x} {y}" for x, y in outline)
     file.write_text(SVG.format(attributes, f"M{points}Z"))
     return prepare(file, Options(**options))
 
@@ -52,6 +52,22 @@ def test_no_limb_of_a_thick_stem_is_lost(tmp_path, corners, compensation):
     share, fits = blank(corners, predict(work))
     assert share < 0.03 or not fits
     assert not work.unreached and not work.missed and not work.notices
+
+
+TAIL = [(20, 5), (28, 5), (28, 36), (29, 40), (32, 44.5), (25, 45), (21, 44), (20, 41)]
+
+
+def test_a_corner_that_one_sees_is_painted_unless_strokes_shall_end_and_turn_plainly(tmp_path):
+    """1.3 % of the shape, the tail of a foot, as Lobster's R has it: pieces counted from 3 % on."""
+    work = prepared(tmp_path, TAIL)
+    assert [stroke.id for stroke in work.strokes] == ["p", "p~2"]
+    share, _ = blank(TAIL, predict(work))
+    assert share < 0.005
+    for plain in ({"end": "lifted"}, {"start": "exposed"}, {"corners": "turn"}):
+        work = prepared(tmp_path, TAIL, **plain)
+        assert [stroke.id for stroke in work.strokes] == ["p"]
+    share, _ = blank(TAIL, predict(work))
+    assert share > 0.01
 
 
 def test_without_its_stroke_it_would_be(tmp_path):

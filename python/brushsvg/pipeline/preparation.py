@@ -148,9 +148,14 @@ def _found(design: Design, brush, options: Options) -> tuple[list, list[Notice]]
         notices += joints
     if options.corners == "auto" and _leads(options):
         strokes = lifted_at_corners(strokes, brush)
-        if (options.start, options.end) == ("auto", "auto"):
+        if _fills_corners(options):
             strokes = squared_at_corners(strokes, brush)
     return strokes, notices
+
+
+def _fills_corners(options: Options) -> bool:
+    """Whether strokes may begin, end and turn as fills the corners of a shape."""
+    return (options.start, options.end, options.corners) == ("auto", "auto", "auto")
 
 
 def _within_reach(found: list, brush, options: Options, partly: bool) -> _Lines:
@@ -163,7 +168,7 @@ def _within_reach(found: list, brush, options: Options, partly: bool) -> _Lines:
     painted, wanted, notices = within_reach(strokes, brush, options.wide)
     drawn = list(found)
     if _leads(options):
-        drawn, painted, wanted = with_left_limbs(drawn, painted, wanted, brush)
+        drawn, painted, wanted = with_left_limbs(drawn, painted, wanted, brush, _fills_corners(options))
     return _Lines(drawn, painted, wanted, notices, refused, left_out)
 
 

@@ -8,13 +8,16 @@ import numpy as np
 from .. import _core
 from ..errors import Error
 from .trial_mark import outline_of, trial_mark, trial_marks
-from .unreached import Blank, blank_of_mark, finest, large_blanks, may_miss
+from .unreached import MISSED_SHARE, Blank, blank_of_mark, elements_with_blanks, finest, may_miss
 
+# What of a shape a corner is at least that one sees, and in squares of the brush's greatest half width: smaller ones in
+# each stroke of a character would take a third more strokes. What discs leave where a mark leaves as much as that.
+_CORNER_SHARE, _CORNER, _BY_DISCS = 0.005, 0.1, 0.4
 # Of a blank piece, what its stroke paints of the shape less what it paints beside it: else it is not worth its poses.
 _WORTH = 0.4
 # By how many full turns the outline of a mark may turn more for a piece that is a smaller share of its shape: a stroke
 # into a knob along its stem makes a blob, which the eye minds more.
-_CALM_TURNS, _SMALL_SHARE = 0.9, 0.06
+_CALM = (0.03, 0.7), (0.06, 0.9)
 _MOST = 4  # strokes added to an element: a logo of one path may have many limbs
 _ROUND = -0.85  # half width won per length where a limb ends round or square: there its line ends
 _EVEN_MM = 0.1
@@ -22,15 +25,25 @@ _SMOOTHED = 0.03  # of the half width, as middle lines of shapes
 _SWEPT_MM = 0.02
 
 
-def with_left_limbs(drawn: list, painted: list, wanted: list, brush) -> tuple[list, list, list]:
-    """All three lists, with a stroke more for each large blank piece that one paints. It comes behind those of its
-    element, and is called as the stroke that it leaves, with a lane of its own.
+def with_left_limbs(
+    drawn: list, painted: list, wanted: list, brush, are_corners_filled: bool
+) -> tuple[list, list, list]:
+    """All three lists, with a stroke more for each large blank piece that one paints: of more than 3 % of its shape, or
+    0.5 % where corners are filled too and the brush is not too large for that. It comes behind those of its element,
+    and is called as the stroke that it leaves, with a lane of its own.
 
     drawn: strokes as they were found; painted, wanted: as within_reach returns them, strokes to paint and what each
     should become.
     """
-    for element in dict.fromkeys(piece.element for piece in large_blanks(drawn, painted, brush)):
-        limbs = _limbs(element, drawn, painted, brush)
+    corner_mm2 = _CORNER * brush.half_width_range_mm()[1] ** 2
+
+    def least(shape: list[np.ndarray]) -> float:
+        """The share of a shape from which on its pieces count."""
+        share = max(_CORNER_SHARE, corner_mm2 / _core.area(shape))
+        return min(share, MISSED_SHARE) if are_corners_filled else MISSED_SHARE
+
+    for element in elements_with_blanks(drawn, painted, brush, lambda shape: _BY_DISCS * least(shape)):
+        limbs = _limbs(element, drawn, painted, brush, least)
         if limbs:
             meant = [limb.replaced(wanted_mm=own_mm) for limb, own_mm, _ in limbs]
             limbs_mm = [ring for _, _, blank_mm in limbs for ring in blank_mm]
@@ -57,9 +70,9 @@ def _without(stroke, element: str, limbs_mm: list[np.ndarray]):
     return stroke.replaced(wanted_mm=rings_of(left)) if left.area > 0 else stroke
 
 
-def _limbs(element: str, drawn: list, painted: list, brush) -> list:
-    """Strokes into the blank pieces of an element, each as often as its others are painted, with the rings of what it
-    paints of the shape, its piece with it, and of the piece."""
+def _limbs(element: str, drawn: list, painted: list, brush, least) -> list:
+    """Strokes into the blank pieces of an element from the least share on, each as often as its others are painted,
+    with the rings of what it paints of the shape, its piece with it, and of the piece."""
     every = [stroke for stroke in painted if stroke.origin.element == element]
     own = [stroke for stroke in every if stroke.origin.repeat == 1]
     if not own:
@@ -67,18 +80,19 @@ def _limbs(element: str, drawn: list, painted: list, brush) -> list:
     shape = _core.unite(
         [ring for stroke in drawn if stroke.origin.element == element for ring in stroke.wanted_mm]
     )
+    share = least(shape)
     try:
         marks = trial_marks(own, brush)
     except Error:
         return []  # which is told when the plan is made
-    if not may_miss(shape, marks, brush):
+    if not may_miss(shape, marks, brush, share):
         return []
     mark = outline_of(marks, brush)
     limbs: list = []
     refused: list[Blank] = []
     while len(limbs) + len(refused) < _MOST:
         known = [*mark, *(ring for piece in refused for ring in piece.rings)]
-        piece = next(iter(blank_of_mark(element, shape, known, brush)), None)
+        piece = next(iter(blank_of_mark(element, shape, known, brush, share)), None)
         if piece is None:
             break
         ways = [
@@ -87,8 +101,8 @@ def _limbs(element: str, drawn: list, painted: list, brush) -> list:
         ]
         tried = [(_won(mark, limb, shape, brush), limb) for limb in ways if limb is not None]
         area_mm2 = _core.area(piece.rings)
-        if area_mm2 < _SMALL_SHARE * _core.area(shape):
-            most = _core.excess_turning(mark, shape) + _CALM_TURNS
+        if calm := [turns for share, turns in _CALM if piece.share < share]:
+            most = _core.excess_turning(mark, shape) + calm[0]
             tried = [each for each in tried if _core.excess_turning(each[0][2], shape) < most]
         nothing = (0.0, [], mark), None
         (won_mm2, own_mm, both_mm), limb = max(tried, key=lambda each: each[0][0], default=nothing)
@@ -156,7 +170,9 @@ def _limb_towards(place: np.ndarray, piece: Blank, own: list, shape: list[np.nda
     area = region(shape)
     halves = np.where(shapely.intersects(area, points), shapely.distance(area.boundary, points), 0.0)
     is_out = at > np.hypot(*(np.array(piece.at_mm) - root))
+    reach_mm = ((np.vstack(piece.rings) - root) @ onward).max() / to_place  # beyond, others have painted
     is_end = (halves < finest(brush)) | (is_out & (np.gradient(halves, at) < _ROUND))
+    is_end |= is_out & (at + halves > reach_mm)
     count = int(is_end.argmax()) if is_end.any() else len(at)
     if count < 3:
         return None

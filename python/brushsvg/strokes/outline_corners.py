@@ -4,7 +4,7 @@ line that ends square in the corner, and one that begins on what that painted, f
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,11 +12,11 @@ from ..errors import need
 from ..geometry.arc_length import knots, parameters_at
 from ..geometry.cubics import split
 from .corners import Line, drawn_line, line_stroke
-from .trial_mark import misplaced_mm2, misplaced_seen_mm2, trial_marks
+from .trial_mark import Wanted, misplaced_mm2, trial_marks
 
 # Turns of less are bends, of more a way back over what was painted. Beyond SHARP_RAD two legs lie side by side: a first
 # one that runs square into the corner would stick out of the shape there, so the second begins square.
-LEAST_RAD, SHARP_RAD, MOST_RAD = np.radians(50), np.radians(120), np.radians(150)
+LEAST_RAD, SHARP_RAD, MOST_RAD = np.radians(40), np.radians(120), np.radians(150)
 # In half widths: how far from its corner a line is as straight as its leg, and how long a leg is at least, in which
 # a square end has room.
 AWAY, FARTHER, LEG = 1.2, 2.4, 2.0
@@ -24,8 +24,10 @@ STUB = 0.2  # and of how little of a leg its direction is known
 # A first leg so much thinner than the second hides no pointed beginning of that; but a squared one its end.
 THIN = 0.65
 REACH = 5.0  # half widths of the wider leg: no corner lies farther on
+LIKE, OFF = 0.25, 0.1  # of an outline, to be a leg's edge: its slope at most, and how far off, in half widths
 ROOM = 0.95  # of a half width: edges are not quite straight
 WORTH = 0.15  # two strokes for one, in squares of the half width: the outer corner of 90 degrees has 0.21
+BULGES = 6.0  # how many times what sticks out of the shape counts more: the eye minds it more
 PLAIN = 0.04  # beside that, what is won is plain in pixels: they are off by 0.013 at most (257 corners of characters)
 HARDLY_WIDER = 1.05  # than the brush: what is wider yet may be painted in passes
 
@@ -63,61 +65,97 @@ def _parts(stroke, brush) -> list:
     turning = [k for k in range(1, len(line.cubics)) if LEAST_RAD < line.turn_rad(k) < MOST_RAD]
     length_mm = knots(line.cubics)[:, -1].sum()
     ends_mm = [0.0, *(line.at[k] * length_mm for k in turning), length_mm]
+    last = len(turning) - 1
     ways = [
-        [way for away in (AWAY, FARTHER) if (way := _corner(line, *ends, away))]
-        for ends in zip(ends_mm, ends_mm[1:], ends_mm[2:], strict=False)
+        [way for away in (AWAY, FARTHER) if (way := _corner(line, *ends, away, (k > 0, k < last)))]
+        for k, ends in enumerate(zip(ends_mm, ends_mm[1:], ends_mm[2:], strict=False))
     ]
     if not any(ways):
         return [stroke]
-    whole = trial_marks([_paintable(stroke, brush)], brush)
-    better = []
-    for corners in ways:
-        for corner in corners:
-            parts = _cut(stroke, line, [corner])
-            if parts:
-                cut = trial_marks([_paintable(part, brush) for part in parts], brush)
-                if _won(whole, cut, stroke.wanted_mm, brush, max(corner.legs_mm)) > WORTH:
-                    better.append(corner)
-                    break
+    wanted = Wanted(stroke.wanted_mm)
+    better: list[_Corner] = []
+    best = _seen([stroke], wanted, brush)
+    for corners in filter(None, ways):
+
+        def won(corner: _Corner, than: _Seen = best) -> tuple[float, _Corner, _Seen]:
+            parts = _cut(stroke, line, [*better, corner])
+            if not parts:
+                return 0.0, corner, than
+            seen = _seen(parts, wanted, brush)
+            return _won(than, seen, stroke.wanted_mm, brush, max(corner.legs_mm)), corner, seen
+
+        tried = [won(replace(each, on_edge=on_edge)) for each in corners for on_edge in each.ways_on_edge()]
+        highest = max(each[0] for each in tried)
+        most = next(each for each in tried if each[0] >= highest - PLAIN)  # what is tried first strays least
+        squared = won(replace(most[1], begins="auto")) if most[0] > 0 else most
+        if squared[0] > most[0] + PLAIN:
+            most = squared
+        if most[0] > WORTH:
+            better.append(most[1])
+            best = most[2]
     return _cut(stroke, line, better) or [stroke] if better else [stroke]
 
 
-def _won(whole, cut, wanted_mm: list, brush, half_mm: float) -> float:
-    """What marks of parts are nearer to a shape than one of the whole, in squares of the half width."""
-    seen = _nearer(misplaced_seen_mm2, whole, cut, wanted_mm, brush) / half_mm**2
-    if abs(seen - WORTH) > PLAIN:
-        return seen
-    return _nearer(misplaced_mm2, whole, cut, wanted_mm, brush) / half_mm**2
+@dataclass(frozen=True)
+class _Seen:
+    """A mark, and how much of it is out of place and bulges out of its shape, in pixels [mm2]."""
+
+    marks: object
+    misplaced_mm2: float
+    bulge_mm2: float
 
 
-def _nearer(misplaced, whole, cut, wanted_mm: list, brush) -> float:
-    return misplaced(whole, wanted_mm, brush) - misplaced(cut, wanted_mm, brush)
+def _seen(parts: list, wanted: Wanted, brush) -> _Seen:
+    marks = trial_marks([_paintable(part, brush) for part in parts], brush)
+    painted = wanted.painted(marks.passes, brush)
+    return _Seen(marks, wanted.misplaced_mm2(painted), wanted.bulge_mm2(painted))
+
+
+def _won(whole: _Seen, cut: _Seen, wanted_mm: list, brush, half_mm: float) -> float:
+    """What a mark of parts is nearer to a shape than one of the whole, in squares of the half width; less what it
+    bulges out of it more."""
+    more = BULGES * max(cut.bulge_mm2 - whole.bulge_mm2, 0.0)
+    won = (whole.misplaced_mm2 - cut.misplaced_mm2 - more) / half_mm**2
+    if abs(won - WORTH) > PLAIN:
+        return won
+    exactly = misplaced_mm2(whole.marks, wanted_mm, brush) - misplaced_mm2(cut.marks, wanted_mm, brush)
+    return (exactly - more) / half_mm**2
 
 
 @dataclass(frozen=True)
 class _Corner:
     """Arc lengths of a corner, and before and after it, where the line is as straight as its legs; half their widths
-    there."""
+    there; how the leg after it begins, where the one before hides that; whether either leg runs on along the outline's
+    edge, and not along its axis."""
 
     at_mm: float
     away_mm: tuple[float, float]
     legs_mm: tuple[float, float]
+    begins: str = "exposed"
+    on_edge: tuple[bool, bool] = (False, False)
+
+    def ways_on_edge(self) -> list[tuple[bool, bool]]:
+        """On neither, on that of the thinner leg, whose axis bends all along where it is short, and on both."""
+        thinner = self.legs_mm[0] < self.legs_mm[1]
+        return [(False, False), (thinner, not thinner), (True, True)]
 
 
-def _corner(line: Line, before_mm: float, at_mm: float, after_mm: float, away: float) -> _Corner | None:
-    """A corner with its legs, up to the next ones, straight from so many half widths beside it on; none where one of
-    them has no room."""
+def _corner(
+    line: Line, before_mm: float, at_mm: float, after_mm: float, away: float, are_shared: tuple[bool, bool]
+) -> _Corner | None:
+    """A corner with its legs, up to the next ones, straight from so many half widths beside it on, of a leg that is
+    shared with the next corner no farther than its middle; none where one of them has no room."""
     lengths = at_mm - before_mm, after_mm - at_mm
     whole_mm = knots(line.cubics)[:, -1].sum()
     (here,) = _halves(line, at_mm / whole_mm)
     looked_at = [min(LEG * here, length_mm / 2) for length_mm in lengths]
     legs = _halves(line, (at_mm - looked_at[0]) / whole_mm, (at_mm + looked_at[1]) / whole_mm)
     away_mm = []
-    for length_mm, half, other in zip(lengths, legs, legs[::-1], strict=True):
+    for length_mm, half, other, is_shared in zip(lengths, legs, legs[::-1], are_shared, strict=True):
         if length_mm < LEG * half:
             return None
         # the thinner one bends towards a corner as far from it as the other is wide
-        away_mm.append(min(away * max(here, other), length_mm - STUB * half))
+        away_mm.append(min(away * max(here, other), (length_mm - STUB * half) / (1 + is_shared)))
     return _Corner(at_mm, (at_mm - away_mm[0], at_mm + away_mm[1]), (legs[0], legs[1]))
 
 
@@ -137,11 +175,16 @@ def _cut(stroke, line: Line, corners: list[_Corner]) -> list:
     legs, left, tip = [], region(stroke.wanted_mm), None
     begin_mm, begun = 0.0, ""
     for each in corners:
+        halves = _halves(line, *(beside_mm / length_mm for beside_mm in each.away_mm))
         first, second = (_at(line, beside_mm) for beside_mm in each.away_mm)
+        outside = np.sign(second[1][0] * first[1][1] - second[1][1] * first[1][0])
+        first, second = (
+            _along_edge(*leg, half, outside, stroke.wanted_mm) if is_on_edge else leg
+            for leg, half, is_on_edge in zip((first, second), halves, each.on_edge, strict=True)
+        )
         corner = _meet(first, second)
         if corner is None:
             return []
-        halves = _halves(line, *(beside_mm / length_mm for beside_mm in each.away_mm))
         sides = _sides(left, corner, first, second, halves, line, (begin_mm, each.at_mm, length_mm))
         if sides is None:
             return []
@@ -156,7 +199,7 @@ def _cut(stroke, line: Line, corners: list[_Corner]) -> list:
         ways = begun, "lifted" if hides_none else ""
         legs.append((begin_mm, each.away_mm[0], tip, end, shapely.union(done, shared), ways))
         left, tip, begin_mm = shapely.union(left, shared), start, each.away_mm[1]
-        begun = "auto" if hides_none else "exposed"
+        begun = "auto" if hides_none else each.begins
     legs.append((begin_mm, length_mm, tip, None, left, (begun, "")))
     return [_leg(stroke, line, number, *leg) for number, leg in enumerate(legs, start=1)]
 
@@ -173,6 +216,22 @@ def _at(line: Line, at_mm: float) -> tuple[np.ndarray, np.ndarray]:
     first, second = split(p, float(t))
     step = second[1] - second[0] if t < 0.5 else first[3] - first[2]
     return second[0], step / np.hypot(*step)
+
+
+def _along_edge(at_mm, along, half_mm: float, side: float, rings: list) -> tuple[np.ndarray, np.ndarray]:
+    """The same place, and the direction of the outline on that side of it, left being 1, where that differs little: the
+    axis of a short leg bends all along."""
+    from .. import _core
+
+    left = side * np.array([-along[1], along[0]])
+    ways_mm = np.array([-0.5, 0.5]) * half_mm
+    places = at_mm + ways_mm[:, None] * along
+    before_mm, after_mm = _core.first_crossings(rings, places, np.tile(left, (2, 1)))
+    slope = (after_mm - before_mm) / half_mm
+    if not abs(slope) < LIKE or abs(before_mm + after_mm - 2 * half_mm) > 2 * OFF * half_mm:
+        return at_mm, along
+    way = along + slope * left
+    return at_mm, way / np.hypot(*way)
 
 
 def _meet(first, second) -> np.ndarray | None:

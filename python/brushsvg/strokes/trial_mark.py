@@ -55,12 +55,6 @@ def misplaced_mm2(marks, rings: list[np.ndarray], brush) -> float:
     return _core.area(mark) + _core.area(rings) - 2 * _core.area(_core.intersect(mark, rings))
 
 
-def misplaced_seen_mm2(marks, rings: list[np.ndarray], brush) -> float:
-    """The same in pixels."""
-    wanted = Wanted(rings)
-    return wanted.misplaced_mm2(wanted.painted(marks.passes, brush))
-
-
 class Wanted:
     """A shape in pixels, how much of each it covers, and the window that they fill."""
 

@@ -16,7 +16,6 @@ LEAST_SHARE = 0.01  # of its shape
 _CORNER = 0.69
 _LIMB_SHARE = 0.8  # of a disc in it, beyond: see shape_to_strokes.LEAST_SHARE
 MISSED_SHARE = 0.03  # of its shape, beside which strokes run: pointed beginnings leave some of every letter
-_DISCS_SHARE = 0.02  # what discs leave where a mark may leave as much as that
 _STILL_BLANK = 0.5  # of a piece: what is left of a corner beside the mark in it is less
 _EDGE_MM = 0.3  # a mark's edge lies beside the shape's by about as much: a thinner sliver is none
 _SWEPT_MM = 0.05
@@ -54,21 +53,22 @@ def unreached(drawn: list, painted: list, brush) -> list[Blank]:
     ]
 
 
-def large_blanks(drawn: list, painted: list, brush) -> list[Blank]:
-    """The same from 2 % of a shape on, corners too: a mark leaves rather more than discs."""
+def elements_with_blanks(drawn: list, painted: list, brush, share) -> list[str]:
+    """The elements of whose shapes discs leave a piece, in a corner too, of more than the share that it makes of their
+    rings."""
     return [
-        _blank(element, piece, _core.area(rings))
+        element
         for element, rings, strokes in _shapes(drawn, painted, brush)
-        for piece in _left_by_discs(rings, strokes, _DISCS_SHARE * _core.area(rings), finest(brush))
+        if _left_by_discs(rings, strokes, share(rings) * _core.area(rings), finest(brush))
     ]
 
 
-def blank_of_mark(element: str, rings: list[np.ndarray], mark: list[np.ndarray], brush) -> list[Blank]:
-    """Pieces of more than 3 % of a shape that a mark leaves, the largest first."""
+def blank_of_mark(
+    element: str, rings: list[np.ndarray], mark: list[np.ndarray], brush, share: float
+) -> list[Blank]:
+    """Pieces of more than such a share of a shape that a mark leaves, the largest first."""
     whole = _core.area(rings)
-    return [
-        _blank(element, piece, whole) for piece in _left(rings, mark, MISSED_SHARE * whole, finest(brush))
-    ]
+    return [_blank(element, piece, whole) for piece in _left(rings, mark, share * whole, finest(brush))]
 
 
 def _shapes(drawn: list, painted: list, brush):
@@ -183,15 +183,15 @@ def missed(drawn: list, painted: list, traces: list, known: list[Blank], brush) 
         marks.passes = on_shapes[element]
         shape = _core.unite([ring for stroke in strokes for ring in stroke.wanted_mm])
         told = [piece.rings for piece in known if piece.element == element]
-        if may_miss(shape, marks, brush, told):
+        if may_miss(shape, marks, brush, MISSED_SHARE, told):
             found += _missed(element, shape, marks, told, brush)
     return found
 
 
-def may_miss(rings: list[np.ndarray], marks, brush, known: list[list[np.ndarray]] = ()) -> bool:
+def may_miss(rings: list[np.ndarray], marks, brush, share: float, known: list[list[np.ndarray]] = ()) -> bool:
     """Whether `blank_of_mark` may find anything, beside pieces whose rings are known: a look in pixels, which takes a
     tenth of the time of outlines."""
-    least = MISSED_SHARE * _core.area(rings)
+    least = share * _core.area(rings)
     return _may_leave(
         rings, lambda *window: _core.coverage(marks, brush, *window), least, finest(brush), known
     )
