@@ -12,7 +12,7 @@ from .unreached import MISSED_SHARE, Blank, blank_of_mark, elements_with_blanks,
 
 # What of a shape a corner is at least that one sees, and in squares of the brush's greatest half width: smaller ones in
 # each stroke of a character would take a third more strokes. What discs leave where a mark leaves as much as that.
-_CORNER_SHARE, _CORNER, _BY_DISCS = 0.005, 0.1, 0.4
+_CORNER_SHARE, _CORNER, _BY_DISCS = 0.005, 0.2, 0.4
 # Of a blank piece, what its stroke paints of the shape less what it paints beside it: else it is not worth its poses.
 _WORTH = 0.4
 # By how many full turns the outline of a mark may turn more for a piece that is a smaller share of its shape: a stroke
