@@ -67,9 +67,8 @@ Root root(double d, double c) {
     return {d * over, over * (1.0 - 0.5 * d * d / s)};
 }
 
-/// A sum of squares, and near which unknowns it is what: f + g^T d + d^T H d / 2.
+/// A sum of squares near some unknowns: f + g^T d + d^T H d / 2.
 struct Near {
-    double value = 0.0;
     VectorXd slope;
     MatrixXd curvature;  ///< J^T J (Gauss, Newton)
 };

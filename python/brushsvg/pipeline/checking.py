@@ -35,6 +35,7 @@ from .cancelling import Cancel
 from .choices import (
     LAYOUT_FLAGS,
     MADE_FLAGS,
+    NAMED_OTHERWISE,
     Choices,
     Given,
     brush_of,
@@ -56,7 +57,6 @@ if TYPE_CHECKING:
 Told = Callable[[str, Iterable[Notice]], object]
 STRAY_MM = 0.02  # what a plan's rounding makes of where its paint ends
 SAID = ("compensation", "tolerance", "lag", "start", "end")  # by the program
-_NAMES = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset"}
 
 
 @dataclass(frozen=True)
@@ -272,7 +272,7 @@ def _foreign(path: str, text: str, chosen: Choices, told: Told) -> Check:
         sentence = "brushsvg did not write it: it paints no drawing that is known; check it alone"
         raise Error(sentence, code="nothing-to-compare")
     for flag in (*LAYOUT_FLAGS, *MADE_FLAGS, "speed", "z-offset", "corrections"):
-        if flag != "sheet" and getattr(chosen, _NAMES.get(flag, flag)):
+        if flag != "sheet" and getattr(chosen, NAMED_OTHERWISE.get(flag, flag)):
             sentence = f"brushsvg did not write it: --{flag} would change nothing"
             raise Error(sentence, code="flag-without-effect")
     cell, brush = cell_of(chosen.cell), brush_of(chosen.brush) or find_brush(DEFAULT_BRUSH)

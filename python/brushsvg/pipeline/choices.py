@@ -19,6 +19,7 @@ from ..painted.corrections import Correction, read_corrections
 from .options import Options
 
 LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
+NAMED_OTHERWISE = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset"}  # flag: choice
 MADE_FLAGS = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end")
 RANGES = {  # the same as a flag's
     "width": (0.001, 1000.0),
@@ -195,7 +196,7 @@ def without_effect(chosen: Choices) -> list[Notice]:
             about=flag,
         )
         for flag in (*LAYOUT_FLAGS, *MADE_FLAGS)
-        if getattr(chosen, {"as": "paths_as"}.get(flag, flag)) is not None
+        if getattr(chosen, NAMED_OTHERWISE.get(flag, flag)) is not None
     ]
 
 
