@@ -509,6 +509,27 @@ def test_damaged_fonts_give_a_sentence_or_a_drawing(ttf):
     assert {"WOFF" in each.sentence for each in told} == {False, True}
 
 
+@pytest.mark.parametrize(
+    ("tag", "at", "becomes", "said"),
+    [
+        ("head", 18, b"\0\0", "font-damaged head 0 16 16384"),
+        ("head", 18, b"\x40\x01", "font-damaged head 16385 16 16384"),
+        ("head", None, b"", "font-damaged head missing 16 16384"),
+        ("hhea", 34, b"\0\0", "font-damaged hmtx 'widths of 0 glyphs'"),
+        ("hhea", None, b"", "font-damaged hmtx 'widths of 0 glyphs'"),
+        ("hmtx", None, b"", "font-damaged hmtx 'widths of 0 glyphs'"),
+    ],
+)
+def test_a_font_that_does_not_say_how_large_it_is_is_refused(ttf, tag, at, becomes, said):
+    """HarfBuzz would set it, at 1000 units to the em, or each letter an em wide."""
+    row = next(k for k in range(12, len(ttf), 16) if ttf[k : k + 4] == tag.encode())
+    offset = struct.unpack(">L", ttf[row + 8 : row + 12])[0]
+    start = row if at is None else offset + at
+    becomes = becomes or b"zzzz"  # the table is called otherwise
+    with refused(said):
+        text_svg("AV", ttf[:start] + becomes + ttf[start + len(becomes) :])
+
+
 def outcome(font):
     try:
         ET.fromstring(text_svg("AVfi o", font)[0])

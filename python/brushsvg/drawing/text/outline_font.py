@@ -18,6 +18,7 @@ from ..design import Notice, SubPath
 from .setting import Placed, Setting
 
 _UNPACKED = 200_000_000  # bytes: the largest fonts there are, of all Chinese characters, take a fifth of it
+_UNITS = (16, 16384)  # to the em, of the format
 _NOTICE = "its letters are outlines, which become strokes as filled shapes do"
 
 
@@ -36,6 +37,7 @@ class _Setter:
         face = hb.Face(data)
         if not face.glyph_count:
             raise Error("this is a damaged font: it holds no glyphs that can be read", code="font-damaged")
+        _refuse_unmeasured(face)
         self.font = hb.Font(face)
         self.mm_per_unit = size_mm / face.upem
         self.shapes: dict[int, tuple[SubPath, ...]] = {}
@@ -72,6 +74,28 @@ class _Setter:
             contours = (np.array(contour).reshape(-1, 4, 2) * to_mm for contour in pen.contours if contour)
             self.shapes[glyph] = tuple(SubPath(cubics, closed=True) for cubics in contours)
         return self.shapes[glyph]
+
+
+def _refuse_unmeasured(face: hb.Face) -> None:
+    """Where a font does not say how large its em is or how far its letters go, HarfBuzz takes numbers of its own."""
+    head, hhea, hmtx = (face.reference_table(tag).data or b"" for tag in ("head", "hhea", "hmtx"))
+    units = int.from_bytes(head[18:20], "big") if len(head) >= 20 else None
+    if units is None or not _UNITS[0] <= units <= _UNITS[1]:
+        raise Error(
+            f"this is a damaged font: units per em, {'missing' if units is None else units}, is outside the range "
+            f"[{_UNITS[0]}, {_UNITS[1]}]",
+            "head",
+            units,
+            _UNITS,
+            code="font-damaged",
+        )
+    widths = int.from_bytes(hhea[34:36], "big") if len(hhea) >= 36 else 0
+    if not 0 < 4 * widths <= len(hmtx):
+        sentence = (
+            f"this is a damaged font: it has the widths of {min(widths, len(hmtx) // 4)} glyphs, and should have those of "
+            f"{widths or face.glyph_count}"
+        )
+        raise Error(sentence, "hmtx", code="font-damaged")
 
 
 class _Cubics(BasePen):
