@@ -119,6 +119,20 @@ def need_number(value, what: str, least: float, greatest: float) -> float:
     return number
 
 
+def need_truth(value, what: str) -> None:
+    """Error for what is neither True nor False: the text "no" would count as yes."""
+    if not isinstance(value, bool) and getattr(getattr(value, "dtype", None), "kind", "") != "b":
+        raise Error(
+            f"{type(value).__name__} {str(value)[:40]!r} is not True or False, which {what} is",
+            code="wrong-type",
+        )
+
+
+def as_listed(value):
+    """An array of numpy as nested lists, all else as it is: arrays may stand for lists."""
+    return value.tolist() if type(value).__module__ == "numpy" and hasattr(value, "tolist") else value
+
+
 def need_one_of(value, choices: tuple, what: str) -> None:
     """Error for what is none of the choices there are."""
     if not any(value is choice or (type(value) is str and value == choice) for choice in choices):

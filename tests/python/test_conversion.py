@@ -13,6 +13,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import ezdxf
+import numpy as np
 import pytest
 import svgpathtools
 from diagnostics import agrees, refused
@@ -152,6 +153,9 @@ def test_what_a_drawing_says_is_heard_as_the_command_hears_it(desk):
         ({"brush": "none"}, "brush-unknown none"),
         ({"cancel": 5}, "wrong-type 5"),
         ({"progress": 5}, "wrong-type 5"),
+        ({"lenient": "no"}, "wrong-type no True lenient"),
+        ({"figures": 2}, "wrong-type 2 True figures"),
+        ({"join": "false"}, "wrong-type false True join"),
     ],
 )
 def test_what_it_cannot_do_is_one_sentence_and_nothing_is_written(desk, choices, said):
@@ -160,6 +164,18 @@ def test_what_it_cannot_do_is_one_sentence_and_nothing_is_written(desk, choices,
     assert [path.name for path in desk.iterdir()] == ["two.svg"]
     code, *numbers = said.split()
     assert code in told.value.code and all(number in str(told.value) + told.value.where for number in numbers)
+
+
+def test_numbers_of_an_array_are_as_those_of_a_list(desk):
+    given = {"sheet": (150, 120), "fit": (60, 40), "origin": (30, 35)}
+    arrays = {name: np.array(pair) for name, pair in given.items()}
+    assert brushsvg.convert("two.svg", **arrays).text == brushsvg.convert("two.svg", **given).text
+    with refused("wrong-type '3 numbers'"):
+        brushsvg.convert("two.svg", sheet=np.zeros(3))
+    lags, widths = [(2, 4), (8, 9)], [(3, 2.5), (8, 7)]
+    assert brushsvg.new_brush("n", np.array(lags), np.array(widths)) == brushsvg.new_brush("n", lags, widths)
+    brush = brushsvg.find_brush("round-6")
+    assert brushsvg.chart(brush, np.array([210, 297])).plan == brushsvg.chart(brush, (210, 297)).plan
 
 
 def test_of_several_reasons_the_others_are_notes(desk):

@@ -15,7 +15,7 @@ from typing import Unpack
 
 from .. import _core
 from ..brush import library
-from ..errors import Error, need, need_number, need_one_of
+from ..errors import Error, need, need_number, need_one_of, need_truth
 from ..files import find_file, read_bytes, write_files
 from ..machine import cell_file
 from ..machine.cell_file import write_cell
@@ -109,6 +109,8 @@ def batch(
     need(items, Iterable, "an iterable of drawings")
     need(items, object if not isinstance(items, str | bytes) else tuple, "a list of drawings")
     listed = given(items)
+    need_truth(lenient, "lenient")
+    need_truth(parquet, "parquet")
     way = _way(chosen_of(None, choices), format, order, bool(lenient))
     folder = Path(out)
     manifest = Manifest(folder)

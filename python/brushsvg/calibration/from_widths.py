@@ -8,7 +8,7 @@ from numbers import Real
 
 from .. import _core
 from ..brush import footprint_shapes
-from ..errors import Error, need, need_number
+from ..errors import Error, as_listed, need, need_number
 from ..laws.fitted import need_fits
 from . import plausibility
 
@@ -43,6 +43,7 @@ def new_brush(
     """
     need_fits()
     need(name, str, "the name of a brush")
+    lag_mm, widths_mm = as_listed(lag_mm), as_listed(widths_mm)
     lags = sorted(_lags(lag_mm)) if isinstance(lag_mm, (list, tuple)) else []
     is_pen = not lags and need_number(lag_mm, "the lag [mm]", -MOST, MOST) == 0
     speed_mm_s = need_number(speed_mm_s, "the speed [mm/s]", -MOST, MOST)

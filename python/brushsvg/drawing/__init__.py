@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 from xml.etree import ElementTree
 
-from ..errors import Error, need, need_number, need_one_of
+from ..errors import Error, need, need_number, need_one_of, need_truth
 from ..files import read_bytes
 from .damage import refuse_damage
 
@@ -51,6 +51,7 @@ def refuse_unusable(options: ReadOptions) -> None:
             need_number(side, "a side of the sheet [mm]", *SIZE_MM)
     if options.units is not None:
         need_one_of(options.units, UNITS, "units")
+    need_truth(options.lenient, "lenient")
     if options.select is not None:
         need(options.select, str, "a text, which select is")
 

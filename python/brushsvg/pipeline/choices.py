@@ -12,7 +12,7 @@ from .. import _core
 from ..brush.library import brush_names, find_brush
 from ..drawing import SIZE_MM, UNITS, ReadOptions, settings_in
 from ..drawing.layout import Layout
-from ..errors import Error, Notice, need, need_number, need_one_of
+from ..errors import Error, Notice, as_listed, need, need_number, need_one_of, need_truth
 from ..machine.cell import Cell
 from ..machine.cell_file import cell_names, find_cell, parse_cell, write_cell
 from ..painted.corrections import Correction, read_corrections
@@ -108,7 +108,7 @@ def checked(chosen: Choices) -> Choices:
         if getattr(chosen, name) is not None:
             need_number(getattr(chosen, name), name, *limits)
     for name, limits in (("sheet", SIZE_MM), ("fit", SIZE_MM), ("origin", (-1e6, 1e6))):
-        pair = getattr(chosen, name)
+        pair = as_listed(getattr(chosen, name))
         if pair is not None:
             need(pair, (tuple, list), f"two numbers, which {name} is")
             if len(pair) != 2:
@@ -116,6 +116,8 @@ def checked(chosen: Choices) -> Choices:
             chosen = replace(
                 chosen, **{name: tuple(need_number(each, f"a number of {name}", *limits) for each in pair)}
             )
+    if chosen.join is not None:
+        need_truth(chosen.join, "join")
     for name in ("layer", "select"):
         given = getattr(chosen, name)
         if name == "layer" and given is not None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from .. import _core
-from ..errors import Error, Notice, lacking, need, need_number, need_one_of
+from ..errors import Error, Notice, lacking, need, need_number, need_one_of, need_truth
 from ..evaluation import report as reports
 from ..files import write_files
 from ..machine import preflight, writer
@@ -126,6 +126,8 @@ def convert(
     for each in formats:
         need(each, str, "an extension, such as '.ngc'")
     need_one_of(order, ORDERS, "order")
+    need_truth(lenient, "lenient")
+    need_truth(figures, "figures")
     need(from_stroke, Integral, "a whole number, which from_stroke is")
     first = int(need_number(from_stroke, "from_stroke", 1, 1e8))
     job = Job(chosen.z_offset or 0.0, first)

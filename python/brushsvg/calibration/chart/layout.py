@@ -18,7 +18,7 @@ import numpy as np
 
 from ... import _core
 from ...brush.perturbed import with_lag
-from ...errors import Error, need, need_number, need_one_of
+from ...errors import Error, as_listed, need, need_number, need_one_of
 from .dabs import HEADINGS_DEG, KIND, dab_depths, dab_poses
 from .painting_order import early_and_late, shallow_to_deep
 
@@ -161,6 +161,7 @@ def chart(
     _core.check(brush)
     if dabs and one_load:
         raise Error("dabs do not tell how marks narrow: one load is for strokes", code="options-contradict")
+    sheet_mm = as_listed(sheet_mm)
     if not isinstance(sheet_mm, (list, tuple)) or len(sheet_mm) != 2:
         raise Error("a sheet is (width, height) in mm", "sheet", code="wrong-type")
     sheet_mm = tuple(
