@@ -79,7 +79,12 @@ set as a whole. start_covered, end_covered: where it meets others of its shape, 
                std::optional<double> tolerance_mm) {
                 const auto& widths = width_mm.values;
                 const py::ssize_t n = points_mm.rows();
-                if (widths.ndim() > 1 || (widths.ndim() == 1 && widths.size() != n))
+                if (widths.ndim() > 1)
+                    throw Error("sizes-differ",
+                                "widths stand in one row, not in an array of " + std::to_string(widths.ndim()) +
+                                    " dimensions: widths.ravel() makes one",
+                                name);
+                if (widths.ndim() == 1 && widths.size() != n)
                     throw Error("sizes-differ",
                                 "a width in mm is needed, or one for each of " + std::to_string(n) + " points, not " +
                                     std::to_string(widths.size()),

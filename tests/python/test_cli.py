@@ -440,6 +440,11 @@ def test_scan_says_that_it_takes_one_picture(desk, capsys):
     assert status == 2 and "one picture" in said
 
 
+def test_compare_with_the_drawing_first_says_where_it_stands(desk, capsys):
+    status, _, (said,) = run(capsys, *"compare drawing.svg photo.jpg".split())
+    assert status == 2 and "stands last" in said and "photo.jpg" in said
+
+
 @pytest.mark.parametrize("command", ["convert a.svg", "border a.svg", "height", "chart"])
 @pytest.mark.parametrize(
     ("out", "flags", "cells"),
