@@ -440,6 +440,24 @@ def test_scan_says_that_it_takes_one_picture(desk, capsys):
     assert status == 2 and "one picture" in said
 
 
+@pytest.mark.parametrize(
+    ("flag", "said"),
+    [
+        ("--origin -5,20", "beyond the left edge"),
+        ("--origin -.5cm,20", "beyond the left edge"),
+        ("--width -3mm", "-3 mm is outside the range"),
+        ("--z-offset -3e3", "outside the range"),
+    ],
+)
+def test_values_below_nothing_are_no_flags(desk, capsys, flag, said):
+    (desk / "a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80">'
+        '<path d="M20 20H60" stroke="#000" stroke-width="4"/></svg>'
+    )
+    status, _, told = run(capsys, "convert", "a.svg", "a.ngc", *flag.split())
+    assert status and said in " ".join(told)
+
+
 def test_compare_with_the_drawing_first_says_where_it_stands(desk, capsys):
     status, _, (said,) = run(capsys, *"compare drawing.svg photo.jpg".split())
     assert status == 2 and "stands last" in said and "photo.jpg" in said

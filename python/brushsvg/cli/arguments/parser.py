@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import functools
+import re
 
 from ..console import say, tell
 from . import brushes, drawings, machines
@@ -21,6 +22,8 @@ class _Parser(argparse.ArgumentParser):
     def __init__(self, **settings):
         # A prefix of a flag is no flag: it would change its meaning as flags are added.
         super().__init__(allow_abbrev=False, **settings)
+        # argparse knows -5 for a value, and takes -5,-5 and -5mm for flags
+        self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def _get_values(self, action, arg_strings):
         # argparse drops "--" wherever it stands: --width=-- would become an empty list
