@@ -278,7 +278,7 @@ def edited_plan(desk, **changes):
     [
         ({"speed_mm_s": 30}, "speed-out-of-range 30 [0.000001, 25.0] round-6"),
         ({"poses_mm": [[30, 30, 0], [200, 30, 0]], "arcs": []}, "tool-off-sheet 50.00 right"),
-        ({"sheet_mm": [120, 20]}, "mark-off-sheet upper"),
+        ({"sheet_mm": [120, 20]}, "mark-off-sheet upper 'make the plan anew'"),
         (
             {"poses_mm": [[30, 30, 0], [50, 30, -12], [60, 30, 0]], "arcs": []},
             "depth-out-of-range 12.000 10.0]",

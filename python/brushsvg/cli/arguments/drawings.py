@@ -156,7 +156,9 @@ def add_compare(commands) -> None:
 
 def _check_compare(args) -> None:
     if suffix_of(args.input) in PHOTOS and any(suffix_of(path) in DRAWINGS for path in args.photos):
-        args.parser.error(f"the drawing or plan stands last, behind the photographs: {args.input} is a photograph")
+        args.parser.error(
+            f"the drawing or plan stands last, behind the photographs: {args.input} is a photograph"
+        )
     check_drawing(args)
     for flag, value in (
         ("mended-cell", args.mended_cell),

@@ -91,9 +91,9 @@ def _refuse_unmeasured(face: hb.Face) -> None:
         )
     widths = int.from_bytes(hhea[34:36], "big") if len(hhea) >= 36 else 0
     if not 0 < 4 * widths <= len(hmtx):
+        there, asked = min(widths, len(hmtx) // 4), widths or face.glyph_count
         sentence = (
-            f"this is a damaged font: it has the widths of {min(widths, len(hmtx) // 4)} glyphs, and should have those of "
-            f"{widths or face.glyph_count}"
+            f"this is a damaged font: it has the widths of {there} glyphs, and should have those of {asked}"
         )
         raise Error(sentence, "hmtx", code="font-damaged")
 
