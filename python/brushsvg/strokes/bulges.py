@@ -20,6 +20,7 @@ _STICKS_OUT_MM2 = 0.03  # of a line's mark; less is a pixel's noise
 _WORTH_MM2 = 0.2  # of faults so counted, won by another way
 _CUTS = (0.0, 0.4, 0.8, 1.5)  # off an end, in half widths
 _THINNER = (0.95, 0.88)
+_BESIDE = 3.0  # a line, in half widths: no way to lead it paints farther out
 _MOST_LINES = 40  # of one shape, that are led otherwise
 
 
@@ -35,9 +36,10 @@ class _Way(NamedTuple):
 
 def mended(
     lines: list[Line], narrow: list, rings: list[np.ndarray], brush, as_stroke: Callable[[int, Line], object]
-) -> list[Line | None]:
+) -> tuple[list[Line | None], np.ndarray, Wanted]:
     """The lines, those that stick out of a shape led back, cut short or made thinner, or None in place of one that is
-    best left out, where marks and shape then differ by less; the first line stays one.
+    best left out, where marks and shape then differ by less, the first line stays one; how much of each pixel is painted then, narrow strokes too, and
+    the shape in these pixels.
 
     narrow: strokes that are painted with them; rings: of the shape; as_stroke: a line as a stroke, by its number.
     """
@@ -50,27 +52,34 @@ def mended(
     for k in np.argsort(-beyond)[:_MOST_LINES].tolist():
         if beyond[k] < _STICKS_OUT_MM2:
             break
-        rest = np.max([each for n, each in enumerate(paint) if n != k] or [np.zeros_like(paint[k])], axis=0)
-        tried = {_Way(): (_faults(wanted, np.maximum(rest, paint[k])), lines[k], paint[k])}
+        where = wanted.pixels_about(
+            lines[k].middle_mm.reshape(-1, 2), _BESIDE * max(h for _, h in lines[k].half_width)
+        )
+        here, own = wanted.only(where), paint[k][where]
+        rest = np.max([each[where] for n, each in enumerate(paint) if n != k] or [np.zeros_like(own)], axis=0)
+        tried = {_Way(): (faults_mm2(here, np.maximum(rest, own)), lines[k], own)}
 
-        def faults(way: _Way, k=k, rest=rest, tried=tried) -> float:
+        def faults(way: _Way, k=k, rest=rest, tried=tried, here=here) -> float:
             if way not in tried:
                 line = _led(lines[k], way, least)
-                painted = _painted(as_stroke(k, line), wanted, brush) if line else None
-                by = math.inf if painted is None else _faults(wanted, np.maximum(rest, painted))
+                painted = painted_by(as_stroke(k, line), here, brush) if line else None
+                by = math.inf if painted is None else faults_mm2(here, np.maximum(rest, painted))
                 tried[way] = (by, line, painted)
             return tried[way][0]
 
         best = min(_ways(lines[k]), key=faults)
         if faults(best) > faults(_Way()) - _WORTH_MM2:
             best = _Way()
-        _, made[k], paint[k] = tried[best]
-        if k > 0 and _faults(wanted, rest) < faults(best) - _WORTH_MM2:
-            made[k], paint[k] = None, np.zeros_like(rest)
-    return made
+        _, made[k], painted = tried[best]
+        if k > 0 and faults_mm2(here, rest) < faults(best) - _WORTH_MM2:
+            made[k], painted = None, np.zeros_like(rest)
+        if painted is not own:
+            paint[k] = np.zeros_like(paint[k])
+            paint[k][where] = painted
+    return made, np.max(paint, axis=0), wanted
 
 
-def _painted(stroke, wanted: Wanted, brush) -> np.ndarray | None:
+def painted_by(stroke, wanted: Wanted, brush) -> np.ndarray | None:
     """What the brush paints of it; None where it cannot."""
     try:
         return wanted.painted(list(trial_marks([stroke], brush).passes), brush)
@@ -78,7 +87,8 @@ def _painted(stroke, wanted: Wanted, brush) -> np.ndarray | None:
         return None
 
 
-def _faults(wanted: Wanted, painted: np.ndarray) -> float:
+def faults_mm2(wanted: Wanted, painted: np.ndarray) -> float:
+    """Area out of place, bulges and notches as often as an eye counts them."""
     return wanted.misplaced_mm2(painted) + _UGLY * (wanted.bulge_mm2(painted) + wanted.notch_mm2(painted))
 
 

@@ -141,6 +141,7 @@ def _mended(filling, overlap: float, strokes: list, brush) -> tuple:
     """The filling without marks that stick out of the shape where other lines help, and how much its mark overlaps with
     it then."""
     from .bulges import mended
+    from .edge_lines import edge_lines
     from .fillings import with_lines
 
     numbers = [(k, lane) for k, of_stroke in filling.passes.items() for lane in range(len(of_stroke))]
@@ -151,12 +152,14 @@ def _mended(filling, overlap: float, strokes: list, brush) -> tuple:
 
     if not overlap:
         return filling, overlap
-    made = mended(lines, filling.narrow, filling.rings, brush, as_stroke)
-    if all(new is old for new, old in zip(made, lines, strict=True)):
+    made, paint, shape = mended(lines, filling.narrow, filling.rings, brush, as_stroke)
+    more = edge_lines(paint, shape, brush, lambda line: as_stroke(0, line))
+    if not more and all(new is old for new, old in zip(made, lines, strict=True)):
         return filling, overlap
     passes: dict[int, list] = {k: [] for k in filling.passes}
     for (k, _), line in zip(numbers, made, strict=True):
         passes[k] += [line] if line else []
+    passes[numbers[0][0]] += more
     kept = with_lines(filling, passes)
     painted = [
         _like(strokes[k], line, lane) for k, some in passes.items() for lane, line in enumerate(some, 1)
@@ -251,6 +254,7 @@ def _like(stroke, line, lane: int = 1):
         wanted_mm=list(line.wanted_mm),
         start_covered=not line.wanted_mm,  # by other passes
         end_covered=not line.wanted_mm,
+        settings=stroke.settings.replaced(start=line.start) if line.start else stroke.settings,
     )
 
 
