@@ -17,10 +17,12 @@ from .trial_mark import SEEN_MM, Wanted
 _CORNER_RAD = np.radians(30)  # there one line ends, and another one begins
 _FLAT_MM = 0.02
 # Half widths of the lines, in those of the brush: as narrow as at square ends, and wider beside deeper notches.
-_NARROW, _WIDER = 0.27, 0.45
+_WIDTHS = (0.27, 0.45, 0.7)
+_AMID = 0.2  # of the brush's half width: a bare piece so far from the edge lies amid paint
 _ON_PAINT = 0.5  # of a line's width lies on paint at least
 _LANDING = 2.5  # in half widths of a line, before a bare place and behind it
 _BESIDE = 4.0  # a line, in half widths: it paints no farther out
+_OVER = 1.3  # times as wide as a piece amid paint is the line across it
 _EVEN_MM = 0.2
 _ROOM = 0.9  # of a line's half width, that the shape has beside it
 _LEAST_MM2 = 0.05  # of a bare place
@@ -38,7 +40,7 @@ def edge_lines(paint: np.ndarray, wanted: Wanted, brush, as_stroke: Callable[[Li
     made: list[Line] = []
     for places in _bare(paint, wanted)[:_MOST]:
         for ways in _beside(places, runs, shape.boundary, brush):
-            best = _best(ways, paint, wanted, brush, as_stroke)
+            best = _best(ways, paint, wanted, brush, as_stroke) if ways else None
             if best is not None:
                 line, painted, where = best
                 made.append(line)
@@ -105,6 +107,9 @@ def _beside(places: np.ndarray, runs: list[_Run], edge, brush) -> Iterator[list[
     off = np.array([shapely.distance(run.line, points) for run in runs])
     nearest = off.argmin(axis=0)
     half = brush.half_width_range_mm()[1]
+    if off.min() > _AMID * half:
+        yield _across(places, half, edge)
+        return
     for k in np.unique(nearest).tolist():
         run, own = runs[k], nearest == k
         deep = float(off[k, own].max()) + SEEN_MM
@@ -114,8 +119,7 @@ def _beside(places: np.ndarray, runs: list[_Run], edge, brush) -> Iterator[list[
             behind = at > run.line.length / 2
             ends = float(at[behind].min()), float(at[~behind].max()) + run.line.length
         lines = []
-        for narrow in (_NARROW, _WIDER):
-            width = narrow * half
+        for width in (share * half for share in _WIDTHS):
             if deep > 2 * (1 - _ON_PAINT) * width:
                 continue
             lines += _along(run, ends, width, edge)
@@ -135,8 +139,29 @@ def _along(run: _Run, ends: tuple[float, float], width: float, edge) -> list[Lin
     places, along = run.at(at)
     middle = places + width * along[:, ::-1] * (-1, 1)
     fits = shapely.distance(edge, shapely.points(middle)) > _ROOM * width
-    if not fits.all():
+    before, behind = np.flatnonzero(~fits & (at < ends[0])), np.flatnonzero(~fits & (at > ends[1]))
+    some = slice(before[-1] + 1 if len(before) else 0, behind[0] if len(behind) else len(at))
+    if not fits[some].all() or len(at[some]) < 4:
         return []
+    return _both_ways(middle[some], width)
+
+
+def _across(places: np.ndarray, half: float, edge) -> list[Line]:
+    """Lines through a bare piece amid paint, along and across it."""
+    centre = (places.min(axis=0) + places.max(axis=0)) / 2
+    axes = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2] if len(places) > 1 else np.eye(2)
+    lines = []
+    for along, aside in (axes, axes[::-1]):
+        long, wide = np.ptp(places @ along), np.ptp(places @ aside)
+        width = float(np.clip(_OVER * wide / 2, _WIDTHS[0] * half, half))
+        reach = long / 2 + _LANDING * width
+        middle = centre + np.linspace(-reach, reach, max(int(2 * reach / _EVEN_MM), 4))[:, None] * along
+        if (shapely.distance(edge, shapely.points(middle)) > width).all():
+            lines += _both_ways(middle, width)
+    return lines
+
+
+def _both_ways(middle: np.ndarray, width: float) -> list[Line]:
     rows = np.column_stack([middle, np.full(len(middle), width)])
     return [Line(*_core.fit_curve(way, FITTED * width), start="exposed") for way in (rows, rows[::-1])]
 
