@@ -27,7 +27,7 @@ _EVEN_MM = 0.2
 _ROOM = 0.9  # of a line's half width, that the shape has beside it
 _LEAST_MM2 = 0.05  # of a bare place
 _MOST = 40  # bare places of one shape
-_WORTH_MM2 = 1.0  # of faults, counted as for passes led otherwise
+_WORTH_MM2 = 0.5  # of faults, counted as for passes led otherwise
 
 
 def edge_lines(paint: np.ndarray, wanted: Wanted, brush, as_stroke: Callable[[Line], object]) -> list[Line]:
@@ -52,7 +52,7 @@ def _bare(paint: np.ndarray, wanted: Wanted) -> list[np.ndarray]:
     """Places of each bare piece farther inside of a shape than is seen, the largest first [mm]."""
     import scipy.ndimage  # slow to load
 
-    labels, count = scipy.ndimage.label(wanted.nearer - paint > 0.5, np.ones((3, 3)))
+    labels, count = scipy.ndimage.label(wanted.nearer - paint > 0.25, np.ones((3, 3)))
     sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
     found = []
     for k in np.argsort(-sizes).tolist():
