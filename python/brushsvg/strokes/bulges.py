@@ -14,7 +14,8 @@ from ..errors import Error
 from .offset_passes import FITTED, Line
 from .trial_mark import Wanted, trial_marks
 
-_UGLY = 20.0  # a bulge or a notch counts so many times: an edge's raggedness shows more than its being a little off
+# Bulges and notches count so many times: an edge's raggedness shows more than its being a little off.
+_BULGE, _NOTCH = 80.0, 20.0
 _FILLED = 2.0  # a notch where a line along the edge may fill it
 _STICKS_OUT_MM2 = 0.03  # of a line's mark; less is a pixel's noise
 _WORTH_MM2 = 0.2  # of faults so counted, won by another way
@@ -68,7 +69,8 @@ def mended(
         )
         here, own = wanted.only(where), paint[k][where]
         rest = np.max([each[where] for n, each in enumerate(paint) if n != k] or [np.zeros_like(own)], axis=0)
-        tried = {_Way(): (faults_mm2(here, np.maximum(rest, own), _FILLED), lines[k], own)}
+        as_is = _Way(square=bool(lines[k].wanted_mm))
+        tried = {as_is: (faults_mm2(here, np.maximum(rest, own), _FILLED), lines[k], own)}
 
         def faults(way: _Way, k=k, rest=rest, tried=tried, here=here) -> float:
             if way not in tried:
@@ -79,8 +81,8 @@ def mended(
             return tried[way][0]
 
         best = min((_best(lines[k], faults, turned) for turned in (False, True)), key=faults)
-        if faults(best) > faults(_Way()) - _WORTH_MM2:
-            best = _Way()
+        if faults(best) > faults(as_is) - _WORTH_MM2:
+            best = as_is
         _, made[k], painted = tried[best]
         if k > 0 and faults_mm2(here, rest, _FILLED) < faults(best) - _WORTH_MM2:
             made[k], painted = None, np.zeros_like(rest)
@@ -98,11 +100,11 @@ def painted_by(stroke, wanted: Wanted, brush) -> np.ndarray | None:
         return None
 
 
-def faults_mm2(wanted: Wanted, painted: np.ndarray, notches: float = _UGLY) -> float:
+def faults_mm2(wanted: Wanted, painted: np.ndarray, notches: float = _NOTCH) -> float:
     """Area out of place, bulges and notches as often as an eye counts them."""
     return (
         wanted.misplaced_mm2(painted)
-        + _UGLY * wanted.bulge_mm2(painted)
+        + _BULGE * wanted.bulge_mm2(painted)
         + notches * wanted.notch_mm2(painted)
     )
 
@@ -113,15 +115,19 @@ def _best(line: Line, faults: Callable[[_Way], float], turned: bool) -> _Way:
     best = min((_Way(turned, *each) for each in _MARKS if each[0] == bool(line.wanted_mm) or not each[0]), key=faults)
     if line.closed:
         return best
-    best = min((best, *(best._replace(square=False, first=cut) for cut in _ENDS)), key=faults)
-    return min((best, *(best._replace(square=False, last=cut) for cut in _ENDS)), key=faults)
+    for end in ("first", "last"):
+        ways = [best._replace(square=square, **{end: by}) for by in _ENDS for square in {best.square, False}]
+        best = min([best, *ways], key=faults)
+    return best
 
 
 def _led(line: Line, way: _Way, least: float) -> Line | None:
     """The line led so; None where less is left of it than it is wide."""
-    made: Line | None = line if way.square and line.wanted_mm else replace(line, wanted_mm=())
+    made: Line | None = replace(line, wanted_mm=())
     if way.first or way.last:
         made = _with_ends(line, way.first, way.last, least)
+    if made and way.square:
+        made = replace(made, wanted_mm=line.wanted_mm)
     if made and way.width < 1:
         made = replace(made, half_width=[(at, max(least, way.width * h)) for at, h in made.half_width])
     if made and way.exposed:
