@@ -22,11 +22,13 @@ _AMID = 0.2  # of the brush's half width: a bare piece so far from the edge lies
 _ON_PAINT = 0.5  # of a line's width lies on paint at least
 _LANDING = 2.5  # in half widths of a line, before a bare place and behind it
 _BESIDE = 4.0  # a line, in half widths: it paints no farther out
+_AT_TIP, _TIP_MM = 0.4, 0.2  # a bare piece lies in a corner so near to it, in half widths; a line from it begins there
 _OVER = 1.3  # times as wide as a piece amid paint is the line across it
 _EVEN_MM = 0.2
 _ROOM = 0.9  # of a line's half width, that the shape has beside it
 _LEAST_MM2 = 0.05  # of a bare place
 _MOST = 40  # bare places of one shape
+_BULGE_MM2 = 0.01  # that a line may stick out of the shape
 _WORTH_MM2 = 0.5  # of faults, counted as for passes led otherwise
 
 
@@ -36,10 +38,10 @@ def edge_lines(paint: np.ndarray, wanted: Wanted, brush, as_stroke: Callable[[Li
     paint: how much of each of wanted's pixels is painted; as_stroke: a line as a stroke.
     """
     shape = region(wanted.rings)
-    runs = _runs(shape)
+    runs, corners = _runs(shape)
     made: list[Line] = []
     for places in _bare(paint, wanted)[:_MOST]:
-        for ways in _beside(places, runs, shape.boundary, brush):
+        for ways in _beside(places, runs, corners, shape, brush):
             best = _best(ways, paint, wanted, brush, as_stroke) if ways else None
             if best is not None:
                 line, painted, where = best
@@ -83,8 +85,16 @@ class _Run(NamedTuple):
         return (a + b) / 2 + (at_mm - near)[:, None] * along, along
 
 
-def _runs(shape) -> list[_Run]:
-    made = []
+class _Corner(NamedTuple):
+    """A corner of an outline that points outwards, and the direction from it that bisects the shape there."""
+
+    at_mm: np.ndarray
+    inwards: np.ndarray
+
+
+def _runs(shape) -> tuple[list[_Run], list[_Corner]]:
+    """An outline between its corners, and those that point outwards."""
+    made, tips = [], []
     for polygon in shapely.get_parts(shapely.orient_polygons(shape.simplify(_FLAT_MM))):
         for ring in (polygon.exterior, *polygon.interiors):
             points = np.array(ring.coords)[:-1]
@@ -92,24 +102,32 @@ def _runs(shape) -> list[_Run]:
             cross = before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0]
             turns = np.arctan2(cross, (before * edges).sum(axis=1))
             corners = np.flatnonzero(np.abs(turns) > _CORNER_RAD)
+            for k in corners[turns[corners] > 0]:
+                inwards = edges[k] / np.hypot(*edges[k]) - before[k] / np.hypot(*before[k])
+                tips.append(_Corner(points[k], inwards / np.hypot(*inwards)))
             if not len(corners):
                 made.append(_Run(shapely.LineString(np.vstack([points, points[:1]])), None))
                 continue
             for a, b in zip(corners, [*corners[1:], corners[0] + len(points)], strict=True):
                 some = points[np.arange(a, b + 1) % len(points)]
                 made.append(_Run(shapely.LineString(some), (turns[a], turns[b % len(points)])))
-    return made
+    return made, tips
 
 
-def _beside(places: np.ndarray, runs: list[_Run], edge, brush) -> Iterator[list[Line]]:
-    """For each edge that a bare piece lies beside, ways to lead a line along it there."""
-    points = shapely.points(places)
+def _beside(
+    places: np.ndarray, runs: list[_Run], corners: list[_Corner], shape, brush
+) -> Iterator[list[Line]]:
+    """For each corner that a bare piece lies in, and each edge that it lies beside, ways to lead a line there."""
+    points, edge = shapely.points(places), shape.boundary
     off = np.array([shapely.distance(run.line, points) for run in runs])
     nearest = off.argmin(axis=0)
     half = brush.half_width_range_mm()[1]
     if off.min() > _AMID * half:
         yield _across(places, half, edge)
         return
+    for corner in corners:
+        if np.hypot(*(places - corner.at_mm).T).min() < _AT_TIP * half:
+            yield _from_tip(corner, shape, half)
     for k in np.unique(nearest).tolist():
         run, own = runs[k], nearest == k
         deep = float(off[k, own].max()) + SEEN_MM
@@ -146,6 +164,23 @@ def _along(run: _Run, ends: tuple[float, float], width: float, edge) -> list[Lin
     return _both_ways(middle[some], width)
 
 
+def _from_tip(corner: _Corner, shape, half: float) -> list[Line]:
+    """Lines from a corner inwards, as wide as the shape has room there up to each width, then on; a mark begins pointed."""
+    at = np.arange(_TIP_MM, 4 * half, _EVEN_MM)
+    places = corner.at_mm + at[:, None] * corner.inwards
+    points = shapely.points(places)
+    room = np.where(shapely.intersects(shape, points), shapely.distance(shape.boundary, points), 0.0)
+    lines = []
+    for share in _WIDTHS[:2]:
+        widths, is_wide = np.minimum(room, share * half), room >= share * half
+        if is_wide.any():
+            some = slice(0, int(is_wide.argmax() + _LANDING * share * half / _EVEN_MM))
+            rows = np.column_stack([places, widths])[some]
+            if rows[:, 2].min() > 0:
+                lines.append(Line(*_core.fit_curve(rows, FITTED * share * half), start="exposed"))
+    return lines
+
+
 def _across(places: np.ndarray, half: float, edge) -> list[Line]:
     """Lines through a bare piece amid paint, along and across it."""
     centre = (places.min(axis=0) + places.max(axis=0)) / 2
@@ -180,8 +215,12 @@ def _best(lines: list[Line], paint: np.ndarray, wanted: Wanted, brush, as_stroke
     where = wanted.pixels_about(points, _BESIDE * max(line.half_width[0][1] for line in lines))
     here, before = wanted.only(where), paint[where]
     found, most = None, faults_mm2(here, before) - _WORTH_MM2
+    sticks_out = here.bulge_mm2(before) + _BULGE_MM2
     for line in lines:
         painted = painted_by(as_stroke(line), here, brush)
-        if painted is not None and (left := faults_mm2(here, np.maximum(before, painted))) < most:
+        if painted is None:
+            continue
+        both = np.maximum(before, painted)
+        if here.bulge_mm2(both) < sticks_out and (left := faults_mm2(here, both)) < most:
             found, most = (line, painted, where), left
     return found
