@@ -31,8 +31,13 @@ _ROUND = 8  # edges of a quarter of a circle, off by 5e-3 of its radius
 _MOST_RINGS = 400  # with more, the middle lines have to do
 
 
+def ring_along(shape, half: float) -> list[np.ndarray]:
+    """Rings along the outline, half a line's width inside of it."""
+    return _inward(shape, half, _HAIR * half)
+
+
 def rings_inward(shape, half: float) -> list[list[np.ndarray]] | None:
-    """Rings along the outline, then those farther inside."""
+    """The same, then those farther inside."""
     radius = shapely.maximum_inscribed_circle(shape, 0.01 * half).length
     across = radius - half - _INNERMOST * half
     steps = max(int(np.ceil(across / (_STEP * half) - 0.4)), 0)
