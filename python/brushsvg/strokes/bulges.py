@@ -112,7 +112,9 @@ def faults_mm2(wanted: Wanted, painted: np.ndarray, notches: float = _NOTCH) -> 
 def _best(line: Line, faults: Callable[[_Way], float], turned: bool) -> _Way:
     """The way with the fewest faults of those that begin or end otherwise than it, each end by itself. Square ends are
     not cut, a ring has none."""
-    best = min((_Way(turned, *each) for each in _MARKS if each[0] == bool(line.wanted_mm) or not each[0]), key=faults)
+    best = min(
+        (_Way(turned, *each) for each in _MARKS if each[0] == bool(line.wanted_mm) or not each[0]), key=faults
+    )
     if line.closed:
         return best
     for end in ("first", "last"):
@@ -149,13 +151,18 @@ def _with_ends(line: Line, first: float, last: float, least: float) -> Line | No
     ends = max(first, 0.0) * half, rows[-1, 2] - max(last, 0.0) * half
     if ends[1] - ends[0] < half:
         return None
-    at = np.union1d(rows[(rows[:, 2] > ends[0]) & (rows[:, 2] < ends[1]), 2], np.linspace(*ends, 2 + int(rows[-1, 2] / 0.3)))
+    at = np.union1d(
+        rows[(rows[:, 2] > ends[0]) & (rows[:, 2] < ends[1]), 2],
+        np.linspace(*ends, 2 + int(rows[-1, 2] / 0.3)),
+    )
     part = np.column_stack([np.interp(at, rows[:, 2], rows[:, k]) for k in (0, 1, 3)])
     along = np.gradient(part[:, :2], axis=0)
     along /= np.maximum(np.hypot(*along.T), 1e-9)[:, None]
     for is_narrowed, off in ((first == _NARROWING, at - at[0]), (last == _NARROWING, at[-1] - at)):
         if is_narrowed:
-            widths = np.maximum(part[:, 2] * (1 - (1 - _NARROWED) * np.clip(1 - off / (_NARROWS * half), 0, 1)), least)
+            widths = np.maximum(
+                part[:, 2] * (1 - (1 - _NARROWED) * np.clip(1 - off / (_NARROWS * half), 0, 1)), least
+            )
             part[:, :2] += (part[:, 2] - widths)[:, None] * along[:, ::-1] * (1, -1)
             part[:, 2] = widths
     return Line(*_core.fit_curve(part, max(0.5 * FITTED * float(part[:, 2].mean()), 1e-3)))

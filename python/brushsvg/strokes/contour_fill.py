@@ -12,7 +12,15 @@ import numpy as np
 import shapely
 
 from .. import _core
-from .contour_rings import cut, no_corners, right_corners, ring_along, rings_inward, slanted_corners, steep_corners
+from .contour_rings import (
+    cut,
+    no_corners,
+    right_corners,
+    ring_along,
+    rings_inward,
+    slanted_corners,
+    steep_corners,
+)
 from .offset_passes import Line
 from .rest_lines import SQUARED, axis_rows, fill, lengthened, rows_along
 from .swept_areas import GRID_MM, QUARTER, areas, region, unpainted
@@ -42,11 +50,7 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
     rings = rings_inward(shape, half)
     if rings is None:
         return []
-    kinds = (
-        (slanted_corners, right_corners, steep_corners, no_corners)
-        if least < SQUARED * half
-        else (no_corners,)
-    )
+    kinds = (slanted_corners, no_corners) if least < SQUARED * half else (no_corners,)
     ways = [cut(rings, half, shape, squared_at) for squared_at in kinds]
     counts = [sum(bool(line.wanted_mm) for line in lines) for lines in ways]
     ways = [lines for k, lines in enumerate(ways) if counts[k] not in counts[k + 1 :]]

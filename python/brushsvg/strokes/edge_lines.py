@@ -22,7 +22,10 @@ _AMID = 0.2  # of the brush's half width: a bare piece so far from the edge lies
 _ON_PAINT = 0.5  # of a line's width lies on paint at least
 _LANDING = 2.5  # in half widths of a line, before a bare place and behind it
 _BESIDE = 4.0  # a line, in half widths: it paints no farther out
-_AT_TIP, _TIP_MM = 0.4, 0.2  # a bare piece lies in a corner so near to it, in half widths; a line from it begins there
+_AT_TIP, _TIP_MM = (
+    0.4,
+    0.2,
+)  # a bare piece lies in a corner so near to it, in half widths; a line from it begins there
 _OVER = 1.3  # times as wide as a piece amid paint is the line across it
 _EVEN_MM = 0.2
 _ROOM = 0.9  # of a line's half width, that the shape has beside it
@@ -184,7 +187,9 @@ def _from_tip(corner: _Corner, shape, half: float) -> list[Line]:
 def _across(places: np.ndarray, half: float, edge) -> list[Line]:
     """Lines through a bare piece amid paint, along and across it."""
     centre = (places.min(axis=0) + places.max(axis=0)) / 2
-    axes = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2] if len(places) > 1 else np.eye(2)
+    axes = (
+        np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2] if len(places) > 1 else np.eye(2)
+    )
     lines = []
     for along, aside in (axes, axes[::-1]):
         long, wide = np.ptp(places @ along), np.ptp(places @ aside)

@@ -28,8 +28,8 @@ def outline_of(marks, brush) -> list[np.ndarray]:
 
 def trial_overlap(strokes: list, rings: list[np.ndarray], brush) -> float:
     """How much that mark overlaps with a shape, to 0.002, in pixels: its outline takes ten times as long."""
-    common, both = _shared_px(trial_marks(strokes, brush), Wanted(rings), brush)
-    return common / both
+    wanted = Wanted(rings)
+    return wanted.overlap(wanted.painted(trial_marks(strokes, brush).passes, brush))
 
 
 def spoiling(strokes: list, tried: list[int], rings: list[np.ndarray], brush) -> tuple[set[int], float]:
@@ -118,6 +118,15 @@ class Wanted:
         x, y, _, height = self.window
         return np.column_stack([x, y + height]) + (pixels[:, ::-1] + 0.5) / self.px_per_mm * (1, -1)
 
+    def shared_px(self, painted: np.ndarray) -> tuple[float, float]:
+        """What paint and the shape have in common, and what both cover [px]."""
+        common = float(np.minimum(self.covered, painted).sum())
+        return common, float(self.covered.sum() + painted.sum()) - common
+
+    def overlap(self, painted: np.ndarray) -> float:
+        common, both = self.shared_px(painted)
+        return common / both
+
     def bulge_mm2(self, painted: np.ndarray) -> float:
         """Area of paint farther outside of the shape than SEEN_MM."""
         return float(np.maximum(painted - self.farther, 0).sum()) / self.px_per_mm**2
@@ -133,14 +142,16 @@ class Wanted:
 
 def _shared_px(marks, wanted: Wanted, brush) -> tuple[float, float]:
     """What marks and a shape have in common, and what both cover [px]."""
-    painted = wanted.painted(marks.passes, brush)
-    common = float(np.minimum(wanted.covered, painted).sum())
-    return common, float(wanted.covered.sum() + painted.sum()) - common
+    return wanted.shared_px(wanted.painted(marks.passes, brush))
 
 
 def trial_marks(strokes: list, brush):
     """The same, not its outline yet."""
-    plan = _core.compensate(
+    return _core.simulate(trial_plan(strokes, brush), brush)
+
+
+def trial_plan(strokes: list, brush):
+    """The plan that it is painted by."""
+    return _core.compensate(
         strokes, brush, _ANY_SHEET_MM, "closed", _TOLERANCE_MM, start="auto", end="auto"
     ).plan
-    return _core.simulate(plan, brush)
