@@ -17,11 +17,11 @@ from .trial_mark import Wanted, trial_marks
 # Bulges and notches count so many times: an edge's raggedness shows more than its being a little off.
 _BULGE, _NOTCH = 80.0, 20.0
 _FILLED = 2.0  # a notch where a line along the edge may fill it
-_STICKS_OUT_MM2 = 0.03  # of a line's mark; less is a pixel's noise
+_STICKS_OUT_MM2 = 0.008  # of a line's mark; less is a pixel's noise
 _WORTH_MM2 = 0.2  # of faults so counted, won by another way
 _NARROWING = -1.0
 _NARROWED, _NARROWS = 0.5, 1.5  # to so much of its width, over so many half widths
-_ENDS = (0.4, 0.8, 1.5, _NARROWING)
+_ENDS = (0.1, 0.4, 0.8, 1.5, _NARROWING)
 _MARKS = (
     (True, False, 1.0),
     (True, False, 0.95),
@@ -149,7 +149,7 @@ def _with_ends(line: Line, first: float, last: float, least: float) -> Line | No
     rows = _core.flatten(stroke, 0.01)
     half = rows[:, 3].max()
     ends = max(first, 0.0) * half, rows[-1, 2] - max(last, 0.0) * half
-    if ends[1] - ends[0] < half:
+    if ends[1] - ends[0] < 0.8 * half:
         return None
     at = np.union1d(
         rows[(rows[:, 2] > ends[0]) & (rows[:, 2] < ends[1]), 2],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
@@ -22,16 +23,14 @@ _AMID = 0.2  # of the brush's half width: a bare piece so far from the edge lies
 _ON_PAINT = 0.5  # of a line's width lies on paint at least
 _LANDING = 2.5  # in half widths of a line, before a bare place and behind it
 _BESIDE = 4.0  # a line, in half widths: it paints no farther out
-_AT_TIP, _TIP_MM = (
-    0.4,
-    0.2,
-)  # a bare piece lies in a corner so near to it, in half widths; a line from it begins there
+_AT_TIP = 0.4  # so near to a corner, in half widths, a bare piece lies in it
+_TIPS = (0.03, 0.1)  # half width of a line where it begins in a corner, in those of the brush
 _OVER = 1.3  # times as wide as a piece amid paint is the line across it
 _EVEN_MM = 0.2
 _ROOM = 0.9  # of a line's half width, that the shape has beside it
 _LEAST_MM2 = 0.05  # of a bare place
 _MOST = 40  # bare places of one shape
-_BULGE_MM2 = 0.01  # that a line may stick out of the shape
+_BULGE_MM2 = 0.003  # that a line may stick out of the shape
 _WORTH_MM2 = 0.5  # of faults, counted as for passes led otherwise
 
 
@@ -169,18 +168,19 @@ def _along(run: _Run, ends: tuple[float, float], width: float, edge) -> list[Lin
 
 def _from_tip(corner: _Corner, shape, half: float) -> list[Line]:
     """Lines from a corner inwards, as wide as the shape has room there up to each width, then on; a mark begins pointed."""
-    at = np.arange(_TIP_MM, 4 * half, _EVEN_MM)
+    at = np.arange(_EVEN_MM, 4 * half, _EVEN_MM)
     places = corner.at_mm + at[:, None] * corner.inwards
     points = shapely.points(places)
     room = np.where(shapely.intersects(shape, points), shapely.distance(shape.boundary, points), 0.0)
     lines = []
-    for share in _WIDTHS[:2]:
-        widths, is_wide = np.minimum(room, share * half), room >= share * half
+    for share, first in itertools.product(_WIDTHS[:2], _TIPS):
+        width = share * half
+        enters, is_wide = room >= first * half, room >= width
         if is_wide.any():
-            some = slice(0, int(is_wide.argmax() + _LANDING * share * half / _EVEN_MM))
-            rows = np.column_stack([places, widths])[some]
-            if rows[:, 2].min() > 0:
-                lines.append(Line(*_core.fit_curve(rows, FITTED * share * half), start="exposed"))
+            some = slice(int(enters.argmax()), int(is_wide.argmax() + _LANDING * width / _EVEN_MM))
+            rows = np.column_stack([places, np.minimum(room, width)])[some]
+            if len(rows) > 3 and rows[:, 2].min() > 0:
+                lines.append(Line(*_core.fit_curve(rows, FITTED * width), start="exposed"))
     return lines
 
 
