@@ -80,7 +80,7 @@ def mended(
                 tried[way] = (by, line, painted)
             return tried[way][0]
 
-        best = min((_best(lines[k], faults, turned) for turned in (False, True)), key=faults)
+        best = _best(lines[k], faults)
         if faults(best) > faults(as_is) - _WORTH_MM2:
             best = as_is
         _, made[k], painted = tried[best]
@@ -109,12 +109,11 @@ def faults_mm2(wanted: Wanted, painted: np.ndarray, notches: float = _NOTCH) -> 
     )
 
 
-def _best(line: Line, faults: Callable[[_Way], float], turned: bool) -> _Way:
+def _best(line: Line, faults: Callable[[_Way], float]) -> _Way:
     """The way with the fewest faults of those that begin or end otherwise than it, each end by itself. Square ends are
     not cut, a ring has none."""
-    best = min(
-        (_Way(turned, *each) for each in _MARKS if each[0] == bool(line.wanted_mm) or not each[0]), key=faults
-    )
+    marks = [each for each in _MARKS if line.wanted_mm or not each[0]]
+    best = min((_Way(turned, *each) for turned in (False, True) for each in marks), key=faults)
     if line.closed:
         return best
     for end in ("first", "last"):
