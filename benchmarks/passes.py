@@ -198,7 +198,7 @@ def _all_rings(shape) -> list:
 
 
 def picture(shape, mark, strokes) -> np.ndarray:
-    low, high = np.array(shape.bounds).reshape(2, 2) + [[-2], [2]]
+    low, high = np.array(shape.bounds).reshape(2, 2) + np.array([[-2], [2]])
     width, height = np.ceil((high - low) * PX_PER_MM).astype(int)
     image = np.full((height, width, 3), 255, np.uint8)
 

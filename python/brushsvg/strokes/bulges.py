@@ -17,6 +17,7 @@ from .trial_mark import Wanted, trial_marks
 # Bulges and notches count so many times: an edge's raggedness shows more than its being a little off.
 _BULGE, _NOTCH = 80.0, 20.0
 _FILLED = 2.0  # a notch where a line along the edge may fill it
+_NARROW = 0.27  # of a brush's greatest half width, lines along the edge
 _STICKS_OUT_MM2 = 0.008  # of a line's mark; less is a pixel's noise
 _WORTH_MM2 = 0.2  # of faults so counted, won by another way
 _NARROWING = -1.0
@@ -49,9 +50,9 @@ class _Way(NamedTuple):
 def mended(
     lines: list[Line], narrow: list, rings: list[np.ndarray], brush, as_stroke: Callable[[int, Line], object]
 ) -> tuple[list[Line | None], np.ndarray, Wanted]:
-    """The lines, those that stick out of a shape led back, cut short or made thinner, or None in place of one that is
-    best left out, where marks and shape then differ by less, the first line stays one; how much of each pixel is painted then, narrow strokes too, and
-    the shape in these pixels.
+    """The lines, those that stick out of a shape led back, cut short, narrowing or made thinner, or None in place of one
+    that is best left out, where marks and shape then differ by less, the first line stays one; how much of each pixel
+    is painted then, narrow strokes too, and the shape in these pixels.
 
     narrow: strokes that are painted with them; rings: of the shape; as_stroke: a line as a stroke, by its number.
     """
@@ -59,7 +60,8 @@ def mended(
     passes = trial_marks([*(as_stroke(k, line) for k, line in enumerate(lines)), *narrow], brush).passes
     paint = [wanted.painted([one], brush) for one in passes]
     beyond = np.array([wanted.bulge_mm2(each) for each in paint[: len(lines)]])
-    least = brush.half_width_range_mm()[0]
+    least, greatest = brush.half_width_range_mm()
+    notches = _FILLED if least <= _NARROW * greatest else _NOTCH
     made: list[Line | None] = list(lines)
     for k in np.argsort(-beyond)[:_MOST_LINES].tolist():
         if beyond[k] < _STICKS_OUT_MM2:
@@ -70,13 +72,13 @@ def mended(
         here, own = wanted.only(where), paint[k][where]
         rest = np.max([each[where] for n, each in enumerate(paint) if n != k] or [np.zeros_like(own)], axis=0)
         as_is = _Way(square=bool(lines[k].wanted_mm))
-        tried = {as_is: (faults_mm2(here, np.maximum(rest, own), _FILLED), lines[k], own)}
+        tried = {as_is: (faults_mm2(here, np.maximum(rest, own), notches), lines[k], own)}
 
         def faults(way: _Way, k=k, rest=rest, tried=tried, here=here) -> float:
             if way not in tried:
                 line = _led(lines[k], way, least)
                 painted = painted_by(as_stroke(k, line), here, brush) if line else None
-                by = math.inf if painted is None else faults_mm2(here, np.maximum(rest, painted), _FILLED)
+                by = math.inf if painted is None else faults_mm2(here, np.maximum(rest, painted), notches)
                 tried[way] = (by, line, painted)
             return tried[way][0]
 
@@ -84,7 +86,7 @@ def mended(
         if faults(best) > faults(as_is) - _WORTH_MM2:
             best = as_is
         _, made[k], painted = tried[best]
-        if k > 0 and faults_mm2(here, rest, _FILLED) < faults(best) - _WORTH_MM2:
+        if k > 0 and faults_mm2(here, rest, notches) < faults(best) - _WORTH_MM2:
             made[k], painted = None, np.zeros_like(rest)
         if painted is not own:
             paint[k] = np.zeros_like(paint[k])

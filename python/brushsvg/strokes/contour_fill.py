@@ -15,11 +15,9 @@ from .. import _core
 from .contour_rings import (
     cut,
     no_corners,
-    right_corners,
     ring_along,
     rings_inward,
     slanted_corners,
-    steep_corners,
 )
 from .offset_passes import Line
 from .rest_lines import SQUARED, axis_rows, fill, lengthened, rows_along

@@ -123,7 +123,7 @@ def _beside(
     points, edge = shapely.points(places), shape.boundary
     off = np.array([shapely.distance(run.line, points) for run in runs])
     nearest = off.argmin(axis=0)
-    half = brush.half_width_range_mm()[1]
+    least, half = brush.half_width_range_mm()
     if off.min() > _AMID * half:
         yield _across(places, half, edge)
         return
@@ -140,7 +140,7 @@ def _beside(
             ends = float(at[behind].min()), float(at[~behind].max()) + run.line.length
         lines = []
         for width in (share * half for share in _WIDTHS):
-            if deep > 2 * (1 - _ON_PAINT) * width:
+            if width < least or deep > 2 * (1 - _ON_PAINT) * width:
                 continue
             lines += _along(run, ends, width, edge)
         if lines:
@@ -167,7 +167,8 @@ def _along(run: _Run, ends: tuple[float, float], width: float, edge) -> list[Lin
 
 
 def _from_tip(corner: _Corner, shape, half: float) -> list[Line]:
-    """Lines from a corner inwards, as wide as the shape has room there up to each width, then on; a mark begins pointed."""
+    """Lines from a corner inwards, as wide as the shape has room there up to each width, then on; a mark begins
+    pointed."""
     at = np.arange(_EVEN_MM, 4 * half, _EVEN_MM)
     places = corner.at_mm + at[:, None] * corner.inwards
     points = shapely.points(places)
