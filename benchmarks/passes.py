@@ -13,8 +13,8 @@ against it.
   s         to prepare: read, fill and plan
 
 Letters are drawn with fonts of Debian's packages fonts-dejavu-core, fonts-dejavu-extra, fonts-ebgaramond, fonts-lobster
-and fonts-kaushanscript, so large that an l's stem is --times as wide as the brush paints. NAME, as printed, does some of
-them; --pictures draws each: paint blue, what is bare red, what sticks out black.
+and fonts-kaushanscript, so large that an l's stem is --times as wide as the brush paints. NAME, as printed, does some
+of them; --pictures draws each: paint blue, what is bare red, what sticks out black.
 """
 
 from __future__ import annotations

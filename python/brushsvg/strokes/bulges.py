@@ -51,8 +51,8 @@ def mended(
     lines: list[Line], narrow: list, rings: list[np.ndarray], brush, as_stroke: Callable[[int, Line], object]
 ) -> tuple[list[Line | None], np.ndarray, Wanted]:
     """The lines, those that stick out of a shape led back, cut short, narrowing or made thinner, or None in place of
-    one that is best left out, where marks and shape then differ by less, the first line stays one; how much of each pixel
-    is painted then, narrow strokes too, and the shape in these pixels.
+    one that is best left out, where marks and shape then differ by less, the first line stays one; how much of each
+    pixel is painted then, narrow strokes too, and the shape in these pixels.
 
     narrow: strokes that are painted with them; rings: of the shape; as_stroke: a line as a stroke, by its number.
     """

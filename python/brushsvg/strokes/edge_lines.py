@@ -28,7 +28,8 @@ _TIPS = (0.03, 0.1)  # half width of a line where it begins in a corner, in thos
 _OVER = 1.3  # times as wide as a piece amid paint is the line across it
 _EVEN_MM = 0.2
 _ROOM = 0.9  # of a line's half width, that the shape has beside it
-_LEAST_MM2 = 0.05  # of a bare place
+_BARE, _LEAST_MM2 = 0.25, 0.05  # of a pixel that is counted, of a bare place
+_TOUCH = 0.51  # of a pixel's side: one that touches another one's corner is of one piece with it
 _MOST = 40  # bare places of one shape
 _BULGE_MM2 = 0.003  # that a line may stick out of the shape
 _WORTH_MM2 = 0.5  # of faults, counted as for passes led otherwise
@@ -54,16 +55,15 @@ def edge_lines(paint: np.ndarray, wanted: Wanted, brush, as_stroke: Callable[[Li
 
 def _bare(paint: np.ndarray, wanted: Wanted) -> list[np.ndarray]:
     """Places of each bare piece farther inside of a shape than is seen, the largest first [mm]."""
-    import scipy.ndimage  # slow to load
-
-    labels, count = scipy.ndimage.label(wanted.nearer - paint > 0.25, np.ones((3, 3)))
-    sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
-    found = []
-    for k in np.argsort(-sizes).tolist():
-        if sizes[k] < _LEAST_MM2 * wanted.px_per_mm**2:
-            break
-        found.append(wanted.places(np.argwhere(labels == k + 1)))
-    return found
+    pixels = np.argwhere(wanted.nearer - paint > _BARE)
+    if len(pixels) == 0:
+        return []
+    low, high = (pixels - _TOUCH).T, (pixels + _TOUCH).T
+    pieces = shapely.get_parts(shapely.union_all(shapely.box(*low, *high)))
+    homes, which = shapely.STRtree(shapely.points(pixels)).query(pieces, "intersects")
+    found = [wanted.places(pixels[which[homes == k]]) for k in range(len(pieces))]
+    least = _LEAST_MM2 * wanted.px_per_mm**2
+    return sorted((each for each in found if len(each) >= least), key=len, reverse=True)
 
 
 class _Run(NamedTuple):
