@@ -38,7 +38,7 @@ def test_a_line_that_sticks_out_is_led_otherwise_and_others_stay(brush):
     through = [straight((16, y), (84, y)) for y in (33.5, 24.5)]
     lines = [*through, straight((50, 33), (50, 20))]
     assert farthest_mm(lines, brush) > 1
-    made = mended(lines, [], RINGS, brush, as_stroke)
+    made, _, _ = mended(lines, [], RINGS, brush, as_stroke)
     assert all(new is old for new, old in zip(made[:2], through, strict=True))
     assert made[2] is not None
     assert farthest_mm(made, brush) < 0.25
@@ -47,13 +47,13 @@ def test_a_line_that_sticks_out_is_led_otherwise_and_others_stay(brush):
 def test_a_line_that_paints_hardly_more_than_a_bulge_is_left_out_unless_it_is_the_first(brush):
     through = [straight((16, y), (84, y)) for y in (33.7, 29, 24.3)]
     across = straight((50, 23), (50, 18))
-    made = mended([*through, across], [], RINGS, brush, as_stroke)
+    made, _, _ = mended([*through, across], [], RINGS, brush, as_stroke)
     assert made[-1] is None
     assert all(new is old for new, old in zip(made[:-1], through, strict=True))
-    assert mended([across, *through], [], RINGS, brush, as_stroke)[0] is not None
+    assert mended([across, *through], [], RINGS, brush, as_stroke)[0][0] is not None
 
 
 def test_lines_that_stay_within_the_shape_are_left_as_they_are(brush):
     lines = [straight((18, 33.5), (82, 33.5)), straight((18, 24.5), (82, 24.5))]
-    made = mended(lines, [], RINGS, brush, as_stroke)
+    made, _, _ = mended(lines, [], RINGS, brush, as_stroke)
     assert all(new is old for new, old in zip(made, lines, strict=True))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import shapely
+import shapely.affinity
 from diagnostics import agrees
 from svg_text import read
 
@@ -97,9 +98,17 @@ def test_holes_belong_to_no_stroke_of_a_shape_too_large_to_be_cut(monkeypatch):
     test_holes_belong_to_no_stroke()
 
 
-def test_a_disc_hardly_wider_than_the_brush_is_no_ring_to_turn_round_in(brush):
-    passes, _, _ = within_reach(of("M40 20A5 5 0 1 1 39.99 20Z"), brush, "passes")
-    assert not any(each.closed for each in passes)
+@pytest.mark.parametrize("times", [1.1, 1.5, 2.0, 2.3])
+def test_a_disc_hardly_wider_than_the_brush_is_a_dot_and_a_ring_round_it(brush, times):
+    """A ring of the full width would turn too sharply in it: 0.72 to 0.95 of such a disc was painted."""
+    radius = times * HALF_MM
+    made = of(f"M40 {30 - radius}A{radius} {radius} 0 1 1 39.99 {30 - radius}Z")
+    passes, _, _ = within_reach(made, brush, "passes")
+    assert [each.closed for each in passes] == [False, True]
+    paint, disc = paint_of(passes, brush), shapely.Point(40, 20).buffer(radius, quad_segs=64)
+    disc = shapely.affinity.translate(disc, *(np.array(made[0].middle_mm[0, :2]) - (40, 20)))
+    assert paint.intersection(disc).area / paint.union(disc).area > 0.985
+    assert shapely.hausdorff_distance(paint.boundary, disc.boundary) < 0.2
 
 
 def test_the_first_pass_is_asked_for_its_own_mark_and_not_for_the_whole_shape(brush):
@@ -109,32 +118,37 @@ def test_the_first_pass_is_asked_for_its_own_mark_and_not_for_the_whole_shape(br
     assert own < 0.7 * 45 * 45
 
 
-def test_sides_that_meet_at_right_angles_come_first_with_square_ends_then_the_rings_inside(brush):
-    passes, _, _ = within_reach(of(SQUARE), brush, "passes")
+def ways_of(shape, narrow=()):
+    return contour_passes(shape, [], list(narrow), 0.0, HALF_MM)
+
+
+def test_sides_that_meet_at_right_angles_come_first_with_square_ends_then_the_rings_inside():
+    square = shapely.box(5, 5, 50, 50)
+    passes = ways_of(square)[0]
     sides, rings = passes[:4], [each for each in passes if each.closed]
     assert not any(each.closed for each in sides)
-    assert [each.id for each in passes[4 : 4 + len(rings)]] == [each.id for each in rings]
-    square = shapely.box(5, 5, 50, 50)
+    assert passes[4 : 4 + len(rings)] == rings
     for each in sides:
-        way = _core.flatten(each, 0.02)
-        assert way[-1, 2] == pytest.approx(45 - 2 * HALF_MM, abs=0.02)
-        meant = region(each.wanted_mm)
+        assert way_of(each)[-1, 2] == pytest.approx(45 - 2 * HALF_MM, abs=0.02)
+        meant = region(list(each.wanted_mm))
         corners = [
             corner for corner in square.exterior.coords[1:] if meant.distance(shapely.Point(corner)) < 0.02
         ]
         assert len(corners) == 2
-    sizes = [np.ptp(_core.flatten(each, 0.02)[:, 0]) for each in rings]
+    sizes = [np.ptp(way_of(each)[:, 0]) for each in rings]
     assert sizes == sorted(sizes, reverse=True)
 
 
-def test_sharper_corners_are_entered_from_their_points(brush):
-    passes, _, _ = within_reach(of("M5 40H85L45 8Z"), brush, "passes")
+def way_of(line):
+    return _core.flatten(_core.Stroke("p", line.middle_mm, half_width=line.half_width), 0.02)
+
+
+def test_sharper_corners_are_entered_from_their_points():
+    passes = ways_of(shapely.Polygon([(5, 40), (45, 72), (85, 40)]))[0]
     ends = [(each.half_width[0][1], each.half_width[-1][1]) for each in passes]
     corners = [each for each in ends if min(each) < 1]
     assert len(corners) == 2
-    for each in corners:  # the middle line that there was before runs into the other one
-        assert max(each) > 0.5 * HALF_MM
-    assert any(begin < end for begin, end in corners)
+    assert all(begin < end and end > 0.5 * HALF_MM for begin, end in corners)
 
 
 def test_a_ring_begins_amid_an_edge_as_its_tip_would_stick_out_of_a_corner(brush):
@@ -245,13 +259,16 @@ def test_marks_of_passes_have_the_shape_s_straight_edges_up_to_its_corners(brush
 
 def test_a_short_fat_stroke_is_a_ring_without_a_tip(brush):
     passes, _, _ = within_reach(of(SHAPES["round short bar"]), brush, "passes")
-    assert [each.closed for each in passes] == [True]
+    assert [each.closed for each in passes][:2] == [True, False]
+    assert all(max(h for _, h in each.half_width) < 0.75 * HALF_MM for each in passes[1:])  # along its edge
 
 
 def test_a_stroke_that_its_own_passes_cover_keeps_them_and_its_direction(brush):
     (stroke,) = of("M10 40Q25 10 50 18T90 15Q70 36 48 28T10 40Z")
     passes, wanted, _ = within_reach([stroke], brush, "passes")
-    assert [each.id for each in passes] == ["p", "p~2", "p~3"]
+    lanes = [(each.id, max(h for _, h in each.half_width) > 0.75 * HALF_MM) for each in passes]
+    assert lanes[:3] == [("p", True), ("p~2", True), ("p~3", True)]
+    assert not any(is_whole for _, is_whole in lanes[3:])  # narrow lines where an edge stayed bare
     assert passes[0].middle_mm.tolist() == stroke.middle_mm.tolist()
     assert wanted[0].half_width == stroke.half_width
 
@@ -363,3 +380,13 @@ def test_a_line_whose_curve_leaves_the_shape_is_no_part_of_a_filling(monkeypatch
     triangle = shapely.Polygon([(0, 0), (50, 0), (25, 43)])
     for lines in contour_passes(triangle, [], [], 0.0, HALF_MM):
         assert painted(lines).difference(triangle.buffer(0.2)).area < 0.1
+
+
+def test_slits_between_the_parts_of_a_shape_s_strokes_are_no_edges(brush):
+    """Rings led round them, by 2 mm beside an inner corner of this star."""
+    made = of(SHAPES["star"])
+    (ways,) = fillings(made, list(range(len(made))), *brush.half_width_range_mm())
+    parts = _core.unite([ring for stroke in made for ring in stroke.wanted_mm])
+    corners = [len(shapely.LinearRing(ring).simplify(0.02).coords) - 1 for ring in ways[0].rings]
+    assert corners == [10]
+    assert region(ways[0].rings).symmetric_difference(region(parts)).area < 0.1

@@ -12,7 +12,13 @@ import numpy as np
 import shapely
 
 from .. import _core
-from .contour_rings import cut, no_corners, right_corners, rings_inward, slanted_corners, steep_corners
+from .contour_rings import (
+    cut,
+    no_corners,
+    ring_along,
+    rings_inward,
+    slanted_corners,
+)
 from .offset_passes import Line
 from .rest_lines import SQUARED, axis_rows, fill, lengthened, rows_along
 from .swept_areas import GRID_MM, QUARTER, areas, region, unpainted
@@ -22,6 +28,8 @@ from .swept_areas import GRID_MM, QUARTER, areas, region, unpainted
 _INSIDE, _NARROW, _TIP = 0.05, 0.27, 0.02
 _TURNED_IN = 2.0  # half widths round a ring that is all of a filling: in a smaller one the brush would turn on the spot
 _AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
+# A ring round a dot, in half widths of the brush: it lies on it by so much, and is so wide at least and at most.
+_ON_DOT, _NARROWEST_RING, _WIDEST_RING = 0.2, 0.36, 0.8
 _SIMPLER_MM = 0.02  # an edge of the outline costs as much as all the rest
 _MOST_PAIRS = 10_000  # beyond, a shape is no lettering, and the middle lines have to do
 
@@ -40,16 +48,29 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
     rings = rings_inward(shape, half)
     if rings is None:
         return []
-    kinds = (
-        (slanted_corners, right_corners, steep_corners, no_corners)
-        if least < SQUARED * half
-        else (no_corners,)
-    )
+    kinds = (slanted_corners, no_corners) if least < SQUARED * half else (no_corners,)
     ways = [cut(rings, half, shape, squared_at) for squared_at in kinds]
     counts = [sum(bool(line.wanted_mm) for line in lines) for lines in ways]
     ways = [lines for k, lines in enumerate(ways) if counts[k] not in counts[k + 1 :]]
-    filled = (_rest_filled(lines, shape, wide, narrow, least, half) for lines in ways)
-    return [lines for lines in filled if lines]
+    filled = [_rest_filled(lines, shape, wide, narrow, least, half) for lines in ways]
+    return [lines for lines in (*filled, _dot_and_ring(shape, least, half)) if lines]
+
+
+def _dot_and_ring(shape, least: float, half: float) -> list[Line]:
+    """Of a round shape hardly wider than the brush, which would turn too sharply in it: a place where it is turned on
+    the spot, and round it a ring so wide that it lies on what is painted there; none for another shape."""
+    circle = shapely.maximum_inscribed_circle(shape, 0.01 * half)
+    width = max((circle.length - half + _ON_DOT * half) / 2, _NARROWEST_RING * half)
+    if not least <= width <= _WIDEST_RING * half:
+        return []
+    rings = ring_along(shape, width)
+    if len(rings) != 1:
+        return []
+    centre = np.array(circle.coords[0])
+    lines = [Line(np.tile(centre, 4).reshape(1, 8), [(0.0, half)]), *cut([rings], width, shape, no_corners)]
+    dot = shapely.Point(centre).buffer((1 - _ON_DOT / 2) * half, quad_segs=QUARTER)
+    amid = shapely.difference(unpainted(shape.buffer(-width), lines[1:]), dot, grid_size=GRID_MM)
+    return lines if amid.area < _INSIDE * half**2 else []
 
 
 def _rest_filled(lines: list[Line], shape, wide: list, narrow: list, least: float, half: float) -> list[Line]:

@@ -19,7 +19,7 @@ _STEP = 1.5
 _INNERMOST = 0.9  # in half widths, from the innermost ring to the shape's middle: it covers that
 _HAIR = 0.05  # in half widths: no ring round a place narrower than that, a line along its middle covers it
 _UPPER_LEFT = (-0.3, 1.0)
-_CORNER_RAD, _SQUARE_RAD, _SHARP_RAD = np.radians(30), np.radians(80), np.radians(100)
+_CORNER_RAD, _SHARP_RAD = np.radians(30), np.radians(100)
 # Corners that turn by more than the first and less than the second end square in a slanted cut: in sharper ones the
 # mark that goes there swings out of the other edge, by 0.5 to 1.2 mm. Farthest ahead of a line's end, in half widths,
 # lies such a corner.
@@ -31,8 +31,13 @@ _ROUND = 8  # edges of a quarter of a circle, off by 5e-3 of its radius
 _MOST_RINGS = 400  # with more, the middle lines have to do
 
 
+def ring_along(shape, half: float) -> list[np.ndarray]:
+    """Rings along the outline, half a line's width inside of it."""
+    return _inward(shape, half, _HAIR * half)
+
+
 def rings_inward(shape, half: float) -> list[list[np.ndarray]] | None:
-    """Rings along the outline, then those farther inside."""
+    """The same, then those farther inside."""
     radius = shapely.maximum_inscribed_circle(shape, 0.01 * half).length
     across = radius - half - _INNERMOST * half
     steps = max(int(np.ceil(across / (_STEP * half) - 0.4)), 0)
@@ -115,16 +120,6 @@ def _clear_of_cusps(
 
 def no_corners(*_) -> np.ndarray:
     return np.zeros(0, int)
-
-
-def steep_corners(ring: np.ndarray, *_) -> np.ndarray:
-    """Corners of about 90 degrees: cusps of the ring as well, where the shape becomes as narrow as the brush."""
-    return np.setdiff1d(_corners(ring, _SQUARE_RAD), _corners(ring, _SHARP_RAD))
-
-
-def right_corners(ring: np.ndarray, half: float, shape) -> np.ndarray:
-    """Corners of a ring where its shape has one of about 90 degrees."""
-    return _of_shape(steep_corners(ring), ring, half, shape)
 
 
 def slanted_corners(ring: np.ndarray, half: float, shape) -> np.ndarray:

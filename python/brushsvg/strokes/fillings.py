@@ -14,6 +14,7 @@ from .offset_passes import Line, clamped, offset_passes
 from .swept_areas import painted, region, rings_of, unpainted
 
 _MOST_STROKES = 500
+_SLIT_MM = 0.01  # half as wide as slits between parts may be
 _SHOWN_SHARE, _SHOWN_GAP_MM = 0.02, 1.0  # what a round brush leaves of blunt corners is less
 
 
@@ -107,12 +108,19 @@ def _shapes(strokes: list, wider: list[int]) -> list[tuple]:
     for element in dict.fromkeys(_element(strokes[k]) for k in wider):
         numbers = elements[element]
         shapes = shapely.get_parts(region(_core.unite([r for k in numbers for r in strokes[k].wanted_mm])))
+        shapes = np.array([_without_slits(shape) for shape in shapes])
         members: list[list[int]] = [[] for _ in shapes]
         for k, home in zip(numbers, _homes(shapes, [strokes[k] for k in numbers]), strict=True):
             members[home].append(k)
         if all(members):  # else a stroke paints in two of them
             found += [pair for pair in zip(shapes, members, strict=True) if not wide.isdisjoint(pair[1])]
     return found
+
+
+def _without_slits(shape):
+    """A shape without the slits that are left where the parts of its strokes meet: rings would lead round them."""
+    closed = shape.buffer(_SLIT_MM, join_style="mitre").buffer(-_SLIT_MM, join_style="mitre")
+    return closed if closed.geom_type == "Polygon" else shape
 
 
 def _homes(shapes, strokes: list) -> list[int]:

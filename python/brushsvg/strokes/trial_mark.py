@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from functools import cached_property
 
 import numpy as np
@@ -27,8 +28,8 @@ def outline_of(marks, brush) -> list[np.ndarray]:
 
 def trial_overlap(strokes: list, rings: list[np.ndarray], brush) -> float:
     """How much that mark overlaps with a shape, to 0.002, in pixels: its outline takes ten times as long."""
-    common, both = _shared_px(trial_marks(strokes, brush), Wanted(rings), brush)
-    return common / both
+    wanted = Wanted(rings)
+    return wanted.overlap(wanted.painted(trial_marks(strokes, brush).passes, brush))
 
 
 def spoiling(strokes: list, tried: list[int], rings: list[np.ndarray], brush) -> tuple[set[int], float]:
@@ -63,7 +64,7 @@ class Wanted:
         low, size = points.min(axis=0) - _BESIDE_MM, np.ptp(points, axis=0) + 2 * _BESIDE_MM
         self.window, self.px_per_mm = (*low, *size), min(_PX_PER_MM, _SIDE_PX / size.max())
         self.covered = _core.coverage(rings, self.window, self.px_per_mm)
-        self._rings = rings
+        self.rings = rings
 
     def painted(self, passes: list, brush) -> np.ndarray:
         """How much of each pixel passes of marks cover."""
@@ -72,21 +73,67 @@ class Wanted:
         return _core.coverage(marks, brush, self.window, self.px_per_mm)
 
     @cached_property
-    def _farther_and_nearer(self) -> list[np.ndarray]:
-        """The same of the shape SEEN_MM larger, and smaller."""
+    def farther(self) -> np.ndarray:
+        """How much of each the shape covers that is SEEN_MM larger."""
+        return self._moved(SEEN_MM)
+
+    @cached_property
+    def nearer(self) -> np.ndarray:
+        """The same, smaller."""
+        return self._moved(-SEEN_MM)
+
+    def _moved(self, by_mm: float) -> np.ndarray:
         from .swept_areas import region, rings_of  # with shapely, which is slow to load
 
-        shape = region(self._rings)
-        moved = [rings_of(shape.buffer(by_mm)) for by_mm in (SEEN_MM, -SEEN_MM)]
-        return [_core.coverage(rings, self.window, self.px_per_mm) for rings in moved]
+        return _core.coverage(rings_of(region(self.rings).buffer(by_mm)), self.window, self.px_per_mm)
+
+    def pixels_about(self, points: np.ndarray, beside_mm: float) -> tuple[slice, slice]:
+        """Rows and columns of the pixels about places, so far beside them as well."""
+        x, y, _, height = self.window
+        low, high = points.min(axis=0) - beside_mm, points.max(axis=0) + beside_mm
+        columns = np.clip((np.array([low[0], high[0]]) - x) * self.px_per_mm, 0, self.covered.shape[1] - 1)
+        rows = np.clip(
+            (y + height - np.array([high[1], low[1]])) * self.px_per_mm, 0, self.covered.shape[0] - 1
+        )
+        return tuple(slice(int(first), int(last) + 1) for first, last in (rows, columns))
+
+    def only(self, where: tuple[slice, slice]) -> Wanted:
+        """The same in some of the pixels alone."""
+        rows, columns = where
+        x, y, _, height = self.window
+        some = copy(self)
+        some.window = (
+            x + columns.start / self.px_per_mm,
+            y + height - rows.stop / self.px_per_mm,
+            (columns.stop - columns.start) / self.px_per_mm,
+            (rows.stop - rows.start) / self.px_per_mm,
+        )
+        some.covered, some.farther, some.nearer = (
+            each[where] for each in (self.covered, self.farther, self.nearer)
+        )
+        return some
+
+    def places(self, pixels: np.ndarray) -> np.ndarray:
+        """The middles of pixels, given by row and column [mm]."""
+        x, y, _, height = self.window
+        return np.column_stack([x, y + height]) + (pixels[:, ::-1] + 0.5) / self.px_per_mm * (1, -1)
+
+    def shared_px(self, painted: np.ndarray) -> tuple[float, float]:
+        """What paint and the shape have in common, and what both cover [px]."""
+        common = float(np.minimum(self.covered, painted).sum())
+        return common, float(self.covered.sum() + painted.sum()) - common
+
+    def overlap(self, painted: np.ndarray) -> float:
+        common, both = self.shared_px(painted)
+        return common / both
 
     def bulge_mm2(self, painted: np.ndarray) -> float:
         """Area of paint farther outside of the shape than SEEN_MM."""
-        return float(np.maximum(painted - self._farther_and_nearer[0], 0).sum()) / self.px_per_mm**2
+        return float(np.maximum(painted - self.farther, 0).sum()) / self.px_per_mm**2
 
     def notch_mm2(self, painted: np.ndarray) -> float:
         """Blank area farther inside of it."""
-        return float(np.maximum(self._farther_and_nearer[1] - painted, 0).sum()) / self.px_per_mm**2
+        return float(np.maximum(self.nearer - painted, 0).sum()) / self.px_per_mm**2
 
     def misplaced_mm2(self, painted: np.ndarray) -> float:
         """Area that is painted and not wanted, or wanted and not painted."""
@@ -95,14 +142,16 @@ class Wanted:
 
 def _shared_px(marks, wanted: Wanted, brush) -> tuple[float, float]:
     """What marks and a shape have in common, and what both cover [px]."""
-    painted = wanted.painted(marks.passes, brush)
-    common = float(np.minimum(wanted.covered, painted).sum())
-    return common, float(wanted.covered.sum() + painted.sum()) - common
+    return wanted.shared_px(wanted.painted(marks.passes, brush))
 
 
 def trial_marks(strokes: list, brush):
     """The same, not its outline yet."""
-    plan = _core.compensate(
+    return _core.simulate(trial_plan(strokes, brush), brush)
+
+
+def trial_plan(strokes: list, brush):
+    """The plan that it is painted by."""
+    return _core.compensate(
         strokes, brush, _ANY_SHEET_MM, "closed", _TOLERANCE_MM, start="auto", end="auto"
     ).plan
-    return _core.simulate(plan, brush)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from .. import _core
 from ..drawing.design import Notice
 from ..errors import Error, need, need_one_of
 from .offset_passes import clamped
-from .trial_mark import spoiling, trial_overlap
+from .trial_mark import spoiling, trial_overlap, trial_plan
 
 WIDE = ("auto", "clamp", "passes", "refuse")
 # At the nearest width the mark overlaps with a shape by so much, or passes are taken for it.
@@ -21,6 +22,8 @@ BETTER = 0.01  # and passes by so much more
 CLEARLY = 0.1
 # Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
 _WORTH_PASSES = 1 / 0.95
+_NEARLY = 0.035  # less of overlap, before bare places are painted: then it may be the better way all the same
+_POSE_MM2 = 0.02  # of faults, which a pose of a filling is worth
 _ALIKE = 0.003  # of overlap: less is not worth the direction of writing, or more passes
 _BLOT, _MOST_BLOTS = 3.0, 60  # in half widths, a line of a filling that is looked at; of one shape
 UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge lies beside the shape's by more
@@ -106,7 +109,7 @@ def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int
 
     done: dict[int, tuple] = {}
     found = fillings(strokes, wider, *brush.half_width_range_mm())
-    best = [_mended(*_best(ways, strokes, brush), strokes, brush) for ways in found]
+    best = [_cleanest(_best(ways, strokes, brush), strokes, brush) for ways in found]
     chosen, fillable = ({}, set()) if wide == "passes" else _chosen(best, strokes, brush, wide)
     for number, (filling, _) in enumerate(best):
         if wide != "passes" and number not in chosen:
@@ -124,23 +127,34 @@ def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int
     return done, fillable
 
 
-def _best(ways: list, strokes: list, brush) -> tuple:
+def _best(ways: list, strokes: list, brush) -> list[tuple]:
     """Of the ways to fill a shape the one whose mark overlaps with it most, without lines that spoil it, and how much:
-    passes beside its middle lines, which have the direction of writing, unless others are fewer or plainly better."""
+    passes beside its middle lines, which have the direction of writing, unless others are fewer or plainly better. And
+    others along its outline that overlap nearly as much."""
     beside, *along = [_without_blots(each, strokes, brush) for each in ways]
     if not along:
-        return beside
+        return [beside]
     best = max(along, key=lambda each: (each[1], -each[0].unpainted))
     if best[1] == beside[1] == 0:  # of a brush whose marks are refused there
-        return min(beside, best, key=lambda each: each[0].unpainted)
+        return [min(beside, best, key=lambda each: each[0].unpainted)]
     worth = _ALIKE if best[0].count > beside[0].count else -_ALIKE if best[0].count < beside[0].count else 0
-    return best if best[1] > beside[1] + worth else beside
+    if best[1] <= beside[1] + worth:
+        return [beside]
+    return [best, *(each for each in along if each is not best and each[1] > best[1] - _NEARLY)]
+
+
+def _cleanest(ways: list[tuple], strokes: list, brush) -> tuple:
+    """Of fillings with how much they overlap the one with the cleanest edges, once marks that stick out are mended and
+    bare places are painted, and the fewest poses."""
+    mended = [_mended(*each, strokes, brush) for each in ways]
+    return min(mended, key=lambda each: each[2])[:2]
 
 
 def _mended(filling, overlap: float, strokes: list, brush) -> tuple:
-    """The filling without marks that stick out of the shape where other lines help, and how much its mark overlaps with
-    it then."""
-    from .bulges import mended
+    """The filling without marks that stick out of the shape where other lines help, and with lines where its edge stays
+    bare; how much its mark overlaps with it then; and its faults and poses, to be compared with others'."""
+    from .bulges import faults_mm2, mended
+    from .edge_lines import edge_lines
     from .fillings import with_lines
 
     numbers = [(k, lane) for k, of_stroke in filling.passes.items() for lane in range(len(of_stroke))]
@@ -150,18 +164,23 @@ def _mended(filling, overlap: float, strokes: list, brush) -> tuple:
         return _like(strokes[numbers[n][0]], line, numbers[n][1] + 1)
 
     if not overlap:
-        return filling, overlap
-    made = mended(lines, filling.narrow, filling.rings, brush, as_stroke)
-    if all(new is old for new, old in zip(made, lines, strict=True)):
-        return filling, overlap
+        return filling, overlap, math.inf
+    made, paint, shape = mended(lines, filling.narrow, filling.rings, brush, as_stroke)
+    more = edge_lines(paint, shape, brush, lambda line: as_stroke(0, line))
     passes: dict[int, list] = {k: [] for k in filling.passes}
     for (k, _), line in zip(numbers, made, strict=True):
         passes[k] += [line] if line else []
-    kept = with_lines(filling, passes)
+    passes[numbers[0][0]] += more
     painted = [
         _like(strokes[k], line, lane) for k, some in passes.items() for lane, line in enumerate(some, 1)
     ]
-    return kept, _mark_overlap([*painted, *filling.narrow], filling.rings, brush)
+    try:
+        plan = trial_plan([*painted, *filling.narrow], brush)
+    except Error:
+        return filling, overlap, math.inf
+    marks = shape.painted(_core.simulate(plan, brush).passes, brush)
+    worse = faults_mm2(shape, marks) + _POSE_MM2 * sum(len(one.poses_mm) for one in plan.passes)
+    return with_lines(filling, passes), shape.overlap(marks), worse
 
 
 def _chosen(best: list[tuple], strokes: list, brush, wide: str) -> tuple[dict[int, str], set[int]]:
@@ -251,6 +270,7 @@ def _like(stroke, line, lane: int = 1):
         wanted_mm=list(line.wanted_mm),
         start_covered=not line.wanted_mm,  # by other passes
         end_covered=not line.wanted_mm,
+        settings=stroke.settings.replaced(start=line.start) if line.start else stroke.settings,
     )
 
 
