@@ -77,12 +77,18 @@ class Stroke:
     window: tuple  # x y width height, mm
     px: float
     tilt_rad: float = 0.0
+    number: int = 0  # in the file, which has them in the order of painting
 
 
 def load(folder: Path, name: str) -> list[Stroke]:
     data = np.load(folder / f"{name}.npz")
-    if "path" in data:
-        return _loops(data)
+    strokes = _loops(data) if "path" in data else _beziers(data)
+    for number, stroke in enumerate(strokes):
+        stroke.number = number
+    return strokes
+
+
+def _beziers(data) -> list[Stroke]:
     count = int(data["poses"]) if "poses" in data else 10
     t = np.linspace(0, 1, count)
     weights = np.stack([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3], axis=1)
@@ -294,9 +300,10 @@ def by_overlap(strokes, fit, options):
     marks = painted_marks(strokes, [target.poses_mm for target in targets])
     options = copy(options)
     machine_found.ask_for(options, ("lean", "axes"))
-    found = best_predicting(marks, targets, Begin(fit.laws, fit.height_mm, fit.shift_mm), options)
+    begin, order = Begin(fit.laws, fit.height_mm, fit.shift_mm), np.array([stroke.number for stroke in strokes])
+    found = best_predicting(marks, targets, begin, options, order=order)
     changed = {name: getattr(found, name) for name in ("laws", "height_mm", "shift_mm", "led")}
-    return _like(fit, **changed), found
+    return _like(fit, **changed, field=found.aside.field if found.aside else None), found
 
 
 def _like(fit, **changed):
@@ -342,6 +349,8 @@ def _as_run(stroke: Stroke, fit) -> np.ndarray:
     at, depth = poses[:, :2] - fit.centre_mm, np.maximum(fit.height_mm - poses[:, 2:], 0.0)
     poses[:, :2] += np.column_stack([axes[0] * at[:, 0] + axes[2] * at[:, 1], axes[1] * at[:, 1]])
     poses[:, :2] += depth * lean
+    if getattr(fit, "field", None):
+        poses[:, :2] += fit.field.at([stroke.number])
     return fit.led.way(poses, fit.height_mm, np.tan(stroke.tilt_rad)) if hasattr(fit, "led") else poses
 
 

@@ -231,6 +231,45 @@ def outlines(target):
     return mask_outlines(paint, 127, 1 / target.px_per_mm, (left, bottom + height))
 
 
+def test_marks_aside_by_their_place_on_the_sheet_are_predicted_there_and_no_wider():
+    brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 3)
+    order = 2 * np.arange(len(strokes))
+    row = order // 5 % 6
+    aside = np.column_stack([np.zeros(len(order)), 3.0 - 1.2 * row])
+    aside -= aside.mean(axis=0)
+    targets = targets_of(strokes, brush, lambda k: aside[k])
+    marks = [
+        core.PaintedMark(name, poses, outlines(target))
+        for (name, poses), target in zip(strokes, targets, strict=True)
+    ]
+    begin = Begin(laws(brush, [1.0, 1.0]), 0.0)
+    found, without = (
+        overlap_choice.best_predicting(marks, targets, begin, told(brush), order=told_order)
+        for told_order in (order, None)
+    )
+    assert found.aside.won > 3 * found.aside.error
+    assert found.aside.field.at(order) == pytest.approx(aside, abs=0.5)
+    assert found.overlap > without.overlap + 0.1
+    assert half_width(found) == pytest.approx(0.6 * 4.0, rel=0.03)
+
+
+def half_width(found) -> float:
+    return float(np.polynomial.Polynomial(found.laws.half_width)(4.0))
+
+
+def test_marks_aside_by_chance_are_held_to_no_field():
+    brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 3)
+    moved = np.random.default_rng(4).normal(0, 1.0, (len(strokes), 2))
+    targets = targets_of(strokes, brush, lambda k: moved[k])
+    marks = [
+        core.PaintedMark(name, poses, outlines(target))
+        for (name, poses), target in zip(strokes, targets, strict=True)
+    ]
+    begin, order = Begin(laws(brush, [1.0, 1.0]), 0.0), np.arange(len(strokes))
+    found = overlap_choice.best_predicting(marks, targets, begin, told(brush), order=order)
+    assert found.aside.field is None or found.aside.field.at(order).std() < 0.2
+
+
 def test_of_few_marks_it_is_not_known_what_predicts():
     brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 1)
     targets = targets_of(strokes, brush)

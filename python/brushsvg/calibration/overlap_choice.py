@@ -18,6 +18,7 @@ from .. import _core
 from ..errors import Error
 from .from_marks import ROUND_TAIL
 from .machine_found import PARTS
+from .overlap_field import FoundField, found_field, moved
 from .overlap_search import Begin, Led, Search, Target, best_from, each_kind, few_of, middle_of, polished
 
 HALVES = 30  # marks from which on two parts do; fewer are parted in three: each fit needs enough of them
@@ -31,7 +32,8 @@ class Predicting:
     machine does besides; the overlap by edges and now, and how many numbers were changed.
 
     kind: one of KINDS; parts: into how many the marks were parted to choose it, 0 where they are too few; left_out: of
-    each kind the overlaps of marks left out, where they lie and where each may move.
+    each kind the overlaps of marks left out, where they lie and where each may move. aside: by where on a sheet marks
+    were painted, where their order was told.
     """
 
     laws: _core.MarkLaws
@@ -44,6 +46,7 @@ class Predicting:
     kind: str
     parts: int
     left_out: dict[str, tuple[float, float]]
+    aside: FoundField | None = None
 
 
 def best_predicting(
@@ -52,9 +55,10 @@ def best_predicting(
     begin: Begin,
     options: _core.MarkOptions,
     progress: Callable[[int], object] = lambda looks: None,
+    order: np.ndarray | None = None,
 ) -> Predicting:
-    """marks: in the frame of the targets, which they are; begin: what edges told of all of them. progress: is told how
-    many overlaps were looked at."""
+    """marks: in the frame of the targets, which they are; begin: what edges told of all of them; order: as of
+    sheet_field(), where that tells on which part of a sheet they were painted. progress: is told how many overlaps were looked at."""
     looks = 0
 
     def look() -> None:
@@ -72,7 +76,13 @@ def best_predicting(
     starts = [one.x for one in tried[kind] if len(one.x) == len(search.begin)]
     if starts:
         x = best_from(search, kind, starts, few_of(targets), look)
-        found = _predicting(search, kind, x, targets, look)
+        aside, lying = None, targets
+        if order is not None:
+            aside = found_field(search, x, targets, order)
+            if aside.field is not None:
+                lying = moved(targets, aside.field.at(order))
+                x = best_from(search, kind, [x], few_of(lying), look)
+        found = replace(_predicting(search, kind, x, lying, look), aside=aside)
     else:  # fewer marks told fewer numbers of a law
         found = largest_overlap(targets, begin, options, look, kind)
     means = {one: (float(lying), float(moved)) for one, (lying, moved) in left_out.items()}

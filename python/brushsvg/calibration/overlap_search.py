@@ -328,6 +328,12 @@ def few_of(targets: list[Target]) -> list[Target]:
     return targets[:: max(1, len(targets) // FEW)]
 
 
+def of_led(search: Search, x, targets: list[Target], what: Callable) -> list:
+    """what(target, picture) of what the numbers x paint of each target."""
+    laws, height, shift, led = search.read(x)
+    return of_predicted(what, _led(targets, led, height), laws, height, shift, search.deepest_mm)
+
+
 def _led(targets: list[Target], led: Led, height_mm: float) -> list[Target]:
     if not (led.lean_mm_per_mm.any() or led.map.any() or led.lever_mm.any()):
         return targets
