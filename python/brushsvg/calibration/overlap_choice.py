@@ -58,7 +58,8 @@ def best_predicting(
     order: np.ndarray | None = None,
 ) -> Predicting:
     """marks: in the frame of the targets, which they are; begin: what edges told of all of them; order: as of
-    sheet_field(), where that tells on which part of a sheet they were painted. progress: is told how many overlaps were looked at."""
+    sheet_field(), where that tells on which part of a sheet they were painted. progress: is told how many overlaps were
+    looked at."""
     looks = 0
 
     def look() -> None:
@@ -76,15 +77,9 @@ def best_predicting(
     starts = [one.x for one in tried[kind] if len(one.x) == len(search.begin)]
     if starts:
         x = best_from(search, kind, starts, few_of(targets), look)
-        aside, lying = None, targets
-        if order is not None:
-            aside = found_field(search, x, targets, order)
-            if aside.field is not None:
-                lying = moved(targets, aside.field.at(order))
-                x = best_from(search, kind, [x], few_of(lying), look)
-        found = replace(_predicting(search, kind, x, lying, look), aside=aside)
     else:  # fewer marks told fewer numbers of a law
-        found = largest_overlap(targets, begin, options, look, kind)
+        kind, x = _searched(search, targets, look, kind)
+    found = _predicting(search, kind, x, targets, look, order)
     means = {one: (float(lying), float(moved)) for one, (lying, moved) in left_out.items()}
     return replace(found, parts=len(tried["edges"]), left_out=means)
 
@@ -94,21 +89,31 @@ def largest_overlap(
     begin: Begin,
     options: _core.MarkOptions,
     look: Callable[[], None] = lambda: None,
-    last: str | None = None,
 ) -> Predicting:
-    """By the kind of search that may change most, or by this one."""
+    """By the kind of search that may change most."""
     search = Search(begin, options, targets, middle_of(targets))
+    return _predicting(search, *_searched(search, targets, look), targets, look)
+
+
+def _searched(search: Search, targets: list[Target], look, last: str | None = None) -> tuple[str, np.ndarray]:
+    """The kind of search that may change most, or this one, and what it ends with on few marks."""
     kind, x = "edges", search.begin
     for kind, x in each_kind(search, few_of(targets), look):  # noqa: B007
         if kind == last:
             break
-    return _predicting(search, kind, x, targets, look)
+    return kind, x
 
 
-def _predicting(search: Search, kind: str, x, targets: list[Target], look) -> Predicting:
-    x = polished(search, kind, x, targets, look)
+def _predicting(search: Search, kind: str, x, targets: list[Target], look, order=None) -> Predicting:
+    x, aside = polished(search, kind, x, targets, look), None
+    if order is not None:
+        aside = found_field(search, x, targets, order)
+        if aside.field is not None:
+            targets = moved(targets, aside.field.at(order))
+            # along the way a place is what a lag is, too
+            x = polished(search, kind, x, targets, look, ("lag",))
     before, now = (float(search.overlaps(each, targets)[:, 0].mean()) for each in (search.begin, x))
-    return Predicting(*search.read(x), before, now, search.changed(kind), kind, 0, {})
+    return Predicting(*search.read(x), before, now, search.changed(kind), kind, 0, {}, aside)
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,16 +10,19 @@ from .overlap_search import Search, Target, best_shift, of_led
 from .sheet_field import SheetField, sheet_field
 
 FIFTHS = 5
+FEWEST = (
+    30  # marks: of 15 real ones even the left-out ones gained by a field in which further ones did not lie
+)
 
 
 @dataclass(frozen=True, eq=False)
 class FoundField:
-    """field: None where it wins nothing; won: overlap of marks that had no part in it, each fifth told by the others,
-    and its standard error over marks."""
+    """field: None where it wins nothing, or marks are too few; won: overlap of marks that had no part in it, each fifth
+    told by the others, and its standard error over marks; None where they are too few."""
 
     field: SheetField | None
-    won: float
-    error: float
+    won: float | None = None
+    error: float | None = None
 
 
 def found_field(search: Search, x, targets: list[Target], order: np.ndarray) -> FoundField:
@@ -28,6 +31,8 @@ def found_field(search: Search, x, targets: list[Target], order: np.ndarray) -> 
     def placed(target: Target, picture) -> np.ndarray:
         return best_shift(picture, target.paint, 1 / target.px_per_mm, search.farthest_mm)[1]
 
+    if len(targets) < FEWEST:
+        return FoundField(None)
     places = np.array(of_led(search, x, targets, placed))
     part = np.arange(len(targets)) % FIFTHS
     aside = np.zeros((len(targets), 2))
@@ -41,5 +46,6 @@ def found_field(search: Search, x, targets: list[Target], order: np.ndarray) -> 
 
 def moved(targets: list[Target], aside_mm: np.ndarray) -> list[Target]:
     return [
-        replace(one, poses_mm=one.poses_mm + [*aside, 0.0]) for one, aside in zip(targets, aside_mm, strict=True)
+        replace(one, poses_mm=one.poses_mm + np.append(aside, 0.0))
+        for one, aside in zip(targets, aside_mm, strict=True)
     ]

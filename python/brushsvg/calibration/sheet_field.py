@@ -53,7 +53,7 @@ class Layout:
 
     def variances(self, size: float, fall: float, sheet: float, terms: int) -> np.ndarray:
         """Beforehand, in variances of single marks."""
-        told = (DEGREES < (self.columns, self.rows)).all(axis=1)
+        told = (DEGREES[:, 0] < self.columns) & (DEGREES[:, 1] < self.rows)
         field = np.where(told, (size * fall ** (DEGREES.sum(axis=1) - 1.0)) ** 2, 0.0)
         return np.concatenate([[MEAN**2], field, np.full(terms - 1 - len(field), sheet**2)])
 
@@ -86,8 +86,8 @@ def sheet_field(order, displacements_mm) -> SheetField:
     layouts = [Layout(c, r) for c in COLUMNS for r in ROWS if FEWEST <= c * r <= count]
     if not layouts or len(moved) < FEWEST:
         return SheetField(count, ())
-    nothing = np.ones((len(moved), 1))
-    none = sum(_regressed(nothing, one, np.array([MEAN**2]), v)[0] for one, v in zip(moved.T, scale, strict=True))
+    nothing, mean = np.ones((len(moved), 1)), np.array([MEAN**2])
+    none = sum(_regressed(nothing, one, mean, v)[0] for one, v in zip(moved.T, scale, strict=True))
     found = [_of_layout(layout.basis(order, count), moved, scale, layout) for layout in layouts]
     evidence = np.array([none, *(each[0] for each in found)])
     weights = np.exp(evidence - evidence.max()) / np.array([1.0, *np.full(len(found), len(found))])
