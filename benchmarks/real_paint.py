@@ -19,7 +19,9 @@ speak against it. Numbers: lag 2, tip gap 1, half width 2, the footprint's shape
 displacement 2 (at one depth lag 1, half width 1, no height); `edges` also a shift for each fitted stroke. --machine:
 for `edges` as well, lean 2, axes 3. What `overlap` changes is chosen by fitted strokes that are left out in turn:
 nothing; a dragged disc; laws (at one depth lag 2); those with lean, 2 (none at one depth), and a map of the ways, 4;
-those with a lever of the file's tilt, 2.
+those with a lever of the file's tilt, 2. Then a field over the sheets that strokes were painted on, as far as their
+order in the file tells it, if fifths of the fitted strokes that are left out gain by it: `calibrate` does not ask for
+it.
 
 First comes what can be had at all. Two strokes of nearly equal commands overlap less than 1: they are carried on to
 equal commands along a straight line in the way's and the depth's distance. What each misses to the other lies between
@@ -48,7 +50,7 @@ from scipy.optimize import minimize
 
 from brushsvg import _core
 from brushsvg.calibration import machine_found
-from brushsvg.calibration.by_overlap_report import chosen_in_words
+from brushsvg.calibration.by_overlap_report import aside_in_words, chosen_in_words
 from brushsvg.calibration.from_marks import brush_of
 from brushsvg.calibration.overlap_choice import best_predicting
 from brushsvg.calibration.overlap_search import Begin, Target, best_shift, on_paper, predicted, soft_overlap
@@ -77,12 +79,18 @@ class Stroke:
     window: tuple  # x y width height, mm
     px: float
     tilt_rad: float = 0.0
+    number: int = 0  # in the file, which has them in the order of painting
 
 
 def load(folder: Path, name: str) -> list[Stroke]:
     data = np.load(folder / f"{name}.npz")
-    if "path" in data:
-        return _loops(data)
+    strokes = _loops(data) if "path" in data else _beziers(data)
+    for number, stroke in enumerate(strokes):
+        stroke.number = number
+    return strokes
+
+
+def _beziers(data) -> list[Stroke]:
     count = int(data["poses"]) if "poses" in data else 10
     t = np.linspace(0, 1, count)
     weights = np.stack([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3], axis=1)
@@ -294,9 +302,11 @@ def by_overlap(strokes, fit, options):
     marks = painted_marks(strokes, [target.poses_mm for target in targets])
     options = copy(options)
     machine_found.ask_for(options, ("lean", "axes"))
-    found = best_predicting(marks, targets, Begin(fit.laws, fit.height_mm, fit.shift_mm), options)
+    begin = Begin(fit.laws, fit.height_mm, fit.shift_mm)
+    order = np.array([stroke.number for stroke in strokes])
+    found = best_predicting(marks, targets, begin, options, order=order)
     changed = {name: getattr(found, name) for name in ("laws", "height_mm", "shift_mm", "led")}
-    return _like(fit, **changed), found
+    return _like(fit, **changed, field=found.aside.field if found.aside else None), found
 
 
 def _like(fit, **changed):
@@ -342,6 +352,8 @@ def _as_run(stroke: Stroke, fit) -> np.ndarray:
     at, depth = poses[:, :2] - fit.centre_mm, np.maximum(fit.height_mm - poses[:, 2:], 0.0)
     poses[:, :2] += np.column_stack([axes[0] * at[:, 0] + axes[2] * at[:, 1], axes[1] * at[:, 1]])
     poses[:, :2] += depth * lean
+    if getattr(fit, "field", None):
+        poses[:, :2] += fit.field.at([stroke.number])
     return fit.led.way(poses, fit.height_mm, np.tan(stroke.tilt_rad)) if hasattr(fit, "led") else poses
 
 
@@ -551,6 +563,8 @@ def main():
             flush=True,
         )
         print(f"    {chosen_in_words(found)}")
+        if found.aside:
+            print(f"    {aside_in_words(found.aside)}")
         if args.tilt and any(stroke.tilt_rad for stroke in strokes):
             for line in tilt_words(seen, unseen, best, options):
                 print(f"    {line}", flush=True)

@@ -15,8 +15,8 @@ if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
 import brushsvg  # noqa: E402
-from brushsvg.calibration import by_overlap, machine_found, overlap_choice  # noqa: E402
-from brushsvg.calibration.by_overlap_report import chosen_in_words, report  # noqa: E402
+from brushsvg.calibration import by_overlap, machine_found, overlap_choice, overlap_field  # noqa: E402
+from brushsvg.calibration.by_overlap_report import aside_in_words, chosen_in_words, report  # noqa: E402
 from brushsvg.calibration.overlap_search import Begin, Target  # noqa: E402
 
 pytestmark = pytest.mark.long
@@ -229,6 +229,36 @@ def outlines(target):
     left, bottom, _, height = target.window_mm
     paint = np.uint8(np.round(255 * target.paint))
     return mask_outlines(paint, 127, 1 / target.px_per_mm, (left, bottom + height))
+
+
+def aside_of(strokes, brush, aside):
+    """What is found of marks that lie aside by these (n, 2), taught every second stroke."""
+    targets = targets_of(strokes, brush, lambda k: aside[k])
+    begin, order = Begin(laws(brush, [1.0, 1.0]), 0.0), 2 * np.arange(len(strokes))
+    search = overlap_choice.Search(begin, told(brush), targets, np.zeros(2))
+    found = overlap_choice._predicting(search, "laws", search.begin, targets, lambda: None, order)
+    return found, found.aside.field.at(order) if found.aside.field else np.zeros_like(aside)
+
+
+def test_marks_aside_by_their_place_on_the_sheet_are_predicted_there_and_no_wider(monkeypatch):
+    monkeypatch.setattr(overlap_field, "FEWEST", 10)
+    brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 3)
+    row = 2 * np.arange(len(strokes)) // 5 % 6
+    aside = np.column_stack([np.zeros(len(row)), 3.0 - 1.2 * row])
+    found, told_aside = aside_of(strokes, brush, aside)
+    left = aside - aside.mean(axis=0) - told_aside
+    assert found.aside.won > 3 * found.aside.error
+    assert (left**2).sum() < 0.1 * ((aside - aside.mean(axis=0)) ** 2).sum()
+    assert found.overlap > 0.85
+    assert np.polynomial.Polynomial(found.laws.half_width)(4.0) == pytest.approx(0.6 * 4.0, rel=0.05)
+    assert "rows of" in aside_in_words(found.aside)
+
+
+def test_few_marks_tell_no_field():
+    brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 1)
+    found, _ = aside_of(strokes, brush, np.zeros((len(strokes), 2)))
+    assert found.aside.field is None
+    assert "too few" in aside_in_words(found.aside)
 
 
 def test_of_few_marks_it_is_not_known_what_predicts():

@@ -68,6 +68,21 @@ def chosen_in_words(found) -> str:
     )
 
 
+MOST_LAYOUTS = 3
+
+
+def aside_in_words(aside) -> str:
+    """By where on their sheets marks lie aside: aside is overlap_field.FoundField."""
+    if aside.won is None:
+        return "no field over the sheets: the marks are too few"
+    won = f"marks that had no part in it overlap by {aside.won:+.3f} +- {aside.error:.3f} more with it"
+    if aside.field is None:
+        return f"no field over the sheets, since {won}"
+    likely = sorted(aside.field.layouts, key=lambda one: -one[1])[:MOST_LAYOUTS]
+    told = ", ".join(f"{one.rows} rows of {one.columns} ({weight:.2f})" for one, weight, _ in likely)
+    return f"a field over the sheets, since {won}; sheets are averaged over by their probability: {told}"
+
+
 def _machine(edges, led) -> list[str]:
     """What edges told of it and what came beside."""
     lines, was = [], edges.fit.machine

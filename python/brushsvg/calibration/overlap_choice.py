@@ -18,6 +18,7 @@ from .. import _core
 from ..errors import Error
 from .from_marks import ROUND_TAIL
 from .machine_found import PARTS
+from .overlap_field import FoundField, found_field, moved
 from .overlap_search import Begin, Led, Search, Target, best_from, each_kind, few_of, middle_of, polished
 
 HALVES = 30  # marks from which on two parts do; fewer are parted in three: each fit needs enough of them
@@ -31,7 +32,8 @@ class Predicting:
     machine does besides; the overlap by edges and now, and how many numbers were changed.
 
     kind: one of KINDS; parts: into how many the marks were parted to choose it, 0 where they are too few; left_out: of
-    each kind the overlaps of marks left out, where they lie and where each may move.
+    each kind the overlaps of marks left out, where they lie and where each may move. aside: by where on a sheet marks
+    were painted, where their order was told.
     """
 
     laws: _core.MarkLaws
@@ -44,6 +46,7 @@ class Predicting:
     kind: str
     parts: int
     left_out: dict[str, tuple[float, float]]
+    aside: FoundField | None = None
 
 
 def best_predicting(
@@ -52,9 +55,11 @@ def best_predicting(
     begin: Begin,
     options: _core.MarkOptions,
     progress: Callable[[int], object] = lambda looks: None,
+    order: np.ndarray | None = None,
 ) -> Predicting:
-    """marks: in the frame of the targets, which they are; begin: what edges told of all of them. progress: is told how
-    many overlaps were looked at."""
+    """marks: in the frame of the targets, which they are; begin: what edges told of all of them; order: as of
+    sheet_field(), where that tells on which part of a sheet they were painted. progress: is told how many overlaps were
+    looked at."""
     looks = 0
 
     def look() -> None:
@@ -72,9 +77,9 @@ def best_predicting(
     starts = [one.x for one in tried[kind] if len(one.x) == len(search.begin)]
     if starts:
         x = best_from(search, kind, starts, few_of(targets), look)
-        found = _predicting(search, kind, x, targets, look)
     else:  # fewer marks told fewer numbers of a law
-        found = largest_overlap(targets, begin, options, look, kind)
+        kind, x = _searched(search, targets, look, kind)
+    found = _predicting(search, kind, x, targets, look, order)
     means = {one: (float(lying), float(moved)) for one, (lying, moved) in left_out.items()}
     return replace(found, parts=len(tried["edges"]), left_out=means)
 
@@ -84,21 +89,31 @@ def largest_overlap(
     begin: Begin,
     options: _core.MarkOptions,
     look: Callable[[], None] = lambda: None,
-    last: str | None = None,
 ) -> Predicting:
-    """By the kind of search that may change most, or by this one."""
+    """By the kind of search that may change most."""
     search = Search(begin, options, targets, middle_of(targets))
+    return _predicting(search, *_searched(search, targets, look), targets, look)
+
+
+def _searched(search: Search, targets: list[Target], look, last: str | None = None) -> tuple[str, np.ndarray]:
+    """The kind of search that may change most, or this one, and what it ends with on few marks."""
     kind, x = "edges", search.begin
     for kind, x in each_kind(search, few_of(targets), look):  # noqa: B007
         if kind == last:
             break
-    return _predicting(search, kind, x, targets, look)
+    return kind, x
 
 
-def _predicting(search: Search, kind: str, x, targets: list[Target], look) -> Predicting:
-    x = polished(search, kind, x, targets, look)
+def _predicting(search: Search, kind: str, x, targets: list[Target], look, order=None) -> Predicting:
+    x, aside = polished(search, kind, x, targets, look), None
+    if order is not None:
+        aside = found_field(search, x, targets, order)
+        if aside.field is not None:
+            targets = moved(targets, aside.field.at(order))
+            # along the way a place is what a lag is, too
+            x = polished(search, kind, x, targets, look, ("lag",))
     before, now = (float(search.overlaps(each, targets)[:, 0].mean()) for each in (search.begin, x))
-    return Predicting(*search.read(x), before, now, search.changed(kind), kind, 0, {})
+    return Predicting(*search.read(x), before, now, search.changed(kind), kind, 0, {}, aside)
 
 
 @dataclass(frozen=True, eq=False)

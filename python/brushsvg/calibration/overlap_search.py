@@ -292,8 +292,10 @@ def _best_of(loss, starts: list[np.ndarray], steps, free) -> np.ndarray:
     return _simplex(loss, best.all_x, steps, free, BETTER, best.final_simplex[0]).all_x
 
 
-def polished(search: Search, kind: str, x, targets: list[Target], look: Callable[[], None]) -> np.ndarray:
-    """What few marks told, searched on with all."""
+def polished(
+    search: Search, kind: str, x, targets: list[Target], look: Callable[[], None], held: tuple[str, ...] = ()
+) -> np.ndarray:
+    """What few marks told, searched on with all; held: names of numbers that stay."""
     if kind == "edges":
         return x
 
@@ -301,7 +303,7 @@ def polished(search: Search, kind: str, x, targets: list[Target], look: Callable
         look()
         return search.loss(search.as_disc(x) if kind == "disc" else x, targets)
 
-    found = _simplex(loss, x, 0.4 * search.steps, search.without(*HELD[kind]), LAST).all_x
+    found = _simplex(loss, x, 0.4 * search.steps, search.without(*HELD[kind], *held), LAST).all_x
     return search.as_disc(found) if kind == "disc" else found
 
 
@@ -326,6 +328,12 @@ def best_from(
 
 def few_of(targets: list[Target]) -> list[Target]:
     return targets[:: max(1, len(targets) // FEW)]
+
+
+def of_led(search: Search, x, targets: list[Target], what: Callable) -> list:
+    """what(target, picture) of what the numbers x paint of each target."""
+    laws, height, shift, led = search.read(x)
+    return of_predicted(what, _led(targets, led, height), laws, height, shift, search.deepest_mm)
 
 
 def _led(targets: list[Target], led: Led, height_mm: float) -> list[Target]:
