@@ -117,8 +117,7 @@ std::optional<SquaredBeginning> squared_beginning(const Stroke& stroke, const Br
     const Cubics on = part_of(drawn.middle_mm, joins.place, {drawn.middle_mm.rows() - 1, 1.0});
     append_way(out.middle_mm, on);
     out.half_width = widths.knots();
-    return SquaredBeginning{std::move(out), leaves.middle, aside,    joins.middle,
-                            end.at_mm,      -along,        reach_mm, cut->cap.has_value()};
+    return SquaredBeginning{std::move(out), leaves.middle, aside, joins.middle, end.at_mm, -along, reach_mm};
 }
 
 }  // namespace brushsvg
