@@ -11,6 +11,7 @@
 #include "dot.hpp"
 #include "half_painted.hpp"
 #include "hidden_beginning.hpp"
+#include "round_cap.hpp"
 #include "stroke_ends.hpp"
 #include "turned_beginning.hpp"
 
@@ -30,8 +31,6 @@ constexpr double kWorthIt = 0.2, kWorthRound = 0.02;
 /// And what a full turn more of the mark's outline weighs against it, in squares of the greatest half width: knobs on
 /// the thin ends of drops.
 constexpr double kCalm = 0.3;
-/// Half widths of its beginning after which a line is so much thinner where it begins in a ball.
-constexpr double kOfBall = 3.0, kThinner = 0.85;
 
 /// The pass up to where its path is so long, the brush left on the paper.
 Pass beginning_of(const Pass& pass, double length_mm) {
@@ -52,12 +51,6 @@ double way_of(const Pass& pass) {
 double greatest_half_mm(const Stroke& stroke, double half_mm) {
     for (const WidthKnot& knot : stroke.half_width) half_mm = std::max(half_mm, knot.half_width_mm);
     return half_mm;
-}
-
-/// Whether the line begins wider than it goes on: elsewhere a disc is no better than what a hidden beginning paints.
-bool is_ball(const Stroke& stroke, double length_mm) {
-    const double half_mm = half_width_at(stroke, 0.0);
-    return half_width_at(stroke, std::min(1.0, kOfBall * half_mm / length_mm)) < kThinner * half_mm;
 }
 
 }  // namespace
@@ -140,8 +133,7 @@ Beginning Ends::best_beginning() {
     const std::optional<Dot> dot = dot_of(wanted_, brush_);
     const bool hides =
         dot || hidden_beginning(stroke_, brush_, line_, InverseLag(line_, brush_), last_mm, step_tolerance_);
-    if (!hides && !turned_beginning(stroke_, brush_, line_, InverseLag(line_, brush_), last_mm, step_tolerance_))
-        return Beginning::exposed;
+    if (!hides && !turned_beginning(stroke_, brush_, step_tolerance_)) return Beginning::exposed;
     const Pass& exposed = plain(Beginning::exposed);
     const View& view = at_beginning();
     if (dot) {
@@ -159,11 +151,9 @@ Beginning Ends::best_beginning() {
 }
 
 Beginning Ends::hidden_or_turned() {
-    if (!is_ball(stroke_, line_.length()) && (wanted_.start_covered || !cap_before(stroke_, line_)))
+    if (!begins_in_ball(stroke_, line_.length()) && (wanted_.start_covered || !begins_in_cap(stroke_, brush_)))
         return Beginning::hidden;
-    const double last_mm = painted_stretch(stroke_, brush_, line_.length())[1];
-    if (!turned_beginning(stroke_, brush_, line_, InverseLag(line_, brush_), last_mm, step_tolerance_))
-        return Beginning::hidden;
+    if (!turned_beginning(stroke_, brush_, step_tolerance_)) return Beginning::hidden;
     const auto begun = [&](Beginning start) {
         const Pass& pass = plain(start);
         return beginning_of(pass, made_mm() + way_of(pass) - way_of(plain(Beginning::exposed)));

@@ -81,12 +81,12 @@ std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, d
 PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line, Beginning start, double step_tolerance,
                      bool& turns, std::optional<double> turned_depth_mm) {
     auto [s0, s1] = painted_stretch(stroke, brush, line.length());
-    const InverseLag inverse(line, brush);
     std::optional<HiddenBeginning> hidden;
-    if (start == Beginning::hidden) hidden = hidden_beginning(stroke, brush, line, inverse, s1, step_tolerance);
+    if (start == Beginning::hidden)
+        hidden = hidden_beginning(stroke, brush, line, InverseLag(line, brush), s1, step_tolerance);
     std::optional<TurnedBeginning> turned;
     if (start == Beginning::turned || (start == Beginning::hidden && !hidden))
-        turned = turned_beginning(stroke, brush, line, inverse, s1, step_tolerance);
+        turned = turned_beginning(stroke, brush, step_tolerance);
     std::optional<Vector2d> first;
     if (hidden) {
         s0 = hidden->on_from_mm;
@@ -97,15 +97,17 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
     }
     const Stroke& painted = hidden ? hidden->onward : turned ? turned->onward : stroke;
     const Line onward(painted, brush);
+    const InverseLag inverse(onward, brush);
+    s1 += onward.length() - line.length();
     Samples samples;
     if (line.length() > 0.0 && s1 - s0 > 1e-6)
-        samples = onward.coarse(s0, s1, places_of_depths(painted, brush, line.length(), inverse.crossings()));
+        samples = onward.coarse(s0, s1, places_of_depths(painted, brush, onward.length(), inverse.crossings()));
     if (samples.size() < 2) {
         hidden.reset();
         turned.reset();
         turned_depth_mm.reset();
         samples = dab(stroke, line);
-        inverse(samples);
+        InverseLag(line, brush)(samples);
     } else {
         refine_steps(onward, samples, step_tolerance, [&](Samples& all) { inverse(all, first); });
     }

@@ -162,6 +162,13 @@ Cubics part_of(const Cubics& middle_mm, const Place& from, const Place& to) {
     return out;
 }
 
+Cubics reversed(const Cubics& middle_mm) {
+    Cubics out(middle_mm.rows(), 8);
+    for (Index i = 0, n = middle_mm.rows(); i < n; ++i)
+        for (int k = 0; k < 4; ++k) out.row(i).segment<2>(6 - 2 * k) = middle_mm.row(n - 1 - i).segment<2>(2 * k);
+    return out;
+}
+
 void append(Cubics& middle_mm, const Vector2d& to_mm) {
     append_way(middle_mm, straight(middle_mm.row(middle_mm.rows() - 1).tail<2>(), to_mm));
 }

@@ -53,6 +53,9 @@ Cubics way_along(const Cut& cut, const PathEnd& end, const Eigen::Vector2d& from
 /// The path between two places on it, the first before the second.
 Cubics part_of(const Cubics& middle_mm, const Place& from, const Place& to);
 
+/// The same path, led from its end to its beginning.
+Cubics reversed(const Cubics& middle_mm);
+
 /// Goes on straight to a place.
 void append(Cubics& middle_mm, const Eigen::Vector2d& to_mm);
 void append_way(Cubics& middle_mm, const Cubics& more_mm);

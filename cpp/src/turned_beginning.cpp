@@ -7,6 +7,7 @@
 #include "dot.hpp"
 #include "hidden_beginning.hpp"
 #include "landing.hpp"
+#include "round_cap.hpp"
 #include "stroke_ends.hpp"
 
 namespace brushsvg {
@@ -22,6 +23,8 @@ constexpr double kHidingShare = 0.9;
 /// at 1.55 what a disc leaves of it is more than it wins.
 constexpr int kSteps = 24;
 constexpr double kBeforeBall = 1.3;
+/// Half widths of its beginning after which a line is so much thinner where it begins in a ball.
+constexpr double kOfBall = 3.0, kThinner = 0.85;
 /// And how near to the line's beginning the mark is narrowed for a ball: as far behind it as a mark can be narrowed.
 constexpr double kNearest = 0.3;
 
@@ -40,55 +43,63 @@ double ball_mm(const Stroke& stroke, double length_mm) {
     return found_mm + half_width_at(stroke, 0.0) <= kBeforeBall * half_mm ? found_mm : 0.0;
 }
 
-/// Back at the full width until the widest section is amid the cap.
-std::optional<TurnedBeginning> by_way_back(const Stroke& stroke, const Brush& brush, const Line& line,
-                                           const InverseLag& inverse, double last_mm, double step_tolerance) {
-    const auto cap = cap_before(stroke, line);
-    if (!cap) return {};
-    const double turn_mm = (cap->middle_mm - line.at(0.0).middle).dot(line.tangent(line.at(0.0)));
-    const auto depth = depth_of_dot(brush, cap->radius_mm);
-    auto onward = narrowed(stroke, brush, line.length(), turn_mm - kHidingShare * cap->radius_mm);
+/// Back at the full width until the widest section is at the line's first point, amid a cap.
+std::optional<TurnedBeginning> by_way_back(const Stroke& stroke, const Brush& brush, const Line& line, double radius_mm,
+                                           double depth, double step_tolerance) {
+    auto onward = narrowed(stroke, brush, line.length(), -kHidingShare * radius_mm);
     const double full_depth = depth_of(stroke, brush, 0.0), lever = brush.lever_to_widest(full_depth);
-    if (!depth || !onward || !(lever > 0.0) || *depth >= full_depth) return {};
-    const double from_mm = std::max(turn_mm + 2.0 * lever, onward->first);
+    if (!onward || !(lever > 0.0) || depth >= full_depth) return {};
+    const double from_mm = std::max(2.0 * lever, onward->first),
+                 last_mm = painted_stretch(stroke, brush, line.length())[1];
     if (from_mm > last_mm || !rear_lies_inside(stroke, brush, line, from_mm)) return {};
-    auto back = way_back(brush, line, inverse, from_mm, turn_mm, step_tolerance);
+    auto back = way_back(brush, line, InverseLag(line, brush), from_mm, 0.0, step_tolerance);
     if (!back) return {};
     const Vector2d at = back->back().middle;
-    const auto on_from_mm =
-        goes_on_mm(onward->second, brush, line, at, {std::max(0.0, turn_mm), std::min(turn_mm + 4.0 * lever, last_mm)});
+    const auto on_from_mm = goes_on_mm(onward->second, brush, line, at, {0.0, std::min(4.0 * lever, last_mm)});
     if (!on_from_mm) return {};
-    return TurnedBeginning{std::move(*back),          at,          *depth,
+    return TurnedBeginning{std::move(*back),          at,          depth,
                            std::move(onward->second), *on_from_mm, (line.at(*on_from_mm).middle - at).normalized()};
+}
+
+/// Set down where the line is widest.
+std::optional<TurnedBeginning> on_the_spot(const Stroke& stroke, const Brush& brush, const Line& line, double from_mm,
+                                           double radius_mm, double depth) {
+    const double hidden_mm =
+        from_mm > 0.0 ? std::min(from_mm - kHidingShare * radius_mm, -kNearest * radius_mm) : -kHidingShare * radius_mm;
+    auto onward = narrowed(stroke, brush, line.length(), hidden_mm);
+    if (!onward) return {};
+    const Vector2d at = line.at(from_mm).middle;
+    const auto on_from_mm =
+        goes_on_mm(onward->second, brush, line, at, {from_mm, std::min(from_mm + 2.0 * radius_mm, line.length())});
+    if (!on_from_mm) return {};
+    return TurnedBeginning{
+        {}, at, depth, std::move(onward->second), *on_from_mm, (line.at(*on_from_mm).middle - at).normalized()};
 }
 
 }  // namespace
 
-std::optional<Cap> cap_before(const Stroke& stroke, const Line& line) {
-    const Sample first = line.at(0.0);
-    const Vector2d along = -line.tangent(first);
-    return cap_of(stroke, {first.middle, along, {-along.y(), along.x()}, half_width_at(stroke, 0.0)});
+bool begins_in_ball(const Stroke& stroke, double length_mm) {
+    const double half_mm = half_width_at(stroke, 0.0);
+    return half_width_at(stroke, std::min(1.0, kOfBall * half_mm / length_mm)) < kThinner * half_mm;
 }
 
-std::optional<TurnedBeginning> turned_beginning(const Stroke& stroke, const Brush& brush, const Line& line,
-                                                const InverseLag& inverse, double last_mm, double step_tolerance) {
+std::optional<TurnedBeginning> turned_beginning(const Stroke& stroke, const Brush& brush, double step_tolerance) {
     if (stroke.closed || brush.is_rigid() || !brush.width_follows_depth()) return {};
-    const double length_mm = line.length();
-    if (!(length_mm > kShortest * half_width_at(stroke, 0.0))) return {};
-    const double from_mm = ball_mm(stroke, length_mm), half_mm = half_width_at(stroke, from_mm / length_mm);
-    if (from_mm == 0.0)
-        if (auto found = by_way_back(stroke, brush, line, inverse, last_mm, step_tolerance)) return found;
+    const Line line(stroke, brush);
+    if (!(line.length() > kShortest * half_width_at(stroke, 0.0))) return {};
+    const double from_mm = ball_mm(stroke, line.length()), half_mm = half_width_at(stroke, from_mm / line.length());
+    if (!begins_in_ball(stroke, line.length()))
+        if (const auto to_cap = begins_in_cap(stroke, brush)) {
+            const double radius_mm = to_cap->cap.radius_mm;
+            const auto depth = depth_of_dot(brush, radius_mm);
+            const Line led(to_cap->stroke, brush);
+            if (!depth) return {};
+            auto found = by_way_back(to_cap->stroke, brush, led, radius_mm, *depth, step_tolerance);
+            return found ? found : on_the_spot(to_cap->stroke, brush, led, 0.0, radius_mm, *depth);
+        }
     const auto depth = depth_of_dot(brush, half_mm);
-    const double hidden_mm =
-        from_mm > 0.0 ? std::min(from_mm - kHidingShare * half_mm, -kNearest * half_mm) : -kHidingShare * half_mm;
-    auto onward = narrowed(stroke, brush, length_mm, hidden_mm);
-    if (!depth || !onward) return {};
-    const Vector2d at = line.at(from_mm).middle;
-    const auto on_from_mm =
-        goes_on_mm(onward->second, brush, line, at, {from_mm, std::min(from_mm + 2.0 * half_mm, length_mm)});
-    if (!on_from_mm) return {};
-    return TurnedBeginning{
-        {}, at, *depth, std::move(onward->second), *on_from_mm, (line.at(*on_from_mm).middle - at).normalized()};
+    if (!depth) return {};
+    return on_the_spot(stroke, brush, line, from_mm, half_mm, *depth);
 }
 
 Vector2d turn(const TurnedBeginning& beginning, const Brush& brush, PoseList& out) {

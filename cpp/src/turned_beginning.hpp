@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "drawn_cut.hpp"
 #include "inverse_lag.hpp"
 #include "pose_list.hpp"
 
@@ -21,12 +20,11 @@ struct TurnedBeginning {
     Eigen::Vector2d on_along;
 };
 
-/// The round cap that a line begins in, none where it begins otherwise.
-std::optional<Cap> cap_before(const Stroke& stroke, const Line& line);
+/// Whether a line begins wider than it goes on.
+bool begins_in_ball(const Stroke& stroke, double length_mm);
 
 /// None where a dot as wide as the stroke's beginning cannot be turned, or the stroke is no longer than one.
-std::optional<TurnedBeginning> turned_beginning(const Stroke& stroke, const Brush& brush, const Line& line,
-                                                const InverseLag& inverse, double last_mm, double step_tolerance);
+std::optional<TurnedBeginning> turned_beginning(const Stroke& stroke, const Brush& brush, double step_tolerance);
 
 /// The way back and the dot, the brush left on the paper. What it heads to then.
 Eigen::Vector2d turn(const TurnedBeginning& beginning, const Brush& brush, PoseList& out);
