@@ -103,7 +103,10 @@ std::size_t last_at(const Ring& rows, std::size_t begin, std::size_t end, const 
 /// The rows about a dot in which the widest section stays in it: its mark is there in the stead of the line's.
 Turned inside_of(const PassMarks& marks, const Ring& widest, const Turned& turned, const Brush& brush) {
     const Eigen::RowVector2d at = marks.contact_mm.row(Index(turned.last));
-    const double reach_mm = reach_of_dot_mm(brush, marks.depth_mm[turned.last]);
+    const auto depth = marks.depth_mm.begin();
+    const double reach_mm = reach_of_dot_mm(
+        brush,
+        *std::max_element(depth + Index(turned.first), depth + Index(turned.last) + 1));  // it is lifted in place
     const auto is_inside = [&](std::size_t row) { return (widest.row(Index(row)) - at).norm() < reach_mm; };
     Turned all = turned;
     while (all.first > 0 && is_inside(all.first - 1)) --all.first;
