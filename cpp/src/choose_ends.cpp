@@ -151,15 +151,16 @@ Beginning Ends::best_beginning() {
 }
 
 Beginning Ends::hidden_or_turned() {
-    if (!begins_in_ball(stroke_, line_.length()) && (wanted_.start_covered || !begins_in_cap(stroke_, brush_)))
-        return Beginning::hidden;
+    const bool is_ball = begins_in_ball(stroke_, line_.length());
+    if (!is_ball && (wanted_.start_covered || !begins_in_cap(stroke_, brush_))) return Beginning::hidden;
     if (!turned_beginning(stroke_, brush_, step_tolerance_)) return Beginning::hidden;
     const auto begun = [&](Beginning start) {
         const Pass& pass = plain(start);
         return beginning_of(pass, made_mm() + way_of(pass) - way_of(plain(Beginning::exposed)));
     };
     const View& view = at_beginning();
-    return view.is_better([&] { return begun(Beginning::turned); }, view.picture(begun(Beginning::hidden)), kWorthRound)
+    return view.is_better([&] { return begun(Beginning::turned); }, view.picture(begun(Beginning::hidden)),
+                          is_ball ? kWorthIt : kWorthRound)
                ? Beginning::turned
                : Beginning::hidden;
 }

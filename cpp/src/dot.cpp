@@ -18,8 +18,6 @@ constexpr double kLongest = 1.4;
 constexpr double kLargestHole = 0.1;
 /// What counts as turned round on the spot, and how far P may creep meanwhile.
 constexpr double kRoundRad = 6.0, kRestsMm = 0.02;
-/// How loose the brush is while it is turned where it came to.
-constexpr double kSlackMm = 0.05;
 constexpr int kHalvings = 40;
 
 /// None where the least depth reaches farther already; the greatest where none reaches so far.
@@ -101,10 +99,8 @@ PoseList poses_of(const Dot& dot, const Brush& brush) {
 Stance turn_round_ahead(const Stance& before, double depth, const Brush& brush, PoseList& out) {
     const Vector2d &u = before.heading, at = before.contact_mm + brush.lever_to_widest(before.depth_mm) * u;
     out.add(at + brush.lag(depth) * u, depth);
-    // about a place so far ahead that the brush is loose all the way: where it is taut, P creeps
-    const Vector2d about = at + kSlackMm * u;
-    const double first_rad = std::atan2(u.y(), u.x()), reach_mm = brush.lag(depth) - kSlackMm;
-    turn_round(about, first_rad, depth, reach_mm, out);
+    const double first_rad = std::atan2(u.y(), u.x());
+    turn_round(at, first_rad, depth, brush.lag(depth), out);
     const double last_rad = first_rad + kTurnRad;
     return {at, {std::cos(last_rad), std::sin(last_rad)}, depth};
 }
