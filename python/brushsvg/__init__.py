@@ -52,6 +52,7 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .pictures.marks_png import marks_png
     from .pictures.marks_svg import marks_svg
     from .pipeline.checking import Check, check
+    from .pipeline.comparing import PaintedJob, compare
     from .pipeline.conversion import Conversion, convert
     from .pipeline.json_files import read_marks, read_plan
     from .strokes.corners import lifted_at_corners
@@ -84,6 +85,8 @@ _HOME = {
     "chart": "calibration.chart.layout",
     "Check": "pipeline.checking",
     "check": "pipeline.checking",
+    "PaintedJob": "pipeline.comparing",
+    "compare": "pipeline.comparing",
     "Conversion": "pipeline.conversion",
     "convert": "pipeline.conversion",
     "Batch": "batch.run",
@@ -139,6 +142,7 @@ __all__ = [
     "FootprintTable",
     "Marks",
     "Paint",
+    "PaintedJob",
     "Pass",
     "Plan",
     "Profile",
@@ -154,6 +158,7 @@ __all__ = [
     "cell_names",
     "chart",
     "check",
+    "compare",
     "compensate",
     "convert",
     "coverage",

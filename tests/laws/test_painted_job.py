@@ -1,6 +1,8 @@
 """A painted job in a rendered photograph: where each mark lies comes back, and other pictures are refused."""
 
+import copy
 import json
+import pickle
 
 import cv2
 import numpy as np
@@ -12,9 +14,11 @@ from shapely import affinity
 from shapely.geometry import Polygon
 from shapely.ops import unary_union
 
+import brushsvg
 from brushsvg import _core
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.cli import main
+from brushsvg.errors import Error
 from brushsvg.painted.job_page import job_page
 from brushsvg.pipeline.preparation import prepare
 from brushsvg.pipeline.work import nearest_first
@@ -303,3 +307,45 @@ def test_the_page_names_its_plan(job, tmp_path, capsys):
     assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
     work = prepare(folder / "four.svg")
     assert job_page(nearest_first(work).plan).printed.id == page.printed.id, "whatever the order"
+
+
+def test_python_is_told_what_the_command_tells(job, capsys, tmp_path):
+    folder, page, _, painted = job
+    named = tmp_path / "told.json", tmp_path / "told.png", tmp_path / "mended.toml"
+    flags = [f"--{flag}={path}" for flag, path in zip(("picture", "mended-cell"), named[1:], strict=True)]
+    status, told = compare(folder, capsys, "photo.jpg", "-o", str(named[0]), *flags)
+    stages = []
+    found = brushsvg.compare(folder / "four.svg", folder / "photo.jpg", progress=stages.append)
+    assert status == 0 and found.text == told.out and found.json == named[0].read_text()
+    assert found.picture() == named[1].read_bytes()
+    assert brushsvg.write_cell(found.cell) == named[2].read_text() and not found.is_mended
+    assert round(found.overlap, 4) == json.loads(found.json)["overlap_wanted"] < 0.7
+    assert [each.stroke for each in found.strokes] == list(painted) == list(found.corrections)
+    assert len(set(stages)) > 3 and all(isinstance(words, str) for words in stages)
+    for again in (copy.deepcopy(found), pickle.loads(pickle.dumps(found))):
+        assert again == found and again.picture() == found.picture()
+    (folder / "three.jpg").write_bytes(
+        shown(page, {name: each for name, each in painted.items() if name != "bow"})
+    )
+    notices = brushsvg.compare(folder / "four.svg", [str(folder / "three.jpg")]).notices
+    assert [(each.where, each.code) for each in notices if each.code == "mark-missing"] == [
+        ("bow", "mark-missing")
+    ]
+
+
+def test_what_cannot_be_compared_from_python_is_one_error(job, tmp_path):
+    folder = job[0]
+    drawing, photo = folder / "four.svg", str(folder / "photo.jpg")
+    (tmp_path / "other.svg").write_text(DRAWING.replace("M16 58 L70 54", "M16 50 L70 44"))
+    for photos, code, file in (
+        ([], "wrong-type", None),
+        (7, "wrong-type", None),
+        ([photo, photo], "photo-twice", photo),
+        (tmp_path / "none.jpg", "file-unreadable", str(tmp_path / "none.jpg")),
+    ):
+        with pytest.raises(Error) as refused:
+            brushsvg.compare(drawing, photos)
+        assert (refused.value.code, refused.value.file) == (code, file)
+    with pytest.raises(Error) as refused:
+        brushsvg.compare(tmp_path / "other.svg", photo)
+    assert (refused.value.code, refused.value.file) == ("photo-of-another-chart", photo)

@@ -18,6 +18,7 @@ import numpy as np
 
 import brushsvg
 from brushsvg import _core
+from brushsvg.cli import main as command
 from brushsvg.drawing.design import Design
 
 NAN, INF = float("nan"), float("inf")
@@ -243,6 +244,7 @@ ARGUMENTS = {
     "Compensated": [],
     "Conversion": [],
     "Check": [],
+    "PaintedJob": [],
     "Error": [["a sentence", *TEXTS], ["", *NUMBERS], [None, *NUMBERS], [None, *NUMBERS]],
     "Footprint": [[3.0, *NUMBERS], [[[0, 0], [4, -2], [6, 0], [4, 2]], [], [[NAN, 0]] * 3, [[1e300, 0]] * 3]],
     "FootprintTable": [
@@ -297,6 +299,10 @@ ARGUMENTS = {
     "check": [
         lambda: [sound_program(), FOLDER / "d.svg", *PATHS],
         lambda: [None, *designs(), *plans(), *PATHS],
+    ],
+    "compare": [
+        lambda: [FOLDER / "d.svg", *designs(), *plans(), *PATHS],
+        lambda: [sound_photo(), [], [None], *PATHS],
     ],
     "convert": [lambda: [FOLDER / "d.svg", *designs(), *plans(), *PATHS], [None, FOLDER / "o.ngc", *PATHS]],
     "coverage": [
@@ -390,6 +396,13 @@ ARGUMENTS = {
 def sound_program():
     brushsvg.convert(FOLDER / "d.svg", FOLDER / "sound.ngc")
     return FOLDER / "sound.ngc"
+
+
+def sound_photo():
+    photo = FOLDER / "photo.jpg"
+    if not photo.exists():
+        assert command(["simulate-photo", str(FOLDER / "d.svg"), str(photo), "--quiet"]) == 0
+    return photo
 
 
 def read_options():

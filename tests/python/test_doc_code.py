@@ -83,8 +83,9 @@ def test_every_block_is_of_a_kind_that_is_held():
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A folder of somebody who draws: word.svg, letters/, measured.csv, a font."""
+    """A folder of somebody who draws: word.svg, its painted page, letters/, measured.csv, a font."""
     shutil.copy(HOUSE / "examples" / "robot.svg", tmp_path / "word.svg")
+    main(["simulate-photo", str(tmp_path / "word.svg"), str(tmp_path / "word.jpg"), "--quiet"])
     (tmp_path / "letters").mkdir()
     shutil.copy(HOUSE / "examples" / "robot.svg", tmp_path / "letters" / "one.svg")
     rows = [f"lag,{d},{3 + 0.9 * d:.1f}\nwidth,{d},{0.8 * d:.1f}" for d in range(1, 9)]

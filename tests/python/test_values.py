@@ -317,9 +317,14 @@ VALUES_OF = {
         for y in (30, 31)
     ],
     "Check": lambda folder: [checked(folder, 30), checked(folder, 31)],
+    "PaintedJob": lambda _: [
+        brushsvg.PaintedJob(*painted, CELL, False, (), "", "") for painted in PAINTED_JOBS
+    ],
     "Batch": lambda _: [brushsvg.Batch((), 0, ()), brushsvg.Batch((), 1, ("a.csv",))],
     "Calibration": lambda folder: [calibrated(folder), calibrated(folder, 0.1)],
 }
+CELL = brushsvg.find_cell()
+PAINTED_JOBS = [("word", overlap, (), {}, None, {}) for overlap in (0.8, 0.9)]
 NAMES = {each if isinstance(each, str) else each.__name__: values for each, values in VALUES_OF.items()}
 
 

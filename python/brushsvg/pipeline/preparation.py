@@ -51,6 +51,7 @@ def prepare(
     drawing as read_drawing takes it. Error when it cannot be read or painted; partly: strokes that are refused are left
     out."""
     if isinstance(source, _core.Plan):
+        _core.write_plan(source)  # refuses what no file may hold
         return _prepare_plan(source, options)
     if isinstance(source, str | os.PathLike) and Path(source).suffix.lower() == ".json":
         return _prepare_plan(read_plan(source), options)

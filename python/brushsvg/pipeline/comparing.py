@@ -1,0 +1,196 @@
+"""Photographs of a painted sheet held against what was wanted and predicted: what `brushsvg compare` does, from
+Python."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Unpack
+
+from .. import _core
+from ..calibration.from_prior import has_learned
+from ..errors import Error, Notice, need
+from ..evaluation.report import wanted_rings
+from ..files import read_bytes
+from ..machine.cell import Cell, axes_along_paper
+from ..painted import report
+from ..painted.beside_machine import beside_machine as left_beside
+from ..painted.comparison import Compared, Comparison, Wanted, compare_photos
+from ..painted.corrections import (
+    Correction,
+    aside_before_mm,
+    beside_machine,
+    corrected,
+    machine_sha256,
+    refuse_corrected,
+)
+from ..painted.ends import Ends, ends_of
+from ..painted.fault_model import BRUSH
+from ..painted.faults import Faults, whose_fault
+from ..painted.job_marks import job_marks
+from ..painted.job_page import JobPage, job_page
+from ..painted.mended_cell import mended, sure
+from ..painted.next_time import farther, next_corrections
+from ..painted.picture import comparison_png
+from . import cancelling, prediction, preparation
+from .cancelling import Cancel
+from .checking import Told
+from .choices import Choices, Given, concerning, corrections_of, name_of, options_of, settled, without_effect
+from .conversion import chosen_of
+from .work import Work
+
+if TYPE_CHECKING:
+    from .preparation import Source
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """What was told to the machine, and the page that it painted on: plan, with the corrections of before; strokes:
+    rings on the sheet of what was wanted and predicted."""
+
+    work: Work
+    plan: _core.Plan
+    before: tuple[Correction, ...]
+    page: JobPage
+    strokes: tuple[Wanted, ...]
+
+    @property
+    def title(self) -> str:
+        return self.work.title or "untitled"
+
+
+@dataclass(frozen=True)
+class PaintedJob:
+    """What photographs of a painted sheet show.
+
+    overlap: of all paint with what was wanted, or predicted where there is no drawing, as it lies. strokes: each with
+    its overlaps and where it lies; ends: by stroke, how much later than wanted it begins and ends. faults: whose it is,
+    None where nothing can be told. corrections: by stroke, where it should be led next time. cell: with a [machine]
+    that undoes what is certain, besides what it undid; is_mended: whether anything is. notices: what is to be warned
+    of. text, json: what the command prints and what `convert` takes as corrections.
+    """
+
+    title: str
+    overlap: float
+    strokes: tuple[Compared, ...] = field(repr=False)
+    ends: dict[str, Ends] = field(repr=False)
+    faults: Faults | None = field(repr=False)
+    corrections: dict[str, Correction] = field(repr=False)
+    cell: Cell = field(repr=False)
+    is_mended: bool
+    notices: tuple[Notice, ...] = field(repr=False)
+    text: str = field(repr=False)
+    json: str = field(repr=False)
+    _shown: tuple[JobPage, list[Wanted], Comparison, str] | None = field(
+        default=None, repr=False, compare=False
+    )
+
+    def picture(self) -> bytes:
+        """A PNG: the paint as photographed over what was wanted, in grey, under a red line where it was predicted."""
+        if self._shown is None:
+            raise Error("it was not made of photographs", code="nothing-to-show")
+        return comparison_png(*self._shown, self.faults)
+
+
+def compare(
+    drawing: Source,
+    photos: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    *,
+    progress: Callable[[str], object] | None = None,
+    cancel: Cancel | None = None,
+    **choices: Unpack[Given],
+) -> PaintedJob:
+    """Photographs of one painted sheet held against what was wanted and predicted, as `brushsvg compare` does.
+
+    drawing: what was painted, as `convert` takes it, with the choices that it was converted with; corrections: those
+    that it was painted with. photos: the path of one, or a list of them, which are averaged. progress, cancel: as for
+    `convert`.
+
+    Raises Error, with a code of docs/diagnostics.md, for a photograph that cannot be read or shows another job.
+    """
+    single = isinstance(photos, (str, os.PathLike))
+    need(photos, (str, os.PathLike, tuple, list), "a path or a list of paths, which photos are")
+    paths = [photos] if single else list(photos)
+    if not paths:
+        raise Error("there is no photograph", "photos", code="wrong-type")
+    for each in paths:
+        need(each, (str, os.PathLike), "a path, which each of photos is")
+    chosen, notices = chosen_of(drawing, choices), []
+
+    def work(stage) -> PaintedJob:
+        def told(_, found):
+            notices.extend(found)
+
+        return compared(painted_sheet(chosen, stage, told), [*map(os.fspath, paths)], chosen, stage, told)
+
+    return replace(cancelling.run(work, progress, cancel), notices=tuple(notices))
+
+
+def painted_sheet(chosen: Choices, stage: Callable[[str], object], told: Told) -> Sheet:
+    """What stands on the page that was painted on; notices are told with the file that they are of."""
+    name = name_of(chosen.input)
+    before = corrections_of(chosen.corrections)
+    with concerning(name):
+        chosen = settled(replace(chosen, corrections=None), chosen.input)
+        told(name, without_effect(chosen))
+        work = preparation.prepare(chosen.input, options_of(chosen), stage)
+        told(name, work.notices)
+        refuse_corrected(work.plan)
+        marks = prediction.predict(work, True, stage)
+        before = beside_machine(before, _undone(work))
+        plan = corrected(work.plan, before, work.brush)
+        wanted = {} if work.strokes is None else {one.id: wanted_rings([one]) for one in work.strokes}
+        strokes = (Wanted(each.stroke, wanted.get(each.stroke), [*each.outline_mm]) for each in marks.passes)
+        return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes))
+
+
+def photographs(paths: Iterable[str], stage: Callable[[str], object]) -> list[tuple[str, bytes]]:
+    """Names, and what their files hold."""
+    stage("reading the photographs")
+    return [(path, read_bytes(path)) for path in paths]
+
+
+def compared(
+    sheet: Sheet, paths: list[str], chosen: Choices, stage: Callable[[str], object], told: Told
+) -> PaintedJob:
+    """paths: photographs of one sheet; notices are told with the first of them."""
+    work, brush, strokes = sheet.work, sheet.work.brush, list(sheet.strokes)
+    with concerning(paths[0]):
+        photos = photographs(paths, stage)
+        found = compare_photos(sheet.page, strokes, photos)
+    stage("looking for what is amiss")
+    learned = has_learned(brush, [hashlib.sha256(data).hexdigest() for _, data in photos])
+    faults = whose_fault(sheet.plan, brush, strokes, found, learned)
+    corrections, too_far = next_corrections(found, work.plan, sheet.before, brush)
+    beyond = farther(found, aside_before_mm(chosen.corrections)) if chosen.corrections else []
+    told(paths[0], [*found.notices, *too_far, *beyond])
+    cell, machine, beside = work.options.cell, None, None
+    if cell and faults:
+        along = axes_along_paper(cell)
+        machine = mended(faults, found.middle_mm, cell.machine, along)
+        if machine:
+            rest = left_beside(found, sure(faults, cell.machine, along), sheet.plan, brush, strokes)
+            beside = machine_sha256(machine), next_corrections(rest, work.plan, sheet.before, brush)[0]
+    ends = ends_of(found, strokes, work.strokes or ())
+    made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_undone(work)))
+    any_alone = faults is None or faults.first != BRUSH or bool(job_marks(found, sheet.page, strokes).rings)
+    return PaintedJob(
+        sheet.title,
+        found.overlap_predicted if found.overlap_wanted is None else found.overlap_wanted,
+        found.strokes,
+        ends,
+        faults,
+        corrections,
+        replace(cell, machine=machine) if machine else cell,
+        machine is not None,
+        (),
+        report.as_text(sheet.title, found, faults, ends, machine, any_alone),
+        report.as_json(sheet.title, found, corrections, faults, ends, made_with, beside),
+        (sheet.page, strokes, found, sheet.title),
+    )
+
+
+def _undone(work: Work):
+    return work.options.cell.machine if work.options.cell else None
