@@ -97,7 +97,8 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
     }
     const Stroke& painted = hidden ? hidden->onward : turned ? turned->onward : stroke;
     const Line onward(painted, brush);
-    const InverseLag inverse(onward, brush);
+    const bool is_led_anew = onward.length() != line.length();  // amid a cap
+    const InverseLag inverse(is_led_anew ? onward : line, brush);
     s1 += onward.length() - line.length();
     Samples samples;
     if (line.length() > 0.0 && s1 - s0 > 1e-6)

@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 constexpr int kStepsBack = 12;
 /// Shorter ways back that are tried where the whole one has no room.
 constexpr int kShorter = 4;
-constexpr int kHalvings = 30;  // of a few mm: to rounding
+constexpr int kHalvings = 40;  // of a few mm: to rounding
 /// Of the front of a footprint, what is wide enough to hide a pointed rear.
 constexpr double kHidingShare = 0.8;
 constexpr double kWithinReach = 0.999;
