@@ -161,7 +161,7 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
         return beyond(box, options.sheet_mm) <= std::max(reach, beyond(before, options.sheet_mm));
     };
     const bool anywhere = options.sheet_mm == std::array<double, 2>{0.0, 0.0};
-    if (is_dot(simulate(dense, brush, 0.02, false))) return closed;  // round already
+    if (!turned_round(simulate(dense, brush, 0.02, false)).empty()) return closed;  // round already
     const Target target(wanted, half_width);
     const Tried before(closed.plan.pass, target, brush, options.start);
     closed.overlap = closed.overlap_closed = before.overlap;

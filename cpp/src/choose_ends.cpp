@@ -11,6 +11,7 @@
 #include "dot.hpp"
 #include "half_painted.hpp"
 #include "hidden_beginning.hpp"
+#include "round_cap.hpp"
 #include "stroke_ends.hpp"
 #include "turned_beginning.hpp"
 
@@ -24,14 +25,12 @@ using Eigen::Vector2d;
 /// pixels on one half width. A pointed footprint reaches back by two half widths from its widest section.
 constexpr double kLookedAt = 3.0, kMade = 6.0, kPixels = 8.0;
 /// What another end than the plain one must win, in squares of the half width: of the 1.5 that a pointed beginning
-/// lacks, what one has to look for. Two blunt corners lack 0.43. Of a round cap less shows: the shoulders of a blunt
-/// front beside it.
-constexpr double kWorthIt = 0.2, kWorthRound = 0.05;
+/// lacks, what one has to look for. Two blunt corners lack 0.43. Of a round end less shows: the shoulders of a blunt
+/// front beside it, which lack 0.044 of a line of 6 mm and make it a hexagon.
+constexpr double kWorthIt = 0.2, kWorthRound = 0.02;
 /// And what a full turn more of the mark's outline weighs against it, in squares of the greatest half width: knobs on
 /// the thin ends of drops.
 constexpr double kCalm = 0.3;
-/// Half widths of its beginning after which a line is so much thinner where it begins in a ball.
-constexpr double kOfBall = 3.0, kThinner = 0.85;
 
 /// The pass up to where its path is so long, the brush left on the paper.
 Pass beginning_of(const Pass& pass, double length_mm) {
@@ -52,12 +51,6 @@ double way_of(const Pass& pass) {
 double greatest_half_mm(const Stroke& stroke, double half_mm) {
     for (const WidthKnot& knot : stroke.half_width) half_mm = std::max(half_mm, knot.half_width_mm);
     return half_mm;
-}
-
-/// Whether the line begins wider than it goes on: elsewhere a disc is no better than what a hidden beginning paints.
-bool is_ball(const Stroke& stroke, double length_mm) {
-    const double half_mm = half_width_at(stroke, 0.0);
-    return half_width_at(stroke, std::min(1.0, kOfBall * half_mm / length_mm)) < kThinner * half_mm;
 }
 
 }  // namespace
@@ -81,8 +74,8 @@ class View {
     }
     /// Whether the mark of another pass, made where it is asked for, wins what is worth it.
     template <class Other>
-    bool is_better(Other&& other, const Coverage& before, bool is_round = false) const {
-        const double worth = is_round ? kWorthRound : kWorthIt, off = differs(before);
+    bool is_better(Other&& other, const Coverage& before, double worth = kWorthIt) const {
+        const double off = differs(before);
         if (!(off - worth > 0.0)) return false;  // the wanted mark itself would not win it
         const Coverage now = picture(other());
         const double won = off - differs(now) - worth;
@@ -140,8 +133,7 @@ Beginning Ends::best_beginning() {
     const std::optional<Dot> dot = dot_of(wanted_, brush_);
     const bool hides =
         dot || hidden_beginning(stroke_, brush_, line_, InverseLag(line_, brush_), last_mm, step_tolerance_);
-    const auto turns = [&] { return turned_beginning(stroke_, brush_, line_).has_value(); };
-    if (!hides && !turns()) return Beginning::exposed;
+    if (!hides && !turned_beginning(stroke_, brush_, step_tolerance_)) return Beginning::exposed;
     const Pass& exposed = plain(Beginning::exposed);
     const View& view = at_beginning();
     if (dot) {
@@ -155,8 +147,20 @@ Beginning Ends::best_beginning() {
         return beginning_of(pass, made_mm() + way_of(pass) - way_of(exposed));
     };
     if (!view.is_better([&] { return begun(Beginning::hidden); }, exposed_picture())) return Beginning::exposed;
-    if (!hides || !is_ball(stroke_, line_.length()) || !turns()) return Beginning::hidden;
-    return view.is_better([&] { return begun(Beginning::turned); }, view.picture(begun(Beginning::hidden)))
+    return hides ? hidden_or_turned() : Beginning::hidden;
+}
+
+Beginning Ends::hidden_or_turned() {
+    const bool is_ball = begins_in_ball(stroke_, line_.length());
+    if (!is_ball && (wanted_.start_covered || !begins_in_cap(stroke_, brush_))) return Beginning::hidden;
+    if (!turned_beginning(stroke_, brush_, step_tolerance_)) return Beginning::hidden;
+    const auto begun = [&](Beginning start) {
+        const Pass& pass = plain(start);
+        return beginning_of(pass, made_mm() + way_of(pass) - way_of(plain(Beginning::exposed)));
+    };
+    const View& view = at_beginning();
+    return view.is_better([&] { return begun(Beginning::turned); }, view.picture(begun(Beginning::hidden)),
+                          is_ball ? kWorthIt : kWorthRound)
                ? Beginning::turned
                : Beginning::hidden;
 }
@@ -175,7 +179,7 @@ bool Ends::is_better_squared(const SquaredDot& dot, Beginning start) {
     return view.is_better(squared, view.picture(start == Beginning::hidden ? round : plain(start)));
 }
 
-bool Ends::begins_better(const SquaredBeginning& squared, const Stroke& whole, Beginning start) {
+bool Ends::begins_better(const Stroke& whole, Beginning start) {
     const Pass& before = plain(start);
     const View& view = at_beginning();
     const auto other = [&] {
@@ -185,20 +189,41 @@ bool Ends::begins_better(const SquaredBeginning& squared, const Stroke& whole, B
         // both up to the same place: from there on they are the same
         return beginning_of(pass, made_mm() + way_of(pass) - way_of(before));
     };
-    if (start == Beginning::exposed) return view.is_better(other, exposed_picture(), squared.is_round);
-    return view.is_better(other, view.picture(beginning_of(before, made_mm())), squared.is_round);
+    if (start == Beginning::exposed) return view.is_better(other, exposed_picture());
+    return view.is_better(other, view.picture(beginning_of(before, made_mm())));
 }
 
 Ending Ends::best_ending(const SquaredEnd& squared, Beginning start) {
+    return is_better_at_end(
+               [&](bool& turns) {
+                   return closed_form(squared.stroke, brush_, Line(squared.stroke, brush_), start, step_tolerance_,
+                                      turns);
+               },
+               start, kWorthIt)
+               ? Ending::squared
+               : Ending::lifted;
+}
+
+bool Ends::is_better(const TurnedEnd& turned, Beginning start) {
+    return is_better_at_end(
+        [&](bool& turns) {
+            return closed_form(turned.stroke, brush_, Line(turned.stroke, brush_), start, step_tolerance_, turns,
+                               turned.depth_mm);
+        },
+        start, kWorthRound);
+}
+
+template <class Poses>
+bool Ends::is_better_at_end(Poses&& poses, Beginning start, double worth) {
     const double half = brush_.half_width(depth_of(stroke_, brush_, 1.0));
     const View view(wanted_, line_.at(line_.length()).middle, half, greatest_half_mm(stroke_, half), brush_);
     const auto other = [&] {
         bool turns = false;
         Pass pass;
-        closed_form(squared.stroke, brush_, Line(squared.stroke, brush_), start, step_tolerance_, turns).into(pass);
+        poses(turns).into(pass);
         return pass;
     };
-    return view.is_better(other, view.picture(plain(start)), squared.is_round) ? Ending::squared : Ending::lifted;
+    return view.is_better(other, view.picture(plain(start)), worth);
 }
 
 }  // namespace brushsvg

@@ -6,9 +6,9 @@
 #include "brushsvg/compensate.hpp"
 #include "brushsvg/coverage.hpp"
 #include "middle_line.hpp"
-#include "squared_beginning.hpp"
 #include "squared_dot.hpp"
 #include "squared_end.hpp"
+#include "turned_end.hpp"
 
 namespace brushsvg {
 
@@ -23,15 +23,21 @@ class Ends {
     ~Ends();
 
     Beginning best_beginning();
+    /// Of these two, where the drawn end is a round cap or a ball; elsewhere hidden.
+    Beginning hidden_or_turned();
     /// Whether a squared one makes the mark begin still better, by more than can hardly be seen. start: how the stroke
     /// begins without it; whole: the stroke with its way, up to its end.
-    bool begins_better(const SquaredBeginning& squared, const Stroke& whole, Beginning start);
+    bool begins_better(const Stroke& whole, Beginning start);
     /// Whether a dot with corners is more like the wanted one than what is painted without them, begun as start says.
     bool is_better_squared(const SquaredDot& dot, Beginning start);
     /// Of that of the stroke, and of that with a squared end.
     Ending best_ending(const SquaredEnd& squared, Beginning start);
+    /// Whether a turned end makes the mark end still rounder.
+    bool is_better(const TurnedEnd& turned, Beginning start);
 
  private:
+    template <class Poses>
+    bool is_better_at_end(Poses&& poses, Beginning start, double worth);
     const Pass& plain(Beginning start);
     double made_mm() const;
     const View& at_beginning();

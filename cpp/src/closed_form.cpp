@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "brushsvg/lag_arc.hpp"
+#include "dot.hpp"
 #include "hidden_beginning.hpp"
 #include "inverse_lag.hpp"
 #include "landing.hpp"
@@ -40,7 +41,7 @@ Samples dab(const Stroke& stroke, const Line& line) {
 
 Stance stance_of(const Sample& sample) { return {sample.contact, sample.heading, sample.depth}; }
 
-/// Along the samples, from where the brush is taut at the first, and lifted at the last.
+/// Along the samples, from where the brush is taut at the first.
 void lead(const Samples& samples, const Brush& brush, PoseList& out, bool& turns) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
         turns = turns || !samples[i].taut;
@@ -56,7 +57,6 @@ void lead(const Samples& samples, const Brush& brush, PoseList& out, bool& turns
             out.add(samples[i].tcp, samples[i].depth);
         }
     }
-    lift(stance_of(samples.back()), brush, out);
 }
 
 }  // namespace
@@ -79,14 +79,14 @@ std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, d
 }
 
 PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line, Beginning start, double step_tolerance,
-                     bool& turns) {
+                     bool& turns, std::optional<double> turned_depth_mm) {
     auto [s0, s1] = painted_stretch(stroke, brush, line.length());
-    const InverseLag inverse(line, brush);
     std::optional<HiddenBeginning> hidden;
-    if (start == Beginning::hidden) hidden = hidden_beginning(stroke, brush, line, inverse, s1, step_tolerance);
+    if (start == Beginning::hidden)
+        hidden = hidden_beginning(stroke, brush, line, InverseLag(line, brush), s1, step_tolerance);
     std::optional<TurnedBeginning> turned;
     if (start == Beginning::turned || (start == Beginning::hidden && !hidden))
-        turned = turned_beginning(stroke, brush, line);
+        turned = turned_beginning(stroke, brush, step_tolerance);
     std::optional<Vector2d> first;
     if (hidden) {
         s0 = hidden->on_from_mm;
@@ -97,14 +97,18 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
     }
     const Stroke& painted = hidden ? hidden->onward : turned ? turned->onward : stroke;
     const Line onward(painted, brush);
+    const bool is_led_anew = onward.length() != line.length();  // amid a cap
+    const InverseLag inverse(is_led_anew ? onward : line, brush);
+    s1 += onward.length() - line.length();
     Samples samples;
     if (line.length() > 0.0 && s1 - s0 > 1e-6)
-        samples = onward.coarse(s0, s1, places_of_depths(painted, brush, line.length(), inverse.crossings()));
+        samples = onward.coarse(s0, s1, places_of_depths(painted, brush, onward.length(), inverse.crossings()));
     if (samples.size() < 2) {
         hidden.reset();
         turned.reset();
+        turned_depth_mm.reset();
         samples = dab(stroke, line);
-        inverse(samples);
+        InverseLag(line, brush)(samples);
     } else {
         refine_steps(onward, samples, step_tolerance, [&](Samples& all) { inverse(all, first); });
     }
@@ -114,12 +118,14 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
         for (const Sample& sample : hidden->back) out.add(sample.tcp, sample.depth);
         turn_over(stance_of(hidden->back.back()), stance_of(samples.front()), brush, out);
     } else if (turned) {
-        turn(*turned, brush, out);
-        turn_over({turned->at_mm, turned->on_along, turned->depth_mm}, stance_of(samples.front()), brush, out);
+        const Vector2d heading = turn(*turned, brush, out);
+        turn_over({turned->at_mm, heading, turned->depth_mm}, stance_of(samples.front()), brush, out);
     } else {
         land(stance_of(samples.front()), brush, out);
     }
     lead(samples, brush, out, turns);
+    const Stance last = stance_of(samples.back());
+    lift(turned_depth_mm ? turn_round_ahead(last, *turned_depth_mm, brush, out) : last, brush, out);
     return out;
 }
 
@@ -132,6 +138,7 @@ PoseList closed_form(const SquaredDot& dot, const Brush& brush, double step_tole
     const Stance turned = turn(dot.dot, brush, out);
     turn_over(turned, stance_of(samples.front()), brush, out);
     lead(samples, brush, out, turns);
+    lift(stance_of(samples.back()), brush, out);
     return out;
 }
 

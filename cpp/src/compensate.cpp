@@ -26,6 +26,7 @@
 #include "stroke_ends.hpp"
 #include "thin_out_after_turn.hpp"
 #include "tolerance.hpp"
+#include "turned_end.hpp"
 
 namespace brushsvg {
 namespace {
@@ -120,7 +121,8 @@ constexpr double kFinerTolerancesMm[] = {0.5, 0.2, 0.1, 0.05};
 /// Shares of the tolerance: what thinning out may use up, and the miss that is accepted then. Rows of the check lie a
 /// little off the truth between them: at 0.95 a mark was 0.0002 mm off too far.
 constexpr double kThinShare = 0.9, kSurely = 0.9;
-/// And what fewer poses may add to a miss that is larger anyway: with none a cusp's poses were all kept for 1e-4 mm.
+/// And what fewer poses may add to a miss that is larger anyway: with none a cusp's poses were all kept for 1e-4 mm. A
+/// plainer beginning has to win more, for what is missed elsewhere is none of its.
 constexpr double kHairShare = 0.1;
 
 /// Replaces pass and miss where fewer poses miss the line by no more than the larger of the limit and of that miss.
@@ -168,9 +170,10 @@ Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateO
     plain.ends = std::make_shared<Ends>(stroke, plain.whole, brush, step_tolerance);
     if (choose)
         plain.start = plain.ends->best_beginning();
-    else if (asked == Beginning::squared)
-        plain.start = Beginning::hidden;
-    if (plain.start == Beginning::turned) plain.instead = {Beginning::hidden};
+    else if (asked != Beginning::exposed)
+        plain.start =
+            asked == Beginning::hidden && !dot_of(stroke, brush) ? plain.ends->hidden_or_turned() : Beginning::hidden;
+    if (choose && plain.start == Beginning::turned) plain.instead = {Beginning::hidden};
     if (choose && plain.start != Beginning::exposed) plain.instead.push_back(Beginning::exposed);
     if (asked == Beginning::exposed) return plain;
     if (asked != Beginning::hidden)
@@ -181,32 +184,40 @@ Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateO
             plain.dot = std::move(dot);
             return plain;
         }
+    if (asked == Beginning::hidden || dot_of(stroke, brush)) return plain;
     const std::optional<SquaredBeginning> squared =
         squared_beginning(stroke, brush, asked == Beginning::squared ? Caps::straight : Caps::round);
-    if (!squared || dot_of(stroke, brush)) return plain;
-    if (squared->is_round ? asked == Beginning::squared || stroke.start_covered : asked == Beginning::hidden)
-        return plain;
+    if (!squared) return plain;
     Begun begun{squared->stroke, up_to_its_end(squared->stroke, brush), Beginning::exposed, {}, {}, {}};
     if (choose) {
         begun.instead = plain.instead;
         begun.instead.insert(begun.instead.begin(), plain.start);
     }
-    if (asked != Beginning::squared && !plain.ends->begins_better(*squared, begun.whole, plain.start)) return plain;
+    if (asked != Beginning::squared && !plain.ends->begins_better(begun.whole, plain.start)) return plain;
     begun.ends = std::make_shared<Ends>(begun.stroke, begun.whole, brush, step_tolerance);
     return begun;
 }
 
-/// The stroke with its end squared, where that is asked for and can be, or chosen.
-std::optional<Stroke> squared_where_asked(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
-                                          Ends& ends, Beginning start) {
+/// A stroke with its end, and the depth at which it is turned round there, if it is.
+struct Ended {
+    Stroke stroke;
+    std::optional<double> turned_depth_mm;
+};
+
+/// A squared end where that is asked for and can be, or chosen; or a turned one; else none.
+std::optional<Ended> ended_as_asked(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
+                                    Ends& ends, Beginning start) {
     const Ending end = stroke.settings.end ? ending_named(*stroke.settings.end, stroke.id) : options.end;
     if (end == Ending::lifted) return {};
-    const std::optional<SquaredEnd> squared =
-        squared_end(stroke, brush, end == Ending::automatic ? Caps::round : Caps::straight);
-    if (!squared || (squared->is_round && (end == Ending::squared || stroke.end_covered)) ||
-        (end == Ending::automatic && ends.best_ending(*squared, start) == Ending::lifted))
-        return {};
-    return squared->stroke;
+    const bool choose = end == Ending::automatic;
+    if (auto squared = squared_end(stroke, brush, choose ? Caps::round : Caps::straight))
+        return choose && ends.best_ending(*squared, start) == Ending::lifted
+                   ? std::nullopt
+                   : std::optional(Ended{std::move(squared->stroke), {}});
+    if (!choose || stroke.end_covered) return {};
+    if (auto turned = turned_end(stroke, brush); turned && ends.is_better(*turned, start))
+        return Ended{std::move(turned->stroke), turned->depth_mm};
+    return {};
 }
 
 /// A pass by poses at all steps of the closed form, as fine as the tolerance asks for, or by few of them. `plain`: what
@@ -295,13 +306,14 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
     } else {
         warn(depths, stroke.id, brush, result.warnings);
     }
-    std::optional<Stroke> squared;
-    if (!begun.dot) squared = squared_where_asked(begun.stroke, brush, options, *begun.ends, start);
-    const Stroke& whole = squared ? *squared : begun.whole;
+    std::optional<Ended> ended;
+    if (!begun.dot) ended = ended_as_asked(begun.stroke, brush, options, *begun.ends, start);
+    const Stroke& whole = ended ? ended->stroke : begun.whole;
+    const auto turned_depth_mm = ended ? ended->turned_depth_mm : std::nullopt;
     const Line whole_line(whole, brush);
     const auto poses_by = [&](double steps, bool& turns) {
         return begun.dot ? closed_form(*begun.dot, brush, steps, turns)
-                         : closed_form(whole, brush, whole_line, start, steps, turns);
+                         : closed_form(whole, brush, whole_line, start, steps, turns, turned_depth_mm);
     };
     const Pass plain = pass;
     CompensatedPass done = led(plain, options.few_poses, stroke, brush, options.tolerance_mm, poses_by);
@@ -317,7 +329,7 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         Pass its_poses;
         CompensatedPass other = at_its_tolerance(unsaid, brush, instead, all_poses ? &its_poses : nullptr);
         other.pass.settings = stroke.settings;
-        if (!(other.miss.largest_mm < result.miss.largest_mm)) continue;
+        if (!(other.miss.largest_mm < result.miss.largest_mm - kHairShare * options.tolerance_mm)) continue;
         result = std::move(other);
         if (all_poses) *all_poses = std::move(its_poses);
     }

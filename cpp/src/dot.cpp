@@ -20,8 +20,22 @@ constexpr double kLargestHole = 0.1;
 constexpr double kRoundRad = 6.0, kRestsMm = 0.02;
 constexpr int kHalvings = 40;
 
-/// How far from P the paint reaches when the brush is pressed to a depth and turned there [mm].
-double reach_mm(const Brush& brush, double depth) {
+/// None where the least depth reaches farther already; the greatest where none reaches so far.
+std::optional<double> depth_of_reach(const Brush& brush, double half_width_mm) {
+    auto [lo, hi] = brush.depth_range_mm;
+    lo = std::max(lo, 1e-3);
+    if (reach_of_dot_mm(brush, lo) > half_width_mm) return {};
+    if (reach_of_dot_mm(brush, hi) <= half_width_mm) return hi;
+    for (int i = 0; i < kHalvings; ++i) {
+        const double depth = 0.5 * (lo + hi);
+        (reach_of_dot_mm(brush, depth) > half_width_mm ? hi : lo) = depth;
+    }
+    return lo;
+}
+
+}  // namespace
+
+double reach_of_dot_mm(const Brush& brush, double depth) {
     const auto at = [&](double d) {
         Ring outline = footprint_at(brush.footprints, d, 1.0);
         outline.col(0).array() -= brush.tip_gap(d);
@@ -33,35 +47,20 @@ double reach_mm(const Brush& brush, double depth) {
     return farthest;
 }
 
-/// None where the least depth reaches farther already; the greatest where none reaches so far.
-std::optional<double> depth_of_reach(const Brush& brush, double half_width_mm) {
-    auto [lo, hi] = brush.depth_range_mm;
-    lo = std::max(lo, 1e-3);
-    if (reach_mm(brush, lo) > half_width_mm) return {};
-    if (reach_mm(brush, hi) <= half_width_mm) return hi;
-    for (int i = 0; i < kHalvings; ++i) {
-        const double depth = 0.5 * (lo + hi);
-        (reach_mm(brush, depth) > half_width_mm ? hi : lo) = depth;
-    }
-    return lo;
-}
-
-}  // namespace
-
 std::optional<double> depth_of_dot(const Brush& brush, double half_width_mm) {
     const auto depth = depth_of_reach(brush, half_width_mm);
     if (!depth || -brush.tip_gap(*depth) > kLargestHole * half_width_mm) return {};
     return depth;
 }
 
-void turn_round(const Vector2d& contact_mm, double first_rad, double depth, const Brush& brush, PoseList& out) {
+void turn_round(const Vector2d& about_mm, double first_rad, double depth, double reach_mm, PoseList& out) {
     const int n = int(std::ceil(kTurnRad / kTurnChordRad));
     const std::int64_t before = out.last();
     for (int k = 1; k <= n; ++k) {
         const double angle = first_rad + kTurnRad * k / n;
-        out.add(contact_mm + brush.lag(depth) * Vector2d(std::cos(angle), std::sin(angle)), depth);
+        out.add(about_mm + reach_mm * Vector2d(std::cos(angle), std::sin(angle)), depth);
     }
-    out.arc(before, contact_mm, kTurnRad);
+    out.arc(before, about_mm, kTurnRad);
 }
 
 std::optional<Dot> dot_of(const Stroke& stroke, const Brush& brush) {
@@ -81,11 +80,11 @@ Stance turn(const Dot& dot, const Brush& brush, PoseList& out) {
     const double along_rad = std::atan2(dot.heading.y(), dot.heading.x());
     const double first_rad = along_rad - kTurnRad;
     land({dot.from_mm, Vector2d(std::cos(first_rad), std::sin(first_rad)), dot.from_depth_mm}, brush, out);
-    turn_round(dot.from_mm, first_rad, dot.from_depth_mm, brush, out);
+    turn_round(dot.from_mm, first_rad, dot.from_depth_mm, brush.lag(dot.from_depth_mm), out);
     Vector2d last = dot.heading;
     if ((dot.to_mm - dot.from_mm).norm() > 1e-6) {
         out.add(dot.to_mm + brush.lag(dot.to_depth_mm) * dot.heading, dot.to_depth_mm);
-        turn_round(dot.to_mm, along_rad, dot.to_depth_mm, brush, out);
+        turn_round(dot.to_mm, along_rad, dot.to_depth_mm, brush.lag(dot.to_depth_mm), out);
         last = {std::cos(along_rad + kTurnRad), std::sin(along_rad + kTurnRad)};
     }
     return {dot.to_mm, last, dot.to_depth_mm};
@@ -97,21 +96,36 @@ PoseList poses_of(const Dot& dot, const Brush& brush) {
     return out;
 }
 
-bool is_dot(const PassMarks& marks) {
-    double turned = 0.0;
-    Index from = 0;
-    for (Index i = 1; i < marks.contact_mm.rows(); ++i) {
+Stance turn_round_ahead(const Stance& before, double depth, const Brush& brush, PoseList& out) {
+    const Vector2d &u = before.heading, at = before.contact_mm + brush.lever_to_widest(before.depth_mm) * u;
+    out.add(at + brush.lag(depth) * u, depth);
+    const double first_rad = std::atan2(u.y(), u.x());
+    turn_round(at, first_rad, depth, brush.lag(depth), out);
+    const double last_rad = first_rad + kTurnRad;
+    return {at, {std::cos(last_rad), std::sin(last_rad)}, depth};
+}
+
+std::vector<Turned> turned_round(const PassMarks& marks) {
+    std::vector<Turned> found;
+    double turned = 0.0, most = 0.0;
+    std::size_t from = 0;
+    for (std::size_t i = 1; i < marks.depth_mm.size(); ++i) {
         const bool rests = marks.depth_mm[i] > 0.0 && marks.depth_mm[i - 1] > 0.0 &&
-                           (marks.contact_mm.row(i) - marks.contact_mm.row(from)).norm() < kRestsMm;
+                           (marks.contact_mm.row(Index(i)) - marks.contact_mm.row(Index(from))).norm() < kRestsMm;
         if (!rests) {
             from = i;
-            turned = 0.0;
+            turned = most = 0.0;
             continue;
         }
         turned += std::remainder(marks.heading_rad[i] - marks.heading_rad[i - 1], 2.0 * EIGEN_PI);
-        if (std::abs(turned) > kRoundRad) return true;
+        if (!(std::abs(turned) > std::max(most, kRoundRad))) continue;
+        if (most > 0.0)
+            found.back().last = i;
+        else
+            found.push_back({from, i});
+        most = std::abs(turned);
     }
-    return false;
+    return found;
 }
 
 }  // namespace brushsvg

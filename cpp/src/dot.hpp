@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "brushsvg/brush.hpp"
 #include "brushsvg/marks.hpp"
@@ -27,15 +29,26 @@ PoseList poses_of(const Dot& dot, const Brush& brush);
 /// The same, the brush left on the paper.
 Stance turn(const Dot& dot, const Brush& brush, PoseList& out);
 
+/// How far from P the paint reaches when the brush is pressed to a depth and turned there [mm].
+double reach_of_dot_mm(const Brush& brush, double depth);
+
 /// Press depth at which a footprint that is turned on the spot reaches so far; none where that leaves a hole about P,
 /// or the least depth reaches farther already; the greatest depth where none reaches so far.
 std::optional<double> depth_of_dot(const Brush& brush, double half_width_mm);
 
-/// The brush turned round P, the heading from `first_rad` on by a little less than all round.
-void turn_round(const Eigen::Vector2d& contact_mm, double first_rad, double depth, const Brush& brush, PoseList& out);
+/// The TCP led round a place, at a reach from it, the heading from `first_rad` on by a little less than all round.
+void turn_round(const Eigen::Vector2d& about_mm, double first_rad, double depth, double reach_mm, PoseList& out);
 inline constexpr double kTurnRad = 356.0 * EIGEN_PI / 180.0;  ///< an arc that ends where it began would say nothing
 
-/// Whether the brush is turned round on the spot: then P follows the line, and the widest section goes round it.
-bool is_dot(const PassMarks& marks);
+/// The brush that comes dragged is lifted to a depth, drawn on until P rests where the widest section was, and turned
+/// round there.
+Stance turn_round_ahead(const Stance& before, double depth, const Brush& brush, PoseList& out);
+
+/// Rows of a mark, both included, in which the brush is turned round on the spot: then P follows the line, and the
+/// widest section goes round it.
+struct Turned {
+    std::size_t first, last;
+};
+std::vector<Turned> turned_round(const PassMarks& marks);
 
 }  // namespace brushsvg

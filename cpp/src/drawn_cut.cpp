@@ -26,14 +26,9 @@ constexpr double kBeforeCorner = 0.2;
 constexpr double kSlanted = 0.6, kSteepest = 1.3;
 /// How far from its chord a cut may stray, and within what it is looked for, both in half widths.
 constexpr double kStraight = 0.12, kNearest = 0.2, kFarthest = 2.5;
-/// The same before the middle of a round cap, where it is beside the edge. A mark that leaves later sticks out of it,
-/// sooner leaves a hole.
-constexpr double kLeavesCap = 0.15;
 /// In half widths: within what a cap is looked at, how far it may stray from its circle, and how far the circle may be
 /// from one about the path's end, as wide as the stroke.
 constexpr double kAsideCap = 0.92, kRound = 0.06, kAsWide = 0.2;
-/// A quarter of a circle as a cubic.
-constexpr double kQuarter = 0.5522847498;
 /// A corner beyond 90 degrees is taken in two, so many levers apart, or the mark would swing out of it.
 constexpr double kChamfer = 0.3;
 
@@ -56,7 +51,7 @@ std::optional<double> left_ahead(const Rings& rings, const PathEnd& end, double 
 }
 
 /// The circle through a drawn end, by least squares; none where it strays from one as wide as the stroke.
-std::optional<Cap> cap_of(const Rings& rings, const PathEnd& end) {
+std::optional<Cap> circle_of(const Rings& rings, const PathEnd& end) {
     constexpr int n = 9;
     Eigen::Matrix<double, n, 2> at;  // ahead and aside
     for (int k = 0; k < n; ++k) {
@@ -99,17 +94,6 @@ Cubics straight(const Vector2d& from_mm, const Vector2d& to_mm) {
     return out;
 }
 
-/// Round a cap from left to right, so far inside.
-Cubics half_circle(const Cap& cap, const PathEnd& end, double inside_mm) {
-    const auto place = [&](double ahead, double aside) -> Eigen::RowVector2d {
-        return cap.middle_mm + (cap.radius_mm - inside_mm) * (ahead * end.along + aside * end.left);
-    };
-    Cubics out(2, 8);
-    out << place(0, 1), place(kQuarter, 1), place(1, kQuarter), place(1, 0),  //
-        place(1, 0), place(1, -kQuarter), place(kQuarter, -1), place(0, -1);
-    return out;
-}
-
 }  // namespace
 
 Stroke as_wide_as_painted(const Stroke& stroke, const Brush& brush) {
@@ -119,14 +103,12 @@ Stroke as_wide_as_painted(const Stroke& stroke, const Brush& brush) {
     return out;
 }
 
+std::optional<Cap> cap_of(const Stroke& stroke, const PathEnd& end) {
+    return stroke.wanted_mm.empty() ? Cap{end.at_mm, end.half_mm} : circle_of(stroke.wanted_mm, end);
+}
+
 std::optional<Cut> cut_of(const Stroke& stroke, const PathEnd& end, double aside_mm, Caps caps) {
-    if (stroke.wanted_mm.empty()) {
-        Cut cut{end.half_mm, 0.0};
-        if (caps == Caps::round) cut.cap = Cap{end.at_mm, end.half_mm};
-        return cut;
-    }
-    if (const auto cap = cap_of(stroke.wanted_mm, end))
-        return Cut{(cap->middle_mm - end.at_mm).dot(end.along) + cap->radius_mm, 0.0, cap};
+    if (stroke.wanted_mm.empty()) return caps == Caps::straight ? std::optional(Cut{end.half_mm, 0.0}) : std::nullopt;
     const auto right = left_ahead(stroke.wanted_mm, end, -aside_mm), left = left_ahead(stroke.wanted_mm, end, aside_mm);
     if (!right || !left) return {};
     const Cut cut{0.5 * (*right + *left), 0.5 * (*right - *left) / aside_mm};
@@ -150,17 +132,10 @@ std::optional<double> half_along_cut_mm(const Brush& brush, double half_mm) {
 }
 
 double leaves_ahead_mm(const Cut& cut, const PathEnd& end) {
-    if (cut.cap) return cut.ahead_mm - (1.0 + kLeavesCap) * cut.cap->radius_mm;
     return cut.ahead_mm - (kLeaves + kSlantedLeaves * slant(cut)) * end.half_mm;
 }
 
 Cubics way_along(const Cut& cut, const PathEnd& end, const Vector2d& from_mm, double narrow_mm, double lever_mm) {
-    if (cut.cap) {
-        const Cubics round = half_circle(*cut.cap, end, narrow_mm);
-        Cubics way = straight(from_mm, round.row(0).head<2>());
-        append_way(way, round);
-        return way;
-    }
     const double aside = end.half_mm - narrow_mm;
     const double steep = std::hypot(1.0, cut.slope);
     const double first = cut.slope > 0.0 ? -aside : aside;
@@ -184,6 +159,13 @@ Cubics part_of(const Cubics& middle_mm, const Place& from, const Place& to) {
     out.row(last) = split(out, last, to.t).before;
     const double t = from.cubic < to.cubic ? from.t : to.t > 0.0 ? from.t / to.t : 0.0;
     out.row(0) = split(out, 0, t).after;
+    return out;
+}
+
+Cubics reversed(const Cubics& middle_mm) {
+    Cubics out(middle_mm.rows(), 8);
+    for (Index i = 0, n = middle_mm.rows(); i < n; ++i)
+        for (int k = 0; k < 4; ++k) out.row(i).segment<2>(6 - 2 * k) = middle_mm.row(n - 1 - i).segment<2>(2 * k);
     return out;
 }
 

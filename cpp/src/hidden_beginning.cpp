@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 constexpr int kStepsBack = 12;
 /// Shorter ways back that are tried where the whole one has no room.
 constexpr int kShorter = 4;
-constexpr int kHalvings = 30;  // of a few mm: to rounding
+constexpr int kHalvings = 40;  // of a few mm: to rounding
 /// Of the front of a footprint, what is wide enough to hide a pointed rear.
 constexpr double kHidingShare = 0.8;
 constexpr double kWithinReach = 0.999;
@@ -46,6 +46,43 @@ std::optional<std::pair<double, Stroke>> narrowed(const Stroke& stroke, const Br
     return {};
 }
 
+std::optional<Samples> way_back(const Brush& brush, const Line& line, const InverseLag& inverse, double from_mm,
+                                double to_mm, double step_tolerance) {
+    Samples back;
+    for (int i = 0; i <= kStepsBack; ++i) {
+        const double s = from_mm + (to_mm - from_mm) * i / kStepsBack;
+        Sample sample = line.at(std::max(s, 0.0));
+        if (!(brush.lever_to_widest(sample.depth) > 0.0)) return {};
+        if (s < 0.0) sample.middle += s * line.tangent(sample);
+        back.push_back(sample);
+    }
+    inverse(back, -line.tangent(back.front()));
+    Samples few{back.front()};
+    for (std::size_t i = 1, from = 0; i + 1 < back.size(); ++i)
+        for (std::size_t k = from + 1; k <= i; ++k)
+            if (off_chord(back[from], back[i + 1], back[k]) > step_tolerance) {
+                few.push_back(back[i]);
+                from = i;
+            }
+    few.push_back(back.back());
+    return few;
+}
+
+std::optional<double> goes_on_mm(const Stroke& onward, const Brush& brush, const Line& line, const Vector2d& contact_mm,
+                                 const std::array<double, 2>& within_mm) {
+    const auto beyond = [&](double s) {
+        const double at = std::clamp(s / line.length(), 0.0, 1.0);
+        return (line.at(s).middle - contact_mm).norm() - brush.lever_to_widest(depth_of(onward, brush, at));
+    };
+    auto [a, b] = within_mm;
+    if (!(a < b) || beyond(a) > 0.0 || !(beyond(b) > 0.0)) return {};
+    for (int i = 0; i < kHalvings; ++i) {
+        const double s = 0.5 * (a + b);
+        (beyond(s) > 0.0 ? b : a) = s;
+    }
+    return b;
+}
+
 std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brush& brush, const Line& line,
                                                 const InverseLag& inverse, double last_mm, double step_tolerance) {
     if (stroke.closed || brush.is_rigid() || !(line.length() > 0.0)) return {};
@@ -69,36 +106,14 @@ std::optional<HiddenBeginning> hidden_beginning(const Stroke& stroke, const Brus
         from_mm -= way_mm / kShorter;
     }
 
-    HiddenBeginning found{{}, onward->second, 0.0, {}};
-    for (int i = 0; i <= kStepsBack; ++i) {
-        const double s = from_mm + (turn_mm - from_mm) * i / kStepsBack;
-        Sample sample = line.at(std::max(s, 0.0));
-        if (!(lever(stroke, s) > 0.0)) return {};
-        if (s < 0.0) sample.middle += s * line.tangent(sample);  // a blunt front reaches less far than round caps do
-        found.back.push_back(sample);
-    }
-    inverse(found.back, -line.tangent(found.back.front()));
-    const Vector2d contact = found.back.back().contact;
-    // as few steps as the tolerance asks for: nobody thins them out
-    Samples few{found.back.front()};
-    for (std::size_t i = 1, from = 0; i + 1 < found.back.size(); ++i)
-        for (std::size_t k = from + 1; k <= i; ++k)
-            if (off_chord(found.back[from], found.back[i + 1], found.back[k]) > step_tolerance) {
-                few.push_back(found.back[i]);
-                from = i;
-            }
-    few.push_back(found.back.back());
-    found.back = few;
-    const auto beyond = [&](double s) { return (line.at(s).middle - contact).norm() - lever(found.onward, s); };
-    double a = std::max(0.0, turn_mm + e), b = std::min(turn_mm + 4.0 * e, last_mm);
-    if (!(a < b) || beyond(a) > 0.0 || !(beyond(b) > 0.0)) return {};
-    for (int i = 0; i < kHalvings; ++i) {
-        const double s = 0.5 * (a + b);
-        (beyond(s) > 0.0 ? b : a) = s;
-    }
-    found.on_from_mm = b;
-    found.on_along = (line.at(b).middle - contact).normalized();
-    return found;
+    auto back = way_back(brush, line, inverse, from_mm, turn_mm, step_tolerance);
+    if (!back) return {};
+    const Vector2d contact = back->back().contact;
+    const auto on_from_mm = goes_on_mm(onward->second, brush, line, contact,
+                                       {std::max(0.0, turn_mm + e), std::min(turn_mm + 4.0 * e, last_mm)});
+    if (!on_from_mm) return {};
+    return HiddenBeginning{std::move(*back), onward->second, *on_from_mm,
+                           (line.at(*on_from_mm).middle - contact).normalized()};
 }
 
 }  // namespace brushsvg

@@ -20,13 +20,6 @@ using Eigen::Vector2d;
 /// leaves a notch between both.
 constexpr double kAlongSide = 0.3, kJoins = 2.2, kSetDownBeyond = 0.4;
 
-Cubics reversed(const Cubics& middle_mm) {
-    Cubics out(middle_mm.rows(), 8);
-    for (Index i = 0, n = middle_mm.rows(); i < n; ++i)
-        for (int k = 0; k < 4; ++k) out.row(i).segment<2>(6 - 2 * k) = middle_mm.row(n - 1 - i).segment<2>(2 * k);
-    return out;
-}
-
 /// Half widths along a way that runs over a line, by the way [mm].
 class Widths {
  public:
@@ -117,8 +110,7 @@ std::optional<SquaredBeginning> squared_beginning(const Stroke& stroke, const Br
     const Cubics on = part_of(drawn.middle_mm, joins.place, {drawn.middle_mm.rows() - 1, 1.0});
     append_way(out.middle_mm, on);
     out.half_width = widths.knots();
-    return SquaredBeginning{std::move(out), leaves.middle, aside,    joins.middle,
-                            end.at_mm,      -along,        reach_mm, cut->cap.has_value()};
+    return SquaredBeginning{std::move(out), leaves.middle, aside, joins.middle, end.at_mm, -along, reach_mm};
 }
 
 }  // namespace brushsvg

@@ -10,8 +10,7 @@ namespace brushsvg {
 
 /// A stroke with a squared beginning: the brush is set down inside of it, heading back along its path at the full
 /// width. Near the drawn beginning it narrows, goes into the corner that lies farther back, along the cut into the
-/// other one, and turns round there, or goes round the cap to the other side: it comes back along that side, widens,
-/// and is on the path again.
+/// other one, and turns round there: it comes back along that side, widens, and is on the path again.
 struct SquaredBeginning {
     Stroke stroke;
     Eigen::Vector2d leaves_mm;  ///< where it leaves the path on its way back
@@ -20,10 +19,9 @@ struct SquaredBeginning {
     Eigen::Vector2d start_mm;   ///< the drawn path's first point
     Eigen::Vector2d along;      ///< and its direction there
     double reach_mm;            ///< and how far from there its widest section goes
-    bool is_round;              ///< whether the drawn end is
 };
 
-/// The cut or cap as of a squared end, and none where that has none; and where the stroke has no room for the way back.
+/// The cut as of a squared end, and none where that has none; and where the stroke has no room for the way back.
 std::optional<SquaredBeginning> squared_beginning(const Stroke& stroke, const Brush& brush, Caps caps);
 
 }  // namespace brushsvg

@@ -61,7 +61,7 @@ std::optional<SquaredEnd> squared_end(const Stroke& stroke, const Brush& brush, 
     append_way(out.middle_mm, way);
     out.half_width.clear();
     for (const auto& [s, half] : widths) out.half_width.push_back({s / way_mm, half});
-    return SquaredEnd{std::move(out), leaves.middle, end.at_mm, reach_mm, cut->cap.has_value()};
+    return SquaredEnd{std::move(out), leaves.middle, end.at_mm, reach_mm};
 }
 
 }  // namespace brushsvg

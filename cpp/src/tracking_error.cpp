@@ -12,6 +12,7 @@
 #include "squared_end.hpp"
 #include "stroke_ends.hpp"
 #include "tolerance.hpp"
+#include "turned_end.hpp"
 
 namespace brushsvg {
 
@@ -99,8 +100,24 @@ std::size_t last_at(const Ring& rows, std::size_t begin, std::size_t end, const 
     return last;
 }
 
-TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, const Stroke& stroke, double tolerance_mm,
-                                bool turns, const std::optional<SquaredBeginning>& beginning = {},
+/// The rows about a dot in which the widest section stays in it: its mark is there in the stead of the line's.
+Turned inside_of(const PassMarks& marks, const Ring& widest, const Turned& turned, const Brush& brush) {
+    const Eigen::RowVector2d at = marks.contact_mm.row(Index(turned.last));
+    const auto depth = marks.depth_mm.begin();
+    const double reach_mm = reach_of_dot_mm(
+        brush,
+        *std::max_element(depth + Index(turned.first), depth + Index(turned.last) + 1));  // it is lifted in place
+    const auto is_inside = [&](std::size_t row) { return (widest.row(Index(row)) - at).norm() < reach_mm; };
+    Turned all = turned;
+    while (all.first > 0 && is_inside(all.first - 1)) --all.first;
+    while (all.last + 1 < marks.taut.size() && is_inside(all.last + 1)) ++all.last;
+    return all;
+}
+
+/// all_turned: dots in the mark, of which the widest section goes round the line.
+TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, const Stroke& stroke, const Brush& brush,
+                                double tolerance_mm, const std::vector<Turned>& all_turned,
+                                const std::optional<SquaredBeginning>& beginning = {},
                                 const std::optional<SquaredEnd>& squared = {},
                                 const std::optional<Surroundings>& all = {}) {
     const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
@@ -117,7 +134,7 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
     TrackingError miss;
     double before = 0.0, travelled = 0.0;  // by length and not by rows, which lie closer where a tolerance asks for it
     std::optional<Eigen::Vector2d> last;
-    const auto look = [&](std::size_t from, std::size_t to, auto& nearest) {
+    const auto look_at = [&](std::size_t from, std::size_t to, auto& nearest) {
         last.reset();
         along(widest, Index(from), Index(to), kLookEveryMm, [&](const Eigen::Vector2d& point) {
             const double d = nearest.distance(point);
@@ -132,6 +149,15 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
             last = point;
         });
     };
+    const auto look = [&](std::size_t from, std::size_t to, auto& nearest) {
+        for (const Turned& turned : all_turned) {
+            const Turned inside = inside_of(marks, widest, turned, brush);
+            if (inside.last <= from || inside.first >= to) continue;
+            look_at(from, std::max(from, inside.first), nearest);
+            from = std::min(inside.last, to);
+        }
+        look_at(from, to, nearest);
+    };
     if (const auto round = beginning ? way_round(marks, widest, begin, end, *beginning) : std::nullopt) {
         Surroundings surroundings{beginning->start_mm, beginning->reach_mm};
         look(begin, round->leaves, nearest);
@@ -140,9 +166,7 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
     }
     for (const TurnOver& turn : turns_over(marks)) {
         if (turn.first < begin) continue;
-        if (!turns)
-            look(begin, turn.first, before_turn);  // of a dot the widest section goes round the line's beginning
-        turns = false;
+        look(begin, turn.first, before_turn);
         begin = turn.last;
     }
     if (squared) {
@@ -168,26 +192,29 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     check(stroke);
     require_tolerance(tolerance_mm, stroke.id);
     const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm), false);
-    // a dot, or a stroke that begins with one
-    const bool turns = is_dot(marks), is_all = turns && turns_over(marks).empty();
+    std::vector<Turned> turned = turned_round(marks);  // a dot, or a stroke that begins or ends with one
+    const auto is_taut_within = [&](std::size_t from, std::size_t to) {
+        return std::any_of(marks.taut.begin() + Index(from), marks.taut.begin() + Index(to),
+                           [](bool taut) { return taut; });
+    };
+    const bool is_all = !turned.empty() && turns_over(marks).empty() && !is_taut_within(0, turned.front().first);
     const Ring widest = is_all ? marks.contact_mm : widest_points(marks, brush);
-    // a blunt front goes beyond the path's end
-    const Stroke whole = up_to_its_end(stroke, brush);
-    const TrackingError miss = tracking_error_of(marks, widest, whole, tolerance_mm, turns);
+    if (is_all) turned.clear();
+    // a blunt front goes beyond the path's end, and the middle of a cap may lie there
+    Stroke whole = up_to_its_end(stroke, brush);
+    if (!turned.empty() && !is_taut_within(turned.back().last + 1, marks.taut.size()))
+        if (const auto end = turned_end(stroke, brush)) whole = end->stroke;
+    const TrackingError miss = tracking_error_of(marks, widest, whole, brush, tolerance_mm, turned);
     if (miss.within_tolerance) return miss;
-    if (turns)
+    if (!turned.empty())
         if (const std::optional<SquaredDot> dot = squared_dot(stroke, brush))
-            return tracking_error_of(marks, widest, whole, tolerance_mm, turns, {}, {},
+            return tracking_error_of(marks, widest, whole, brush, tolerance_mm, turned, {}, {},
                                      Surroundings{dot->dot.from_mm, dot->reach_mm});
-    const std::optional<SquaredBeginning> beginning = squared_beginning(stroke, brush, Caps::round);
-    std::optional<SquaredEnd> end;
-    for (const Caps caps : {Caps::round, Caps::straight}) {
-        if (end || (caps == Caps::straight && !stroke.wanted_mm.empty())) break;
-        end = squared_end(stroke, brush, caps);
-        if (end && !ends_squared(marks, widest, *end)) end.reset();
-    }
+    const std::optional<SquaredBeginning> beginning = squared_beginning(stroke, brush, Caps::straight);
+    std::optional<SquaredEnd> end = squared_end(stroke, brush, Caps::straight);
+    if (end && !ends_squared(marks, widest, *end)) end.reset();
     if (!beginning && !end) return miss;
-    return tracking_error_of(marks, widest, end ? stroke : whole, tolerance_mm, turns, beginning, end);
+    return tracking_error_of(marks, widest, end ? stroke : whole, brush, tolerance_mm, turned, beginning, end);
 }
 
 }  // namespace brushsvg

@@ -1,4 +1,4 @@
-"""Round ends of wide lines: the front of a footprint is blunt there, so the mark is led round the cap."""
+"""Round ends of wide lines: the front of a footprint is blunt there, so the brush is turned round in the cap."""
 
 import numpy as np
 import pytest
@@ -47,12 +47,14 @@ def strays_mm(painted, width_mm: float) -> float:
 
 
 @pytest.mark.parametrize("drawn", [line, capsule])
-@pytest.mark.parametrize("width_mm", [7, 8, 8.4])
+@pytest.mark.parametrize("width_mm", [5.75, 6, 7, 8, 8.4])
 def test_both_ends_are_round(drawn, width_mm):
-    painted, _ = mark(drawn(width_mm))
-    assert strays_mm(painted, width_mm) < 0.15
+    """Of 6 mm they were hexagons, as the front of a footprint is."""
+    painted, plan = mark(drawn(width_mm))
+    assert strays_mm(painted, width_mm) < 0.06
+    assert len(plan.passes[0].poses_mm) < 60
     blunt, _ = mark(drawn(width_mm), "exposed", "lifted")
-    assert strays_mm(blunt, width_mm) > 0.2
+    assert strays_mm(blunt, width_mm) > 0.07
 
 
 def test_a_hidden_beginning_is_round_as_well():
@@ -62,8 +64,8 @@ def test_a_hidden_beginning_is_round_as_well():
     assert beyond.area < 1.0
 
 
-@pytest.mark.parametrize("width_mm", [3, 5, 6])
-def test_narrower_lines_need_no_way_round(width_mm):
+@pytest.mark.parametrize("width_mm", [3, 5])
+def test_narrower_lines_need_no_turn(width_mm):
     painted, plan = mark(line(width_mm))
     assert strays_mm(painted, width_mm) < 0.15
     assert len(plan.passes[0].poses_mm) < 20
