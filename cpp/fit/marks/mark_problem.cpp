@@ -147,7 +147,6 @@ void MarkProblem::hold_shape(bool hold) {
     if (!hold) return;
     const Layout& at = model.layout();
     std::fill(held_.begin() + at.widest(), held_.begin() + at.height(), true);
-    std::fill(held_.begin() + at.machine(), held_.end(), true);
 }
 
 void MarkProblem::expect(const MatrixXd& rows) {
