@@ -157,10 +157,11 @@ def test_without_the_machine_the_lag_is_off():
     assert lag_off(calibrate_marks(painted, "b", options=options_for(("lean",))), brush) < 0.03
 
 
-def test_no_lag_that_looks_like_lean_is_where_the_fit_begins():
-    """A brush of 3 to 8 mm of lag on a machine that leans by 1 mm per mm: as long as lags were tried with the machine
-    held, one won that did as the lean does, the lag came back 314 % off, and edges 0.40 mm apart were left."""
-    found = machine_recovery.recover(54, ("lean", "axes", "backlash", "tilt"))
+@pytest.mark.parametrize("seed", [54, 2005])
+def test_no_lag_that_looks_like_lean_is_where_the_fit_begins(seed):
+    """Machines that lean by 1 and 0.8 mm per mm. Where lags are tried with the machine held, the first comes back with a lag
+    314 % off, a lag that does as the lean does; with it free, the second one 99 %."""
+    found = machine_recovery.recover(seed, ("lean", "axes", "backlash", "tilt"))
     assert np.abs(found["lag"][True]).max() < 0.03
     for name, (error, half) in found["numbers"].items():
         assert abs(error) < 2 * half, name
