@@ -42,82 +42,114 @@ def cause(
     stroke's verdict, size_mm: side of its square; where: "bare" where no stroke reaches, "rim" where one that is wider
     than the brush would, "corner" where discs of this one's widths do not, else ""; miss: of the pass.
     """
-    is_missing = place.is_missing
     at = int(np.hypot(line[:, 0] - place.at_mm[0], line[:, 1] - place.at_mm[1]).argmin())
-    s, half, length = line[at, 2], line[at, 3], line[-1, 2]
-    halves = np.array([half for _, half in stroke.half_width])
+    here = _Here(stroke, line, brush, at, place.is_missing)
     off = f"tracking error up to {miss.largest_mm:.2g} mm"
-    depth = _depth(brush, half)
-    footprint = _length_of(brush, depth)
-    if brush.width_follows_depth():
-        least, greatest = brush.half_width_range_mm()
-        finest = max(least, _finest_measured(brush))
-        beside_mm2 = (half - greatest) * size_mm  # what a mark too narrow leaves in the square
-        if (
-            is_missing
-            and half > greatest + SLIGHT
-            and (where == "rim" or beside_mm2 > EXPLAINS * place.area_mm2)
-        ):
-            words = f"{2 * half:.3g} mm wide there, wider than the brush paints, {2 * greatest:.3g} mm"
-            return Cause(words, code="wider-than-brush")
-        if where == "bare":
-            return Cause("no stroke reaches there", code="unreached")
-        if where == "corner":
-            return Cause("a corner of the shape, which round marks leave", code="shape-corner")
-        if not is_missing and half < least - SLIGHT:
-            words = (
-                f"{2 * half:.3g} mm wide there, thinner than the finest line of the brush, {2 * least:.3g} mm"
-            )
-            return Cause(words, code="thinner-than-brush")
-        if halves.max() < finest - SLIGHT:
-            words = f"thinner than the finest line that was measured of the brush, {2 * finest:.3g} mm"
-            return Cause(words, code="thinner-than-measured")
-    else:
-        own = brush.half_width(depth)
-        widths = f"{2 * half:.3g} mm wide there, the one width of the brush is {2 * own:.3g} mm"
-        if (half - own if is_missing else own - half) > SEEN * own:
-            return Cause(widths, code="one-width")
-    if compensation in ("none", "constant") and miss.largest_mm > max(tolerance_mm, GRAVE * half):
-        how = (
-            "the lag is not compensated"
-            if compensation == "none"
-            else "one lag does not fit all of the stroke"
+    return (
+        (
+            _of_width(here, place.area_mm2, size_mm, where)
+            if brush.width_follows_depth()
+            else _of_one_width(here)
         )
+        or _of_compensation(here, miss.largest_mm, tolerance_mm, compensation, off)
+        or _of_length(here)
+        or _of_way(here)
+        or _of_rest(here, miss.largest_mm > tolerance_mm, compensation, off)
+    )
+
+
+class _Here:
+    """A place of a stroke's middle line: at, its row; s_mm, how far along it lies; half_mm, wide there."""
+
+    def __init__(self, stroke, line: np.ndarray, brush, at: int, is_missing: bool):
+        self.stroke, self.line, self.brush, self.at, self.is_missing = stroke, line, brush, at, is_missing
+        self.s_mm, self.half_mm, self.length_mm = line[at, 2], line[at, 3], line[-1, 2]
+        self.depth_mm = _depth(brush, self.half_mm)
+        self.footprint_mm = _length_of(brush, self.depth_mm)
+
+
+def _of_width(here: _Here, area_mm2: float, size_mm: float, where: str) -> Cause | None:
+    """What the brush is too wide or too narrow for, or no stroke reaches."""
+    half, (least, greatest) = here.half_mm, here.brush.half_width_range_mm()
+    finest = max(least, _finest_measured(here.brush))
+    beside_mm2 = (half - greatest) * size_mm  # what a mark too narrow leaves in the square
+    is_wide = here.is_missing and half > greatest + SLIGHT
+    if is_wide and (where == "rim" or beside_mm2 > EXPLAINS * area_mm2):
+        words = f"{2 * half:.3g} mm wide there, wider than the brush paints, {2 * greatest:.3g} mm"
+        return Cause(words, code="wider-than-brush")
+    if where == "bare":
+        return Cause("no stroke reaches there", code="unreached")
+    if where == "corner":
+        return Cause("a corner of the shape, which round marks leave", code="shape-corner")
+    if not here.is_missing and half < least - SLIGHT:
+        words = f"{2 * half:.3g} mm wide there, thinner than the finest line of the brush, {2 * least:.3g} mm"
+        return Cause(words, code="thinner-than-brush")
+    if max(half for _, half in here.stroke.half_width) < finest - SLIGHT:
+        words = f"thinner than the finest line that was measured of the brush, {2 * finest:.3g} mm"
+        return Cause(words, code="thinner-than-measured")
+    return None
+
+
+def _of_one_width(here: _Here) -> Cause | None:
+    own = here.brush.half_width(here.depth_mm)
+    less = here.half_mm - own if here.is_missing else own - here.half_mm
+    if less <= SEEN * own:
+        return None
+    words = f"{2 * here.half_mm:.3g} mm wide there, the one width of the brush is {2 * own:.3g} mm"
+    return Cause(words, code="one-width")
+
+
+def _of_compensation(
+    here: _Here, off_mm: float, tolerance_mm: float, compensation: str, off: str
+) -> Cause | None:
+    """What was asked for leads the paint elsewhere."""
+    if compensation in ("none", "constant") and off_mm > max(tolerance_mm, GRAVE * here.half_mm):
+        is_none = compensation == "none"
+        how = "the lag is not compensated" if is_none else "one lag does not fit all of the stroke"
         return Cause(f"{how}: {off}", code="lag-not-compensated")
-    if min(tolerance_mm, miss.largest_mm) > GRAVE * half:
+    if min(tolerance_mm, off_mm) > GRAVE * here.half_mm:
         return Cause(f"the tolerance is {tolerance_mm:g} mm: {off}", code="coarse-tolerance")
-    if length + 2 * half <= footprint:
-        words = f"too short for the brush: a dab, whose footprint is {footprint:.2g} mm long"
-        return Cause(words, code="shorter-than-footprint")
-    turn_deg = _corner_deg(line, s, max(footprint, 2 * half), stroke.closed)
+    return None
+
+
+def _of_length(here: _Here) -> Cause | None:
+    if here.length_mm + 2 * here.half_mm > here.footprint_mm:
+        return None
+    words = f"too short for the brush: a dab, whose footprint is {here.footprint_mm:.2g} mm long"
+    return Cause(words, code="shorter-than-footprint")
+
+
+def _of_way(here: _Here) -> Cause | None:
+    """Corners, ends and bends that a footprint cannot follow."""
+    line, brush, half, s_mm, is_open = here.line, here.brush, here.half_mm, here.s_mm, not here.stroke.closed
+    turn_deg = _corner_deg(line, s_mm, max(here.footprint_mm, 2 * half), here.stroke.closed)
     if turn_deg > CORNER_DEG:
         return Cause(f"a corner of {turn_deg:.0f} degrees, sharper than the footprint", code="sharp-corner")
-    if not stroke.closed and s < max(brush.tip_to_widest(depth), half):
-        how = (
-            "the footprint is pointed behind"
-            if _is_pointed(brush, depth)
-            else "the footprint's back, not a round cap"
-        )
+    if is_open and s_mm < max(brush.tip_to_widest(here.depth_mm), half):
+        pointed = _is_pointed(brush, here.depth_mm)
+        how = "the footprint is pointed behind" if pointed else "the footprint's back, not a round cap"
         return Cause(f"start of the stroke: {how}", code="stroke-start")
-    if not stroke.closed and length - s < max(footprint, half):
+    if is_open and here.length_mm - s_mm < max(here.footprint_mm, half):
         return Cause("end of the stroke: the footprint's front, not a round cap", code="stroke-end")
-    lag_mm = brush.lag(depth)
-    radius_mm = _radius(line, s, lag_mm)
+    lag_mm = brush.lag(here.depth_mm)
+    radius_mm = _radius(line, s_mm, lag_mm)
     if radius_mm < lag_mm:
         words = f"turns tighter than the lag: radius {radius_mm:.2g} mm, lag {lag_mm:.2g} mm"
         return Cause(words, code="tighter-than-lag")
     if radius_mm < half:
-        return Cause(
-            f"turns tighter than half its width: radius {radius_mm:.2g} mm", code="tighter-than-width"
-        )
+        words = f"turns tighter than half its width: radius {radius_mm:.2g} mm"
+        return Cause(words, code="tighter-than-width")
     rise = np.gradient(line[:, 3], np.maximum.accumulate(line[:, 2] + 1e-9 * np.arange(len(line))))
-    if abs(rise[at]) > STEEP:
+    if abs(rise[here.at]) > STEEP:
         return Cause("its width changes faster than the footprint can follow", code="steep-width")
-    if is_missing and compensation == "refined" and miss.largest_mm > tolerance_mm:
-        return Cause(
-            "refined: less paint here, and the rest of the outline fits better", code="traded-by-refinement"
-        )
-    if is_missing:  # what a footprint covers on a bend is never less than across its middle
+    return None
+
+
+def _of_rest(here: _Here, is_off: bool, compensation: str, off: str) -> Cause:
+    if here.is_missing and compensation == "refined" and is_off:
+        words = "refined: less paint here, and the rest of the outline fits better"
+        return Cause(words, code="traded-by-refinement")
+    if here.is_missing:  # what a footprint covers on a bend is never less than across its middle
         return Cause(off, code="off-middle-line")
     return Cause("the footprint is wider on bends than across its middle", code="wider-on-bends")
 

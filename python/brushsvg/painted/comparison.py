@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import chain
 
 import cv2
 import numpy as np
@@ -194,78 +196,78 @@ def _common(painted, strokes: list[Wanted], canvas: Canvas) -> tuple[Placed, np.
     return replace(found, wider_mm=0.0) if found.found else NOWHERE, middle
 
 
+@dataclass(frozen=True)
+class _Seen:
+    """A stroke that paints: its figures, and lies, which puts rings of it where its mark lies."""
+
+    stroke: Wanted
+    row: Compared
+    lies: Callable[[list[np.ndarray]], list[np.ndarray]]
+
+
 def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
     moved = [[common.moved(ring, middle) for ring in stroke.predicted] for stroke in strokes]
     is_painted = painted > LEVEL
-    found, notices = [], []
-    for stroke, rings in zip(strokes, moved, strict=True):
-        others = [
-            ring
-            for other, theirs in zip(strokes, moved, strict=True)
-            if other is not stroke
-            for ring in theirs
-        ]
-        seen = _stroke(stroke, rings, others, painted, is_painted, common, middle, canvas)
-        found.append(seen)
-        if seen and not seen[0].placed.found and seen[0].missing > MOSTLY:
-            sentence = "no paint is found where its mark should be"
-            notices.append(Notice(stroke.stroke, sentence, code="mark-missing"))
-    rows = [seen[0] for seen in found if seen]
+    found = []
+    for k, stroke in enumerate(strokes):
+        if stroke.predicted:
+            others = [*chain(*moved[:k], *moved[k + 1 :])]
+            found.append(_stroke(stroke, moved[k], others, painted, is_painted, common, middle, canvas))
+    predicted = _overlap(_any([*chain(*(stroke.predicted for stroke in strokes))], canvas), is_painted)
+    _refuse_other_job(max(predicted, _overlap(_any([*chain(*moved)], canvas), is_painted)), name)
+    sheet, spread_mm = _sheet([seen.row for seen in found], common, middle)
     has_wanted = all(stroke.wanted is not None for stroke in strokes)
-    target = [stroke.wanted if has_wanted else stroke.predicted for stroke in strokes]
-    predicted = _overlap(_any([ring for stroke in strokes for ring in stroke.predicted], canvas), is_painted)
-    best = max(predicted, _overlap(_any([ring for rings in moved for ring in rings], canvas), is_painted))
-    if best < LEAST_OVERLAP:
-        raise Error(
-            f"the paint overlaps with what was predicted by {best:.2f}, less than {LEAST_OVERLAP:g}: is this the "
-            "painted page of this job?",
-            file=name,
-            value=best,
-            code="photo-of-another-job",
-        )
-    sheet, spread_mm = _sheet(rows, common, middle)
-    whole = [ring for rings in target for ring in rings]
-    each = [ring for rings, seen in zip(target, found, strict=True) if seen for ring in seen[1](rings)]
-    marks = [
-        ring
-        for stroke, seen in zip(strokes, found, strict=True)
-        if seen
-        for ring in seen[1](stroke.predicted)
-    ]
-    beside = is_painted & (_away(_any(marks, canvas), canvas.px_per_mm) > BLOT_MM)
+    whole = [*chain(*(stroke.wanted if has_wanted else stroke.predicted for stroke in strokes))]
+    each = [seen.lies(seen.stroke.wanted if has_wanted else seen.stroke.predicted) for seen in found]
+    as_it_lies, placed, each_placed = (
+        _overlap(_any(rings, canvas), is_painted)
+        for rings in (whole, [sheet.moved(ring, middle) for ring in whole], [*chain(*each)])
+    )
+    marks = _any([*chain(*(seen.lies(seen.stroke.predicted) for seen in found))], canvas)
+    beside = is_painted & (_away(marks, canvas.px_per_mm) > BLOT_MM)
     things = _things(beside, canvas)
-    if things.any():
-        sentence = (
-            f"{things.sum() / canvas.px_per_mm**2:.0f} mm^2 of what lies on the sheet is no mark, as a hand, a tool or "
-            "a blot: strokes beneath or beside it are not told, nor whose fault anything is"
-        )
-        notices.append(Notice("sheet", sentence, code="photo-covered"))
-        near = _away(things, canvas.px_per_mm) < BLOT_MM + BESIDE_MM
-        rows = [
-            _uncovered(row, seen, stroke, near, canvas)
-            for stroke, seen in zip(strokes, found, strict=True)
-            if seen
-            for row in seen[:1]
-        ]
-    as_it_lies = _overlap(_any(whole, canvas), is_painted)
+    near = _away(things, canvas.px_per_mm) < BLOT_MM + BESIDE_MM
     return Comparison(
-        tuple(rows),
+        tuple(_uncovered(seen, near, canvas) for seen in found),
         sheet,
         middle,
         spread_mm,
         float(beside.sum()) / canvas.px_per_mm**2,
         as_it_lies if has_wanted else None,
         predicted,
-        (
-            as_it_lies,
-            _overlap(_any([sheet.moved(ring, middle) for ring in whole], canvas), is_painted),
-            _overlap(_any(each, canvas), is_painted),
-        ),
+        (as_it_lies, placed, each_placed),
         painted,
         canvas,
-        tuple(notices),
+        (*_missing(found), *_covered(things, canvas)),
         bool(things.any()),
     )
+
+
+def _refuse_other_job(overlap: float, name: str) -> None:
+    if overlap < LEAST_OVERLAP:
+        raise Error(
+            f"the paint overlaps with what was predicted by {overlap:.2f}, less than {LEAST_OVERLAP:g}: is this the "
+            "painted page of this job?",
+            file=name,
+            value=overlap,
+            code="photo-of-another-job",
+        )
+
+
+def _missing(found: list[_Seen]) -> list[Notice]:
+    rows = [seen.row for seen in found if not seen.row.placed.found and seen.row.missing > MOSTLY]
+    sentence = "no paint is found where its mark should be"
+    return [Notice(row.stroke, sentence, code="mark-missing") for row in rows]
+
+
+def _covered(things: np.ndarray, canvas: Canvas) -> list[Notice]:
+    if not things.any():
+        return []
+    sentence = (
+        f"{things.sum() / canvas.px_per_mm**2:.0f} mm^2 of what lies on the sheet is no mark, as a hand, a tool or "
+        "a blot: strokes beneath or beside it are not told, nor whose fault anything is"
+    )
+    return [Notice("sheet", sentence, code="photo-covered")]
 
 
 def without(found: Comparison, done: dict[str, Placed]) -> Comparison:
@@ -293,10 +295,10 @@ def _things(beside: np.ndarray, canvas: Canvas) -> np.ndarray:
     return large[labels]
 
 
-def _uncovered(row: Compared, seen, stroke: Wanted, near: np.ndarray, canvas: Canvas) -> Compared:
+def _uncovered(seen: _Seen, near: np.ndarray, canvas: Canvas) -> Compared:
     """A stroke whose mark lies near a thing is not found."""
-    covered = (_any(seen[1](stroke.predicted), canvas) & near).any()
-    return replace(row, placed=NOWHERE) if covered else row
+    covered = near.any() and (_any(seen.lies(seen.stroke.predicted), canvas) & near).any()
+    return replace(seen.row, placed=NOWHERE) if covered else seen.row
 
 
 def _sheet(rows: list[Compared], common: Placed, middle: np.ndarray) -> tuple[Placed, float | None]:
@@ -329,11 +331,11 @@ def _overlap(one: np.ndarray, other: np.ndarray) -> float:
     return float((one & other).sum()) / union if union else 1.0
 
 
-def _stroke(stroke: Wanted, rings, others, painted, is_painted, common: Placed, middle, canvas: Canvas):
-    """The figures of one stroke, and a function that puts rings of it where its mark lies; None for one that paints
-    nothing. is_painted gets what of its paint is paler than that of others."""
-    if not rings:
-        return None
+def _stroke(
+    stroke: Wanted, rings, others, painted, is_painted, common: Placed, middle, canvas: Canvas
+) -> _Seen:
+    """rings: its mark with the sheet's place put right, others: those of all other strokes. is_painted gets what of its
+    paint is paler than that of others."""
     points = np.vstack(rings)
     low = np.maximum(points.min(axis=0) - AROUND_MM, canvas.window_mm[:2])
     high = np.minimum(points.max(axis=0) + AROUND_MM, canvas.window_mm[2:])
@@ -377,7 +379,7 @@ def _stroke(stroke: Wanted, rings, others, painted, is_painted, common: Placed, 
         float((at_last & ~(part / strength > LEVEL)).sum()) / float(max(at_last.sum(), 1)),
         _overlap(small.filled(lies(grown(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine),
     )
-    return row, lambda each: lies(each, found)
+    return _Seen(stroke, row, lambda each: lies(each, found))
 
 
 def _away(mask: np.ndarray, px_per_mm: float) -> np.ndarray:
