@@ -159,8 +159,8 @@ def test_without_the_machine_the_lag_is_off():
 
 @pytest.mark.parametrize("seed", [54, 2005])
 def test_no_lag_that_looks_like_lean_is_where_the_fit_begins(seed):
-    """Machines that lean by 1 and 0.8 mm per mm. Where lags are tried with the machine held, the first comes back with a lag
-    314 % off, a lag that does as the lean does; with it free, the second one 99 %."""
+    """Machines that lean by 1 and 0.8 mm per mm. Where lags are tried with the machine held, the first comes back with
+    a lag 314 % off, a lag that does as the lean does; with it free, the second one 99 %."""
     found = machine_recovery.recover(seed, ("lean", "axes", "backlash", "tilt"))
     assert np.abs(found["lag"][True]).max() < 0.03
     for name, (error, half) in found["numbers"].items():
