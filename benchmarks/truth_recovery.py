@@ -41,6 +41,12 @@ from brushsvg.cli.arguments import values
 KNOWN_TO = 0.15
 SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)  # of the deepest
 LAWS = {"lag": SHARES, "tip_gap": (1.0,), "half_width": SHARES, "tip_to_widest": (0.6, 1.0)}
+OUTSIDE = [
+    *("all", "more", "unseen", "round-6"),
+    *painter.SHAPES,
+    *painter.MORE_SHAPES,
+    *painter.UNSEEN_SHAPES,
+]
 
 
 def options_for(brush, faults) -> _core.MarkOptions:
@@ -166,15 +172,7 @@ def main():
     arguments.add_argument(
         "--sheet", type=values.sheet, help="a4, a3, 210x297: the chart that brushsvg lays out on it"
     )
-    arguments.add_argument(
-        "--outside",
-        choices=[
-            *("all", "more", "unseen", "round-6"),
-            *painter.SHAPES,
-            *painter.MORE_SHAPES,
-            *painter.UNSEEN_SHAPES,
-        ],
-    )
+    arguments.add_argument("--outside", choices=OUTSIDE)
     arguments.add_argument("--noise", type=float, help="of the edges, mm (0.1)")
     arguments.add_argument(
         "--family", action="store_true", help="laws that do not depart from their few numbers"

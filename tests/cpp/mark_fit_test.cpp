@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -11,6 +13,7 @@
 #include "mark_model.hpp"
 #include "mark_problem.hpp"
 #include "noise_covariance.hpp"
+#include "run_way.hpp"
 
 using namespace brushsvg;
 using namespace brushsvg::fit;
@@ -280,4 +283,23 @@ TEST_CASE("what cannot be fitted is refused") {
     options = {};
     options.deepest_mm = 2.0;
     CHECK_THROWS_AS(fit_marks({{"s", poses, {ring}}}, std::nullopt, options), Error);
+}
+
+TEST_CASE("an axis that turns stands still for its whole backlash, and not for longer") {
+    Poses poses(6, 3);
+    poses << 0.0, 5.0, 0.0, 10.0, 5.0, -1.0, 9.9, 5.0, -1.0, 9.7, 5.0, -1.0, 9.5, 5.0, -1.0, 5.0, 5.0, 0.0;
+    const FieldBox box;
+    for (const double backlash : {0.4, 0.0, -0.4}) {
+        MachineHere machine{{}, {0.0, 0.0}, {-1.0, 1.0}, box, false};
+        machine.by[MachineAt::backlash] = machine.by[MachineAt::backlash + 1] = backlash;
+        const auto behind = behind_by(poses, machine, machine.by);
+        const double sign = backlash < 0.0 ? -1.0 : 1.0, all = std::abs(backlash);
+        const std::array<double, 6> told{0.0, 10.0, 9.9, 9.7, 9.5, 5.0};
+        double place = told[0] + 0.5 * all;  // come from the right, and pulled along by a slot as wide as the backlash
+        for (std::size_t i = 0; i < told.size(); ++i) {
+            place = std::clamp(place, told[i] - 0.5 * all, told[i] + 0.5 * all);
+            CHECK(behind[i].x() == doctest::Approx(sign * (told[i] - place)).epsilon(1e-12));
+            CHECK(behind[i].y() == doctest::Approx(0.5 * backlash));
+        }
+    }
 }

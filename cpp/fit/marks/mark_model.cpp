@@ -1,6 +1,8 @@
 #include "mark_model.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "bernstein.hpp"
@@ -55,18 +57,41 @@ void to_chords(Poses& poses, std::vector<Arc>& arcs) {
     arcs.clear();
 }
 
-/// For each pose the direction from which x and y came there: as before, where they rest. The first one was reached
-/// from where the mark before was left, in a direction that nobody knows for the first mark.
-Ring travel_of(const Poses& poses, const PaintedMark* before) {
+/// The direction from which x and y came to the first pose: from where the mark before was left, or 0, which nobody
+/// knows for the first mark.
+Eigen::Vector2d came_from(const Poses& poses, const PaintedMark* before) {
     constexpr double kRestsMm = 1e-6;
-    Ring out = Ring::Zero(poses.rows(), 2);
-    for (Index i = before ? 0 : 1; i < poses.rows(); ++i)
-        for (int axis = 0; axis < 2; ++axis) {
-            const double from = i ? poses(i - 1, axis) : before->poses_mm(before->poses_mm.rows() - 1, axis);
-            const double by = poses(i, axis) - from;
-            out(i, axis) = std::abs(by) > kRestsMm ? std::copysign(1.0, by) : i ? out(i - 1, axis) : 0.0;
-        }
+    Eigen::Vector2d out(0.0, 0.0);
+    for (int axis = 0; axis < 2 && before; ++axis) {
+        const double by = poses(0, axis) - before->poses_mm(before->poses_mm.rows() - 1, axis);
+        if (std::abs(by) > kRestsMm) out[axis] = std::copysign(1.0, by);
+    }
     return out;
+}
+
+/// With more poses where an axis turns: it stands still there for its backlash, and then goes on as far as it is told.
+Poses close_at_turns(const Poses& poses, Eigen::Vector2d came) {
+    constexpr std::array<double, 7> kBehindMm{0.05, 0.1, 0.2, 0.3, 0.45, 0.7, 1.0};
+    std::vector<double> xyz(poses.data(), poses.data() + 3);
+    for (Index i = 0; i + 1 < poses.rows(); ++i) {
+        const Eigen::RowVector3d by = poses.row(i + 1) - poses.row(i);
+        std::vector<double> shares;
+        for (int axis = 0; axis < 2; ++axis) {
+            const double step = std::abs(by[axis]), way = std::copysign(1.0, by[axis]);
+            if (!(step > kBehindMm.front()) || way == came[axis]) continue;
+            for (const double mm : kBehindMm)
+                if (mm < step) shares.push_back(mm / step);
+        }
+        for (int axis = 0; axis < 2; ++axis)
+            if (std::abs(by[axis]) > kBehindMm.front()) came[axis] = std::copysign(1.0, by[axis]);
+        shares.push_back(1.0);
+        std::sort(shares.begin(), shares.end());
+        for (const double share : shares) {
+            const Eigen::RowVector3d at = poses.row(i) + share * by;
+            xyz.insert(xyz.end(), {at.x(), at.y(), at.z()});
+        }
+    }
+    return Eigen::Map<const Poses>(xyz.data(), Index(xyz.size() / 3), 3);
 }
 
 /// A law with so many coefficients: 0 for what it lacks, or the nearest one on [0, deepest]. first: its least power.
@@ -160,14 +185,16 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
     centre_.setZero();
     Index poses = 0;
     for (const PaintedMark& mark : marks) {
-        Painted painted{mark.stroke, from_above(mark.poses_mm, kAboveMm + deepest_), mark.arcs, {}, {}, {}, {}, {0}};
+        Painted painted{mark.stroke, from_above(mark.poses_mm, kAboveMm + deepest_), mark.arcs, {0.0, 0.0}, {}, {}, {},
+                        {0}};
         for (Arc& arc : painted.arcs) {  // counted from the first pose, which comes second here
             ++arc.first;
             ++arc.last;
         }
         if (layout_.machine_numbers > 0) {
             to_chords(painted.poses_mm, painted.arcs);
-            painted.travel = travel_of(painted.poses_mm, &mark == &marks.front() ? nullptr : &mark - 1);
+            painted.came = came_from(painted.poses_mm, &mark == &marks.front() ? nullptr : &mark - 1);
+            if (options.backlash_mm > 0.0) painted.poses_mm = close_at_turns(painted.poses_mm, painted.came);
         }
         painted.at = close_places(painted.poses_mm, coarse_);
         std::vector<double> xy;
@@ -320,7 +347,7 @@ Machine MarkModel::machine(const VectorXd& shared) const {
 }
 
 bool MarkModel::follow(const Painted& painted, const VectorXd& shared, bool by_laws, Footprints& out) const {
-    const MachineHere machine{machine_numbers(shared), centre_, painted.travel, box_, is_bent_};
+    const MachineHere machine{machine_numbers(shared), centre_, painted.came, box_, is_bent_};
     return out.follow(painted.poses_mm, painted.arcs, painted.at, laws(shared), by_laws ? &lag_powers_ : nullptr,
                       shared[layout_.height()], deepest_, layout_.machine_numbers > 0 ? &machine : nullptr, coarse_);
 }
@@ -329,8 +356,9 @@ Poses MarkModel::run(Index mark, const VectorXd& shared) const {
     const Painted& painted = painted_[std::size_t(mark)];
     Poses out = painted.poses_mm;
     if (layout_.machine_numbers > 0) {
-        const MachineHere machine{machine_numbers(shared), centre_, painted.travel, box_, is_bent_};
-        const RunWay<double> way{painted.poses_mm, painted.arcs, machine, 0.0, machine.by};
+        const MachineHere machine{machine_numbers(shared), centre_, painted.came, box_, is_bent_};
+        const RunWay<double> way{
+            painted.poses_mm, painted.arcs, machine, 0.0, machine.by, behind_by(painted.poses_mm, machine, machine.by)};
         for (Index i = 0; i < out.rows(); ++i) out.row(i) << way.tcp(i).transpose(), -way.depth(i);
     }
     return out.middleRows(1, out.rows() - 2);

@@ -99,7 +99,7 @@ class MarkModel {
         std::string stroke;
         Poses poses_mm;  ///< from above the paper and back there
         std::vector<Arc> arcs;
-        Ring travel;  ///< as in MachineHere
+        Eigen::Vector2d came{0.0, 0.0};  ///< as in MachineHere
         std::vector<double> at;
         Ring point_mm, outward;    ///< of the paint, unit vectors
         std::vector<Index> rings;  ///< where each begins, and the end

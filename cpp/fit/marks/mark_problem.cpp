@@ -128,7 +128,7 @@ MarkProblem::MarkProblem(const std::vector<PaintedMark>& marks, const MarkOption
         law_rows_ = law_rows(*options.laws, model);
         law_mean_ = model.unbounded(options.laws->laws);
     }
-    hold_shape(false);
+    hold_shape(false, false);
     shared = VectorXd::Zero(at.size());
     own.assign(std::size_t(model.marks()), Eigen::Vector2d::Zero());
     for (Index i = 0; i < model.marks(); ++i) says.push_back(VectorXd::Ones(model.points(i)));
@@ -141,13 +141,12 @@ void MarkProblem::begin(const MarkLaws& laws) {
     std::fill(own.begin(), own.end(), Eigen::Vector2d::Zero());
 }
 
-void MarkProblem::hold_shape(bool hold) {
+void MarkProblem::hold_shape(bool hold, bool hold_machine) {
     held_.resize(priors_.size());
     for (std::size_t i = 0; i < held_.size(); ++i) held_[i] = priors_[i].sigma == 0.0;
-    if (!hold) return;
     const Layout& at = model.layout();
-    std::fill(held_.begin() + at.widest(), held_.begin() + at.height(), true);
-    std::fill(held_.begin() + at.machine(), held_.end(), true);
+    if (hold) std::fill(held_.begin() + at.widest(), held_.begin() + at.height(), true);
+    if (hold_machine) std::fill(held_.begin() + at.machine(), held_.end(), true);
 }
 
 void MarkProblem::expect(const MatrixXd& rows) {

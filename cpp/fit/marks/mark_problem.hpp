@@ -15,8 +15,8 @@ class MarkProblem {
 
     /// To these laws; the footprint's shape and the height as known beforehand, no displacements.
     void begin(const MarkLaws& laws);
-    /// The footprint's shape stays as it is, and so does the machine.
-    void hold_shape(bool hold);
+    /// The footprint's shape stays as it is, and the machine, too, where that is held.
+    void hold_shape(bool hold, bool hold_machine);
     /// Marks of which a part lies far off may have been matched with the wrong edge, the near one of a stroke that is
     /// displaced by its width: they are moved to where that part lies near, if that costs less.
     void find_displaced();

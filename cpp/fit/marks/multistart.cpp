@@ -47,9 +47,9 @@ std::vector<MarkLaws> starts(const std::vector<PaintedMark>& marks, const MarkOp
     return out;
 }
 
-/// To the best of starts with lags of many lengths, each followed a little.
-void try_lags(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
-    at.hold_shape(true);
+/// To the best of starts with lags of many lengths, each followed a little, with the machine held or free.
+void try_lags(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOptions& options, bool is_held) {
+    at.hold_shape(true, is_held);
     std::vector<std::pair<double, MarkLaws>> from;
     for (const MarkLaws& laws : starts(marks, options)) {
         at.begin(laws);
@@ -76,7 +76,28 @@ void try_lags(MarkProblem& at, const std::vector<PaintedMark>& marks, const Mark
             "above the paper as it was taught?");
     at.shared = shared;
     at.own = own;
-    at.hold_shape(false);
+    at.hold_shape(false, false);
+}
+
+/// To where the marks lie, from lags that were tried with the machine free, or held, whichever comes nearer: held, a
+/// lag may win that does as a lean does, free, a lean that does as a lag does, and no small step leads back from
+/// either.
+void try_both(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
+    double best = INFINITY;
+    VectorXd shared;
+    std::vector<Eigen::Vector2d> own;
+    for (const bool is_held : {false, true}) {
+        if (is_held && at.model.layout().machine_numbers == 0) break;
+        try_lags(at, marks, options, is_held);
+        at.solve(options.most_iterations, kTolerance);
+        const double now = at.loss();
+        if (is_held && !(now < best)) continue;
+        best = now;
+        shared = at.shared;
+        own = at.own;
+    }
+    at.shared = shared;
+    at.own = own;
 }
 
 }  // namespace
@@ -86,11 +107,12 @@ void start(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vect
     MarkOptions sparse = options;
     sparse.spacing_mm *= kSparse;
     MarkProblem tried(marks, sparse, kCoarse);
-    if (from)
+    if (from) {
         tried.begin(*from);
-    else
-        try_lags(tried, marks, options);
-    tried.solve(options.most_iterations, kTolerance);
+        tried.solve(options.most_iterations, kTolerance);
+    } else {
+        try_both(tried, marks, options);
+    }
     tried.weighing = weighed(tried);
     tried.find_displaced();
     at.shared = tried.shared;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "brushsvg/lag.hpp"
@@ -27,15 +28,38 @@ struct FieldBox {
     }
 };
 
-/// What a machine does at one place of a fit. by: scale as what it is more than 1. travel: for each pose the direction
-/// from which x and y came there, -1, 0 or 1.
+/// What a machine does at one place of a fit. by: scale as what it is more than 1. came: the direction from which x and
+/// y came to the first pose, -1, 0 or 1.
 struct MachineHere {
     std::array<double, kMachine> by;
-    Eigen::Vector2d centre;
-    const Ring& travel;
+    Eigen::Vector2d centre, came;
     const FieldBox& box;
     bool is_bent;  ///< a field is asked for: without one its derivatives cost a third of all
 };
+
+/// By how much each axis is behind what was told, at each pose: an axis that turns stands still for its whole backlash.
+/// One less than nothing goes as far ahead.
+template <class T>
+std::vector<Vec2<T>> behind_by(const Poses& poses, const MachineHere& machine, const std::array<T, kMachine>& by) {
+    constexpr double kRestsMm = 1e-6;
+    std::vector<Vec2<T>> out(std::size_t(poses.rows()));
+    for (int axis = 0; axis < 2; ++axis) {
+        const T half = 0.5 * by[std::size_t(MachineAt::backlash + axis)];
+        const double way = half < T(0.0) ? -1.0 : 1.0;
+        const T most = way * half;
+        T behind = machine.came[axis] * most;
+        for (Eigen::Index i = 0; i < poses.rows(); ++i) {
+            const double step = i ? poses(i, axis) - poses(i - 1, axis) : 0.0;
+            if (std::abs(step) > kRestsMm) behind += step;
+            if (behind > most)
+                behind = most;
+            else if (behind < -most)
+                behind = -most;
+            out[std::size_t(i)][axis] = way * behind;
+        }
+    }
+    return out;
+}
 
 /// The TCP's way as such a machine runs what was told, on any scalar.
 template <class T>
@@ -45,6 +69,7 @@ struct RunWay {
     const MachineHere& machine;
     T deeper_mm;
     std::array<T, kMachine> by;
+    std::vector<Vec2<T>> behind;
 
     Eigen::Index count() const { return poses.rows(); }
     Eigen::Vector2d from_centre(Eigen::Index i) const {
@@ -55,12 +80,12 @@ struct RunWay {
         return T(deeper_mm - poses(i, 2) + by[MachineAt::tilt] * at.x() + by[MachineAt::tilt + 1] * at.y());
     }
     Vec2<T> tcp(Eigen::Index i) const {
-        const Eigen::Vector2d at = from_centre(i), behind = 0.5 * machine.travel.row(i).transpose();
+        const Eigen::Vector2d at = from_centre(i);
+        const Vec2<T>& late = behind[std::size_t(i)];
         const T d = depth(i);
         Vec2<T> out{T(poses(i, 0) + by[MachineAt::scale] * at.x() + by[MachineAt::skew] * at.y() +
-                      by[MachineAt::lean] * d - by[MachineAt::backlash] * behind.x()),
-                    T(poses(i, 1) + by[MachineAt::scale + 1] * at.y() + by[MachineAt::lean + 1] * d -
-                      by[MachineAt::backlash + 1] * behind.y())};
+                      by[MachineAt::lean] * d - late[0]),
+                    T(poses(i, 1) + by[MachineAt::scale + 1] * at.y() + by[MachineAt::lean + 1] * d - late[1])};
         if (!machine.is_bent) return out;
         const Eigen::Vector3d terms = machine.box.terms(poses.row(i).template head<2>().transpose());
         for (int axis = 0; axis < 2; ++axis)

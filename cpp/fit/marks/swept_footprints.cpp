@@ -81,8 +81,9 @@ std::vector<T> law_by(const std::vector<double>& lag, const Eigen::MatrixXd& by)
 template <class T>
 RunWay<T> run_by(const Poses& poses, const std::vector<Arc>& arcs, const MachineHere& machine, double height_mm,
                  int numbers) {
-    RunWay<T> out{poses, arcs, machine, T(height_mm, kMostTerms), {}};
+    RunWay<T> out{poses, arcs, machine, T(height_mm, kMostTerms), {}, {}};
     for (int i = 0; i < numbers; ++i) out.by[std::size_t(i)] = T(machine.by[std::size_t(i)], kMostTerms + 1 + i);
+    out.behind = behind_by(poses, machine, out.by);
     return out;
 }
 
@@ -119,8 +120,9 @@ bool Footprints::follow(const Poses& poses, const std::vector<Arc>& arcs, const 
         return follow_on<Jet>(ToldWay<Jet>{poses, arcs, Jet(height_mm, kMostTerms)}, at, laws, lag_by, deepest_mm);
     if (!machine) return follow_on<double>(ToldWay<double>{poses, arcs, height_mm}, at, laws, lag_by, deepest_mm);
     if (!lag_by)
-        return follow_on<double>(RunWay<double>{poses, arcs, *machine, height_mm, machine->by}, at, laws, lag_by,
-                                 deepest_mm);
+        return follow_on<double>(
+            RunWay<double>{poses, arcs, *machine, height_mm, machine->by, behind_by(poses, *machine, machine->by)}, at,
+            laws, lag_by, deepest_mm);
     if (machine->is_bent)
         return follow_on<FieldJet>(run_by<FieldJet>(poses, arcs, *machine, height_mm, kMachine), at, laws, lag_by,
                                    deepest_mm);
