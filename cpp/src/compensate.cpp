@@ -171,8 +171,11 @@ Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateO
     if (choose)
         plain.start = plain.ends->best_beginning();
     else if (asked != Beginning::exposed)
-        plain.start =
-            asked == Beginning::hidden && !dot_of(stroke, brush) ? plain.ends->hidden_or_turned() : Beginning::hidden;
+        plain.start = Beginning::hidden;
+    const auto hidden_as_suits = [&] {
+        if (!choose && !dot_of(stroke, brush)) plain.start = plain.ends->hidden_or_turned();
+        return plain;
+    };
     if (choose && plain.start == Beginning::turned) plain.instead = {Beginning::hidden};
     if (choose && plain.start != Beginning::exposed) plain.instead.push_back(Beginning::exposed);
     if (asked == Beginning::exposed) return plain;
@@ -184,10 +187,10 @@ Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateO
             plain.dot = std::move(dot);
             return plain;
         }
-    if (asked == Beginning::hidden || dot_of(stroke, brush)) return plain;
+    if (asked == Beginning::hidden || dot_of(stroke, brush)) return hidden_as_suits();
     const std::optional<SquaredBeginning> squared =
         squared_beginning(stroke, brush, asked == Beginning::squared ? Caps::straight : Caps::round);
-    if (!squared) return plain;
+    if (!squared) return hidden_as_suits();
     Begun begun{squared->stroke, up_to_its_end(squared->stroke, brush), Beginning::exposed, {}, {}, {}};
     if (choose) {
         begun.instead = plain.instead;

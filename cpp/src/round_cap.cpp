@@ -18,6 +18,8 @@ constexpr double kAnew = 0.8;
 constexpr double kHandles = 1.0 / 3.0;
 /// A line that is not longer, in half widths, keeps its direction.
 constexpr double kLongEnough = 1.0;
+/// Per m, by which marks may narrow.
+constexpr double kWet = 1e-3;
 
 Stroke other_way(const Stroke& stroke) {
     Stroke out = stroke;
@@ -33,7 +35,7 @@ std::optional<ToCap> ends_in_cap(const Stroke& stroke, const Brush& brush) {
     Stroke out = as_wide_as_painted(stroke, brush);
     const Line line(out, brush);
     const double length_mm = line.length(), half_mm = half_width_at(out, 1.0);
-    if (stroke.closed || !(length_mm > 0.0)) return {};
+    if (stroke.closed || !(length_mm > 0.0) || (brush.paint && brush.paint->narrows_per_m > kWet)) return {};
     const Sample last = line.at(length_mm);
     const Vector2d along = line.tangent(last);
     const auto cap = cap_of(stroke, {last.middle, along, {-along.y(), along.x()}, half_mm});

@@ -23,7 +23,7 @@ DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm"
 <path id="dab" d="M97 20h0" stroke="#802010" stroke-width="3"/></svg>"""
 POT = Station("pot", (-20.0, 30.0), surface_mm=-2.0, depth_mm=7.0, rim_mm=4.0, hold_s=0.5, drip_s=2.0)
 HAND = Station("Mary", (-20.0, 30.0), by_hand=True)
-ROUNDED = 1 + 1e-9
+FARTHER_MM = 1e-9  # than its speed says: rounding
 
 
 def cell_with(*stations, name="linuxcnc-3axis"):
@@ -82,13 +82,12 @@ def test_the_tool_is_never_faster_than_its_move(played):
     _, _, program, rows = played
     moves = [move for section in program.sections() for move in section.moves]
     time_s, path_mm = np.diff(rows.time_s), np.linalg.norm(np.diff(rows.tcp_mm, axis=0), axis=1)
-    assert path_mm[time_s < 1e-9].max() < 1e-6  # it never jumps
-    speeds = path_mm[time_s >= 1e-9] / time_s[time_s >= 1e-9]
-    assert speeds.max() <= max(move.speed_mm_s for move in moves) * ROUNDED
+    assert (path_mm - max(move.speed_mm_s for move in moves) * time_s).max() < FARTHER_MM
     touching = ~np.isnan(rows.depth_mm)
-    painting = (touching[:-1] & touching[1:] & (time_s >= 1e-9))[time_s >= 1e-9]
+    painting = touching[:-1] & touching[1:]
     fastest = max(move.speed_mm_s for move in moves if move.meaning == "paint")
-    assert 0.5 * fastest < speeds[painting].max() <= fastest * ROUNDED
+    assert (path_mm - fastest * time_s)[painting].max() < FARTHER_MM
+    assert (path_mm - 0.5 * fastest * time_s)[painting].max() > FARTHER_MM
 
 
 def test_the_brush_does_what_the_marks_say_and_nothing_in_the_air(played):
