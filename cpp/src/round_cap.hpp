@@ -15,8 +15,8 @@ struct ToCap {
     Cap cap;
 };
 
-/// None where the drawn end is not round, or marks narrow as paint runs out: a patch that is pressed deeper for it, turned
-/// round, paints as large a disc as a wet one, a knob.
+/// None where the drawn end is not round, or marks narrow as paint runs out: a patch that is pressed deeper for it,
+/// turned round, paints as large a disc as a wet one, a knob.
 std::optional<ToCap> ends_in_cap(const Stroke& stroke, const Brush& brush);
 /// The same of its beginning.
 std::optional<ToCap> begins_in_cap(const Stroke& stroke, const Brush& brush);
