@@ -6,7 +6,8 @@ import numpy as np
 
 from ... import _core
 from ...geometry.cubics import at
-from .junctions import Arm, Crossing
+from .edges import amid, beside_edges, can_follow, find_bent_ends
+from .junctions import STRAIGHTEST_RAD, Arm, Crossing, turn_across
 
 # Of the shape around a corner, what lines that end beside each other may leave bare beside those that meet: a u's bend
 # is one stroke's.
@@ -20,6 +21,11 @@ WHOLE, IN_HUMP = 0.95, 0.5
 # at most.
 _BESIDE = np.array([-1.6, -0.7, 0.0, 0.7, 1.6])
 IN_STEM, SLANTED, STUB, LIMB, SHOULDER, FLAT = 0.3, 0.6, 0.35, 1.8, 0.1, 0.5
+TOUCHING_RAD = np.radians(25)  # lines that cross turn by less
+NEAR_EACH_OTHER = 0.7  # half widths of the wider of two lines that meet where they pass each other by less
+# Of what was dropped at a corner, in squares of the radius: the end of a stem that a stroke of both arms would leave.
+WHOLE_STEM = 0.5
+AS_WIDE = 0.9  # of the wider of two lines: where a thinner one ends, that would have to be a wedge
 _PLACES = 25  # looked at on the way from a corner's disc to where the lines of its arms meet
 _GRID = np.stack(np.meshgrid(*2 * [np.linspace(-1.6, 1.6, 17)]), axis=-1).reshape(-1, 2)
 _AROUND = _GRID[
@@ -35,6 +41,8 @@ BELLY, AMID = 1.25, 0.25
 def bridge(a: Arm, b: Arm, crossing: Crossing) -> np.ndarray:
     """From one arm to the other through a crossing: a cubic along their directions; the width changes evenly. Where it
     is the belly of one line, the line goes on as it lies."""
+    if a.bridge is not None:
+        return a.bridge
     p, q = a.line[a.out], b.line[b.out]
     if crossing.is_corner and _is_belly(crossing.discs[0], p, q):
         return np.vstack([a.line[: a.out][::-1], b.line[1 : b.out]])
@@ -53,19 +61,55 @@ def _is_belly(disc: np.ndarray, p: np.ndarray, q: np.ndarray) -> bool:
 def stub(arm: Arm, crossing: Crossing) -> np.ndarray:
     """From the crossing to where the arm leaves it: straight on, at the width it has there."""
     start = arm.line[arm.out]
+    if arm.lead is not None:
+        return arm.lead
     if crossing.is_corner:
         return straight(*arm.corner, start)
-    end = _amid(arm, crossing)
+    end = amid(arm, crossing)
     if arm.beyond_mm is not None:
         return straight(end - arm.beyond_mm * arm.direction, start[2], start)
     room = (crossing.discs[:, 2] - np.hypot(*(crossing.discs[:, :2] - end).T)).max()
     return straight(end, min(start[2], max(room, 0.3 * start[2])), start)
 
 
-def _amid(arm: Arm, crossing: Crossing) -> np.ndarray:
-    """Straight on along an arm, as far into its crossing as the middle of that lies."""
-    start, back = arm.line[arm.out, :2], -arm.direction
-    return start + max(float((crossing.discs[:, :2].mean(axis=0) - start) @ back), 0.0) * back
+def find_bridges(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
+    """Lines through crossings beside one edge of the shape, which they keep; those through corners cut them."""
+    inner = [crossing for crossing in crossings if not crossing.is_corner]
+    if not can_follow(sum(len(crossing.arms) for crossing in inner), rings):
+        return
+    for crossing in inner:
+        _join_along_edges(crossing, rings)
+    through = [
+        (arm, crossing)
+        for crossing in inner
+        for k, arm in enumerate(crossing.arms)
+        if any(arm.mate is other for other in crossing.arms[k + 1 :])
+    ]
+    if not through:
+        return
+    found, _ = beside_edges([bridge(a, a.mate, c) for a, c in through], rings)
+    for (a, _), line in zip(through, found, strict=True):
+        a.bridge, a.mate.bridge = line, line[::-1]
+
+
+def _join_along_edges(crossing: Crossing, rings: list[np.ndarray]) -> None:
+    """Four arms of two lines that touch, as the ring of a Q and its tail do, are joined along the edges of both:
+    straight on, either would turn into the other."""
+    if len(crossing.arms) != 4 or any(arm.mate is None for arm in crossing.arms):
+        return
+    first, mate = crossing.arms[0], crossing.arms[0].mate
+    one, two = (arm for arm in crossing.arms if arm is not first and arm is not mate)
+    if min(turn_across(first, mate), turn_across(one, two)) < TOUCHING_RAD:
+        return
+    for pairs in (((first, one), (mate, two)), ((first, two), (mate, one))):
+        if all(a.other is b for a, b in pairs):
+            continue  # both rings of an 8, which is one line
+        if max(turn_across(*pair) for pair in pairs) < STRAIGHTEST_RAD:
+            _, have_edges = beside_edges([bridge(a, b, crossing) for a, b in pairs], rings)
+            if all(have_edges):
+                for a, b in pairs:
+                    a.mate, b.mate = b, a
+                return
 
 
 def find_bars(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
@@ -79,8 +123,8 @@ def find_bars(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     halves = np.array([arm.line[arm.out, 2] for arm, _ in ending])
     backs = np.array([-arm.direction for arm, _ in ending])
     lefts = np.column_stack([-backs[:, 1], backs[:, 0]])
-    amid = np.array([_amid(arm, crossing) for arm, crossing in ending])
-    at = amid[:, None] + (halves[:, None] * _BESIDE)[..., None] * lefts[:, None]
+    middles = np.array([amid(arm, crossing) for arm, crossing in ending])
+    at = middles[:, None] + (halves[:, None] * _BESIDE)[..., None] * lefts[:, None]
     ways = np.repeat(backs, len(_BESIDE), axis=0)
     reached = np.array(_core.first_crossings(rings, at.reshape(-1, 2), ways)).reshape(len(ending), -1)
     stem = reached[:, [0, -1]].max(axis=1)  # its far side, beside the bar
@@ -126,6 +170,8 @@ def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     rooms = np.array(_core.clearance(rings, asked))
     inside = np.reshape(rooms[len(ways) * _PLACES :] > 0, (-1, len(_AROUND)))
     rooms = np.reshape(rooms[: len(ways) * _PLACES], (-1, 3, _PLACES))
+    reach_mm = np.reshape([np.hypot(*by) for _, by in ways], (-1, 3))[:, 1:].ravel()
+    find_bent_ends(corners, reach_mm, rings)
     for k, (crossing, along) in enumerate(zip(corners, np.reshape(places, (-1, 3, _PLACES, 2)), strict=True)):
         disc = crossing.discs[0, 2]
         widths = [arm.line[arm.out, 2] for arm in crossing.arms]
@@ -141,18 +187,45 @@ def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
             or meet
             for n in (1, 2)
         ]
-        bare = [_bare(crossing, ends, around[k][inside[k]]) for ends in (own, [meet, meet])]
+        bare = [
+            _bare(
+                crossing,
+                [straight(*end, arm.line[arm.out]) for arm, end in zip(crossing.arms, ends, strict=True)],
+                around[k][inside[k]],
+            )
+            for ends in (own, [meet, meet])
+        ]
         crossing.corner = meet
         for arm, end in zip(crossing.arms, own if bare[0] < bare[1] + NOTCH else [meet, meet], strict=True):
             arm.corner = end
+        _keep_bent(crossing, around[k][inside[k]], min(bare))
 
 
-def _bare(crossing: Crossing, ends: list[tuple[np.ndarray, float]], around: np.ndarray) -> float:
+def _keep_bent(crossing: Crossing, around: np.ndarray, most_bare: float) -> None:
+    """The ways of arms along bent edges stay if they leave less bare. A stroke of both arms turns at the end of the
+    one that bends, or where both meet."""
+    led = [arm for arm in crossing.arms if arm.lead is not None]
+    if led and _bare(crossing, [stub(arm, crossing) for arm in crossing.arms], around) >= most_bare:
+        for arm in led:
+            arm.lead = None
+    elif len(led) == 1:
+        if led[0].line[led[0].out, 2] > AS_WIDE * max(arm.line[arm.out, 2] for arm in crossing.arms):
+            crossing.corner = led[0].lead[0, :2], float(led[0].lead[0, 2])
+            crossing.is_on_lead = True
+        else:
+            led[0].lead = None
+    elif len(led) == 2 and crossing.dropped < WHOLE_STEM:
+        thin, wide = (arm.lead for arm in sorted(led, key=lambda arm: arm.line[arm.out, 2]))
+        off = np.hypot(*(thin[:, None, :2] - wide[None, :, :2]).transpose(2, 0, 1))
+        i, j = np.unravel_index(off.argmin(), off.shape)
+        if off[i, j] < NEAR_EACH_OTHER * wide[j, 2]:
+            crossing.corner = thin[i, :2], float(min(thin[i, 2], wide[j, 2]))
+            crossing.is_on_lead = True
+
+
+def _bare(crossing: Crossing, stubs: list[np.ndarray], around: np.ndarray) -> float:
     """Share of the places around a corner that its arms leave bare when they begin there."""
-    discs = np.vstack(
-        [straight(*end, arm.line[arm.out]) for arm, end in zip(crossing.arms, ends, strict=True)]
-    )
-    discs = np.vstack([discs, *(arm.line[arm.out :][:STEPS] for arm in crossing.arms)])
+    discs = np.vstack([*stubs, *(arm.line[arm.out :][:STEPS] for arm in crossing.arms)])
     off = np.hypot(*(around[:, None] - discs[None, :, :2]).transpose(2, 0, 1))
     return float((off > discs[:, 2]).all(axis=1).mean()) if len(around) else 0.0
 

@@ -10,7 +10,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .bridges import bridge, find_bars, find_corners, stub
+from .bridges import bridge, find_bars, find_bridges, find_corners, stub
+from .edges import find_ends
 from .junctions import Arm, Crossing, crossings_of
 
 BARE = 0.2  # of the places along a branch inside of a crossing: with less the lines that cross there paint it
@@ -46,6 +47,8 @@ def skeleton(rings: list[np.ndarray], nodes: np.ndarray, branches: list) -> Skel
     crossings, arms = crossings_of(nodes, lines, ends, degree)
     find_corners(crossings, rings)
     find_bars(crossings, rings)
+    find_bridges(crossings, rings)
+    find_ends(crossings, rings)
     used: set[int] = {b for crossing in crossings for b in crossing.inner}
     pieces = []
     for arm in arms:  # first those that begin somewhere, then rings

@@ -42,6 +42,8 @@ class Arm:
     other: Arm | None = None  # the same branch from its other end, None where that is free
     corner: tuple[np.ndarray, float] | None = None  # where it begins at a corner, and the half width there
     beyond_mm: float | None = None  # how far beyond the middle of its crossing it runs; see find_bars
+    lead: np.ndarray | None = None  # rows of its way out of the crossing; see find_ends
+    bridge: np.ndarray | None = None  # rows through the crossing to its mate; see find_bridges
 
     @cached_property
     def direction(self) -> np.ndarray:
@@ -67,6 +69,7 @@ class Crossing:
     corner: tuple[np.ndarray, float] | None = (
         None  # where both arms begin, and the half width there; see joints
     )
+    is_on_lead: bool = False  # whether that lies on the ways of arms along edges
 
     @property
     def is_corner(self) -> bool:
@@ -186,11 +189,11 @@ def _join(crossing: Crossing) -> None:
     thick = [arm for arm in crossing.arms if arm.line[arm.out, 2] >= narrow]
     necks = [arm for arm in crossing.arms if arm.line[arm.out, 2] < narrow <= arm.line[arm.out :, 2].max()]
     is_beside = len(thick) == 2 and necks and len(necks) + 2 == len(crossing.arms)
-    if is_beside and _turn_across(*thick) < STRAIGHTEST_THICK_RAD:
+    if is_beside and turn_across(*thick) < STRAIGHTEST_THICK_RAD:
         thick[0].mate, thick[1].mate = thick[1], thick[0]
     turns = []
     for a, b in combinations(crossing.arms[:MOST_ARMS], 2):
-        turns.append((_turn_across(a, b), len(turns), a, b))
+        turns.append((turn_across(a, b), len(turns), a, b))
     for turn, _, a, b in sorted(turns, key=lambda each: each[:2]):
         if turn < STRAIGHTEST_RAD and a.mate is None and b.mate is None:
             a.mate, b.mate = b, a
@@ -207,11 +210,11 @@ def _join_thick(crossing: Crossing, a: Arm, b: Arm) -> None:
     first, second = (arm.line[arm.out] for arm in (a, b))
     sides = [along[0] * (y - one[1]) - along[1] * (x - one[0]) for x, y, _ in (first, second)]
     is_thick = min(first[2], second[2]) >= max(one[2], two[2])
-    if is_thick and sides[0] * sides[1] < 0 and _turn_across(a, b) < STRAIGHTEST_THICK_RAD:
+    if is_thick and sides[0] * sides[1] < 0 and turn_across(a, b) < STRAIGHTEST_THICK_RAD:
         a.mate, b.mate = b, a
 
 
-def _turn_across(a: Arm, b: Arm) -> float:
+def turn_across(a: Arm, b: Arm) -> float:
     across = b.line[b.out, :2] - a.line[a.out, :2]
     return _turn(-a.direction, across) + _turn(across, b.direction)
 

@@ -104,7 +104,7 @@ def joined(pieces: list[Piece], skeleton: Skeleton) -> list[list[Piece]]:
     """Pieces in their directions, those that a corner joins in one list: where one ends and the next begins there, or
     where one is but a flick."""
     chains = {k: [piece] for k, piece in enumerate(_upwards([directed(piece) for piece in pieces]))}
-    long = [length(piece.line[:, :2]) for piece in pieces]
+    long = [_length(piece, skeleton) for piece in pieces]
     at_crossing: dict[int | None, set[int]] = {}
     for k, piece in enumerate(pieces):
         for crossing in piece.ends:
@@ -133,10 +133,30 @@ def joined(pieces: list[Piece], skeleton: Skeleton) -> list[list[Piece]]:
     return [_outwards(chain) for chain in chains.values()]
 
 
+def _length(piece: Piece, skeleton: Skeleton) -> float:
+    """Of a line, if it ran straight to its corners: how far it runs along an edge into another says nothing of it."""
+    length_mm = length(piece.line[:, :2])
+    for number, row in zip(piece.ends, (piece.line[0], piece.line[-1]), strict=True):
+        for arm in skeleton.crossings[number].arms if number is not None else ():
+            if arm.corner is not None and arm.lead is not None and np.array_equal(arm.lead[0], row):
+                start = arm.line[arm.out, :2]
+                length_mm += np.hypot(*(arm.corner[0] - start)) - length(np.vstack([arm.lead[:, :2], start]))
+    return length_mm
+
+
 def to_corner(piece: Piece, side: int, crossing: Crossing) -> Piece:
     """A piece that begins (side 0) or ends at a corner as the other line does that it goes on with."""
     line = piece.line if side == 0 else piece.line[::-1]
-    line = np.vstack([straight(*crossing.corner, line[STEPS]), line[STEPS:]])
+    place, half = crossing.corner
+    leads = [
+        arm.lead for arm in crossing.arms if arm.lead is not None and np.array_equal(arm.lead[0], line[0])
+    ]
+    steps = len(leads[0]) if leads else STEPS
+    if leads and crossing.is_on_lead:
+        nearest = int(np.hypot(*(line[:steps, :2] - place).T).argmin())
+        line = np.vstack([[*place, half], line[nearest + 1 :]])
+    else:
+        line = np.vstack([straight(place, half, line[steps]), line[steps:]])
     return replace(piece, line=line if side == 0 else line[::-1])
 
 
