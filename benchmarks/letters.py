@@ -9,6 +9,9 @@ its shape.
   overlap   common area over joint area of mark and shape, mean over the glyphs, and the least
   notices   how many, in all
   thorns    corners of the mark beyond 20 degrees that stick out of the shape by more than 0.3 mm
+  notches   what of the shape, deeper in it than 0.15 mm, stays unpainted, mm2 per glyph: wedges at crotches, waves
+            beside stems, blunt corners
+  bulges    how much paint lies farther out of the shape than that
   turning   how much the mark's outline turns more than the shape's, full turns per glyph; rings below 0.01 mm2 are
             pinholes, and left out
 
@@ -45,6 +48,7 @@ GLYPHS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
 LARGEST_MM = 100.0
 STEM = 0.95  # of the brush's widest mark, how wide an l's stem is
 LOST_SHARE = 0.03
+SEEN_MM = 0.15  # how far off the shape's a mark's edge may lie unseen
 EDGE_MM = 0.3  # how far a mark's edge may lie beside the shape's and both are one
 THORN_RAD = np.radians(20)
 EVEN_MM = 0.5  # what an outline turns within less is an angle of its polygon
@@ -64,6 +68,8 @@ class Painted:
     notices: int
     thorns: int
     turns: float
+    notches_mm2: float
+    bulges_mm2: float
 
 
 def fitting_mm(font: bytes, brush) -> float:
@@ -101,6 +107,8 @@ def painted(text: str, font: bytes, size_mm: float, brush_name: str, compensatio
         len(work.notices),
         _thorns(mark_rings, shape),
         (_turned(mark_rings) - _turned(rings)) / (2 * np.pi),
+        shape.buffer(-SEEN_MM).difference(mark).area,
+        mark.difference(shape.buffer(SEEN_MM)).area,
     )
 
 
@@ -177,7 +185,8 @@ def row(name: str, size_mm: float, compensation: str, done: list[Painted]) -> st
         f"{sum(len(each.bare) for each in done):>6}{len(losing):>8}"
         f"{sum(not each.named for each in losing):>8}{np.mean(overlaps):>9.4f}{min(overlaps):>7.3f}"
         f"{sum(each.notices for each in done):>9}{sum(each.thorns for each in done):>8}"
-        f"{np.mean([each.turns for each in done]):>9.2f}  {''.join(each.text for each in losing)}"
+        f"{np.mean([each.turns for each in done]):>9.2f}{np.mean([each.notches_mm2 for each in done]):>9.2f}"
+        f"{np.mean([each.bulges_mm2 for each in done]):>8.2f}  {''.join(each.text for each in losing)}"
     )
 
 
@@ -194,7 +203,7 @@ def main() -> None:
     brush = find_brush(options.brush)
     print(
         f"{'font':<24}{'em':>4}  {'':<8}{'lost':>5}{'bare':>6}{'glyphs':>8}{'silent':>8}{'overlap':>9}{'least':>7}"
-        f"{'notices':>9}{'thorns':>8}{'turning':>9}  which glyphs"
+        f"{'notices':>9}{'thorns':>8}{'turning':>9}{'notches':>9}{'bulges':>8}  which glyphs"
     )
     with ProcessPoolExecutor(options.processes) as pool:
         for file in options.font:

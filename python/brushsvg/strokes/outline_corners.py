@@ -19,7 +19,7 @@ from .trial_mark import Wanted, misplaced_mm2, trial_marks
 LEAST_RAD, SHARP_RAD, MOST_RAD = np.radians(40), np.radians(120), np.radians(150)
 # In half widths: how far from its corner a line is as straight as its leg, and how long a leg is at least, in which
 # a square end has room.
-AWAY, FARTHER, LEG = 1.2, 2.4, 2.0
+AWAY, FARTHER, CLOSE, LEG = 1.2, 2.4, 0.5, 2.0
 STUB = 0.2  # and of how little of a leg its direction is known
 # A first leg so much thinner than the second hides no pointed beginning of that; but a squared one its end.
 THIN = 0.65
@@ -68,7 +68,7 @@ def _parts(stroke, brush) -> list:
     ends_mm = [0.0, *(line.at[k] * length_mm for k in turning), length_mm]
     last = len(turning) - 1
     ways = [
-        [way for away in (AWAY, FARTHER) if (way := _corner(line, *ends, away, (k > 0, k < last)))]
+        [way for away in (CLOSE, AWAY, FARTHER) if (way := _corner(line, *ends, away, (k > 0, k < last)))]
         for k, ends in enumerate(zip(ends_mm, ends_mm[1:], ends_mm[2:], strict=False))
     ]
     if not any(ways):
@@ -120,7 +120,7 @@ def _seen(parts: list, wanted: Wanted, brush) -> _Seen:
 def _won(whole: _Seen, cut: _Seen, wanted_mm: list, brush, half_mm: float) -> float:
     """What a mark of parts is nearer to a shape than one of the whole, in squares of the half width; less what it
     bulges out of it more."""
-    more = BULGES * max(cut.bulge_mm2 - whole.bulge_mm2, 0.0)
+    more = BULGES * (cut.bulge_mm2 - whole.bulge_mm2)
     won = (whole.misplaced_mm2 - cut.misplaced_mm2 - more) / half_mm**2
     if abs(won - WORTH) > PLAIN:
         return won
