@@ -25,6 +25,7 @@ TOUCHING_RAD = np.radians(25)  # lines that cross turn by less
 NEAR_EACH_OTHER = 0.7  # half widths of the wider of two lines that meet where they pass each other by less
 # Of what was dropped at a corner, in squares of the radius: the end of a stem that a stroke of both arms would leave.
 WHOLE_STEM = 0.5
+UNLIKE = 0.6  # of the wider: a bowl that widens towards a bar so thin would leave a wedge in the counter
 AS_WIDE = 0.9  # of the wider of two lines: where a thinner one ends, that would have to be a wedge
 _PLACES = 25  # looked at on the way from a corner's disc to where the lines of its arms meet
 _GRID = np.stack(np.meshgrid(*2 * [np.linspace(-1.6, 1.6, 17)]), axis=-1).reshape(-1, 2)
@@ -205,7 +206,9 @@ def _keep_bent(crossing: Crossing, around: np.ndarray, most_bare: float) -> None
     """The ways of arms along bent edges stay if they leave less bare. A stroke of both arms turns at the end of the
     one that bends, or where both meet."""
     led = [arm for arm in crossing.arms if arm.lead is not None]
-    if led and _bare(crossing, [stub(arm, crossing) for arm in crossing.arms], around) >= most_bare:
+    thin, wide = sorted(arm.line[arm.out, 2] for arm in crossing.arms)
+    stubs = [stub(arm, crossing) for arm in crossing.arms]
+    if led and (thin < UNLIKE * wide or _bare(crossing, stubs, around) >= most_bare):
         for arm in led:
             arm.lead = None
     elif len(led) == 1:
