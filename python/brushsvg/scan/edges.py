@@ -227,7 +227,8 @@ def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list
         raise Error(
             f"the marks of {len(touching)} of {len(rooms)} strokes touch each other, the range is "
             f"[0, {int(MOST_TOUCHING * len(rooms))}]: was this chart painted on this page, once, and did the page lie "
-            "at its stop? Or the brush is wider than the chart has room for",
+            "at its stop? Or the page was not printed at 100 % (measure its bar), or the brush is wider than the chart "
+            "has room for",
             value=len(touching),
             code="photo-paint-elsewhere",
         )
@@ -275,7 +276,8 @@ def _refuse_elsewhere(painted: np.ndarray, flat: Flat, rooms: list[Room]) -> Non
     if here < IN_ROOM:
         raise Error(
             f"only {100 * here:.0f} % of the paint lies where strokes of this chart should be, it takes "
-            f"{100 * IN_ROOM:.0f} %: was this chart painted on this page, once, and did the page lie at its stop?",
+            f"{100 * IN_ROOM:.0f} %: was this chart painted on this page, once, did the page lie at its stop, and was "
+            "it printed at 100 % (measure its bar)?",
             value=here,
             code="photo-paint-elsewhere",
         )
