@@ -229,6 +229,9 @@ def looks() -> dict[str, str]:
         "vector-effect non-scaling-size": page(
             f'<path {SHAPE} transform="scale(.5)" vector-effect="non-scaling-size"/>'
         ),
+        "vector-effect of dashes": page(
+            f'<path {LINE} transform="scale(1 2)" stroke-dasharray="20" vector-effect="non-scaling-stroke"/>'
+        ),
         "vector-effect on a group": page(
             f'<g transform="scale(.5)" vector-effect="non-scaling-stroke"><path {SHAPE}/></g>'
         ),
@@ -573,11 +576,29 @@ def sheets() -> dict[str, str]:
     return found
 
 
+def copies() -> dict[str, str]:
+    """Which rules reach what `use` copies."""
+    defined = f'<defs><i/><g id="g"><path id="p" {LINE}/><path id="q" {SHAPE}/></g></defs>'
+    selectors = (
+        "#p|path|g path|svg path|svg > path|defs path|.here path|use path|use > g|g > path:first-child|path + path|"
+        "i + g|g:nth-child(2)|g:first-child|g:only-of-type|:root path|*:not(:root) path|path:nth-child(2)|"
+        ":is(defs, g) > path"
+    )
+    return {
+        f"{selector} of {name}": page(
+            f"<style>{selector.replace('>', '&gt;')}{{stroke-width:20}}</style>{defined}"
+            f'<g class="here"><use href="#{name}"/></g>'
+        )
+        for selector in selectors.split("|")
+        for name in "gpq"
+    }
+
+
 TABLES = {
     table.__name__: table()
     for table in (
         *(paint_servers, alphas, opacities, origins, transforms, looks),
-        *(widths, geometries, dashes, paths, references, sheets),
+        *(widths, geometries, dashes, paths, references, sheets, copies),
     )
 }
 # Where Chromium does not do what SVG 2 says: auto and nothing as attributes, CSS on a nested svg, links in links.
@@ -588,6 +609,7 @@ CHROMIUMS_OWN = {
 }
 # Of them, what must be painted as shown and without a word: a reader that names everything has read nothing.
 PLAIN = [
+    *("vector-effect of dashes", "#p of g", "use path of g", "path + path of g"),
     "html style",
     *(
         "fill with a stroke is gradient without stops",

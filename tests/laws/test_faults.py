@@ -13,7 +13,7 @@ if not hasattr(core, "fit_marks"):
 
 from brushsvg.brush.library import save_brush  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
-from brushsvg.machine.cell_file import read_cell  # noqa: E402
+from brushsvg.machine.cell_file import cell_names, read_cell  # noqa: E402
 from brushsvg.pipeline.json_files import read_plan  # noqa: E402
 
 pytestmark = pytest.mark.long
@@ -82,7 +82,11 @@ def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
             for rows in (seen["strokes"], seen["beside_machine"]["strokes"])
         )
         assert beside_mended.mean() < 0.6 * beside_old.mean(), "the cell undoes what they lie aside"
-        assert read_cell(folder / "mended.toml").machine.scale == pytest.approx((1.01, 0.992), abs=0.002)
+        mended = read_cell(folder / "mended.toml")
+        assert mended.name not in cell_names(), (
+            "a program that names it is not checked with the cell as it was"
+        )
+        assert mended.machine.scale == pytest.approx((1.01, 0.992), abs=0.002)
     gains = {row["cause"]: row["gain"] for row in found["causes"]}
     _, plan = job
     wanted = studio.painted(plan, studio.Amiss())

@@ -67,6 +67,12 @@ def with_a_marker_twice():
     return pixels
 
 
+def noise(pixels, deviation: float):
+    """Gaussian, each colour of each pixel on its own."""
+    rng = np.random.default_rng(7)
+    return np.uint8(np.clip(pixels + rng.normal(0, deviation, pixels.shape), 0, 255))
+
+
 WHITE = np.array([0.9, 0.9, 0.88])
 REFUSED = {
     "nothing on it": (lambda: np.full_like(good(), 120), "photo-markers-missing"),
@@ -85,6 +91,10 @@ REFUSED = {
     "overexposed": (lambda: shot(exposure=8.0), "photo-overexposed"),
     "hard shadow": (lambda: shot(edge=0.8), "photo-covered"),
     "a thing on the page": (lambda: shot(things=[(photograph.box(30, 90, 110, 130), INK)]), "photo-covered"),
+    "noise alone": (lambda: noise(np.full_like(good(), 120), 60.0), "photo-noisy"),
+    "black or white at random": (lambda: noise(np.full_like(good(), 120), 1e4), "photo-noisy"),
+    "noise that moves the markers": (lambda: noise(good(), 60.0), "photo-noisy"),
+    "noise that hides the paint": (lambda: noise(good(), 40.0), "photo-noisy"),
     "bulging": (lambda: shot(sag_mm=3.0), "photo-not-flat"),
     "not painted": (lambda: photograph.exposed(photograph.page(a5()), CAMERA), "photo-without-paint"),
     "painted the wrong way round": (

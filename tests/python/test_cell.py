@@ -1,14 +1,16 @@
 """Cells: every key read, checked and written back; the paper's frame by pose and by taught points."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import agrees, refused
+from diagnostics import agrees, in_json, is_told, refused
 
+from brushsvg.cli import main
 from brushsvg.machine.cell import Paper, Reload, Servo, Station, Tool, robot_from_paper
 from brushsvg.machine.cell_check import out_of_reach, remarks
-from brushsvg.machine.cell_file import SHIPPED, cell_names, find_cell, parse_cell, write_cell
+from brushsvg.machine.cell_file import SHIPPED, cell_names, find_cell, parse_cell, read_cell, write_cell
 from brushsvg.machine.frames import frame_of_pose, moved, normal_tilt_deg, rotation, rotation_vector
 from brushsvg.machine.posts import POSTS
 
@@ -354,3 +356,19 @@ def test_boxes_of_another_shape_are_told_by_their_place_and_with_the_shape(value
     with refused(f"wrong-type {where} {wanted}") as refusal:
         parse_cell(text)
     assert refusal.value.where.startswith("workspace.keep_out_mm")
+
+
+def test_a_new_cell_is_not_called_as_one_that_comes_along(tmp_path, monkeypatch, capsys):
+    """A program of it would be checked with that one, and refused by a line that helps nobody."""
+    monkeypatch.chdir(tmp_path)
+    taught = [f"--taught={place}" for place in ("-150,-450,20", "150,-450,20", "-150,-250,20")]
+    assert main(["cell", "new", "ur5e.toml", "--like", "ur5e", *taught]) == 0
+    assert read_cell("ur5e.toml").name not in cell_names()
+    Path("a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="99mm" height="50mm" viewBox="0 0 99 50">'
+        '<path d="M20 20L50 30" fill="none" stroke="#000" stroke-width="4"/></svg>'
+    )
+    assert main(["convert", "a.svg", "a.script", "--cell", "ur5e.toml"]) == 0
+    status, _, told = in_json(capsys, "check", "a.script", "a.svg")
+    assert status == 1 and is_told(told, "cell-unknown my-ur5e"), told
+    assert in_json(capsys, "check", "a.script", "a.svg", "--cell", "ur5e.toml")[0] == 0

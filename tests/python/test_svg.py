@@ -1,3 +1,4 @@
+import gzip
 import math
 import random
 import re
@@ -662,7 +663,11 @@ def test_damage_is_the_first_reason_given():
         (b"M0 0", "not-xml 'line 1'"),
         (b"<svg>\n<path></svg>", "not-xml 'line 2'"),
         (b"<svg>\n<path", "not-xml 'line 2'"),
-        (b"\x89PNG\r\n\x1a\n", "not-xml"),
+        (b"\x89PNG\r\n\x1a\n", "not-xml PNG"),
+        (b"%PDF-1.6\n", "not-xml PDF"),
+        (b"%!PS-Adobe-3.0 EPSF-3.0\n", "not-xml PostScript"),
+        (b"PK\x03\x04\x14\0", "not-xml ZIP"),
+        (gzip.compress(b"\xff\xd8\xff\xe0"), "not-xml JPEG"),
         (
             b'<?xml version="1.0" encoding="utf-8"?>\n<svg id="\xe4"/>',
             "not-xml 'line 2'",

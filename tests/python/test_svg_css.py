@@ -209,6 +209,57 @@ def test_deep_and_wide_documents_with_rules():
     assert design.elements[1].colour == "#0000ff"
 
 
+@pytest.mark.parametrize(
+    ("selector", "reaches"),
+    [
+        ("#p", True),
+        ("path", True),
+        ("g path", True),
+        ("g > path:first-child", True),
+        ("*:not(:root) path", True),
+        ("svg path", False),
+        ("defs > g", False),
+        (":root path", False),
+        (":scope path", False),
+        (".here path", False),
+        ("use path", False),
+        ("i + g", False),
+        ("g:nth-child(2)", False),
+        ("g:first-child", True),
+        ("g:only-of-type", True),
+    ],
+)
+def test_in_a_copy_selectors_see_what_is_copied_and_no_more(selector, reaches):
+    """SVG 2, 5.6.3; Inkscape asks where it is copied from, which is told where it makes another style."""
+    copied = '<defs><i/><g id="g"><path id="p" d="M0 0H5"/></g></defs>'
+    design = read(
+        f'<style>{selector}{{stroke-width:7}}</style>{copied}<g class="here"><use id="u" href="#g"/></g>'
+    )
+    (element,) = design.elements
+    assert element.stroke_width_mm == (7 if reaches else 1)
+    assert is_told(design.notices, "css-of-copies", "p") == (
+        selector in ("svg path", ":root path", ":scope path")
+    )
+    assert {notice.code for notice in design.notices} <= {"css-of-copies"}
+
+
+def test_a_copy_in_a_copy_is_seen_for_itself():
+    body = (
+        '<defs><g id="a"><path id="p" d="M0 0H5"/></g><g id="b"><use href="#p"/><use href="#a"/></g></defs>'
+    )
+    design = read(f'<style>g path{{stroke-width:7}}</style>{body}<use href="#b"/>')
+    assert [element.stroke_width_mm for element in design.elements] == [1, 7]
+
+
+def test_trees_of_copies_count_as_steps(monkeypatch):
+    monkeypatch.setattr(css_selectors, "STEP_LIMIT", 20_000)
+    nested = "".join(f'<g id="g{k}">' for k in range(300)) + "<i/>" * 300 + "</g>" * 300
+    uses = "".join(f'<use href="#g{k}"/>' for k in range(300))
+    assert read(f"<style>b{{stroke:red}}</style>{P}<defs>{nested}</defs>").elements
+    with refused("css-too-complex"):
+        read(f"<style>b{{stroke:red}}</style>{P}<defs>{nested}</defs>{uses}")
+
+
 def test_select():
     body = '<g id="g"><path id="a" d="M0 0H5"/><text>x</text></g><path id="b" d="M0 0H5"/><use id="u" href="#a"/>'
     assert [element.id for element in read(body, select="#g").elements] == ["a"]

@@ -82,6 +82,19 @@ def test_path_length_is_of_all_sub_paths_and_stretches_the_offset():
     assert spans[:2] == [(0, 1), (3, 5)] and len(spans) == 6
 
 
+@pytest.mark.parametrize("more", ["", ' pathLength="2"'])
+def test_dashes_of_a_stroke_that_does_not_scale_do_not_either(more):
+    """They count in px of the screen, as its width does: 3 mm are 3 mm under any transform, but where pathLength says
+    otherwise, whose share of the line is the same."""
+    body = (
+        '<path d="M0 0H5" transform="scale(4 8)" stroke-dasharray="{}" vector-effect="non-scaling-stroke"{}/>'
+    )
+    design = read(body.format(".5" if more else "5mm", more))
+    assert [notice.code for notice in design.notices] == ["dashed"], "its width is as even as its dashes"
+    spans = [(start[0], end[0]) for _, start, end in lines(design)]
+    assert np.allclose(spans, [(0, 5), (10, 15)])
+
+
 def test_a_list_of_dashes_that_is_none_is_told():
     for text in ("20 10,", "1,,2", ",3"):
         (notice,) = read(f'<path d="M0 0H20" stroke-dasharray="{text}"/>').notices

@@ -8,12 +8,12 @@ import xml.etree.ElementTree as ET
 
 import pytest
 import svgpathtools
-from diagnostics import agrees, refused
+from diagnostics import agrees, are_told, refused
 from fontTools.feaLib.builder import addOpenTypeFeaturesFromString
 from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.recordingPen import DecomposingRecordingPen
 from fontTools.pens.ttGlyphPen import TTGlyphPen
-from fontTools.ttLib import TTFont
+from fontTools.ttLib import TTCollection, TTFont
 from fontTools.ttLib.sfnt import SFNTReader, SFNTWriter
 
 from brushsvg.drawing.text import text_svg
@@ -573,3 +573,48 @@ def test_composites_that_hold_each_other_end():
     with pytest.raises(RecursionError):  # the font is as bad as it was meant to be
         glyph_set["A"].draw(DecomposingRecordingPen(glyph_set))
     assert agrees(refusal("A", hostile.getvalue()), "nothing-to-paint")
+
+
+def told_of(font, text="AV"):
+    """What is told of a text besides that its letters are outlines, and how many were drawn."""
+    document, notices = text_svg(text, font)
+    return [each for each in notices if each.code != "font-of-outlines"], len(paths(document))
+
+
+def saved(font) -> bytes:
+    out = io.BytesIO()
+    font.save(out)
+    return out.getvalue()
+
+
+def test_letters_without_an_outline_are_named():
+    """As of fonts that hold pictures; what is blank by its nature is not named."""
+    font = TTFont(io.BytesIO(outline_font()))
+    font["glyf"]["V"] = TTGlyphPen(None).glyph()
+    told, count = told_of(saved(font), "A V\u00adA")
+    assert count == 2 and are_told(told, "glyph-missing U+0056")
+    blank = svg_font(GLYPHS + '<glyph unicode="x" horiz-adv-x="300"/>')
+    told, count = told_of(blank, "I x")
+    assert count == 1 and are_told(told, "glyph-missing U+0078")
+    assert agrees(refusal("x", blank), "nothing-to-paint U+0078")
+    font["glyf"]["space"], font["glyf"]["f_i"] = font["glyf"]["V"], font["glyf"]["V"]
+    told, _ = told_of(saved(font), "A\u00a0fi")
+    assert are_told(told, "glyph-missing 'U+0066 f, U+0069 i'")
+
+
+def test_it_is_told_which_font_of_several_is_taken():
+    font = TTFont(io.BytesIO(outline_font()))
+    builder = FontBuilder(font=font)
+    builder.setupFvar([("wght", 100, 350, 900, "Weight"), ("wdth", 50, 100, 200, "Width")], [])
+    builder.setupGvar({name: [] for name in font.getGlyphOrder()})
+    told, count = told_of(saved(font))
+    assert count == 2 and are_told(told, "font-of-choices 'wght 350, wdth 100' wght=350")
+    both = TTCollection()
+    both.fonts = [TTFont(io.BytesIO(outline_font())), TTFont(io.BytesIO(outline_font(features="")))]
+    told, count = told_of(saved(both), "fi")
+    assert count == 1 and are_told(told, "font-of-choices 2 second.ttf")
+    builder = FontBuilder(font=TTFont(io.BytesIO(outline_font())))
+    builder.setupCOLR({"A": [("V", 0)]})
+    builder.setupCPAL([[(1, 0, 0, 1)]])
+    told, count = told_of(saved(builder.font))
+    assert count == 2 and are_told(told, "font-of-colours")

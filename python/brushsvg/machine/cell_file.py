@@ -24,6 +24,12 @@ def cell_names() -> list[str]:
     return names_in(SHIPPED, ".toml")
 
 
+def own_name(name: str) -> str:
+    """What a cell of somebody's own is called instead of a name that comes along: programs that name it would be taken
+    for that one's."""
+    return f"my-{name}" if name in cell_names() else name
+
+
 def find_cell(name_or_path: str | os.PathLike[str] = DEFAULT_CELL) -> Cell:
     """The shipped cell of a name, or the cell in a .toml file.
 

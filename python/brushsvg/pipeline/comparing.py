@@ -15,6 +15,7 @@ from ..errors import Error, Notice, need
 from ..evaluation.report import wanted_rings
 from ..files import read_bytes
 from ..machine.cell import Cell, axes_along_paper
+from ..machine.cell_file import own_name
 from ..painted import report
 from ..painted.beside_machine import beside_machine as left_beside
 from ..painted.comparison import Compared, Comparison, Wanted, compare_photos
@@ -183,7 +184,7 @@ def compared(
         ends,
         faults,
         corrections,
-        replace(cell, machine=machine) if machine else cell,
+        replace(cell, name=own_name(cell.name), machine=machine) if machine else cell,
         machine is not None,
         (),
         report.as_text(sheet.title, found, faults, ends, machine, any_alone),

@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import Error
 from .flatten import Flat
 from .mask_contours import mask_outlines
-from .photo import LIGHT
+from .photo import LIGHT, grey_light, refuse_grainy
 
 BROADEST_MM = 31  # paint is narrower: what is darker over less than this is not the light
 PAPER = 0.92  # of the light round about: darker is paint
@@ -62,8 +62,12 @@ def find_marks(flat: Flat, rooms: list[Room], printed_mm: list[np.ndarray], labe
     print_ = np.zeros(flat.pixels.shape[:2], np.uint8)
     for ring in printed_mm:
         cv2.fillPoly(print_, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
-    paint = paint_seen(flat, print_, rooms, labels_mm)
-    return told_apart(paint, flat, rooms, labels_mm)
+    try:
+        paint = paint_seen(flat, print_, rooms, labels_mm)
+        return told_apart(paint, flat, rooms, labels_mm)
+    except Error:
+        refuse_grainy(grey_light(flat.pixels), "the strokes cannot be told")
+        raise
 
 
 def paint_seen(flat: Flat, print_: np.ndarray, rooms: list[Room], labels_mm=()) -> np.ndarray:
@@ -223,7 +227,8 @@ def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list
         raise Error(
             f"the marks of {len(touching)} of {len(rooms)} strokes touch each other, the range is "
             f"[0, {int(MOST_TOUCHING * len(rooms))}]: was this chart painted on this page, once, and did the page lie "
-            "at its stop? Or the brush is wider than the chart has room for",
+            "at its stop? Or the page was not printed at 100 % (measure its bar), or the brush is wider than the chart "
+            "has room for",
             value=len(touching),
             code="photo-paint-elsewhere",
         )
@@ -271,7 +276,8 @@ def _refuse_elsewhere(painted: np.ndarray, flat: Flat, rooms: list[Room]) -> Non
     if here < IN_ROOM:
         raise Error(
             f"only {100 * here:.0f} % of the paint lies where strokes of this chart should be, it takes "
-            f"{100 * IN_ROOM:.0f} %: was this chart painted on this page, once, and did the page lie at its stop?",
+            f"{100 * IN_ROOM:.0f} %: was this chart painted on this page, once, did the page lie at its stop, and was "
+            "it printed at 100 % (measure its bar)?",
             value=here,
             code="photo-paint-elsewhere",
         )

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from ..errors import Error
-from .photo import blur_px, grey_light, refuse_dark_paper, white_share
+from .photo import blur_px, grey_light, refuse_dark_paper, refuse_grainy, white_share
 
 FEWEST = 3  # markers: two leave the tilt of the sheet open to the noise of their corners
 SEEN_AT_PX = 2400  # longer side of the picture that markers are looked for in; their corners are found in the whole one
@@ -104,6 +104,7 @@ def find_view(pixels: np.ndarray, printed: Printed) -> View:
     except Error as refusal:  # markers along one edge of the page tell its view badly
         _refuse_cropped(found, printed, light.shape)
         if refusal.code == "photo-not-flat":
+            refuse_grainy(light, f"the markers lie {view.residual_mm:.2f} mm (rms) off")
             _refuse_cut(corners, printed, pixels.shape, view)
         raise
     return view
@@ -223,6 +224,7 @@ def _refuse_cut(corners: dict[int, np.ndarray], printed: Printed, shape, view: V
 def _refuse_blind(light: np.ndarray, count: int) -> None:
     """Where markers are not found because of the picture as a whole."""
     few = f"{count or 'no'} marker{'s' * (count > 1)} can be read"
+    refuse_grainy(light, few)
     if not count:
         refuse_dark_paper(float(np.quantile(light[::7, ::7], 0.8)))
     if (white := white_share(light)) > TOO_WHITE:

@@ -29,6 +29,11 @@ WHITE = 0.98  # of the light: beyond, a camera's numbers end
 # of the light, that the paper throws back at least: on paper of 0.03 marks were found 0.4 mm beside where they were
 # painted, on paper of 0.036 within 0.01 mm
 DARKEST = 0.035
+# of the light, standard deviation: charts with so much grain are still read, and what else goes wrong may be due to it
+GRAINY = 0.05
+_EVEN = (
+    np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], np.float32) / 6
+)  # nothing of a plane; of noise as much as it is
 FLAT = 0.05  # of the light: a picture with less contrast shows nothing
 # sRGB to light, of each of its 256 values: half way between paint and paper is half of the light, not of the number
 _NUMBERS = np.arange(256) / 255
@@ -159,6 +164,18 @@ def blur_px(light: np.ndarray) -> float:
         return 0.0
     steepest = min(float(np.quantile(np.abs(np.diff(light, axis=axis)), 0.998)) for axis in (0, 1))
     return float(high - low) / max(steepest, 1e-3)
+
+
+def refuse_grainy(light: np.ndarray, why: str) -> None:
+    """Error where every pixel is so much of its own that this may be why something else is refused."""
+    grain = float(np.median(np.abs(cv2.filter2D(light, -1, _EVEN)))) / 0.6745
+    if grain > GRAINY:
+        raise Error(
+            f"{why}, and the picture is full of noise: pixels that should be alike differ by {100 * grain:.0f} % of "
+            f"the light, more than {100 * GRAINY:g}: take it with more light, at a low ISO",
+            value=grain,
+            code="photo-noisy",
+        )
 
 
 def grey_light(pixels: np.ndarray) -> np.ndarray:

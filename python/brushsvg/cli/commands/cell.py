@@ -9,7 +9,7 @@ from dataclasses import replace
 from ...brush.library import find_brush
 from ...errors import Error, Notice
 from ...machine import cell_check as cell_checks
-from ...machine.cell_file import DEFAULT_CELL, cell_names, find_cell, parse_cell, write_cell
+from ...machine.cell_file import DEFAULT_CELL, cell_names, find_cell, own_name, parse_cell, write_cell
 from ...machine.describe_cell import cell_page
 from ...machine.paint_reload import in_loads
 from ...machine.posts import POSTS
@@ -121,7 +121,7 @@ def cell_new(args) -> None:
             if args.taught
             else cell.paper
         )
-        text = write_cell(replace(cell, name=name, paper=paper))
+        text = write_cell(replace(cell, name=own_name(name), paper=paper))
         made = parse_cell(text)
     warn(args.output, cell_checks.out_of_reach(made) or cell_checks.remarks(made))
     write(args, {args.output: text})

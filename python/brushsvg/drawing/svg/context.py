@@ -15,7 +15,8 @@ from .viewport import Box
 
 class Context(NamedTuple):
     """viewport: (w, h) in user units; window_mm: outside of which a nested viewport shows nothing; prefix: ids of the
-    uses that led here; size: width and height that a use asks of a symbol or svg right below it.
+    uses that led here; copied: what the innermost of them copies; size: width and height that it asks of a symbol or
+    svg right below it.
     """
 
     matrix: Matrix
@@ -26,7 +27,7 @@ class Context(NamedTuple):
     window_mm: Box | None
     prefix: str
     chosen: bool
-    used: bool = False
+    copied: ET.Element | None = None
     size: tuple[str | None, str | None] | None = None
 
     @property
@@ -36,6 +37,11 @@ class Context(NamedTuple):
     @property
     def em_px(self) -> float:
         return float(self.style.inherited["font-size"])
+
+    @property
+    def is_of_screen(self) -> bool:
+        """Whether widths and dashes count in px of the screen, whatever the transforms."""
+        return self.style.own["vector-effect"] == "non-scaling-stroke"
 
     def length(self, text: str, percent_of: float) -> float:
         """A length in user units. Error if it is none."""

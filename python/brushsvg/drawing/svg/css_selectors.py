@@ -57,20 +57,22 @@ class _Node(ElementWrapper):
 
 
 class Tree:
-    """A document as selectors see it."""
+    """A document, or what of it is copied, as selectors see it. budget: of the document that it is copied from."""
 
-    def __init__(self, root: ET.Element):
-        self.budget = _Budget()
+    def __init__(self, root: ET.Element, budget: _Budget | None = None):
+        self.budget = budget or _Budget()
         kind = type("_CountedNode", (_Node,), {"budget": self.budget})
         self.nodes = {node.etree_element: node for node in kind.from_xml_root(root).iter_subtree()}
 
+    def spend_of_type(self) -> None:
+        """What a selector takes that counts siblings of a type, where they cannot be counted here."""
+        counts = Counter(id(node.parent) for node in self.nodes.values()).values()
+        self.budget.spend(sum(n * n for n in counts))
+
     def compiled(self, prelude) -> list | None:
         """Selectors; None if the text is none that is read."""
-        text = tinycss2.serialize(prelude)
-        if "-of-type" in text:  # counts its siblings where they cannot be counted here
-            self.budget.spend(
-                sum(n * n for n in Counter(id(node.parent) for node in self.nodes.values()).values())
-            )
+        if "-of-type" in tinycss2.serialize(prelude):
+            self.spend_of_type()
         try:
             return compile_selector_list(prelude)
         except (SelectorError, SyntaxError, RecursionError, MemoryError):

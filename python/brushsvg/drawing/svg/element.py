@@ -56,7 +56,7 @@ class Painted:
             return
         mm_per_user = math.sqrt(greatest * least)
         width_mm = context.length(properties["stroke-width"], context.diagonal) * mm_per_user
-        if context.style.own["vector-effect"] == "non-scaling-stroke":
+        if context.is_of_screen:
             width_mm *= MM_PER["px"] / mm_per_user
         if power:
             attributes = {**attributes, "d": power.d}
@@ -80,7 +80,8 @@ class Painted:
         subpaths = self._drawn(node, tag, attributes, context, power, stroke != "none")
         if not subpaths:
             return
-        if stroke != "none" and greatest > _UNEVEN * least and "width_mm" not in context.settings:
+        is_even = "width_mm" in context.settings or (context.is_of_screen and power is None)
+        if stroke != "none" and greatest > _UNEVEN * least and not is_even:
             sentence = f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
             self.notes.add(node, context, sentence, code="stretched-unevenly")
         for each in told + of_fill * (fill != "none") + of_stroke * (stroke != "none"):
@@ -161,7 +162,8 @@ class Painted:
         if power:
             subpaths = with_widths(power, subpaths, mm_per_user)
         if is_line:
-            subpaths = self._dashed(node, context, subpaths, mm_per_user)
+            mm_per_unit = MM_PER["px"] if context.is_of_screen else mm_per_user
+            subpaths = self._dashed(node, context, subpaths, mm_per_unit)
         return self._shown(node, context, subpaths)
 
     def _sound(self, node, tag: str, attributes, context: Context, greatest: float) -> tuple[SubPath, ...]:
@@ -193,7 +195,7 @@ class Painted:
             self.notes.add(node, context, f"{count} without a line to follow: skipped", code="moveto-alone")
         return line.subpaths
 
-    def _dashed(self, node, context: Context, subpaths, mm_per_user: float) -> tuple[SubPath, ...]:
+    def _dashed(self, node, context: Context, subpaths, mm_per_unit: float) -> tuple[SubPath, ...]:
         properties = context.style.inherited
         if properties["stroke-dasharray"] == "none" or not subpaths:
             return subpaths
@@ -201,7 +203,7 @@ class Painted:
 
         words = [word for part in properties["stroke-dasharray"].split(",") for word in part.split() or [""]]
         try:
-            scale = mm_per_user * self._path_scale(node, context, subpaths, mm_per_user)
+            scale = mm_per_unit * self._path_scale(node, context, subpaths, mm_per_unit)
             pattern = [context.length(word, context.diagonal) * scale for word in words]
             offset = context.length(properties["stroke-dashoffset"], context.diagonal) * scale
         except Error as error:
@@ -232,8 +234,8 @@ class Painted:
         self.notes.add(node, context, f"it is dashed: {len(pieces)} dashes, each a stroke", code="dashed")
         return tuple(pieces)
 
-    def _path_scale(self, node, context: Context, subpaths, mm_per_user: float) -> float:
-        """What a unit of the dashes is, in user units: less or more where pathLength says how long the path is."""
+    def _path_scale(self, node, context: Context, subpaths, mm_per_unit: float) -> float:
+        """How long a unit of the dashes is, of mm_per_unit: pathLength may say how many the path has."""
         text = (node.get("pathLength") or "").strip()
         if not text:
             return 1.0
@@ -247,7 +249,7 @@ class Painted:
         if said < 0:
             return 1.0
         length_mm = sum(float(knots(subpath.cubics)[:, -1].sum()) for subpath in subpaths)
-        return length_mm / mm_per_user / said if said else math.inf
+        return length_mm / mm_per_unit / said if said else math.inf
 
     def _shown(self, node, context: Context, subpaths) -> tuple[SubPath, ...]:
         """What a nested viewport shows of it: all, or nothing. A line is not cut."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
 
 import tinycss2
-from cssselect2 import Matcher
+from cssselect2 import Matcher, compile_selector_list
 
 from ...errors import Error
 from ..design import Notice
@@ -16,6 +17,7 @@ from .css_selectors import Tree
 TEXT_LIMIT = 1_000_000  # characters of style sheets: drawing programs write a hundredth of it
 
 _SVG = "http://www.w3.org/2000/svg"
+_ROOT = re.compile(r":(?:root|scope)\b", re.IGNORECASE)
 _STYLES = (f"{{{_SVG}}}style", "{http://www.w3.org/1999/xhtml}style", "style")
 
 
@@ -24,7 +26,9 @@ class Rules:
 
     def __init__(self, root: ET.Element):
         self.notices: list[Notice] = []
-        self._matcher = Matcher()
+        self._matcher, self._in_copies = Matcher(), Matcher()
+        self._copies: dict[ET.Element, Tree] = {}
+        self._of_type = 0  # rules that count siblings of a type
         sheets = [node for node in root.iter() if node.tag in _STYLES and self._counts(node)]
         self._tree = Tree(root) if sheets else None
         texts = ["".join(sheet.itertext()) for sheet in sheets]
@@ -37,13 +41,25 @@ class Rules:
         for text in texts:
             self._add(tinycss2.parse_stylesheet(text, True, True))
 
-    def of(self, node: ET.Element) -> list[Declaration]:
-        """An element's declarations, from the weakest to the strongest among those of equal importance."""
+    def of(self, node: ET.Element, copied: ET.Element | None = None) -> list[Declaration]:
+        """An element's declarations, from the weakest to the strongest among those of equal importance. copied: what
+        a `use` copies and this is of: selectors see nothing but what is copied, as SVG 2 (5.6.3) asks."""
         if self._tree is None:
             return []
         self._tree.budget.spend(self._matcher.order // 10)
-        matches = self._matcher.match(self._tree.nodes[node])
+        if copied is None:
+            matches = self._matcher.match(self._tree.nodes[node])
+        else:
+            matches = self._in_copies.match(self._copy(copied).nodes[node])
         return [declaration for *_, pseudo, found in matches if pseudo is None for declaration in found]
+
+    def _copy(self, copied: ET.Element) -> Tree:
+        if copied not in self._copies:
+            tree = self._copies[copied] = Tree(copied, self._tree.budget)
+            tree.budget.spend(len(tree.nodes))
+            for _ in range(self._of_type):
+                tree.spend_of_type()
+        return self._copies[copied]
 
     def _add(self, rules: Iterable) -> None:
         for rule in rules:
@@ -81,6 +97,11 @@ class Rules:
             self._note(f"selector {selector!r} is not read", about="selector")
         for selector in selectors or ():
             self._matcher.add_selector(selector, declared)
+        # the root of a copy is none of a document's
+        text = tinycss2.serialize(rule.prelude)
+        self._of_type += "-of-type" in text
+        for selector in (selectors and compile_selector_list(_ROOT.sub(":host", text))) or ():
+            self._in_copies.add_selector(selector, declared)
 
     def _counts(self, style: ET.Element) -> bool:
         media = tinycss2.parse_component_value_list(style.get("media", ""))

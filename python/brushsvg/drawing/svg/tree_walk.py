@@ -33,6 +33,10 @@ _TEXT_ADVICE = (
     "turn it into paths first, in Inkscape with Path > Object to Path, or with "
     "inkscape --export-text-to-path --export-plain-svg -o out.svg in.svg"
 )
+_ELSEWHERE = (
+    "a selector asks for what lies around it where it is copied from, as Inkscape shows the copy, and browsers do not: "
+    "read as browsers do"
+)
 _TRANSFORMS = frozenset(("transform", "translate", "rotate", "scale"))
 _MOST_USED = 100_000  # elements that use may copy: a page of text has a hundredth
 
@@ -101,7 +105,7 @@ class Walk:
             return
         if tag in _SILENT and not (tag == "symbol" and is_target):
             return
-        if context.used:
+        if context.copied is not None:
             self.copies += 1
             if self.copies > _MOST_USED:
                 raise Error(
@@ -109,15 +113,18 @@ class Walk:
                     where=self.notes.label(node),
                     code="drawing-too-large",
                 )
-        style, problems = cascade(context.style, node.attrib, self.rules.of(node), context.diagonal)
-        if node in self.layer_names and not context.used:
+        rules = self.rules.of(node, context.copied)
+        style, problems = cascade(context.style, node.attrib, rules, context.diagonal)
+        if context.copied is not None and rules != self.rules.of(node):
+            problems.append(Notice("", _ELSEWHERE, code="css-of-copies"))
+        if node in self.layer_names and context.copied is None:
             context = context._replace(layer=self.layer_names[node])
             if style.own["display"] != "none" and style.inherited["visibility"] == "visible":
                 self.layers[context.layer] = ""
         if style.own["display"] == "none" or (style.own["display"] == "contents" and tag in shapes.TAGS):
             self._leave_out("hidden")
             return
-        if self.chosen is not None and node in self.chosen and not context.used:  # a copy is its use's
+        if self.chosen is not None and node in self.chosen and context.copied is None:  # a copy is its use's
             context = context._replace(chosen=True)
         inner = self._inside(node, context, style, problems)
         if inner is None:
@@ -184,7 +191,7 @@ class Walk:
         written = (node.get("transform") or "").strip()
         if not written and _TRANSFORMS.isdisjoint(said):
             return None
-        if node is self.root and not context.used:
+        if node is self.root and context.copied is None:
             sentence = "programs disagree on a transform of the drawing itself, which counts as none: put it on a group"
             sentence += " around all that is drawn"
             self.notes.add(node, context, sentence, damaged=True, code="transform-unread")
@@ -290,7 +297,7 @@ class Walk:
         inner = context._replace(
             matrix=multiply(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)),
             prefix=context.name(node),
-            used=True,
+            copied=target,
             size=(attributes.get("width"), attributes.get("height")),
         )
         self._enter(node, iter((target,)), inner)

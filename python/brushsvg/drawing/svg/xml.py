@@ -30,6 +30,17 @@ class Document:
     comments: list[str]
 
 
+# How files begin that are given as drawings, whatever they are called; Illustrator's .ai is a PDF.
+_OTHERS = {
+    b"%PDF": "a PDF",
+    b"%!PS": "a PostScript file",
+    b"\x89PNG": "a PNG picture",
+    b"\xff\xd8\xff": "a JPEG picture",
+    b"PK\x03\x04": "a ZIP archive",
+    b"AutoCAD Binary DXF": "a DXF",
+}
+
+
 def parse_xml(data: bytes) -> Document:
     """The document's tree and what stands beside it.
 
@@ -38,6 +49,8 @@ def parse_xml(data: bytes) -> Document:
     if not data.strip():
         raise Error("the file is empty", code="file-empty")
     data = _unpacked(data) if data.startswith(b"\x1f\x8b") else data
+    if kind := next((kind for begin, kind in _OTHERS.items() if data.startswith(begin)), None):
+        raise Error(f"this is {kind}, not an SVG: export the drawing as SVG", code="not-xml")
     parser = expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
     builder = ET.TreeBuilder()

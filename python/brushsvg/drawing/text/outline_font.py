@@ -6,7 +6,9 @@ Needs the extra `text`; nobody else imports what it imports.
 from __future__ import annotations
 
 import io
+import struct
 import zlib
+from collections.abc import Iterator
 
 import numpy as np
 import uharfbuzz as hb
@@ -15,21 +17,60 @@ from fontTools.ttLib import TTFont
 
 from ...errors import Error
 from ..design import Notice, SubPath
-from .setting import Placed, Setting
+from .setting import Placed, Setting, is_seen
 
 _UNPACKED = 200_000_000  # bytes: the largest fonts there are, of all Chinese characters, take a fifth of it
 _UNITS = (16, 16384)  # to the em, of the format
+_COLOURS = ("COLR", "CBDT", "sbix", "SVG ")  # tables of glyphs in colours or as pictures
 _NOTICE = "its letters are outlines, which become strokes as filled shapes do"
 
 
 def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
     """Lines of text in a font whose em is size_mm, kerned and joined as the font says.
 
-    Of a collection, the first font. Error if the font cannot be read.
+    Of a collection, the first font; of a variable font, its default. Error if the font cannot be read.
     """
-    setter = _Setter(_unpacked(data), size_mm)
+    unpacked = _unpacked(data)
+    setter = _Setter(unpacked, size_mm)
     placed = tuple(map(setter.place, lines))
-    return Setting(placed, True, tuple(setter.missing), (Notice("font", _NOTICE, code="font-of-outlines"),))
+    told = Notice("font", _NOTICE, code="font-of-outlines"), *_choices(unpacked, setter.face)
+    return Setting(placed, True, tuple(setter.missing), told, tuple(setter.blank))
+
+
+def _choices(data: bytes, face: hb.Face) -> Iterator[Notice]:
+    """What else the font holds, besides what is taken of it."""
+    if data.startswith(b"ttcf") and (count := int.from_bytes(data[8:12], "big")) > 1:
+        yield Notice(
+            "font",
+            f"it is a collection of {count} fonts, of which the first is taken",
+            code="font-of-choices",
+            advice="take another one out of it beforehand, as with fonttools ttLib -y 1 -o second.ttf FILE",
+        )
+    if axes := _axes(face.reference_table("fvar").data or b""):
+        named = ", ".join(f"{tag} {default:g}" for tag, default in axes)
+        tag, default = axes[0]
+        yield Notice(
+            "font",
+            f"it is a variable font, taken as it is by default: {named}",
+            code="font-of-choices",
+            advice=f"make another instance of it beforehand, as with fonttools varLib.instancer FILE {tag}={default:g}",
+        )
+    if any(face.reference_table(tag).data for tag in _COLOURS):
+        sentence = "it is a font of colours, which are not read: of its letters plain outlines are painted"
+        yield Notice("font", sentence, code="font-of-colours")
+
+
+def _axes(fvar: bytes) -> list[tuple[str, float]]:
+    """Tag and default of each axis of a variable font."""
+    if len(fvar) < 16:
+        return []
+    first, _, count, size = struct.unpack(">4H", fvar[4:12])
+    axes = (fvar[first + k * size :][:12] for k in range(count))
+    return [
+        (axis[:4].decode("latin-1"), int.from_bytes(axis[8:12], "big", signed=True) / 65536)
+        for axis in axes
+        if len(axis) == 12
+    ]
 
 
 class _Setter:
@@ -38,10 +79,11 @@ class _Setter:
         if not face.glyph_count:
             raise Error("this is a damaged font: it holds no glyphs that can be read", code="font-damaged")
         _refuse_unmeasured(face)
-        self.font = hb.Font(face)
+        self.face, self.font = face, hb.Font(face)
         self.mm_per_unit = size_mm / face.upem
         self.shapes: dict[int, tuple[SubPath, ...]] = {}
         self.missing: dict[str, None] = {}
+        self.blank: dict[str, None] = {}
 
     def place(self, line: str) -> tuple[Placed, ...]:
         buffer = hb.Buffer()
@@ -52,18 +94,23 @@ class _Setter:
         infos, positions = buffer.glyph_infos or (), buffer.glyph_positions or ()
         clusters = sorted({info.cluster for info in infos})
         ends = dict(zip(clusters, [*clusters[1:], len(line)], strict=True))
-        placed = []
+        placed, inked = [], set()
         x = y = 0
         for info, position in zip(infos, positions, strict=True):
             characters = line[info.cluster : ends[info.cluster]]
             if info.codepoint == 0:
+                inked.add(info.cluster)  # told as missing
                 lacking = [each for each in characters if not self.font.get_nominal_glyph(ord(each))]
                 self.missing.update(dict.fromkeys(lacking or characters))
                 continue
             if subpaths := self._shape(info.codepoint):
+                inked.add(info.cluster)
                 origin = x + position.x_offset, -(y + position.y_offset)
                 placed.append(Placed(characters, subpaths, *(value * self.mm_per_unit for value in origin)))
             x, y = x + position.x_advance, y + position.y_advance
+        for cluster in clusters:
+            if cluster not in inked:
+                self.blank.update(dict.fromkeys(filter(is_seen, line[cluster : ends[cluster]])))
         return tuple(placed)
 
     def _shape(self, glyph: int) -> tuple[SubPath, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from dataclasses import dataclass
 
 from ..design import Notice, SubPath
@@ -24,10 +25,17 @@ class Placed:
 class Setting:
     """A text: the glyphs of each line; filled: they are shapes, not lines to follow.
 
-    missing: characters without a glyph, each once, in the order met.
+    missing: characters without a glyph, each once, in the order met; blank: those that should be seen and whose glyph
+    has nothing to paint.
     """
 
     lines: tuple[tuple[Placed, ...], ...]
     filled: bool
     missing: tuple[str, ...] = ()
     notices: tuple[Notice, ...] = ()
+    blank: tuple[str, ...] = ()
+
+
+def is_seen(character: str) -> bool:
+    """Whether there should be ink: of letters, figures, punctuation and symbols, but fillers and Braille's blank."""
+    return unicodedata.category(character)[0] in "LNPS" and character not in "\u115f\u1160\u2800\u3164\uffa0"

@@ -13,7 +13,7 @@ from ..design import Notice, SubPath
 from ..svg.path_data import numbers, parse_path, snippet
 from ..svg.path_to_cubics import trace
 from ..svg.xml import parse_xml
-from .setting import Placed, Setting
+from .setting import Placed, Setting, is_seen
 
 _LIGATURE = (
     32  # characters; no script joins more, and each place in the text is tried at every length there is
@@ -90,6 +90,7 @@ class _Setter:
         self.shapes: dict[str, tuple[SubPath, ...]] = {}
         self.kerned: dict[tuple[str, str], float] = {}
         self.missing: dict[str, None] = {}
+        self.blank: dict[str, None] = {}
         self.notices = list(font.notices)
 
     def run(self, lines: list[str]) -> Setting:
@@ -98,7 +99,7 @@ class _Setter:
         if drawn and all(subpath.closed for subpath in drawn):
             sentence = "every line of these letters is closed; if they are outlines, the outlines are painted"
             self.notices.append(Notice("font", sentence, code="font-of-outlines"))
-        return Setting(placed, False, tuple(self.missing), tuple(self.notices))
+        return Setting(placed, False, tuple(self.missing), tuple(self.notices), tuple(self.blank))
 
     def _line(self, line: str) -> tuple[Placed, ...]:
         placed = []
@@ -113,6 +114,8 @@ class _Setter:
                 x -= self._kern(before, found)
             if shape := self._shape(found):
                 placed.append(Placed(found, shape, x * self.mm_per_unit))
+            elif not self.font.nodes[found].get("d") and not len(self.font.nodes[found]):
+                self.blank.update(dict.fromkeys(filter(is_seen, found)))
             x += self._advance(found)
             at, before = at + len(found), found
         return tuple(placed)

@@ -56,6 +56,9 @@ def text_svg(
                 code="glyph-missing",
             )
         )
+    if setting.blank:
+        sentence = f"the font has no outline for {_listed(setting.blank)}: left out"
+        notices.append(Notice("text", sentence, code="glyph-missing"))
     notices += _directions(text, setting.filled)
     if not any(setting.lines):
         said = "; ".join(notice.sentence for notice in notices if notice.where != "font")
