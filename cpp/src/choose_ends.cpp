@@ -114,6 +114,10 @@ double Ends::made_mm() const {
     return kMade * brush_.half_width(depth) + 4.0 * brush_.lag(depth);
 }
 
+Pass Ends::begun(const Pass& pass, const Pass& other) const {
+    return beginning_of(pass, made_mm() + way_of(pass) - way_of(other));
+}
+
 const View& Ends::at_beginning() {
     if (!view_) {
         const double half = brush_.half_width(depth_of(stroke_, brush_, 0.0));
@@ -141,12 +145,8 @@ Beginning Ends::best_beginning() {
         poses_of(*dot, brush_).into(hidden);
         return view.is_better([&] { return hidden; }, view.picture(exposed)) ? Beginning::hidden : Beginning::exposed;
     }
-    // both up to the same place: from there on they are the same
-    const auto begun = [&](Beginning start) {
-        const Pass& pass = plain(start);
-        return beginning_of(pass, made_mm() + way_of(pass) - way_of(exposed));
-    };
-    if (!view.is_better([&] { return begun(Beginning::hidden); }, exposed_picture())) return Beginning::exposed;
+    const auto hidden = [&] { return begun(plain(Beginning::hidden), exposed); };
+    if (!view.is_better(hidden, exposed_picture())) return Beginning::exposed;
     return hides ? hidden_or_turned() : Beginning::hidden;
 }
 
@@ -154,15 +154,11 @@ Beginning Ends::hidden_or_turned() {
     const bool is_ball = begins_in_ball(stroke_, line_.length());
     if (!is_ball && (wanted_.start_covered || !begins_in_cap(stroke_, brush_))) return Beginning::hidden;
     if (!turned_beginning(stroke_, brush_, step_tolerance_)) return Beginning::hidden;
-    const auto begun = [&](Beginning start) {
-        const Pass& pass = plain(start);
-        return beginning_of(pass, made_mm() + way_of(pass) - way_of(plain(Beginning::exposed)));
-    };
     const View& view = at_beginning();
-    return view.is_better([&] { return begun(Beginning::turned); }, view.picture(begun(Beginning::hidden)),
-                          is_ball ? kWorthIt : kWorthRound)
-               ? Beginning::turned
-               : Beginning::hidden;
+    const Pass& exposed = plain(Beginning::exposed);
+    const auto turned = [&] { return begun(plain(Beginning::turned), exposed); };
+    const Coverage hidden = view.picture(begun(plain(Beginning::hidden), exposed));
+    return view.is_better(turned, hidden, is_ball ? kWorthIt : kWorthRound) ? Beginning::turned : Beginning::hidden;
 }
 
 bool Ends::is_better_squared(const SquaredDot& dot, Beginning start) {
@@ -186,8 +182,7 @@ bool Ends::begins_better(const Stroke& whole, Beginning start) {
         bool turns = false;
         Pass pass;
         closed_form(whole, brush_, Line(whole, brush_), Beginning::exposed, step_tolerance_, turns).into(pass);
-        // both up to the same place: from there on they are the same
-        return beginning_of(pass, made_mm() + way_of(pass) - way_of(before));
+        return begun(pass, before);
     };
     if (start == Beginning::exposed) return view.is_better(other, exposed_picture());
     return view.is_better(other, view.picture(beginning_of(before, made_mm())));

@@ -40,6 +40,8 @@ class Ends {
     bool is_better_at_end(Poses&& poses, Beginning start, double worth);
     const Pass& plain(Beginning start);
     double made_mm() const;
+    /// The beginning of a pass, up to the same place as the other's: from there on they are the same.
+    Pass begun(const Pass& pass, const Pass& other) const;
     const View& at_beginning();
     const Coverage& exposed_picture();
 

@@ -81,9 +81,9 @@ std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, d
 PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line, Beginning start, double step_tolerance,
                      bool& turns, std::optional<double> turned_depth_mm) {
     auto [s0, s1] = painted_stretch(stroke, brush, line.length());
+    const InverseLag drawn(line, brush);
     std::optional<HiddenBeginning> hidden;
-    if (start == Beginning::hidden)
-        hidden = hidden_beginning(stroke, brush, line, InverseLag(line, brush), s1, step_tolerance);
+    if (start == Beginning::hidden) hidden = hidden_beginning(stroke, brush, line, drawn, s1, step_tolerance);
     std::optional<TurnedBeginning> turned;
     if (start == Beginning::turned || (start == Beginning::hidden && !hidden))
         turned = turned_beginning(stroke, brush, step_tolerance);
@@ -97,8 +97,9 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
     }
     const Stroke& painted = hidden ? hidden->onward : turned ? turned->onward : stroke;
     const Line onward(painted, brush);
-    const bool is_led_anew = onward.length() != line.length();  // amid a cap
-    const InverseLag inverse(is_led_anew ? onward : line, brush);
+    std::optional<InverseLag> led_anew;
+    if (onward.length() != line.length()) led_anew.emplace(onward, brush);  // amid a cap
+    const InverseLag& inverse = led_anew ? *led_anew : drawn;
     s1 += onward.length() - line.length();
     Samples samples;
     if (line.length() > 0.0 && s1 - s0 > 1e-6)
@@ -108,7 +109,7 @@ PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line,
         turned.reset();
         turned_depth_mm.reset();
         samples = dab(stroke, line);
-        InverseLag(line, brush)(samples);
+        drawn(samples);
     } else {
         refine_steps(onward, samples, step_tolerance, [&](Samples& all) { inverse(all, first); });
     }

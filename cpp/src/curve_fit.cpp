@@ -29,6 +29,19 @@ Vector2d at(const Cubic& c, double t) {
     return u * u * u * c[0] + 3.0 * u * u * t * c[1] + 3.0 * u * t * t * c[2] + t * t * t * c[3];
 }
 
+/// Of a cubic's mean speed along its chord, the least amid it: slower ones swing round there, in a cusp or a curl.
+constexpr double kSlowest = 0.25;
+
+/// Whether it runs on along its chord, hardly on or even back, and on again. Along it the derivative is a quadratic,
+/// here in Bernstein's form.
+bool folds(const Cubic& c) {
+    const Vector2d chord = c[3] - c[0];
+    const double first = chord.dot(c[1] - c[0]), amid = chord.dot(c[2] - c[1]), last = chord.dot(c[3] - c[2]);
+    const double slowest = kSlowest * chord.squaredNorm() / 3.0;
+    return std::min(first, last) > 0.0 && amid < 0.0 &&
+           first * last - amid * amid < slowest * (first - 2.0 * amid + last);
+}
+
 class Fit {
  public:
     Fit(Points points, double tolerance, bool closed) : p_(std::move(points)), tolerance_(tolerance) {
@@ -115,7 +128,9 @@ class Fit {
         if (determinant > 1e-12 * c(0, 0) * c(1, 1)) {
             const Eigen::Vector2d found = c.inverse() * x;
             // handles that turn back or loop say that the stretch is too long
-            if (found.minCoeff() > 1e-3 * chord && found.maxCoeff() < 3.0 * chord + 1e-9) alpha = found;
+            if (found.minCoeff() > 1e-3 * chord && found.maxCoeff() < 3.0 * chord + 1e-9 &&
+                !folds({a, a + found(0) * start, b + found(1) * end, b}))
+                alpha = found;
         }
         return {a, a + alpha(0) * start, b + alpha(1) * end, b};
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 using namespace brushsvg;
 
@@ -47,6 +48,21 @@ TEST_CASE("half a circle within its tolerance, with more cubics for less") {
     CHECK(farthest(fine, 20.0) < 0.005);
     CHECK(coarse.middle_mm.rows() <= 2);
     CHECK(fine.middle_mm.rows() > coarse.middle_mm.rows());
+}
+
+TEST_CASE("no cubic runs back along a line that runs on with some noise") {
+    std::mt19937 noise(1);
+    for (int trial = 0; trial < 300; ++trial) {
+        WideLine line(60, 3);
+        double aside = 0.0;
+        for (int i = 0; i < 60; ++i) {
+            aside += 0.2 * (double(noise()) / double(std::mt19937::max()) - 0.5);
+            line.row(i) << i / 3.0, aside, 2.0;
+        }
+        const FittedLine fitted = fit_curve(line, 0.05, false);
+        for (Eigen::Index i = 0; i < fitted.middle_mm.rows(); ++i)
+            for (double t = 0.0; t <= 1.0; t += 0.02) CHECK(tangent_at(fitted.middle_mm, {i, t}).x() > 0.3);
+    }
 }
 
 TEST_CASE("cubics meet with one tangent, round the seam of a closed line too") {

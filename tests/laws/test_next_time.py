@@ -1,6 +1,7 @@
 """Corrections from a painted sheet: on a machine that leads each stroke elsewhere, the next sheets come nearer."""
 
 import json
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -194,6 +195,25 @@ def test_strokes_that_lie_farther_aside_are_told(tmp_path, capsys):
     farther = {name for name in now if now[name] > before[name] + 0.1}
     assert {notice.where for _, notice in told if notice.code == "stroke-farther"} == farther
     assert now["bar"] > 0.8 and len(farther) < 4, (before, now)
+
+
+def test_corrections_are_read_once(tmp_path, capsys):
+    """From a pipe, which is empty then. A row without a name says of no stroke how far it lay aside."""
+    studio = Studio(tmp_path, 7)
+    first = studio.compared(studio.photographed(studio.plan()))
+    plan = studio.plan("--corrections", first)
+    studio.own["bar"] = studio.own["bar"] + np.array([0.9, -1.2])
+    photo = studio.photographed(plan)
+    made = json.loads(first.read_text())
+    made["strokes"].append({"stroke": ["bow"], "aside_mm": 1.0, "correction": None})
+    out, into = os.pipe()
+    os.write(into, json.dumps(made).encode())
+    os.close(into)
+    (tmp_path / "pipe.json").symlink_to(f"/dev/fd/{out}")
+    words = ("compare", photo, tmp_path / "five.svg", "--corrections", tmp_path / "pipe.json")
+    status, _, told = in_json(capsys, *words)
+    os.close(out)
+    assert status == 0 and is_told(told, "stroke-farther", "bar"), told
 
 
 def test_corrections_are_taken_back_once(tmp_path, capsys):

@@ -297,7 +297,7 @@ def test_whoever_only_looks_is_warned(desk, capsys):
     edited_plan(desk, speed_mm_s=30, sheet_mm=[120, 20])
     status, _, told = in_json(capsys, "predict", "x.json", "out.svg")
     assert status == 0
-    assert is_told(told, "speed-out-of-range 30") and is_told(told, "mark-off-sheet upper"), told
+    assert is_told(told, "speed-out-of-range 30") and is_told(told, "mark-off-sheet upper 'plan anew'"), told
     status, out, _ = run(capsys, "report", "x.json")
     assert status == 0
     assert "line: speed 30 mm/s" in out

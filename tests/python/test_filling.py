@@ -177,6 +177,17 @@ def paint_of(passes, brush):
     return region(_core.unite(marks.outline_mm))
 
 
+@pytest.mark.parametrize(("wide", "high"), [(14, 20), (16, 22), (20, 28)])
+def test_a_ring_without_corners_begins_where_it_bends_least(brush, wide, high):
+    """At the top of an oval, where it bends most, the mark stuck out by 0.23 to 0.48 mm."""
+    made = of(f"M30 {30 - high / 2}A{wide / 2} {high / 2} 0 1 1 29.99 {30 - high / 2}Z")
+    shape = region(made[0].wanted_mm)
+    paint = paint_of(within_reach(made, brush, "passes")[0], brush)
+    places = shapely.points(shapely.get_coordinates(paint))
+    assert shapely.distance(shape, places).max() < 0.2
+    assert paint.intersection(shape).area / paint.union(shape).area > 0.985
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "d",

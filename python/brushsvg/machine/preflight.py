@@ -29,10 +29,12 @@ def look(
     tolerance_mm: float,
     job: Job = WHOLE_JOB,
     walk: Walked | None = None,
+    of_drawing: bool = True,
 ) -> Walked:
     """The job with everything that forbids to run it on the robot. marks: of the plan or of its loads; of a job that
-    is resumed only what is left is asked. walk: what within_limits found of it, where that is known."""
-    walk = walk or within_limits(loads, brush, marks, cell, job)
+    is resumed only what is left is asked. walk: what within_limits found of it, where that is known. of_drawing: see
+    off_sheet."""
+    walk = walk or within_limits(loads, brush, marks, cell, job, of_drawing)
     left = loads.left(job.first_stroke) if job.first_stroke > 1 else loads
     if job.first_stroke > 1 and not left.loads:
         return walk
@@ -45,7 +47,12 @@ def look(
 
 
 def within_limits(
-    loads: PlanInLoads, brush: _core.Brush, marks: _core.Marks, cell: Cell, job: Job = WHOLE_JOB
+    loads: PlanInLoads,
+    brush: _core.Brush,
+    marks: _core.Marks,
+    cell: Cell,
+    job: Job = WHOLE_JOB,
+    of_drawing: bool = True,
 ) -> Walked:
     """The job with the limits that it breaks and the edges of the sheet that its marks cross."""
     walk = walked(loads, brush, cell, job)
@@ -54,7 +61,7 @@ def within_limits(
         if not loads.loads:
             return walk
         marks = _core.simulate(loads.as_plan(), brush)
-    return replace(walk, problems=walk.problems + off_sheet(marks, brush, loads.sheet_mm))
+    return replace(walk, problems=walk.problems + off_sheet(marks, brush, loads.sheet_mm, of_drawing))
 
 
 def as_exact_as(cell: Cell, tolerance_mm: float) -> Cell:
@@ -86,9 +93,15 @@ def check_rounding(cell: Cell, tolerance_mm: float) -> None:
         )
 
 
-def off_sheet(marks: _core.Marks, brush: _core.Brush, sheet_mm) -> list[Notice]:
-    """A notice of the stroke for each side of the sheet [mm] that a stroke's paint crosses."""
+def off_sheet(marks: _core.Marks, brush: _core.Brush, sheet_mm, of_drawing: bool = True) -> list[Notice]:
+    """A notice of the stroke for each side of the sheet [mm] that a stroke's paint crosses. of_drawing: whether it was
+    made of one, which flags lay out anew; they have no effect on a plan."""
     found = []
+    advice = (
+        "move the drawing or make room with --origin X,Y, --sheet WxH or --fit WxH"
+        if of_drawing
+        else "make the plan anew, from a drawing that is moved or has more room"
+    )
     for trace in marks.passes:
         bounds_mm = _core.painted_bounds(trace, brush)
         if not np.isfinite(bounds_mm).all():
@@ -99,7 +112,7 @@ def off_sheet(marks: _core.Marks, brush: _core.Brush, sheet_mm) -> list[Notice]:
                 f"the mark reaches {beyond:.2f} mm beyond the {side} edge of the sheet",
                 code="mark-off-sheet",
                 about=side,
-                advice="move the drawing or make room with --origin X,Y, --sheet WxH or --fit WxH",
+                advice=advice,
             )
             for side, beyond in beyond_edges(bounds_mm, sheet_mm).items()
             if beyond >= 0.005  # what would print as 0.00 mm is rounding, not paint

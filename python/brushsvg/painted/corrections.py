@@ -6,7 +6,7 @@ import hashlib
 import json
 import math
 import os
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 
 import numpy as np
 
@@ -52,6 +52,15 @@ class Correction:
         """(n, 2) places on the sheet, led elsewhere."""
         turned = (points_mm - self.middle_mm) @ rotation(math.radians(self.turn_deg))
         return turned + self.middle_mm + self.shift_mm
+
+
+@dataclass(frozen=True)
+class SheetBefore:
+    """What `compare` wrote of a sheet. aside_mm: by stroke how far it lay aside there, without those of which the file
+    does not say it."""
+
+    corrections: tuple[Correction, ...] = ()
+    aside_mm: dict[str, float] = field(default_factory=dict)
 
 
 def way_of(a_pass) -> tuple[tuple[float, ...], ...]:
@@ -154,7 +163,7 @@ def _of_another_job(stroke: str, why: str) -> Error:
     )
 
 
-def read_corrections(path: str | os.PathLike[str]) -> tuple[Correction, ...]:
+def read_sheet_before(path: str | os.PathLike[str]) -> SheetBefore:
     """What `compare -o FILE.json` wrote. Error, with the path in `file` and the key in `where`, when a value is
     damaged, or when it holds no corrections."""
     try:
@@ -171,7 +180,7 @@ def read_corrections(path: str | os.PathLike[str]) -> tuple[Correction, ...]:
     except Error as refusal:
         refusal.file = os.fspath(path)
         raise
-    return found
+    return SheetBefore(found, _aside_mm(content["strokes"]))
 
 
 def _strokes(content: dict, at: str, of_brush: dict) -> tuple[Correction, ...]:
@@ -195,15 +204,12 @@ def _sha256(content: dict, key: str, at: str = "") -> str:
     return said
 
 
-def aside_before_mm(path: str | os.PathLike[str]) -> dict[str, float]:
-    """By stroke how far it lay aside on the sheet that these corrections are of; without those of which the file does
-    not say it. Error as for read_corrections."""
-    rows = json_fields.objects(json_fields.document(read_bytes(path), FORMAT).get("strokes"), "strokes")
-    said = {row.get("stroke"): row.get("aside_mm") for row in rows}
+def _aside_mm(rows: list[dict]) -> dict[str, float]:
+    said = [(row.get("stroke"), row.get("aside_mm")) for row in rows]
     return {
         name: float(mm)
-        for name, mm in said.items()
-        if isinstance(mm, int | float) and not isinstance(mm, bool)
+        for name, mm in said
+        if isinstance(name, str) and isinstance(mm, int | float) and not isinstance(mm, bool)
     }
 
 

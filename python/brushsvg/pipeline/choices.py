@@ -15,7 +15,7 @@ from ..drawing.layout import Layout
 from ..errors import Error, Notice, as_listed, need, need_number, need_one_of, need_truth
 from ..machine.cell import Cell
 from ..machine.cell_file import cell_names, find_cell, parse_cell, write_cell
-from ..painted.corrections import Correction, read_corrections
+from ..painted.corrections import SheetBefore, read_sheet_before
 from .options import Options
 
 LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
@@ -218,11 +218,11 @@ def cell_of(given) -> Cell:
         return find_cell(given)
 
 
-def corrections_of(path: str | os.PathLike[str] | None) -> tuple[Correction, ...]:
+def sheet_before_of(path: str | os.PathLike[str] | None) -> SheetBefore:
     if path is None:
-        return ()
+        return SheetBefore()
     with concerning(path):
-        return read_corrections(path)
+        return read_sheet_before(path)
 
 
 def reading_of(chosen: Choices) -> ReadOptions:
@@ -255,7 +255,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options
         speed_of_all_mm_s=chosen.paint_speed,
         cell=cell,
         z_offset_mm=chosen.z_offset or 0.0,
-        corrections=corrections_of(chosen.corrections),
+        corrections=sheet_before_of(chosen.corrections).corrections,
     )
 
 

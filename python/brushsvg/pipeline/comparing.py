@@ -21,7 +21,7 @@ from ..painted.beside_machine import beside_machine as left_beside
 from ..painted.comparison import Compared, Comparison, Wanted, compare_photos
 from ..painted.corrections import (
     Correction,
-    aside_before_mm,
+    SheetBefore,
     beside_machine,
     corrected,
     machine_sha256,
@@ -38,7 +38,7 @@ from ..painted.picture import comparison_png
 from . import cancelling, prediction, preparation
 from .cancelling import Cancel
 from .checking import Told
-from .choices import Choices, Given, concerning, corrections_of, name_of, options_of, settled, without_effect
+from .choices import Choices, Given, concerning, name_of, options_of, settled, sheet_before_of, without_effect
 from .conversion import chosen_of
 from .work import Work
 
@@ -48,12 +48,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Sheet:
-    """What was told to the machine, and the page that it painted on: plan, with the corrections of before; strokes:
-    rings on the sheet of what was wanted and predicted."""
+    """What was told to the machine, and the page that it painted on: plan, with the corrections of before, as far as
+    they are of its cell; strokes: rings on the sheet of what was wanted and predicted."""
 
     work: Work
     plan: _core.Plan
-    before: tuple[Correction, ...]
+    before: SheetBefore
     page: JobPage
     strokes: tuple[Wanted, ...]
 
@@ -124,7 +124,7 @@ def compare(
         def told(_, found):
             notices.extend(found)
 
-        return compared(painted_sheet(chosen, stage, told), [*map(os.fspath, paths)], chosen, stage, told)
+        return compared(painted_sheet(chosen, stage, told), [*map(os.fspath, paths)], stage, told)
 
     return replace(cancelling.run(work, progress, cancel), notices=tuple(notices))
 
@@ -132,7 +132,7 @@ def compare(
 def painted_sheet(chosen: Choices, stage: Callable[[str], object], told: Told) -> Sheet:
     """What stands on the page that was painted on; notices are told with the file that they are of."""
     name = name_of(chosen.input)
-    before = corrections_of(chosen.corrections)
+    before = sheet_before_of(chosen.corrections)
     with concerning(name):
         chosen = settled(replace(chosen, corrections=None), chosen.input)
         told(name, without_effect(chosen))
@@ -140,8 +140,8 @@ def painted_sheet(chosen: Choices, stage: Callable[[str], object], told: Told) -
         told(name, work.notices)
         refuse_corrected(work.plan)
         marks = prediction.predict(work, True, stage)
-        before = beside_machine(before, _undone(work))
-        plan = corrected(work.plan, before, work.brush)
+        before = replace(before, corrections=beside_machine(before.corrections, _undone(work)))
+        plan = corrected(work.plan, before.corrections, work.brush)
         wanted = {} if work.strokes is None else {one.id: wanted_rings([one]) for one in work.strokes}
         strokes = (Wanted(each.stroke, wanted.get(each.stroke), [*each.outline_mm]) for each in marks.passes)
         return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes))
@@ -153,9 +153,7 @@ def photographs(paths: Iterable[str], stage: Callable[[str], object]) -> list[tu
     return [(path, read_bytes(path)) for path in paths]
 
 
-def compared(
-    sheet: Sheet, paths: list[str], chosen: Choices, stage: Callable[[str], object], told: Told
-) -> PaintedJob:
+def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], told: Told) -> PaintedJob:
     """paths: photographs of one sheet; notices are told with the first of them."""
     work, brush, strokes = sheet.work, sheet.work.brush, list(sheet.strokes)
     with concerning(paths[0]):
@@ -164,8 +162,9 @@ def compared(
     stage("looking for what is amiss")
     learned = has_learned(brush, [hashlib.sha256(data).hexdigest() for _, data in photos])
     faults = whose_fault(sheet.plan, brush, strokes, found, learned)
-    corrections, too_far = next_corrections(found, work.plan, sheet.before, brush)
-    beyond = farther(found, aside_before_mm(chosen.corrections)) if chosen.corrections else []
+    before = sheet.before.corrections
+    corrections, too_far = next_corrections(found, work.plan, before, brush)
+    beyond = farther(found, sheet.before.aside_mm)
     told(paths[0], [*found.notices, *too_far, *beyond])
     cell, machine, beside = work.options.cell, None, None
     if cell and faults:
@@ -173,7 +172,7 @@ def compared(
         machine = mended(faults, found.middle_mm, cell.machine, along)
         if machine:
             rest = left_beside(found, sure(faults, cell.machine, along), sheet.plan, brush, strokes)
-            beside = machine_sha256(machine), next_corrections(rest, work.plan, sheet.before, brush)[0]
+            beside = machine_sha256(machine), next_corrections(rest, work.plan, before, brush)[0]
     ends = ends_of(found, strokes, work.strokes or ())
     made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_undone(work)))
     any_alone = faults is None or faults.first != BRUSH or bool(job_marks(found, sheet.page, strokes).rings)

@@ -326,20 +326,13 @@ def tried(
     if marks is None:
         marks = prediction.predict(work, rings, stage)
     loads = in_loads(work.plan, brush, cell)
-    walk = preflight.look(loads, brush, marks, cell, tolerance_mm, job, work.walk(cell, job))
+    known, of_drawing = work.walk(cell, job), work.strokes is not None
+    walk = preflight.look(loads, brush, marks, cell, tolerance_mm, job, known, of_drawing)
     damaged = [] if lenient else [notice for notice in work.notices if notice.damaged]
-    found = walk.problems if work.strokes is not None else [_of_a_plan(each) for each in walk.problems]
-    problems = summarized([*found, *damaged])
+    problems = summarized([*walk.problems, *damaged])
     if damaged:
         problems[-1] = replace(problems[-1], advice="--lenient draws what is sound")
     return Tried(suffix, work, cell, notes, marks, loads, walk, problems, order)
-
-
-def _of_a_plan(problem: Notice) -> Notice:
-    """Without the flags that move a drawing: they have no effect on a plan."""
-    if problem.code != "mark-off-sheet":
-        return problem
-    return replace(problem, advice="make the plan anew, from a drawing that is moved or has more room")
 
 
 def time_of_s(loads: PlanInLoads, brush, cell: Cell) -> float | None:

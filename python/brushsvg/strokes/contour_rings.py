@@ -27,6 +27,9 @@ _SLANTED_RAD, _POINTED_RAD, _REACH = np.radians(42), np.radians(122), 2.0
 _SET_DOWN = 3.6  # in half widths: on shorter lines is no room to be set down for a square beginning
 _AT_TIP = 0.2  # in half widths: so near to a corner of the shape a corner of 80 to 100 degrees points
 _OFF_CUSP = 0.4  # in half widths
+# How far a footprint reaches before and behind the place where a ring begins, in half widths; chords of that length
+# that differ by less are of bends alike.
+_FOOTPRINT, _AS_STRAIGHT = 1.5, 0.02
 _ROUND = 8  # edges of a quarter of a circle, off by 5e-3 of its radius
 _MOST_RINGS = 400  # with more, the middle lines have to do
 
@@ -81,7 +84,7 @@ def _passes(points: np.ndarray, half: float, shape, squared_at) -> list[Line]:
     squared = no_corners() if shape is None else squared_at(ring, half, shape)
     sharp = np.union1d(sharp, squared)
     if not len(corners):
-        return [_line(np.roll(ring, -int((ring @ _UPPER_LEFT).argmax()), axis=0), [], half, True)]
+        return [_line(np.roll(ring, -_straightest(ring, half), axis=0), [], half, True)]
     if shape is None or not len(sharp):
         ring, corners = _amid_longest(ring, corners)
         return [_line(np.vstack([ring, ring[:1]]), corners, half, True)]
@@ -179,6 +182,19 @@ def _with_sharp_tips(ring: np.ndarray, wide_mm: float) -> np.ndarray:
     for corner, count in zip(corners[near], steps[near], strict=True):
         kept[(corner + 1 + np.arange(count)) % len(ring)] = False
     return ring[kept] if kept.sum() >= 3 else ring
+
+
+def _straightest(ring: np.ndarray, half: float) -> int:
+    """Where a ring without corners bends least, the farthest to the upper left of such places."""
+    at = lengths(np.vstack([ring, ring[:1]]))
+    reach = min(_FOOTPRINT * half, at[-1] / 4)
+    before, behind = (
+        np.column_stack([np.interp(at[:-1] + by, at, np.append(xy, xy[0]), period=at[-1]) for xy in ring.T])
+        for by in (-reach, reach)
+    )
+    chords = np.hypot(*(behind - before).T)
+    straight = np.flatnonzero(chords > chords.max() - _AS_STRAIGHT * reach)
+    return int(straight[(ring[straight] @ _UPPER_LEFT).argmax()])
 
 
 def _amid_longest(ring: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, list[int]]:

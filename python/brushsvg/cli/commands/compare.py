@@ -19,7 +19,7 @@ def compare_files(args) -> None:
         _repeats(args, sheet)
         return
     with about(args.photos[0]):
-        job = compared(sheet, args.photos, typed(args), stage, warn)
+        job = compared(sheet, args.photos, stage, warn)
     files = {}
     if args.output:
         files[args.output] = job.json if suffix_of(args.output) == ".json" else job.text

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from ...machine.cell import Cell
 from ...machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as
-from ...painted.corrections import Correction
 from ...pipeline import choices
 from ...pipeline.choices import CHOICES, Choices
 from ...pipeline.conversion import of_cell
@@ -31,11 +30,6 @@ def brush_of(name: str | None):
 def cell_of(name: str | None) -> Cell:
     with about(name or ""):
         return choices.cell_of(name)
-
-
-def corrections_of(path: str | None) -> tuple[Correction, ...]:
-    with about(path or ""):
-        return choices.corrections_of(path)
 
 
 def exact_cell(name: str | None) -> Cell:

@@ -57,7 +57,7 @@ def look(
     """tilted: look at the marks of a tilted brush, too, which no cell can paint: it is warned of, and there are no
     loads."""
     work = prepare(chosen, partly=partly)
-    brush, cell = work.brush, work.options.cell
+    brush, cell, of_drawing = work.brush, work.options.cell, work.strokes is not None
     with about(chosen.input):
         held_upright = []
         try:
@@ -73,9 +73,11 @@ def look(
         walk = None
         if not held_upright and (work.plan.passes or not work.refused):
             known = None if at_loads else work.walk(cell)
-            walk = preflight.look(loads, brush, marks, cell, work.options.tolerance_mm, walk=known)
+            tolerance_mm = work.options.tolerance_mm
+            walk = preflight.look(loads, brush, marks, cell, tolerance_mm, walk=known, of_drawing=of_drawing)
         forbidden = walk.problems if walk else []
-        astray = preflight.off_sheet(marks, brush, work.plan.sheet_mm) if held_upright else []
+        sheet_mm = work.plan.sheet_mm
+        astray = preflight.off_sheet(marks, brush, sheet_mm, of_drawing) if held_upright else []
         warnings = [*work.notices, *forbidden, *astray, *held_upright]
         warnings += too_long(loads, brush, cell) if at_loads else []
     warn(chosen.input, warnings)
