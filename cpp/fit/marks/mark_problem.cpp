@@ -26,7 +26,7 @@ class MarkCost : public ceres::CostFunction {
         set_num_residuals(int(at.model.points(mark)));
         *mutable_parameter_block_sizes() = {at.model.layout().size(), 2};
     }
-    /// Always with derivatives: without them ties between edges are broken otherwise, and the loss is another one.
+    /// Always with derivatives: they are asked for next where the step is taken, as most are.
     void evaluate() {
         const Index n = num_residuals(), size = at_.model.layout().size();
         const Weighing& weighing = at_.weighing;
@@ -147,6 +147,7 @@ void MarkProblem::hold_shape(bool hold, bool hold_machine) {
     const Layout& at = model.layout();
     if (hold) std::fill(held_.begin() + at.widest(), held_.begin() + at.height(), true);
     if (hold_machine) std::fill(held_.begin() + at.machine(), held_.end(), true);
+    model.hold_machine(hold_machine);
 }
 
 void MarkProblem::expect(const MatrixXd& rows) {
