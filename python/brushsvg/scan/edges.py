@@ -200,9 +200,8 @@ def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list
     kept[0] = False
     home = shares[:, 1:].argmax(axis=1) + 1
     home[shares[:, 1:].max(axis=1) == 0] = 0
-    second = np.sort(shares[:, 1:], axis=1)[:, -2] if len(rooms) > 1 else np.zeros(count)
-    cut = (second > SPLIT * areas) & (second > SPLIT_MM2 * fine**2)
-    _refuse_covered(shares, areas, kept & cut, rooms, fine)
+    cut = kept & _holds_several(shares, areas, home, kept, fine)
+    _refuse_covered(shares, areas, cut, rooms, fine)
     _refuse_elsewhere(kept[part], flat, rooms)
     usual = float(np.median(paint[paint > SEEN])) if (paint > SEEN).any() else 1.0
     outlines, missing, joined = {}, [], []
@@ -235,6 +234,18 @@ def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list
             code="mark-missing",
         )
     return Marks(outlines, missing, joined, paint)
+
+
+def _holds_several(shares, areas, home, kept, fine: float) -> np.ndarray:
+    """Which parts are marks of several strokes, by how much of each lies in the other rooms. What reaches into a room
+    that holds a larger mark besides is one that was displaced."""
+    own = np.zeros(shares.shape[1])
+    np.maximum.at(own, home[kept], areas[kept])
+    foreign = shares * (np.arange(shares.shape[1]) != home[:, None])
+    foreign[:, 0] = 0
+    foreign[foreign < own] = 0
+    most = foreign.max(axis=1)
+    return (most > SPLIT * areas) & (most > SPLIT_MM2 * fine**2)
 
 
 def _refuse_covered(shares, areas, several, rooms: list[Room], fine: float) -> None:
