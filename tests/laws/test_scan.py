@@ -208,13 +208,13 @@ def test_a_mark_that_strays_stays_whole_and_two_that_touch_are_cut():
         assert overlap > 0.85, (each, overlap)
 
 
-def test_marks_that_are_all_displaced_into_the_next_room_stay_whole():
-    """As by a tool that leans: a quarter of each lies where the next one should."""
-    fine, sheet_mm = 5, (60, 50)
-    rooms = [Room(name, (left, 10, left + 10, 40)) for name, left in (("a", 10), ("b", 21))]
-    wanted = {
-        name: np.array([[x, 12], [x + 8, 12], [x + 8, 38], [x, 38.0]]) for name, x in (("a", 14.4), ("b", 25.4))
-    }
+def test_a_mark_that_is_displaced_into_the_next_room_stays_whole():
+    """As by a tool that leans: a quarter of it lies where the next one should, which does so, too."""
+    fine, sheet_mm = 5, (170, 50)
+    lefts = {"a": 10, "b": 21} | {str(k): 30 + 15 * k for k in range(1, 9)}
+    rooms = [Room(name, (left, 10, left + 10, 40)) for name, left in lefts.items()]
+    at = {name: left + 1 for name, left in lefts.items()} | {"a": 14.4, "b": 25.4}
+    wanted = {name: np.array([[x, 12], [x + 8, 12], [x + 8, 38], [x, 38.0]]) for name, x in at.items()}
     paint = np.zeros((sheet_mm[1] * fine, sheet_mm[0] * fine), np.float32)
     for ring in wanted.values():
         (left, bottom), (right, top) = np.int32(ring.min(axis=0) * fine), np.int32(ring.max(axis=0) * fine)
