@@ -252,8 +252,8 @@ def _refuse_aside(shares, reaching: np.ndarray, rooms: list[Room]) -> None:
     if len(touching) > MOST_TOUCHING * len(rooms):
         raise Error(
             f"the marks of {len(touching)} of {len(rooms)} strokes touch each other, or reach where the next one "
-            f"should be, the range is [0, {int(MOST_TOUCHING * len(rooms))}]: was this chart painted on this page, once, "
-            "and did the page lie at its stop? Or the brush is wider than the chart has room for",
+            f"should be, the range is [0, {int(MOST_TOUCHING * len(rooms))}]: was this chart painted on this page, "
+            "once, and did the page lie at its stop? Or the brush is wider than the chart has room for",
             value=len(touching),
             code="photo-paint-elsewhere",
         )
