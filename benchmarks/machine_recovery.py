@@ -124,7 +124,7 @@ def recover(
         )
 
     sheet = painter.paint(rng, brush, strokes, faults, regions)
-    marks = [_core.PaintedMark(*mark) for mark in sheet.marks]
+    marks = [_core.PaintedMark(*mark) for mark in sheet.marks if mark[2]]  # what painted nothing is left out
     depths = np.linspace(0.2, 1, 9) * brush.deepest
     out = {"seed": seed, "lag": {}, "s": 0.0, "z": {}}
     for with_machine in (False, True):

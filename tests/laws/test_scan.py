@@ -20,7 +20,7 @@ from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import marks_of, read_chart_photos
 from brushsvg.cli import main
-from brushsvg.scan.edges import Room, paint_seen
+from brushsvg.scan.edges import Room, paint_seen, told_apart
 from brushsvg.scan.flatten import Flat
 from brushsvg.scan.markers import Printed, find_view
 from brushsvg.scan.photo import read_photo
@@ -206,6 +206,23 @@ def test_a_mark_that_strays_stays_whole_and_two_that_touch_are_cut():
     for each in (one, other):
         overlap = _core.overlap(found.marks.outlines_mm[each], marks[each])
         assert overlap > 0.85, (each, overlap)
+
+
+def test_a_mark_that_is_displaced_into_the_next_room_stays_whole():
+    """As by a tool that leans: a quarter of it lies where the next one should, which does so, too."""
+    fine, sheet_mm = 5, (170, 50)
+    lefts = {"a": 10, "b": 21} | {str(k): 30 + 15 * k for k in range(1, 9)}
+    rooms = [Room(name, (left, 10, left + 10, 40)) for name, left in lefts.items()]
+    at = {name: left + 1 for name, left in lefts.items()} | {"a": 14.4, "b": 25.4}
+    wanted = {name: np.array([[x, 12], [x + 8, 12], [x + 8, 38], [x, 38.0]]) for name, x in at.items()}
+    paint = np.zeros((sheet_mm[1] * fine, sheet_mm[0] * fine), np.float32)
+    for ring in wanted.values():
+        (left, bottom), (right, top) = np.int32(ring.min(axis=0) * fine), np.int32(ring.max(axis=0) * fine)
+        paint[len(paint) - top : len(paint) - bottom, left:right] = 1
+    found = told_apart(paint, Flat(np.zeros((*paint.shape, 3), np.uint8), fine, sheet_mm), rooms, [])
+    assert not found.joined and not found.missing
+    for name, ring in wanted.items():
+        assert _core.overlap(found.outlines_mm[name], [ring]) > 0.9, name
 
 
 def test_splashes_and_labels_are_no_marks_and_a_broken_stroke_is_one():

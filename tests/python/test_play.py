@@ -6,7 +6,8 @@ from shapely.geometry import LineString
 
 core = pytest.importorskip("brushsvg._core")
 
-from brushsvg.machine.as_run import with_play  # noqa: E402
+from brushsvg.machine.as_run import as_run, with_play  # noqa: E402
+from brushsvg.machine.cell import Machine  # noqa: E402
 
 
 def ways_in_small_steps(passes, backlash):
@@ -45,3 +46,24 @@ def test_the_way_is_that_of_small_steps_with_few_poses():
         come = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(poses[:, :2], axis=0).T))])
         assert np.interp(come[-1] / 2, come, poses[:, 2]) == pytest.approx(depth, abs=0.1)
         assert len(poses) < 6 * 8  # of 0.4 mm each they would be several hundred
+
+
+@pytest.mark.parametrize("height", [-0.4, 0.4])
+def test_a_tool_leans_from_where_it_touches_the_paper(height):
+    """Pressed on the spot and drawn to the right, over paper that lies lower or higher than it was taught."""
+    told = core.Pass(
+        stroke="s",
+        poses_mm=np.array([[10.0, 20, 0], [10, 20, -2], [30, 20, -2], [30, 20, 0]]),
+        speed_mm_s=20.0,
+    )
+    (one,) = as_run([told], Machine(lean_mm_per_mm=(0.2, -0.1), height_mm=height))
+    run, deep = np.array(one.poses_mm), 2 + height
+    wanted = [
+        [10, 20, 0],
+        [10 + 0.2 * deep, 20 - 0.1 * deep, -deep],
+        [30 + 0.2 * deep, 20 - 0.1 * deep, -deep],
+        [30, 20, 0],
+    ]
+    for place in wanted:
+        assert np.abs(run - place).max(axis=1).min() < 1e-9, place
+    assert np.allclose(run[[0, -1]], [wanted[0], wanted[-1]])

@@ -115,29 +115,41 @@ bool MarkModel::distances(Index mark, const double* shared_data, const double* d
     const Painted& painted = painted_[std::size_t(mark)];
     const VectorXd shared = Eigen::Map<const VectorXd>(shared_data, layout_.size());
     thread_local Footprints footprints;
+    thread_local std::vector<Beside> beside;
     const Spent spent{footprints, looks_[std::size_t(mark)]};
-    if (!follow(painted, shared, by_shared != nullptr, footprints)) return false;
+    const MarkLaws laws = this->laws(shared);
+    const MachineHere machine = machine_here(painted, shared);
+    const PassRun pass{painted.poses_mm,         painted.arcs, laws,
+                       shared[layout_.height()], deepest_,     layout_.machine_numbers > 0 ? &machine : nullptr};
+    if (!footprints.follow(pass, painted.at, coarse_)) return false;
     const Ring points = placed(mark, shared_data, displacement);
     const double turn = shared[layout_.turn()], ct = std::cos(turn), st = std::sin(turn);
     Eigen::Matrix2d back, back_by_turn;
     back << ct, st, -st, ct;
     back_by_turn << -st, ct, -ct, -st;
     distance_mm.resize(points.rows());
+    beside.resize(std::size_t(points.rows()));
+    std::vector<std::size_t> rows;
     std::size_t row = 0;
     for (Index k = 0; k < points.rows(); ++k) {
         checkpoint(footprints.effort());
         const Eigen::Vector2d x = points.row(k).transpose();
-        const Beside beside = beside_of(footprints, x, back * painted.outward.row(k).transpose(), row);
-        row = beside.row;
-        distance_mm[k] = beside.distance_mm;
-        if (!by_shared) continue;
-        const Eigen::RowVector2d normal = beside.normal.transpose();
-        by_laws(footprints[row], beside.edge, beside.normal, by_shared->row(k));
+        Beside& here = beside[std::size_t(k)];
+        here = beside_of(footprints, x, back * painted.outward.row(k).transpose(), row);
+        rows.push_back(row = here.row);
+        distance_mm[k] = here.distance_mm;
+    }
+    if (!by_shared) return distance_mm.allFinite();
+    footprints.derive(pass, lag_powers_, !is_machine_held_, std::move(rows));
+    for (Index k = 0; k < points.rows(); ++k) {
+        const Beside& here = beside[std::size_t(k)];
+        const Eigen::RowVector2d normal = here.normal.transpose();
+        by_laws(footprints[here.row], footprints.by(here.row), here.edge, here.normal, by_shared->row(k));
         by_shared->row(k).segment<2>(layout_.shift()) = -normal * back;
         const Eigen::Vector2d seen = painted.point_mm.row(k).transpose() - shared.segment<2>(layout_.shift()) - centre_;
         (*by_shared)(k, layout_.turn()) = normal * back_by_turn * seen;
-        by_shared->row(k) /= beside.aslant;
-        if (by_displacement) by_displacement->row(k) = -normal / beside.aslant;
+        by_shared->row(k) /= here.aslant;
+        if (by_displacement) by_displacement->row(k) = -normal / here.aslant;
     }
     return distance_mm.allFinite();
 }
@@ -149,7 +161,11 @@ VectorXd MarkModel::widths(Index mark, const double* shared_data, const double* 
     VectorXd out = VectorXd::Zero(painted.point_mm.rows());
     thread_local Footprints footprints;
     const Spent spent{footprints, looks_[std::size_t(mark)]};
-    if (!follow(painted, shared, false, footprints)) return out;
+    const MarkLaws laws = this->laws(shared);
+    const MachineHere machine = machine_here(painted, shared);
+    const PassRun pass{painted.poses_mm,         painted.arcs, laws,
+                       shared[layout_.height()], deepest_,     layout_.machine_numbers > 0 ? &machine : nullptr};
+    if (!footprints.follow(pass, painted.at, coarse_)) return out;
     const Ring points = placed(mark, shared_data, displacement);
     const Eigen::Rotation2Dd back(-shared[layout_.turn()]);
     std::size_t row = 0;
@@ -165,11 +181,11 @@ VectorXd MarkModel::widths(Index mark, const double* shared_data, const double* 
     return out;
 }
 
-void MarkModel::by_laws(const Instant& now, const NearestEdge& edge, const Eigen::Vector2d& normal,
+void MarkModel::by_laws(const Instant& now, const InstantBy& by, const NearestEdge& edge, const Eigen::Vector2d& normal,
                         Eigen::Ref<Eigen::RowVectorXd> out) const {
     const Eigen::Vector2d u = now.heading, left(-u.y(), u.x());
     const double nu = normal.dot(u), nl = normal.dot(left);
-    ByLag heading_by = now.heading_by, left_by;
+    ByLag heading_by = by.heading, left_by;
     if (headings_doubted_ && std::isfinite(now.loose_lever_mm)) {
         const double lever2 = now.loose_lever_mm * now.loose_lever_mm;
         heading_by.rightCols<kMachine>() *= lever2 / (lever2 + kLeverMm * kLeverMm);
@@ -177,7 +193,7 @@ void MarkModel::by_laws(const Instant& now, const NearestEdge& edge, const Eigen
     left_by << -heading_by.row(1), heading_by.row(0);
     // the edge moves outwards by normal dy: the distance falls by it
     const Eigen::Matrix<double, 1, kWays> moved =
-        normal.transpose() * (now.contact_by + (edge.x - now.gap) * heading_by + edge.y * left_by);
+        normal.transpose() * (by.contact + (edge.x - now.gap) * heading_by + edge.y * left_by);
     out.head(layout_.lag) = -moved.head(layout_.lag);
     // x and y of the edge per half width
     const double along = edge.by_widest * now.widest_ratio + edge.by_front * now.front_ratio;
@@ -198,9 +214,9 @@ void MarkModel::by_laws(const Instant& now, const NearestEdge& edge, const Eigen
     ratio_by(now.depth, now.front_ratio, -edge.by_front * half_nu, out.segment(layout_.front(), layout_.front_terms));
     const double longer = edge.by_widest * now.widest_slope + edge.by_front * now.front_slope;
     const double deeper = now.half_slope * per_half - now.gap_slope * nu + longer * half_nu;
-    out[layout_.height()] = -moved[kMostTerms] - now.depth_by[0] * deeper;
+    out[layout_.height()] = -moved[kMostTerms] - by.depth[0] * deeper;
     for (int i = 0; i < layout_.machine_numbers; ++i)
-        out[layout_.machine() + i] = -moved[kMostTerms + 1 + i] - now.depth_by[1 + i] * deeper;
+        out[layout_.machine() + i] = -moved[kMostTerms + 1 + i] - by.depth[1 + i] * deeper;
 }
 
 void MarkModel::ratio_by(double depth, double ratio, double rate, Eigen::Ref<Eigen::RowVectorXd> out) const {

@@ -346,17 +346,15 @@ Machine MarkModel::machine(const VectorXd& shared) const {
             {box_.reach.x(), box_.reach.y()}};
 }
 
-bool MarkModel::follow(const Painted& painted, const VectorXd& shared, bool by_laws, Footprints& out) const {
-    const MachineHere machine{machine_numbers(shared), centre_, painted.came, box_, is_bent_};
-    return out.follow(painted.poses_mm, painted.arcs, painted.at, laws(shared), by_laws ? &lag_powers_ : nullptr,
-                      shared[layout_.height()], deepest_, layout_.machine_numbers > 0 ? &machine : nullptr, coarse_);
+MachineHere MarkModel::machine_here(const Painted& painted, const VectorXd& shared) const {
+    return {machine_numbers(shared), centre_, painted.came, box_, is_bent_};
 }
 
 Poses MarkModel::run(Index mark, const VectorXd& shared) const {
     const Painted& painted = painted_[std::size_t(mark)];
     Poses out = painted.poses_mm;
     if (layout_.machine_numbers > 0) {
-        const MachineHere machine{machine_numbers(shared), centre_, painted.came, box_, is_bent_};
+        const MachineHere machine = machine_here(painted, shared);
         const RunWay<double> way{
             painted.poses_mm, painted.arcs, machine, 0.0, machine.by, behind_by(painted.poses_mm, machine, machine.by)};
         for (Index i = 0; i < out.rows(); ++i) out.row(i) << way.tcp(i).transpose(), -way.depth(i);

@@ -68,6 +68,8 @@ class MarkModel {
     /// A mark's poses as they were told, as the machine ran them.
     Poses run(Index mark, const VectorXd& shared) const;
 
+    /// From now on there are no derivatives by the machine's numbers, or there are.
+    void hold_machine(bool hold) { is_machine_held_ = hold; }
     /// From now on derivatives say little of what the machine does to the heading of a loose brush on a short lever.
     void doubt_headings() { headings_doubted_ = true; }
 
@@ -105,11 +107,10 @@ class MarkModel {
         std::vector<Index> rings;  ///< where each begins, and the end
     };
     void refuse_endless() const;
-    /// The footprints of a mark's pass; by_laws: with derivatives.
-    bool follow(const Painted& painted, const VectorXd& shared, bool by_laws, Footprints& out) const;
+    MachineHere machine_here(const Painted& painted, const VectorXd& shared) const;
     std::array<double, kMachine> machine_numbers(const VectorXd& shared) const;
     /// Derivatives of a distance by the laws' unknowns and the height.
-    void by_laws(const Instant& now, const NearestEdge& edge, const Eigen::Vector2d& normal,
+    void by_laws(const Instant& now, const InstantBy& by, const NearestEdge& edge, const Eigen::Vector2d& normal,
                  Eigen::Ref<Eigen::RowVectorXd> out) const;
 
     /// rate times the derivatives of a ratio by its unknowns.
@@ -119,7 +120,7 @@ class MarkModel {
     mutable std::vector<std::uint64_t> looks_;  ///< of each mark, at instants of its pass: what was spent on it
     Layout layout_;
     double deepest_, coarse_, spacing_;
-    bool round_tail_, is_bent_, headings_doubted_ = false;
+    bool round_tail_, is_bent_, headings_doubted_ = false, is_machine_held_ = false;
     MatrixXd lag_powers_, half_powers_;  ///< coefficients of the laws from their unknowns
     Eigen::Vector2d centre_;
     FieldBox box_;

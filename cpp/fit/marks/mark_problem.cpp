@@ -26,7 +26,7 @@ class MarkCost : public ceres::CostFunction {
         set_num_residuals(int(at.model.points(mark)));
         *mutable_parameter_block_sizes() = {at.model.layout().size(), 2};
     }
-    /// Always with derivatives: without them ties between edges are broken otherwise, and the loss is another one.
+    /// Always with derivatives: they are asked for next where the step is taken, as most are.
     void evaluate() {
         const Index n = num_residuals(), size = at_.model.layout().size();
         const Weighing& weighing = at_.weighing;
@@ -85,6 +85,25 @@ class MarkCosts : public ceres::EvaluationCallback {
     const MarkProblem& at_;
     std::vector<double> shared_at_;
     std::vector<Eigen::Vector2d> own_at_;
+};
+
+/// Ends where so many steps have not lowered the least loss by more than the tolerance. The loss is not smooth, and
+/// steps may go to and fro beside its least place for as long as they are let.
+class EndsWhereStill : public ceres::IterationCallback {
+ public:
+    explicit EndsWhereStill(double tolerance) : tolerance_(tolerance) {}
+    ceres::CallbackReturnType operator()(const ceres::IterationSummary& now) override {
+        constexpr int kSteps = 6;
+        if (now.step_is_successful && now.cost < (1.0 - tolerance_) * least_) {
+            least_ = now.cost;
+            at_ = now.iteration;
+        }
+        return now.iteration - at_ < kSteps ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    }
+
+ private:
+    double tolerance_, least_ = INFINITY;
+    int at_ = 0;
 };
 
 std::unique_ptr<ceres::CostFunction> prior(const VectorXd& value, const VectorXd& sigma) {
@@ -147,6 +166,7 @@ void MarkProblem::hold_shape(bool hold, bool hold_machine) {
     const Layout& at = model.layout();
     if (hold) std::fill(held_.begin() + at.widest(), held_.begin() + at.height(), true);
     if (hold_machine) std::fill(held_.begin() + at.machine(), held_.end(), true);
+    model.hold_machine(hold_machine);
 }
 
 void MarkProblem::expect(const MatrixXd& rows) {
@@ -249,10 +269,14 @@ bool MarkProblem::solve(int most_iterations, double tolerance) {
     solver.max_num_line_search_step_size_iterations = 0;
     solver.use_nonmonotonic_steps = true;
     solver.function_tolerance = tolerance;
+    EndsWhereStill ends_where_still(tolerance);
+    // on the way to where the marks lie, going on is what uses up the looks of marks that no brush paints
+    constexpr double kNear = 1e-3;
+    if (tolerance < kNear) solver.callbacks.push_back(&ends_where_still);
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
     iterations += int(summary.iterations.size());
-    return summary.IsSolutionUsable() && summary.termination_type == ceres::CONVERGENCE;
+    return summary.termination_type == ceres::CONVERGENCE || summary.termination_type == ceres::USER_SUCCESS;
 }
 
 void MarkProblem::add_known(MatrixXd& to) const {

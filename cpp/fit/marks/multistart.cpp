@@ -47,9 +47,9 @@ std::vector<MarkLaws> starts(const std::vector<PaintedMark>& marks, const MarkOp
     return out;
 }
 
-/// To the best of starts with lags of many lengths, each followed a little, with the machine held or free.
-void try_lags(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOptions& options, bool is_held) {
-    at.hold_shape(true, is_held);
+/// Those of the starts that come nearest to the marks.
+std::vector<MarkLaws> nearest_starts(MarkProblem& at, const std::vector<PaintedMark>& marks,
+                                     const MarkOptions& options) {
     std::vector<std::pair<double, MarkLaws>> from;
     for (const MarkLaws& laws : starts(marks, options)) {
         at.begin(laws);
@@ -57,11 +57,19 @@ void try_lags(MarkProblem& at, const std::vector<PaintedMark>& marks, const Mark
         if (std::isfinite(loss)) from.emplace_back(loss, laws);
     }
     std::stable_sort(from.begin(), from.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<MarkLaws> out;
+    for (std::size_t i = 0; i < std::min(kFollowed, from.size()); ++i) out.push_back(from[i].second);
+    return out;
+}
+
+/// To the best of these starts, each followed a little, with the machine held or free.
+void try_lags(MarkProblem& at, const std::vector<MarkLaws>& starts, bool is_held) {
+    at.hold_shape(true, is_held);
     double best = INFINITY;
     VectorXd shared;
     std::vector<Eigen::Vector2d> own;
-    for (std::size_t i = 0; i < std::min(kFollowed, from.size()); ++i) {
-        at.begin(from[i].second);
+    for (const MarkLaws& laws : starts) {
+        at.begin(laws);
         at.solve(8, kTolerance);
         const double now = at.loss();
         if (!(now < best)) continue;
@@ -83,12 +91,13 @@ void try_lags(MarkProblem& at, const std::vector<PaintedMark>& marks, const Mark
 /// lag may win that does as a lean does, free, a lean that does as a lag does, and no small step leads back from
 /// either.
 void try_both(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
+    const std::vector<MarkLaws> lags = nearest_starts(at, marks, options);
     double best = INFINITY;
     VectorXd shared;
     std::vector<Eigen::Vector2d> own;
     for (const bool is_held : {false, true}) {
         if (is_held && at.model.layout().machine_numbers == 0) break;
-        try_lags(at, marks, options, is_held);
+        try_lags(at, lags, is_held);
         at.solve(options.most_iterations, kTolerance);
         const double now = at.loss();
         if (is_held && !(now < best)) continue;

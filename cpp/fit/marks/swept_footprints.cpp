@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "trace.hpp"
 
@@ -44,27 +43,17 @@ void ratio_at_depth(const std::vector<double>& c, double constant, double d, dou
 }
 
 template <int N>
-void put(const Vec2<ceres::Jet<double, N>>& from, Eigen::Vector2d& value, ByLag& by) {
-    by.setZero();
-    for (int i = 0; i < 2; ++i) {
-        value[i] = from[i].a;
-        constexpr int n = std::min(N, kWays);
-        by.row(i).head<n>() = from[i].v.template head<n>().transpose();
-    }
+ByLag by_of(const Vec2<ceres::Jet<double, N>>& from) {
+    constexpr int n = std::min(N, kWays);
+    ByLag out = ByLag::Zero();
+    for (int i = 0; i < 2; ++i) out.row(i).head<n>() = from[i].v.template head<n>().transpose();
+    return out;
 }
-void put(const Vec2<double>& from, Eigen::Vector2d& value, ByLag& by) {
-    value = from;
-    by.setZero();
-}
-template <int N, class Row>
-void put_by(const ceres::Jet<double, N>& depth, Row& by) {
-    by.setZero();
+template <int N>
+void put_by(const ceres::Jet<double, N>& depth, Eigen::Matrix<double, 1, 1 + kMachine>& by) {
     constexpr int n = std::min(N, kWays) - kMostTerms;
-    by.template head<n>() = depth.v.template segment<n>(kMostTerms).transpose();
-}
-template <class Row>
-void put_by(double, Row& by) {
     by.setZero();
+    by.template head<n>() = depth.v.template segment<n>(kMostTerms).transpose();
 }
 
 template <class T>
@@ -77,13 +66,20 @@ std::vector<T> law_by(const std::vector<double>& lag, const Eigen::MatrixXd& by)
     return out;
 }
 
+RunWay<double> run(const PassRun& pass) {
+    const MachineHere& machine = *pass.machine;
+    return {pass.poses, pass.arcs, machine, pass.height_mm, machine.by, behind_by(pass.poses, machine, machine.by)};
+}
 /// With derivatives by the first so many numbers of the machine.
 template <class T>
-RunWay<T> run_by(const Poses& poses, const std::vector<Arc>& arcs, const MachineHere& machine, double height_mm,
-                 int numbers) {
-    RunWay<T> out{poses, arcs, machine, T(height_mm, kMostTerms), {}, {}};
-    for (int i = 0; i < numbers; ++i) out.by[std::size_t(i)] = T(machine.by[std::size_t(i)], kMostTerms + 1 + i);
-    out.behind = behind_by(poses, machine, out.by);
+RunWay<T> run_by(const PassRun& pass, int numbers) {
+    const MachineHere& machine = *pass.machine;
+    RunWay<T> out{pass.poses, pass.arcs, machine, T(pass.height_mm, kMostTerms), {}, {}};
+    for (int i = 0; i < kMachine; ++i) {
+        const double value = machine.by[std::size_t(i)];
+        out.by[std::size_t(i)] = i < numbers ? T(value, kMostTerms + 1 + i) : T(value);
+    }
+    out.behind = behind_by(pass.poses, machine, out.by);
     return out;
 }
 
@@ -112,39 +108,22 @@ std::size_t count_up_to(const std::vector<double>& rising, std::size_t i, double
 
 }  // namespace
 
-bool Footprints::follow(const Poses& poses, const std::vector<Arc>& arcs, const std::vector<double>& at,
-                        const MarkLaws& laws, const Eigen::MatrixXd* lag_by, double height_mm, double deepest_mm,
-                        const MachineHere* machine, double coarse) {
+bool Footprints::follow(const PassRun& pass, const std::vector<double>& at, double coarse) {
     apart_ = coarse * kApartMm;
-    if (!machine && lag_by)
-        return follow_on<Jet>(ToldWay<Jet>{poses, arcs, Jet(height_mm, kMostTerms)}, at, laws, lag_by, deepest_mm);
-    if (!machine) return follow_on<double>(ToldWay<double>{poses, arcs, height_mm}, at, laws, lag_by, deepest_mm);
-    if (!lag_by)
-        return follow_on<double>(
-            RunWay<double>{poses, arcs, *machine, height_mm, machine->by, behind_by(poses, *machine, machine->by)}, at,
-            laws, lag_by, deepest_mm);
-    if (machine->is_bent)
-        return follow_on<FieldJet>(run_by<FieldJet>(poses, arcs, *machine, height_mm, kMachine), at, laws, lag_by,
-                                   deepest_mm);
-    return follow_on<MachineJet>(run_by<MachineJet>(poses, arcs, *machine, height_mm, MachineAt::field), at, laws,
-                                 lag_by, deepest_mm);
+    if (!pass.machine) return follow_on(ToldWay<double>{pass.poses, pass.arcs, pass.height_mm}, pass, at);
+    return follow_on(run(pass), pass, at);
 }
 
-template <class T, class Way>
-bool Footprints::follow_on(const Way& way, const std::vector<double>& at, const MarkLaws& laws,
-                           const Eigen::MatrixXd* lag_by, double deepest_mm) {
-    double reach = deepest_mm + std::max(0.0, value_of(way.deeper_mm));
-    for (Eigen::Index i = 0; i < way.count(); ++i) reach = std::max(reach, value_of(way.depth(i)));
-    if (value_of(way.depth(0)) > 0.0 || !(laws.lag[0] > 0.0) || !real_roots(laws.lag, 0.0, reach).empty()) return false;
-    std::vector<T> lag;
-    if constexpr (std::is_same_v<T, double>)
-        lag = laws.lag;
-    else
-        lag = law_by<T>(laws.lag, *lag_by);
+template <class Way>
+bool Footprints::follow_on(const Way& way, const PassRun& pass, const std::vector<double>& at) {
+    const std::vector<double>& lag = pass.laws.lag;
+    reach_ = pass.deepest_mm + std::max(0.0, way.deeper_mm);
+    for (Eigen::Index i = 0; i < way.count(); ++i) reach_ = std::max(reach_, way.depth(i));
+    if (way.depth(0) > 0.0 || !(lag[0] > 0.0) || !real_roots(lag, 0.0, reach_).empty()) return false;
     std::vector<double> close = at;
     looks_ = 0;
     for (int round = 0; round < kRounds; ++round) {
-        walk(lag, way, close, laws, reach);
+        walk(way, close, pass.laws);
         looks_ += kLooksPerStep * close.size();
         enclose();
         const std::vector<double> closer = this->closer(close);
@@ -153,6 +132,39 @@ bool Footprints::follow_on(const Way& way, const std::vector<double>& at, const 
         close = closer;
     }
     return !rows_.empty();
+}
+
+void Footprints::derive(const PassRun& pass, const Eigen::MatrixXd& lag_by, bool by_machine,
+                        std::vector<std::size_t> rows) {
+    for (std::size_t i = 0, count = rows.size(); i < count; ++i)
+        if (rows_[rows[i]].heading_of != rows[i]) rows.push_back(rows_[rows[i]].heading_of);
+    std::sort(rows.begin(), rows.end());
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    if (by_.size() < rows_.size()) by_.resize(rows_.size());
+    looks_ += kLooksPerStep * rows.size();
+    if (!pass.machine)
+        derive_on<Jet>(ToldWay<Jet>{pass.poses, pass.arcs, Jet(pass.height_mm, kMostTerms)}, pass.laws, lag_by, rows);
+    else if (!by_machine)
+        derive_on<Jet>(run_by<Jet>(pass, 0), pass.laws, lag_by, rows);
+    else if (pass.machine->is_bent)
+        derive_on<FieldJet>(run_by<FieldJet>(pass, kMachine), pass.laws, lag_by, rows);
+    else
+        derive_on<MachineJet>(run_by<MachineJet>(pass, MachineAt::field), pass.laws, lag_by, rows);
+}
+
+template <class T, class Way>
+void Footprints::derive_on(const Way& way, const MarkLaws& laws, const Eigen::MatrixXd& lag_by,
+                           const std::vector<std::size_t>& rows) {
+    std::vector<double> at;
+    for (const std::size_t row : rows) at.push_back(rows_[row].place);
+    trace<T>(law_of(law_by<T>(laws.lag, lag_by), 0.0, reach_), way, at, nullptr,
+             [&](std::size_t k, const Trace<T>& row) {
+                 InstantBy& by = by_[rows[k]];
+                 by.contact = by_of(row.state.contact);
+                 by.heading = by_of(row.state.heading);
+                 put_by(row.depth, by.depth);
+             });
+    for (const std::size_t row : rows) by_[row].heading = by_[rows_[row].heading_of].heading;
 }
 
 std::vector<double> Footprints::closer(const std::vector<double>& at) const {
@@ -170,25 +182,21 @@ std::vector<double> Footprints::closer(const std::vector<double>& at) const {
     return out;
 }
 
-template <class T, class Way>
-void Footprints::walk(const std::vector<T>& lag, const Way& way, const std::vector<double>& at, const MarkLaws& laws,
-                      double reach) {
-    const LagLaw<T> law = law_of(lag, 0.0, reach);
+template <class Way>
+void Footprints::walk(const Way& way, const std::vector<double>& at, const MarkLaws& laws) {
+    const LagLaw<double> law = law_of(laws.lag, 0.0, reach_);
     rows_.clear();
-    trace<T>(law, way, at, nullptr, [&](std::size_t k, const Trace<T>& row) {
+    trace<double>(law, way, at, nullptr, [&](std::size_t k, const Trace<double>& row) {
         if (!row.down) return;
         Instant& now = rows_.emplace_back();
-        const double d = std::max(0.0, value_of(row.depth));
-        put(row.state.contact, now.contact, now.contact_by);
-        put(row.state.heading, now.heading, now.heading_by);
+        const double d = std::max(0.0, row.depth);
+        now.contact = row.state.contact;
+        now.heading = row.state.heading;
         now.heading_known = row.state.heading_known || row.state.taut;
-        Eigen::Vector2d tcp;
-        ByLag unused;
-        put(row.tcp, tcp, unused);
-        now.loose_lever_mm = row.state.taut ? INFINITY : (tcp - now.contact).norm();
+        now.heading_of = rows_.size() - 1;
+        now.loose_lever_mm = row.state.taut ? INFINITY : (row.tcp - now.contact).norm();
         now.place = at[k];
         now.depth = d;
-        put_by(row.depth, now.depth_by);
         now.gap = at_depth(laws.tip_gap, d);
         now.gap_slope = slope_at_depth(laws.tip_gap, d);
         const double half = at_depth(laws.half_width, d) + kLeastHalfMm;
@@ -204,7 +212,7 @@ void Footprints::walk(const std::vector<T>& lag, const Way& way, const std::vect
         for (; open < i; ++open)
             if (!rows_[open].heading_known) {
                 rows_[open].heading = rows_[i].heading;
-                rows_[open].heading_by = rows_[i].heading_by;
+                rows_[open].heading_of = i;
             }
         open = i + 1;
     }

@@ -21,6 +21,16 @@ constexpr int kWays = kMostTerms + 1 + kMachine;  // the lag's unknowns, the hei
 /// Derivatives of a place by the lag's unknowns, the height of the paper and the machine.
 using ByLag = Eigen::Matrix<double, 2, kWays>;
 
+/// A pass on its way, which begins and ends in the air, as these laws are painted by this machine; without one it is
+/// run as it was told.
+struct PassRun {
+    const Poses& poses;
+    const std::vector<Arc>& arcs;
+    const MarkLaws& laws;
+    double height_mm, deepest_mm;
+    const MachineHere* machine;
+};
+
 /// The footprint at one instant. Lengths in mm, slopes by depth.
 struct Instant {
     Eigen::Vector2d contact, heading;
@@ -28,10 +38,9 @@ struct Instant {
     double place;  ///< poses, fractional in between
     double gap, depth, half_slope, gap_slope;
     double widest_ratio, widest_slope, front_ratio, front_slope;  ///< to the half width; slopes 0 at the least ratio
-    Eigen::Matrix<double, 1, 1 + kMachine> depth_by;              ///< by the height and the machine
-    ByLag contact_by, heading_by;
     bool heading_known;
-    double loose_lever_mm;  ///< from where a loose brush touches to the TCP, along which it points; taut: infinite
+    std::size_t heading_of;  ///< the instant whose heading it has: itself, or the first that knows one
+    double loose_lever_mm;   ///< from where a loose brush touches to the TCP, along which it points; taut: infinite
 
     /// x from the tip, its first coordinate along the heading.
     Eigen::Vector2d in_frame(const Eigen::Vector2d& x) const {
@@ -52,6 +61,12 @@ struct Instant {
     }
 };
 
+/// Derivatives at one instant.
+struct InstantBy {
+    ByLag contact, heading;
+    Eigen::Matrix<double, 1, 1 + kMachine> depth;  ///< by the height and the machine
+};
+
 /// A line that touches a footprint and its neighbour, or the footprint alone.
 struct SweptEdge {
     double distance;         ///< of a point, negative inside
@@ -61,15 +76,15 @@ struct SweptEdge {
 
 class Footprints {
  public:
-    /// Follows a pass, which begins and ends in the air; `at`: poses, fractional in between, and more are put in where
-    /// the footprint turns quickly. lag_by: derivatives of the lag's coefficients by its unknowns, or nullptr for
-    /// places alone. machine: that runs the pass, or nullptr for one that does as it is told. coarse: so many times
-    /// as far apart as they should be may instants lie. False where these laws
-    /// paint nothing, and where it takes more instants than any brush does.
-    bool follow(const Poses& poses, const std::vector<Arc>& arcs, const std::vector<double>& at, const MarkLaws& laws,
-                const Eigen::MatrixXd* lag_by, double height_mm, double deepest_mm, const MachineHere* machine,
-                double coarse);
+    /// Follows a pass; `at`: poses, fractional in between, and more are put in where the footprint turns quickly.
+    /// coarse: so many times as far apart as they should be may instants lie. False where these laws paint nothing, and
+    /// where it takes more instants than any brush does.
+    bool follow(const PassRun& pass, const std::vector<double>& at, double coarse);
+    /// Derivatives at these instants, as by() then tells them, of the pass that was followed last; lag_by: of the lag's
+    /// coefficients by its unknowns. They cost ten times what an instant itself does, and points need a third of them.
+    void derive(const PassRun& pass, const Eigen::MatrixXd& lag_by, bool by_machine, std::vector<std::size_t> rows);
     const Instant& operator[](std::size_t i) const { return rows_[i]; }
+    const InstantBy& by(std::size_t i) const { return by_[i]; }
     /// What looking for a point's nearest instant costs at most, for a checkpoint.
     int effort() const { return 5 + int(rows_.size() / 100); }
     /// How often an instant was looked at since follow() began, which itself costs more than a look for each.
@@ -87,12 +102,13 @@ class Footprints {
     Eigen::Vector2d passing(std::size_t row, const NearestEdge& edge) const;
 
  private:
+    template <class Way>
+    bool follow_on(const Way& way, const PassRun& pass, const std::vector<double>& at);
+    template <class Way>
+    void walk(const Way& way, const std::vector<double>& at, const MarkLaws& laws);
     template <class T, class Way>
-    void walk(const std::vector<T>& lag, const Way& way, const std::vector<double>& at, const MarkLaws& laws,
-              double reach);
-    template <class T, class Way>
-    bool follow_on(const Way& way, const std::vector<double>& at, const MarkLaws& laws, const Eigen::MatrixXd* lag_by,
-                   double deepest_mm);
+    void derive_on(const Way& way, const MarkLaws& laws, const Eigen::MatrixXd& lag_by,
+                   const std::vector<std::size_t>& rows);
     void enclose();
     /// From an instant on to neighbours as long as they come nearer to x, or x lies deeper in them.
     std::size_t downhill(const Eigen::Vector2d& x, std::size_t row) const;
@@ -100,9 +116,11 @@ class Footprints {
     std::vector<double> closer(const std::vector<double>& at) const;
 
     std::vector<Instant> rows_;
+    std::vector<InstantBy> by_;
     /// Round each footprint; gone: no point of the footprint has moved farther than this since the first instant.
     std::vector<Eigen::Vector2d> middle_;
     std::vector<double> radius_, gone_;
+    double reach_ = 0.0;  ///< the greatest depth of the pass, or of the laws
     double apart_ = 0.0;  ///< most that a point of the footprint moves from one instant to the next [mm]
     mutable std::uint64_t looks_ = 0;
 };

@@ -9,11 +9,12 @@ import numpy as np
 from .. import _core
 from .arc_chords import with_chords
 from .cell import Machine
-from .distortion import true_way_mm
+from .distortion import leans, true_way_mm
 from .pass_way import on_way
 
 STEP_MM = 0.4
 STRAIGHT = 1e-7  # sine of the turn of two moves that are one
+AIR_MM = 100.0  # above whatever height a paper has
 
 
 def as_run(passes, machine: Machine, backlash_mm=(0.0, 0.0), deepest_mm: float = np.inf) -> list:
@@ -23,6 +24,8 @@ def as_run(passes, machine: Machine, backlash_mm=(0.0, 0.0), deepest_mm: float =
     out = []
     for one in with_play(passes, backlash_mm):
         poses = np.asarray(with_chords(one).poses_mm, dtype=float).reshape(-1, 3)
+        if leans(machine):  # also on its way down to a pose that lies below the paper as it is
+            poses = np.vstack([poses[0] + (0, 0, AIR_MM), poses, poses[-1] + (0, 0, AIR_MM)])
         down = _on_paper(true_way_mm(poses, machine))
         if down is not None:
             down[:, 2] = np.maximum(down[:, 2], -deepest_mm)

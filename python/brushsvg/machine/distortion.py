@@ -46,7 +46,13 @@ def true_way_mm(told_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
     """(m, 3): where the tool goes along lines between places (n, 3) that are told, with more of them where it bends."""
     if is_bent(machine):
         told_mm = _in_parts(told_mm, parts_of(told_mm[:, :2], machine))
-    return true_mm(told_mm, machine)
+    run = true_mm(told_mm, machine)
+    if not leans(machine):
+        return run
+    # it begins to lean where it touches the paper, not where the line began
+    over, under = run[:-1, 2], run[1:, 2]
+    cuts = [[a / (a - b), 1.0] if a * b < 0 else [1.0] for a, b in zip(over, under, strict=True)]
+    return true_mm(_cut(np.asarray(told_mm, dtype=float), map(np.array, cuts)), machine)
 
 
 def told_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:

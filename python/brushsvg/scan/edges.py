@@ -205,9 +205,11 @@ def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list
     home = shares[:, 1:].argmax(axis=1) + 1
     home[shares[:, 1:].max(axis=1) == 0] = 0
     second = np.sort(shares[:, 1:], axis=1)[:, -2] if len(rooms) > 1 else np.zeros(count)
-    cut = (second > SPLIT * areas) & (second > SPLIT_MM2 * fine**2)
-    _refuse_covered(shares, areas, kept & cut, rooms, fine)
+    reaching = kept & _reaches(second, areas, fine)
+    cut = reaching & _reaches(_largest_foreign(shares, areas, home, kept), areas, fine)
+    _refuse_covered(shares, areas, reaching, rooms, fine)
     _refuse_elsewhere(kept[part], flat, rooms)
+    _refuse_aside(shares, reaching, rooms)
     usual = float(np.median(paint[paint > SEEN])) if (paint > SEEN).any() else 1.0
     outlines, missing, joined = {}, [], []
     for number, room in enumerate(rooms, 1):
@@ -222,16 +224,6 @@ def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list
             pair = tuple(sorted((room.stroke, rooms[other[0] - 1].stroke)))
             if pair not in joined:
                 joined.append(pair)
-    touching = sorted({stroke for pair in joined for stroke in pair})
-    if len(touching) > MOST_TOUCHING * len(rooms):
-        raise Error(
-            f"the marks of {len(touching)} of {len(rooms)} strokes touch each other, the range is "
-            f"[0, {int(MOST_TOUCHING * len(rooms))}]: was this chart painted on this page, once, and did the page lie "
-            "at its stop? Or the page was not printed at 100 % (measure its bar), or the brush is wider than the chart "
-            "has room for",
-            value=len(touching),
-            code="photo-paint-elsewhere",
-        )
     if len(missing) > MOST_MISSING * len(rooms):
         raise Error(
             f"no paint is found of {len(missing)} of the {len(rooms)} strokes, the range is "
@@ -240,6 +232,36 @@ def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list
             code="mark-missing",
         )
     return Marks(outlines, missing, joined, paint)
+
+
+def _reaches(other, areas, fine: float) -> np.ndarray:
+    """Whether so much of each part (pixels) in another room than its own is a mark of its own."""
+    return (other > SPLIT * areas) & (other > SPLIT_MM2 * fine**2)
+
+
+def _largest_foreign(shares, areas, home, kept) -> np.ndarray:
+    """How much of each part lies in the room of a stroke that has no larger mark besides: what reaches into the room of
+    one that has is displaced."""
+    own = np.zeros(shares.shape[1])
+    np.maximum.at(own, home[kept], areas[kept])
+    foreign = shares * (np.arange(shares.shape[1]) != home[:, None])
+    foreign[:, 0] = 0
+    foreign[foreign < own] = 0
+    return foreign.max(axis=1)
+
+
+def _refuse_aside(shares, reaching: np.ndarray, rooms: list[Room]) -> None:
+    """reaching: which parts lie in the room of more strokes than one."""
+    touching = np.unique(np.argsort(shares[reaching, 1:], axis=1)[:, -2:])
+    if len(touching) > MOST_TOUCHING * len(rooms):
+        raise Error(
+            f"the marks of {len(touching)} of {len(rooms)} strokes touch each other, or reach where the next one "
+            f"should be, the range is [0, {int(MOST_TOUCHING * len(rooms))}]: was this chart painted on this page, "
+            "once, and did the page lie at its stop? Or the page was not printed at 100 % (measure its bar), or the "
+            "brush is wider than the chart has room for",
+            value=len(touching),
+            code="photo-paint-elsewhere",
+        )
 
 
 def _refuse_covered(shares, areas, several, rooms: list[Room], fine: float) -> None:
