@@ -85,5 +85,5 @@ def test_the_arm_of_a_k_runs_on_into_its_stem_as_wide_as_it_is():
     _, strokes = found("k")
     lines = [_core.flatten(stroke, 0.02) for stroke in strokes]
     arm = min(lines, key=lambda line: -line[:, :2].sum(axis=1).max() if np.ptp(line[:, 0]) > 5 else 0)
-    assert arm[:, 0].min() < 1.0, "in the middle of the stem"
+    assert arm[:, 0].min() < 1.0
     assert arm[:, 3].min() > 0.85 * 3.5
