@@ -13,10 +13,8 @@ namespace {
 
 constexpr int kLaws = 5;                                // lag, tip gap, half width, both ratios of the footprint
 constexpr std::array<int, kLaws> kMore{3, 2, 4, 3, 3};  // numbers more of each law
-/// Tip gap and half width may also rise with another power of the depth.
-constexpr std::array<int, 2> kPowers{1, 2};
-/// Sizes of departures: one of each law, then one of each such power.
-constexpr int kSizes = kLaws + int(kPowers.size());
+constexpr int kHalf = 2;                                // the half width may also rise with another power of the depth
+constexpr int kSizes = kLaws + 1;                       // of departures: one of each law, and that of this power
 constexpr double kFreedom = 3.0;  // how far a law departs is found from as many further numbers of it
 // log of how much less likely departing must be for laws to keep their few numbers: marks of a brush that departs where
 // they tell little, by how deep its tip is pressed, speak no more against it than chance does
@@ -28,8 +26,8 @@ constexpr int kSweeps = 6;
 /// By what share of a law whose numbers do not suffice the rest departs: half of the curves of tests/laws/painter.py do
 /// by less (their six, four and three shapes: lag 0.016, 0.020, 0.012, tip gap 0.12, 0.10, 0.13, half width 0.08, 0.07,
 /// 0.07, widest section 0.13, 0.12, 0.13). The standard deviation of its log is 0.7 to 1.3 there. Last, by how much the
-/// powers differ from 1: 0.09 and 0.06 there, and 0.1 to 0.35 for widths that are roots all the way to the touch.
-constexpr std::array<double, kSizes> kTypical{0.02, 0.1, 0.1, 0.1, 0.05, 0.15, 0.15};
+/// power of the half width differs from 1: 0.06 there, and 0.1 to 0.35 for roots all the way to the touch.
+constexpr std::array<double, kSizes> kTypical{0.02, 0.1, 0.1, 0.1, 0.05, 0.15};
 constexpr double kScatter = 1.0;
 
 /// What a law may depart by, as shares of it; 0 first.
@@ -75,7 +73,7 @@ Departures departures_of(const MarkModel& model, const Layout& from, const MarkL
     const std::array<double, kLaws> whole{std::max(0.5, at(laws.lag)), std::max(half, std::abs(at(laws.tip_gap))), half,
                                           std::max(1.0, laws.widest_per_half), std::max(1.0, laws.front_per_half)};
     const Index all_rows = out.rows.rows();
-    out.deviations = MatrixXd::Zero(all_rows, all_rows + Index(kPowers.size()));
+    out.deviations = MatrixXd::Zero(all_rows, all_rows + 1);
     Index row = 0;
     for (int law = 0; law < kLaws; ++law) {
         const auto [known, all] = terms[std::size_t(law)];
@@ -83,12 +81,10 @@ Departures departures_of(const MarkModel& model, const Layout& from, const MarkL
             out.size_of.push_back(law);
             const double falls = std::pow(double(known) / k, kSmooth);  // as of smooth laws
             out.deviations(row, row) = falls * whole[std::size_t(law)];
-            for (std::size_t i = 0; i < kPowers.size(); ++i)
-                if (kPowers[i] == law)
-                    out.deviations(row, all_rows + Index(i)) = whole[std::size_t(law)] * share_of_log(k);
+            if (law == kHalf) out.deviations(row, all_rows) = whole[kHalf] * share_of_log(k);
         }
     }
-    for (int which = kLaws; which < kSizes; ++which) out.size_of.push_back(which);
+    out.size_of.push_back(kLaws);
     return out;
 }
 
