@@ -87,25 +87,6 @@ class MarkCosts : public ceres::EvaluationCallback {
     std::vector<Eigen::Vector2d> own_at_;
 };
 
-/// Ends where so many steps have not lowered the least loss by more than the tolerance. The loss is not smooth, and
-/// steps may go to and fro beside its least place for as long as they are let.
-class EndsWhereStill : public ceres::IterationCallback {
- public:
-    explicit EndsWhereStill(double tolerance) : tolerance_(tolerance) {}
-    ceres::CallbackReturnType operator()(const ceres::IterationSummary& now) override {
-        constexpr int kSteps = 6;
-        if (now.step_is_successful && now.cost < (1.0 - tolerance_) * least_) {
-            least_ = now.cost;
-            at_ = now.iteration;
-        }
-        return now.iteration - at_ < kSteps ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
-    }
-
- private:
-    double tolerance_, least_ = INFINITY;
-    int at_ = 0;
-};
-
 std::unique_ptr<ceres::CostFunction> prior(const VectorXd& value, const VectorXd& sigma) {
     ceres::Matrix weight = ceres::Matrix::Zero(value.size(), value.size());
     for (Index i = 0; i < value.size(); ++i) weight(i, i) = sigma[i] == 0.0 ? 1.0 : 1.0 / sigma[i];
@@ -269,14 +250,10 @@ bool MarkProblem::solve(int most_iterations, double tolerance) {
     solver.max_num_line_search_step_size_iterations = 0;
     solver.use_nonmonotonic_steps = true;
     solver.function_tolerance = tolerance;
-    EndsWhereStill ends_where_still(tolerance);
-    // on the way to where the marks lie, going on is what uses up the looks of marks that no brush paints
-    constexpr double kNear = 1e-3;
-    if (tolerance < kNear) solver.callbacks.push_back(&ends_where_still);
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
     iterations += int(summary.iterations.size());
-    return summary.termination_type == ceres::CONVERGENCE || summary.termination_type == ceres::USER_SUCCESS;
+    return summary.IsSolutionUsable() && summary.termination_type == ceres::CONVERGENCE;
 }
 
 void MarkProblem::add_known(MatrixXd& to) const {
