@@ -177,13 +177,19 @@ def test_corrections_are_those_of_this_job(tmp_path, capsys):
     assert in_json(capsys, "check", tmp_path / "b.ngc", drawing, "--corrections", found)[0] == 1
 
 
-def test_strokes_that_lie_farther_aside_are_told(tmp_path, capsys):
-    """A stroke that the machine leads elsewhere on the second sheet, and no other."""
-    studio = Studio(tmp_path, 7)
+def sheet_with_the_bar_elsewhere(folder):
+    """Corrections of a first sheet, and a photograph of one painted with them, on which the machine leads the bar
+    elsewhere."""
+    studio = Studio(folder, 7)
     first = studio.compared(studio.photographed(studio.plan()))
     plan = studio.plan("--corrections", first)
     studio.own["bar"] = studio.own["bar"] + np.array([0.9, -1.2])
-    photo = studio.photographed(plan)
+    return first, studio.photographed(plan)
+
+
+def test_strokes_that_lie_farther_aside_are_told(tmp_path, capsys):
+    """A stroke that the machine leads elsewhere on the second sheet, and no other."""
+    first, photo = sheet_with_the_bar_elsewhere(tmp_path)
     out = tmp_path / "second.json"
     words = ("compare", photo, tmp_path / "five.svg", "--corrections", first, "-o", out)
     status, _, told = in_json(capsys, *words)
@@ -199,11 +205,7 @@ def test_strokes_that_lie_farther_aside_are_told(tmp_path, capsys):
 
 def test_corrections_are_read_once(tmp_path, capsys):
     """From a pipe, which is empty then. A row without a name says of no stroke how far it lay aside."""
-    studio = Studio(tmp_path, 7)
-    first = studio.compared(studio.photographed(studio.plan()))
-    plan = studio.plan("--corrections", first)
-    studio.own["bar"] = studio.own["bar"] + np.array([0.9, -1.2])
-    photo = studio.photographed(plan)
+    first, photo = sheet_with_the_bar_elsewhere(tmp_path)
     made = json.loads(first.read_text())
     made["strokes"].append({"stroke": ["bow"], "aside_mm": 1.0, "correction": None})
     out, into = os.pipe()
