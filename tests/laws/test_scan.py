@@ -1,6 +1,7 @@
 """Photographs of charts, rendered by a camera of its own kind: read back to the marks that were painted, or refused in
 a sentence that says what to do."""
 
+import itertools
 import json
 import re
 import subprocess
@@ -223,6 +224,21 @@ def test_a_mark_that_is_displaced_into_the_next_room_stays_whole():
     assert not found.joined and not found.missing
     for name, ring in wanted.items():
         assert _core.overlap(found.outlines_mm[name], [ring]) > 0.9, name
+
+
+@pytest.mark.parametrize("lean", [(-0.6, 0.5), (0.0, 0.8)])
+def test_marks_of_a_tool_that_leans_much_are_those_of_their_strokes(lean):
+    """So much that they lie in the rooms of others: every mark is that of its stroke, and none is lost."""
+    depth = {one.id: one.depth_mm for one in a5().strokes}
+    marks = {
+        name: [ring + np.multiply(lean, depth[name]) for ring in rings]
+        for name, rings in painted_marks().items()
+    }
+    assert all(shape(one).disjoint(shape(other)) for one, other in itertools.combinations(marks.values(), 2))
+    found = read(photograph.exposed(painted_sheet(marks.values()), SMALL)).marks
+    assert not found.missing and not found.joined
+    for name, rings in marks.items():
+        assert _core.overlap(found.outlines_mm[name], rings) > 0.85, name
 
 
 def test_splashes_and_labels_are_no_marks_and_a_broken_stroke_is_one():

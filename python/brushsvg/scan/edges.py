@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import contextlib
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -24,6 +25,7 @@ MOST_JOINED = 2  # strokes that one piece of paint covers: more, and it is a sha
 MOST_TOUCHING = 0.25  # share of the strokes: more, and it is not one painting of this chart
 TURNED = 0.1  # of the paint: so much more lies in the room of strokes were the page turned
 IN_ROOM = 0.7  # of the paint at least: the rest strays
+MOST_LEAN = 1.5  # mm aside for each mm of depth, as of a cell
 MOST_MISSING = 0.5  # share of the strokes
 LEAST_MM2 = 0.5
 BLOT = 0.03  # of a mark's area: smaller parts are splashes
@@ -37,10 +39,12 @@ STEP_MM, OVER_MM = 0.1, 0.2  # points of an outline, and over how much of it eac
 
 @dataclass(frozen=True)
 class Room:
-    """Where the mark of a stroke is expected: left, bottom, right, top in mm on the sheet."""
+    """Where the mark of a stroke is expected: left, bottom, right, top in mm on the sheet. depth_mm: how deep it is
+    pressed, which takes it aside where the tool leans; 0 where that is not to be looked for."""
 
     stroke: str
     box_mm: tuple[float, float, float, float]
+    depth_mm: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -170,7 +174,8 @@ def _window(flat: Flat, box_mm, beyond_mm: float) -> tuple[int, int, int, int]:
 
 
 def _nearest_room(flat: Flat, rooms: list[Room]) -> np.ndarray:
-    """Number from 1 on of the box that is nearest to each pixel, 0 beyond STRAY_MM of all."""
+    """Number from 1 on of the box that is nearest to each pixel, of several round it the one whose edge is farthest;
+    0 beyond STRAY_MM of all."""
     rows, columns = flat.pixels.shape[:2]
     step = max(1, round(flat.px_per_mm / 2))
     x = (np.arange(0, columns, step) + 0.5) / flat.px_per_mm
@@ -178,16 +183,72 @@ def _nearest_room(flat: Flat, rooms: list[Room]) -> np.ndarray:
     nearest, owner = np.full((len(y), len(x)), STRAY_MM), np.zeros((len(y), len(x)), np.uint16)
     for number, room in enumerate(rooms, 1):
         left, bottom, right, top = room.box_mm
-        across = np.maximum(np.maximum(left - x, x - right), 0.0)
-        up = np.maximum(np.maximum(bottom - y, y - top), 0.0)
-        away = np.hypot(across[None], up[:, None])
+        across = np.maximum(left - x, x - right)[None]
+        up = np.maximum(bottom - y, y - top)[:, None]
+        away = np.hypot(np.maximum(across, 0.0), np.maximum(up, 0.0)) + np.minimum(
+            np.maximum(across, up), 0.0
+        )
         closer = away < nearest
         nearest[closer], owner[closer] = away[closer], number
     return np.repeat(np.repeat(owner, step, axis=0), step, axis=1)[:rows, :columns]
 
 
 def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list) -> Marks:
-    """Marks by the box that most of each lies in. paint: as paint_seen gives it, or a mean over several pictures."""
+    """Marks by the box that most of each lies in; where marks lie in the boxes of others, as of a tool that leans, by
+    boxes that lean as they do. paint: as paint_seen gives it, or a mean over several pictures."""
+    try:
+        found = _told_apart(paint, flat, rooms, labels_mm)
+    except Error as refusal:
+        if refusal.code != "photo-paint-elsewhere":
+            raise
+        try:
+            return _told_apart(paint, flat, _leaning(paint, flat, rooms), labels_mm)
+        except Error:
+            raise refusal from None
+    if found.joined or found.missing:
+        with contextlib.suppress(Error):
+            again = _told_apart(paint, flat, _leaning(paint, flat, rooms), labels_mm)
+            if len(again.joined) + len(again.missing) < len(found.joined) + len(found.missing):
+                return again
+    return found
+
+
+def _leaning(paint: np.ndarray, flat: Flat, rooms: list[Room]) -> list[Room]:
+    """Rooms moved in proportion to depth, to where the middles of most parts of paint lie in those of their rooms; as
+    they are where the same shift of all does better: the sheet was not at its place."""
+    _, _, stats, _ = cv2.connectedComponentsWithStats(np.uint8(paint > SEEN), connectivity=8)
+    fine = flat.px_per_mm
+    parts = stats[1:][stats[1:, cv2.CC_STAT_AREA] > SPLIT_MM2 * fine**2] / fine
+    size = parts[:, 2:4]
+    middle = np.column_stack([0, flat.sheet_mm[1]]) + (parts[:, :2] + 0.5 * size) * (1, -1)
+    boxes = np.array([room.box_mm for room in rooms])
+    depths = np.array([room.depth_mm for room in rooms])
+    unlike = size[:, None] - (boxes[:, 2:] - boxes[:, :2])
+    aside = middle[:, None] - 0.5 * (boxes[:, :2] + boxes[:, 2:])
+
+    def nearest(by: np.ndarray) -> tuple[float, np.ndarray]:
+        """How far parts stay off at least where rooms move by up to MOST_LEAN times `by` (rooms,), and by how much."""
+
+        def off(times) -> float:
+            away = np.linalg.norm(np.dstack([aside - np.outer(by, times), 0.5 * unlike]), axis=2)
+            return float(np.minimum(away.min(axis=1), STRAY_MM).sum())
+
+        times, reach = np.zeros(2), MOST_LEAN
+        for _ in range(2):
+            steps = np.linspace(-reach, reach, 31)
+            times = min((times + np.array([x, y]) for x in steps for y in steps), key=off)
+            reach /= 10
+        return off(times), times
+
+    off, lean = nearest(depths)
+    is_shifted = nearest(np.full(len(depths), depths.max()))[0] < off
+    if is_shifted:
+        return rooms
+    moved = boxes + np.outer(depths, np.tile(lean, 2))
+    return [replace(room, box_mm=tuple(box)) for room, box in zip(rooms, moved.tolist(), strict=True)]
+
+
+def _told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list) -> Marks:
     fine = flat.px_per_mm
     count, part, stats, _ = cv2.connectedComponentsWithStats(np.uint8(paint > SEEN), connectivity=8)
     owner = _nearest_room(flat, rooms)

@@ -67,7 +67,7 @@ def read_chart_photos(
     printed = [each.mean(axis=0) + (each - each.mean(axis=0)) * (1 + 2 * MARGIN) for each in corners.values()]
     printed += [lies(ring) for ring in bar_rings(chart.bar, beyond_mm=0.5)] if chart.bar else []
     labels = [lies(np.reshape(label_box(label), (2, 2))).ravel() for label in chart.labels]
-    rooms = [Room(stroke.id, stroke.box_mm) for stroke in chart.strokes]
+    rooms = [Room(stroke.id, stroke.box_mm, stroke.depth_mm) for stroke in chart.strokes]
     refuse_twice(photos)
     reads: list[Read] = []
     for name, data in photos:
