@@ -52,25 +52,6 @@ BULGING = 6  # every so many sheets of either half
 TEXELS = 16.0  # per mm of the sheet: of A4, more take a gigabyte
 
 
-def outside_family(brush: painter.TrueBrush, rng) -> painter.TrueBrush:
-    """The same depths and sizes, by other functions: polynomials of sixth degree that follow them."""
-    share = np.linspace(0, 1, 60)
-    first, last = (brush.law("lag")(share_ * brush.deepest) for share_ in (0.0, 1.0))
-    rise = (1 - np.exp(-rng.uniform(1.5, 3.5) * share)) * (1 + 0.05 * np.sin(2 * np.pi * share))
-    lag = first + (last - first) * rise / rise[-1]
-    half = brush.law("half_width")(brush.deepest) * share ** rng.uniform(0.65, 0.9)
-    gap = brush.law("tip_gap")(brush.deepest) * (share + rng.uniform(-0.3, 0.3) * share * (1 - share))
-
-    def followed(law, from_power):
-        powers = np.arange(from_power, 7)
-        found = np.zeros(7)
-        found[powers] = np.linalg.lstsq(share[:, None] ** powers, law, rcond=None)[0]
-        return found / brush.deepest ** np.arange(7)
-
-    laws = followed(lag, 0), followed(gap, 1), followed(half, 1)
-    return painter.TrueBrush(brush.deepest, *laws, brush.widest_per_half, brush.front_per_half)
-
-
 def camera_of(rng, sheet_mm, is_bulging: bool) -> photograph.Camera:
     wide = int(sheet_mm[0] * rng.uniform(7.5, 11))
     return photograph.Camera(
@@ -99,7 +80,7 @@ class Case:
         self.number, self.inside, self.sheet_mm = number, which % 2 == 0, sheet_mm
         self.brush = painter.random_brush(rng)
         if not self.inside:
-            self.brush = outside_family(self.brush, rng)
+            self.brush = painter.of_other_functions(self.brush, rng)
         self.bulging = number // 2 % BULGING == BULGING - 1
         self.colour = COLOURS[(number // 2 + number // brushes) % len(COLOURS)]
         lag, width = rng.uniform(1 - KNOWN_TO, 1 + KNOWN_TO, 2)

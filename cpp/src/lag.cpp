@@ -55,8 +55,8 @@ LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign)
             x *= sign;
         }
         if (int(c.size()) > kMaxLawDegree + 1)
-            throw Error("law-terms",
-                        "a law of degree " + std::to_string(c.size() - 1) + " is beyond the greatest degree, 8");
+            throw Error("law-terms", "a law of degree " + std::to_string(c.size() - 1) +
+                                         " is beyond the greatest degree, " + std::to_string(kMaxLawDegree));
         LawPiece<double> piece;
         piece.lo = from.lo;
         piece.hi = from.hi;

@@ -40,6 +40,10 @@ class TrueBrush:
     round_tail: bool = False
     shape: Callable | None = None
 
+    @property
+    def tip_to_widest(self):
+        return self.widest_per_half * self.half_width
+
     def law(self, name):
         return oracle.Law(getattr(self, name))
 
@@ -86,6 +90,26 @@ def random_brush(rng):
         rng.normal(1.8, 0.25),
         rng.normal(1.0, 0.15),
     )
+
+
+def of_other_functions(brush: TrueBrush, rng) -> TrueBrush:
+    """The same depths and sizes: a lag that saturates and swings, a width that grows as a root; polynomials of sixth
+    degree that follow them."""
+    share = np.linspace(0, 1, 60)
+    first, last = (brush.law("lag")(share_ * brush.deepest) for share_ in (0.0, 1.0))
+    rise = (1 - np.exp(-rng.uniform(1.5, 3.5) * share)) * (1 + 0.05 * np.sin(2 * np.pi * share))
+    lag = first + (last - first) * rise / rise[-1]
+    half = brush.law("half_width")(brush.deepest) * share ** rng.uniform(0.65, 0.9)
+    gap = brush.law("tip_gap")(brush.deepest) * (share + rng.uniform(-0.3, 0.3) * share * (1 - share))
+
+    def followed(law, from_power):
+        powers = np.arange(from_power, 7)
+        found = np.zeros(7)
+        found[powers] = np.linalg.lstsq(share[:, None] ** powers, law, rcond=None)[0]
+        return found / brush.deepest ** np.arange(7)
+
+    laws = followed(lag, 0), followed(gap, 1), followed(half, 1)
+    return TrueBrush(brush.deepest, *laws, brush.widest_per_half, brush.front_per_half)
 
 
 @dataclass

@@ -534,7 +534,7 @@ FITS = {
     "fit_marks": [painted_marks, starts, all_mark_options],
     "fit_tracks": [
         all_tracks,
-        lambda: [[5.0], [], [1.0] * 10, [-1.0], *([each] for each in NUMBERS)],
+        lambda: [[5.0], [], [1.0] * 12, [-1.0], *([each] for each in NUMBERS)],
         [(0, 10), (10, 0), (0, 0), (NAN, 9), (0, INF), (0, 1e300)],
     ],
 }

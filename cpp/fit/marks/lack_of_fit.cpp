@@ -13,18 +13,29 @@ namespace {
 
 constexpr int kLaws = 5;                                // lag, tip gap, half width, both ratios of the footprint
 constexpr std::array<int, kLaws> kMore{3, 2, 3, 3, 3};  // numbers more of each law
+constexpr int kHalf = 2;                                // the half width may also rise with another power of the depth
+constexpr int kMoreOfPower = 4;                         // numbers more of it, then
+constexpr int kSizes = kLaws + 1;                       // of departures: one of each law, and that of this power
 constexpr double kFreedom = 3.0;  // how far a law departs is found from as many further numbers of it
 // log of how much less likely departing must be for laws to keep their few numbers: marks of a brush that departs where
 // they tell little, by how deep its tip is pressed, speak no more against it than chance does
 constexpr double kHeld = -1.25;
-constexpr double kUsual = 0.05;  // share to begin with
-constexpr double kOpen = 3.0;    // share of a law that it may depart by where nothing is known
-constexpr double kSmooth = 0.7;  // the k-th further polynomial is as much smaller as (numbers / k) to this power
+// from which log of how much likelier on laws depart clearly, so that the half width may rise with another power, too:
+// where little speaks for departing (brushes of the family reach 0.2), that leaves their intervals wider for nothing
+constexpr double kClearly = 0.5;
+// log of how much likelier it is before any marks that a brush departs: laws of few numbers are our choice, not
+// nature's
+constexpr double kBeforehand = 2.0;
+constexpr double kLeast = 0.001;  // share that a law departs by where it does not
+constexpr double kUsual = 0.05;   // share to begin with
+constexpr double kOpen = 3.0;     // share of a law that it may depart by where nothing is known
+constexpr double kSmooth = 0.7;   // the k-th further polynomial is as much smaller as (numbers / k) to this power
 constexpr int kSweeps = 6;
 /// By what share of a law whose numbers do not suffice the rest departs: half of the curves of tests/laws/painter.py do
 /// by less (their six, four and three shapes: lag 0.016, 0.020, 0.012, tip gap 0.12, 0.10, 0.13, half width 0.08, 0.07,
-/// 0.07, widest section 0.13, 0.12, 0.13). The standard deviation of its log is 0.7 to 1.3 there.
-constexpr std::array<double, kLaws> kTypical{0.02, 0.1, 0.1, 0.1, 0.05};
+/// 0.07, widest section 0.13, 0.12, 0.13). The standard deviation of its log is 0.7 to 1.3 there. Last, by how much the
+/// power of the half width differs from 1: 0.06 there, and 0.1 to 0.35 for roots all the way to the touch.
+constexpr std::array<double, kSizes> kTypical{0.02, 0.1, 0.1, 0.1, 0.05, 0.15};
 constexpr double kScatter = 1.0;
 
 /// What a law may depart by, as shares of it; 0 first.
@@ -34,12 +45,24 @@ std::vector<double> shares() {
     return out;
 }
 
-/// Departures of all laws: rows over the shared unknowns, of which law each is, and its size at a share of 1.
+using Sizes = std::array<double, kSizes>;
+
+/// Departures of all laws: rows over the shared unknowns, and what they are at sizes of 1: columns of independent
+/// deviations, each with the size that it is multiplied by.
 struct Departures {
     MatrixXd rows;
-    std::vector<int> law;
-    VectorXd size;
+    MatrixXd deviations;
+    std::vector<int> size_of;
+
+    MatrixXd scaled(const Sizes& sizes) const {
+        VectorXd by(deviations.cols());
+        for (Index i = 0; i < by.size(); ++i) by[i] = sizes[std::size_t(size_of[std::size_t(i)])];
+        return deviations * by.asDiagonal();
+    }
 };
+
+/// Of -log(t) over t in [0, 1], the k-th polynomial of Legendre's: t^(1 - share) is t (1 - share log(t)) at first.
+double share_of_log(int k) { return (k % 2 ? -1.0 : 1.0) * (2.0 * k + 1.0) / (double(k) * (k + 1.0)); }
 
 Departures departures_of(const MarkModel& model, const Layout& from, const MarkLaws& laws, double deepest) {
     const Layout& to = model.layout();
@@ -49,7 +72,6 @@ Departures departures_of(const MarkModel& model, const Layout& from, const MarkL
         return y;
     };
     Departures out{model.departures(from), {}, {}};
-    std::vector<double> size;
     const std::array<std::pair<int, int>, kLaws> terms{{{from.lag, to.lag},
                                                         {from.gap, to.gap},
                                                         {from.half, to.half},
@@ -58,24 +80,30 @@ Departures departures_of(const MarkModel& model, const Layout& from, const MarkL
     const double half = std::max(0.1, at(laws.half_width));
     const std::array<double, kLaws> whole{std::max(0.5, at(laws.lag)), std::max(half, std::abs(at(laws.tip_gap))), half,
                                           std::max(1.0, laws.widest_per_half), std::max(1.0, laws.front_per_half)};
+    const Index all_rows = out.rows.rows();
+    const bool rises = to.half - from.half >= kMoreOfPower;
+    out.deviations = MatrixXd::Zero(all_rows, all_rows + rises);
+    Index row = 0;
     for (int law = 0; law < kLaws; ++law) {
         const auto [known, all] = terms[std::size_t(law)];
-        for (int k = known; k < all; ++k) {
-            out.law.push_back(law);
-            size.push_back(whole[std::size_t(law)] * std::pow(double(known) / k, kSmooth));  // smooth ones fall so
+        for (int k = known; k < all; ++k, ++row) {
+            out.size_of.push_back(law);
+            const double falls = std::pow(double(known) / k, kSmooth);  // as of smooth laws
+            out.deviations(row, row) = falls * whole[std::size_t(law)];
+            if (law == kHalf && rises) out.deviations(row, all_rows) = whole[kHalf] * share_of_log(k);
         }
     }
-    out.size = Eigen::Map<VectorXd>(size.data(), Index(size.size()));
+    if (rises) out.size_of.push_back(kLaws);
     return out;
 }
 
 struct Shares {
-    std::array<double, kLaws> of_law;
+    Sizes sizes;
     double likelier;  ///< log of how much likelier they make the marks than laws that do not depart
 };
 
 /// Log of how likely a size is beforehand.
-using LogPrior = double (*)(int law, double share);
+using LogPrior = double (*)(int which, double share);
 
 /// 0 in one case of two, else any order of magnitude.
 double of_any_size(int, double share) {
@@ -84,19 +112,19 @@ double of_any_size(int, double share) {
 }
 
 /// As curves of other forms depart.
-double of_usual_size(int law, double share) {
+double of_usual_size(int which, double share) {
     if (!(share > 0.0)) return -INFINITY;
-    return -0.5 * std::pow(std::log(share / kTypical[std::size_t(law)]) / kScatter, 2);
+    return -0.5 * std::pow(std::log(share / kTypical[std::size_t(which)]) / kScatter, 2);
 }
 
-/// What one law departs by when the others depart by `share`: rms over all sizes, by how likely each makes the marks.
+/// One of the sizes when the others are `share`: rms over all that it may be, by how likely each makes the marks.
 template <class Evidence>
-double mean_share(std::array<double, kLaws> share, int law, LogPrior known, Evidence&& evidence) {
+double mean_share(Sizes share, int which, LogPrior known, Evidence&& evidence) {
     static const std::vector<double> tried = shares();
     std::vector<double> likely;
     for (const double one : tried) {
-        share[std::size_t(law)] = one;
-        likely.push_back(evidence(share) + known(law, one));
+        share[std::size_t(which)] = one;
+        likely.push_back(evidence(share) + known(which, one));
     }
     const double most = *std::max_element(likely.begin(), likely.end());
     double all = 0.0, square = 0.0;
@@ -108,12 +136,12 @@ double mean_share(std::array<double, kLaws> share, int law, LogPrior known, Evid
     return std::sqrt(square / all);
 }
 
-/// Shares for each law. The problem must expect nothing.
+/// Sizes of all departures. The problem must expect nothing.
 Shares shares_of(const MarkProblem& at, const Departures& departures, LogPrior known_of) {
     MarksLoss loss = marks_loss(at);
     const Index g = at.shared.size(), all = loss.gradient.size();
     const MatrixXd& rows = departures.rows;
-    const VectorXd open = (kOpen * departures.size).cwiseAbs2().cwiseInverse();
+    const VectorXd open = (kOpen * departures.deviations.diagonal()).cwiseAbs2().cwiseInverse();
     at.add_known(loss.slope);
     loss.slope.topLeftCorner(g, g) += rows.transpose() * open.asDiagonal() * rows;
     const VectorXd now = rows * at.shared;
@@ -134,41 +162,41 @@ Shares shares_of(const MarkProblem& at, const Departures& departures, LogPrior k
     const MatrixXd tells = known - MatrixXd(open.asDiagonal());
     const VectorXd pull = known * found;
 
-    const auto evidence = [&](const std::array<double, kLaws>& share) {
-        VectorXd sd(rows.rows());
-        for (Index i = 0; i < sd.size(); ++i)
-            sd[i] = share[std::size_t(departures.law[std::size_t(i)])] * departures.size[i];
-        const MatrixXd both =
-            MatrixXd::Identity(sd.size(), sd.size()) + MatrixXd(sd.asDiagonal() * tells * sd.asDiagonal());
+    const auto evidence = [&](const Sizes& sizes) {
+        const MatrixXd by = departures.scaled(sizes);
+        const MatrixXd both = MatrixXd::Identity(by.cols(), by.cols()) + by.transpose() * tells * by;
         const Eigen::LDLT<MatrixXd> factor(both);
-        const VectorXd drawn = sd.cwiseProduct(pull);
+        const VectorXd drawn = by.transpose() * pull;
         return 0.5 * drawn.dot(factor.solve(drawn)) - 0.5 * factor.vectorD().cwiseMax(1e-12).array().log().sum();
     };
-    std::array<double, kLaws> none, out;
+    Sizes none, out;
     none.fill(0.0);
-    out.fill(kUsual);
+    out.fill(0.0);
+    const int count = departures.deviations.cols() > rows.rows() ? kSizes : kLaws;
+    std::fill_n(out.begin(), count, kUsual);
     const double held = evidence(none);
     for (int sweep = 0; sweep < kSweeps; ++sweep)
-        for (int law = 0; law < kLaws; ++law) out[std::size_t(law)] = mean_share(out, law, known_of, evidence);
+        for (int which = 0; which < count; ++which)
+            out[std::size_t(which)] = mean_share(out, which, known_of, evidence);
     return {out, evidence(out) - held};
 }
 
 /// How many numbers each law has where it may depart.
-MarkOptions wider(const MarkOptions& options, const std::array<double, kLaws>& share) {
+MarkOptions wider(const MarkOptions& options, const Sizes& sizes) {
     MarkOptions out = options;
     const std::array<int*, kLaws> terms{&out.lag_terms, &out.tip_gap_terms, &out.half_width_terms, &out.widest_terms,
                                         &out.front_terms};
     for (std::size_t law = 0; law < kLaws; ++law)
-        if (share[law] > 0.0) *terms[law] += kMore[law];
+        if (sizes[law] > 0.0) *terms[law] += law == kHalf && sizes[kLaws] > 0.0 ? kMoreOfPower : kMore[law];
     out.lag_terms = std::min(out.lag_terms, kMostTerms);
     return out;
 }
 
-/// Laws are expected to depart by these shares of them.
-void expect(MarkProblem& at, const Departures& departures, const std::array<double, kLaws>& share) {
-    VectorXd sure = departures.size.cwiseInverse();
-    for (Index i = 0; i < sure.size(); ++i) sure[i] /= share[std::size_t(departures.law[std::size_t(i)])];
-    at.expect(sure.asDiagonal() * departures.rows);
+/// Laws are expected to depart by these sizes.
+void expect(MarkProblem& at, const Departures& departures, const Sizes& sizes) {
+    const MatrixXd by = departures.scaled(sizes);
+    const Eigen::LLT<MatrixXd> spread(by * by.transpose());
+    at.expect(spread.matrixL().solve(departures.rows));
 }
 
 }  // namespace
@@ -191,16 +219,23 @@ double unsurer(double likelier) {
     return 1.0 + (wider - 1.0) / (1.0 + std::exp(-likelier));
 }
 
+double chance_of_departing(double likelier) { return 1.0 / (1.0 + std::exp(-likelier - kBeforehand)); }
+
 double depart(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
-    std::array<double, kLaws> share;
-    share.fill(1.0);
-    const MarkProblem open = with_terms(fit, marks, wider(options, share));
     const Layout from = MarkModel::layout_of(options);
     const MarkLaws laws = fit.model.laws(fit.shared);
-    Shares found = shares_of(open, departures_of(open.model, from, laws, options.deepest_mm), of_any_size);
-    if (found.likelier < kHeld) found.of_law.fill(0.0);
-    fit = with_terms(fit, marks, wider(options, found.of_law));
-    expect(fit, departures_of(fit.model, from, laws, options.deepest_mm), found.of_law);
+    const auto departing = [&](double power) {
+        Sizes sizes;
+        sizes.fill(1.0);
+        sizes[kLaws] = power;
+        const MarkProblem open = with_terms(fit, marks, wider(options, sizes));
+        return shares_of(open, departures_of(open.model, from, laws, options.deepest_mm), of_any_size);
+    };
+    Shares found = departing(0.0);
+    if (found.likelier > kClearly) found = departing(1.0);
+    if (found.likelier < kHeld) found.sizes.fill(0.0);
+    fit = with_terms(fit, marks, wider(options, found.sizes));
+    expect(fit, departures_of(fit.model, from, laws, options.deepest_mm), found.sizes);
     return found.likelier;
 }
 
@@ -209,7 +244,16 @@ MarkProblem of_usual_departures(const MarkProblem& fit, const MarkOptions& optio
     const Departures departures = departures_of(fit.model, from, fit.model.laws(fit.shared), options.deepest_mm);
     MarkProblem out = fit;
     out.expect(MatrixXd(0, fit.shared.size()));
-    expect(out, departures, shares_of(out, departures, of_usual_size).of_law);
+    expect(out, departures, shares_of(out, departures, of_usual_size).sizes);
+    return out;
+}
+
+MarkProblem of_least_departures(const MarkProblem& fit, const MarkOptions& options) {
+    const Layout from = MarkModel::layout_of(options);
+    Sizes least;
+    least.fill(kLeast);
+    MarkProblem out = fit;
+    expect(out, departures_of(fit.model, from, fit.model.laws(fit.shared), options.deepest_mm), least);
     return out;
 }
 

@@ -209,12 +209,17 @@ MatrixXd covariance_at_touch(MarkProblem fit) {
 /// Mean square of what the shared unknowns may be off. Laws that depart were expected to do so by any order of
 /// magnitude, the least included; that chooses the height of the paper at which they look most like their few numbers,
 /// where the marks tell it hardly from others. It is kept, but what it may be off is that of usual departures: their
-/// covariance, and how far it is off the likeliest of them.
-MatrixXd mean_square(const MarkProblem& fit, const MarkOptions& options) {
+/// covariance, and how far it is off the likeliest of them. As far as laws may keep to their numbers after all, it is
+/// that of such laws.
+MatrixXd mean_square(const MarkProblem& fit, const MarkOptions& options, double likelier) {
     if (!fit.is_departing()) return covariance_at_touch(fit);
-    const MarkProblem usual = of_usual_departures(fit, options);
-    const VectorXd off = off_least(usual);
-    return covariance_at_touch(usual) + off * off.transpose();
+    const auto square_of = [](const MarkProblem& at) -> MatrixXd {
+        const VectorXd off = off_least(at);
+        return covariance_at_touch(at) + off * off.transpose();
+    };
+    const double departing = chance_of_departing(likelier);
+    return departing * square_of(of_usual_departures(fit, options)) +
+           (1.0 - departing) * square_of(of_least_departures(fit, options));
 }
 
 }  // namespace
@@ -240,7 +245,8 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     VectorXd wider = VectorXd::Constant(to.rows(), std::sqrt(unsurer(solved.departing)));
     // a field is told by where marks lie, whatever form the laws have
     if (fit.model.layout().machine_numbers > 0) wider.tail(kMachine - MachineAt::field).setOnes();
-    const MatrixXd whole = wider.asDiagonal() * to * mean_square(fit, options) * to.transpose() * wider.asDiagonal();
+    const MatrixXd whole =
+        wider.asDiagonal() * to * mean_square(fit, options, solved.departing) * to.transpose() * wider.asDiagonal();
     for (Index i = 0; i < whole.rows(); ++i) {
         const VectorXd row = whole.row(i).transpose();
         out.covariance.emplace_back(row.data(), row.data() + row.size());

@@ -35,7 +35,7 @@ struct Profile {
 };
 
 /// Greatest degree of a law that is followed.
-inline constexpr int kMaxLawDegree = 8;
+inline constexpr int kMaxLawDegree = 10;
 
 /// A polynomial that holds on [lo, hi].
 struct PolynomialPiece {

@@ -104,7 +104,7 @@ class Profile:
     """
     A law of a brush: one parameter [mm] against press depth d [mm], max(floor + floor_slope d, c0 + c1 d + ...).
 
-    Profile([3.1, 0.86])(2.0) is 3.1 + 0.86 * 2 mm; depths may be an array. coefficients: at most nine, in ascending powers of
+    Profile([3.1, 0.86])(2.0) is 3.1 + 0.86 * 2 mm; depths may be an array. coefficients: at most 11, in ascending powers of
     d. calibrated_mm: (least, greatest) depth that was measured, None where nobody says; source: where it comes from, in words;
     assumed: nobody measured it. half_interval_95, rmse_mm: how sure it is, by degrees_of_freedom values to spare. extra:
     unknown keys of its file, as JSON. A value: it is not changed, but another one made.
