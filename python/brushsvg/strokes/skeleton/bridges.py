@@ -21,6 +21,7 @@ WHOLE, IN_HUMP = 0.95, 0.5
 # at most.
 _BESIDE = np.array([-1.6, -0.7, 0.0, 0.7, 1.6])
 IN_STEM, SLANTED, STUB, LIMB, SHOULDER, FLAT = 0.3, 0.6, 0.35, 1.8, 0.1, 0.5
+ELBOW = 0.3  # of a turn by 17 degrees
 TOUCHING_RAD = np.radians(25)  # lines that cross turn by less
 NEAR_EACH_OTHER = 0.7  # half widths of the wider of two lines that meet where they pass each other by less
 # Of what was dropped at a corner, in squares of the radius: the end of a stem that a stroke of both arms would leave.
@@ -141,11 +142,13 @@ def find_bars(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
 
 
 def _crosses(bar: Arm, crossing: Crossing) -> bool:
-    """Whether a line runs through a crossing, and across the way of an arm that ends there."""
+    """Whether a line runs through a crossing, and across the way of an arm that ends there. A line that bends towards
+    that arm sticks out beyond it by its own elbow, as the fork of a Y."""
     for arm in crossing.arms:
         if arm.mate is not None:
             along = arm.mate.line[arm.mate.out, :2] - arm.line[arm.out, :2]
-            if abs(along @ bar.direction) < FLAT * np.hypot(*along):
+            is_across = abs(along @ bar.direction) < FLAT * np.hypot(*along)
+            if is_across and (arm.direction + arm.mate.direction) @ bar.direction > -ELBOW:
                 return True
     return False
 
