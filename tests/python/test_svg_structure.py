@@ -21,6 +21,27 @@ def test_use_places_copies_under_its_own_name():
     assert not design.notices
 
 
+@pytest.mark.parametrize("href", ["#ä", "#%C3%A4", " #ä\n", "#a%20b", "#a b"])
+def test_references_are_read_as_urls(href):
+    name = "ä" if "a" not in href else "a b"
+    design = read(f'<defs>{LINE.replace("l", name, 1)}</defs><use href="{href}"/>')
+    assert len(design.elements) == 1 and not design.notices
+
+
+def test_the_id_as_written_comes_before_the_unquoted_one():
+    near, far = (f'<path id="{name}" d="M0 {y}H10"/>' for name, y in (("%C3%A4", 1), ("ä", 9)))
+    design = read(f"<defs>{far}{near}</defs><use href='#%C3%A4'/>")
+    assert [line[1:] for line in lines(design)] == [((0, 1), (10, 1))]
+
+
+@pytest.mark.parametrize("paint", ["url(#ä)", "url(#%C3%A4)", "url('#%C3%A4')"])
+def test_paints_are_referred_to_as_urls(paint):
+    stop = '<stop stop-color="#123456"/>'
+    body = f'<linearGradient id="ö">{stop}</linearGradient><linearGradient id="ä" href=" #%C3%B6"/>'
+    design = read(f'{body}<path d="M0 0H10" fill="none" stroke="{paint}"/>')
+    assert [element.colour for element in design.elements] == ["#123456"]
+
+
 def test_use_hands_its_style_down_and_may_come_first():
     group = f'<g id="g">{LINE}<path d="M0 1H4" stroke-width="2"/></g>'
     body = f'<use id="u" href="#g" stroke-width="3"/><defs>{group}</defs>'

@@ -10,8 +10,8 @@ from ...errors import Error, Notice
 from ...units import length_px
 from .colour import parse_colour
 from .css_declarations import Declaration, declarations
+from .references import href, referred
 
-_XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
 URL = re.compile(r"url\(([^)]*+)\)(.*)", re.DOTALL)
 UNSEEN = 1 / 512  # an opacity below half a step of 8 bits shows nothing
 _GRADIENTS = frozenset(("linearGradient", "radialGradient"))
@@ -66,7 +66,7 @@ class Paints:
             return value, []
         reference, fallback = found[1].strip(" \"'"), found[2].strip()
         spare = (parse_colour(fallback) or "none") if fallback else "none"
-        server = self._by_id.get(reference[1:]) if reference.startswith("#") else None
+        server = referred(reference, self._by_id)
         tag = "" if server is None else server.tag.rpartition("}")[2]
         if tag in _GRADIENTS:
             stops = [self._stop(stop) for stop in self._content(server) if _is(stop, "stop")]
@@ -115,8 +115,7 @@ class Paints:
         while server is not None and server not in seen:
             yield server
             seen.add(server)
-            reference = server.get("href", server.get(_XLINK_HREF, "")).strip()
-            server = self._by_id.get(reference[1:]) if reference.startswith("#") else None
+            server = referred(href(server), self._by_id)
 
 
 def _is(node: ET.Element, tag: str) -> bool:

@@ -17,13 +17,13 @@ from .element import Painted
 from .layers import layer_names
 from .paint_servers import UNSEEN, Paints
 from .power_stroke import in_effects_of_groups
+from .references import href, referred
 from .settings import own_settings
 from .style_sheets import Rules
 from .transform import IDENTITY, Matrix, multiply, parse_transform
 from .viewport import Page, box_of, nested_viewport, overlap
 
 SVG = "{http://www.w3.org/2000/svg}"
-_XLINK = "{http://www.w3.org/1999/xlink}"
 # Never painted by themselves.
 _DEFINITIONS = "defs symbol marker mask pattern clipPath filter linearGradient radialGradient"
 _DESCRIPTIONS = "title desc metadata view font font-face color-profile style script"
@@ -263,8 +263,8 @@ class Walk:
         )
 
     def _use(self, node: ET.Element, context: Context) -> None:
-        reference = node.get("href", node.get(_XLINK + "href", ""))
-        target = self.by_id.get(reference[1:]) if len(reference) > 1 and reference.startswith("#") else None
+        reference = href(node)
+        target = referred(reference, self.by_id)
         if target is None:
             if context.style.inherited["visibility"] != "visible":
                 return
