@@ -2,6 +2,10 @@
 #include "bindings.hpp"
 #include "brushsvg/error.hpp"
 
+#if defined(BRUSHSVG_FIT) && __has_include(<glog/logging.h>)
+#include <glog/logging.h>
+#endif
+
 /// Who asks for what a value holds that __new__ alone has made, or whose constructor refused its arguments, as a
 /// debugger does that shows it, reads a TypeError. pybind11 would hand out memory that nobody has filled.
 static void refuse_what_was_never_made(const py::module_& m) {
@@ -29,6 +33,10 @@ PYBIND11_MODULE(_core, m) {
             PyErr_SetObject(type.ptr(), error.ptr());
         }
     });
+
+#ifdef GOOGLE_STRIP_LOG  // Ceres logs by glog, not by its miniglog: searches that lead nowhere are told by our errors
+    FLAGS_minloglevel = google::GLOG_ERROR;
+#endif
 
     bind_profile(m);
     bind_paint(m);

@@ -1,5 +1,8 @@
 """Fitted laws held against numpy and scipy, which know nothing of them."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from diagnostics import refused
@@ -205,3 +208,23 @@ def test_a_mark_that_lies_over_itself_all_over_is_refused_by_counted_work():
     with pytest.raises(brushsvg.Error) as refused:
         _core.fit_marks([_core.PaintedMark("jumps", poses, marks.passes[0].outline_mm)])
     assert (refused.value.code, refused.value.where) == ("fit-failed", "jumps")
+
+
+STARS = """
+import numpy as np
+from brushsvg import Error, _core
+poses = np.array([[0.0, 0, 0], [12, 0, -3], [30, 0, -3], [30, 25, -3]])
+for points in (12, 16, 20, 24, 28):
+    angle, long = 2 * np.pi / points * np.arange(points), np.arange(points) % 2 == 1
+    star = np.where(long, 30.0, 6.0)[:, None] * np.stack([np.cos(angle), np.sin(angle)], 1) + (15.0, 10.0)
+    try:
+        _core.fit_marks([_core.PaintedMark("one", poses, [star])], None, _core.MarkOptions())
+    except Error as error:
+        print(error.code)
+"""
+
+
+def test_a_search_that_leads_nowhere_is_told_by_its_error_alone():
+    """Of marks that no brush paints; Ceres logs what it could not solve."""
+    done = subprocess.run([sys.executable, "-c", STARS], capture_output=True, text=True, check=True)
+    assert (done.stdout.split(), done.stderr) == (["fit-failed"] * 5, "")
