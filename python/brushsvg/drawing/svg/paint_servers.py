@@ -115,7 +115,7 @@ class Paints:
         while server is not None and server not in seen:
             yield server
             seen.add(server)
-            server = referred(href(server), self._by_id)
+            server = referred(href(server).strip(), self._by_id)
 
 
 def _is(node: ET.Element, tag: str) -> bool:

@@ -9,8 +9,8 @@ _XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
 
 
 def href(node: ET.Element) -> str:
-    """Of the attribute or, where that is not given, XLink's; without blanks around it, as of any URL."""
-    return node.get("href", node.get(_XLINK_HREF, "")).strip()
+    """Of the attribute or, where that is not given, XLink's."""
+    return node.get("href", node.get(_XLINK_HREF, ""))
 
 
 def referred(reference: str, by_id: dict[str, ET.Element]) -> ET.Element | None:
