@@ -169,9 +169,7 @@ Shares shares_of(const MarkProblem& at, const Departures& departures, LogPrior k
         const VectorXd drawn = by.transpose() * pull;
         return 0.5 * drawn.dot(factor.solve(drawn)) - 0.5 * factor.vectorD().cwiseMax(1e-12).array().log().sum();
     };
-    Sizes none, out;
-    none.fill(0.0);
-    out.fill(0.0);
+    Sizes none{}, out{};
     const int count = departures.deviations.cols() > rows.rows() ? kSizes : kLaws;
     std::fill_n(out.begin(), count, kUsual);
     const double held = evidence(none);

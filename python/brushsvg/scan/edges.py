@@ -201,28 +201,33 @@ def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list
     except Error as refusal:
         if refusal.code != "photo-paint-elsewhere":
             raise
+        leaning = _leaning(paint, flat, rooms)
+        if leaning is None:
+            raise
         try:
-            return _told_apart(paint, flat, _leaning(paint, flat, rooms), labels_mm)
+            return _told_apart(paint, flat, leaning, labels_mm)
         except Error:
             raise refusal from None
-    if found.joined or found.missing:
+    if (found.joined or found.missing) and (leaning := _leaning(paint, flat, rooms)) is not None:
         with contextlib.suppress(Error):
-            again = _told_apart(paint, flat, _leaning(paint, flat, rooms), labels_mm)
+            again = _told_apart(paint, flat, leaning, labels_mm)
             if len(again.joined) + len(again.missing) < len(found.joined) + len(found.missing):
                 return again
     return found
 
 
-def _leaning(paint: np.ndarray, flat: Flat, rooms: list[Room]) -> list[Room]:
-    """Rooms moved in proportion to depth, to where the middles of most parts of paint lie in those of their rooms; as
-    they are where the same shift of all does better: the sheet was not at its place."""
+def _leaning(paint: np.ndarray, flat: Flat, rooms: list[Room]) -> list[Room] | None:
+    """Rooms moved in proportion to depth, to where the middles of most parts of paint lie in those of their rooms.
+    None where no depth is known, and where the same shift of all does better: the sheet was not at its place."""
+    depths = np.array([room.depth_mm for room in rooms])
+    if not depths.any():
+        return None
     _, _, stats, _ = cv2.connectedComponentsWithStats(np.uint8(paint > SEEN), connectivity=8)
     fine = flat.px_per_mm
     parts = stats[1:][stats[1:, cv2.CC_STAT_AREA] > SPLIT_MM2 * fine**2] / fine
     size = parts[:, 2:4]
     middle = np.column_stack([0, flat.sheet_mm[1]]) + (parts[:, :2] + 0.5 * size) * (1, -1)
     boxes = np.array([room.box_mm for room in rooms])
-    depths = np.array([room.depth_mm for room in rooms])
     unlike = size[:, None] - (boxes[:, 2:] - boxes[:, :2])
     aside = middle[:, None] - 0.5 * (boxes[:, :2] + boxes[:, 2:])
 
@@ -243,7 +248,7 @@ def _leaning(paint: np.ndarray, flat: Flat, rooms: list[Room]) -> list[Room]:
     off, lean = nearest(depths)
     is_shifted = nearest(np.full(len(depths), depths.max()))[0] < off
     if is_shifted:
-        return rooms
+        return None
     moved = boxes + np.outer(depths, np.tile(lean, 2))
     return [replace(room, box_mm=tuple(box)) for room, box in zip(rooms, moved.tolist(), strict=True)]
 

@@ -142,8 +142,8 @@ def find_bars(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
 
 
 def _crosses(bar: Arm, crossing: Crossing) -> bool:
-    """Whether a line runs through a crossing, and across the way of an arm that ends there. A line that bends towards
-    that arm sticks out beyond it by its own elbow, as the fork of a Y."""
+    """Whether a line runs through a crossing, and across the way of an arm that ends there. Where that arm meets
+    the outside of a line's elbow, as at the fork of a Y, what the shape has beyond is the line's own legs."""
     for arm in crossing.arms:
         if arm.mate is not None:
             along = arm.mate.line[arm.mate.out, :2] - arm.line[arm.out, :2]
