@@ -1,4 +1,6 @@
 // Table of contents of brushsvg._core: one bind_<stem>.cpp per header.
+#include <cstdlib>
+
 #include "bindings.hpp"
 #include "brushsvg/error.hpp"
 
@@ -35,7 +37,7 @@ PYBIND11_MODULE(_core, m) {
     });
 
 #ifdef GOOGLE_STRIP_LOG  // Ceres logs by glog, not by its miniglog: searches that lead nowhere are told by our errors
-    FLAGS_minloglevel = google::GLOG_ERROR;
+    if (!std::getenv("GLOG_minloglevel")) FLAGS_minloglevel = google::GLOG_ERROR;
 #endif
 
     bind_profile(m);

@@ -1,5 +1,6 @@
 """Fitted laws held against numpy and scipy, which know nothing of them."""
 
+import os
 import subprocess
 import sys
 
@@ -226,5 +227,13 @@ for points in (12, 16, 20, 24, 28):
 
 def test_a_search_that_leads_nowhere_is_told_by_its_error_alone():
     """Of marks that no brush paints; Ceres logs what it could not solve."""
-    done = subprocess.run([sys.executable, "-c", STARS], capture_output=True, text=True, check=True)
+
+    def told(**surroundings: str):
+        surroundings = {k: v for k, v in os.environ.items() if k != "GLOG_minloglevel"} | surroundings
+        return subprocess.run(
+            [sys.executable, "-c", STARS], capture_output=True, text=True, check=True, env=surroundings
+        )
+
+    done = told()
     assert (done.stdout.split(), done.stderr) == (["fit-failed"] * 5, "")
+    assert "Linear solver failure" in told(GLOG_minloglevel="0").stderr, "who asks for them reads them"
