@@ -169,7 +169,9 @@ def _within_reach(found: list, brush, options: Options, partly: bool) -> _Lines:
     painted, wanted, notices = within_reach(strokes, brush, options.wide)
     drawn = list(found)
     if _leads(options):
-        drawn, painted, wanted = with_left_limbs(drawn, painted, wanted, brush, _fills_corners(options))
+        drawn, painted, wanted = with_left_limbs(
+            drawn, painted, wanted, brush, _fills_corners(options), options.wide != "clamp"
+        )
     return _Lines(drawn, painted, wanted, notices, refused, left_out)
 
 
