@@ -266,3 +266,19 @@ def test_the_sharp_corners_of_a_z_are_filled_by_strokes_of_their_own(brush):
     one, three = (region(marks_of(each, brush)) for each in (whole, parts))
     overlaps = [shape.intersection(mark).area / shape.union(mark).area for mark in (one, three)]
     assert overlaps[1] > overlaps[0] + 0.01
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_thin_serif_is_cut_from_the_stem_that_it_widens_into(brush, side):
+    """Beside an arm there is no corner, and one stroke bulged out by 3.6 mm2 where it was pressed as it turned."""
+    outline = [(6, 10), (20, 10), (20, 13), (30, 9), (30, 10), (20, 15.2)]
+    outline += [(20, 50), (12, 50), (12, 10.8), (6, 10.8)]
+    points = " ".join(f"{18 + side * (x - 18)} {y}" for x, y in outline)
+    whole = of(f"M{points}Z", FILL)
+    shape = region([ring for stroke in whole for ring in stroke.wanted_mm])
+    parts = squared_at_corners(whole, brush)
+    assert (len(whole), len(parts)) == (2, 3)
+    one, three = (
+        region(marks_of(each, brush)).difference(shape.buffer(0.15)).area for each in (whole, parts)
+    )
+    assert one > 3 and three < 0.1

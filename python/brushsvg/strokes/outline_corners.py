@@ -30,13 +30,18 @@ WORTH = 0.15  # two strokes for one, in squares of the half width: the outer cor
 BULGES = 6.0  # how many times what sticks out of the shape counts more: the eye minds it more
 HOPELESS = -0.25  # what legs along their axes lose more of is not won along edges (73 corners of characters)
 PLAIN = 0.04  # beside that, what is won is plain in pixels: they are off by 0.013 at most (257 corners of characters)
+# A bend in which a line becomes so many times as wide within so many of its half widths, as of a thin serif into its
+# stem: a brush that is pressed there while it turns bulges out of the shape. Cut where the mark does so by so much, in
+# squares of the half width, if at most half of that is left.
+NECK, WITHIN, SWOLLEN, SWELLS = 2.0, 1.5, 0.02, 0.5
+EVEN_MM = 0.1
 HARDLY_WIDER = 1.05  # than the brush: what is wider yet may be painted in passes
 
 
 def squared_at_corners(strokes: list, brush) -> list:
-    """The strokes, those of outlines cut at each corner of 40 to 150 degrees where two marks lie nearer to the shape by
-    0.15 squares of the half width, in paint missing and too much. The parts of `id` are called id, id~2, id~3 ...; the
-    later ones begin pointed, on what those before painted."""
+    """The strokes, those of outlines cut at each corner of 40 to 150 degrees, and where they widen in a bend and bulge
+    out of the shape, where two marks lie nearer to it by 0.15 squares of the half width, in paint missing and too much.
+    The parts of `id` are called id, id~2, id~3 ...; the later ones begin pointed, on what those before painted."""
     from .. import _core
 
     need(brush, _core.Brush, "a brush")
@@ -60,15 +65,23 @@ def squared_at_corners(strokes: list, brush) -> list:
 
 
 def _parts(stroke, brush) -> list:
-    if not stroke.wanted_mm or stroke.closed or len(stroke.middle_mm) < 2:
+    if not stroke.wanted_mm or stroke.closed:
         return [stroke]
     line = drawn_line(np.asarray(stroke.middle_mm).reshape(-1, 4, 2), stroke.half_width)
-    turning = [k for k in range(1, len(line.cubics)) if LEAST_RAD < line.turn_rad(k) < MOST_RAD]
     length_mm = knots(line.cubics)[:, -1].sum()
-    ends_mm = [0.0, *(line.at[k] * length_mm for k in turning), length_mm]
-    last = len(turning) - 1
+    turning_mm = [
+        line.at[k] * length_mm for k in range(1, len(line.cubics)) if LEAST_RAD < line.turn_rad(k) < MOST_RAD
+    ]
+    necks = _necks(line, length_mm, turning_mm)
+    spots_mm = sorted([*turning_mm, *necks])
+    ends_mm = [0.0, *spots_mm, length_mm]
+    last = len(spots_mm) - 1
     ways = [
-        [way for away in (CLOSE, AWAY, FARTHER) if (way := _corner(line, *ends, away, (k > 0, k < last)))]
+        [
+            way
+            for away in (CLOSE, AWAY, FARTHER)
+            if (way := _corner(line, *ends, away, (k > 0, k < last), necks.get(ends[1])))
+        ]
         for k, ends in enumerate(zip(ends_mm, ends_mm[1:], ends_mm[2:], strict=False))
     ]
     if not any(ways):
@@ -77,12 +90,17 @@ def _parts(stroke, brush) -> list:
     better: list[_Corner] = []
     best = _seen([stroke], wanted, brush)
     for corners in filter(None, ways):
+        is_neck = corners[0].at_mm in necks
+        if is_neck and best.bulge_mm2 < SWOLLEN * max(corners[0].legs_mm) ** 2:
+            continue
 
-        def won(corner: _Corner, than: _Seen = best) -> tuple[float, _Corner, _Seen]:
+        def won(corner: _Corner, than: _Seen = best, is_neck=is_neck) -> tuple[float, _Corner, _Seen]:
             parts = _cut(stroke, line, [*better, corner])
             if not parts:
                 return 0.0, corner, than
             seen = _seen(parts, wanted, brush)
+            if is_neck and seen.bulge_mm2 > SWELLS * than.bulge_mm2:
+                return 0.0, corner, than
             return _won(than, seen, stroke.wanted_mm, brush, max(corner.legs_mm)), corner, seen
 
         along_axes = [won(each) for each in corners]
@@ -100,6 +118,30 @@ def _parts(stroke, brush) -> list:
             better.append(most[1])
             best = most[2]
     return _cut(stroke, line, better) or [stroke] if better else [stroke]
+
+
+def _necks(line: Line, length_mm: float, corners_mm: list[float]) -> dict[float, float]:
+    """Arc lengths at which a line that bends there becomes NECK times as wide or thin, none beside its corners, and
+    half the width of its wide part."""
+    at_mm = np.arange(0.0, length_mm, EVEN_MM)
+    if len(at_mm) < 3:
+        return {}
+    half = np.array(_halves(line, *(at_mm / length_mm)))
+    slope = np.abs(np.gradient(half, at_mm))
+    found: dict[float, float] = {}
+    for side in (-1, 1):
+        reach_mm = at_mm + side * WITHIN * half
+        (wide,) = np.nonzero(NECK * np.interp(reach_mm, at_mm, half) < half)
+        for run in np.split(wide, np.flatnonzero(np.diff(wide) > 1) + 1) if len(wide) else []:
+            first, last = sorted((reach_mm[run[0 if side < 0 else -1]], at_mm[run[-1 if side < 0 else 0]]))
+            rises = (at_mm >= first) & (at_mm <= last)
+            spot, widest = float(at_mm[rises][slope[rises].argmax()]), float(half[run].max())
+            beside_mm = np.clip([spot - widest, spot + widest], EVEN_MM, length_mm - EVEN_MM)
+            (_, before), (_, after) = (_at(line, each) for each in beside_mm)
+            is_free = all(abs(each - spot) > WITHIN * widest for each in [*corners_mm, *found])
+            if is_free and before @ after < np.cos(LEAST_RAD):
+                found[spot] = widest
+    return found
 
 
 @dataclass(frozen=True)
@@ -147,13 +189,20 @@ class _Corner:
 
 
 def _corner(
-    line: Line, before_mm: float, at_mm: float, after_mm: float, away: float, are_shared: tuple[bool, bool]
+    line: Line,
+    before_mm: float,
+    at_mm: float,
+    after_mm: float,
+    away: float,
+    are_shared: tuple[bool, bool],
+    half_mm: float | None,
 ) -> _Corner | None:
-    """A corner with its legs, up to the next ones, straight from so many half widths beside it on, of a leg that is
-    shared with the next corner no farther than its middle; none where one of them has no room."""
+    """A corner, half so wide, or as the line is there, with its legs, up to the next ones, straight from so many half
+    widths beside it on, of a leg that is shared with the next corner no farther than its middle; none where one of them
+    has no room."""
     lengths = at_mm - before_mm, after_mm - at_mm
     whole_mm = knots(line.cubics)[:, -1].sum()
-    (here,) = _halves(line, at_mm / whole_mm)
+    here = half_mm or _halves(line, at_mm / whole_mm)[0]
     looked_at = [min(LEG * here, length_mm / 2) for length_mm in lengths]
     legs = _halves(line, (at_mm - looked_at[0]) / whole_mm, (at_mm + looked_at[1]) / whole_mm)
     away_mm = []
