@@ -291,6 +291,23 @@ def test_what_lies_inside_of_a_crossing_that_nothing_runs_through_is_wanted_by_a
     assert _core.area(wanted(outline_strokes(shape))) == pytest.approx(_core.area(shape), rel=0.02)
 
 
+def test_slivers_are_no_strokes():
+    bar, sliver = "M0 5H20V9H0Z", "M20 9L40 9.004L20 9.008Z"
+    (stroke,) = painted(path(bar + sliver))
+    assert stroke.middle_mm[:, 0::2].max() < 21
+    with refused("nothing-to-paint outline area"):
+        painted(path(sliver))
+
+
+def test_the_branches_amid_a_sun_are_of_no_stroke_where_nothing_is_nearest_to_them():
+    from brushsvg.strokes.skeleton import outline_strokes
+
+    turn, random = np.linspace(0, 2 * np.pi, 88, endpoint=False), np.random.default_rng(2)
+    radius = np.where(np.arange(88) % 2, 24.0, 7.3 + random.uniform(0, 1e-3, 88))
+    made = outline_strokes([radius[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])])
+    assert len(made) > 40 and all(stroke.wanted_mm for stroke in made)
+
+
 def test_strokes_of_random_shapes_make_up_the_shape_and_stay_in_it():
     from brushsvg.strokes.skeleton import outline_strokes
 
