@@ -102,7 +102,7 @@ def painted(text: str, font: bytes, size_mm: float, brush_name: str, compensatio
         mark_rings,
         _pieces(unpainted(bare, strokes), shape, finest),
         _pieces(bare, shape, finest),
-        any(notice.code == "unreached" for notice in work.notices),
+        any(notice.code in ("unreached", "mark-misses") for notice in work.notices),
         shape.intersection(mark).area / shape.union(mark).area,
         len(work.notices),
         _thorns(mark_rings, shape),

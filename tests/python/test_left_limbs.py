@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 import shapely
 
-from brushsvg import find_brush
+from brushsvg import _core, find_brush
 from brushsvg.drawing.svg import read_svg
 from brushsvg.evaluation import report
 from brushsvg.pipeline.options import Options
 from brushsvg.pipeline.prediction import predict
 from brushsvg.pipeline.preparation import prepare
 from brushsvg.strokes.extraction import strokes
-from brushsvg.strokes.swept_areas import region
+from brushsvg.strokes.swept_areas import region, rings_of
 from brushsvg.strokes.wide_shapes import within_reach
 
 SVG = (
@@ -84,16 +84,45 @@ def knobbed(out_mm, long_mm):
     return [(20, 10), (24, 10), *((round(x, 2), round(y, 2)) for x, y in knob), (24, 50), (20, 50)]
 
 
-def test_a_small_knob_along_its_stem_is_told_rather_than_a_blob_painted(tmp_path):
-    work = prepared(tmp_path, knobbed(3, 6))
-    assert [stroke.id for stroke in work.strokes] == ["p"]
-    assert [notice.where for notice in work.notices] == ["p"]
-
-
-def test_a_large_one_is_painted(tmp_path):
-    work = prepared(tmp_path, knobbed(4, 8))
+@pytest.mark.parametrize("out_mm", [2.5, 3, 4])
+def test_a_knob_along_its_stem_is_painted_along_its_edge_and_is_no_blob(tmp_path, out_mm):
+    """A straight stroke into it turned the outline by a full turn more, or left a tenth of it."""
+    corners = knobbed(out_mm, 2 * out_mm)
+    work = prepared(tmp_path, corners)
     assert [stroke.id for stroke in work.strokes] == ["p", "p~2"]
     assert not work.notices
+    mark, shape = predict(work).outline_mm, rings_of(shape_of(corners))
+    assert _core.excess_turning(mark, shape) < 0.3
+    assert _core.overlap(mark, shape) > 0.98
+
+
+def swelling(broadest_mm):
+    """A stroke of 48 mm that swells from 5 mm."""
+    along = np.linspace(-24, 24, 33)
+    half = 2.5 + (broadest_mm / 2 - 2.5) * np.cos(np.pi * along / 48) ** 2
+    left, right = (np.round(np.column_stack([30 + side * half, 30 + along]), 3).tolist() for side in (-1, 1))
+    return [*left, *right[::-1]]
+
+
+def test_what_a_brush_is_too_narrow_for_is_painted_unless_its_width_is_to_be_the_nearest(tmp_path):
+    broad = swelling(10.8)
+    work = prepared(tmp_path, broad)
+    assert [stroke.id for stroke in work.strokes] == ["p", "p~2", "p~3"]
+    assert _core.overlap(predict(work).outline_mm, rings_of(shape_of(broad))) > 0.98
+    assert [(each.code, each.advice) for each in work.notices] == [("width-out-of-reach", "")]
+    work = prepared(tmp_path, broad, wide="clamp")
+    assert [stroke.id for stroke in work.strokes] == ["p"]
+    assert work.notices[0].advice
+
+
+def test_all_strokes_of_a_drawing_are_painted_wider_than_the_brush_or_none(tmp_path):
+    """Sides of 2.9 %; those of stems of 9.1 mm are too thin for the brush, and would stay as they are."""
+    broad = swelling(10.4)
+    assert [stroke.id for stroke in prepared(tmp_path, broad).strokes] == ["p", "p~2", "p~3"]
+    stems = "".join(f'<path id="s{x}" d="M{x} 6h9.1v48h-9.1z"/>' for x in (2, 46))
+    file = tmp_path / "p.svg"
+    file.write_text(file.read_text().replace("</svg>", f"{stems}</svg>"))
+    assert [stroke.id for stroke in prepare(file, Options()).strokes] == ["p", "s2", "s46"]
 
 
 def test_it_is_called_as_the_stroke_it_leaves_and_comes_behind_it(tmp_path):

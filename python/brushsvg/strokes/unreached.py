@@ -46,7 +46,7 @@ def unreached(drawn: list, painted: list, brush) -> list[Blank]:
     return [
         piece
         for element, rings, strokes in _shapes(drawn, painted, brush)
-        for piece in _told_rims(
+        for piece in told_rims(
             _pieces(element, rings, strokes, brush),
             [found_as[stroke.id] for stroke in strokes if stroke.id in found_as],
         )
@@ -88,8 +88,8 @@ def _shapes(drawn: list, painted: list, brush):
             yield element, _core.unite(rings), paint[element]
 
 
-def _told_rims(pieces: list[Blank], strokes: list) -> list[Blank]:
-    """Those of which most is reached by discs of the strokes as they were found are rims."""
+def told_rims(pieces: list[Blank], strokes: list) -> list[Blank]:
+    """The pieces; those of which most is reached by discs of the strokes as they were found are rims."""
     if not pieces:
         return []
     discs = _discs(strokes)
