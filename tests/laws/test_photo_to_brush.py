@@ -207,7 +207,7 @@ def test_many_marks_astray_are_refused():
 
 
 def test_the_table_round_paper_that_is_smaller_than_the_print_is_no_mark(tmp_path, capsys):
-    """Printed at 103 %, an A5 page ends within the sheet that its markers span: the table was read as the mark of arc-4."""
+    """Printed at 103 %, a page ends within what its markers span: the table was read as the mark of arc-4."""
     middle = np.array(printed().plan.sheet_mm) / 2
 
     def larger(points):

@@ -612,8 +612,8 @@ def _faces_away(cell: Cell) -> list[Notice]:
     if not cell.tool or tilt_deg < STEEP_DEG or ahead_mm <= 0:
         return []
     sentence = (
-        f"the paper leans {tilt_deg:.0f} degrees and faces away from the robot's origin, as if painted from behind: seen "
-        "from its front, the third point lies to the left of the way from the first to the second"
+        f"the paper leans {tilt_deg:.0f} degrees and faces away from the robot's origin, as if painted from behind: "
+        "seen from its front, the third point lies to the left of the way from the first to the second"
     )
     return [Notice("paper", sentence, code="paper-faces-away")]
 

@@ -31,9 +31,9 @@ LEAST_SHARE = 0.8
 LEAST_LIMB = 0.1
 MOST_BRANCHES = 20_000  # of a shape: a millisecond each, where a page of letters has some thousands
 MOST_CUT = 200_000  # points of a shape times its strokes: letters have some thousands
-# Slivers are left where curves cross that should touch. To land for one, no wider than this anywhere, would leave a touch
-# of the brush, or is refused as less than a program can tell. And where they touch the shape, moving corners apart for
-# the medial axis made their sides cross: it went out of the shape, by as much as 28 m.
+# Slivers are left where curves cross that should touch. To land for one, no wider than this anywhere, would leave a
+# touch of the brush, or is refused as less than a program can tell. And where they touch the shape, moving corners
+# apart for the medial axis made their sides cross: it went out of the shape, by as much as 28 m.
 SLIVER_MM = 0.01
 HAIR = 0.01  # of a stroke's greatest width: no brush paints a point of no width
 # How far round an end it is looked whether others cover it, beyond what of its half width, and how much of that
@@ -45,8 +45,8 @@ _ROUND = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0, 2 
 @dataclass(frozen=True)
 class OutlineStroke:
     """middle_mm: cubics (n, 8); half_width: [(fraction of arc length, mm)]; wanted_mm: rings of its part of the shape.
-    The parts of all strokes make up the shape, none is empty; where they cross, it belongs to both. covered: whether its
-    start and its end are covered by others, most of what lies round them being of the shape."""
+    The parts of all strokes make up the shape, none is empty; where they cross, it belongs to both. covered: whether
+    its start and its end are covered by others, most of what lies round them being of the shape."""
 
     middle_mm: np.ndarray
     half_width: list[tuple[float, float]]
