@@ -23,6 +23,7 @@ from brushsvg.brush.confidence import law_band  # noqa: E402
 from brushsvg.calibration.chart.file import write_chart  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
 from brushsvg.calibration.from_marks import refuse_many  # noqa: E402
+from brushsvg.calibration.sheet_scale import SheetScale  # noqa: E402
 from brushsvg.calibration.stray_marks import strays  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
 
@@ -198,5 +199,34 @@ def test_many_marks_astray_are_refused():
     some = [SimpleNamespace(mark=SimpleNamespace(stroke=f"arc-{k}")) for k in range(6)]
     painted = SimpleNamespace(marks=[None] * 25)
     refuse_many(tuple(some[:5]), painted)
-    with refused("marks-outlying 6 25 '[0, 5]' arc-0 arc-1"):
-        refuse_many(tuple(some), painted)
+    for scale in (None, SheetScale((0.04, 0.02), (0.04, 0.02), (0.04, 0.015), 44)):
+        with refused("marks-outlying 6 25 '[0, 5]' arc-0 arc-1"):
+            refuse_many(tuple(some), painted, scale)
+    with refused("marks-scaled 4.00 larger"):
+        refuse_many(tuple(some), painted, SheetScale((0.04, 0.002), (0.04, 0.002), (0.04, 0.0015), 44))
+
+
+def test_the_table_round_paper_that_is_smaller_than_the_print_is_no_mark(tmp_path, capsys):
+    """Printed at 103 %, a page ends within what its markers span: the table was read as the mark of arc-4."""
+    middle = np.array(printed().plan.sheet_mm) / 2
+
+    def larger(points):
+        return tuple(map(tuple, (np.array(points) - middle) * 1.03 + middle))
+
+    markers = tuple(replace(each, corners_mm=larger(each.corners_mm)) for each in printed().markers)
+    sheet = photograph.page(replace(printed(), markers=markers, labels=()))
+    for rings in marks().values():
+        sheet.paint(rings, BLUE)
+    (tmp_path / "photo.jpg").write_bytes(photograph.photograph(sheet, CAMERA))
+    (tmp_path / "chart.json").write_text(write_chart(printed()))
+    words = [
+        "calibrate",
+        tmp_path / "photo.jpg",
+        "--chart",
+        tmp_path / "chart.json",
+        "-o",
+        tmp_path / "own.json",
+    ]
+    status, _, told = in_json(capsys, *words)
+    assert status == 1 and are_told([told[-1][1]], "marks-scaled smaller bar"), told
+    assert in_json(capsys, *words, "--bar", f"{1.03 * printed().bar.length_mm:.1f}")[0] == 0

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import agrees, in_json, is_told, refused
+from diagnostics import agrees, are_told, in_json, is_told, refused
 
 from brushsvg.cli import main
 from brushsvg.machine.cell import Paper, Reload, Servo, Station, Tool, robot_from_paper
-from brushsvg.machine.cell_check import out_of_reach, remarks
+from brushsvg.machine.cell_check import check, out_of_reach, remarks
 from brushsvg.machine.cell_file import SHIPPED, cell_names, find_cell, parse_cell, read_cell, write_cell
 from brushsvg.machine.frames import frame_of_pose, moved, normal_tilt_deg, rotation, rotation_vector
 from brushsvg.machine.posts import POSTS
@@ -294,6 +294,21 @@ def test_paper_that_was_taught_for_a_servo_lies_level_with_it():
         assert refusal.value.where == "paper"
     with refused("paper-tilted 0"):
         parse_cell(text.replace("[paper]", "[paper]\norigin_mm = [0, 0, 1]"))
+
+
+@pytest.mark.parametrize("towards", [(1, 0), (0, -1), (-0.6, 0.8)])
+def test_a_wall_that_was_taught_facing_away_is_told(towards):
+    """Before a robot that looks that way, from left to right, and up."""
+    x, y = towards
+    left, right = ((600 * x - side * y, 600 * y + side * x, 300.0) for side in (150.0, -150.0))
+    up = (left[0] + 40 * x, left[1] + 40 * y, 500.0)  # it leans back
+    cell = replace(find_cell("ur5e"), workspace=replace(find_cell("ur5e").workspace, tilt_limit_deg=120.0))
+    towards_it = replace(cell, paper=Paper(taught_mm=(left, right, up)))
+    away = replace(cell, paper=Paper(taught_mm=(right, left, (*np.add(up, right)[:2] - left[:2], 500.0))))
+    for each in (towards_it, away):
+        check(each)
+    assert [notice for notice in remarks(towards_it) if notice.code == "paper-faces-away"] == []
+    assert are_told([notice for notice in remarks(away) if notice.where == "paper"], "paper-faces-away left")
 
 
 @pytest.mark.parametrize(

@@ -86,6 +86,7 @@ WRITERS = {  # what is typed, what is written, and what more is said of it
     "import a.svg out.png": "2 strokes",
     "import one.svg out.svg --editable": "1 stroke",
     "text T out.svg --font font.svg": "",
+    "simulate-photo a.svg out.jpg": "2 strokes, simulated",
     "border a.svg out.ngc": "takes about [0-9]+ s",
     "height out.ngc": "21 strokes, takes about [0-9]+ s",
     "chart out.ngc --page out.svg --chart out.json --strokes few": "[0-9]+ strokes, takes about [0-9] min [0-9]{2} s",

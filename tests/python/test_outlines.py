@@ -291,6 +291,61 @@ def test_what_lies_inside_of_a_crossing_that_nothing_runs_through_is_wanted_by_a
     assert _core.area(wanted(outline_strokes(shape))) == pytest.approx(_core.area(shape), rel=0.02)
 
 
+def test_slivers_are_no_strokes():
+    bar, sliver = "M0 5H20V9H0Z", "M20 9L40 9.004L20 9.008Z"
+    (stroke,) = painted(path(bar + sliver))
+    assert stroke.middle_mm[:, 0::2].max() < 21
+    with refused("nothing-to-paint outline area"):
+        painted(path(sliver))
+
+
+def test_loops_that_are_slivers_leave_a_ring_wherever_it_begins():
+    from brushsvg.geometry.rings import signed_area, without_slivers
+
+    bar = [[0, 0], [10, 0], [10, 4], [0, 4]]
+    tail = [[10, 4], [14, 4.001], [14, 4.004]]  # touches the bar at a corner, and has a tail of its own
+    ring = np.array(
+        [*bar[:3], *tail[1:2], [14, 4.001], [16, 4.001], [16, 4.002], [14, 4.001], tail[2], *bar[2:]], float
+    )
+    for k in range(len(ring)):
+        left = without_slivers(np.roll(ring, k, axis=0), 0.01)
+        assert signed_area(left) == pytest.approx(40) and left[:, 0].max() == 10, k
+    blob = [[10, 4], [14, 3], [14, 6]]
+    both = np.array([*bar[:3], *blob[1:], *bar[2:]], float)
+    assert (without_slivers(both, 0.01) == both).all()
+    thin = np.array([[0, 0], [9, 0], [9, 0.001]])
+    assert (without_slivers(thin, 0.01) == thin).all(), "there is nothing else"
+
+
+def test_slivers_that_touch_a_shape_take_its_axis_nowhere():
+    """Moved apart where they touch, their sides crossed, and the axis went on outside, some meters far."""
+    from brushsvg.strokes.skeleton import outline_strokes
+
+    random = np.random.default_rng(1)
+    for _ in range(100):
+        count = random.integers(2, 8)
+        x = np.cumsum([0, 2, *10 ** random.uniform(-3, 0.5, count)])
+        joints = np.column_stack([x, 5 + 0.01 * random.normal(size=len(x))])
+        half = np.array([0.6, *10 ** random.uniform(-4.5, -2.6, count)])
+        middles = 0.5 * (joints[1:] + joints[:-1])
+        below, above = (middles + np.outer(side * half, (0, 1)) for side in (-1, 1))
+        there = np.stack([below, joints[1:]], axis=1).reshape(-1, 2)
+        back = np.stack([above, joints[:-1]], axis=1)[::-1].reshape(-1, 2)
+        ring = np.vstack([joints[:1], there, back[:-1]]).round(5)
+        for stroke in outline_strokes([ring]):
+            points = stroke.middle_mm.reshape(-1, 2)
+            assert (np.abs(points - (1, 5)) < 1.1).all()
+
+
+def test_the_branches_amid_a_sun_are_of_no_stroke_where_nothing_is_nearest_to_them():
+    from brushsvg.strokes.skeleton import outline_strokes
+
+    turn, random = np.linspace(0, 2 * np.pi, 88, endpoint=False), np.random.default_rng(2)
+    radius = np.where(np.arange(88) % 2, 24.0, 7.3 + random.uniform(0, 1e-3, 88))
+    made = outline_strokes([radius[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])])
+    assert len(made) > 40 and all(stroke.wanted_mm for stroke in made)
+
+
 def test_strokes_of_random_shapes_make_up_the_shape_and_stay_in_it():
     from brushsvg.strokes.skeleton import outline_strokes
 

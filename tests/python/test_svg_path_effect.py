@@ -32,6 +32,15 @@ def test_the_line_that_was_drawn_with_its_width():
     assert not design.notices
 
 
+@pytest.mark.parametrize("reference", ["#ä", "#%C3%A4"])
+def test_effects_are_referred_to_as_urls_do(reference):
+    effects = EFFECT.format(
+        points="0,1 | 1.5,3", kind="Linear", scale=1, effect="powerstroke", visible="true"
+    )
+    drawn = (effects.replace('id="e"', 'id="ä"'), PATH.format("").replace('"#e"', f'"{reference}"'))
+    assert width_at(read("<defs>{}</defs>{}".format(*drawn)), 0) == pytest.approx(2)
+
+
 def test_widths_scale_with_the_transform_and_the_effect():
     assert width_at(powered(scale=1.5, more='transform="scale(2)"'), 0) == pytest.approx(6)
     assert width_at(powered("1.5,-3 | 0,1"), 0.75) == pytest.approx(6), "sorted; the side does not matter"

@@ -96,6 +96,8 @@ def test_what_a_viewport_hides_is_left_out_or_told():
     [
         ('<use id="u" href="#none"/>', "use-of-nothing '#none'", False),
         ('<use id="u" href="other.svg#a"/>', "use-of-nothing 'other.svg#a'", False),
+        ('<use id="u" href=" #l"/>', "use-of-nothing u ' #l' blanks browsers", False),
+        ('<use id="u" href="#l "/>', "use-of-nothing u '#l ' blanks browsers", False),
         ('<use id="u"/>', "use-of-nothing", False),
         ('<use id="u" href="#u"/>', "use-of-itself u #u", True),
         ('<g id="g"><use id="u" href="#g"/></g>', "use-of-itself u #g", True),

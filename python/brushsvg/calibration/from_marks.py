@@ -102,7 +102,7 @@ def calibrate_marks(
     fit, gain = _likelier_tail(painted.marks, options)
     astray = tuple(strays(painted.marks, fit))
     if leave_out_strays and astray:
-        refuse_many(astray, painted)
+        refuse_many(astray, painted, _scale(fit, painted))
         gone = {each.mark.stroke for each in astray}
         painted = painted.without(gone)
         fit, gain = _likelier_tail(painted.marks, options, fit.laws)
@@ -140,13 +140,15 @@ def calibrate_marks(
     )
 
 
-def refuse_many(astray: tuple[Stray, ...], painted: Painted) -> None:
+def refuse_many(astray: tuple[Stray, ...], painted: Painted, scale: SheetScale | None = None) -> None:
+    """scale: of the sheet, where another one may be what takes marks aside."""
     most = math.floor(MOST * len(painted.marks))
     if len(astray) > most:
+        refuse_scale(scale)
         raise Error(
             f"{len(astray)} of {len(painted.marks)} marks are not where or what the others say, the range is "
             f"[0, {most}]: {', '.join(each.mark.stroke for each in astray)}; does anything lie on the page, is the "
-            "paint smeared, and is it the page on which this chart was painted?",
+            "paint smeared, is it the page on which this chart was painted, and is its bar as long as it says?",
             "marks",
             len(astray),
             code="marks-outlying",

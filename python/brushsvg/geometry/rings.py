@@ -30,3 +30,29 @@ def with_holes(rings: list[np.ndarray]) -> list[list[np.ndarray]]:
             areas.append([])
         areas[-1].append(ring)
     return areas
+
+
+def without_slivers(ring: np.ndarray, width_mm: float) -> np.ndarray:
+    """A ring that may touch itself without the loops between two touches that are no wider than this on the mean."""
+    places = list(map(tuple, ring.tolist()))
+    kept = np.ones(len(ring), bool)
+
+    def leave_out_thin(loop: list[int]) -> None:
+        round_mm = np.hypot(*(np.roll(ring[loop], -1, axis=0) - ring[loop]).T).sum()
+        if 2 * abs(signed_area(ring[loop])) <= width_mm * round_mm:
+            kept[loop] = False
+
+    way: list[int] = []
+    seen: dict[tuple, int] = {}
+    for k, place in enumerate(places):
+        if (first := seen.get(place)) is not None:
+            loop = way[first:]
+            del way[first:]
+            for number in loop:
+                del seen[places[number]]
+            leave_out_thin(loop)
+        seen[place] = len(way)
+        way.append(k)
+    if kept.sum() > len(way):
+        leave_out_thin(way)
+    return ring[kept]

@@ -33,6 +33,9 @@ from .move_extents import from_origin, ways
 from .smooth_field import steepest
 from .workspace_limits import astray
 
+STEEP_DEG = (
+    45.0  # from here on paper is painted from the robot's side alone; flatter, an arm may reach across it
+)
 LEAST_GRID_MM, MOST_MAP_MM = 5.0, 5.0  # how far apart a map's lines are at least, and how high or low it is
 MOST_BENT = 0.1  # of a field, mm in a mm: as far off as scale and skew may be; from 1 on a sheet would fold
 JOINTS = 6  # of an arm: with more of them, angles for a place are no longer few
@@ -599,7 +602,20 @@ def remarks(cell: Cell) -> list[Notice]:
         found.append(Notice("tool.tcp_mm", sentence, code="unusual-value", about="tool.tcp_mm"))
     if cell.paper.example:
         found.append(OF_EXAMPLE)
-    return found + _corner(cell)
+    return found + _faces_away(cell) + _corner(cell)
+
+
+def _faces_away(cell: Cell) -> list[Notice]:
+    """Paper on a wall, of which the robot stands at the back: the points were taught the other way round."""
+    frame = robot_from_paper(cell)
+    tilt_deg, ahead_mm = normal_tilt_deg(frame), float(frame[:2, 2] @ frame[:2, 3])
+    if not cell.tool or tilt_deg < STEEP_DEG or ahead_mm <= 0:
+        return []
+    sentence = (
+        f"the paper leans {tilt_deg:.0f} degrees and faces away from the robot's origin, as if painted from behind: "
+        "seen from its front, the third point lies to the left of the way from the first to the second"
+    )
+    return [Notice("paper", sentence, code="paper-faces-away")]
 
 
 def _corner(cell: Cell) -> list[Notice]:

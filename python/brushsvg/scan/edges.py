@@ -30,6 +30,9 @@ MOST_MISSING = 0.5  # share of the strokes
 LEAST_MM2 = 0.5
 BLOT = 0.03  # of a mark's area: smaller parts are splashes
 RIM_MM = 2.0  # along the sheet's edges, where the table and shadows show
+ALONG_RIM = (
+    0.3  # of a side: what goes along it so far is the table round paper that is smaller than the page's print
+)
 LEAST_LENGTH = 0.3  # of its box, that a mark is long at least: less is a splash where a stroke is missing
 CLEAR_MM = 0.5  # within a mark's edge, from where on blur takes nothing away
 MOST_BLURRED = 1.3  # times as much paint a narrow mark may have as it shows
@@ -94,9 +97,13 @@ def paint_seen(flat: Flat, print_: np.ndarray, rooms: list[Room], labels_mm=()) 
     weights = _contrast(sample)
     paint = cv2.transform(taken, weights[None])
     paint[print_ == 1] = 0.0
-    rim = max(1, round(RIM_MM * flat.px_per_mm))
+    rim = _rim_px(flat)
     paint[:rim] = paint[-rim:] = paint[:, :rim] = paint[:, -rim:] = 0.0
     return paint
+
+
+def _rim_px(flat: Flat) -> int:
+    return max(1, round(RIM_MM * flat.px_per_mm))
 
 
 def _paper(light: np.ndarray, print_: np.ndarray, px_per_mm: float) -> tuple[np.ndarray, bool]:
@@ -268,6 +275,7 @@ def _told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: lis
     of_text = np.bincount(part[text], minlength=count)
     kept = (areas > 0.5 * LEAST_MM2 * fine**2) & (of_text < 0.7 * areas)
     kept[0] = False
+    kept &= ~_along_rim(part, count, _rim_px(flat))
     home = shares[:, 1:].argmax(axis=1) + 1
     home[shares[:, 1:].max(axis=1) == 0] = 0
     second = np.sort(shares[:, 1:], axis=1)[:, -2] if len(rooms) > 1 else np.zeros(count)
@@ -298,6 +306,12 @@ def _told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: lis
             code="mark-missing",
         )
     return Marks(outlines, missing, joined, paint)
+
+
+def _along_rim(part: np.ndarray, count: int, rim: int) -> np.ndarray:
+    """Which parts go along a side of the sheet."""
+    sides = (part[rim], part[-rim - 1], part[:, rim], part[:, -rim - 1])
+    return np.any([np.bincount(side, minlength=count) > ALONG_RIM * len(side) for side in sides], axis=0)
 
 
 def _reaches(other, areas, fine: float) -> np.ndarray:

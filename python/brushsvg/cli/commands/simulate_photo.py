@@ -41,7 +41,7 @@ def simulate_photo_file(args) -> None:
         page = JobPage(chart, 0.0, ()) if chart else job_page(work.plan, work.title)
         made = simulated_photo(page, strokes, studio, args.seed)
     write(args, {args.output: made}, len(strokes), more="simulated")
-    if args.studio is None and not args.quiet:
+    if args.studio is None:
         tell(write_studio(studio))
 
 

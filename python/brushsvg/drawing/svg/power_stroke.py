@@ -19,6 +19,7 @@ from ...geometry import cubics
 from ...geometry.arc_length import knots
 from ..design import SubPath
 from .path_data import numbers
+from .references import referred
 
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 _PER_SEGMENT = 16  # knots of the width profile on each segment
@@ -62,8 +63,10 @@ def drawn_line(
     if not original:
         return None, []
     references = node.get(INKSCAPE + "path-effect", "").split(";")
-    effects = [by_id[name] for text in references if (name := text.strip().removeprefix("#")) in by_id]
-    effects = [effect for effect in effects if effect.get("is_visible", "true") != "false"]
+    found = (referred(reference.strip(), by_id) for reference in references)
+    effects = [
+        effect for effect in found if effect is not None and effect.get("is_visible", "true") != "false"
+    ]
     power = [effect for effect in effects if effect.get("effect") == "powerstroke"]
     kinds = [re.sub("[^A-Za-z0-9_]", "", str(effect.get("effect")))[:40] for effect in effects]
     if not power:

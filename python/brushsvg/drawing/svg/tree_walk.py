@@ -273,13 +273,9 @@ class Walk:
                     node, context, "it has no href, so it uses nothing: left out", code="use-of-nothing"
                 )
                 return
-            shown = repr(reference[:40])
-            lacking = (
-                "is nowhere in the drawing" if reference.startswith("#") else "lies outside of the drawing"
-            )
-            self.notes.add(
-                node, context, f"what it uses, {shown}, {lacking}: left out", code="use-of-nothing"
-            )
+            lacking = _why_nothing(reference, self.by_id)
+            sentence = f"what it uses, {reference[:40]!r}, {lacking}: left out"
+            self.notes.add(node, context, sentence, code="use-of-nothing")
             return
         if target in self.entered or target is node:
             sentence = f"it uses {reference[:40]}, in which it lies itself: left out"
@@ -301,6 +297,12 @@ class Walk:
             size=(attributes.get("width"), attributes.get("height")),
         )
         self._enter(node, iter((target,)), inner)
+
+
+def _why_nothing(reference: str, by_id: dict[str, ET.Element]) -> str:
+    if referred(reference.strip(), by_id) is not None:
+        return "has blanks around it and so refers to nothing, as in browsers"
+    return "is nowhere in the drawing" if reference.startswith("#") else "lies outside of the drawing"
 
 
 def _applies(node: ET.Element) -> bool:

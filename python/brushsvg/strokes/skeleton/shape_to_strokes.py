@@ -12,7 +12,7 @@ import numpy as np
 
 from ... import _core
 from ...errors import Error
-from ...geometry.rings import with_holes
+from ...geometry.rings import with_holes, without_slivers
 from ...geometry.rotation import rotation
 from .cut_ends import run_to_cuts
 from .graph import Skeleton, skeleton
@@ -31,6 +31,10 @@ LEAST_SHARE = 0.8
 LEAST_LIMB = 0.1
 MOST_BRANCHES = 20_000  # of a shape: a millisecond each, where a page of letters has some thousands
 MOST_CUT = 200_000  # points of a shape times its strokes: letters have some thousands
+# Slivers are left where curves cross that should touch. To land for one, no wider than this anywhere, would leave a
+# touch of the brush, or is refused as less than a program can tell. And where they touch the shape, moving corners
+# apart for the medial axis made their sides cross: it went out of the shape, by as much as 28 m.
+SLIVER_MM = 0.01
 HAIR = 0.01  # of a stroke's greatest width: no brush paints a point of no width
 # How far round an end it is looked whether others cover it, beyond what of its half width, and how much of that
 # suffices: of a stem below thin serifs less than half, of the outside of a corner a quarter.
@@ -41,8 +45,8 @@ _ROUND = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0, 2 
 @dataclass(frozen=True)
 class OutlineStroke:
     """middle_mm: cubics (n, 8); half_width: [(fraction of arc length, mm)]; wanted_mm: rings of its part of the shape.
-    The parts of all strokes make up the shape; where they cross, it belongs to both. covered: whether its start and its
-    end are covered by others, most of what lies round them being of the shape."""
+    The parts of all strokes make up the shape, none is empty; where they cross, it belongs to both. covered: whether
+    its start and its end are covered by others, most of what lies round them being of the shape."""
 
     middle_mm: np.ndarray
     half_width: list[tuple[float, float]]
@@ -54,7 +58,7 @@ class OutlineStroke:
 def outline_strokes(rings: list[np.ndarray]) -> list[OutlineStroke]:
     """Strokes of a shape, in the order and direction of writing; rings as _core.fill returns them. Error if it has more
     branches than any lettering."""
-    areas = with_holes(rings)
+    areas = [[without_slivers(ring, SLIVER_MM) for ring in area] for area in with_holes(rings)]
     axes = [_core.medial_axis(area, LEAST_SHARE, LEAST_LIMB) for area in areas]
     if (count := sum(len(branches) for _, branches in axes)) > MOST_BRANCHES:
         raise Error(
@@ -62,7 +66,8 @@ def outline_strokes(rings: list[np.ndarray]) -> list[OutlineStroke]:
         )
     boxes = np.array([[*area[0].min(axis=0), *area[0].max(axis=0)] for area in areas]).reshape(-1, 4)
     alone = side_by_side(boxes)
-    return [stroke for k in in_rows(boxes) for stroke in _strokes(areas[k], *axes[k], alone[k])]
+    found = [stroke for k in in_rows(boxes) for stroke in _strokes(areas[k], *axes[k], alone[k])]
+    return [stroke for stroke in found if 2 * max(half for _, half in stroke.half_width) > SLIVER_MM]
 
 
 def _strokes(
@@ -77,7 +82,8 @@ def _strokes(
     if len(chains) == 1:
         return [_stroke(chains[0], area, area)]
     cuts = len(chains) * sum(map(len, area)) < MOST_CUT
-    strokes = [_stroke(chain, _part(chain, found, area if cuts else None), area) for chain in chains]
+    parts = [_part(chain, found, area if cuts else None) for chain in chains]
+    strokes = [_stroke(chain, part, area) for chain, part in zip(chains, parts, strict=True) if part]
     return with_shared_corners(strokes, area) if cuts else strokes
 
 
