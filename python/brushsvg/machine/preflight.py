@@ -93,9 +93,12 @@ def check_rounding(cell: Cell, tolerance_mm: float) -> None:
         )
 
 
-def off_sheet(marks: _core.Marks, brush: _core.Brush, sheet_mm, of_drawing: bool = True) -> list[Notice]:
+def off_sheet(
+    marks: _core.Marks, brush: _core.Brush, sheet_mm, of_drawing: bool = True, rounded_mm: float = 0.0
+) -> list[Notice]:
     """A notice of the stroke for each side of the sheet [mm] that a stroke's paint crosses. of_drawing: whether it was
-    made of one, which flags lay out anew; they have no effect on a plan."""
+    made of one, which flags lay out anew; they have no effect on a plan. rounded_mm: by how much rounding alone takes
+    the tool elsewhere than was planned: it may move an edge so much farther."""
     found = []
     advice = (
         "move the drawing or make room with --origin X,Y, --sheet WxH or --fit WxH"
@@ -115,9 +118,12 @@ def off_sheet(marks: _core.Marks, brush: _core.Brush, sheet_mm, of_drawing: bool
                 advice=advice,
             )
             for side, beyond in beyond_edges(bounds_mm, sheet_mm).items()
-            if beyond >= 0.005  # what would print as 0.00 mm is rounding, not paint
+            if beyond >= 0.005 + _LEVER * rounded_mm  # what would print as 0.00 mm is rounding, not paint
         ]
     return found
+
+
+_LEVER = 5.0  # times as far as a tool is moved an edge of its mark moves at most: a lag grows by 3 mm per mm of depth
 
 
 def bounds_mm(marks: _core.Marks, brush: _core.Brush) -> tuple[float, float, float, float]:

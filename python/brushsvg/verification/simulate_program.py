@@ -106,7 +106,8 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
         is_counted = cell.reload and len(visited) == len(cut)
         dips = [[0.0] if not is_counted or visited[k] else [] for k in range(len(cut))]
         _core.narrow(marks, brush.paint, dips)
-    problems += broken_limits(meant, sheet_mm, brush, _rounded(cell)) + off_sheet(marks, brush, sheet_mm)
+    problems += broken_limits(meant, sheet_mm, brush, _rounded(cell))
+    problems += off_sheet(marks, brush, sheet_mm, rounded_mm=slack)
     return Ran(plan, ran, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests))
 
 
