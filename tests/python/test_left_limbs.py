@@ -109,7 +109,10 @@ def test_what_a_brush_is_too_narrow_for_is_painted_unless_its_width_is_to_be_the
     work = prepared(tmp_path, broad)
     assert [stroke.id for stroke in work.strokes] == ["p", "p~2", "p~3"]
     assert _core.overlap(predict(work).outline_mm, rings_of(shape_of(broad))) > 0.98
-    assert [stroke.id for stroke in prepared(tmp_path, broad, wide="clamp").strokes] == ["p"]
+    assert [(each.code, each.advice) for each in work.notices] == [("width-out-of-reach", "")]
+    work = prepared(tmp_path, broad, wide="clamp")
+    assert [stroke.id for stroke in work.strokes] == ["p"]
+    assert work.notices[0].advice
 
 
 def test_all_strokes_of_a_drawing_are_painted_wider_than_the_brush_or_none(tmp_path):

@@ -169,10 +169,19 @@ def _within_reach(found: list, brush, options: Options, partly: bool) -> _Lines:
     painted, wanted, notices = within_reach(strokes, brush, options.wide)
     drawn = list(found)
     if _leads(options):
-        drawn, painted, wanted = with_left_limbs(
+        drawn, painted, wanted, beside = with_left_limbs(
             drawn, painted, wanted, brush, _fills_corners(options), options.wide != "clamp"
         )
+        whole = {stroke.id for stroke in painted if stroke.origin.element in beside}
+        notices = [_painted_beside(each) if each.where in whole else each for each in notices]
     return _Lines(drawn, painted, wanted, notices, refused, left_out)
+
+
+def _painted_beside(notice: Notice) -> Notice:
+    """What is told of a stroke that is wider than the brush, of one that others fill up."""
+    if notice.about != "wider":
+        return notice
+    return replace(notice, sentence=f"{notice.sentence}, and what is left by strokes of its own", advice="")
 
 
 def _compensated(lines: _Lines, compensated, partly: bool) -> tuple[_Lines, _core.Compensated]:

@@ -38,22 +38,26 @@ _SWEPT_MM = 0.02
 
 @dataclass(frozen=True)
 class _Limb:
-    """A stroke into a blank piece: rings of what it paints of the shape, the piece with it, and of the piece; how much
-    it wins; is_side: along what the brush is too narrow for, of less than a lost piece."""
+    """A stroke into a blank piece; rings of what it paints of the shape, the piece with it; how much it wins."""
 
     stroke: object
     own_mm: list[np.ndarray]
-    blank_mm: list[np.ndarray]
+    piece: Blank
     won_mm2: float
-    is_side: bool
+
+    @property
+    def is_side(self) -> bool:
+        """Whether the brush is too narrow for what it paints, which were not lost without."""
+        return self.piece.is_rim and self.piece.share < MISSED_SHARE
 
 
 def with_left_limbs(
     drawn: list, painted: list, wanted: list, brush, are_corners_filled: bool, are_sides_painted: bool
-) -> tuple[list, list, list]:
+) -> tuple[list, list, list, set[str]]:
     """All three lists, with a stroke more for each large blank piece that one paints: of more than 3 % of its shape, or
     0.5 % where corners are filled too and the brush is not too large for that. It comes behind those of its element,
-    and is called as the stroke that it leaves, with a lane of its own.
+    and is called as the stroke that it leaves, with a lane of its own. And the elements that are wider than the brush
+    and painted there, too.
 
     drawn: strokes as they were found; painted, wanted: as within_reach returns them, strokes to paint and what each
     should become; are_sides_painted: along what a stroke of the brush's greatest width leaves of a wider one, too,
@@ -79,11 +83,11 @@ def with_left_limbs(
         limbs = [each for each in every if each.stroke.origin.element == element]
         if limbs:
             meant = [each.stroke.replaced(wanted_mm=each.own_mm) for each in limbs]
-            limbs_mm = [ring for each in limbs for ring in each.blank_mm]
+            limbs_mm = [ring for each in limbs for ring in each.piece.rings]
             wanted = [_without(stroke, element, limbs_mm) for stroke in wanted]
             painted = _behind([each.stroke for each in limbs], painted)
             drawn, wanted = _behind(meant, drawn), _behind(meant, wanted)
-    return drawn, painted, wanted
+    return drawn, painted, wanted, {each.piece.element for each in every if each.piece.is_rim}
 
 
 def _sides_mm2(drawn: list, painted: list, brush) -> float:
@@ -143,8 +147,8 @@ def _limbs(element: str, drawn: list, painted: list, brush, least, are_sides_pai
             break
         hosts = [*own, *(each.stroke for each in limbs)]
         ways = _into(piece, hosts, shape, brush)
-        is_rim = told_rims([piece], found)[0].is_rim
-        if are_sides_painted or not is_rim:
+        (piece,) = told_rims([piece], found)
+        if are_sides_painted or not piece.is_rim:
             ways += _along_edges(piece, hosts, shape, brush)
         best = _best(ways, piece, mark, paint, wanted, brush)
         if best is None:
@@ -153,7 +157,7 @@ def _limbs(element: str, drawn: list, painted: list, brush, least, are_sides_pai
         limb, own_mm, mark, won_mm2 = best
         paint = np.maximum(paint, wanted.painted(trial_marks([limb], brush).passes, brush))
         meant = _core.unite([*_core.intersect(own_mm, shape), *piece.rings])
-        limbs.append(_Limb(limb, meant, piece.rings, won_mm2, is_rim and piece.share < MISSED_SHARE))
+        limbs.append(_Limb(limb, meant, piece, won_mm2))
     repeats = sorted({stroke.origin.repeat for stroke in every})
     return [
         replace(each, stroke=each.stroke.replaced(id=_core.StrokeId(element, of.part, repeat, of.lane)))
