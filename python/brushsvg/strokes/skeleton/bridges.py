@@ -41,6 +41,8 @@ def _grid(count: int) -> np.ndarray:
 
 
 _AROUND, _FINELY_AROUND = _grid(17), _grid(41)
+# Places times points of the outline, of which it is asked whether they lie in the shape: a second.
+_MOST_ASKED = 200_000_000
 
 
 # A belly: a disc so much wider than both arms where they leave it, whose middle lies no farther aside of the straight
@@ -125,10 +127,14 @@ def _join_along_edges(crossing: Crossing, rings: list[np.ndarray]) -> None:
 def find_forks(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     """Two limbs that turn sharply beside a third, as the arm and the leg of a k before their short bar, are no one line
     where that leaves more of the shape bare than either that runs straight on."""
+    forks = []
     for crossing in crossings:
         limbs = [arm for arm in crossing.arms if arm.mate is not None]
-        if len(crossing.arms) != 3 or not limbs or turn_across(*limbs) < STRAIGHTEST_RAD:
-            continue
+        if len(crossing.arms) == 3 and limbs and turn_across(*limbs) > STRAIGHTEST_RAD:
+            forks.append((crossing, limbs))
+    if not _can_ask(len(forks), rings):
+        return
+    for crossing, limbs in forks:
         around = _inside(crossing, rings)
         find_ends([crossing], rings)
         together = _bare(crossing, _inwards(crossing), around)
@@ -144,12 +150,19 @@ def find_forks(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
 def find_ends(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     """How the arms that end at crossings run on into them. Without room for their width up to the middle, as two limbs
     that meet beside a stem, they end before it, if that leaves less bare than to narrow up to there."""
-    for arm, crossing, lead in find_ways_in(crossings, rings):
+    shorter = find_ways_in(crossings, rings)
+    if not _can_ask(sum(len(crossing.discs) for _, crossing, _ in shorter), rings):
+        return
+    for arm, crossing, lead in shorter:
         around = _inside(crossing, rings)
         narrowed = _bare(crossing, _inwards(crossing), around)
         arm.lead = lead
         if _bare(crossing, _inwards(crossing), around) + NOTCH > narrowed:
             arm.lead = None
+
+
+def _can_ask(discs: int, rings: list[np.ndarray]) -> bool:
+    return discs * len(_FINELY_AROUND) * sum(map(len, rings)) < _MOST_ASKED
 
 
 def _inside(crossing: Crossing, rings: list[np.ndarray]) -> np.ndarray:
@@ -255,10 +268,13 @@ def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
             for arm, end in zip(crossing.arms, own, strict=True)
         ]
         _keep_bent(crossing, around[k], min(bare))
-        _keep_disc(crossing, onward, around[k][is_within(around[k], rings)])
+        if _can_ask(len(corners), rings):
+            _keep_disc(crossing, onward, around[k], rings)
 
 
-def _keep_disc(crossing: Crossing, ways: list[np.ndarray], around: np.ndarray) -> None:
+def _keep_disc(
+    crossing: Crossing, ways: list[np.ndarray], around: np.ndarray, rings: list[np.ndarray]
+) -> None:
     """The wide one of two lines begins in the disc of a corner, as wide as that, and the thin one runs on, two
     strokes, if that leaves less bare: a bowl that widens towards a thin bar, as of a bold serif's e."""
     thin, wide = sorted((0, 1), key=lambda n: float(crossing.arms[n].line[crossing.arms[n].out, 2]))
@@ -270,6 +286,7 @@ def _keep_disc(crossing: Crossing, ways: list[np.ndarray], around: np.ndarray) -
         or crossing.discs[0, 2] < BELLY * other.line[other.out, 2]
     ):
         return
+    around = around[is_within(around, rings)]
     into = straight(crossing.discs[0, :2], float(crossing.discs[0, 2]), other.line[other.out])
     chosen = [stub(arm, crossing) for arm in crossing.arms]
     if _bare(crossing, [ways[thin], into], around) + NOTCH < _bare(crossing, chosen, around):
