@@ -11,8 +11,11 @@ import uharfbuzz
 from fontTools.pens.boundsPen import BoundsPen
 from fontTools.ttLib import TTFont
 
+from brushsvg import _core
 from brushsvg.drawing import read_drawing
+from brushsvg.drawing.svg import read_svg
 from brushsvg.drawing.text import text_svg
+from brushsvg.strokes.extraction import strokes
 
 SVG = "{http://www.w3.org/2000/svg}"
 LINES = Path("/usr/share/inkscape/extensions/svg_fonts")
@@ -112,6 +115,14 @@ def test_kerning_is_harfbuzz_s():
     _, (first, second) = outlines("AV", size_mm=100)
     apart = numbers(second)[:, 0].min() - numbers(first)[:, 0].min()
     assert apart == pytest.approx((advance + left["V"] - left["A"]) * 100 / 2048, abs=2e-4)
+
+
+def test_the_bar_of_a_bold_e_runs_straight_and_comes_before_its_bowl():
+    document, _ = text_svg("e", DEJAVU.with_name("DejaVuSerif-Bold.ttf").read_bytes(), size_mm=46)
+    made = strokes(read_svg(document.encode()))[0]
+    bar, bowl = (_core.flatten(stroke, 0.02) for stroke in made)
+    assert bar[0, 0] < bar[-1, 0] - 15 and np.ptp(bar[:, 1]) < 0.5
+    assert bowl[0, 0] > bowl[:, 0].mean() and bowl[-1, 2] > 50
 
 
 def bounds(character):

@@ -54,8 +54,19 @@ SHAPES = {
 }
 
 
+# An arm and a leg, cut off straight, whose outer edges meet at the right edge of a stem, or would meet amid it.
+LIMBS = {
+    "K": [(3.2, -1.8), (23, -21.6), (28, -16.6), (10.8, 0.6), (24, 13.8), (20.5, 17.3), (3.2, 0)],
+    "forked k": [(3.1, -1), (21, -18.9), (26.2, -13.7), (12.5, 0), (26.2, 13.7), (21, 18.9), (3.1, 1)],
+}
+
+
 def found(name: str):
-    shape = _core.unite([ring for line in SHAPES[name] for ring in swept(*line)])
+    if name in LIMBS:
+        limbs = np.array(LIMBS[name], float)
+        shape = _core.unite([*swept(straight((0, 30.0), (0, -22.0)), 3.9), limbs])
+    else:
+        shape = _core.unite([ring for line in SHAPES[name] for ring in swept(*line)])
     made = outline_strokes(shape)
     strokes = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in made]
     return region(shape), strokes
@@ -92,3 +103,37 @@ def test_the_arm_of_a_k_runs_on_into_its_stem_as_wide_as_it_is():
     arm = min(lines, key=lambda line: -line[:, :2].sum(axis=1).max() if np.ptp(line[:, 0]) > 5 else 0)
     assert arm[:, 0].min() < 1.0
     assert arm[:, 3].min() > 0.85 * 3.5
+
+
+@pytest.mark.parametrize("name", LIMBS)
+def test_limbs_that_meet_beside_a_stem_leave_no_wedges_there(name):
+    shape, strokes = found(name)
+    painted = region(_core.unite([ring for each in strokes for ring in _core.wanted_outline(each, 0.01)]))
+    bare = shapely.difference(shape.buffer(-SEEN_MM), painted)
+    assert bare.intersection(shapely.box(-4, -8, 12, 8)).area < 0.3
+    assert shapely.difference(painted, shape.buffer(SEEN_MM)).area < 0.05
+
+
+def test_a_serif_beside_the_leg_of_an_m_keeps_its_height_and_its_width():
+    leg = np.array([(-11.7, 6.0), (-8.6, 6.0), (1.3, 28.0), (1.3, 30.0), (-0.9, 30.0)])
+    boxes = [((0, 0), (8.7, 30)), ((0, 27.2), (13.0, 30))]
+    corners = [np.array([a, (b[0], a[1]), b, (a[0], b[1])], float) for a, b in boxes]
+    lines = [
+        _core.flatten(_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width), 0.02)
+        for s in outline_strokes(_core.unite([leg, *corners]))
+    ]
+    assert len(lines) == 3
+    serif = max(lines, key=lambda line: line[:, 0].max())
+    assert serif[:, 0].min() < 2.0 and np.ptp(serif[:, 1]) < 0.3 and np.ptp(serif[:, 3]) < 0.3
+
+
+def test_a_bowl_that_widens_towards_a_thin_bar_leaves_no_wedge_in_the_counter():
+    outside = [(-12, -2.9), (9.5, -2.9), (8.5, 2.5), (6.4, 6), (4, 10), (0, 12.5)]
+    counter = [(-3, 10.5), (-1, 8.5), (-0.2, 5), (0, 2), (0, 0), (-12, 0)]
+    rings = _core.unite([np.array(outside + counter, float)])
+    strokes = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width) for s in outline_strokes(rings)]
+    painted = region(_core.unite([ring for each in strokes for ring in _core.wanted_outline(each, 0.01)]))
+    bare = shapely.difference(region(rings).buffer(-SEEN_MM), painted)
+    assert bare.intersection(shapely.box(-2, -2.6, 4, 6)).area < 0.3
+    bar = min((_core.flatten(each, 0.02) for each in strokes), key=lambda line: line[:, 0].min())
+    assert len(strokes) == 2 and bar[:, 0].max() > 6 and np.ptp(bar[:, 1]) < 0.5

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+import shapely
 
 from brushsvg import Error, _core, area, coverage, find_brush, overlap, unite
+from brushsvg.geometry.rings import is_within
 
 SQUARE = np.array([[0, 0], [4, 0], [4, 4], [0, 4.0]])
 
@@ -59,3 +61,13 @@ def test_rings_that_run_clockwise_are_refused_not_lost():
         assert (refused.value.code, refused.value.value) == ("outline-clockwise", -16)
     assert area([turned]) == -16
     assert coverage([turned], (0, 0, 4, 4), 1.0).min() == 1
+
+
+def test_places_lie_within_rings_as_shapely_has_it():
+    random = np.random.default_rng(5)
+    around = np.linspace(0, 2 * np.pi, 90, endpoint=False)
+    outer = (5 + np.sin(7 * around))[:, None] * np.column_stack([np.cos(around), np.sin(around)])
+    hole, places = 0.4 * outer[::-1], random.uniform(-7, 7, (3000, 2))
+    inside = shapely.contains_xy(shapely.Polygon(outer, [hole]), *places.T)
+    assert (is_within(places, [outer, hole]) == inside).all()
+    assert not is_within(places, []).any()

@@ -22,6 +22,22 @@ def centroid(rings: list[np.ndarray]) -> np.ndarray:
     return moment / area if area > 1e-9 else np.vstack(rings).mean(axis=0)
 
 
+def is_within(places: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
+    """Which places (n, 2) lie in an odd number of rings."""
+    x, y = places.T
+    is_odd = np.zeros(len(places), bool)
+    for ring in rings:
+        low, high = ring.min(axis=0), ring.max(axis=0)
+        near = np.flatnonzero((x < high[0]) & (y > low[1]) & (y < high[1]))
+        a, b = ring, np.roll(ring, -1, axis=0)
+        is_across = (a[:, 1] > y[near, None]) != (b[:, 1] > y[near, None])
+        k, edge = np.nonzero(is_across)
+        share = (y[near[k]] - a[edge, 1]) / (b[edge, 1] - a[edge, 1])
+        is_ahead = a[edge, 0] + share * (b[edge, 0] - a[edge, 0]) > x[near[k]]
+        is_odd[near] ^= np.bincount(k[is_ahead], minlength=len(near)) % 2 == 1
+    return is_odd
+
+
 def with_holes(rings: list[np.ndarray]) -> list[list[np.ndarray]]:
     """Each outer ring with its holes, which follow it."""
     areas: list[list[np.ndarray]] = []

@@ -6,12 +6,15 @@ import numpy as np
 
 from ... import _core
 from ...geometry.cubics import at
-from .edges import amid, beside_edges, can_follow, find_bent_ends
-from .junctions import STRAIGHTEST_RAD, Arm, Crossing, turn_across
+from ...geometry.rings import is_within
+from .edges import amid, beside_edges, can_follow, find_bent_ends, find_ways_in
+from .junctions import STEM_END, STRAIGHTEST_RAD, Arm, Crossing, turn_across
 
 # Of the shape around a corner, what lines that end beside each other may leave bare beside those that meet: a u's bend
 # is one stroke's.
 NOTCH = 0.01
+# What one line of two limbs has to leave bare beside a third, more than two lines do, of the shape around.
+FORK = 0.04
 # Of a line's width, what there must be room for where it begins: at the end of a stem that sticks out at a corner less,
 # as of an n with a hump, which narrows towards its top. Farther up a straight stem would have to be a wedge.
 WHOLE, IN_HUMP = 0.95, 0.5
@@ -29,10 +32,17 @@ WHOLE_STEM = 0.5
 UNLIKE = 0.6  # of the wider: a bowl that widens towards a bar so thin would leave a wedge in the counter
 AS_WIDE = 0.9  # of the wider of two lines: where a thinner one ends, that would have to be a wedge
 _PLACES = 25  # looked at on the way from a corner's disc to where the lines of its arms meet
-_GRID = np.stack(np.meshgrid(*2 * [np.linspace(-1.6, 1.6, 17)]), axis=-1).reshape(-1, 2)
-_AROUND = _GRID[
-    np.hypot(*_GRID.T) <= 1.6
-]  # in radii of a corner's disc: where lines that meet there may leave a notch
+
+
+def _grid(count: int) -> np.ndarray:
+    """In radii of a disc: where lines that meet there may leave a notch."""
+    places = np.stack(np.meshgrid(*2 * [np.linspace(-1.6, 1.6, count)]), axis=-1).reshape(-1, 2)
+    return places[np.hypot(*places.T) <= 1.6]
+
+
+_AROUND, _FINELY_AROUND = _grid(17), _grid(41)
+# Places times points of the outline, of which it is asked whether they lie in the shape: a second.
+_MOST_ASKED = 200_000_000
 
 
 # A belly: a disc so much wider than both arms where they leave it, whose middle lies no farther aside of the straight
@@ -114,6 +124,60 @@ def _join_along_edges(crossing: Crossing, rings: list[np.ndarray]) -> None:
                 return
 
 
+def find_forks(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
+    """Two limbs that turn sharply beside a third, as the arm and the leg of a k before their short bar, are no one line
+    where that leaves more of the shape bare than either that runs straight on."""
+    forks = []
+    for crossing in crossings:
+        limbs = [arm for arm in crossing.arms if arm.mate is not None]
+        if len(crossing.arms) == 3 and limbs and turn_across(*limbs) > STRAIGHTEST_RAD:
+            forks.append((crossing, limbs))
+    if not _can_ask(len(forks), rings):
+        return
+    for crossing, limbs in forks:
+        around = _inside(crossing, rings)
+        find_ends([crossing], rings)
+        together = _bare(crossing, _inwards(crossing), around)
+        for arm in limbs:
+            arm.mate = None
+        find_ends([crossing], rings)
+        if together < _bare(crossing, _inwards(crossing), around) + FORK:
+            limbs[0].mate, limbs[1].mate = limbs[1], limbs[0]
+        for arm in crossing.arms:
+            arm.lead = None
+
+
+def find_ends(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
+    """How the arms that end at crossings run on into them. Without room for their width up to the middle, as two limbs
+    that meet beside a stem, they end before it, if that leaves less bare than to narrow up to there."""
+    shorter = find_ways_in(crossings, rings)
+    if not _can_ask(sum(len(crossing.discs) for _, crossing, _ in shorter), rings):
+        return
+    for arm, crossing, lead in shorter:
+        around = _inside(crossing, rings)
+        narrowed = _bare(crossing, _inwards(crossing), around)
+        arm.lead = lead
+        if _bare(crossing, _inwards(crossing), around) + NOTCH > narrowed:
+            arm.lead = None
+
+
+def _can_ask(discs: int, rings: list[np.ndarray]) -> bool:
+    return discs * len(_FINELY_AROUND) * sum(map(len, rings)) < _MOST_ASKED
+
+
+def _inside(crossing: Crossing, rings: list[np.ndarray]) -> np.ndarray:
+    """Places of the shape around a crossing."""
+    around = np.vstack([(x, y) + radius * _FINELY_AROUND for x, y, radius in crossing.discs])
+    return around[is_within(around, rings)]
+
+
+def _inwards(crossing: Crossing) -> list[np.ndarray]:
+    """What the lines of a crossing are in it."""
+    return [
+        stub(arm, crossing) if arm.mate is None else bridge(arm, arm.mate, crossing) for arm in crossing.arms
+    ]
+
+
 def find_bars(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     """Lines that end at a stem, beyond which the shape goes on a little, too little for a branch of its own, as the
     bars of t and f do: how far beyond the middle of the stem they run."""
@@ -170,10 +234,7 @@ def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     ways = [way for crossing in corners for way in _ways(crossing)]
     places = np.array([tail + np.linspace(0, 1, _PLACES)[:, None] * by for tail, by in ways])
     around = np.array([disc[:2] + disc[2] * _AROUND for disc in (crossing.discs[0] for crossing in corners)])
-    asked = np.vstack([np.reshape(places, (-1, 2)), np.reshape(around, (-1, 2))])
-    rooms = np.array(_core.clearance(rings, asked))
-    inside = np.reshape(rooms[len(ways) * _PLACES :] > 0, (-1, len(_AROUND)))
-    rooms = np.reshape(rooms[: len(ways) * _PLACES], (-1, 3, _PLACES))
+    rooms = np.reshape(_core.clearance(rings, np.reshape(places, (-1, 2))), (-1, 3, _PLACES))
     reach_mm = np.reshape([np.hypot(*by) for _, by in ways], (-1, 3))[:, 1:].ravel()
     find_bent_ends(corners, reach_mm, rings)
     for k, (crossing, along) in enumerate(zip(corners, np.reshape(places, (-1, 3, _PLACES, 2)), strict=True)):
@@ -195,14 +256,41 @@ def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
             _bare(
                 crossing,
                 [straight(*end, arm.line[arm.out]) for arm, end in zip(crossing.arms, ends, strict=True)],
-                around[k][inside[k]],
+                around[k],
             )
             for ends in (own, [meet, meet])
         ]
         crossing.corner = meet
         for arm, end in zip(crossing.arms, own if bare[0] < bare[1] + NOTCH else [meet, meet], strict=True):
             arm.corner = end
-        _keep_bent(crossing, around[k][inside[k]], min(bare))
+        onward = [
+            arm.lead if arm.lead is not None else straight(*end, arm.line[arm.out])
+            for arm, end in zip(crossing.arms, own, strict=True)
+        ]
+        _keep_bent(crossing, around[k], min(bare))
+        if _can_ask(len(corners), rings):
+            _keep_disc(crossing, onward, around[k], rings)
+
+
+def _keep_disc(
+    crossing: Crossing, ways: list[np.ndarray], around: np.ndarray, rings: list[np.ndarray]
+) -> None:
+    """The wide one of two lines begins in the disc of a corner, as wide as that, and the thin one runs on, two
+    strokes, if that leaves less bare: a bowl that widens towards a thin bar, as of a bold serif's e."""
+    thin, wide = sorted((0, 1), key=lambda n: float(crossing.arms[n].line[crossing.arms[n].out, 2]))
+    one, other = crossing.arms[thin], crossing.arms[wide]
+    is_unlike = one.line[one.out, 2] < UNLIKE * other.line[other.out, 2]
+    if (
+        not is_unlike
+        or crossing.dropped < STEM_END
+        or crossing.discs[0, 2] < BELLY * other.line[other.out, 2]
+    ):
+        return
+    around = around[is_within(around, rings)]
+    into = straight(crossing.discs[0, :2], float(crossing.discs[0, 2]), other.line[other.out])
+    chosen = [stub(arm, crossing) for arm in crossing.arms]
+    if _bare(crossing, [ways[thin], into], around) + NOTCH < _bare(crossing, chosen, around):
+        one.lead, other.lead, crossing.has_tip = ways[thin], into, True
 
 
 def _keep_bent(crossing: Crossing, around: np.ndarray, most_bare: float) -> None:

@@ -118,9 +118,12 @@ def amid(arm: Arm, crossing: Crossing) -> np.ndarray:
     return start + max(float((crossing.discs[:, :2].mean(axis=0) - start) @ back), 0.0) * back
 
 
-def find_ends(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
+def find_ways_in(
+    crossings: list[Crossing], rings: list[np.ndarray]
+) -> list[tuple[Arm, Crossing, np.ndarray]]:
     """How the arms that end at crossings run on into them, amid them at least: with the width they have, until lines
-    that run through cover them, as far as the shape has room for it."""
+    that run through cover them, as far as the shape has room for it. Returns those without room up to the middle, where
+    a line runs through, with their ways as far as they have room."""
     ending = [
         (arm, crossing)
         for crossing in crossings
@@ -129,7 +132,7 @@ def find_ends(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
         if arm.mate is None and arm.beyond_mm is None and arm.line[arm.out, 2] > 0
     ]
     if not ending or not can_follow(len(ending), rings):
-        return
+        return []
     starts = np.array([arm.line[arm.out] for arm, _ in ending])
     ahead = np.array([-arm.direction for arm, _ in ending])
     to_mid = np.array([np.hypot(*amid(arm, crossing) - arm.line[arm.out, :2]) for arm, crossing in ending])
@@ -139,17 +142,24 @@ def find_ends(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     tangents = np.array([_tangent(arm) for arm, _ in ending])
     places, _ = ways_on(starts, ahead, tangents, reach_mm, rings)
     rooms = np.array(_core.clearance(rings, places.reshape(-1, 2))).reshape(len(ending), -1)
+    short = []
     for k, (arm, crossing) in enumerate(ending):
         half = starts[k, 2]
         last = int(np.logical_and.accumulate(rooms[k] >= ROOM * half).sum()) - 1
         mid = min(round(to_mid[k] / reach_mm[k] * STEPS), STEPS)
         through = _through(crossing)
-        end = mid + _covered_at(places[k, mid:], half, through)
-        if last < mid or min(end, last) == 0 or (len(through) and half > WIDER * through[:, 2].max()):
+        covering = np.vstack([through, *(_beginning(leg) for leg in crossing.beside)])
+        end = min(mid + _covered_at(places[k, mid:], half, covering), last)
+        if end <= 0 or (len(through) and half > WIDER * through[:, 2].max()):
             continue  # no room for its width, or a stem that ends in a thin bar: narrowed
-        way = places[k, : min(end, last) + 1]
+        way = places[k, : end + 1]
         widths = np.minimum(rooms[k, : len(way)], half)
-        arm.lead = np.column_stack([way, widths])[:0:-1]
+        lead = np.column_stack([way, widths])[:0:-1]
+        if last >= mid:
+            arm.lead = lead
+        elif len(through):
+            short.append((arm, crossing, lead))
+    return short
 
 
 def find_bent_ends(corners: list[Crossing], reach_mm: np.ndarray, rings: list[np.ndarray]) -> None:
@@ -208,6 +218,12 @@ def _through(crossing: Crossing) -> np.ndarray:
         for part in (arm.line[arm.out :][:STEPS], *([] if arm.bridge is None else [arm.bridge]))
     ]
     return np.vstack([_finer(part) for part in rows]) if rows else np.empty((0, 3))
+
+
+def _beginning(arm: Arm) -> np.ndarray:
+    """Rows of the line that begins at a corner."""
+    begins = [] if arm.corner is None else [[*arm.corner[0], arm.corner[1]]]
+    return _finer(np.vstack([*begins, arm.line[arm.out :][:STEPS]]))
 
 
 def _finer(rows: np.ndarray) -> np.ndarray:

@@ -10,8 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .bridges import bridge, find_bars, find_bridges, find_corners, stub
-from .edges import find_ends
+from .bridges import bridge, find_bars, find_bridges, find_corners, find_ends, find_forks, stub
 from .junctions import Arm, Crossing, crossings_of
 
 BARE = 0.2  # of the places along a branch inside of a crossing: with less the lines that cross there paint it
@@ -46,6 +45,7 @@ def skeleton(rings: list[np.ndarray], nodes: np.ndarray, branches: list) -> Skel
     degree = np.bincount(np.array(ends, int).ravel(), minlength=len(nodes))
     crossings, arms = crossings_of(nodes, lines, ends, degree)
     find_corners(crossings, rings)
+    find_forks(crossings, rings)
     find_bars(crossings, rings)
     find_bridges(crossings, rings)
     find_ends(crossings, rings)
@@ -95,9 +95,10 @@ def _paint_inside(crossings: list[Crossing], pieces: list[Piece], lines: list[np
         for number in {*piece.ends, *piece.through}:
             at_crossing.setdefault(number, []).append(piece)
     for number, crossing in enumerate(crossings):
-        near = at_crossing.get(number, ())
+        near = at_crossing.get(number, [])
         if not near:
             continue
+        near = [*near, *(piece for leg in crossing.beside for piece in at_crossing.get(leg.crossing, ()))]
         for branch in crossing.inner:
             middle = lines[branch][:, :2]
             bare = np.ones(len(middle), bool)

@@ -65,6 +65,7 @@ class Crossing:
     dropped: float = 0.0  # the largest that a branch dropped there would add, in squares of the radius
     inner: list[int] = field(default_factory=list)  # branches between its nodes
     arms: list[Arm] = field(default_factory=list)
+    beside: list[Arm] = field(default_factory=list)  # at corners in its disc; see _leave_out_stem_end
     has_tip: bool = False  # of legs that meet, which are strokes of their own
     corner: tuple[np.ndarray, float] | None = (
         None  # where both arms begin, and the half width there; see joints
@@ -115,6 +116,8 @@ def crossings_of(nodes, lines, ends, degree) -> tuple[list[Crossing], list[Arm]]
     for crossing in crossings:
         _leave_out_tip(crossing)
         _join(crossing)
+    for crossing in crossings:
+        _leave_out_stem_end(crossing, crossings)
     return crossings, [arm for arm in arms if arm.branch not in crossings[arm.crossing].inner]
 
 
@@ -132,6 +135,25 @@ def _leave_out_tip(crossing: Crossing) -> None:
             crossing.inner.append(tip.branch)
             crossing.has_tip = True
             return
+
+
+def _leave_out_stem_end(crossing: Crossing, crossings: list[Crossing]) -> None:
+    """What lies between a crossing and a corner in its disc is no line if it goes on as a thin one: the top of a stem,
+    beside which the leg of an M or N begins and out of which a serif leads."""
+    if crossing.is_corner:
+        return
+    for arm in crossing.arms:
+        if arm.mate is None or arm.other is None or arm.other.mate is not None:
+            continue
+        corner = crossings[arm.other.crossing]
+        if not corner.is_corner:
+            continue
+        reach = CROSSING_REACH * (crossing.discs[:, 2].max() + corner.discs[:, 2].max())
+        thin = arm.mate.line[arm.mate.out, 2]
+        if length(arm.line[:, :2]) < reach and thin < NECK * arm.line[arm.out, 2]:
+            arm.mate.mate = arm.mate = None
+            crossing.inner.append(arm.branch)
+            crossing.beside += [leg for leg in corner.arms if leg is not arm.other]
 
 
 def _are_legs(one: Arm, two: Arm) -> bool:

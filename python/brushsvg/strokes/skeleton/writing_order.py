@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import replace
 from heapq import heappop, heappush
-from itertools import combinations, pairwise, product
+from itertools import combinations, pairwise, permutations, product
 
 import numpy as np
 
@@ -260,6 +260,16 @@ def _earlier(
         for host, guest in product(hosts, [*begin[crossing], *ending[crossing]])
         if _is_serif(chains[host], chains[guest]) and not _ends(chains[host]) & _through(chains[guest])
     }
+    serifs |= {
+        host: guest
+        for crossing in begin.keys() | ending.keys()
+        if crossing is not None and not pass_[crossing]
+        for host, guest in permutations([*begin[crossing], *ending[crossing]], 2)
+        if None in _ends(chains[host])
+        and _is_serif(chains[host], chains[guest])
+        and steep[host] < FLATTER_RAD
+        and _is_steep(lines[guest])
+    }
     met = [sum(len(pass_[crossing]) > 1 for crossing in _through(chain)) for chain in chains]
     is_letter = may_be_letter and len(chains) - len(serifs) <= MOST_LINES
     earlier: list[set[int]] = [set() for _ in chains]
@@ -286,7 +296,9 @@ def _earlier(
         for host, guest in product(pass_[crossing], begin[crossing]):
             if host == guest or serifs.get(host) == guest:
                 continue
-            if is_letter and _is_arm(lines[host], chains[guest], lines[guest]):
+            if end[guest] is not None and end[guest] == chains[host][0].ends[0]:
+                earlier[host].add(guest)  # the bar of an e that leads to where its bowl begins
+            elif is_letter and _is_arm(lines[host], chains[guest], lines[guest]):
                 earlier[host].add(guest)
             elif centres[host, 0] <= centres[guest, 0]:
                 earlier[guest].add(host)
