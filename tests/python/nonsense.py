@@ -4,8 +4,10 @@ One line per call that ended in anything but a result, brushsvg.Error or, for a 
 TypeError.
 """
 
+import contextlib
 import copy
 import inspect
+import io
 import itertools
 import operator
 import pickle
@@ -401,7 +403,8 @@ def sound_program():
 def sound_photo():
     photo = FOLDER / "photo.jpg"
     if not photo.exists():
-        assert command(["simulate-photo", str(FOLDER / "d.svg"), str(photo), "--quiet"]) == 0
+        with contextlib.redirect_stdout(io.StringIO()):  # its studio is told
+            assert command(["simulate-photo", str(FOLDER / "d.svg"), str(photo), "--quiet"]) == 0
     return photo
 
 
