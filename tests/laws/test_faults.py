@@ -124,5 +124,6 @@ def test_few_strokes_blame_nobody(job, capsys, tmp_path):
     (tmp_path / "few.svg").write_text(few)
     words = ["simulate-photo", str(tmp_path / "few.svg"), str(tmp_path / "few.jpg"), "--quiet"]
     assert main(words) == 0
+    capsys.readouterr()  # what its studio was
     status, out, _ = in_json(capsys, "compare", tmp_path / "few.jpg", tmp_path / "few.svg", "--json")
     assert status == 0 and json.loads(out)["faults"] is None
