@@ -88,18 +88,16 @@ def test_one_photograph_gives_the_brush_back(desk, capsys):
     assert (desk / "read.png").stat().st_size > 10_000
 
 
+def calibrating(folder):
+    """Words of the command that reads photo.jpg by chart.json."""
+    return ["calibrate", folder / "photo.jpg", "--chart", folder / "chart.json", "-o", folder / "own.json"]
+
+
 def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
     """By 0.4 mm the brush comes back; by 0.8 mm the markers only hint at it, and marks lie so far aside that the sheet
     seems to be of another scale: it is told that paper which bulges does that, too."""
     (tmp_path / "chart.json").write_text(write_chart(printed()))
-    words = [
-        "calibrate",
-        tmp_path / "photo.jpg",
-        "--chart",
-        tmp_path / "chart.json",
-        "-o",
-        tmp_path / "own.json",
-    ]
+    words = calibrating(tmp_path)
     (tmp_path / "photo.jpg").write_bytes(photo_of(marks(), camera=replace(CAMERA, sag_mm=0.4)))
     assert in_json(capsys, *words)[0] == 0
     found = find_brush(tmp_path / "own.json")
@@ -219,14 +217,7 @@ def test_the_table_round_paper_that_is_smaller_than_the_print_is_no_mark(tmp_pat
         sheet.paint(rings, BLUE)
     (tmp_path / "photo.jpg").write_bytes(photograph.photograph(sheet, CAMERA))
     (tmp_path / "chart.json").write_text(write_chart(printed()))
-    words = [
-        "calibrate",
-        tmp_path / "photo.jpg",
-        "--chart",
-        tmp_path / "chart.json",
-        "-o",
-        tmp_path / "own.json",
-    ]
+    words = calibrating(tmp_path)
     status, _, told = in_json(capsys, *words)
     assert status == 1 and are_told([told[-1][1]], "marks-scaled smaller bar"), told
     assert in_json(capsys, *words, "--bar", f"{1.03 * printed().bar.length_mm:.1f}")[0] == 0

@@ -126,7 +126,9 @@ def _necks(line: Line, length_mm: float, corners_mm: list[float]) -> dict[float,
     at_mm = np.arange(0.0, length_mm, EVEN_MM)
     if len(at_mm) < 3:
         return {}
-    half = np.array(_halves(line, *(at_mm / length_mm)))
+    half = np.interp(at_mm / length_mm, *np.array(line.half_width).T)
+    if half.max() < NECK * half.min():
+        return {}
     slope = np.abs(np.gradient(half, at_mm))
     found: dict[float, float] = {}
     for side in (-1, 1):
