@@ -13,7 +13,8 @@ depth_range_mm, or with the copy of a known one. Set each as a whole: it is a va
 save_brush, simulate, compensate and convert refuse what no brush can be.)");
     type.def(py::init<>())
         .def_readwrite("name", &Brush::name, "What plans and messages call it.")
-        .def_readwrite("kind", &Brush::kind, "A word for people: round, pen.")
+        .def_readwrite("kind", &Brush::kind,
+                       "round, liner (a round brush of long bristles), pen, or empty: round. Another one is refused.")
         .def_property(
             "depth_range_mm", frozen_copy(&Brush::depth_range_mm),
             [](Brush& b, std::array<double, 2> value) { b.depth_range_mm = std::move(value); },

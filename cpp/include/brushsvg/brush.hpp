@@ -12,10 +12,13 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
+/// Kinds of brush that the model covers: footprints are the same in every direction. liner: round, with long bristles.
+inline constexpr std::array<const char*, 3> kBrushKinds{"round", "liner", "pen"};
+
 /// A measured (or assumed) brush: four laws against depth and its footprints. All lengths in mm.
 struct Brush {
     std::string name;
-    std::string kind;
+    std::string kind;  ///< one of kBrushKinds, or empty: round
     std::array<double, 2> depth_range_mm{0.0, 0.0};
     Profile lag;            ///< r(d): lever from the centre of friction to the TCP, taut
     Profile tip_gap;        ///< b(d): from the patch's tip to the centre of friction
