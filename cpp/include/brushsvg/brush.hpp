@@ -20,6 +20,7 @@ struct Brush {
     std::string name;
     std::string kind;  ///< one of kBrushKinds, or empty: round
     std::array<double, 2> depth_range_mm{0.0, 0.0};
+    // Laws: law(d) follows the polynomial to any depth, law.at(d) refuses depths that the brush cannot have.
     Profile lag;            ///< r(d): lever from the centre of friction to the TCP, taut
     Profile tip_gap;        ///< b(d): from the patch's tip to the centre of friction
     Profile tip_to_widest;  ///< x_w(d): from the tip to the widest section

@@ -136,6 +136,12 @@ class Profile:
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: tuple) -> None: ...
+    @typing.overload
+    def extrapolated(self, depth_mm: float) -> float: ...  # type: ignore[overload-overlap]
+    @typing.overload
+    def extrapolated(
+        self, depth_mm: numpy.typing.ArrayLike
+    ) -> numpy.typing.NDArray[numpy.float64]: ...
     @property
     def assumed(self) -> bool: ...
     @property
@@ -259,7 +265,7 @@ class Brush:
     """
     Four laws against depth and the footprints; all lengths in mm, depths in mm from first contact down.
 
-    lag, tip_gap, tip_to_widest, half_width: the laws, each a Profile; footprints: a FootprintTable. Outlines rule what is
+    lag, tip_gap, tip_to_widest, half_width: the laws, each a Profile that refuses depths at which the brush cannot be; footprints: a FootprintTable. Outlines rule what is
     painted, laws where the tool goes: they may differ by 0.5 mm. Begin with Brush() and set all of them, name and
     depth_range_mm, or with the copy of a known one. Set each as a whole: it is a value that cannot be changed.
     save_brush, simulate, compensate and convert refuse what no brush can be.
@@ -333,7 +339,7 @@ class Brush:
     @property
     def kind(self) -> str:
         """
-        A word for people: round, pen.
+        round, liner (a round brush of long bristles), pen, or empty: round. Another one is refused.
         """
     @kind.setter
     def kind(self, arg0: str) -> None: ...
