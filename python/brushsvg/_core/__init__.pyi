@@ -696,6 +696,10 @@ class PassMarks:
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
     stroke: str
+    pose: the index of the plan's pose, with fractions in between. contact_mm[pose_rows] is the contact at each pose. Rows after
+    the last pose's are the lift on the spot of a pass that ends on the paper (the patch moves as the bristles straighten), rows
+    before the first pose's the brush being set down.
+
     def __copy__(self) -> PassMarks: ...
     def __deepcopy__(self, memo: dict) -> PassMarks: ...
     def __eq__(self, other: object, /) -> bool: ...
@@ -725,6 +729,11 @@ class PassMarks:
     def taut(self) -> numpy.typing.NDArray[numpy.bool]: ...
     @property
     def tcp_mm(self) -> numpy.typing.NDArray[numpy.float64]: ...
+    def pose_rows(self) -> numpy.typing.NDArray[numpy.int64]:
+        """
+        For each pose of the pass the index of its row.
+        """
+    @property
     @property
     def width_share(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1743,14 +1752,18 @@ def simulate(
     tolerance that a plan was made with. for_outlines: False leaves out the rows that only the outline needs: enough for
     widest_points. progress: called with (passes done, passes).
 
-    z = -depth: on the way above the paper, z > 0, the brush hangs free. Error for a pass all of which is above the paper, and
-    for a pose deeper than the brush may be pressed.
+    z = -depth. A pass that begins or ends below 0 is set down or lifted on the spot, with rows of its own: pose_rows of the
+    PassMarks finds the poses. may_rise: the passes are motions of a machine that may leave the paper, z > 0; there the brush
+    hangs free. Error for z > 0 otherwise, for a pass all of which is above the paper, and for a pose deeper than the brush may
+    be pressed.
     """
 
 def thin_out(pass_: Pass, brush: Brush, tolerance_mm: float = 0.05) -> Pass:
     """
     The pass with fewer poses, its mark's middle and edges within the tolerance of where they were.
     """
+    *,
+    may_rise: bool = False,
 
 def thorns(
     mark: collections.abc.Sequence[numpy.typing.ArrayLike],
