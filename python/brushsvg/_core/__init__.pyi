@@ -151,6 +151,11 @@ class Profile:
     @property
     def degrees_of_freedom(self) -> float | None: ...
     @property
+    def depth_range_mm(self) -> tuple[float, float] | None:
+        """
+        Depths [mm] at which it can be asked, of a law of a Brush: its depth_range_mm. None: any.
+        """
+    @property
     def extra(self) -> str: ...
     @property
     def floor(self) -> float: ...
@@ -691,15 +696,15 @@ class PassMarks:
     """
     What the patch does during one pass; parallel rows (mm, rad), read only.
 
+    pose: the index of the plan's pose, with fractions in between. contact_mm[pose_rows] is the contact at each pose. Rows after
+    the last pose's are the lift on the spot of a pass that ends on the paper (the patch moves as the bristles straighten), rows
+    before the first pose's the brush being set down.
+
     lean_mm_per_mm (n, 2): how far the axis of a tilted brush goes sideways for each mm up; empty for one that is upright.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
     stroke: str
-    pose: the index of the plan's pose, with fractions in between. contact_mm[pose_rows] is the contact at each pose. Rows after
-    the last pose's are the lift on the spot of a pass that ends on the paper (the patch moves as the bristles straighten), rows
-    before the first pose's the brush being set down.
-
     def __copy__(self) -> PassMarks: ...
     def __deepcopy__(self, memo: dict) -> PassMarks: ...
     def __eq__(self, other: object, /) -> bool: ...
@@ -724,16 +729,16 @@ class PassMarks:
     @property
     def pose(self) -> numpy.typing.NDArray[numpy.float64]: ...
     @property
-    def pull(self) -> numpy.typing.NDArray[numpy.float64]: ...
-    @property
-    def taut(self) -> numpy.typing.NDArray[numpy.bool]: ...
-    @property
-    def tcp_mm(self) -> numpy.typing.NDArray[numpy.float64]: ...
     def pose_rows(self) -> numpy.typing.NDArray[numpy.int64]:
         """
         For each pose of the pass the index of its row.
         """
     @property
+    def pull(self) -> numpy.typing.NDArray[numpy.float64]: ...
+    @property
+    def taut(self) -> numpy.typing.NDArray[numpy.bool]: ...
+    @property
+    def tcp_mm(self) -> numpy.typing.NDArray[numpy.float64]: ...
     @property
     def width_share(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -957,12 +962,22 @@ class LawFit:
     def __eq__(self, other: object, /) -> bool: ...
     def __getstate__(self) -> tuple: ...
     def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        law: Profile,
+        covariance: collections.abc.Sequence[collections.abc.Sequence[float]],
+        residual_mm: collections.abc.Sequence[float],
+        r_squared: float,
+        degrees_of_freedom: float,
+        held: bool,
+    ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: tuple) -> None: ...
     @property
     def covariance(self) -> tuple[tuple[float, ...], ...]: ...
     @property
-    def degrees_of_freedom(self) -> int: ...
+    def degrees_of_freedom(self) -> float: ...
     @property
     def held(self) -> bool: ...
     @property
@@ -1558,9 +1573,10 @@ def fit_law(
     depth_mm: collections.abc.Sequence[float],
     value_mm: collections.abc.Sequence[float],
     shape: LawShape,
+    scatter: collections.abc.Sequence[float] = [],
 ) -> LawFit:
     """
-    Law of a shape through measured values [mm] at depths [mm], by least squares or absolute residuals.
+    Law of a shape through measured values [mm] at depths [mm], by least squares or absolute residuals. scatter: of each value, up to a common factor; empty: alike.
     """
 
 def fit_marks(
@@ -1744,6 +1760,8 @@ def simulate(
     tolerance_mm: float = 0.02,
     for_outlines: bool = True,
     progress: collections.abc.Callable[[int, int], object] | None = None,
+    *,
+    may_rise: bool = False,
 ) -> Marks:
     """
     What the brush does along a plan: Marks without outlines (see trace_outlines and coverage).
@@ -1762,8 +1780,6 @@ def thin_out(pass_: Pass, brush: Brush, tolerance_mm: float = 0.05) -> Pass:
     """
     The pass with fewer poses, its mark's middle and edges within the tolerance of where they were.
     """
-    *,
-    may_rise: bool = False,
 
 def thorns(
     mark: collections.abc.Sequence[numpy.typing.ArrayLike],
