@@ -273,14 +273,12 @@ TEST_CASE("marks that no brush paints are refused, and one of them is named") {
         check_refused([&] { fit_marks({{"this one", stroke, {ring}}}, std::nullopt, options); });
     };
     // where a search ends that nothing fits is chance: the refusal must not depend on it
+    MarkOptions hasty;
+    hasty.most_iterations = 1;
     for (const int points : {12, 16, 20, 24, 28}) {
         CAPTURE(points);
         check_no_fit(poses, star(points));
-        check_no_fit(poses, star(points), [] {
-            MarkOptions options;
-            options.most_iterations = 1;
-            return options;
-        }());
+        check_no_fit(poses, star(points), hasty);
     }
     check_no_fit(poses, square);
 
