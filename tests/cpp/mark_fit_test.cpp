@@ -266,7 +266,7 @@ TEST_CASE("marks that no brush paints are refused, and one of them is named") {
         } catch (const Error& error) {
             CHECK(error.code() == "fit-failed");
             CHECK(error.where() == "this one");
-            CHECK(error.what() == sentence);
+            CHECK(std::string(error.what()) == sentence);
         }
     };
     const auto check_no_fit = [&](const Poses& stroke, const Ring& ring, const MarkOptions& options = {}) {
