@@ -191,4 +191,3 @@ def _mode(path: str) -> int | None:
 def _pieces(data: bytes | str | Iterable[str]) -> Iterator[bytes]:
     for piece in [data] if isinstance(data, bytes | str) else data:
         yield piece.encode("utf-8") if isinstance(piece, str) else piece
-
