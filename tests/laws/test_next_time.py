@@ -312,7 +312,7 @@ def test_two_strokes_tell_no_corrections(tmp_path, capsys):
     assert [row["correction"] for row in json.loads(found.read_text())["strokes"]] == [None, None]
     words = ("convert", tmp_path / "five.svg", tmp_path / "a.ngc", "--corrections", found)
     status, _, told = in_json(capsys, *words)
-    assert status == 1 and is_told(told, "corrections-missing"), told
+    assert status == 1 and is_told(told, "corrections-missing 2 3", "strokes"), told
 
 
 @pytest.fixture(scope="module")
