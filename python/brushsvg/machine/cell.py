@@ -536,7 +536,9 @@ def not_undone(cell: Cell) -> dict[str, str]:
     """The keys of a table machine that this machine cannot undo, each with the reason."""
     found = {}
     if cell.servo:  # at its steps a way would jump aside
-        found |= dict.fromkeys(("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm"), "a servo's depth goes in steps")
+        found |= dict.fromkeys(
+            ("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm"), "a servo's depth goes in steps"
+        )
     if cell.pen:
         keys = ("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm", "height_mm")
         found |= dict.fromkeys(keys, "a pen knows no height")

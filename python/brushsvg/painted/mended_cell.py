@@ -44,9 +44,7 @@ def sure(
 ) -> dict[str, float]:
     """By the name of each number what of it goes into a cell: 0 where it is not certain. left_out: keys of the table
     that this machine cannot undo."""
-    certain = {
-        name: 0.0 if key_of(name) in left_out else value for name, value in certain_of(faults).items()
-    }
+    certain = {name: 0.0 if key_of(name) in left_out else value for name, value in certain_of(faults).items()}
     for paper, name in enumerate("xy"):
         was = before.backlash_mm[along[paper]] if before and along else 0.0
         now = was + certain.get(f"backlash in {name}", 0.0) if along else was

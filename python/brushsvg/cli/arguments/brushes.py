@@ -118,6 +118,11 @@ def add_calibrate(commands) -> None:
         "lean,axes,tilt,backlash,field",
     )
     fit.add_argument(
+        "--cell",
+        metavar="NAME|FILE",
+        help="the machine that painted: with --machine, find only what its cell can undo",
+    )
+    fit.add_argument(
         "--paint",
         action="store_true",
         help="from marks painted in the order of their plan with one load of paint: also find how they narrow",
@@ -174,6 +179,8 @@ def _add_photo(command, needed: bool) -> None:
 def _check_calibrate(args) -> None:
     args.input = args.inputs[0]
     args.photos = [path for path in args.inputs if suffix_of(path) in PHOTOS]
+    if args.cell is not None and not args.machine:
+        args.parser.error("--cell says what of --machine can be undone: give --machine")
     if args.plan is not None or args.prior is not None:
         _check_update(args)
         return

@@ -7,8 +7,9 @@ import os
 from ..._core import remarks, write_brush
 from ...files import read_bytes
 from ...pipeline.json_files import read_plan
+from ...pipeline.machine_parts import undoable_parts
 from ..console import about, stage, tell, warn
-from ..steps.options import brush_of
+from ..steps.options import brush_of, cell_of
 from ..steps.output_places import check_places, suffix_of, write
 from .scan import read_photographs
 
@@ -21,6 +22,10 @@ def calibrate_file(args) -> None:
     from ...calibration.machine_found import doubts
 
     check_places(args.output, args.plot, args.picture)
+    if args.cell is not None:
+        cell = cell_of(args.cell)
+        args.machine, left_out = undoable_parts(args.machine, cell)
+        warn(args.cell, left_out)
     if args.plan is not None:
         update_file(args)
         return
