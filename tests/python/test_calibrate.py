@@ -593,6 +593,21 @@ def test_quantiles_are_scipys(freedom):
     )
 
 
+@pytest.mark.parametrize(
+    ("machine", "code"),
+    [
+        ("lean", "wrong-type"),
+        (("leam",), "choice-unknown"),
+        (("lean", 3), "choice-unknown"),
+        (3, "wrong-type"),
+        (None, "wrong-type"),
+    ],
+)
+def test_parts_of_a_machine_that_there_are_not_are_refused_with_those_that_there_are(machine, code):
+    with refused(f"{code} lean axes tilt backlash field"):
+        brushsvg.calibrate("marks.json", machine=machine)
+
+
 def test_measured_numbers_say_nothing_of_a_machine(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out = tmp_path / "own.json"

@@ -99,7 +99,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             rests.append(np.array([_rests(section.steps[number], cell) for number in track.step[on]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
     ran = _core.Plan(brush.name, "", tuple(sheet_mm), cut)
-    marks = _core.simulate(ran, brush)
+    marks = _core.simulate(ran, brush, may_rise=True)
     visited = _visits(read, cell)
     if brush.paint:
         # where visits belong to no stroke each begins freshly dipped, as in predictions
