@@ -82,7 +82,7 @@ def test_a_circle_about_another_centre_or_the_other_way_round_is_another_path(aw
 
 
 @pytest.mark.parametrize("decimals", [3, 4])
-@pytest.mark.parametrize(("chord_mm", "rise_mm"), [(42.0, 0.35), (42.0, 0.05), (5.0, 0.02), (60.0, 20.0)])
+@pytest.mark.parametrize(("chord_mm", "rise_mm"), [(61.0, 0.58), (42.0, 0.05), (5.0, 0.02), (60.0, 20.0)])
 @pytest.mark.parametrize("inner", [[3], [2, 4], [1, 2, 3, 4, 5]])
 def test_a_flat_circle_read_from_rounded_places_is_the_same_path(chord_mm, rise_mm, inner, decimals):
     """A robot is given three places of a circle. Rounded, those of a flat one move its centre by a millimetre, and its
@@ -90,9 +90,11 @@ def test_a_flat_circle_read_from_rounded_places_is_the_same_path(chord_mm, rise_
     random = np.random.default_rng(1)
     radius = (chord_mm**2 / 4 + rise_mm**2) / (2 * rise_mm)
     half = np.arcsin(chord_mm / 2 / radius)
-    angles = np.pi / 2 + np.linspace(half, -half, 7)
     for _ in range(20):
-        centre = random.uniform(0, 100, 2) - (0, radius)
+        middle = random.uniform(0, 2 * np.pi)
+        angles = middle + np.linspace(half, -half, 7)
+        outwards = np.array([np.cos(middle), np.sin(middle), 0.0])
+        centre = random.uniform(0, 100, 2) - radius * outwards[:2]
         points = np.column_stack(
             [centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]), [-2] * 7]
         )
@@ -100,7 +102,7 @@ def test_a_flat_circle_read_from_rounded_places_is_the_same_path(chord_mm, rise_
         read = np.round(points[[0, 3, 6]], decimals)
         again = turned(read[[0, 0, 1, 2, 2]], centre_of(read[:, :2]), -1)
         assert strayed(again, meant) == []
-        lower = np.round(points[[0, 3, 6]] - [[0, 0, 0], [0, 0.04, 0], [0, 0, 0]], decimals)
+        lower = np.round(points[[0, 3, 6]] - [[0], [0.04], [0]] * outwards, decimals)
         other = turned(lower[[0, 0, 1, 2, 2]], centre_of(lower[:, :2]), -1 if rise_mm > 0.04 else 1)
         assert [notice.code for notice in strayed(other, meant)] == ["path-elsewhere"]
 

@@ -7,7 +7,6 @@ import math
 
 import numpy as np
 
-from .. import _core
 from ..errors import Error, Notice
 from ..machine.cell import Cell, least_move_mm, unit_mm, value_mm
 from ..machine.paint_reload import PlanInLoads, visits
@@ -171,8 +170,8 @@ def _pose_by_pose(a_pass, meant) -> float:
 
 
 def _way_round(a_pass, arc) -> np.ndarray:
-    """Places (n, 2) evenly along a circle from its first pose to its last. The centre of a flat one says little: rounded
-    by a thousandth of a millimetre three of its places move it by a millimetre, and the way by a thousandth."""
+    """Places (n, 2) evenly along a circle from its first pose to its last. The centre of a flat one says little: where
+    three of its places are rounded by a thousandth of a millimetre, it moves by a millimetre, and the way does not."""
     way = np.asarray(a_pass.poses_mm)[arc.first : arc.last + 1, :2] - arc.centre_mm
     angles = np.unwrap(np.arctan2(way[:, 1], way[:, 0]))
     angles, radii = (np.linspace(each[0], each[-1], PLACES) for each in (angles, np.hypot(*way.T)))
