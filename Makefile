@@ -24,7 +24,7 @@ endif
 WERROR ?= OFF
 PIP_INSTALL := $(BIN)/pip install -q --no-build-isolation -C build-dir=$(BUILD) -C cmake.define.BRUSHSVG_WERROR=$(WERROR) -e
 
-.PHONY: docs plugins help setup system test-system demo test lint format clang-check cpp-test python-test integration thorough test-times integration-system bench bench-compare asan clean quick FORCE
+.PHONY: docs plugins help setup system test-system demo test lint format clang-check test-variants cpp-test python-test integration thorough test-times integration-system bench bench-compare asan clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
@@ -38,6 +38,7 @@ help:
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
 	@echo "make bench        our figures beside the peers' and the floor"
 	@echo "make bench-compare REV=main    what became slower than at a revision, both run in turn"
+	@echo "make test-variants  the tests under the arithmetic of other processors: compilers, maths libraries, vector units"
 	@echo "make asan         C++ tests under address and undefined behaviour sanitizers"
 	@echo "make format       format both languages"
 	@echo "make clean        remove what was built"
@@ -146,6 +147,12 @@ python-test: $(VENV)/.dev
 quick: $(VENV)/.dev
 	@$(BIN)/ruff check -q .
 	$(PYTEST) -m 'not slow $(NOT_THOROUGH)' tests/python
+
+# VARIANTS: options of the script, such as VARIANTS='--variant v3-fma --suite cpp'
+VARIANTS ?=
+test-variants: setup test-system
+	@$(MAKE) --no-print-directory $(VENV)/.dev
+	$(BIN)/python tools/test_variants.py $(VARIANTS)
 
 integration-system: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev
