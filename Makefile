@@ -106,6 +106,17 @@ lint: $(VENV)/.dev test-system
 clang-check: $(VENV)/.dev
 	@$(call install,clang)
 	includes="$$(printf -- '-Icpp/%s ' include io posts fit/laws fit/marks fit/tracks many refine src) $$($(BIN)/python -m pybind11 --includes) -isystem /usr/include/eigen3"
+	# public headers as a consumer with strict warnings reads them, by both compilers
+	for compiler in clang++ g++; do
+	  { for header in cpp/include/brushsvg/*.hpp cpp/io/{brush,plan,marks}_json.hpp cpp/posts/linuxcnc.hpp cpp/fit/*/{law_fit,angles,track_fit,mark_fit}.hpp cpp/refine/refine.hpp cpp/many/{many_strokes,marks_way}.hpp; do
+	      if [ -e "$$header" ]; then echo "#include \"$$PWD/$$header\""; fi; done; } | \
+	    $$compiler -x c++ -std=c++17 -fsyntax-only -Wall -Wextra -Wconversion -Wsign-conversion -Werror $$includes -
+	done
+	# the sources as a part of a consumer's project: no flag that clang does not know
+	rm -rf build/clang-consumer && mkdir -p build/clang-consumer/source
+	{ echo 'cmake_minimum_required(VERSION 3.25)'; echo 'project(consumer CXX)'; echo "add_subdirectory($$PWD brushsvg)"; } >build/clang-consumer/source/CMakeLists.txt
+	cmake -S build/clang-consumer/source -B build/clang-consumer/build -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS=-Werror >/dev/null
+	cmake --build build/clang-consumer/build --target brushsvg/CMakeFiles/brushsvg_core.dir/cpp/src/profile.cpp.o >/dev/null
 	git ls-files 'cpp/*.cpp' | xargs -P "$$(nproc)" -n 1 clang++ -std=c++17 -fsyntax-only -Wall -Wextra -Werror \
 	  -Wno-missing-field-initializers -DBRUSHSVG_FIT '-DBRUSHSVG_VERSION="0"' $$includes
 

@@ -51,6 +51,8 @@ TEST_CASE("numbers that no brush has are refused with their range") {
     CHECK(contains(changed([](Brush& b) { b.lag.calibrated_mm = {{9.0, 3.0}}; }), "must rise and meet"));
     CHECK(contains(changed([](Brush& b) { b.lag.rmse_mm = -1.0; }), "lag: an interval or rmse_mm is negative"));
     CHECK(contains(changed([](Brush& b) { b.name = ""; }), "name: the name must be one line"));
+    CHECK(contains(changed([](Brush& b) { b.kind = "flat"; }), "kind: brushes of kind flat are not simulated"));
+    CHECK(changed([](Brush& b) { b.kind = ""; }) == "");
     CHECK(contains(changed([](Brush& b) { b.name = "a\nb"; }), "name: the name must be one line"));
     CHECK(contains(changed([](Brush& b) { b.max_speed_mm_s = 1e9; }), "[0.01, 10000] mm/s"));
     CHECK(contains(changed([](Brush& b) { b.paint_depth_mm = 50.0; }), "painting depth 50.00 mm is outside"));

@@ -12,11 +12,15 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
+/// Kinds of brush that the model covers: footprints are the same in every direction. liner: round, with long bristles.
+inline constexpr std::array<const char*, 3> kBrushKinds{"round", "liner", "pen"};
+
 /// A measured (or assumed) brush: four laws against depth and its footprints. All lengths in mm.
 struct Brush {
     std::string name;
-    std::string kind;
+    std::string kind;  ///< one of kBrushKinds, or empty: round
     std::array<double, 2> depth_range_mm{0.0, 0.0};
+    // Laws: law(d) follows the polynomial to any depth, law.at(d) refuses depths that the brush cannot have.
     Profile lag;            ///< r(d): lever from the centre of friction to the TCP, taut
     Profile tip_gap;        ///< b(d): from the patch's tip to the centre of friction
     Profile tip_to_widest;  ///< x_w(d): from the tip to the widest section

@@ -16,7 +16,7 @@ from ..steps.output_places import check_places, suffix_of, write
 
 
 def check_file(args) -> None:
-    check_places(args.preview)
+    check_places(args, args.preview)
     with about(""):  # errors name their file
         done = checked(args.program, typed(args), stage, warn)
     with about(args.program):
