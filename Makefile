@@ -12,12 +12,14 @@ SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libceres-dev libboost-dev
 TEST_PACKAGES := doctest-dev cppcheck
 CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
 
-.PHONY: docs plugins help setup system test-system demo test lint format clang-check cpp-test python-test integration fuzz bench bench-compare asan clean quick FORCE
+.PHONY: docs plugins help setup system test-system demo test lint format clang-check cpp-test python-test test-wording wording integration fuzz bench bench-compare asan clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
 	@echo "make test         set up, then run the linters and the tests of both languages"
 	@echo "make quick        what is tested in a minute, for every save: all but slow tests, the laws and C++"
+	@echo "make test-wording which tests depend on wording: run with other words in all that people read"
+	@echo "make wording      write tests/golden/wording.txt, where wording is held, anew"
 	@echo "make integration  longer tests: brushes fitted to painted sheets; LinuxCNC, Inkscape, Chromium, pyright, real lettering (installs them)"
 	@echo "make plugins      the Inkscape extension as a zip for its extension manager, in dist/"
 	@echo "make docs         the documentation as pages to read in a browser, with a search, in docs/_build"
@@ -118,6 +120,13 @@ python-test: $(VENV)/.dev
 quick: $(VENV)/.dev
 	@$(BIN)/ruff check -q .
 	$(PYTEST) -m 'not slow' tests/python
+
+# in other words (tests/rewording): what fails here and not in python-test depends on wording
+test-wording: $(VENV)/.dev
+	@PYTHONPATH=tests/rewording $(PYTEST) -rf -m 'not long and not wording'
+
+wording: $(VENV)/.dev
+	@$(BIN)/python tests/python/test_wording.py
 
 integration: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev
