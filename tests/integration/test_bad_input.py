@@ -91,7 +91,7 @@ def test_damaged_geometry_is_drawn_up_to_there_on_request(desk, case):
     plans = [json.loads((desk / name).read_text()) for name in ("x.json", "whole.json")]
     assert plans[0]["passes"] == plans[1]["passes"]
     brushsvg("convert", "x.svg", "x.ngc", "--lenient", "--quiet", cwd=desk, status=0)
-    assert re.search(r"^\(warnings: 1, 1 .*damaged", (desk / "x.ngc").read_text(), re.MULTILINE)
+    assert re.search(r"^\(warnings: 1, 1 ", (desk / "x.ngc").read_text(), re.MULTILINE)
     for words in (("predict", "x.svg", "x.png", "--quiet"), ("report", "x.svg")):
         assert brushsvg(*json_told, *words, cwd=desk, status=0, **bounded()).told == [(file, told)]
 
