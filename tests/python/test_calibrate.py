@@ -409,7 +409,7 @@ def test_few_values_give_a_law_that_does_not_follow_their_noise(tmp_path, capsys
     off = (0.3, -0.3, 0.3, -0.3, 0.3)
     rows = [("lag", d, 3 + 0.8 * d + e) for d, e in zip((2, 4, 6, 8, 10), off, strict=True)]
     code, out = table(tmp_path, rows + WIDTHS)
-    assert code == 0 and re.search(r"\blag\b.* 2 [a-z ]+ 4\b", capsys.readouterr().out)
+    assert code == 0 and re.search(r"\b2 [a-z ]+ 4\b", capsys.readouterr().out)
     brush = find_brush(out)
     assert max(abs(brush.lag(d) - 3 - 0.8 * d) for d in np.linspace(0.5, 10, 30)) < 0.6  # a quartic: 9 mm
     assert len(brush.covariance)

@@ -134,5 +134,7 @@ def test_tests_of_the_library_ask_refusals_for_codes_and_numbers():
     """refusal.hpp alone looks into sentences, for numbers and names; nonsense.cpp asks whether there is one."""
     asked = {file.name for file in (TESTS / "cpp").iterdir() if "what()" in file.read_text(encoding="utf-8")}
     assert asked <= {"refusal.hpp", "brushsvg_test.cpp", "fit_nonsense.cpp", "mark_fit_test.cpp"}
-    words = {file.name for file in (TESTS / "cpp").iterdir() if "THROWS_WITH" in file.read_text(encoding="utf-8")}
+    words = {
+        file.name for file in (TESTS / "cpp").iterdir() if "THROWS_WITH" in file.read_text(encoding="utf-8")
+    }
     assert not words
