@@ -84,6 +84,7 @@ def seen(brush, trace, pose):
     return np.column_stack([np.interp(pose, trace.pose, column) for column in columns.T])
 
 
+@pytest.mark.thorough
 def test_against_monte_carlo(brush, painted):
     work, marks, brushes = painted
     told = uncertainty.uncertainty(work.plan, brush, marks)

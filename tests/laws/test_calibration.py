@@ -9,6 +9,7 @@ import oracle
 import pytest
 from conftest import law
 from diagnostics import refused
+from sampling import sample
 
 from brushsvg import _core
 from brushsvg.calibration.from_measurements import calibrate
@@ -137,7 +138,7 @@ def test_side_view_and_straight_stroke_give_the_tip_gap():
     assert made.brush.tip_gap.coefficients == pytest.approx([0, GAP], abs=1e-6)
 
 
-@pytest.mark.parametrize("kind", ["angular", "side_view"])
+@sample("kind", ["angular", "side_view"], keep=1)
 def test_intervals_cover_the_truth_through_corrections(kind):
     """What a law inherits from those it was corrected by is part of its interval."""
     rng = np.random.default_rng(11)
@@ -169,6 +170,7 @@ def test_intervals_cover_the_truth_through_corrections(kind):
     assert 0.92 <= np.mean(np.array(covered)[:, first:]) <= 0.985
 
 
+@pytest.mark.thorough
 def test_the_covariance_is_that_of_repeated_calibrations():
     """Against the scatter of 600 calibrations, correlations between laws included."""
     rng = np.random.default_rng(2)

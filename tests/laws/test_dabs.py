@@ -14,6 +14,7 @@ import pytest
 import shapely
 from diagnostics import gives, in_json
 from photograph import BLUE, Camera
+from sampling import sample
 
 core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
@@ -133,8 +134,10 @@ def wide_at(outline, x):
     return shapely.Polygon(outline).intersection(across).length
 
 
-@pytest.mark.parametrize(
-    "name", ["lopsided", *(pytest.param(name, marks=pytest.mark.slow) for name in ("ellipse", "egg"))]
+@sample(
+    "name",
+    ["lopsided", *(pytest.param(name, marks=pytest.mark.slow) for name in ("ellipse", "egg"))],
+    keep=1,
 )
 def test_outlines_and_widths_come_back(name, tmp_path, capsys):
     """Of drops that were assumed with the true widths, outlines lie 0.2 to 0.7 mm off."""
@@ -188,9 +191,10 @@ def with_lag(brush, coefficients):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
+@sample(
     ("name", "drops", "own_outlines"),
     [("ellipse", 0.96, 0.985), ("egg", 0.96, 0.985), ("lopsided", 0.8, 0.97)],
+    keep=1,
 )
 def test_a_word_is_predicted_better(name, drops, own_outlines, tmp_path, capsys):
     """By a brush of the same lag and of the true widths, whose outlines are drops: so far right, and no farther. How
@@ -204,8 +208,10 @@ def test_a_word_is_predicted_better(name, drops, own_outlines, tmp_path, capsys)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "fitted", "own_lag"), [("egg", (0.98, 1.0), 0.975), ("lopsided", (0.0, 0.8), 0.965)]
+@sample(
+    ("name", "fitted", "own_lag"),
+    [("egg", (0.98, 1.0), 0.975), ("lopsided", (0.0, 0.8), 0.965)],
+    keep=1,
 )
 def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys):
     """The whole way: lag, and eggs for outlines, from a chart of strokes; then the brush's own outlines from dabs, and

@@ -12,6 +12,7 @@ import pytest
 import shapely
 from diagnostics import gives
 from photograph import BLUE
+from sampling import sample
 
 from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.file import write_chart
@@ -116,8 +117,10 @@ def similarity_off(found) -> tuple[float, float, float]:
     return np.degrees(np.angle(a)), abs(a), abs(a * middle + b - middle), left
 
 
-@pytest.mark.parametrize(
-    ("turn_deg", "dpi"), [(0, 300), (90, 300), (180, 300), (2, 300), (268, 150), (-1, 600)]
+@sample(
+    ("turn_deg", "dpi"),
+    [(0, 300), (90, 300), (180, 300), (2, 300), (268, 150), (-1, 600)],
+    keep=2,
 )
 def test_marks_are_found_however_the_sheet_lies(turn_deg, dpi):
     """Rigidly: a turn and shift of the whole sheet are the fit's to find, as on any sheet."""

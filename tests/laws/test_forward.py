@@ -8,6 +8,7 @@ import pytest
 from conftest import LAGS, law, make_brush, make_pass, make_plan, profile, random_poses
 from hypothesis import example, given
 from hypothesis import strategies as st
+from sampling import sample
 
 core = pytest.importorskip("brushsvg._core")
 
@@ -77,7 +78,7 @@ def test_arc_is_its_differential_equation(lag, curvature):
 
 
 @pytest.mark.parametrize("lifts", [False, True])
-@pytest.mark.parametrize("name", LAGS)
+@sample("name", LAGS, keep=2)
 def test_simulator_against_solve_ivp_with_events(name, lifts):
     rng = np.random.default_rng([5, lifts, *name.encode()])
     brush, pulls = make_brush(LAGS[name]), []

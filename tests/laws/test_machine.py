@@ -10,6 +10,7 @@ import numpy as np
 import painter
 import pytest
 from diagnostics import are_told
+from sampling import sample
 
 core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
@@ -102,8 +103,10 @@ def lag_off(made, brush):
     return max(abs(made.brush.lag(depth) / brush.law("lag")(depth) - 1) for depth in depths)
 
 
-@pytest.mark.parametrize(
-    "parts", [("lean", "axes"), ("lean", "axes", "tilt"), ("tilt",), ("lean", "axes", "field"), ("field",)]
+@sample(
+    "parts",
+    [("lean", "axes"), ("lean", "axes", "tilt"), ("tilt",), ("lean", "axes", "field"), ("field",)],
+    keep=1,
 )
 def test_brush_and_machine_come_back(parts):
     brush, painted = painted_by(5, parts)

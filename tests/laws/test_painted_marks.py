@@ -9,6 +9,7 @@ import painter
 import pytest
 import shapely
 from diagnostics import gives, refused
+from sampling import sample
 
 core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
@@ -86,7 +87,7 @@ def test_the_brush_comes_back_with_honest_intervals(seed):
     assert made.round_tail_gain < -40 and not made.fit.laws.round_tail
 
 
-@pytest.mark.parametrize("seed", [2, 5])
+@sample("seed", [2, 5], keep=1)
 def test_a_round_tail_is_seen_in_the_marks(seed):
     """Taken for a pointed one it left lag or width off by more than two standard deviations."""
     brush, _, made = calibrated(seed, round_tail=True)

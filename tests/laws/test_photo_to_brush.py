@@ -112,6 +112,7 @@ def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
     assert status == 1 and are_told([each for _, each in told], "photo-not-flat", "marks-scaled"), told
 
 
+@pytest.mark.thorough
 def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, capsys):
     """By itself the fit finds the height within 0.03 mm. The outlines are then taken for measured ones: they are the
     drops with which this brush paints, so the lag stays what it was."""

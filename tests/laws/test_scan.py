@@ -15,6 +15,7 @@ import pytest
 import shapely
 from diagnostics import agrees, in_json, is_told, refused
 from photograph import BLUE, Camera, replace
+from sampling import sample
 
 from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.file import read_chart, write_chart
@@ -123,7 +124,7 @@ def test_three_markers_are_enough():
 # Edges ----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
+@sample(
     ("camera", "colour", "most_mm"),
     [
         (SMALL, BLUE, 0.03),
@@ -133,6 +134,7 @@ def test_three_markers_are_enough():
         (SMALL, np.array([0.5, 0.5, 0.5]), 0.03),
     ],
     ids=["blue", "shadow", "red", "yellow", "pale grey"],
+    keep=2,
 )
 def test_outlines_lie_where_paint_ends(camera, colour, most_mm):
     marks = painted_marks()
@@ -273,6 +275,7 @@ def test_a_stroke_without_paint_is_named(tmp_path, capsys):
 # Pictures -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thorough
 def test_other_formats_and_cameras_held_on_their_side_read_the_same():
     there = marks_of(read(small()))
     side = np.ascontiguousarray(small().swapaxes(0, 1)[:, ::-1])  # turned clockwise

@@ -147,6 +147,7 @@ def test_what_it_cannot_do_is_refused(drawing, capsys, toml, code):
     assert is_told(told, code) if code else len(told) >= 1, told
 
 
+@pytest.mark.thorough
 def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, capsys):
     """simulate-photo prints the page of a job round the chart's plan: its markers are not those of chart.json."""
     plan, chart, photo, found = (
@@ -175,6 +176,7 @@ def letters(tmp_path_factory):
     return folder
 
 
+@pytest.mark.thorough
 def test_where_no_stroke_lies_alone_a_chart_is_advised(letters, drawing, capsys):
     """Never what would be refused: from the same photograph no brush is learnt."""
     words = ("--plan", letters / "word.json", "--prior", "round-6", "-o", letters / "u.json")

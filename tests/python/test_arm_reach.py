@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from arm_judge import judge_of
 from diagnostics import gives, in_json, is_told
+from sampling import sample
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
@@ -63,7 +64,7 @@ def look(cell, plan):
     return preflight.look(in_loads(plan, BRUSH, cell), BRUSH, _core.simulate(plan, BRUSH), cell, 0.05)
 
 
-@pytest.mark.parametrize("which", range(len(JOBS)))
+@sample("which", range(len(JOBS)), keep=4)
 def test_a_job_that_an_arm_cannot_do_is_refused_and_the_advised_place_does(which):
     *given, code = JOBS[which]
     cell, plan = job(*given)

@@ -17,6 +17,7 @@ import cv2
 import numpy as np
 import pytest
 from diagnostics import are_told, gives, in_json, is_told, refused
+from sampling import sample
 from test_conversion import LINE, PAGE
 
 import brushsvg
@@ -475,7 +476,7 @@ def processes_of(group) -> list[int]:
 
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="needs /proc")
-@pytest.mark.parametrize("by", [signal.SIGKILL, signal.SIGINT])
+@sample("by", [signal.SIGKILL, signal.SIGINT], keep=1)
 @pytest.mark.slow
 def test_what_is_ended_half_way_goes_on_where_it_was(desk, monkeypatch, by):
     for k in range(24):

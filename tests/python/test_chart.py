@@ -14,6 +14,7 @@ import pytest
 import shapely
 from diagnostics import agrees, gives, in_json, refused
 from programs import RUNNABLE
+from sampling import sample
 
 from brushsvg import _core, find_brush
 from brushsvg.brush.perturbed import with_lag
@@ -57,7 +58,7 @@ def marks_of(made, brush):
     ],
     ids=["a4", "a5", "liner"],
 )
-@pytest.mark.parametrize("share", [0.75, 1.0, 1.25])
+@sample("share", [0.75, 1.0, 1.25], keep=1)
 @pytest.mark.slow
 def test_marks_keep_apart_and_on_the_sheet(sheet, brush, share):
     """Also those of a brush that trails by a quarter more or less than was thought."""
@@ -140,13 +141,14 @@ SMALL_ARMS = ("irb120", "ur3e")  # A4 is nearly too large for them: asked of the
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
+@sample(
     "name",
     [
         pytest.param(name, marks=pytest.mark.arm) if name in SMALL_ARMS else name
         for name in cell_names()
         if find_cell(name).language in POSTS and find_cell(name).pen is None  # a pen does not lag
     ],
+    keep=4,
 )
 def test_a_program_for_every_cell(name, tmp_path, capsys):
     suffix = POSTS[find_cell(name).language].extensions[0]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from diagnostics import agrees, in_json, is_told, refused
 from programs import LANGUAGES, RUNNABLE, SERVOS, call
+from sampling import sample
 
 from brushsvg import _core
 from brushsvg.machine import preflight, writer
@@ -609,7 +610,7 @@ STATIONS = [
 
 
 @pytest.mark.parametrize("hand", [False, True])
-@pytest.mark.parametrize("cell", LANGUAGES)
+@sample("cell", LANGUAGES, keep=3)
 @pytest.mark.slow
 def test_stations_of_any_name_are_told_apart(desk, capsys, cell, hand):
     """Two that 7-bit text would write alike, at one place, are two in the program: a person has to know which."""
@@ -686,7 +687,7 @@ NAMES = [
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", LANGUAGES)
+@sample("name", LANGUAGES, keep=4)
 def test_strokes_whose_names_end_in_blanks_are_known_again(desk, capsys, name):
     """Comments of URScript and JAKA script lost blanks at their ends: check refused what convert had written."""
     places = [[(20.0, 10.0 + 5 * k, -1.0), (40.0, 10.0 + 5 * k, -1.5)] for k in range(len(NAMES))]
@@ -940,7 +941,7 @@ def test_a_servo_that_lands_by_two_steps_at_once_or_goes_without_a_feed_is_told(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", LANGUAGES)
+@sample("name", LANGUAGES, keep=4)
 def test_time_and_length_of_a_header_are_those_of_its_program(desk, capsys, name):
     """Alone, too: a time may only be shorter where feeds were lowered since."""
     program = f"two{LANGUAGES[name]}"
@@ -1100,7 +1101,7 @@ SERVO_TABLES = [
 ]
 
 
-@pytest.mark.parametrize("table", SERVO_TABLES)
+@sample("table", SERVO_TABLES, keep=2)
 @pytest.mark.parametrize("step_mm", [0.01, 0.1, 1.0])
 @pytest.mark.slow
 def test_servos_of_any_table_are_allowed_what_was_written_for_them(desk, capsys, table, step_mm):

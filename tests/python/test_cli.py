@@ -11,6 +11,7 @@ from shutil import copytree
 
 import pytest
 from diagnostics import agrees, gives, heard, in_json, is_told
+from sampling import sample
 
 from brushsvg.brush.library import SHIPPED
 from brushsvg.cli import commands, main
@@ -98,7 +99,7 @@ WRITERS = {  # what is typed, what is written, and what more is said of it
 }
 
 
-@pytest.mark.parametrize("words", WRITERS)
+@sample("words", WRITERS, keep=6)
 @pytest.mark.slow
 def test_success_is_one_line_on_stderr_unless_quiet(desk, capsys, words):
     (desk / "one.svg").write_text(drawing(LINE))

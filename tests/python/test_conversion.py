@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 import svgpathtools
 from diagnostics import agrees, refused
+from sampling import sample
 
 import brushsvg
 from brushsvg.cli import main
@@ -279,7 +280,7 @@ def still_working() -> list[str]:
     return [thread.name for thread in threading.enumerate() if thread.name == "brushsvg"]
 
 
-@pytest.mark.parametrize("word", ["reading", "finding", "compensated", "simulated", "writing", "drawing"])
+@sample("word", ["reading", "finding", "compensated", "simulated", "writing", "drawing"], keep=2)
 @pytest.mark.slow
 def test_it_is_given_up_wherever_it_is(desk, word):
     Path("long.svg").write_text(

@@ -198,6 +198,7 @@ def test_many_depths_above_a_floor_are_fitted_too(norm):
     np.testing.assert_allclose([fit.law(d) for d in depth], np.maximum(0, truth(depth)), atol=0.1)
 
 
+@pytest.mark.thorough
 @pytest.mark.slow
 def test_a_mark_that_lies_over_itself_all_over_is_refused_by_counted_work():
     rng = np.random.default_rng(1)

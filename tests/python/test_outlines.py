@@ -591,6 +591,7 @@ def test_rings_with_a_number_that_is_none_are_refused(number):
             ask([ring])
 
 
+@pytest.mark.thorough
 def test_a_hundred_thousand_vertices():
     angle = np.linspace(0, 2 * np.pi, 100_000, endpoint=False)
     ring = np.column_stack([30 + (20 + 0.01 * np.sin(900 * angle)) * np.cos(angle), 25 + 20 * np.sin(angle)])

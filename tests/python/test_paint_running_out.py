@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import shapely
 from diagnostics import is_told
+from sampling import sample
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
@@ -73,7 +74,7 @@ def mean_overlap(work, rate):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("compensation", ["closed", "refined"])
+@sample("compensation", ["closed", "refined"], keep=1)
 def test_a_job_of_one_load_comes_out_as_wide_as_drawn(tmp_path, compensation):
     """The last marks would be a sixth too narrow."""
     always, now = (prepared(tmp_path, rate, compensation=compensation) for rate in (0.0, 0.05))

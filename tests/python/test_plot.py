@@ -5,12 +5,13 @@ import sys
 import numpy as np
 import pytest
 from diagnostics import in_json
+from sampling import sample
 
 from brushsvg import _core, find_brush
 from brushsvg.brush.plot import brush_picture, brush_picture_on, law_band, new_figure
 
 
-@pytest.mark.parametrize("name", ["round-6", "rigid"])
+@sample("name", ["round-6", "rigid"], keep=1)
 @pytest.mark.slow
 def test_both_kinds_of_picture_are_the_same_twice(name):
     brush = find_brush(name)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from diagnostics import agrees, refused
+from sampling import sample
 from svg_text import read
 
 from brushsvg import _core, find_brush
@@ -87,13 +88,14 @@ def overlap(strokes, shape, brush) -> float:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
+@sample(
     ("d", "is_filled"),
     [
         *((f"M10 10H90V{10 + wide_mm}H10Z", wide_mm > 10) for wide_mm in (8.2, 8.6, 9.0, 10.8, 12.0, 24.0)),
         ("M44.8 30a5.2 5.2 0 1 0 10.4 0a5.2 5.2 0 1 0 -10.4 0Z", False),
         ("M41 30a9 9 0 1 0 18 0a9 9 0 1 0 -18 0Z", True),
     ],
+    keep=3,
 )
 def test_passes_are_taken_where_the_mark_at_the_nearest_width_overlaps_too_little(brush, d, is_filled):
     """Of a bar of 16 mm half was painted, unless passes were asked for; a disc of 9.4 mm became a drop, since a round

@@ -23,6 +23,7 @@ from judge.verdict import ROBOTS
 from judge.works import make
 from judge.xarm import XArmAPI, executed
 from programs import LANGUAGES, program
+from sampling import sample
 from test_urscript import ARC, BRUSH, STROKES, text_for
 
 from brushsvg import _core
@@ -308,7 +309,7 @@ def test_no_title_tells_python_how_letters_are_read(title):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
+@sample("name", NAMES, keep=2)
 def test_no_dangerous_program_is_allowed(name, tmp_path):
     """A sample; tests/integration has three hundred of each job."""
     needs_lua(NAMES[name])

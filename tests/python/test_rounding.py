@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from diagnostics import in_json, is_told, refused
 from programs import LANGUAGES, call, whole
+from sampling import sample
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
@@ -116,7 +117,7 @@ def to_and_fro(chance: random.Random) -> list:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("table", SERVO_ROWS)
+@sample("table", SERVO_ROWS, keep=1)
 @pytest.mark.parametrize("step_mm", [0.05, 0.2, 0.5])
 def test_what_a_servo_paints_to_and_fro_is_known_again(tmp_path, capsys, table, step_mm):
     """Half of these were refused by check: a rest amid a lift was read as none, moves of a unit were left out, and a
@@ -292,7 +293,7 @@ def drawing(chance: random.Random) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(24))
+@sample("seed", range(24), keep=6)
 def test_check_allows_whatever_convert_writes(seed, tmp_path, capsys):
     chance = random.Random(seed)
     name = chance.choice(["linuxcnc-3axis", "grbl-3axis", "ur5e"])

@@ -96,6 +96,7 @@ def test_sizes_are_tried_as_the_drawing_is_refined(tmp_path):
         assert gives(advice, f"{overlap:.2f}")
 
 
+@pytest.mark.thorough
 def test_sizes_are_tried_as_shapes_are_filled(tmp_path):
     """A square filled in passes was advised to shrink, as if it were painted in one."""
     text = f'{SHEET}<rect id="r" x="30" y="20" width="60" height="50"/></svg>'
