@@ -63,9 +63,10 @@ def main() -> None:
         return
     faults = read_faults(work)
     if args.step == "map":
-        tree.map_tests(args.paths or ["cpp", *ALL], args.jobs)
+        tree.map_tests(args.paths or ["cpp", *(path for paths in ALL for path in paths)], args.jobs)
     elif args.step == "try":
-        tree.collect_tiers()
+        if not tree.tiers.exists():
+            tree.collect_tiers()
         chosen = [fault for fault in faults if not args.only or fault.number in args.only]
         tree.try_all(chosen, args.jobs, args.budget, args.again)
     else:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 
 import tree_sitter_cpp
-from fault import NUMBER, Edit, Fault, another, line_of, one_line
+from fault import NUMBER, Edit, Fault, another, one_line, place
 from tree_sitter import Language, Node, Parser
 
 COMPARISONS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "=="}
@@ -56,11 +56,9 @@ class _File:
         original = original or self._text(node)
         if any(mark in original for mark in ("//", "#", "/*")):
             return
-        line, code = line_of(self.source, node.start_byte)
         variants = [[Edit(node.start_byte, node.end_byte, text)] for text in texts]
-        self.faults.append(
-            Fault(self.file, line, kind, code, one_line(original), one_line(mutated), variants)
-        )
+        change = one_line(original), one_line(mutated)
+        self.faults.append(Fault(self.file, *place(self.source, node.start_byte), kind, *change, variants))
 
     def _visit(self, node: Node, inside: bool) -> None:
         if node.type in SKIPPED:
@@ -171,11 +169,11 @@ class _File:
             uses = self.uses.get(word, [])
             if not other or not uses:
                 continue
-            line, code = line_of(self.source, name.start_byte)
+            where = place(self.source, name.start_byte)
             edits = [
                 Edit(use.start_byte, use.end_byte, f"(brushsvg_faults::fault({NUMBER}) ? {other} : {word})")
                 for use in uses
             ]
             self.faults.append(
-                Fault(self.file, line, "constant", code, f"{word} = {number}", f"{word} = {other}", [edits])
+                Fault(self.file, *where, "constant", f"{word} = {number}", f"{word} = {other}", [edits])
             )

@@ -28,8 +28,9 @@ class Fault:
 
     file: str  # from the root of the tree, with slashes
     line: int
-    kind: str
+    column: int  # from 1, in code
     code: str  # the whole line, stripped
+    kind: str
     original: str
     mutated: str
     variants: list[list[Edit]]  # ways to write the switch; the first that compiles is used
@@ -39,6 +40,11 @@ class Fault:
     @property
     def folder(self) -> str:
         return str(PurePosixPath(self.file).parent)
+
+    @property
+    def identity(self) -> tuple[str, str, int, str]:
+        """The same as long as its line is, wherever that stands in the file."""
+        return self.file, self.code, self.column, self.change
 
     @property
     def change(self) -> str:
@@ -65,11 +71,13 @@ def one_line(text: str) -> str:
     return " ".join(text.split())
 
 
-def line_of(source: bytes, begin: int) -> tuple[int, str]:
-    """The number of a line, from 1, and its stripped text, by a place in it."""
+def place(source: bytes, begin: int) -> tuple[int, int, str]:
+    """Where a byte is: the number of its line, its column in the stripped text of the line, and this text."""
     start = source.rfind(b"\n", 0, begin) + 1
     end = source.find(b"\n", begin)
-    return source.count(b"\n", 0, begin) + 1, source[start : end if end >= 0 else None].decode().strip()
+    text = source[start : end if end >= 0 else None].decode()
+    left = source[start:begin].decode().lstrip()
+    return source.count(b"\n", 0, begin) + 1, len(left) + 1, text.strip()
 
 
 def another(number: str) -> str | None:

@@ -56,6 +56,10 @@ def number_all(faults: list[Fault]) -> None:
 
 
 def save(work: Path, faults: list[Fault]) -> list[Fault]:
+    """Write the faults down; what was found out about others is no longer true."""
+    for name in ("map", "tried"):
+        shutil.rmtree(work / name, ignore_errors=True)
+    (work / "tiers.json").unlink(missing_ok=True)
     (work / "faults.json").write_text(
         json.dumps([asdict(fault) for fault in faults], indent=1), encoding="utf-8"
     )
@@ -151,8 +155,10 @@ def take_all(choice: Choice, count: int, sources: dict[str, bytes]) -> list[Faul
     wanted = shares(count, sizes)
     for folder in sorted(sizes, key=sizes.get):  # small ones first: they have the least choice of kinds
         for _ in range(wanted[folder]):
-            if choice.take(folder) is None:
+            if (fault := choice.take(folder)) is None:
                 print(f"{folder} has no more faults")
+            else:
+                print(f"chosen: {fault.file}:{fault.line}: {fault.kind}", flush=True)
     return sorted(choice.chosen, key=lambda fault: (fault.file, fault.line))
 
 

@@ -7,7 +7,7 @@ import copy
 import re
 from collections.abc import Iterator
 
-from fault import NUMBER, Edit, Fault, another, line_of, one_line
+from fault import NUMBER, Edit, Fault, another, one_line, place
 
 COMPARISONS = {
     ast.Lt: ast.LtE,
@@ -98,10 +98,9 @@ class _File:
         original = self._segment(node)
         also = f", lambda: ({ast.unparse(node)}), lambda: ({mutated})" if twice else ""
         text = f"(({mutated}) if __fault__({NUMBER}{also}) else ({original}))"
-        line, code = line_of(self.source, begin)
         edit = Edit(begin, end, text)
         change = [shown.format(one_line(text)) for text in (original, mutated)]
-        self.faults.append(Fault(self.file, line, kind, code, *change, [[edit]]))
+        self.faults.append(Fault(self.file, *place(self.source, begin), kind, *change, [[edit]]))
 
     # what is walked: code that runs when a function is called, and not what is computed on import
 
@@ -190,12 +189,12 @@ class _File:
                     other = another(ast.unparse(value))
                     if not uses or not other or name in elsewhere or name in outside:
                         continue
-                    line, code = line_of(self.source, self._span(node)[0])
+                    where = place(self.source, self._span(node)[0])
                     edits = [
                         Edit(*self._span(use), f"({other} if __fault__({NUMBER}) else {name})")
                         for use in uses
                     ]
                     original = f"{name} = {self._segment(value)}"
                     self.faults.append(
-                        Fault(self.file, line, "constant", code, original, f"{name} = {other}", [edits])
+                        Fault(self.file, *where, "constant", original, f"{name} = {other}", [edits])
                     )

@@ -12,13 +12,13 @@ from run import Outcome, Test, reaching
 EQUIVALENT = Path(__file__).parent / "equivalent.toml"
 
 
-def equivalents() -> dict[tuple[str, str, str], str]:
-    """{(file, code, change): why the fault changes nothing that matters}."""
+def equivalents() -> dict[tuple, str]:
+    """{identity of a fault: why it changes nothing that matters}."""
     with EQUIVALENT.open("rb") as file:
-        return {
-            (each["file"], each["code"], each["change"]): each["reason"]
-            for each in tomllib.load(file)["fault"]
-        }
+        listed = tomllib.load(file).get("fault", [])
+    return {
+        tuple(each[key] for key in ("file", "code", "column", "change")): each["reason"] for each in listed
+    }
 
 
 def report(
@@ -71,8 +71,9 @@ def judged(fault: Fault, outcome: Outcome | None, known: dict, hit: bool) -> tup
     if outcome is None:
         return "not tried", ""
     if outcome.tier:
-        return outcome.tier, outcome.test
-    if reason := known.get((fault.file, fault.code, fault.change)):
+        late = " (took too long)" if outcome.why.startswith("TimeLimitError") else ""
+        return outcome.tier, outcome.test + late
+    if reason := known.get(fault.identity):
         return "equivalent", reason
     if not hit:
         return "survived", "no test comes by, or none where it makes a difference"
@@ -96,6 +97,7 @@ def details(
             "[[fault]]",
             f'file = "{fault.file}"  # line {fault.line}',
             f"code = '''{fault.code}'''",
+            f"column = {fault.column}",
             f"change = '''{fault.change}'''",
             'reason = ""',
             "",

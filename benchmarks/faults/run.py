@@ -26,7 +26,7 @@ CI = (
     ("long and not thorough", "tests/laws"),
     ("not thorough", "tests/integration"),
 )
-ALL = ("tests/python", "tests/laws", "tests/integration")
+ALL = (("tests/python", "tests/laws"), ("tests/integration",))  # each with a conftest of its own
 CPP = "cpp::"  # before the names of C++ tests
 FIRST_TESTS, FIRST_S, MORE = (
     30,
@@ -69,7 +69,7 @@ class Tree:
 
     def __init__(self, work: Path):
         self.work, self.root = work, work / "tree"
-        self.map = work / "map"
+        self.map, self.tiers = work / "map", work / "tiers.json"
         self.python = self.root / ".venv/bin/python"
 
     def start(
@@ -117,7 +117,7 @@ class Tree:
         }
         if "cpp" in paths:
             self._map_cpp(settings["BRUSHSVG_FAULT_HITS"])
-        if rest := [path for path in paths if path != "cpp"]:
+        for rest in apart([path for path in paths if path != "cpp"]):
             self.pytest("-n", processes, "--dist", "loadfile", *rest, show=True, **settings)
 
     def _map_cpp(self, hits: str) -> None:
@@ -141,7 +141,7 @@ class Tree:
         tests[f"{CPP}example_02"] = [examples / "example_02", brush, out]
         return tests
 
-    def collect_tiers(self) -> dict[str, str]:
+    def collect_tiers(self) -> None:
         """Which tier each test is in, by the markers of the tree."""
         with tempfile.TemporaryDirectory() as folder:
             out = Path(folder) / "names"
@@ -152,15 +152,14 @@ class Tree:
                     raise SystemExit(said[-3000:])
                 return json.loads(out.read_text(encoding="utf-8"))
 
-            tiers = dict.fromkeys(names(*ALL), "thorough")
+            tiers = dict.fromkeys([name for paths in ALL for name in names(*paths)], "thorough")
             for markers, *paths in CI:
                 tiers.update(dict.fromkeys(names("-m", markers, *paths), "ci"))
-        (self.work / "tiers.json").write_text(json.dumps(tiers, indent=0), encoding="utf-8")
-        return tiers
+        self.tiers.write_text(json.dumps(tiers, indent=0), encoding="utf-8")
 
     def tests(self) -> dict[str, Test]:
         """All tests that ran without a fault."""
-        tiers = json.loads((self.work / "tiers.json").read_text(encoding="utf-8"))
+        tiers = json.loads(self.tiers.read_text(encoding="utf-8"))
         found = {}
         for path in sorted(self.map.glob("tests-*.jsonl")):
             for line in path.read_text(encoding="utf-8").splitlines():
@@ -194,15 +193,18 @@ class Tree:
             status, out = self.start(names[test.name], limit, BRUSHSVG_FAULT=str(number))
             if status:
                 return test, out.strip()[-300:], ran
-        rest = [test for test in tests if not test.name.startswith(CPP)]
-        if not rest:
-            return None, "", ran
-        folder = Path(tempfile.mkdtemp(prefix="faults-"))
-        try:
-            test, why, more = self._run_pytest(number, rest, folder)
-        finally:
-            shutil.rmtree(folder, ignore_errors=True)
-        return test, why, ran + more
+        for files in apart(list(dict.fromkeys(test.file for test in tests if not test.name.startswith(CPP)))):
+            folder = Path(tempfile.mkdtemp(prefix="faults-"))
+            try:
+                test, why, more = self._run_pytest(
+                    number, [test for test in tests if test.file in files], folder
+                )
+            finally:
+                shutil.rmtree(folder, ignore_errors=True)
+            ran += more
+            if test:
+                return test, why, ran
+        return None, "", ran
 
     def _run_pytest(self, number: int, tests: list[Test], folder: Path) -> tuple[Test | None, str, int]:
         limits = {test.name: SLOWER * test.seconds + LATE_S for test in tests}
@@ -309,8 +311,16 @@ def reaching(tests: dict[str, Test], hits: set[str]) -> tuple[list[Test], list[T
     # a hit by a test that fails without faults still tells of its file
     near_files |= {name.split("::")[0] for name in hits if not name.startswith(CPP)}
     known = {test.name for test in direct}
+    if any("::" not in name for name in hits):  # what an import computes, others find there
+        return direct, [test for test in passing if test.name not in known]
     near = [test for test in passing if test.file in near_files or fixtures & set(test.shared)]
     return direct, [test for test in near if test.name not in known]
+
+
+def apart(paths: list[str]) -> list[list[str]]:
+    """Paths that one process of pytest can run, and those of the next."""
+    groups = [[path for path in paths if path.startswith(folders)] for folders in ALL]
+    return [group for group in groups if group]
 
 
 def first(tests: list[Test], most: int, seconds: float) -> list[Test]:
