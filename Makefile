@@ -24,12 +24,14 @@ endif
 WERROR ?= OFF
 PIP_INSTALL := $(BIN)/pip install -q --no-build-isolation -C build-dir=$(BUILD) -C cmake.define.BRUSHSVG_WERROR=$(WERROR) -e
 
-.PHONY: docs plugins help setup system test-system demo test lint format clang-check test-variants cpp-test python-test integration thorough test-times integration-system bench bench-compare asan clean quick FORCE
+.PHONY: docs plugins help setup system test-system demo test lint format clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
 	@echo "make test         set up, then run the linters and the tests of both languages"
 	@echo "make quick        run the fast Python tests, within a minute"
+	@echo "make test-wording run the tests with other words in all that people read: what fails depends on wording"
+	@echo "make wording      write tests/golden/wording.txt anew, where wording is held"
 	@echo "make integration  run the longer tests: fits to painted sheets, LinuxCNC, Inkscape, Chromium, pyright (installs them)"
 	@echo "make thorough     run every test, also those that .ci/run leaves out, and the C++ tests under sanitizers"
 	@echo "make test-times   run the tests and show which tests, fixtures and builds take longest (SUITES='python long integration')"
@@ -153,6 +155,20 @@ VARIANTS ?=
 test-variants: setup test-system
 	@$(MAKE) --no-print-directory $(VENV)/.dev
 	$(BIN)/python tools/test_variants.py $(VARIANTS)
+
+# The tests of both languages with other words in every sentence: what fails here and not in `make test` depends on wording.
+REWORDED := build/reworded
+test-wording: setup test-system
+	@$(MAKE) --no-print-directory $(VENV)/.dev
+	$(BIN)/python tests/rewording/reword_cpp.py $(REWORDED)
+	cmake -S $(REWORDED) -B $(REWORDED)/out -G Ninja -DCMAKE_BUILD_TYPE=Release -DBRUSHSVG_TESTS=ON -DBRUSHSVG_PYTHON=ON \
+	  -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python -Dpybind11_DIR=$$($(BIN)/python -m pybind11 --cmakedir) >/dev/null
+	cmake --build $(REWORDED)/out --target brushsvg_tests _core
+	$(REWORDED)/out/tests/cpp/brushsvg_tests
+	PYTHONPATH=tests/rewording $(PYTEST) -rf -m 'not long and not wording $(NOT_THOROUGH)' $(PYTHON_TESTS)
+
+wording: $(VENV)/.dev
+	@$(BIN)/python tests/python/test_wording.py
 
 integration-system: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev

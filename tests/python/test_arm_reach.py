@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from arm_judge import judge_of
-from diagnostics import agrees, in_json, is_told
+from diagnostics import agrees, gives, in_json, is_told
 from sampling import sample
 from test_arm import DESCRIBED, about, placed
 
@@ -73,10 +73,10 @@ def test_a_job_that_an_arm_cannot_do_is_refused_and_the_advised_place_does(which
     cell, plan = job(*given)
     (problem,) = look(cell, plan).problems
     assert (problem.where, problem.code) == ("line", code)
-    x, y = map(float, re.match(r"near x (-?[\d.]+), y (-?[\d.]+) mm", problem.sentence).groups())
+    x, y = map(float, re.search(r"x (-?[\d.]+), y (-?[\d.]+) mm", problem.sentence).groups())
     (x0, y0), (x1, y1) = given[3]
     assert min(x0, x1) <= x <= max(x0, x1) and min(y0, y1) <= y <= max(y0, y1)
-    dx, dy = map(float, re.search(r"moved by x ([+-]\d+), y ([+-]\d+) mm in", problem.advice).groups())
+    dx, dy = map(float, re.search(r"x ([+-]\d+), y ([+-]\d+) mm", problem.advice).groups())
     moved = tuple(np.add(cell.paper.origin_mm, (dx, dy, 0)).tolist())
     there = replace(cell, paper=replace(cell.paper, origin_mm=moved))
     assert look(there, plan).problems == []
@@ -123,7 +123,7 @@ def test_the_nearest_place_may_be_a_turn():
     assert found.turn_deg != 0
     there = place.cell_at(cell, found.frame)
     assert look(there, plan).problems == []
-    assert f"turned by {found.turn_deg:g} degrees" in found.told
+    assert gives(found.told, f"{found.turn_deg:g}")
 
 
 def test_convert_and_check_ask_the_arm(tmp_path, capsys):

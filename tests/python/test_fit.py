@@ -141,7 +141,7 @@ def test_intervals_cover_the_truth(norm):
     [
         ([3, 3, 3, 3, 3], [1, 2, 1, 2, 1], "depths-too-few 3 1"),
         ([], [], "depths-too-few 0"),
-        ([1, 2, float("nan")], [1, 2, 3], "not-finite 'value 3'"),
+        ([1, 2, float("nan")], [1, 2, 3], "not-finite 3"),
         ([1, 2, 3], [1, 2], "sizes-differ 3 2"),
     ],
 )

@@ -46,7 +46,7 @@ def test_the_nearest_width_is_painted_and_the_outline_stays_wanted(brush):
     assert halves[:, 1].max() == pytest.approx(4.2)
     assert np.interp(0.2, *halves.T) == pytest.approx(np.interp(0.2, *np.array(made[0].half_width).T))
     assert [r.tolist() for r in narrower.wanted_mm] == [r.tolist() for r in made[0].wanted_mm]
-    assert agrees(notice, "width-out-of-reach '[0, 8.4] mm' round-6 nearest", "p")
+    assert agrees(notice, "width-out-of-reach '[0, 8.4] mm' round-6", "p")
 
 
 def test_passes_cover_the_shape_and_stay_in_it(brush):
