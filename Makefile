@@ -140,7 +140,7 @@ asan: test-system
 # One worker per processor; a worker that runs out of tests takes some from another.
 PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 # What each suite runs in .ci/run. `make thorough` runs the same suites without "not thorough".
-PYTHON_TESTS := tests/python tests/laws
+PYTHON_TESTS := tests/python tests/laws tests/journeys
 NOT_THOROUGH := and not thorough
 
 python-test: $(VENV)/.dev

@@ -115,6 +115,25 @@ TEST_CASE("width to depth and back, and the refusal names the reachable range") 
     CHECK(shipped("rigid").depth_for_half_width(7.0, "") == shipped("rigid").paint_depth_mm);
 }
 
+TEST_CASE("a brush with a width at depth 0 presses for its thinnest line") {
+    const Brush liner = shipped("liner-1");  // 1 mm wide at depth 0
+    double before = 0.0;
+    for (double h : {0.5, 0.52, 0.55, 0.6, 1.0}) {
+        const double depth = liner.depth_for_half_width(h, "");
+        CHECK(depth > 0.1);
+        CHECK(depth >= before);
+        CHECK(std::abs(liner.half_width(depth) - h) < 0.05 + 1e-9);
+        before = depth;
+    }
+    Brush even = liner;  // so little wider when pressed that all of its widths are alike to the eye
+    even.half_width.coefficients = {0.5, 0.002};
+    CHECK(even.depth_for_half_width(0.5, "") == doctest::Approx(5.0));
+    Brush lifted = liner;  // its range begins above 0: pressed already
+    lifted.depth_range_mm = {1.0, 5.0};
+    CHECK(lifted.depth_for_half_width(0.6, "") == doctest::Approx(1.0));
+    CHECK(shipped("round-6").depth_for_half_width(1e-3, "") == doctest::Approx(1e-3 / 0.42));  // its widths begin at 0
+}
+
 TEST_CASE("a steeper half-width law with a floor inverts too") {
     Brush brush = shipped("round-6");
     brush.half_width.coefficients = {0.0, 0.2, 0.022};
