@@ -24,12 +24,14 @@ endif
 WERROR ?= OFF
 PIP_INSTALL := $(BIN)/pip install -q --no-build-isolation -C build-dir=$(BUILD) -C cmake.define.BRUSHSVG_WERROR=$(WERROR) -e
 
-.PHONY: docs plugins help setup system test-system demo test lint format clang-check cpp-test python-test integration thorough test-times integration-system bench bench-compare asan clean quick FORCE
+.PHONY: docs plugins help setup system test-system demo test lint format clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
 	@echo "make test         set up, then run the linters and the tests of both languages"
 	@echo "make quick        run the fast Python tests, within a minute"
+	@echo "make test-wording run the tests with other words in all that people read: what fails depends on wording"
+	@echo "make wording      write tests/golden/wording.txt anew, where wording is held"
 	@echo "make integration  run the longer tests: fits to painted sheets, LinuxCNC, Inkscape, Chromium, pyright (installs them)"
 	@echo "make thorough     run every test, also those that .ci/run leaves out, and the C++ tests under sanitizers"
 	@echo "make test-times   run the tests and show which tests, fixtures and builds take longest (SUITES='python long integration')"
@@ -38,6 +40,7 @@ help:
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
 	@echo "make bench        our figures beside the peers' and the floor"
 	@echo "make bench-compare REV=main    what became slower than at a revision, both run in turn"
+	@echo "make test-variants  the tests under the arithmetic of other processors: compilers, maths libraries, vector units"
 	@echo "make asan         C++ tests under address and undefined behaviour sanitizers"
 	@echo "make format       format both languages"
 	@echo "make clean        remove what was built"
@@ -137,7 +140,7 @@ asan: test-system
 # One worker per processor; a worker that runs out of tests takes some from another.
 PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 # What each suite runs in .ci/run. `make thorough` runs the same suites without "not thorough".
-PYTHON_TESTS := tests/python tests/laws
+PYTHON_TESTS := tests/python tests/laws tests/journeys
 NOT_THOROUGH := and not thorough
 
 python-test: $(VENV)/.dev
@@ -146,6 +149,26 @@ python-test: $(VENV)/.dev
 quick: $(VENV)/.dev
 	@$(BIN)/ruff check -q .
 	$(PYTEST) -m 'not slow $(NOT_THOROUGH)' tests/python
+
+# VARIANTS: options of the script, such as VARIANTS='--variant v3-fma --suite cpp'
+VARIANTS ?=
+test-variants: setup test-system
+	@$(MAKE) --no-print-directory $(VENV)/.dev
+	$(BIN)/python tools/test_variants.py $(VARIANTS)
+
+# The tests of both languages with other words in every sentence: what fails here and not in `make test` depends on wording.
+REWORDED := build/reworded
+test-wording: setup test-system
+	@$(MAKE) --no-print-directory $(VENV)/.dev
+	$(BIN)/python tests/rewording/reword_cpp.py $(REWORDED)
+	cmake -S $(REWORDED) -B $(REWORDED)/out -G Ninja -DCMAKE_BUILD_TYPE=Release -DBRUSHSVG_TESTS=ON -DBRUSHSVG_PYTHON=ON \
+	  -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python -Dpybind11_DIR=$$($(BIN)/python -m pybind11 --cmakedir) >/dev/null
+	cmake --build $(REWORDED)/out --target brushsvg_tests _core
+	$(REWORDED)/out/tests/cpp/brushsvg_tests
+	PYTHONPATH=tests/rewording $(PYTEST) -rf -m 'not long and not wording $(NOT_THOROUGH)' $(PYTHON_TESTS)
+
+wording: $(VENV)/.dev
+	@$(BIN)/python tests/python/test_wording.py
 
 integration-system: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev

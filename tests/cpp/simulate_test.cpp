@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "refusal.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;
@@ -75,14 +76,8 @@ TEST_CASE("moves are split where z crosses 0") {
 
 TEST_CASE("too deep or not finite is refused with the pose, the depth and the range") {
     const Brush brush = shipped("round-6");
-    try {
-        simulate(pass_of({{0, 0, 0}, {9, 0, -12}}), brush);
-        FAIL("accepted");
-    } catch (const Error& e) {
-        CHECK(std::string(e.what()) ==
-              "depth 12.000 mm of pose 1 is outside the range [0.0, 10.0] mm of brush round-6");
-        CHECK(e.where() == "s");
-    }
+    CHECK(agrees(refusal([&] { simulate(pass_of({{0, 0, 0}, {9, 0, -12}}), brush); }), "depth-out-of-range", "s",
+                 {"12.000", "1", "[0.0, 10.0]", "round-6"}));
     CHECK_THROWS_AS(simulate(pass_of({{0, 0, 0}, {NAN, 0, -1}}), brush), Error);
 }
 

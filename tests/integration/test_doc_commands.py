@@ -98,6 +98,9 @@ class Desk:
             words = shlex.split(re.sub(" > .*", "", command), comments=True)
             if words[0] == "brushsvg":
                 written = _written(words[1:])
+                for name in filter(None, written):  # commands replace no file that might be somebody's own
+                    if (self.folder / name).is_file():
+                        (self.folder / name).unlink()
                 for word in words:
                     if word not in written:
                         self.make(word)

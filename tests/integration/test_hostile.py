@@ -40,7 +40,7 @@ CASES = {
     "a selector for every ancestor": (
         lambda: f"<style>h {'g ' * 12}path{{stroke:blue}}</style>{'<g>' * 5000}{LINE}{'</g>' * 5000}",
         1,
-        "css-too-complex selectors",
+        "css-too-complex",
     ),
     "CSS without end": (
         lambda: f"<style>{'.a{stroke:red}' * 500_000}</style>{LINE}",
@@ -50,7 +50,7 @@ CASES = {
     "nested brackets in a style": (
         lambda: f'<path style="stroke:{"(" * 200_000}" d="M0 0H5"/>{LINE}',
         1,
-        "css-too-complex nested",
+        "css-too-complex",
     ),
     "dashes finer than dust": (
         lambda: '<path stroke-dasharray="1e-9" d="M10 30H90"/>',
@@ -145,7 +145,7 @@ OUTLINES = {
     "a ribbon of 40,000 edges": (
         lambda: filled(ribbon(20_000)),
         0,
-        "nothing-to-paint lines 20000",
+        "nothing-to-paint 20000",
     ),
     "300,000 edges": (lambda: filled(ring(around(300_000, lambda k: 25))), 0, "nothing-to-paint 200000"),
     "a rough disc of 40,000 edges": (

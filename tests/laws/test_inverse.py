@@ -477,9 +477,9 @@ def test_rigid_pen_follows_the_line():
 
 def test_widths_out_of_reach_are_refused_with_the_range():
     for half_width in (4.3, -1.0, np.nan):
-        with pytest.raises(ValueError, match="width") as refusal:
+        with pytest.raises(Error) as refusal:
             core.compensate([stroke_of(line((0, 0), (40, 0)), [(0.0, half_width)])], ROUND, (99.0, 99.0))
-        assert refusal.value.where == "s"
+        assert (refusal.value.code, refusal.value.where) == ("width-out-of-reach", "s")
     with pytest.raises(ValueError, match=r"8\.4") as refusal:
         core.compensate([stroke_of(line((0, 0), (40, 0)), [(0.0, 1.0), (1.0, 4.5)])], ROUND, (99.0, 99.0))
     assert refusal.value.range is not None

@@ -137,7 +137,7 @@ def test_brush_and_machine_come_back(parts):
     table = tomllib.loads(text[text.index("[machine]") :].partition("\n\n")[0])["machine"]
     if "lean" in parts:
         assert table["lean_mm_per_mm"] == pytest.approx(made.fit.machine.lean_mm_per_mm, abs=1e-4)
-        assert re.search(r"lean in x: 0\.\d+ \+- 0\.\d+ mm per mm", text)
+        assert re.search(r"lean in x: 0\.\d+ \+- 0\.\d+ mm", text)
     if "field" in parts:
         for row, fitted in zip(table["field_mm"], made.fit.machine.field_mm, strict=True):
             assert row == pytest.approx(fitted, abs=1e-4)

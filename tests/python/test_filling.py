@@ -299,7 +299,7 @@ def test_strokes_of_one_shape_are_filled_together_others_apart(brush):
     assert len(made) > 1
     _, _, notices = within_reach(made, brush, "passes")
     assert [notice.where for notice in notices] == [each.id for each in made]
-    assert agrees(notices[1], "width-out-of-reach 'first stroke'")
+    assert agrees(notices[1], "width-out-of-reach first")
     apart = of("M5 5H30V45H5ZM60 5H85V45H60Z")
     passes, _, _ = within_reach(apart, brush, "passes")
     assert {each.id.split("~")[0] for each in passes} == {"p/1", "p/2"}

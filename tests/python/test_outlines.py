@@ -521,7 +521,7 @@ def test_scribbles_beyond_all_lettering_are_left_out_with_a_warning():
     design = read(f'<g fill="red" stroke="none">{path(scribble)}<path id="bar" d="{BAR}"/></g>')
     made, (notice,) = strokes(design)
     assert [stroke.id for stroke in made] == ["bar"]
-    assert agrees(notice, "outline-too-complex crosses 10000", "p")
+    assert agrees(notice, "outline-too-complex 10000", "p")
     with refused("nothing-to-paint crosses"):
         painted(path(scribble))
 

@@ -36,7 +36,7 @@ struct Brush {
     bool is_rigid() const;             ///< r identically 0: a pen; p = q, no loose rule
     bool width_follows_depth() const;  ///< false where half_width is constant over the depth range
 
-    /// Depth [mm] that paints a half width [mm]. Error with the reachable range when there is none.
+    /// Depth [mm], never 0, that paints a half width [mm] to 0.05 mm. Error with the reachable range if there is none.
     double depth_for_half_width(double half_width_mm, const std::string& where) const;
     /// Half widths [mm] reachable over the depth range.
     std::array<double, 2> half_width_range_mm() const;
