@@ -37,13 +37,12 @@ def scatter_of_series(row: Row, lag_mm: float, tip_gap_mm: float, total: bool) -
     alpha0 = min(alpha0, GREATEST_ALPHA0_RAD - STEP_RAD)  # or a step would leave what can be read
     used = [k for k in range(len(s)) if s[k] > 0 and 0 < alpha[k] < alpha0]
     s = np.array(s)[used]
-    # an angle that has decayed to nothing cannot be read: none is smaller than the smallest that was
-    decayed = np.maximum(
-        _core.lag.alpha_after(alpha0, s / lag_mm), min(min(np.array(alpha)[used]), alpha0 / 2)
-    )
-    shown = [alpha0, *decayed]
+    # no angle is closer to where it could not be read, to 0 or to 180 degrees, than those that were read
+    alphas = _within(_core.lag.alpha_after(alpha0, s / lag_mm), np.array(alpha)[used], alpha0)
+    shown = [alpha0, *alphas]
     if beta:
-        shown += [*_core.lag.tip_direction(alpha0, decayed, s, lag_mm, max(tip_gap_mm, 0.0))]
+        directions = _core.lag.tip_direction(alpha0, alphas, s, lag_mm, max(tip_gap_mm, 0.0))
+        shown += [*_within(directions, np.array(beta)[used], math.pi)]
 
     def lengths(angles) -> np.ndarray:
         first, alphas, betas = angles[0], angles[1 : 1 + len(s)], angles[1 + len(s) :]
@@ -58,6 +57,11 @@ def scatter_of_series(row: Row, lag_mm: float, tip_gap_mm: float, total: bool) -
         squares += ((lengths(more) - lengths(less)) / (2 * STEP_RAD)) ** 2
     lag, tip_gap = np.sqrt(squares).tolist()
     return lag, tip_gap
+
+
+def _within(angles: np.ndarray, read: np.ndarray, most: float) -> np.ndarray:
+    """The angles, none outside of those that were read, nor at an end of (0, most)."""
+    return np.clip(angles, max(read.min(), 2 * STEP_RAD), min(read.max(), most - 2 * STEP_RAD))
 
 
 def _radians(row: Row) -> tuple[float, list[float], list[float], list[float]]:
