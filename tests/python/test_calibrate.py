@@ -64,7 +64,7 @@ def test_an_outlier_is_named_and_least_absolute_residuals_survive_it(tmp_path, c
     assert main(call) == 0
     assert re.search(r"line 50 .*outlier: \+", capsys.readouterr().out)
     off = find_brush(tmp_path / "b.json").lag(4) - 8
-    assert main([*call, "--norm", "absolute"]) == 0
+    assert main([*call, "--force", "--norm", "absolute"]) == 0
     assert abs(find_brush(tmp_path / "b.json").lag(4) - 8) < 0.02 < abs(off) / 5
 
 

@@ -757,7 +757,14 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
         "--speed",
     }
     job = {"--z-offset", "--from-stroke", "--order"}
-    assert flags == choices | job | {"--corrections", "--help", "--page", "--preview", "--report", "--quiet"}
+    assert flags == choices | job | {
+        "--corrections",
+        "--help",
+        "--page",
+        "--preview",
+        "--report",
+        "--quiet",
+    } | {"--force"}
     code = "import sys; from brushsvg.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"numpy", "cv2", "brushsvg._core", "brushsvg.pipeline.preparation"} & set(done.stderr.split())

@@ -215,9 +215,9 @@ def test_text(desk, capsys):
     assert main(["text", "T\\nTT", "t.svg", "--font", "font.svg", "--size", "30", "--width", "2.5"]) == 0
     passes, told = plan(desk, capsys, drawing="t.svg")
     assert (len(passes), told) == (6, [])
-    told = refusal(capsys, "text", "T", "t.svg", "--font", "none.svg")
+    told = refusal(capsys, "text", "T", "u.svg", "--font", "none.svg")
     assert agrees(told, "file-unreadable Inkscape")
-    told = refusal(capsys, "text", "x", "t.svg", "--font", "font.svg")
+    told = refusal(capsys, "text", "x", "u.svg", "--font", "font.svg")
     assert agrees(told, "nothing-to-paint U+0078")
     for words in (["T", "t.png"], ["T", "t.svg", "--size", "0"], ["T"]):
         assert main(["text", *words, "--font", "font.svg"]) == 2
