@@ -8,22 +8,39 @@ SHELL := /bin/bash
 PYTHON ?= $(shell for p in /usr/bin/python3 python3; do $$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 VENV := .venv
 BIN := $(VENV)/bin
-SYSTEM_PACKAGES := g++ cmake ninja-build libeigen3-dev libceres-dev libboost-dev nlohmann-json3-dev libhwy-dev python3 python3-dev python3-venv
+SYSTEM_PACKAGES := g++ ccache cmake ninja-build libeigen3-dev libceres-dev libboost-dev nlohmann-json3-dev libhwy-dev python3 python3-dev python3-venv
 TEST_PACKAGES := doctest-dev cppcheck
 CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
+# One build tree for the Python module, the C++ tests and the benchmarks: each library is compiled once.
+BUILD := build/release
+# Another clone on this machine compiles only what differs from the last one.
+ifneq ($(shell command -v ccache),)
+export CMAKE_CXX_COMPILER_LAUNCHER := ccache
+export CCACHE_BASEDIR := $(CURDIR)
+export CCACHE_NOHASHDIR := 1
+export CCACHE_SLOPPINESS := pch_defines,time_macros,include_file_mtime,include_file_ctime
+endif
+# .ci/run sets this to ON. Elsewhere a newer compiler's new warning must not break `make demo`.
+WERROR ?= OFF
+PIP_INSTALL := $(BIN)/pip install -q --no-build-isolation -C build-dir=$(BUILD) -C cmake.define.BRUSHSVG_WERROR=$(WERROR) -e
 
-.PHONY: docs plugins help setup system test-system demo test lint format clang-check cpp-test python-test integration fuzz bench bench-compare asan clean quick FORCE
+.PHONY: docs plugins help setup system test-system demo test lint format clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
 	@echo "make test         set up, then run the linters and the tests of both languages"
-	@echo "make quick        what is tested in a minute, for every save: all but slow tests, the laws and C++"
-	@echo "make integration  longer tests: brushes fitted to painted sheets; LinuxCNC, Inkscape, Chromium, pyright, real lettering (installs them)"
+	@echo "make quick        run the fast Python tests, within a minute"
+	@echo "make test-wording run the tests with other words in all that people read: what fails depends on wording"
+	@echo "make wording      write tests/golden/wording.txt anew, where wording is held"
+	@echo "make integration  run the longer tests: fits to painted sheets, LinuxCNC, Inkscape, Chromium, pyright (installs them)"
+	@echo "make thorough     run every test, also those that .ci/run leaves out, and the C++ tests under sanitizers"
+	@echo "make test-times   run the tests and show which tests, fixtures and builds take longest (SUITES='python long integration')"
 	@echo "make plugins      the Inkscape extension as a zip for its extension manager, in dist/"
 	@echo "make docs         the documentation as pages to read in a browser, with a search, in docs/_build"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
 	@echo "make bench        our figures beside the peers' and the floor"
 	@echo "make bench-compare REV=main    what became slower than at a revision, both run in turn"
+	@echo "make test-variants  the tests under the arithmetic of other processors: compilers, maths libraries, vector units"
 	@echo "make asan         C++ tests under address and undefined behaviour sanitizers"
 	@echo "make format       format both languages"
 	@echo "make clean        remove what was built"
@@ -64,11 +81,11 @@ $(VENV)/.modules: $(VENV)/.created FORCE
 
 $(VENV)/.installed: $(VENV)/.created $(VENV)/.modules pyproject.toml $(CPP_SOURCES)
 	@echo "building (a few minutes the first time)"
-	$(BIN)/pip install -q --no-build-isolation -e ".[text,plot,arm]"
+	$(PIP_INSTALL) ".[text,plot,arm]"
 	touch $@
 
 $(VENV)/.dev: $(VENV)/.installed pyproject.toml
-	@$(BIN)/pip install -q --no-build-isolation -e ".[dev]"
+	@$(PIP_INSTALL) ".[dev]"
 	touch $@
 
 demo: setup
@@ -91,6 +108,17 @@ lint: $(VENV)/.dev test-system
 clang-check: $(VENV)/.dev
 	@$(call install,clang)
 	includes="$$(printf -- '-Icpp/%s ' include io posts fit/laws fit/marks fit/tracks many refine src) $$($(BIN)/python -m pybind11 --includes) -isystem /usr/include/eigen3"
+	# public headers as a consumer with strict warnings reads them, by both compilers
+	for compiler in clang++ g++; do
+	  { for header in cpp/include/brushsvg/*.hpp cpp/io/{brush,plan,marks}_json.hpp cpp/posts/linuxcnc.hpp cpp/fit/*/{law_fit,angles,track_fit,mark_fit}.hpp cpp/refine/refine.hpp cpp/many/{many_strokes,marks_way}.hpp; do
+	      if [ -e "$$header" ]; then echo "#include \"$$PWD/$$header\""; fi; done; } | \
+	    $$compiler -x c++ -std=c++17 -fsyntax-only -Wall -Wextra -Wconversion -Wsign-conversion -Werror $$includes -
+	done
+	# the sources as a part of a consumer's project: no flag that clang does not know
+	rm -rf build/clang-consumer && mkdir -p build/clang-consumer/source
+	{ echo 'cmake_minimum_required(VERSION 3.25)'; echo 'project(consumer CXX)'; echo "add_subdirectory($$PWD brushsvg)"; } >build/clang-consumer/source/CMakeLists.txt
+	cmake -S build/clang-consumer/source -B build/clang-consumer/build -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS=-Werror >/dev/null
+	cmake --build build/clang-consumer/build --target brushsvg/CMakeFiles/brushsvg_core.dir/cpp/src/profile.cpp.o >/dev/null
 	git ls-files 'cpp/*.cpp' | xargs -P "$$(nproc)" -n 1 clang++ -std=c++17 -fsyntax-only -Wall -Wextra -Werror \
 	  -Wno-missing-field-initializers -DBRUSHSVG_FIT '-DBRUSHSVG_VERSION="0"' $$includes
 
@@ -99,35 +127,69 @@ format: $(VENV)/.dev
 	$(BIN)/ruff format -q .
 	$(BIN)/clang-format -i $$(git ls-files '*.cpp' '*.hpp')
 
-cpp-test: test-system
-	@cmake --preset dev >/dev/null
-	cmake --build --preset dev
-	ctest --preset dev
+cpp-test: setup test-system
+	@cmake --preset release -DBRUSHSVG_WERROR=$(WERROR) >/dev/null
+	cmake --build --preset release
+	ctest --preset release
 
 asan: test-system
 	@cmake --preset asan >/dev/null
 	cmake --build --preset asan --target brushsvg_tests
 	ctest --preset asan -R '^cpp$$'
 
-# on all processors; who is done takes from who is not
+# One worker per processor; a worker that runs out of tests takes some from another.
 PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
+# What each suite runs in .ci/run. `make thorough` runs the same suites without "not thorough".
+PYTHON_TESTS := tests/python tests/laws tests/journeys
+NOT_THOROUGH := and not thorough
 
 python-test: $(VENV)/.dev
-	@$(PYTEST) -m 'not long'
+	@$(PYTEST) -m 'not long $(NOT_THOROUGH)' $(PYTHON_TESTS)
 
 quick: $(VENV)/.dev
 	@$(BIN)/ruff check -q .
-	$(PYTEST) -m 'not slow' tests/python
+	$(PYTEST) -m 'not slow $(NOT_THOROUGH)' tests/python
 
-integration: setup
+# VARIANTS: options of the script, such as VARIANTS='--variant v3-fma --suite cpp'
+VARIANTS ?=
+test-variants: setup test-system
+	@$(MAKE) --no-print-directory $(VENV)/.dev
+	$(BIN)/python tools/test_variants.py $(VARIANTS)
+
+# The tests of both languages with other words in every sentence: what fails here and not in `make test` depends on wording.
+REWORDED := build/reworded
+test-wording: setup test-system
+	@$(MAKE) --no-print-directory $(VENV)/.dev
+	$(BIN)/python tests/rewording/reword_cpp.py $(REWORDED)
+	cmake -S $(REWORDED) -B $(REWORDED)/out -G Ninja -DCMAKE_BUILD_TYPE=Release -DBRUSHSVG_TESTS=ON -DBRUSHSVG_PYTHON=ON \
+	  -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python -Dpybind11_DIR=$$($(BIN)/python -m pybind11 --cmakedir) >/dev/null
+	cmake --build $(REWORDED)/out --target brushsvg_tests _core
+	$(REWORDED)/out/tests/cpp/brushsvg_tests
+	PYTHONPATH=tests/rewording $(PYTEST) -rf -m 'not long and not wording $(NOT_THOROUGH)' $(PYTHON_TESTS)
+
+wording: $(VENV)/.dev
+	@$(BIN)/python tests/python/test_wording.py
+
+integration-system: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev
 	$(call install,$(shell cat tests/integration/apt-packages.txt))
 	if ! command -v npm >/dev/null; then
 	$(call install,nodejs npm)
 	fi
 	$(BIN)/pip install -q -r tests/integration/requirements.txt
-	$(PYTEST) -m long tests/laws
-	$(PYTEST) -rs tests/integration
+
+integration: integration-system
+	@$(PYTEST) -m 'long $(NOT_THOROUGH)' tests/laws
+	$(PYTEST) -rs -m 'not long $(NOT_THOROUGH)' tests/integration
+
+thorough: test-system integration-system
+	@$(MAKE) --no-print-directory lint cpp-test asan clang-check
+	$(MAKE) --no-print-directory python-test integration NOT_THOROUGH=
+
+# The same suites with each test's cost recorded, then the table.
+SUITES ?= python long integration
+test-times: test-system integration-system
+	@$(BIN)/python tools/test_times.py run $(SUITES)
 
 bench: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev
@@ -160,7 +222,7 @@ bench-compare: setup
 	$(BIN)/python benchmarks/table.py --against "$$that" $(TABLE)
 
 docs: setup
-	@$(BIN)/pip install -q --no-build-isolation -e ".[docs]"
+	@$(PIP_INSTALL) ".[docs]"
 	$(BIN)/python -m sphinx -q -W -b html docs docs/_build
 	echo "open docs/_build/index.html"
 

@@ -66,15 +66,15 @@ TEST_CASE("dips that cannot be are refused") {
     const auto with = [&](const std::vector<std::vector<double>>& dips) {
         return refusal([&] { narrow(marks, paint_of(0.3), dips); });
     };
-    CHECK(contains(with({}), "dips for 0 passes, but 1"));
-    CHECK(contains(with({{50.0, 20.0}}), "s: ways at which paint was fetched must ascend"));
-    CHECK(contains(with({{NAN}}), "must ascend"));
-    CHECK(contains(refusal([&] { narrow(marks, paint_of(-1.0), {{0.0}}); }), "paint.narrows_per_m"));
+    CHECK(agrees(with({}), "sizes-differ", "", {"0", "1"}));
+    CHECK(agrees(with({{50.0, 20.0}}), "not-ascending", "s"));
+    CHECK(agrees(with({{NAN}}), "not-ascending", "s"));
+    CHECK(agrees(refusal([&] { narrow(marks, paint_of(-1.0), {{0.0}}); }), "out-of-range", "paint.narrows_per_m"));
     marks.passes[0].tcp_mm.resize(0, 2);
-    CHECK(contains(with({{0.0}}), "do not say where the TCP was"));
+    CHECK(agrees(with({{0.0}}), "sizes-differ", "s"));
     marks = simulate(plan, brush);
     marks.passes[0].width_share = {1.0};
-    CHECK(contains(refusal([&] { outline(marks.passes[0], brush); }), "not parallel"));
+    CHECK(agrees(refusal([&] { outline(marks.passes[0], brush); }), "sizes-differ", "s"));
     marks.passes[0].width_share.assign(marks.passes[0].pose.size(), 1.5);
-    CHECK(contains(refusal([&] { outline(marks.passes[0], brush); }), "outside the range [0, 1]"));
+    CHECK(agrees(refusal([&] { outline(marks.passes[0], brush); }), "out-of-range", "s", {"[0, 1]"}));
 }

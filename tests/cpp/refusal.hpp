@@ -1,18 +1,48 @@
 #pragma once
 
+#include <doctest/doctest.h>
+
+#include <cctype>
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "brushsvg/error.hpp"
 
-/// Where and why something is refused, "" where it is not.
-inline std::string refusal(const std::function<void()>& does) {
+/// With what something is refused; nothing where it is not.
+inline std::optional<brushsvg::Error> refusal(const std::function<void()>& does) {
     try {
         does();
     } catch (const brushsvg::Error& e) {
-        return e.where() + ": " + e.what();
+        return e;
     }
-    return "";
+    return std::nullopt;
 }
 
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+/// Whether a number or a name stands in a sentence as a whole: 2 does not stand in 2.5 or 12.
+inline bool stands_in(const std::string& part, const std::string& sentence) {
+    const auto joins = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    const auto at = [&](std::size_t i) { return i < sentence.size() ? sentence[i] : ' '; };
+    for (std::size_t from = sentence.find(part); from != std::string::npos; from = sentence.find(part, from + 1)) {
+        const std::size_t to = from + part.size();
+        const char before = from > 0 ? sentence[from - 1] : ' ';
+        const bool begins = !joins(part.front()) || !(joins(before) || before == '.' || before == '-');
+        const bool ends = !joins(part.back()) || !(joins(at(to)) || (at(to) == '.' && joins(at(to + 1))));
+        if (begins && ends) return true;
+    }
+    return false;
+}
+
+/// Whether it is this code of this element, with these numbers and names in its sentence, whose words may be any.
+inline bool agrees(const std::optional<brushsvg::Error>& told, const std::string& code, const std::string& where,
+                   const std::vector<std::string>& parts = {}) {
+    if (!told) {
+        MESSAGE("not refused");
+        return false;
+    }
+    bool all = told->code() == code && told->where() == where;
+    for (const std::string& part : parts) all = all && stands_in(part, told->what());
+    if (!all) MESSAGE(told->code(), ", ", told->where(), ": ", told->what());
+    return all;
+}

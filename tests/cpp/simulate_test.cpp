@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "refusal.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;
@@ -60,8 +61,8 @@ TEST_CASE("a pass that begins or ends below the surface is set down and lifted o
 
 TEST_CASE("moves are split where z crosses 0") {
     const Brush brush = shipped("round-6");
-    const PassMarks m =
-        simulate(pass_of({{0, 0, 2}, {10, 0, -3}, {30, 0, -3}, {40, 0, 7}, {50, 0, 7}, {60, 0, -3}}), brush);
+    const PassMarks m = simulate(pass_of({{0, 0, 2}, {10, 0, -3}, {30, 0, -3}, {40, 0, 7}, {50, 0, 7}, {60, 0, -3}}),
+                                 brush, 0.02, true, true);
     int touching = 0;
     for (std::size_t i = 0; i < m.pose.size(); ++i) {
         if (m.depth_mm[i] == 0.0) ++touching;
@@ -75,14 +76,8 @@ TEST_CASE("moves are split where z crosses 0") {
 
 TEST_CASE("too deep or not finite is refused with the pose, the depth and the range") {
     const Brush brush = shipped("round-6");
-    try {
-        simulate(pass_of({{0, 0, 0}, {9, 0, -12}}), brush);
-        FAIL("accepted");
-    } catch (const Error& e) {
-        CHECK(std::string(e.what()) ==
-              "depth 12.000 mm of pose 1 is outside the range [0.0, 10.0] mm of brush round-6");
-        CHECK(e.where() == "s");
-    }
+    CHECK(agrees(refusal([&] { simulate(pass_of({{0, 0, 0}, {9, 0, -12}}), brush); }), "depth-out-of-range", "s",
+                 {"12.000", "1", "[0.0, 10.0]", "round-6"}));
     CHECK_THROWS_AS(simulate(pass_of({{0, 0, 0}, {NAN, 0, -1}}), brush), Error);
 }
 
@@ -94,8 +89,27 @@ TEST_CASE("a pass that is above the paper from end to end is refused, a way abov
         CHECK(error.code() == "never-pressed");
         CHECK(error.value() == 5.0);
     }
-    CHECK(simulate(pass_of({{0, 0, 5}, {20, 0, -2}, {40, 0, 5}}), shipped("round-6")).pose.size() > 3);
+    const Pass rising = pass_of({{0, 0, 5}, {20, 0, -2}, {40, 0, 5}});
+    CHECK(simulate(rising, shipped("round-6"), 0.02, true, true).pose.size() > 3);
+    try {
+        simulate(rising, shipped("round-6"));
+        FAIL("a pose above the paper is taken for one of a pass");
+    } catch (const Error& error) {
+        CHECK(error.code() == "above-paper");
+        CHECK(error.value() == 5.0);
+    }
     CHECK_NOTHROW(simulate(pass_of({{0, 0, 0}, {20, 0, 0}}), shipped("round-6")));  // some brushes paint at depth 0
+}
+
+TEST_CASE("each pose has its row, also where a pass ends on the paper") {
+    const PassMarks m = simulate(pass_of({{0, 0, -3}, {30, 0, -5}, {60, 0, -5}}), shipped("round-6"));
+    const std::vector<std::size_t> rows = pose_rows(m);
+    REQUIRE(rows.size() == 3);
+    CHECK(m.depth_mm[rows[0]] == doctest::Approx(3.0));
+    CHECK(m.depth_mm[rows[2]] == doctest::Approx(5.0));
+    CHECK(rows[2] + 1 < m.pose.size());  // then it is lifted on the spot
+    CHECK(m.contact_mm(Eigen::Index(rows[2]), 0) == doctest::Approx(60.0 - shipped("round-6").lag(5.0)).epsilon(1e-3));
+    CHECK(m.contact_mm(m.contact_mm.rows() - 1, 0) > m.contact_mm(Eigen::Index(rows[2]), 0) + 3.0);
 }
 
 TEST_CASE("an arc is followed on its circle: rows at its poses and between, fractional within each") {

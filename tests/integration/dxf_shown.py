@@ -86,9 +86,12 @@ def painted(data: bytes) -> tuple[dict[str, shapely.Geometry], list[str]]:
     found: dict[str, list] = {}
     for element in design.elements:
         found.setdefault(element.colour, []).append(_of_element(element))
-    told = [f"{n.where}: {n.sentence}" for n in design.notices]
-    usual = ("it is dashed", "became the outlines of font", "Defpoints: the layer is not for plotting")
-    told = [each for each in told if not any(words in each for words in usual)]
+    usual = ("dashed", "text-outlined")
+    told = [
+        f"{n.where}: {n.sentence}"
+        for n in design.notices
+        if n.code not in usual and (n.code, n.where) != ("hidden", "Defpoints")
+    ]
     return {colour: shapely.union_all(marks) for colour, marks in found.items()}, told
 
 

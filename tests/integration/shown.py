@@ -59,7 +59,7 @@ def painted(text: str):
     mark = shapely.union_all([_mark(element) for element in design.elements]).intersection(
         shapely.box(*sheet)
     )
-    told = [f"{n.where}: {n.sentence}" for n in design.notices if "it is dashed" not in n.sentence]
+    told = [f"{n.where}: {n.sentence}" for n in design.notices if n.code != "dashed"]
     return _pixels(mark, design.sheet_mm[1]), told
 
 

@@ -22,7 +22,7 @@ def drawing(tmp_path):
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_a_missing_program_is_told_with_the_way_to_install_it(tmp_path, drawing, script):
     told = sentence(Plugin(tmp_path, command=None).script(script, drawing))
-    assert told.startswith("The program brushsvg was not found. Install it with:  pipx install brushsvg\n")
+    assert told.splitlines()[0].endswith(":  pipx install brushsvg")
 
 
 def programs(tmp_path, text):
@@ -35,23 +35,24 @@ def programs(tmp_path, text):
 @pytest.mark.parametrize(
     ("does", "told"),
     [
-        ('test "$1" = --version && echo brushsvg 0.0.9 && exit; exit 2', "brushsvg 0.0.9 is too old"),
-        ("echo ModuleNotFoundError: gone >&2; exit 1", "does not run: ModuleNotFoundError: gone\n"),
-        ("exit 1", "does not run (1)\n"),
-        ("exit 0", "is not the program brushsvg"),
-        ("kill -9 $$", "is not the program brushsvg"),
-        ("echo something else; exit 3", "is not the program brushsvg"),
+        ('test "$1" = --version && echo brushsvg 0.0.9 && exit; exit 2', "brushsvg 0.0.9"),
+        ("echo ModuleNotFoundError: gone >&2; exit 1", ": ModuleNotFoundError: gone\n"),
+        ("exit 1", " (1)\n"),
+        ("exit 0", ""),
+        ("kill -9 $$", ""),
+        ("echo something else; exit 3", ""),
     ],
 )
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_another_program_is_told(plugin, tmp_path, drawing, script, does, told):
     other = programs(tmp_path, does)
-    assert told in sentence(plugin.script(script, drawing, f"--executable={other}"))
+    said = sentence(plugin.script(script, drawing, f"--executable={other}"))
+    assert told in said if told else said.startswith(f"{other} ") and said.count("\n") == 1
 
 
 def test_one_that_is_chosen_but_is_not_there_is_told(plugin, tmp_path, drawing):
     told = sentence(plugin.script("save", drawing, f"--executable={tmp_path / 'nothing'}"))
-    assert "is not a program that can be run" in told
+    assert told.startswith(f"{tmp_path / 'nothing'} ")
 
 
 def test_the_place_noted_when_it_was_installed_is_used(tmp_path, drawing):
@@ -66,7 +67,7 @@ def test_it_is_found_in_the_usual_places_without_a_path(tmp_path, drawing, path)
     alone = Plugin(tmp_path, command=None)
     alone.env.pop("PATH")
     alone.env |= {} if path is None else {"PATH": path}
-    assert "was not found" in sentence(alone.script("save", drawing))
+    assert "pipx install brushsvg" in sentence(alone.script("save", drawing))
     (tmp_path / ".local" / "bin").mkdir(parents=True)
     (tmp_path / ".local" / "bin" / "brushsvg").symlink_to(COMMAND)
     assert alone.script("save", drawing).stdout.endswith(b"M2\n")
@@ -105,4 +106,4 @@ def test_a_place_that_was_noted_and_is_gone_does_no_harm(plugin, drawing):
 @pytest.mark.parametrize("script", ["save", "preview", "strokes"])
 def test_a_disk_that_takes_nothing_is_told(plugin, drawing, script):
     told = sentence(plugin.script(script, drawing, before=("/usr/bin/prlimit", "--fsize=0")))
-    assert "cannot be written or read: " in told and "mistake" not in told
+    assert told.endswith(": File too large.\n"), "the system's words, and no mistake of ours"

@@ -14,12 +14,12 @@ from diagnostics import agrees
 
 def test_output_into_a_directory_that_is_not_there(desk):
     file, told = refusal(desk, "convert", "sound.svg", "no/where/out.ngc")
-    assert file == "no/where/out.ngc" and agrees(told, "file-unwritable 'does not exist'")
+    assert file == "no/where/out.ngc" and agrees(told, "file-unwritable")
     file, told = refusal(desk, "convert", "sound.svg", "out.ngc", "--preview", "no/where/out.png")
-    assert file == "no/where/out.png" and agrees(told, "file-unwritable 'does not exist'")
+    assert file == "no/where/out.png" and agrees(told, "file-unwritable")
     (desk / "out.ngc").mkdir()
     file, told = refusal(desk, "convert", "sound.svg", "out.ngc")
-    assert file == "out.ngc" and agrees(told, "file-unwritable 'is a directory'")
+    assert file == "out.ngc" and agrees(told, "file-unwritable")
 
 
 @pytest.fixture
@@ -55,11 +55,9 @@ def test_without_the_right_to_write_or_read(as_nobody):
         ((_, notice),) = brushsvg("--messages", "json", *words, cwd=folder, status=1, **settings).told
         return notice
 
-    assert agrees(told("convert", "sound.svg", "out.ngc"), "file-unwritable directory writable")
-    assert agrees(
-        told("convert", "sound.svg", "open/old.ngc", "--force"), "file-unwritable 'permission denied'"
-    )
-    assert agrees(told("convert", "secret.svg", "open/out.ngc"), "file-unreadable 'permission denied'")
+    assert agrees(told("convert", "sound.svg", "out.ngc"), "file-unwritable")
+    assert agrees(told("convert", "sound.svg", "open/old.ngc", "--force"), "file-unwritable")
+    assert agrees(told("convert", "secret.svg", "open/out.ngc"), "file-unreadable")
     assert (folder / "open" / "old.ngc").read_text() == "kept\n"
     assert sorted(os.listdir(folder / "open")) == ["old.ngc"]
     assert sorted(os.listdir(folder)) == ["open", "secret.svg", "sound.svg"]
@@ -74,14 +72,14 @@ def test_a_file_that_grows_too_large_leaves_nothing(desk, out):
         resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300))
 
     file, told = refusal(desk, "convert", "sound.svg", out, preexec_fn=limit)
-    assert file == out and agrees(told, "file-unwritable 'file too large'")
+    assert file == out and agrees(told, "file-unwritable")
 
 
 def test_standard_output_that_is_closed_or_full(desk):
-    for output, sentence in (("&-", "it is closed"), ("/dev/full", "no space left on device")):
+    for output in ("&-", "/dev/full"):
         before = ["sh", "-c", f'exec "$@" >{output}', "sh"]
         for words in (("report", "sound.svg"), ("brush", "list")):
-            assert refused(desk, *words, before=before) == f"standard output: {sentence}"
+            assert refused(desk, *words, before=before).startswith("standard output: ")
 
 
 FULL_DISK = """
@@ -121,6 +119,6 @@ def test_a_full_disk_leaves_nothing(desk, full_disk, words):
     words = ("--messages", "json", "convert", "sound.svg", *words)
     done = brushsvg(*words, cwd=desk, before=full_disk, status=1)
     ((_, told),) = done.told
-    assert agrees(told, "file-unwritable 'no space left'")
+    assert agrees(told, "file-unwritable")
     assert done.out == "filler old.ngc kept\n"
     assert listing(desk) == before

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import studio
 from diagnostics import in_json
+from sampling import sample
 
 core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
@@ -65,7 +66,7 @@ ONE = {
 }
 
 
-@pytest.mark.parametrize("cause", ONE)
+@sample("cause", ONE, keep=2)
 def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
     amiss, numbers = ONE[cause]
     folder, _ = job
@@ -95,7 +96,7 @@ def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
     assert all(gain < 0.4 * gap + 0.01 for other, gain in gains.items() if other != cause), gains
 
 
-@pytest.mark.parametrize("number", [104, 105])
+@sample("number", [104, 105], keep=1)
 def test_all_of_it_at_once_lies_within_its_intervals(job, number, capsys):
     """Brush, paper and machine amiss together: height of the paper, lag and width look much alike."""
     _, plan = job

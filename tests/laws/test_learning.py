@@ -115,7 +115,7 @@ def deepest(plan):
 STUDIOS = {1: (true_brush(1.18, 0.9), 0.08), 2: (true_brush(0.83, 0.86), 0.03)}
 
 
-@pytest.fixture(scope="module", params=STUDIOS)
+@pytest.fixture(scope="module", params=[1, pytest.param(2, marks=pytest.mark.thorough)])
 def learnt(request, tmp_path_factory):
     truth, sure = STUDIOS[request.param]
     studio = Studio(tmp_path_factory.mktemp("studio"), sure=sure)
@@ -200,6 +200,7 @@ def test_strokes_that_share_paint_are_left_out_by_name(tmp_path, capsys):
     assert abs(brush.lag(4.0) / (1.05 * polyval(4.0, LAG)) - 1) < 0.03
 
 
+@pytest.mark.thorough
 def test_a_second_look_that_finds_no_lone_stroke_leaves_what_the_first_told(tmp_path, capsys, monkeypatch):
     studio = Studio(tmp_path, WORD + '<path id="slash" d="M20 84 L44 66" stroke-width="3"/>')
     studio.paint(5, true_brush(1.05, 0.95))
@@ -214,6 +215,7 @@ def test_a_second_look_that_finds_no_lone_stroke_leaves_what_the_first_told(tmp_
     assert abs(studio.brush().lag(4.0) / (1.05 * polyval(4.0, LAG)) - 1) < 0.03
 
 
+@pytest.mark.thorough
 def test_the_plan_of_a_corrected_word_says_where_the_tool_went(tmp_path, capsys):
     studio = Studio(tmp_path)
     shift = [

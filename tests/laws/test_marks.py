@@ -8,6 +8,7 @@ import oracle
 import pytest
 import shapely
 from conftest import LAGS, law, make_brush, make_plan, random_poses, section_6_footprints
+from sampling import sample
 
 core = pytest.importorskip("brushsvg._core")
 
@@ -153,12 +154,12 @@ def region_of(rings):
 
 
 def marks_of(poses, brush, tolerance_mm=0.02):
-    marks = core.simulate(make_plan(np.array(poses, float)), brush, tolerance_mm)
+    marks = core.simulate(make_plan(np.array(poses, float)), brush, tolerance_mm, may_rise=True)
     core.trace_outlines(marks, brush)
     return marks
 
 
-@pytest.mark.parametrize(("name", "shape"), CASES)
+@sample(("name", "shape"), CASES, keep=6)
 def test_outline_area_against_a_dense_union(name, shape):
     wanted = wanted_mark(name, shape)
     marks = marks_of(PASSES[name], brush_of(shape), 5e-4)
@@ -194,8 +195,10 @@ def test_outline_area_on_random_passes():
         assert core.area(marks.outline_mm) == pytest.approx(dense_union(poses, shape).area, rel=2e-4)
 
 
-@pytest.mark.parametrize(
-    ("name", "shape"), [c for c in CASES if c[0] in ("straight", "corner", "circle", "two dabs", "crossing")]
+@sample(
+    ("name", "shape"),
+    [c for c in CASES if c[0] in ("straight", "corner", "circle", "two dabs", "crossing")],
+    keep=4,
 )
 def test_coverage_against_rings_and_union(name, shape):
     brush, wanted = brush_of(shape), wanted_mark(name, shape)

@@ -9,6 +9,7 @@ import photograph
 import pytest
 from diagnostics import in_json, is_told
 from photograph import BLUE, INK, Camera
+from sampling import sample
 from scipy.spatial.transform import Rotation
 from shapely import transform
 from shapely.geometry import Polygon
@@ -125,7 +126,7 @@ def apart(painted, wanted):
     return found
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@sample("seed", [1, 2], keep=1)
 def test_each_round_comes_nearer(tmp_path, capsys, seed):
     studio = Studio(tmp_path, seed)
     plan = studio.plan()
@@ -187,6 +188,7 @@ def sheet_with_the_bar_elsewhere(folder):
     return first, studio.photographed(plan)
 
 
+@pytest.mark.thorough
 def test_strokes_that_lie_farther_aside_are_told(tmp_path, capsys):
     """A stroke that the machine leads elsewhere on the second sheet, and no other."""
     first, photo = sheet_with_the_bar_elsewhere(tmp_path)
@@ -468,6 +470,7 @@ def test_where_strokes_begin_and_end_is_told(tmp_path, capsys):
     assert abs(later("line", "ended_mm")) < 0.25 and abs(later("bar", "began_mm")) < 0.25
 
 
+@pytest.mark.thorough
 def test_a_stroke_that_ran_dry_moves_no_other(tmp_path, capsys):
     """Where half of a stroke has no paint, the sheet's place is told by the others."""
     studio = Studio(tmp_path, 17)

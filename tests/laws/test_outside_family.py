@@ -96,6 +96,7 @@ def chart_ways(brush):
     return [(one.stroke, np.array(one.poses_mm)) for one in made.plan.passes]
 
 
+@pytest.mark.thorough
 def test_widths_that_rise_as_roots_from_the_touch_on():
     """Two charts. Five numbers of a half width and departures that are smooth at the touch held 12 of 18: they took the
     paper for 0.07 and 0.13 mm higher."""
@@ -108,6 +109,7 @@ def test_widths_that_rise_as_roots_from_the_touch_on():
     assert held(found).sum() >= 17, found
 
 
+@pytest.mark.thorough
 def test_round_6_paints_its_own_chart():
     """Without noise on its edges: the lag was off by nine half-intervals, the paper by six."""
     found, fit = fitted(round_6(), 1, noise=0.0)

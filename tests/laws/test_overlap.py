@@ -100,6 +100,7 @@ def check_figures(strokes, compensation, brush_name="round-6"):
     return groups
 
 
+@pytest.mark.thorough
 def test_overlap_of_the_demo_drawing():
     import brushsvg
 

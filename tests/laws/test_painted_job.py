@@ -10,6 +10,7 @@ import photograph
 import pytest
 from diagnostics import in_json, is_told
 from photograph import BLUE, INK, Camera
+from sampling import sample
 from shapely import affinity
 from shapely.geometry import Polygon
 from shapely.ops import unary_union
@@ -113,7 +114,7 @@ def test_wider_paint_and_a_missing_stroke_are_told(job, capsys):
         assert rows[name]["wider_mm"] == pytest.approx(0.3, abs=0.05)
 
 
-@pytest.mark.parametrize("by_mm", [-0.5, 0.8, 2.0])
+@sample("by_mm", [-0.5, 0.8, 2.0], keep=1)
 def test_however_much_wider_it_is(job, capsys, by_mm):
     folder, page, _, painted = job
     wide = {

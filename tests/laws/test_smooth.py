@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from sampling import sample
 from scipy.spatial import cKDTree
 
 core = pytest.importorskip("brushsvg._core")
@@ -98,7 +99,7 @@ def corners_beyond(few, dense):
     return count
 
 
-@pytest.mark.parametrize("name", DRAWN)
+@sample("name", DRAWN, keep=2)
 def test_the_painted_edge_has_no_corner_that_the_dense_plan_lacks(name):
     few, dense = plan_of(DRAWN[name], 0.05), plan_of(DRAWN[name], 0.005, few_poses=False)
     pairs = zip(simulated(few), simulated(dense), strict=True)

@@ -8,6 +8,7 @@ import numpy as np
 import photograph
 import pytest
 from photograph import BLUE, INK, Camera, replace
+from sampling import sample
 from test_scan import A5, a5, hide, off_mm, painted_marks, painted_sheet
 
 from brushsvg import _core, find_brush
@@ -136,7 +137,7 @@ def code_of(data):
     return refusal.value.code
 
 
-@pytest.mark.parametrize("kind", REFUSED)
+@sample("kind", REFUSED, keep=8)
 def test_a_picture_that_cannot_be_read_is_refused_for_its_cause(kind):
     make, code = REFUSED[kind]
     assert code_of(photograph.encoded(make())) == code
@@ -183,13 +184,14 @@ def test_white_round_a_picture_that_was_turned_is_no_light_of_the_page(deg):
     assert not remarks(found) and not found.marks.missing
 
 
-@pytest.mark.parametrize(
+@sample(
     ("cut", "sag_mm", "code"),
     [
         ((0, 1350), 0.0, "photo-cropped"),
         ((210, 1500), 0.0, "photo-cropped"),
         ((0, 1350), 1.5, "photo-not-flat"),
     ],
+    keep=1,
 )
 def test_a_picture_that_was_cut_on_one_side_is_not_paper_that_bulges(cut, sag_mm, code):
     """All markers are on it still, and the lens's middle is no more in its own."""

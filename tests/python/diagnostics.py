@@ -16,7 +16,7 @@ def agrees(told: Error | Notice, expected: str, where: str | None = None) -> boo
     blanks in it, in quotes. where: the element it must be about."""
     code, *parts = shlex.split(expected)
     text = f"{told.where}: {told if isinstance(told, Error) else told.told}"
-    return told.code == code and where in (None, told.where) and all(_stands_in(part, text) for part in parts)
+    return told.code == code and where in (None, told.where) and all(_found(part, text) for part in parts)
 
 
 def is_told(told, expected: str, where: str | None = None) -> bool:
@@ -30,10 +30,20 @@ def are_told(told, *expected: str) -> bool:
     return len(told) == len(expected) and all(map(agrees, told, expected))
 
 
-def _stands_in(part: str, text: str) -> bool:
+def gives(text: str, *parts: str) -> bool:
+    """Whether a text gives these numbers and names in this order, each as a whole word; its words may be any."""
+    for part in parts:
+        found = _found(part, text)
+        if found is None:
+            return False
+        text = text[found.end() :]
+    return True
+
+
+def _found(part: str, text: str) -> re.Match | None:
     before = r"(?<![\w.-])" if part[0].isalnum() else ""
     after = r"(?!\w|\.\d)" if part[-1].isalnum() else ""
-    return re.search(before + re.escape(part) + after, text) is not None
+    return re.search(before + re.escape(part) + after, text)
 
 
 @contextmanager

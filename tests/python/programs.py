@@ -6,6 +6,7 @@ from dataclasses import replace
 from diagnostics import in_json, is_told
 
 from brushsvg.cli import main
+from brushsvg.cli.commands import check
 from brushsvg.machine.paint_reload import PlanInLoads
 from brushsvg.machine.preflight import look
 from brushsvg.machine.program import WHOLE_JOB, walked
@@ -29,7 +30,7 @@ LANGUAGES = {
     "axidraw-ebb": ".ebb",
 }
 SERVOS = ("grbl-servo", "axidraw-ebb")
-RUNNABLE = "nothing forbids to run it"  # brushsvg check, of a sound program
+RUNNABLE = check.RUNNABLE  # what is said of a sound program
 
 
 def call(capsys, *words):

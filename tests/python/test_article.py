@@ -22,6 +22,7 @@ def cells(line: str) -> list[str]:
     return [cell.strip() for cell in line.strip().strip("|").split("|")]
 
 
+@pytest.mark.thorough
 @pytest.mark.slow
 def test_the_page_is_that_of_the_command(tmp_path):
     pytest.importorskip("matplotlib")

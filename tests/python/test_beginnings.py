@@ -3,6 +3,7 @@
 from itertools import product
 
 import numpy as np
+import pytest
 
 from brushsvg import _core, compensate, find_brush
 
@@ -65,6 +66,7 @@ def arc(radius_mm, half_mm, from_rad, sweep_rad):
     return _core.Stroke(middle_mm=cubics, half_width=[(0.0, half_mm)])
 
 
+@pytest.mark.thorough
 def test_arcs_begin_and_end_as_the_best_of_all_that_can_be_asked_for():
     """Wide arcs, each other one of at most 11 mm radius and all but the brush's full width: of those 18 began pointed,
     as the judge went straight on half a width before the path along its first chord, not its tangent."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import agrees, are_told, in_json, refused
+from diagnostics import agrees, are_told, gives, in_json, refused
 from scipy import special
 
 import brushsvg
@@ -36,8 +36,8 @@ def test_from_a_table_to_a_brush_with_a_report(tmp_path, capsys):
     out, picture = tmp_path / "own.json", tmp_path / "own.svg"
     assert main(["calibrate", str(tmp_path / "m.csv"), "-o", str(out), "--plot", str(picture)]) == 0
     told = capsys.readouterr().out
-    assert "tip_to_widest = " in told and re.search("assumed: .* 1.8 half widths", told)
-    assert "next: measure tip_to_widest" in told
+    assert "tip_to_widest = " in told and gives(told, "1.8")
+    assert gives(told.splitlines()[-1], "tip_to_widest"), "what to measure next"
     brush = find_brush(out)
     assert brush.name == "own" and picture.read_bytes().startswith(b"<?xml")
     assert [getattr(brush, law).assumed for law in ("lag", "tip_gap", "tip_to_widest", "half_width")] == [
@@ -62,7 +62,7 @@ def test_an_outlier_is_named_and_least_absolute_residuals_survive_it(tmp_path, c
     (tmp_path / "m.csv").write_text("kind,depth_mm,value_mm\n" + "\n".join([*lines, "lag,4,14"]))
     call = ["calibrate", str(tmp_path / "m.csv"), "-o", str(tmp_path / "b.json")]
     assert main(call) == 0
-    assert re.search(r"line 50 .*outlier: \+", capsys.readouterr().out)
+    assert re.search(r"\b50 .*: \+", capsys.readouterr().out)
     off = find_brush(tmp_path / "b.json").lag(4) - 8
     assert main([*call, "--force", "--norm", "absolute"]) == 0
     assert abs(find_brush(tmp_path / "b.json").lag(4) - 8) < 0.02 < abs(off) / 5
@@ -73,10 +73,10 @@ def test_an_outlier_is_named_and_least_absolute_residuals_survive_it(tmp_path, c
     [
         ("", "table-columns kind depth_mm value_mm"),
         ("kind,depth_mm,value_mm\nlagg,3,4\n", "measurement-kind 'line 2' lagg"),
-        ("kind,depth_mm,value_mm\nlag,3,x\n", "not-a-number 'line 2' value_mm x"),
-        ("kind,depth_mm,value_mm\nlag,3,nan\n", "not-a-number 'line 2.value_mm' nan"),
-        ("kind,depth_mm,value_mm\nlag,-3,4\n", "depth-out-of-range 'line 2' -3 '(0, 1000] mm'"),
-        ("kind,depth_mm,value_mm\nlag,3,4000\n", "out-of-range 'line 2.value_mm' 4000 1000"),
+        ("kind,depth_mm,value_mm\nlag,3,x\n", "not-a-number 2 value_mm x"),
+        ("kind,depth_mm,value_mm\nlag,3,nan\n", "not-a-number 2.value_mm nan"),
+        ("kind,depth_mm,value_mm\nlag,-3,4\n", "depth-out-of-range 2 -3 '(0, 1000] mm'"),
+        ("kind,depth_mm,value_mm\nlag,3,4000\n", "out-of-range 2.value_mm 4000 1000"),
     ],
 )
 def test_no_file_unless_it_is_usable(text, said, tmp_path, capsys):
@@ -255,10 +255,10 @@ def test_a_table_that_names_another_unit_is_refused(head, row, where):
 @pytest.mark.parametrize(
     ("row", "expected"),
     [
-        ("lag,0,7", "depth-out-of-range contact"),
-        ("lag,3,1200", "out-of-range millimetres"),
+        ("lag,0,7", "depth-out-of-range"),
+        ("lag,3,1200", "out-of-range"),
         ("straight,3,7", "measurement-kind JSON"),
-        ("lag,3,7 mm", "not-a-number unit"),
+        ("lag,3,7 mm", "not-a-number"),
         ("", "measurement-missing rows lag width"),
     ],
 )
@@ -338,7 +338,7 @@ def test_decimal_commas_are_not_read_as_whole_numbers(tmp_path, capsys, columns)
     if columns.startswith("depth"):
         made = ["brush", "new", tmp_path / "b", "--lag", "5", "--widths", tmp_path / "m.csv"]
     status, _, ((_, told),) = in_json(capsys, *made)
-    assert status == 1 and agrees(told, "table-columns 33 'line 2'"), told
+    assert status == 1 and agrees(told, "table-columns 33 2"), told
     assert not (tmp_path / "b.json").exists()
 
 
@@ -407,14 +407,14 @@ def test_of_exact_values_no_rounding_is_told(tmp_path, capsys):
     rows = {"lag": values(2 + 0.5 * DEPTHS), "width": values(DEPTHS)}
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
     assert main(["calibrate", str(tmp_path / "m.json"), "-o", str(tmp_path / "b.json")]) == 0
-    assert "confidence intervals +- 0, 0, 0 " in capsys.readouterr().out
+    assert "+- 0, 0, 0 " in capsys.readouterr().out
 
 
 def test_few_values_give_a_law_that_does_not_follow_their_noise(tmp_path, capsys):
     off = (0.3, -0.3, 0.3, -0.3, 0.3)
     rows = [("lag", d, 3 + 0.8 * d + e) for d, e in zip((2, 4, 6, 8, 10), off, strict=True)]
     code, out = table(tmp_path, rows + WIDTHS)
-    assert code == 0 and "of degree 2 instead of 4" in capsys.readouterr().out
+    assert code == 0 and re.search(r"\b2 [a-z ]+ 4\b", capsys.readouterr().out)
     brush = find_brush(out)
     assert max(abs(brush.lag(d) - 3 - 0.8 * d) for d in np.linspace(0.5, 10, 30)) < 0.6  # a quartic: 9 mm
     assert len(brush.covariance)
@@ -426,8 +426,8 @@ def test_a_slip_of_the_pen_is_named_among_ten_readings(tmp_path, capsys, norm):
     rows[4] = ("lag", 5, 70.0)
     table(tmp_path, rows + WIDTHS, "--norm", norm)
     told = "".join(capsys.readouterr())
-    assert re.search(r"line 6 .*outlier: \+.* studentized residual", told)
-    assert "line 5 lies" not in told and "right order" not in told
+    assert re.search(r"\b6 .*: \+", told)
+    assert not re.search(r"\b5 .*: [+-]", told)
 
 
 def test_two_depths_side_by_side_leave_the_lag_open(tmp_path, capsys):
@@ -436,7 +436,7 @@ def test_two_depths_side_by_side_leave_the_lag_open(tmp_path, capsys):
     assert code == 1 and not out.exists()
     capsys.readouterr()
     _, _, ((_, told),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out)
-    assert agrees(told, "law-undetermined lag 'more depths'"), told
+    assert agrees(told, "law-undetermined lag"), told
 
 
 def test_normal_noise_is_seldom_called_an_outlier():
@@ -523,7 +523,7 @@ def test_a_fit_stays_as_it_was_when_the_brush_is_made():
     fit = next(fitted.fit for fitted in made.laws if fitted.name == "tip_to_widest")
     assert fit.law.floor_slope == 0 and fit.law(1.0) == pytest.approx(WIDEST(1.0), abs=1e-6)
     assert made.brush.tip_to_widest.floor_slope > 0 and made.brush.tip_to_widest(1.0) > 0.1
-    assert fit.law.source == "" and made.brush.tip_to_widest.source.startswith("Fitted to 10 values")
+    assert fit.law.source == "" and gives(made.brush.tip_to_widest.source, "10")
 
 
 @pytest.mark.parametrize(
@@ -565,7 +565,7 @@ def test_five_readings_have_a_band_that_holds_the_truth():
         brush.lag, brush.covariance = _core.Profile(found, degrees_of_freedom=2), covariance
         half, what = law_band(brush, "lag", at)
         held.append(np.abs(np.polynomial.polynomial.polyval(at, found - truth)) <= half)
-    assert what.startswith("half the 95 % confidence")
+    assert gives(what, "95 %")
     assert np.all(np.abs(np.mean(held, axis=0) - 0.95) < 0.015)
 
 
@@ -591,6 +591,21 @@ def test_quantiles_are_scipys(freedom):
     np.testing.assert_allclose(
         _core.as_normal(t, freedom), -special.ndtri(special.stdtr(freedom, -np.abs(t))), rtol=1e-7, atol=1e-12
     )
+
+
+@pytest.mark.parametrize(
+    ("machine", "code"),
+    [
+        ("lean", "wrong-type"),
+        (("leam",), "choice-unknown"),
+        (("lean", 3), "choice-unknown"),
+        (3, "wrong-type"),
+        (None, "wrong-type"),
+    ],
+)
+def test_parts_of_a_machine_that_there_are_not_are_refused_with_those_that_there_are(machine, code):
+    with refused(f"{code} lean axes tilt backlash field"):
+        brushsvg.calibrate("marks.json", machine=machine)
 
 
 def test_measured_numbers_say_nothing_of_a_machine(tmp_path, capsys):

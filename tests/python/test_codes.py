@@ -19,8 +19,6 @@ CODE = re.compile("[a-z]+(-[a-z]+)*")
 FOUR_WORDS = re.compile(r"(?<![\w-])[A-Za-z][a-z]+(?: [a-z]+(?:'[a-z]+)?){3}(?![\w-])")
 QUOTED = {  # file: how many texts of four plain words and more its tests expect, for no code tells them
     "integration/command.py": 1,  # what a mistake of ours begins with
-    "integration/test_inkscape_program.py": 6,  # dialogs of the extension itself
-    "integration/test_inkscape_settings.py": 10,
     "python/test_checking.py": 3,  # lines of a program's header and end
     "python/test_jaka.py": 1,
     "python/test_ros2.py": 1,  # the end of a table
@@ -130,3 +128,13 @@ def test_tests_expect_codes_and_numbers_and_quote_no_sentences():
         if quoted := [text for tree in trees for text in texts_in(tree) if FOUR_WORDS.search(text)]:
             found[file.relative_to(TESTS).as_posix()] = quoted
     assert {file: len(quoted) for file, quoted in found.items()} == QUOTED, found
+
+
+def test_tests_of_the_library_ask_refusals_for_codes_and_numbers():
+    """refusal.hpp alone looks into sentences, for numbers and names; nonsense.cpp asks whether there is one."""
+    asked = {file.name for file in (TESTS / "cpp").iterdir() if "what()" in file.read_text(encoding="utf-8")}
+    assert asked <= {"refusal.hpp", "brushsvg_test.cpp", "fit_nonsense.cpp", "mark_fit_test.cpp"}
+    words = {
+        file.name for file in (TESTS / "cpp").iterdir() if "THROWS_WITH" in file.read_text(encoding="utf-8")
+    }
+    assert not words

@@ -1,6 +1,7 @@
 """Corners of drawn lines: where closed ones begin, and where the brush is lifted."""
 
 import itertools
+import re
 
 import numpy as np
 import pytest
@@ -124,7 +125,7 @@ def test_corners_can_be_chosen_and_check_knows(tmp_path, capsys, flags, count):
     )
     program = tmp_path / "apex.ngc"
     assert main(["convert", str(drawing), str(program), "--lenient", *flags]) == 0
-    assert f"{count} stroke" in capsys.readouterr().err
+    assert re.search(rf"; {count}\b", capsys.readouterr().err)
     assert main(["check", str(program), str(drawing), *(flags if flags[:1] == ["--corners"] else [])]) == 0
 
 

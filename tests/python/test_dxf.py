@@ -490,7 +490,7 @@ def test_what_is_hidden_is_left_out_and_counted():
         "Frozen": "hidden frozen '1 entity'",
         "Plan": "hidden plotting '1 entity'",
         "invisible": "hidden '1 entity'",
-        "Layout1": "paper-space '1 entity'",
+        "Layout1": "paper-space 1",
     }
     assert len(design.notices) == len(expected)
     for where, said in expected.items():
@@ -500,7 +500,7 @@ def test_what_is_hidden_is_left_out_and_counted():
 def test_paper_space_alone_is_refused():
     document = drawing()
     document.paperspace().add_circle((0, 0), 5)
-    with refused("nothing-to-paint Layout1 'paper space' '1 entity'"):
+    with refused("nothing-to-paint Layout1 '1 entity'"):
         read(document)
     with refused("nothing-to-paint") as caught:
         read(drawing())
@@ -578,7 +578,7 @@ def test_an_mpolygon_has_a_filling_and_a_border_of_their_colours():
         (lambda m: m.add_solid(SQUARE), {"$FILLMODE": 0}, "shown-otherwise outlines"),
         (lambda m: setattr(m.add_line((0, 0), (9, 9)), "transparency", 0.5), {}, "opacity-unread see-through"),
         (lambda m: m.add_line((0, 0), (9, 0), {"thickness": 5, "extrusion": (0, 1, 0)}), {}, "thickness-unread"),
-        (lambda m: m.add_hatch().set_gradient() or SQUARE, {}, "paint-unread gradient"),
+        (lambda m: m.add_hatch().set_gradient() or SQUARE, {}, "paint-unread"),
     ],
 )  # fmt: skip
 def test_what_is_shown_otherwise_is_named_once(draw, header, said):

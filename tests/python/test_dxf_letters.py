@@ -328,7 +328,7 @@ def test_long_text_is_refused_however_it_is_repeated(fonts, kind, monkeypatch):
     getattr(document.blocks.new("b"), kind)("A" * 100, dxfattribs={"style": "Boxes"})
     grid = {"row_count": 30, "column_count": 30, "row_spacing": 9, "column_spacing": 9}
     document.modelspace().add_blockref("b", (0, 0), grid)
-    with refused("drawing-too-large 2000 letters"):
+    with refused("drawing-too-large 2000"):
         read(document)
 
 

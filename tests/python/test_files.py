@@ -95,7 +95,7 @@ def test_a_file_that_may_not_be_written_is_left_alone(tmp_path, monkeypatch):
     path.write_text("old")
     path.chmod(0o444)
     monkeypatch.setattr(os, "access", lambda *_: False)  # as for any user but root
-    with refused("file-unwritable 'permission denied'"):
+    with refused("file-unwritable"):
         write_files({tmp_path / "new": "1", path: "2"})
     assert path.read_text() == "old"
     assert os.listdir(tmp_path) == ["locked"]
@@ -117,7 +117,7 @@ def test_a_full_disk_or_ctrl_c_leaves_the_old_files(tmp_path, monkeypatch, stop)
     with pytest.raises((Error, KeyboardInterrupt)) as refusal:
         write_files(dict.fromkeys(paths, "new"))
     if isinstance(stop, OSError):
-        assert agrees(refusal.value, "file-unwritable 'no space left'")
+        assert agrees(refusal.value, "file-unwritable")
         assert refusal.value.file == str(paths[1])
     assert [path.read_text() for path in paths] == ["old", "old"]
     assert len(os.listdir(tmp_path)) == 2

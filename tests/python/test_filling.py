@@ -5,6 +5,7 @@ import pytest
 import shapely
 import shapely.affinity
 from diagnostics import agrees
+from sampling import sample
 from svg_text import read
 
 from brushsvg import _core, find_brush
@@ -61,7 +62,7 @@ def share_left(shape, made) -> float:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("d", SHAPES.values(), ids=SHAPES)
+@sample("d", SHAPES.values(), ids=SHAPES, keep=5)
 def test_passes_fill_a_shape_and_stay_in_it(brush, d):
     made = of(d)
     shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm]))
@@ -189,10 +190,11 @@ def test_a_ring_without_corners_begins_where_it_bends_least(brush, wide, high):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
+@sample(
     "d",
     [SHAPES["star"], SHAPES["arrow"], SHAPES["bow-tie"], STAR_OF_SIX + "Z"],
     ids=["star", "arrow", "bow-tie", "star of six"],
+    keep=1,
 )
 def test_marks_do_not_bulge_where_a_shape_becomes_as_narrow_as_the_brush(brush, d):
     """A line of a ring that ended in its cusp stuck out by up to 0.8 mm, of the edge that it does not run along; a star
@@ -206,7 +208,7 @@ def test_marks_do_not_bulge_where_a_shape_becomes_as_narrow_as_the_brush(brush, 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["star", "arrow", "comb", "ell", "round short bar"])
+@sample("name", ["star", "arrow", "comb", "ell", "round short bar"], keep=2)
 def test_no_other_way_to_fill_a_shape_plainly_paints_more_of_it(brush, name):
     """Compared by the marks' outlines with shapely; discs would tell of the star's five square ends as the best."""
     made = of(SHAPES[name])
@@ -251,7 +253,7 @@ def test_a_line_into_a_narrow_blunt_end_is_meant_to_paint_into_its_corners():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("d", [SHAPES["bar"], SQUARE, SHAPES["ell"], SHAPES["triangle"], PENTAGON, DIAMOND])
+@sample("d", [SHAPES["bar"], SQUARE, SHAPES["ell"], SHAPES["triangle"], PENTAGON, DIAMOND], keep=2)
 def test_marks_of_passes_have_the_shape_s_straight_edges_up_to_its_corners(brush, d):
     """Measured on the simulated marks by shapely: within 0.2 mm of each edge, from 2 mm beside corners on, from 5 mm
     beside one that points inwards, where the brush turns."""
@@ -297,7 +299,7 @@ def test_strokes_of_one_shape_are_filled_together_others_apart(brush):
     assert len(made) > 1
     _, _, notices = within_reach(made, brush, "passes")
     assert [notice.where for notice in notices] == [each.id for each in made]
-    assert agrees(notices[1], "width-out-of-reach 'first stroke'")
+    assert agrees(notices[1], "width-out-of-reach first")
     apart = of("M5 5H30V45H5ZM60 5H85V45H60Z")
     passes, _, _ = within_reach(apart, brush, "passes")
     assert {each.id.split("~")[0] for each in passes} == {"p/1", "p/2"}

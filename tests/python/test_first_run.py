@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from diagnostics import in_json, is_told
 from programs import SERVOS
+from sampling import sample
 
 from brushsvg.brush.library import find_brush
 from brushsvg.machine.cell import robot_from_paper
@@ -25,7 +26,7 @@ OTHERS = (*SERVOS, "fr3", "hpgl-plotter", "marlin-servo", "xarm7")
 WAITING = [name for name in cell_names() if name not in OTHERS]
 
 
-@pytest.mark.parametrize("name", WAITING)
+@sample("name", WAITING, keep=4)
 def test_check_accepts_the_first_run_of_every_cell(name, tmp_path, capsys):
     program = tmp_path / f"first{POSTS[find_cell(name).language].extensions[0]}"
     assert in_json(capsys, "first-run", name, "-o", program)[0] == 0
@@ -33,7 +34,7 @@ def test_check_accepts_the_first_run_of_every_cell(name, tmp_path, capsys):
     assert status == 0, told
 
 
-@pytest.mark.parametrize("name", WAITING)
+@sample("name", WAITING, keep=5)
 def test_it_does_what_a_careful_person_does_in_this_order(name):
     cell = find_cell(name)
     sections = [*first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1).sections()]

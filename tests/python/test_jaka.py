@@ -154,7 +154,7 @@ def test_what_is_written_is_read(cell):
         ("180.0000, 0.0000, 0.0000]\nmovc", "180.0000, 0.6000, 0.0000]\nmovc", "tool-turned 0.6"),
         ("movl(to, 0, 20.000, 300.000, 0.000)", "movl(to, 0, 20.000, 0.000, 0.000)", "line-incomplete speed"),
         ("# end: the brush is held up\n", "", "program-cut-short"),
-        ("to = ", "via = ", "line-incomplete 'no line'"),
+        ("to = ", "via = ", "line-incomplete"),
     ],
 )  # fmt: skip
 def test_what_the_reader_refuses(old, new, said):

@@ -7,6 +7,7 @@ import warnings
 
 import numpy as np
 import pytest
+from sampling import sample
 
 from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.file import read_chart, write_chart
@@ -159,11 +160,12 @@ def calibrated(tmp_path, capsys, monkeypatch):
     return run
 
 
-@pytest.mark.parametrize(
+@sample(
     ("name", "path"),
     [(name, path) for name, content in MEASURED.items() for path in places(content)]
     + [("painted", path) for path in places(painted())],
     ids=lambda each: told(each) if isinstance(each, tuple) else each,
+    keep=45,
 )
 def test_a_number_of_a_measurement_is_bounded_by_what_it_means(name, path, calibrated):
     content = painted() if name == "painted" else MEASURED[name]
@@ -236,7 +238,7 @@ CHART = json.loads(write_chart(chart(ROUND, (148.0, 210.0), "few")))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
+@sample(
     "path",
     [
         path
@@ -245,6 +247,7 @@ CHART = json.loads(write_chart(chart(ROUND, (148.0, 210.0), "few")))
     ]
     + [("plan", "sheet_mm", 0), ("plan", "passes", 0, "poses_mm", 0, 2), ("plan", "passes", 0, "speed_mm_s")],
     ids=told,
+    keep=15,
 )
 def test_a_number_of_a_chart_is_bounded_by_what_it_means(path):
     read_chart(json.dumps(CHART).encode())

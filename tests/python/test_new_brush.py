@@ -3,11 +3,10 @@
 import csv
 import io
 import json
-import re
 
 import numpy as np
 import pytest
-from diagnostics import agrees, in_json, refused
+from diagnostics import agrees, gives, in_json, refused
 
 from brushsvg import _core, brush_like, compensate, find_brush, read_drawing, strokes
 from brushsvg.calibration.from_widths import new_brush
@@ -47,7 +46,7 @@ def test_what_is_assumed_says_so():
         False,
     ]
     assert "5 mm" in brush.lag.source
-    assert re.search("2.5 mm at depth 3 mm.*7 mm at depth 8 mm", brush.half_width.source)
+    assert gives(brush.half_width.source, "2.5 mm", "3 mm", "7 mm", "8 mm")
     assert tuple(brush.half_width.calibrated_mm) == (3, 8)
     assert new_brush("mine", 5.0, [(3, 2.5)]).half_width.assumed
     assert json.loads(brush.extra)["footprints"]["assumed"] is True
@@ -70,7 +69,7 @@ def test_a_lag_that_grows_with_depth_is_that_typed_in(lags, at_rest_mm, terms):
     assert len(brush.lag.coefficients) == terms
     assert at_rest_mm is None or brush.lag(0.0) == pytest.approx(at_rest_mm, abs=0.15)
     assert not brush.lag.assumed and tuple(brush.lag.calibrated_mm) == (2, 8)
-    assert f"{lags[-1][1]} mm at depth 8 mm" in brush.lag.source or lags[0][0] == 8
+    assert gives(brush.lag.source, f"{lags[-1][1]} mm", "8 mm") or lags[0][0] == 8
 
 
 def test_one_lag_at_a_depth_is_the_lag_at_all():
@@ -191,9 +190,7 @@ def test_a_table_as_any_spreadsheet_writes_it(separator, mark, ending):
 def test_a_table_that_could_be_read_in_two_ways_is_refused(table, where, said):
     with refused(said, where) as refusal:
         read_widths(table)
-    assert ("semicolons stand" in str(refusal.value)) == (table.endswith("3,2,5\n")), (
-        "only commas can be both"
-    )
+    assert ("4.6" in str(refusal.value)) == table.endswith("3,2,5\n"), "only commas can be both"
 
 
 def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
@@ -201,21 +198,19 @@ def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
     (tmp_path / "w.csv").write_text("depth_mm,width_mm\n3,2.5\n8,7\n")
     assert main("brush new mine --lag 5 --width-at 3=2.5 --width-at 8=7 --depth-max 10".split()) == 0
     told = capsys.readouterr().out
-    assert re.search(
-        r"assumed: lag, tip_gap, tip_to_widest, .* 8 mm .*\(8.9 mm at 10 mm\) .*footprints", told
-    )
+    assert gives(told, "lag", "tip_gap", "tip_to_widest", "8 mm", "8.9 mm", "10 mm")
     assert main("brush new flat --lag 5 --width-at 3=2.5 --width-at 8=7".split()) == 0
-    assert "beyond" not in capsys.readouterr().out
+    assert not gives(capsys.readouterr().out, "tip_to_widest", "8 mm"), (
+        "nothing lies beyond what was measured"
+    )
     words = "brush new deep --lag-at 2=5 --lag-at 6=11 --width-at 3=2.5 --width-at 8=7".split()
     assert main(words) == 0
     told = capsys.readouterr().out
-    assert re.search(
-        r"assumed: tip_gap, tip_to_widest, lags beyond 6 mm of depth \(14.0 mm at 8 mm\) and", told
-    )
+    assert gives(told, "tip_gap", "tip_to_widest", "6 mm", "14.0 mm", "8 mm")
     assert find_brush("deep.json").lag.coefficients == pytest.approx((2.0, 1.5))
     words = "brush new sub/mine.json --lag 5 --widths w.csv --depth-max 10".split()
     status, _, ((_, told),) = in_json(capsys, *words)
-    assert status == 1 and agrees(told, "file-unwritable directory")
+    assert status == 1 and agrees(told, "file-unwritable")
     assert main("brush new ./table.json --lag 5 --widths w.csv --depth-max 10 --speed 12".split()) == 0
     mine, table = (json.loads((tmp_path / f"{name}.json").read_text()) for name in ("mine", "table"))
     assert mine.pop("name") == "mine" and table.pop("name") == "table"
@@ -234,24 +229,24 @@ def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
 def test_a_brush_like_another_paints_the_same_and_claims_nothing(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main("brush new mine --like round-6 --speed 12".split()) == 0
-    assert "assumed: all of it" in capsys.readouterr().out
+    assert "tip_gap" not in capsys.readouterr().out, "all of it is assumed, not some"
     mine, round_6 = find_brush("mine.json"), find_brush("round-6")
     assert (mine.name, mine.max_speed_mm_s, mine.kind) == ("mine", 12, "round")
     assert mine.footprints == round_6.footprints and mine.depth_range_mm == round_6.depth_range_mm
     for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
         its, others = getattr(mine, law), getattr(round_6, law)
         assert its(np.linspace(0, 10, 21)).tolist() == others(np.linspace(0, 10, 21)).tolist()
-        assert its.assumed and its.source == f"Taken from brush round-6: {others.source}"
+        assert its.assumed and gives(its.source, "round-6", others.source)
         assert its.rmse_mm is None and its.half_interval_95 == ()
     assert json.loads(mine.extra)["footprints"]["assumed"] is True
-    assert "Like round-6" in json.loads(mine.extra)["about"]
+    assert gives(json.loads(mine.extra)["about"], "round-6")
     assert brush_like("mine", round_6).footprints == round_6.footprints and round_6.name == "round-6"
 
 
 @pytest.mark.parametrize(
     ("typed", "said"),
     [
-        ("brush new mine --lag 5", "one width"),
+        ("brush new mine --lag 5", "--widths FILE"),
         ("brush new mine --lag 5 --width-at 3", "3=2.5"),
         ("brush new mine --like round-6 --lag 5", "--like"),
         ("brush new mine --like round-6 --width-at 3=2", "--like"),

@@ -44,6 +44,7 @@ def test_a_first_word(told):
     assert "G21" in text and "image/svg+xml" in shown
 
 
+@pytest.mark.thorough
 @pytest.mark.slow
 def test_a_brush_from_a_table_and_from_marks(told):
     text, shown = told(NOTEBOOKS[1])

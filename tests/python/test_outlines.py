@@ -521,7 +521,7 @@ def test_scribbles_beyond_all_lettering_are_left_out_with_a_warning():
     design = read(f'<g fill="red" stroke="none">{path(scribble)}<path id="bar" d="{BAR}"/></g>')
     made, (notice,) = strokes(design)
     assert [stroke.id for stroke in made] == ["bar"]
-    assert agrees(notice, "outline-too-complex crosses 10000", "p")
+    assert agrees(notice, "outline-too-complex 10000", "p")
     with refused("nothing-to-paint crosses"):
         painted(path(scribble))
 
@@ -591,6 +591,7 @@ def test_rings_with_a_number_that_is_none_are_refused(number):
             ask([ring])
 
 
+@pytest.mark.thorough
 def test_a_hundred_thousand_vertices():
     angle = np.linspace(0, 2 * np.pi, 100_000, endpoint=False)
     ring = np.column_stack([30 + (20 + 0.01 * np.sin(900 * angle)) * np.cos(angle), 25 + 20 * np.sin(angle)])

@@ -29,7 +29,7 @@ def test_paint_is_told_by_how_far_it_lies_outside(brush, aside_mm, is_told):
     told = outside([bar("a", 30.0)], [run], brush)
     assert bool(told) == is_told
     if told:
-        (away,) = re.findall(r"up to ([0-9.]+) mm outside", told[0].sentence)
+        away = re.search(r"([0-9.]+) mm", told[0].sentence)[1]
         assert (told[0].where, told[0].code) == ("a", "paint-outside")
         assert float(away) == pytest.approx(aside_mm, abs=0.11)
 

@@ -103,7 +103,7 @@ def bent(mark, **changes):
                 for m in marks()
             ],
             "marks",
-            "marks-displaced upside",
+            "marks-displaced",
         ),
         (
             plan(),
@@ -152,7 +152,7 @@ def bent(mark, **changes):
             {"passes": [p | {"settings": {"kind": "dab"}} for p in plan()["passes"]]},
             marks(),
             "plan",
-            "dabs-tell-no-lag calibrate",
+            "dabs-tell-no-lag",
         ),
         (
             {"passes": [p for p in plan()["passes"] if "straight" in p["stroke"]]},
@@ -204,9 +204,9 @@ def test_the_file_itself(keys, where, said):
         (lambda p: [200, 200] - p, "marks-displaced 180"),
         (lambda p: p[:, ::-1] * [-1, 1] + [200, 0], "marks-displaced 90 counter-clockwise"),
         (lambda p: p[:, ::-1] * [1, -1] + [0, 200], "marks-displaced 90 clockwise"),
-        (lambda p: p * [-1, 1] + [200, 0], "marks-displaced mirrored"),
-        (lambda p: p[:, ::-1], "marks-displaced exchanged"),
-        (lambda p: p * 96 / 25.4, "marks-scaled 3.78 pixels"),
+        (lambda p: p * [-1, 1] + [200, 0], "marks-displaced"),
+        (lambda p: p[:, ::-1], "marks-displaced"),
+        (lambda p: p * 96 / 25.4, "marks-scaled 3.78"),
         (lambda p: p - [100, 100], "marks-displaced 141"),
     ],
 )

@@ -60,7 +60,7 @@ def test_arcs():
 
 def test_an_arc_that_is_none_is_refused_by_the_simulator_too():
     a_pass = _core.Pass("V", [[0, 0, -1], [10, 0, -1], [20, 10, -1]], arcs=[_core.Arc(1, 2, (10, 11), 1)])
-    with refused("arc-invalid 'arc 0' 'pose 2'", "V") as caught:
+    with refused("arc-invalid 'arc 0' 2", "V") as caught:
         _core.simulate(plan_of(a_pass), find_brush("round-6"))
     assert re.search(r" -0\.95\d* mm off", caught.value.sentence)
 

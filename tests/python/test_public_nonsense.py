@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from nonsense import ARGUMENTS, FITS
+from sampling import sample
 
 import brushsvg
 
@@ -19,7 +20,7 @@ def test_no_public_name_is_forgotten():
     assert set(ARGUMENTS) == (set(brushsvg.__all__) | inside) - {"__version__", *MODULES}
 
 
-@pytest.mark.parametrize("batch", range(BATCHES))
+@sample("batch", range(BATCHES), keep=2)
 @pytest.mark.slow
 def test_nonsense_ends_in_a_result_or_a_sentence(batch, tmp_path):
     done = subprocess.run(

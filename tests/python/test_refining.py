@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from diagnostics import is_told
 from programs import problems
 
 from brushsvg import _core, cli, compensate, find_brush, find_cell
@@ -43,7 +44,7 @@ def test_a_stroke_too_wide_for_the_brush_stays_straight(tmp_path):
         inside = (widest[:, 1] > 22) & (widest[:, 1] < 68)
         assert widest[inside, 0] == pytest.approx(np.full(inside.sum(), middle_mm), abs=0.15)
         assert overlap(refined, number) > overlap(closed, number) + least[number]  # ends are refined as ever
-    assert not [notice for notice in refined.notices if "widest point" in notice.sentence]
+    assert not is_told(refined.notices, "off-middle-line")
 
 
 def bar(half, wanted=True):
@@ -80,7 +81,7 @@ def test_a_refined_plan_tells_of_strokes_left_in_closed_form(tmp_path):
     text = """<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60"><path id="z"
         d="M20 20 H70 L22 24" fill="none" stroke="#000" stroke-width="0.4"/></svg>"""
     closed, refined = works(tmp_path, text, corners="turn")
-    assert any("turns too sharply" in notice.sentence for notice in closed.notices)
+    assert is_told(closed.notices, "off-middle-line", "z")
     assert [notice for notice in refined.notices if notice not in said_of_nothing(refined)] == list(
         closed.notices
     )

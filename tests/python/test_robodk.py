@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import in_json, is_told, refused
+from diagnostics import gives, in_json, is_told, refused
 from programs import call
 from test_urscript import ARC, STROKES, text_for
 
@@ -69,7 +69,7 @@ def test_a_tilted_brush_is_told_pose_by_pose():
         ("def setZoneData", "def setZones", "post-failed setZoneData"),
         ('LOG = ""', 'LOG = "circles are lines"', "post-failed 'circles are lines'"),
         ("assert joints is None", "joints[0]", "post-failed TypeError"),
-        ('print("SAVED")', "return", "post-failed '0 files'"),
+        ('print("SAVED")', "return", "post-failed 0"),
         ("class RobotPost", "import nowhere\n\n\nclass RobotPost", "post-failed nowhere"),
         ("def ", "de ", "post-failed SyntaxError"),
     ],
@@ -87,7 +87,7 @@ def test_a_post_that_is_nowhere_and_tables_of_other_languages_are_refused(tmp_pa
         text_for(cell_with(tmp_path / "nowhere.py"))
     with refused("key-missing robodk"):
         parse_cell(write_cell(replace(cell_with(POST), robodk=None)))
-    with refused("key-missing post"):
+    with refused("key-missing"):
         parse_cell(write_cell(replace(cell_with(POST), language="krl")))
 
 
@@ -104,7 +104,7 @@ def test_it_is_written_and_not_checked(tmp_path, capsys):
     assert status == 0, told
     assert Path(out).read_text().startswith("start brushsvg\n; title: ")
     status, _, told = call(capsys, "check", out, "--cell", str(tmp_path / "mine.toml"))
-    assert status == 1 and "not read back" in told[-1]
+    assert status == 1 and gives(told[-1], "a.robodk")
     (tmp_path / "mine.toml").write_text(write_cell(cell_with(tmp_path / "none.py")))
     status, _, told = in_json(capsys, "convert", tmp_path / "a.svg", out, "--cell", tmp_path / "mine.toml")
     assert status == 1 and is_told(told, "file-unreadable")

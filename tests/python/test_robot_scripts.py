@@ -23,6 +23,7 @@ from judge.verdict import ROBOTS
 from judge.works import make
 from judge.xarm import XArmAPI, executed
 from programs import LANGUAGES, program
+from sampling import sample
 from test_urscript import ARC, BRUSH, STROKES, text_for
 
 from brushsvg import _core
@@ -217,7 +218,7 @@ REFUSED = [
     ("kr6-r900", "$VEL.CP = 0.050000\r\n", "", "line-incomplete speed"),
     ("kr6-r900", "$VEL.CP = 0.020000", "$VEL.CP = 0", "line-incomplete speed"),
     ("kr6-r900", "$APO.CDIS = 0.039", "$APO.CDIS = -0.039", "line-unread blend"),
-    ("kr6-r900", "$APO.CDIS = 0.039\r\n", "", "line-incomplete corner"),
+    ("kr6-r900", "$APO.CDIS = 0.039\r\n", "", "line-incomplete"),
     ("kr6-r900", "\r\nEND\r\n", "\r\n", "program-cut-short"),
     ("cr5", "MovL(on_paper(10.000", "MovJ(on_paper(10.000", "line-unread"),
     ("cr5", "on_paper(10.000", "on_paper(+10.000", "line-unread"),
@@ -227,21 +228,21 @@ REFUSED = [
     ("cr5", "{speed = 20}", "{v = 20}", "line-unread"),
     ("cr5", "{speed = 20}", "{speed = 20, r = -1}", "line-unread blend"),
     ("cr5", "{speed = 20}", "{speed = 20, cp = 1}", "line-unread"),
-    ("cr5", "User(1)\nTool(1)\n", "Tool(1)\nSetTool(1, {0, 0, 0, 0, 0, 0})\nUser(1)\n", "line-unread chosen"),
-    ("cr5", "\nend\n", "\nCP(0)\nend\n", "line-unread function"),
+    ("cr5", "User(1)\nTool(1)\n", "Tool(1)\nSetTool(1, {0, 0, 0, 0, 0, 0})\nUser(1)\n", "line-unread"),
+    ("cr5", "\nend\n", "\nCP(0)\nend\n", "line-unread"),
     ("cr5", "\n-- end: the brush is held up", "", "program-cut-short"),
     ("lrmate200id", "/ATTR\r\n", "", "line-unread COMMENT"),
     ("lrmate200id", " : L P[4]", " : J P[4]", "line-unread"),
-    ("lrmate200id", " : L P[4]", " : L P[400]", "line-incomplete point"),
+    ("lrmate200id", " : L P[4]", " : L P[400]", "line-incomplete"),
     ("lrmate200id", "P[4]{", "P[5]{", "line-unread point"),
     ("lrmate200id", "X = 12.500", "X = +-12.500", "line-unread point"),
     ("lrmate200id", "W = 180.000", "W = 179.400", "tool-turned 0.6"),
-    ("lrmate200id", "UF : 1", "UF : 0", "line-unread point"),
-    ("lrmate200id", "'N U T", "'F U T", "line-unread configuration"),
+    ("lrmate200id", "UF : 1", "UF : 0", "line-unread"),
+    ("lrmate200id", "'N U T", "'F U T", "line-unread"),
     ("lrmate200id", "20mm/sec CNT3", "20mm/sec CNT101", "line-unread CNT101"),
     ("lrmate200id", " 20mm/sec CNT3", " 0mm/sec CNT3", "line-incomplete speed"),
     ("lrmate200id", " : C P[22]\r\n", "", "line-unread circle"),
-    ("lrmate200id", " : PR[1,6]=0.00000 ;\r\n", "", "line-incomplete frame"),
+    ("lrmate200id", " : PR[1,6]=0.00000 ;\r\n", "", "line-incomplete"),
     ("lrmate200id", "DEFAULT_GROUP\t= 1,*,*,*,*;\r\n", "", "line-unread DEFAULT_GROUP"),
     ("lrmate200id", " : !end: the brush is held up ;\r\n", "", "program-cut-short"),
     ("lrmate200id", "};\r\n/END\r\n", "};\r\n", "program-cut-short"),
@@ -256,8 +257,8 @@ REFUSED = [
     ("m0609", "set_velx(50.000, 30.000)\n", "", "line-incomplete speed"),
     ("m0609", "radius=0.039", "radius=-0.039", "line-unread blend"),
     ("m0609", "radius=0.039", "radius=0.039, ra=1", "line-unread"),
-    ("m0609", "radius=0.039", "radius=1.953", "line-unread middle"),
-    ("m0609", "# title", "# coding: utf-7\n# title", "line-unread letters"),
+    ("m0609", "radius=0.039", "radius=1.953", "line-unread"),
+    ("m0609", "# title", "# coding: utf-7\n# title", "line-unread"),
     ("m0609", "\n# end: the brush is held up", "", "program-cut-short"),
     ("xarm6", "go(-140.000", "go(x=-140.000", "line-unread"),
     ("xarm6", "go(-140.000", " go(-140.000", "line-unread"),
@@ -265,8 +266,8 @@ REFUSED = [
     ("xarm6", "wait=False", "wait=True", "line-unread"),
     ("xarm6", ", 0.031)", ", radius=0.031)", "line-unread"),
     ("xarm6", "arm.disconnect()\n", "", "program-cut-short"),
-    ("xarm6", "# title", "# coding: utf-7\n# title", "line-unread letters"),
-    ("xarm6", "strokes\n", "strokes\n# -*- coding=cp037 -*-\n", "line-unread letters"),
+    ("xarm6", "# title", "# coding: utf-7\n# title", "line-unread"),
+    ("xarm6", "strokes\n", "strokes\n# -*- coding=cp037 -*-\n", "line-unread"),
 ]
 
 
@@ -308,7 +309,7 @@ def test_no_title_tells_python_how_letters_are_read(title):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
+@sample("name", NAMES, keep=2)
 def test_no_dangerous_program_is_allowed(name, tmp_path):
     """A sample; tests/integration has three hundred of each job."""
     needs_lua(NAMES[name])

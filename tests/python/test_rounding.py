@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from diagnostics import in_json, is_told, refused
 from programs import LANGUAGES, call, whole
+from sampling import sample
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
@@ -116,7 +117,7 @@ def to_and_fro(chance: random.Random) -> list:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("table", SERVO_ROWS)
+@sample("table", SERVO_ROWS, keep=1)
 @pytest.mark.parametrize("step_mm", [0.05, 0.2, 0.5])
 def test_what_a_servo_paints_to_and_fro_is_known_again(tmp_path, capsys, table, step_mm):
     """Half of these were refused by check: a rest amid a lift was read as none, moves of a unit were left out, and a
@@ -268,7 +269,7 @@ def test_a_circle_whose_named_pose_lies_half_way_round_or_farther_is_read(name, 
 
 def test_a_whole_circle_in_one_line_is_not_read():
     text = "G21 G90 G94 G17 G40 G80\nG0 Z5\nG1 X10 Y10 F600\nG2 X10 Y10 I5 J0\nM2\n"
-    with refused("line-incomplete 'line 4'"):
+    with refused("line-incomplete 4"):
         read_program(text, ".gcode", find_cell("grbl-3axis"))
 
 
@@ -292,7 +293,7 @@ def drawing(chance: random.Random) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(24))
+@sample("seed", range(24), keep=6)
 def test_check_allows_whatever_convert_writes(seed, tmp_path, capsys):
     chance = random.Random(seed)
     name = chance.choice(["linuxcnc-3axis", "grbl-3axis", "ur5e"])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from diagnostics import are_told, refused
 from programs import LANGUAGES, RUNNABLE, call
+from sampling import sample
 from scipy.spatial import cKDTree
 from test_distortion import DRAWING, GRID, cell_with, text_of, told_places
 from test_mended_cell import MIDDLE, TRUE, found
@@ -87,8 +88,10 @@ def test_lines_on_the_paper_are_lines_all_along(desk, machine):
     assert beside.max() > 0.3, "and it is told otherwise"
 
 
-@pytest.mark.parametrize(
-    "name", ["linuxcnc-3axis", "grbl-servo", "ur5e", "jaka-zu3", "irb120", "axidraw-ebb"]
+@sample(
+    "name",
+    ["linuxcnc-3axis", "grbl-servo", "ur5e", "jaka-zu3", "irb120", "axidraw-ebb"],
+    keep=2,
 )
 @pytest.mark.parametrize("machine", [BENT, NARROW, ON_A_MAP])
 def test_check_reads_back_what_was_planned(desk, capsys, name, machine):

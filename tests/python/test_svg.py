@@ -346,7 +346,7 @@ def test_transforms(text, point):
 
 @pytest.mark.parametrize("text", ["translate(1 2),,rotate(3)", "translate(1 2),", ",translate(1 2)"])
 def test_transforms_that_browsers_ignore_are_damaged(text):
-    with refused("transform-unread damaged character"):
+    with refused("transform-unread character"):
         parse_transform(text)
 
 
@@ -435,9 +435,9 @@ def test_a_given_sheet_replaces_the_size_and_keeps_scale_and_upper_left_corner()
     [
         ("", "size-unknown"),
         ('width="10mm"', "size-unknown"),
-        ('viewBox="0 0 10"', "viewbox-invalid four"),
-        ('viewBox="0 0 nan 5"', "viewbox-invalid four"),
-        ('viewBox="0 0 0 5"', "viewbox-invalid area"),
+        ('viewBox="0 0 10"', "viewbox-invalid"),
+        ('viewBox="0 0 nan 5"', "viewbox-invalid"),
+        ('viewBox="0 0 0 5"', "viewbox-invalid"),
         ('width="0" height="5"', "out-of-range width 0 '(0, 1000000] mm'"),
         ('width="5" height="-1mm"', "out-of-range height -1"),
         ('width="5" height="1e9mm"', "out-of-range height 1e+09"),
@@ -566,20 +566,20 @@ GRADIENT = '<linearGradient id="g"><stop/><stop stop-color="red"/></linearGradie
         ('<text id="t">x</text>', "t", "text-unread"),
         ('<image id="i"/>', "i", "element-unread image"),
         ("<foreignObject/>", "foreignObject 1", "element-unread foreignObject"),
-        ("<g><set/><animate/></g>", "svg", "animations-unread 2 left out"),
+        ("<g><set/><animate/></g>", "svg", "animations-unread 2"),
         ('<path id="p" d="M0 0H5" stroke="none"/>', "p", "neither-stroke-nor-fill 'neither stroke'"),
         ('<path id="p" d="M0 0H5" stroke-opacity="0"/>', "p", "neither-stroke-nor-fill 'stroke is fully'"),
         ('<path id="p" d="M0 0H5" stroke="transparent"/>', "p", "neither-stroke-nor-fill 'stroke is fully'"),
         ('<path id="p" d="M0 0H5" stroke-width="0"/>', "p", "neither-stroke-nor-fill 'stroke-width is 0'"),
         ('<path id="p" d="M0 0H5" stroke="url(#q)"/>', "p", "neither-stroke-nor-fill #q nowhere"),
         ('<line id="p" x2="5" stroke="none" fill="red"/>', "p", "neither-stroke-nor-fill"),
-        ('<path id="p" d="M5 5"/>', "p", "moveto-alone a moveto"),
-        ('<path id="p" d="M5 5M6 6H7M8 8"/>', "p", "moveto-alone 2 movetos"),
+        ('<path id="p" d="M5 5"/>', "p", "moveto-alone"),
+        ('<path id="p" d="M5 5M6 6H7M8 8"/>', "p", "moveto-alone 2"),
         ('<polyline id="p" points="1,1"/>', "p", "moveto-alone a moveto"),
         ('<path id="p"/>', "p", "geometry-empty"),
         ('<circle id="p" r="0"/>', "p", "geometry-empty"),
         ('<rect id="p" width="5"/>', "p", "geometry-empty"),
-        ('<path id="p" d="M0 0H5" transform="scale(0 1)"/>', "p", "geometry-empty transforms"),
+        ('<path id="p" d="M0 0H5" transform="scale(0 1)"/>', "p", "geometry-empty"),
         ('<g marker-end="url(#a)"><path id="p" d="M0 0H5"/></g>', "p", "markers-unread"),
         ('<path id="p" d="M0 0H5" style="marker:url(#a)"/>', "p", "markers-unread"),
         ('<path id="p" d="M0 0H5" stroke-opacity=".5"/>', "p", "opacity-unread stroke-opacity"),
@@ -660,9 +660,9 @@ def test_damage_is_the_first_reason_given():
     [
         (b"", "file-empty"),
         (b" \n", "file-empty"),
-        (b"M0 0", "not-xml 'line 1'"),
-        (b"<svg>\n<path></svg>", "not-xml 'line 2'"),
-        (b"<svg>\n<path", "not-xml 'line 2'"),
+        (b"M0 0", "not-xml 1"),
+        (b"<svg>\n<path></svg>", "not-xml 2"),
+        (b"<svg>\n<path", "not-xml 2"),
         (b"\x89PNG\r\n\x1a\n", "not-xml PNG"),
         (b"%PDF-1.6\n", "not-xml PDF"),
         (b"%!PS-Adobe-3.0 EPSF-3.0\n", "not-xml PostScript"),
@@ -670,7 +670,7 @@ def test_damage_is_the_first_reason_given():
         (gzip.compress(b"\xff\xd8\xff\xe0", mtime=0), "not-xml JPEG"),
         (
             b'<?xml version="1.0" encoding="utf-8"?>\n<svg id="\xe4"/>',
-            "not-xml 'line 2'",
+            "not-xml 2",
         ),
         (b'<?xml version="1.0" encoding="klingon"?><svg/>', "not-xml klingon"),
         (b"<html/>", "not-svg <html>"),
@@ -702,11 +702,11 @@ LAUGHS = "".join(f'<!ENTITY e{k} "{f"&e{k - 1};" * 10}">' for k in range(1, 12))
 @pytest.mark.parametrize(
     ("subset", "content", "told"),
     [
-        ('<!ENTITY e0 "ha">' + LAUGHS, "&e11;", "xml-entity 'line 1' e1"),
+        ('<!ENTITY e0 "ha">' + LAUGHS, "&e11;", "xml-entity 1 e1"),
         (f'<!ENTITY e "{"x" * 100_000}">', "&e;" * 5000, "xml-entity 10000000"),
         ('<!ENTITY % p "x">', "", "xml-entity p"),
-        ('<!ENTITY e SYSTEM "file:///etc/passwd">', "&e;", "xml-entity e 'another file'"),
-        (f'<!ATTLIST g a CDATA "{"x" * 100_000}">', "<g/>" * 5000, "xml-entity defaults"),
+        ('<!ENTITY e SYSTEM "file:///etc/passwd">', "&e;", "xml-entity e"),
+        (f'<!ATTLIST g a CDATA "{"x" * 100_000}">', "<g/>" * 5000, "xml-entity"),
     ],
 )
 def test_bombs_and_foreign_files_are_refused_before_they_grow(subset, content, told):
@@ -779,10 +779,10 @@ def test_files(tmp_path):
     (tmp_path / "drawing.txt").write_text(drawing)
     for name, said in (
         ("missing.svg", "file-unreadable"),
-        ("folder.svg", "file-unreadable directory"),
-        ("folder", "file-unreadable directory"),
+        ("folder.svg", "file-unreadable"),
+        ("folder", "file-unreadable"),
         ("drawing.txt", "drawing-format .txt .svg"),
-        ("drawing", "drawing-format 'no extension'"),
+        ("drawing", "drawing-format"),
     ):
         with refused(said):
             read_drawing(tmp_path / name)

@@ -117,7 +117,7 @@ def test_uses_that_lead_nowhere(body, said, damaged):
 def test_use_chains_that_double_are_refused(monkeypatch):
     monkeypatch.setattr(tree_walk, "_MOST_USED", 2000)
     chain = "".join(f'<g id="a{k}"><use href="#a{k + 1}"/><use href="#a{k + 1}"/></g>' for k in range(40))
-    with refused("drawing-too-large 2000 elements"):
+    with refused("drawing-too-large 2000"):
         read(f'<defs>{chain}<g id="a40">{LINE}</g></defs><use href="#a0"/>')
 
 
@@ -130,7 +130,7 @@ def test_a_long_chain_of_uses_is_walked_without_recursion():
 def test_path_data_without_end_is_refused(monkeypatch):
     monkeypatch.setattr(svg_element, "_MOST_DATA", 1000)
     assert read(LINE * 100).elements
-    with refused("drawing-too-large 1000 path"):
+    with refused("drawing-too-large 1000"):
         read(LINE * 200)
 
 
@@ -259,7 +259,7 @@ def test_a_transform_of_the_drawing_itself_is_told():
     design = read_svg(text.encode())
     assert lines(design)[0][1] == (10, 0)
     (notice,) = design.notices
-    assert notice.damaged and agrees(notice, "transform-unread group")
+    assert notice.damaged and agrees(notice, "transform-unread")
 
 
 @pytest.mark.parametrize(

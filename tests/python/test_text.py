@@ -258,7 +258,6 @@ def test_what_is_not_painted_of_a_glyph_is_named():
         ("glyph m", "moveto-alone"),
         ("glyph e", "glyph-damaged"),
     ]
-    assert "elements inside" in notices[1].sentence
 
 
 def test_outlines_in_an_svg_font_are_named():
@@ -332,7 +331,7 @@ def test_same_input_same_bytes():
 def test_writing_from_right_to_left_is_named():
     glyphs = GLYPHS + '<glyph unicode="\u05d0" d="M 0 0 L 9 9"/>'
     _, (notice,) = text_svg("I\n\u05d0", svg_font(glyphs))
-    assert agrees(notice, "text-direction 2 right")
+    assert agrees(notice, "text-direction 2")
 
 
 # Outlines
@@ -395,13 +394,13 @@ def ttf():
 def filled(text, font, **options):
     """(id, d) of each glyph, and the notices beyond the one that says outlines are filled."""
     document, notices = text_svg(text, font, **{"size_mm": 10, **options})
-    assert "outlines" in notices[0].sentence
+    assert notices[0].code == "font-of-outlines"
     return [(path.get("id"), path.get("d")) for path in paths(document)], notices[1:]
 
 
 def test_a_width_for_outlines_is_told_to_have_no_effect(ttf):
     document, notices = text_svg("A", ttf, size_mm=10, width_mm=3)
-    assert agrees(notices[-1], "width-without-effect 3 outlines")
+    assert agrees(notices[-1], "width-without-effect 3")
     assert text_svg("A", ttf, size_mm=10) == (document, notices[:-1])
 
 
@@ -515,9 +514,9 @@ def test_damaged_fonts_give_a_sentence_or_a_drawing(ttf):
         ("head", 18, b"\0\0", "font-damaged head 0 16 16384"),
         ("head", 18, b"\x40\x01", "font-damaged head 16385 16 16384"),
         ("head", None, b"", "font-damaged head missing 16 16384"),
-        ("hhea", 34, b"\0\0", "font-damaged hmtx 'widths of 0 glyphs'"),
-        ("hhea", None, b"", "font-damaged hmtx 'widths of 0 glyphs'"),
-        ("hmtx", None, b"", "font-damaged hmtx 'widths of 0 glyphs'"),
+        ("hhea", 34, b"\0\0", "font-damaged hmtx 0"),
+        ("hhea", None, b"", "font-damaged hmtx 0"),
+        ("hmtx", None, b"", "font-damaged hmtx 0"),
     ],
 )
 def test_a_font_that_does_not_say_how_large_it_is_is_refused(ttf, tag, at, becomes, said):

@@ -5,11 +5,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from diagnostics import refused
 from programs import whole
 
 from brushsvg._core import Marks, Pass, simulate
 from brushsvg.brush import library
-from brushsvg.errors import Error
 from brushsvg.machine.cell import Reload, Station
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.motion import Wait, distances, duration_s
@@ -159,5 +159,5 @@ def test_nothing_to_play_is_refused(works):
     work, _ = works()
     plan = work.plan
     plan.passes = []
-    with pytest.raises(Error, match="nothing to play"):
+    with refused("nothing-to-show"):
         timeline(whole_program(whole(plan), work.brush, find_cell()), Marks())

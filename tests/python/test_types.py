@@ -52,6 +52,7 @@ def test_the_stubs_are_what_the_tool_makes(tool):
         assert ast.dump(ast.parse(read)) == ast.dump(ast.parse(text)), f"{name}: run tools/make_stubs.py"
 
 
+@pytest.mark.thorough
 @pytest.mark.slow
 def test_stubtest_finds_nothing(tmp_path):
     (tmp_path / "allowed").write_text("\n".join(BEYOND_STUBS))

@@ -1,9 +1,13 @@
 """What no stroke reaches is named, shown, and the reason that the report gives."""
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 from diagnostics import agrees, is_told
 
+import brushsvg
 from brushsvg import _core, find_brush
 from brushsvg.evaluation import report
 from brushsvg.pipeline import outputs
@@ -44,8 +48,28 @@ def test_a_bar_without_a_stroke_is_named_with_its_place_and_share(tmp_path):
     assert all(abs(piece.at_mm[1] - 43.5) < 1.5 for piece in found)
     assert all(piece.share == pytest.approx(12 / 344, rel=0.3) for piece in found)
     (notice,) = notices(found)
-    assert agrees(notice, "unreached '2 pieces'", "p")
+    assert agrees(notice, "unreached 2", "p")
     assert unreached(drawn, drawn, find_brush("round-6")) == []
+
+
+@pytest.mark.parametrize("measured_mm", [(0.0, 10.0), None])
+def test_a_brush_that_begins_with_no_width_is_looked_at_as_any(tmp_path, measured_mm):
+    """Photographed brushes are measured from depth 0 on: each filled shape ended in a ZeroDivisionError."""
+    file = brush_file(tmp_path, lambda lag: lag.update(calibrated_mm=measured_mm) or lag)
+    drawn, stem = bar_less(tmp_path)
+    found = unreached(drawn, [stem], find_brush("round-6"))
+    same = unreached(drawn, [stem], find_brush(file))
+    assert [piece.at_mm for piece in same] == [piece.at_mm for piece in found]
+    assert prepared(tmp_path, T, brush=find_brush(file)).unreached == ()
+
+
+def brush_file(tmp_path, changed) -> str:
+    """A file of round-6 with another lag."""
+    shipped = json.loads((Path(brushsvg.__file__).parent / "data/brushes/round-6.json").read_text())
+    lag = {key: value for key, value in changed(shipped["lag"]).items() if value is not None}
+    file = tmp_path / "other.json"
+    file.write_text(json.dumps({**shipped, "lag": lag}))
+    return str(file)
 
 
 def test_blunt_corners_are_not_named(tmp_path):
@@ -66,7 +90,7 @@ def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path)
     assert is_told(work.notices, "unreached", "p")
     assert all(piece.is_rim for piece in work.unreached)  # its stroke runs amid it
     rim = prepared(tmp_path, "M20 5H31V45H20Z", wide="clamp")
-    assert agrees(*notices(rim.unreached), "unreached narrow", "p")
+    assert agrees(*notices(rim.unreached), "unreached", "p")
     (row,), _ = report.measure(rim.plan, predict(rim), rim.brush, rim.strokes, unreached=rim.unreached)
     assert row.worst.code == "wider-than-brush"
     filled = prepared(tmp_path, WIDE, wide="passes")

@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
+from ..machine.arc_chords import OFF_MM
 from ..machine.cell import MOST_TILT_DEG, Blending, Cell, robot_from_paper, unit_mm, value_mm
 from ..machine.corner_blending import blend_radii
 from ..machine.distortion import is_similar, told_pass, true_mm, true_pass
@@ -100,7 +101,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             rests.append(np.array([_rests(section.steps[number], cell) for number in track.step[on]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
     ran = _core.Plan(brush.name, "", tuple(sheet_mm), cut)
-    marks = _core.simulate(ran, brush)
+    marks = _core.simulate(ran, brush, may_rise=True)
     visited = _visits(read, cell)
     if brush.paint:
         # where visits belong to no stroke each begins freshly dipped, as in predictions
@@ -297,11 +298,12 @@ def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> 
 
 
 def chords(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, int]) -> list[np.ndarray]:
-    """Points of a circle between its ends, CHORD_RAD apart."""
+    """Points of a circle between its ends, CHORD_RAD apart or as close as their chords stay within OFF_MM of it."""
     x, y, _ = centre
     first, sweep = np.arctan2(start[1] - y, start[0] - x), _sweep_rad(start, end, centre)
     radius = np.hypot(end[0] - x, end[1] - y)
-    count = int(np.ceil(abs(sweep) / CHORD_RAD))
+    least = min(CHORD_RAD, 2 * np.arccos(1 - OFF_MM / max(radius, OFF_MM)))
+    count = int(np.ceil(abs(sweep) / least))
     angles = first + sweep * np.arange(1, count) / max(count, 1)
     heights = np.linspace(start[2], end[2], count + 1)[1:-1]
     return [

@@ -14,6 +14,8 @@ from ..console import RefusedError, about, stage, tell, warn
 from ..steps.options import typed
 from ..steps.output_places import check_places, suffix_of, write
 
+RUNNABLE = "nothing forbids to run it"
+
 
 def check_file(args) -> None:
     check_places(args, args.preview)
@@ -49,7 +51,7 @@ def _allowed(done: Check) -> str:
             "depth, speed, rapid moves while the brush touches, the sheet, the workspace"
         )
     is_alone = not done.is_compared and done.job in ("painting", "border")
-    return "nothing forbids to run it" + ("; it was not compared with a drawing" if is_alone else "")
+    return RUNNABLE + ("; it was not compared with a drawing" if is_alone else "")
 
 
 def _does(done: Check) -> str:

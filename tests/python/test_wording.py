@@ -1,0 +1,116 @@
+"""What people read, held word for word against tests/golden/wording.txt; all other tests ask for codes and numbers.
+
+Whoever words something anew writes that file again, by `make wording`, and reads what changed in it.
+"""
+
+import argparse
+import contextlib
+import io
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from brushsvg.cli import main
+from brushsvg.cli.arguments.parser import command_parser
+from brushsvg.errors import Notice
+from brushsvg.evaluation.report import Figures, Group, Report, Worst, comparison_text, to_text
+
+WORDING = Path(__file__).parents[1] / "golden" / "wording.txt"
+TITLE = "==== "
+
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">{}</svg>'
+LINE = '<path id="line" d="M20 30H60" fill="none" stroke="#203060" stroke-width="3"/>'
+FILES = {
+    "line.svg": SVG.format(LINE),
+    "thin.svg": SVG.format(LINE.replace('"3"', '"0.3"')),
+    "wide.svg": SVG.format(LINE.replace('"3"', '"30"')),
+    "damaged.svg": SVG.format(LINE.replace("H60", "H60 X")),
+    "text.svg": SVG.format('<text id="t" x="20" y="30">A</text>'),
+    "off.svg": SVG.format(LINE.replace("M20", "M-3")),
+    "not.svg": "moo",
+    "empty.svg": SVG.format(""),
+    "plan.json": '{"format": "brushsvg/plan", "version": 99}',
+}
+TYPED = (  # what is done, warned of, refused; what is listed, shown and checked
+    *(f"convert {name} {Path(name).stem}.ngc" for name in FILES),
+    "convert none.svg out.ngc",
+    "convert line.svg out.ngc --brush broom",
+    "convert line.svg out.pdf",
+    "convert line.svg out.ngc --lag 5",
+    "convert line.svg out.ngc --speed 26",
+    "check line.ngc line.svg",
+    "border line.svg border.ngc",
+    "check border.ngc",
+    "height height.ngc",
+    "check height.ngc",
+    "brush list",
+    "brush show round-6",
+    "brush new mine --lag 5 --width-at 3=2",
+    "cell list",
+    "cell show ur5e",
+    "cell check ur5e",
+)
+
+
+def helps(parser: argparse.ArgumentParser) -> Iterator[tuple[str, str]]:
+    """(Command, what its --help says of it and its flags), however this version of Python breaks lines."""
+    lines, below = [parser.description or ""], []
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            said = {choice.dest: choice.help for choice in action._choices_actions}
+            lines += [f"{name}: {said.get(name, '')}" for name in action.choices]
+            below += action.choices.values()
+        elif not isinstance(action, argparse._HelpAction):
+            lines.append(f"{' '.join(action.option_strings) or action.metavar or action.dest}: {action.help}")
+    yield f"{parser.prog} --help", "\n".join(lines)
+    for each in below:
+        yield from helps(each)
+
+
+def reports() -> Iterator[tuple[str, str]]:
+    """(Which, the text of it), with all that can stand in one."""
+    row = Figures("line", 0.95, 0.01, 0.04, 0.12, 1, 60.0, 81.5, 42, excess_turning=0.1)
+    worst = Worst((12.34, 5.67), True, 0.5, "REASON", "shorter-than-footprint")
+    odd = Figures("dab", None, None, None, None, None, None, 12.0, 7, worst)
+    told = (Notice("line", "SENTENCE", advice="ADVICE"),)
+    made = Report("T", "round-6", "closed", 0.05, (row, odd), row, 75.0, told, told)
+    yield "a report", to_text(made)
+    made = Report("", "round-6", "", None, (row,), row, 5.0, groups=(Group(("line", "dab"), 0.9),))
+    yield "a report of strokes that touch", to_text(made)
+    yield "compensations compared", comparison_text([("none", row), ("closed", row)])
+
+
+def typed() -> Iterator[tuple[str, str]]:
+    """(Command, what it prints), one after the other in a folder of its own."""
+    before = Path.cwd()
+    with tempfile.TemporaryDirectory() as folder:
+        for name, content in FILES.items():
+            Path(folder, name).write_text(content)
+        os.chdir(folder)
+        try:
+            for words in TYPED:
+                with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(out):
+                    status = main(words.split())
+                yield f"brushsvg {words}", f"{out.getvalue()}exit status {status}"
+        finally:
+            os.chdir(before)
+
+
+def wording() -> str:
+    sections = [*helps(command_parser()), *reports(), *typed()]
+    return "\n".join(f"{TITLE}{title}\n{text.strip()}\n" for title, text in sections)
+
+
+@pytest.mark.wording
+def test_wording_is_as_it_was_read():
+    told, read = (text.split(TITLE) for text in (wording(), WORDING.read_text(encoding="utf-8")))
+    assert told == read, "if it is meant: make wording, and read what git says of the file"
+
+
+if __name__ == "__main__":
+    WORDING.write_text(wording(), encoding="utf-8")
+    sys.exit()
