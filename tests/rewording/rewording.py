@@ -1,7 +1,7 @@
 """Other words for all that people read: which tests fail with these depend on wording.
 
-Words get a letter in their middle. Numbers, names in quotes, options, files, codes and what stands for a value stay. So
-do the lines of programs: they are a format that `check` reads, and tests/golden has them.
+Words get a letter in their middle. Numbers, directions, names in quotes, options, files, codes and what stands for a
+value stay. So do the lines of programs: they are a format that `check` reads, and tests/golden has them.
 """
 
 import ast
@@ -36,6 +36,9 @@ SENTENCE = re.compile(
 )
 
 
+DIRECTIONS = {"left", "right", "upper", "lower", "clockwise"}
+
+
 def is_sentence(text: str) -> bool:
     return SENTENCE.search(text) is not None and NO_SENTENCE.search(text) is None
 
@@ -45,7 +48,7 @@ def reworded(text: str) -> str:
 
     def other(found: re.Match) -> str:
         word = found[0]
-        if any(start <= found.start() < end for start, end in kept):
+        if word in DIRECTIONS or any(start <= found.start() < end for start, end in kept):
             return word
         middle = len(word) // 2
         return f"{word[:middle]}q{word[middle:]}"
