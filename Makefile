@@ -24,7 +24,7 @@ endif
 WERROR ?= OFF
 PIP_INSTALL := $(BIN)/pip install -q --no-build-isolation -C build-dir=$(BUILD) -C cmake.define.BRUSHSVG_WERROR=$(WERROR) -e
 
-.PHONY: docs plugins help setup system test-system demo test lint format clang-check cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan clean quick FORCE
+.PHONY: docs plugins help setup system test-system demo test lint format clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
@@ -40,6 +40,7 @@ help:
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
 	@echo "make bench        our figures beside the peers' and the floor"
 	@echo "make bench-compare REV=main    what became slower than at a revision, both run in turn"
+	@echo "make test-variants  the tests under the arithmetic of other processors: compilers, maths libraries, vector units"
 	@echo "make asan         C++ tests under address and undefined behaviour sanitizers"
 	@echo "make format       format both languages"
 	@echo "make clean        remove what was built"
@@ -107,6 +108,17 @@ lint: $(VENV)/.dev test-system
 clang-check: $(VENV)/.dev
 	@$(call install,clang)
 	includes="$$(printf -- '-Icpp/%s ' include io posts fit/laws fit/marks fit/tracks many refine src) $$($(BIN)/python -m pybind11 --includes) -isystem /usr/include/eigen3"
+	# public headers as a consumer with strict warnings reads them, by both compilers
+	for compiler in clang++ g++; do
+	  { for header in cpp/include/brushsvg/*.hpp cpp/io/{brush,plan,marks}_json.hpp cpp/posts/linuxcnc.hpp cpp/fit/*/{law_fit,angles,track_fit,mark_fit}.hpp cpp/refine/refine.hpp cpp/many/{many_strokes,marks_way}.hpp; do
+	      if [ -e "$$header" ]; then echo "#include \"$$PWD/$$header\""; fi; done; } | \
+	    $$compiler -x c++ -std=c++17 -fsyntax-only -Wall -Wextra -Wconversion -Wsign-conversion -Werror $$includes -
+	done
+	# the sources as a part of a consumer's project: no flag that clang does not know
+	rm -rf build/clang-consumer && mkdir -p build/clang-consumer/source
+	{ echo 'cmake_minimum_required(VERSION 3.25)'; echo 'project(consumer CXX)'; echo "add_subdirectory($$PWD brushsvg)"; } >build/clang-consumer/source/CMakeLists.txt
+	cmake -S build/clang-consumer/source -B build/clang-consumer/build -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS=-Werror >/dev/null
+	cmake --build build/clang-consumer/build --target brushsvg/CMakeFiles/brushsvg_core.dir/cpp/src/profile.cpp.o >/dev/null
 	git ls-files 'cpp/*.cpp' | xargs -P "$$(nproc)" -n 1 clang++ -std=c++17 -fsyntax-only -Wall -Wextra -Werror \
 	  -Wno-missing-field-initializers -DBRUSHSVG_FIT '-DBRUSHSVG_VERSION="0"' $$includes
 
@@ -128,7 +140,7 @@ asan: test-system
 # One worker per processor; a worker that runs out of tests takes some from another.
 PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 # What each suite runs in .ci/run. `make thorough` runs the same suites without "not thorough".
-PYTHON_TESTS := tests/python tests/laws
+PYTHON_TESTS := tests/python tests/laws tests/journeys
 NOT_THOROUGH := and not thorough
 
 python-test: $(VENV)/.dev
@@ -137,6 +149,12 @@ python-test: $(VENV)/.dev
 quick: $(VENV)/.dev
 	@$(BIN)/ruff check -q .
 	$(PYTEST) -m 'not slow $(NOT_THOROUGH)' tests/python
+
+# VARIANTS: options of the script, such as VARIANTS='--variant v3-fma --suite cpp'
+VARIANTS ?=
+test-variants: setup test-system
+	@$(MAKE) --no-print-directory $(VENV)/.dev
+	$(BIN)/python tools/test_variants.py $(VARIANTS)
 
 # The tests of both languages with other words in every sentence: what fails here and not in `make test` depends on wording.
 REWORDED := build/reworded

@@ -38,11 +38,12 @@ TOLD = (
         "__hash__: typing.ClassVar[None]  # type: ignore[assignment]",
     ),
     (
-        r"( +)def __call__\(self, depth_mm: numpy\.typing\.ArrayLike\) -> typing\.Any:\s+\"\"\"[^\"]*\"\"\"",
+        r"( +)def (__call__|extrapolated)\(self, depth_mm: numpy\.typing\.ArrayLike\) -> typing\.Any:"
+        r"\s+\"\"\"[^\"]*\"\"\"",
         r"\1@typing.overload\n"
-        r"\1def __call__(self, depth_mm: float) -> float: ...  # type: ignore[overload-overlap]\n"
+        r"\1def \2(self, depth_mm: float) -> float: ...  # type: ignore[overload-overlap]\n"
         r"\1@typing.overload\n"
-        r"\1def __call__(self, depth_mm: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]: ...",
+        r"\1def \2(self, depth_mm: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]: ...",
     ),
 )
 

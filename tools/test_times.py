@@ -20,10 +20,10 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 RECORDS = ROOT / "build" / "test-times"
 SUITES = {  # name: what pytest is given
-    "python": ["-m", "not long and not thorough", "tests/python", "tests/laws"],
+    "python": ["-m", "not long and not thorough", "tests/python", "tests/laws", "tests/journeys"],
     "long": ["-m", "long and not thorough", "tests/laws"],
     "integration": ["-m", "not long and not thorough", "tests/integration"],
-    "python-thorough": ["-m", "not long and thorough", "tests/python", "tests/laws"],
+    "python-thorough": ["-m", "not long and thorough", "tests/python", "tests/laws", "tests/journeys"],
     "long-thorough": ["-m", "long and thorough", "tests/laws"],
     "integration-thorough": ["-m", "not long and thorough", "tests/integration"],
 }

@@ -1,37 +1,49 @@
 #include "bindings.hpp"
 #include "brushsvg/brush.hpp"
 
+namespace {
+
+/// A copy of a law that can be asked at the depths of its brush alone, however the brush was made.
+auto law_of(brushsvg::Profile brushsvg::Brush::* law) {
+    return [law](const brushsvg::Brush& brush) {
+        brushsvg::Profile copy = brush.*law;
+        copy.depth_range_mm = brush.depth_range_mm;
+        return copy;
+    };
+}
+
+}  // namespace
+
 void bind_brush(py::module_& m) {
     using brushsvg::Brush;
     py::class_<Brush> type(
         m, "Brush",
         R"(Four laws against depth and the footprints; all lengths in mm, depths in mm from first contact down.
 
-lag, tip_gap, tip_to_widest, half_width: the laws, each a Profile; footprints: a FootprintTable. Outlines rule what is
+lag, tip_gap, tip_to_widest, half_width: the laws, each a Profile that refuses depths at which the brush cannot be; footprints: a FootprintTable. Outlines rule what is
 painted, laws where the tool goes: they may differ by 0.5 mm. Begin with Brush() and set all of them, name and
 depth_range_mm, or with the copy of a known one. Set each as a whole: it is a value that cannot be changed.
 save_brush, simulate, compensate and convert refuse what no brush can be.)");
     type.def(py::init<>())
         .def_readwrite("name", &Brush::name, "What plans and messages call it.")
-        .def_readwrite("kind", &Brush::kind, "A word for people: round, pen.")
+        .def_readwrite("kind", &Brush::kind,
+                       "round, liner (a round brush of long bristles), pen, or empty: round. Another one is refused.")
         .def_property(
             "depth_range_mm", frozen_copy(&Brush::depth_range_mm),
             [](Brush& b, std::array<double, 2> value) { b.depth_range_mm = std::move(value); },
             "(least, greatest) depth [mm] to which it may be pressed.")
         .def_property(
-            "lag", [](const Brush& b) { return b.lag; },
-            [](Brush& b, brushsvg::Profile value) { b.lag = std::move(value); },
+            "lag", law_of(&Brush::lag), [](Brush& b, brushsvg::Profile value) { b.lag = std::move(value); },
             "r(d): how far the centre of friction trails the TCP, bristles taut. A Profile, 0 everywhere for a pen.")
         .def_property(
-            "tip_gap", [](const Brush& b) { return b.tip_gap; },
-            [](Brush& b, brushsvg::Profile value) { b.tip_gap = std::move(value); },
+            "tip_gap", law_of(&Brush::tip_gap), [](Brush& b, brushsvg::Profile value) { b.tip_gap = std::move(value); },
             "b(d): from the tip of the footprint to the centre of friction. A Profile.")
         .def_property(
-            "tip_to_widest", [](const Brush& b) { return b.tip_to_widest; },
+            "tip_to_widest", law_of(&Brush::tip_to_widest),
             [](Brush& b, brushsvg::Profile value) { b.tip_to_widest = std::move(value); },
             "x_w(d): from the tip of the footprint to its widest section. A Profile.")
         .def_property(
-            "half_width", [](const Brush& b) { return b.half_width; },
+            "half_width", law_of(&Brush::half_width),
             [](Brush& b, brushsvg::Profile value) { b.half_width = std::move(value); },
             "h(d): half of the footprint's greatest width. A Profile that never falls.")
         .def_property(
@@ -58,7 +70,12 @@ save_brush, simulate, compensate and convert refuse what no brush can be.)");
              "(least, greatest) half width [mm] within depth_range_mm.")
         .def("depth_for_half_width", &Brush::depth_for_half_width, py::arg("half_width_mm"), py::arg("where") = "",
              "Depth [mm] that paints a half width [mm]; Error with the reachable range when there is none.")
-        .def("lever_to_widest", &Brush::lever_to_widest, py::arg("depth_mm"), "e(d) = x_w(d) - b(d) [mm], signed.")
+        .def(
+            "lever_to_widest",
+            [](const Brush& b, double depth_mm) {
+                return law_of(&Brush::tip_to_widest)(b).at(depth_mm) - b.tip_gap(depth_mm);
+            },
+            py::arg("depth_mm"), "e(d) = x_w(d) - b(d) [mm], signed.")
         .def("__repr__", [](const Brush& b) {
             const auto& [least, greatest] = b.depth_range_mm;
             const auto span = [](double from, double to) {

@@ -34,19 +34,29 @@ void bind_fit(py::module_& m) {
         });
     as_fixed_value(law_shape);
     py::class_<LawFit> law_fit(m, "LawFit", "A fitted law, how sure it is, and what it leaves.");
-    law_fit.def_property_readonly("law", [](const LawFit& f) { return f.law; })
+    law_fit
+        .def(py::init([](const brushsvg::Profile& law, std::vector<std::vector<double>> covariance,
+                         std::vector<double> residual_mm, double r_squared, double degrees_of_freedom, bool held) {
+                 return LawFit{law, std::move(covariance), std::move(residual_mm), r_squared, degrees_of_freedom, held};
+             }),
+             py::kw_only(), py::arg("law"), py::arg("covariance"), py::arg("residual_mm"), py::arg("r_squared"),
+             py::arg("degrees_of_freedom"), py::arg("held"))
+        .def_property_readonly("law", [](const LawFit& f) { return f.law; })
         .def_property_readonly("covariance", frozen_copy(&LawFit::covariance))
         .def_property_readonly("residual_mm", frozen_copy(&LawFit::residual_mm))
         .def_readonly("r_squared", &LawFit::r_squared)
         .def_readonly("degrees_of_freedom", &LawFit::degrees_of_freedom)
         .def_readonly("held", &LawFit::held)
         .def("__repr__", [](const LawFit& v) {
-            return "<LawFit: " + repr_of(v.law) + ", R^2 " + told(v.r_squared) + ", " +
-                   std::to_string(v.degrees_of_freedom) + " degrees of freedom>";
+            return "<LawFit: " + repr_of(v.law) + ", R^2 " + told(v.r_squared) + ", " + told(v.degrees_of_freedom) +
+                   " degrees of freedom>";
         });
     as_fixed_value(law_fit);
-    m.def("fit_law", &fit_law, py::arg("depth_mm"), py::arg("value_mm"), py::arg("shape"), unlocked,
-          "Law of a shape through measured values [mm] at depths [mm], by least squares or absolute residuals.");
+    m.def("fit_law", &fit_law, py::arg("depth_mm"), py::arg("value_mm"), py::arg("shape"),
+          py::arg("scatter") = std::vector<double>{}, unlocked,
+          "Law of a shape through measured values [mm] at depths [mm], by least squares or absolute residuals. "
+          "scatter: of "
+          "each value, up to a common factor; empty: alike.");
     py::enum_<Lines>(m, "Lines").value("plain", Lines::plain).value("total", Lines::total);
     m.def(
         "from_angles",

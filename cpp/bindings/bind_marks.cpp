@@ -2,6 +2,7 @@
 
 #include "bindings.hpp"
 #include "brushsvg/marks.hpp"
+#include "brushsvg/simulate.hpp"
 
 namespace {
 
@@ -19,6 +20,10 @@ void bind_marks(py::module_& m) {
     using namespace brushsvg;
     py::class_<PassMarks> one(m, "PassMarks",
                               R"(What the patch does during one pass; parallel rows (mm, rad), read only.
+
+pose: the index of the plan's pose, with fractions in between. contact_mm[pose_rows] is the contact at each pose. Rows after
+the last pose's are the lift on the spot of a pass that ends on the paper (the patch moves as the bristles straighten), rows
+before the first pose's the brush being set down.
 
 lean_mm_per_mm (n, 2): how far the axis of a tilted brush goes sideways for each mm up; empty for one that is upright.)");
     one.def(py::init<>())
@@ -38,6 +43,15 @@ lean_mm_per_mm (n, 2): how far the axis of a tilted brush goes sideways for each
         .def_property_readonly("lean_mm_per_mm", [](const PassMarks& p) -> const Ring& { return p.lean_mm_per_mm; })
         .def_property_readonly("width_share", column(&PassMarks::width_share),
                                "By how much narrower the brush paints than freshly dipped; empty: it does not.")
+        .def_property_readonly(
+            "pose_rows",
+            [](const PassMarks& p) {
+                const std::vector<std::size_t> rows = pose_rows(p);
+                py::array_t<py::ssize_t> out(py::ssize_t(rows.size()));
+                std::copy(rows.begin(), rows.end(), out.mutable_data());
+                return as_typed<py::array_t<py::ssize_t>>(frozen(out));
+            },
+            "For each pose of the pass the index of its row.")
         .def_property("outline_mm", frozen_copy(&PassMarks::outline_mm),
                       [](PassMarks& p, Rings rings) { p.outline_mm = std::move(rings); })
         .def("__repr__", [](const PassMarks& p) {

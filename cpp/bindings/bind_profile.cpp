@@ -38,9 +38,15 @@ unknown keys of its file, as JSON. A value: it is not changed, but another one m
         .def(
             "__call__",
             [](const Profile& p, const Numbers& depth_mm) {
+                return py::vectorize([&p](double d) { return p.at(d); })(depth_mm.values);
+            },
+            py::arg("depth_mm"), "The law at a depth [mm], or at an array of them. Error outside of depth_range_mm.")
+        .def(
+            "extrapolated",
+            [](const Profile& p, const Numbers& depth_mm) {
                 return py::vectorize([&p](double d) { return p(d); })(depth_mm.values);
             },
-            py::arg("depth_mm"), "The law at a depth [mm], or at an array of them.")
+            py::arg("depth_mm"), "The same at any depth [mm]: beyond what was measured a polynomial is soon nonsense.")
         .def_property_readonly("coefficients", frozen_copy(&Profile::coefficients))
         .def_readonly("floor", &Profile::floor)
         .def_readonly("floor_slope", &Profile::floor_slope)
@@ -51,6 +57,9 @@ unknown keys of its file, as JSON. A value: it is not changed, but another one m
         .def_readonly("rmse_mm", &Profile::rmse_mm)
         .def_readonly("degrees_of_freedom", &Profile::degrees_of_freedom)
         .def_readonly("extra", &Profile::extra)
+        .def_property_readonly(
+            "depth_range_mm", frozen_copy(&Profile::depth_range_mm),
+            "Depths [mm] at which it can be asked, of a law of a Brush: its depth_range_mm. None: any.")
         .def("__repr__", [](const Profile& p) {
             std::string out;
             for (std::size_t i = 0; i < p.coefficients.size(); ++i) {

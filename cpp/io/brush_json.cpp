@@ -271,6 +271,7 @@ Brush read_brush(const std::string& text) {
     std::size_t coefficients = 0;
     for (const Law& law : kLaws) {
         brush.*law.profile = read_profile(fields.take(law.key));
+        (brush.*law.profile).depth_range_mm = brush.depth_range_mm;
         coefficients += (brush.*law.profile).coefficients.size();
     }
     if (auto covariance = fields.find("covariance")) {

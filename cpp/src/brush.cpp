@@ -18,13 +18,12 @@ std::string format(const char* pattern, Numbers... numbers) {
     return text;
 }
 
-constexpr double kDeepestMm = 1000.0;   // no brush is longer, and plans grow with the depth
-constexpr double kRigidLeverMm = 0.05;  // what a rigid pen's widest section may be off unseen: the usual tolerance
+constexpr double kDeepestMm = 1000.0;  // no brush is longer, and plans grow with the depth
 constexpr double kLargestLawMm = 1000.0;
 constexpr std::size_t kMostOutlines = 1000;
 constexpr Eigen::Index kMostVertices = 2000;             // of an outline: each is held against each other
 constexpr std::array<double, 2> kSpeeds{0.01, 10000.0};  // mm/s; a program writes feeds in steps of 0.1 mm/min
-constexpr double kOddMm = 0.05;     // less is within the usual tolerance and nothing to wonder about
+constexpr double kUnseenMm = 0.05;                       // how far off a mark's edge may be unseen: the usual tolerance
 constexpr double kPoorFit = 0.3;    // RMSE by the law's size; the article's worst, its angles' tip gap, has 0.6
 constexpr double kRounding = 1e-4;  // of a correlation: what five digits leave of a covariance
 constexpr double kLawAgainstOutlineMm = 0.5;  // outlines rule the mark, laws the inverse; they must agree
@@ -75,13 +74,13 @@ void check_lag(const Brush& brush) {
     if (brush.is_rigid()) {
         for (int i = 0; i <= 100; ++i) {
             const double d = lo + (hi - lo) * i / 100, e = brush.tip_to_widest(d) - brush.tip_gap(d);
-            if (!(std::abs(e) <= kRigidLeverMm))
+            if (!(std::abs(e) <= kUnseenMm))
                 throw Error(
                     "pen-off-centre",
                     format("the lag is zero, so the mark has no heading, but at depth %.2f mm it is widest %.2f "
                            "mm away from where it touches",
                            d, e),
-                    "lag", e, std::array<double, 2>{-kRigidLeverMm, kRigidLeverMm});
+                    "lag", e, std::array<double, 2>{-kUnseenMm, kUnseenMm});
         }
         return;
     }
@@ -305,6 +304,8 @@ double Brush::depth_for_half_width(double half_width_mm, const std::string& wher
                         (half_width_mm > narrow ? "narrower" : "wider") + ", or take another brush",
                     where, 2.0 * half_width_mm, std::array<double, 2>{2.0 * narrow, 2.0 * wide});
     double a = depth_range_mm[0], b = depth_range_mm[1];
+    // At depth 0 a brush only touches the paper: a program that goes no deeper paints nothing.
+    if (a == 0.0 && narrow > 0.0) half_width_mm = std::max(half_width_mm, std::min(narrow + kUnseenMm, wide));
     if (half_width.coefficients.size() == 2 && std::isinf(half_width.floor))
         return std::clamp((half_width_mm - half_width.coefficients[0]) / half_width.coefficients[1], a, b);
     for (int i = 0; i < 200; ++i) {
@@ -388,7 +389,7 @@ std::vector<Warning> remarks(const Brush& brush) {
             out.push_back(Warning{"contact-outside-footprint", "tip_gap",
                                   "the centre of friction lies outside the footprint at some depths"});
         const Fall fall = greatest_fall(brush.lag, lo, hi);
-        if (fall.mm > kOddMm)
+        if (fall.mm > kUnseenMm)
             out.push_back(
                 Warning{"law-falls", "lag",
                         format("the lag falls by %.2f mm from depth %.2f ", fall.mm, fall.from_mm) +
@@ -396,7 +397,7 @@ std::vector<Warning> remarks(const Brush& brush) {
         for (const Footprint& shape : brush.footprints.dragged) {
             if (shape.outline_mm.rows() == 0) continue;
             const double front = shape.outline_mm.col(0).maxCoeff(), contact = brush.tip_gap(shape.depth_mm);
-            if (!(shape.depth_mm <= hi && contact > front + kOddMm)) continue;
+            if (!(shape.depth_mm <= hi && contact > front + kUnseenMm)) continue;
             out.push_back(Warning{"contact-outside-footprint", "tip_gap",
                                   format("at depth %.2f mm the centre of friction lies %.2f mm from the tip, "
                                          "beyond the footprint, which is %.2f mm long",

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <future>
 #include <memory>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -17,12 +18,19 @@ namespace brushsvg {
 template <class Work>
 auto asking_meanwhile(Work work) {
     const auto is_over = std::make_shared<std::atomic<bool>>(false);
-    std::packaged_task<decltype(work())()> task([work = std::move(work), is_over]() mutable {
+    using Task = std::packaged_task<decltype(work())()>;
+    const auto task = std::make_shared<Task>([work = std::move(work), is_over]() mutable {
         const CancelWhen ends([is_over] { return is_over->load(); });
         return work();
     });
-    auto result = task.get_future();
-    std::thread other(std::move(task));
+    auto result = task->get_future();
+    std::thread other;
+    try {
+        other = std::thread([task] { (*task)(); });
+    } catch (const std::system_error&) {
+        (*task)();  // the system starts no thread: here, then, and nobody is asked meanwhile
+        return result.get();
+    }
     try {
         while (result.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) checkpoint(1 << 20);
     } catch (...) {

@@ -20,7 +20,8 @@ inline std::size_t processors() {
     return count;
 }
 
-/// work(i) for i in [begin, end) on all processors; of several errors the first stroke's is thrown.
+/// work(i) for i in [begin, end) on all processors; of several errors the first stroke's is thrown. If the system
+/// starts fewer threads, as in a container with a limit of processes, the work is done by those, or by this one alone.
 template <class Work>
 void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
     std::atomic<std::size_t> next{begin};
@@ -37,17 +38,22 @@ void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
     std::mutex mutex;
     std::condition_variable ended;
     const std::size_t threads = std::min(processors(), end - begin);
-    std::size_t running = threads > 1 ? threads - 1 : 0;  // counted before the first one ends
+    std::size_t running = 0;
     std::vector<std::thread> others;
-    for (std::size_t k = 1; k < threads; ++k) {
-        others.emplace_back([&] {
-            cancel.take_over();
-            run();
-            const std::lock_guard lock(mutex);
-            --running;
-            ended.notify_one();
-        });
-    }
+    others.reserve(threads);  // so that only starting a thread can fail below
+    for (std::size_t k = 1; k < threads; ++k) try {
+            const std::lock_guard lock(mutex);  // a thread that ends at once must find itself counted
+            others.emplace_back([&] {
+                cancel.take_over();
+                run();
+                const std::lock_guard lock(mutex);
+                --running;
+                ended.notify_one();
+            });
+            ++running;
+        } catch (const std::exception&) {
+            break;  // the system gives no more threads, or no memory for them: those that run do all the work
+        }
     run();
     std::exception_ptr given_up;  // this thread alone asks whether to go on, also while it waits
     std::unique_lock lock(mutex);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "brushsvg/error.hpp"
 
@@ -10,6 +11,7 @@ namespace {
 
 /// Of a polynomial whose roots are looked for, each of whose derivatives is solved before it.
 constexpr std::size_t kMostTerms = 64;
+constexpr double kRoundingMm = 1e-6;  // of depths that were computed, or read from a plan
 
 double evaluate(const std::vector<double>& c, double x) {
     double y = 0.0;
@@ -18,6 +20,20 @@ double evaluate(const std::vector<double>& c, double x) {
 }
 
 }  // namespace
+
+double Profile::at(double depth_mm) const {
+    if (depth_range_mm) {
+        // a brush passes the depths above its range as it is set down and lifted
+        const double deepest = (*depth_range_mm)[1];
+        if (!(depth_mm >= -kRoundingMm && depth_mm <= deepest + kRoundingMm)) {
+            char text[160];
+            std::snprintf(text, sizeof text, "depth %.4g mm is outside the range [0, %.4g] mm of the brush", depth_mm,
+                          deepest);
+            throw Error("depth-out-of-range", text, "", depth_mm, std::array<double, 2>{0.0, deepest});
+        }
+    }
+    return (*this)(depth_mm);
+}
 
 std::vector<double> real_roots(const std::vector<double>& coefficients, double lo, double hi) {
     std::vector<double> c = coefficients;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
@@ -46,6 +47,9 @@ struct Extents {
 
 /// Poses nearer to each other than this on the paper are one place; files are rounded to 1e-7 mm.
 constexpr double kOnTheSpotMm = 1e-6;
+
+/// Rows at a pose have its index, up to the rounding of shares of a move.
+constexpr double kSamePose = 1e-9;
 
 /// The way of the place where the brush's axis meets the paper, q + d s, which the patch trails: straight from pose to
 /// pose. An upright brush's axis is over its tip, and its way is that of the poses.
@@ -367,7 +371,7 @@ class Tracer {
     bool moved_ = false, moved_once_ = false;
 };
 
-void refuse_bad_poses(const Pass& pass, const Brush& brush) {
+void refuse_bad_poses(const Pass& pass, const Brush& brush, bool may_rise) {
     for (Eigen::Index i = 0; i < pass.poses_mm.rows(); ++i) {
         if (!pass.poses_mm.row(i).allFinite())
             throw Error("not-finite", "pose " + std::to_string(i) + " has a coordinate that is not finite",
@@ -389,6 +393,19 @@ void refuse_bad_poses(const Pass& pass, const Brush& brush) {
         }
     }
     const double lowest = pass.poses_mm.rows() > 0 ? pass.poses_mm.col(2).minCoeff() : 0.0;
+    Eigen::Index highest = 0;
+    if (lowest <= 0.0 && !may_rise && pass.poses_mm.rows() > 0 &&
+        pass.poses_mm.col(2).maxCoeff(&highest) > kOnTheSpotMm) {
+        const double z = pass.poses_mm(highest, 2);
+        char text[200];
+        std::snprintf(
+            text, sizeof text,
+            "pose %ld is %.3g mm above the paper; inside a pass z must be 0 or below. Begin another pass where "
+            "the brush is set down again",
+            long(highest), z);
+        throw Error("above-paper", text, pass.stroke, z,
+                    std::array<double, 2>{-std::numeric_limits<double>::infinity(), 0.0});
+    }
     if (lowest > 0.0) {  // all of it: a wrong sign, for a way above the paper paints nothing
         char text[200];
         std::snprintf(
@@ -403,11 +420,11 @@ void refuse_bad_poses(const Pass& pass, const Brush& brush) {
 
 namespace {
 
-PassMarks simulated(const Pass& pass, const Brush& brush, double tolerance_mm, bool for_outlines,
+PassMarks simulated(const Pass& pass, const Brush& brush, double tolerance_mm, bool for_outlines, bool may_rise,
                     const Window* window) {
     require_usable(brush);
     require_tolerance(tolerance_mm, pass.stroke);
-    refuse_bad_poses(pass, brush);
+    refuse_bad_poses(pass, brush, may_rise);
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, pass.stroke);
     check_tool_axes(pass, pass.stroke);
     PassMarks marks;
@@ -424,12 +441,12 @@ PassMarks simulated(const Pass& pass, const Brush& brush, double tolerance_mm, b
 
 }  // namespace
 
-PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm, bool for_outlines) {
-    return simulated(pass, brush, tolerance_mm, for_outlines, nullptr);
+PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm, bool for_outlines, bool may_rise) {
+    return simulated(pass, brush, tolerance_mm, for_outlines, may_rise, nullptr);
 }
 
 PassMarks simulate_near(const Pass& pass, const Brush& brush, const Window& window, double tolerance_mm) {
-    return simulated(pass, brush, tolerance_mm, true, &window);
+    return simulated(pass, brush, tolerance_mm, true, false, &window);
 }
 
 Marks simulate(const Plan& plan, const Brush& brush, double tolerance_mm) {
@@ -437,6 +454,21 @@ Marks simulate(const Plan& plan, const Brush& brush, double tolerance_mm) {
     marks.passes.reserve(plan.passes.size());
     for (const Pass& pass : plan.passes) marks.passes.push_back(simulate(pass, brush, tolerance_mm));
     return marks;
+}
+
+std::vector<std::size_t> pose_rows(const PassMarks& marks) {
+    require_usable(marks);
+    std::vector<std::size_t> rows;
+    const auto is_at = [&](std::size_t row, std::size_t pose) {
+        return std::abs(marks.pose[row] - double(pose)) <= kSamePose;
+    };
+    for (std::size_t row = 0; row < marks.pose.size(); ++row)
+        if (is_at(row, rows.size())) rows.push_back(row);
+    // set down on the spot the brush is at its first pose when it has its depth
+    while (!rows.empty() && rows[0] + 1 < marks.pose.size() && is_at(rows[0] + 1, 0) &&
+           marks.depth_mm[rows[0] + 1] > marks.depth_mm[rows[0]])
+        ++rows[0];
+    return rows;
 }
 
 Ring widest_points(const PassMarks& marks, const Brush& brush) {

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import re
+import secrets
 import stat
-import tempfile
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, suppress
@@ -117,13 +117,14 @@ def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[st
             folder, name = os.path.split(target)
             prefix = f".{name.encode('utf-8', 'surrogateescape')[:80].decode('utf-8', 'ignore')}."
             _clear_left(folder, prefix)
-            handle, beside[path] = _new_part(folder, prefix)
+            handle, beside[path] = _new_part(folder, prefix, 0o666 if mode is None else mode & 0o777)
             held.callback(os.close, os.dup(handle))  # keeps the lock until the file has its name
             with os.fdopen(handle, "wb") as file:
                 file.writelines(_pieces(files[path]))
                 file.flush()
                 os.fsync(file.fileno())
-            os.chmod(beside[path], 0o666 & ~_umask() if mode is None else mode & 0o777)
+            if mode is not None:
+                os.chmod(beside[path], mode & 0o777)
         for path in through:  # must not be renamed over; a folder refuses
             with open(targets[path], "wb") as file:
                 file.writelines(_pieces(files[path]))
@@ -147,10 +148,19 @@ def reason(problem: Exception) -> str:
     return (getattr(problem, "strerror", None) or str(problem)).lower()
 
 
-def _new_part(folder: str, prefix: str) -> tuple[int, str]:
-    """A new file, open and locked as long as its handle or a copy of it is open: the sign that somebody writes it."""
+def _new_part(folder: str, prefix: str, mode: int) -> tuple[int, str]:
+    """A new file, open and locked as long as its handle or a copy of it is open: the sign that somebody writes it.
+
+    The system takes the umask from its mode. Python can only read the umask by setting it, which changes the files
+    that other threads make at that moment.
+    """
+    flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
     while True:
-        handle, path = tempfile.mkstemp(prefix=prefix, suffix=".part", dir=folder)
+        path = os.path.join(folder, f"{prefix}{secrets.token_hex(4)}.part")
+        try:
+            handle = os.open(path, flags, mode)
+        except FileExistsError:
+            continue
         if fcntl:
             with suppress(OSError):  # a file system without locks: nothing is cleared there
                 fcntl.flock(handle, fcntl.LOCK_EX)
@@ -161,7 +171,7 @@ def _new_part(folder: str, prefix: str) -> tuple[int, str]:
 
 def _clear_left(folder: str, prefix: str) -> None:
     """Remove what killed runs left of files with this prefix: nobody holds its lock any more."""
-    ours = re.compile(re.escape(prefix) + r"[a-z0-9_]{8}\.part")  # as tempfile names them
+    ours = re.compile(re.escape(prefix) + r"[a-z0-9_]{8}\.part")  # as _new_part names them
     names = []
     with suppress(OSError):  # a folder that may be written and not listed
         names = os.listdir(folder) if fcntl else []
@@ -181,9 +191,3 @@ def _mode(path: str) -> int | None:
 def _pieces(data: bytes | str | Iterable[str]) -> Iterator[bytes]:
     for piece in [data] if isinstance(data, bytes | str) else data:
         yield piece.encode("utf-8") if isinstance(piece, str) else piece
-
-
-def _umask() -> int:
-    mask = os.umask(0)  # there is no way to read it without setting it
-    os.umask(mask)
-    return mask

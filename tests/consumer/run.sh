@@ -57,6 +57,9 @@ documented "include(FetchContent)" >"$work/embedded/FetchContent.cmake"
 for how in add_subdirectory FetchContent; do
   cmake -S "$work/embedded" -B "$work/$how" -G Ninja -DHOW=$how.cmake >/dev/null
   cmake --build "$work/$how" --target program >/dev/null
+  for folder in include io posts; do
+    if ! grep -rq -- "-isystem [^ ]*brushsvg/cpp/$folder" "$work/$how/build.ninja"; then echo "headers of cpp/$folder are not SYSTEM includes of a project that embeds brushsvg" >&2; exit 1; fi
+  done
   # the library itself is built once, elsewhere
   c++ "$(find "$work/$how" -path '*program.dir*' -name '*.o')" -L"$libraries" -lbrushsvg_io -lbrushsvg_posts -lbrushsvg_core -pthread -o "$work/by_$how"
   "$work/by_$how" "$brush" "$work/three.ngc"

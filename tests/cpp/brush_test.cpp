@@ -55,6 +55,8 @@ TEST_CASE("numbers that no brush has are refused with their range") {
     CHECK(agrees(changed([](Brush& b) { b.paint_depth_mm = 50.0; }), "out-of-range", "paint_depth_mm", {"50.00"}));
     CHECK(agrees(changed([](Brush& b) { b.paint_depth_mm = 0.0; }, "rigid"), "out-of-range", "paint_depth_mm", {"0"}));
     CHECK(agrees(changed([](Brush& b) { b.lag.coefficients = {0.0}; }), "pen-off-centre", "lag"));
+    CHECK(agrees(changed([](Brush& b) { b.kind = "flat"; }), "choice-unknown", "kind"));
+    CHECK(!changed([](Brush& b) { b.kind = ""; }));
 }
 
 TEST_CASE("a covariance that nothing can have is refused") {
@@ -111,6 +113,25 @@ TEST_CASE("width to depth and back, and the refusal names the reachable range") 
     REQUIRE(agrees(wide, "width-out-of-reach", "p1", {"10.000", "[0.000, 8.400]"}));
     CHECK(*wide->value() == doctest::Approx(10.0));
     CHECK(shipped("rigid").depth_for_half_width(7.0, "") == shipped("rigid").paint_depth_mm);
+}
+
+TEST_CASE("a brush with a width at depth 0 presses for its thinnest line") {
+    const Brush liner = shipped("liner-1");  // 1 mm wide at depth 0
+    double before = 0.0;
+    for (double h : {0.5, 0.52, 0.55, 0.6, 1.0}) {
+        const double depth = liner.depth_for_half_width(h, "");
+        CHECK(depth > 0.1);
+        CHECK(depth >= before);
+        CHECK(std::abs(liner.half_width(depth) - h) < 0.05 + 1e-9);
+        before = depth;
+    }
+    Brush even = liner;  // so little wider when pressed that all of its widths are alike to the eye
+    even.half_width.coefficients = {0.5, 0.002};
+    CHECK(even.depth_for_half_width(0.5, "") == doctest::Approx(5.0));
+    Brush lifted = liner;  // its range begins above 0: pressed already
+    lifted.depth_range_mm = {1.0, 5.0};
+    CHECK(lifted.depth_for_half_width(0.6, "") == doctest::Approx(1.0));
+    CHECK(shipped("round-6").depth_for_half_width(1e-3, "") == doctest::Approx(1e-3 / 0.42));  // its widths begin at 0
 }
 
 TEST_CASE("a steeper half-width law with a floor inverts too") {

@@ -40,6 +40,20 @@ TEST_CASE("a line through zero, by hand") {
     CHECK(fit.law.half_interval_95[1] == doctest::Approx(4.30265 * std::sqrt(squares / 28.0)).epsilon(1e-5));
 }
 
+TEST_CASE("values are weighted by their scatter, in any unit, by hand") {
+    LawShape shape;
+    shape.through_zero = true;
+    for (const double unit : {1.0, 1e-3}) {  // sum d v / s^2 over sum d^2 / s^2
+        const LawFit fit = fit_law({1, 2, 4}, {1, 1, 6}, shape, {unit, 2 * unit, 4 * unit});
+        CHECK(fit.law.coefficients[1] == doctest::Approx((1.0 + 0.5 + 1.5) / 3.0));
+        const double squares = 0.0 + 0.25 + 0.25;  // of residuals over their scatter
+        CHECK(fit.covariance[1][1] == doctest::Approx(squares / 2.0 / 3.0));
+        CHECK(*fit.law.rmse_mm == doctest::Approx(std::sqrt((0.0 + 1.0 + 4.0) / 2.0)));
+    }
+    CHECK_THROWS_AS(fit_law({1, 2, 4}, {1, 1, 6}, shape, {1, 2}), Error);
+    CHECK_THROWS_AS(fit_law({1, 2, 4}, {1, 1, 6}, shape, {1, 2, 0}), Error);
+}
+
 TEST_CASE("one depth says nothing of a slope") {
     LawShape shape;
     const auto told = refusal([&] { fit_law({3, 3, 3}, {1, 2, 3}, shape); });

@@ -77,6 +77,7 @@ TEST_CASE("brush.json: every key arrives where it belongs") {
     const Brush brush = io::read_brush(kBrush);
     CHECK(brush.name == "flat");
     CHECK(brush.depth_range_mm[1] == 4.0);
+    CHECK_THROWS_AS(brush.lag.at(50.0), Error);
     CHECK(brush.lag.coefficients == std::vector<double>{1.0, 0.1});
     CHECK(brush.lag.half_interval_95 == std::vector<double>{0.5, 0.1});
     CHECK(*brush.lag.rmse_mm == 0.3);

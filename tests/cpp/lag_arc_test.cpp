@@ -69,6 +69,24 @@ TEST_CASE("the TCP's place on an arc: from the chord and back, at every radius a
         }
 }
 
+TEST_CASE("a loose brush whose lever is drawn out already pulls tight no earlier than the arc begins") {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> angle(-kPi, kPi), length(1.0, 20.0), place(-200.0, 200.0);
+    const LagLaw<double> law = law_of({8.0});
+    for (int i = 0; i < 20000; ++i) {
+        const V tcp(place(random), place(random));
+        const double phi = angle(random), turn = 0.3 * angle(random);
+        LagState<double> state = taut(tcp, 8.0, phi + 0.4 * angle(random));
+        state.taut = false;
+        advance(law, arc_of(tcp, phi, length(random), turn), state,
+                [](const auto&, const auto&, const auto&, double begin, double end) {
+                    REQUIRE(begin >= 0.0);
+                    REQUIRE(begin < end);
+                    REQUIRE(end <= 1.0);
+                });
+    }
+}
+
 TEST_CASE("an arc of the TCP: the printed value, straight ahead, and where it settles") {
     CHECK(std::abs(drag_arc(0.7, 1.0 / 40, 8.0, 60.0) - -0.200791034) < 1e-9);
     CHECK(std::abs(drag_arc(1.2, 0.0, 3.0, 2.0) - 2 * std::atan(std::tan(0.6) * std::exp(-2.0 / 3))) < 1e-14);

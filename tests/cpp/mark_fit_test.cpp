@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "brushsvg/error.hpp"
@@ -12,6 +13,7 @@
 #include "identifiability.hpp"
 #include "mark_model.hpp"
 #include "mark_problem.hpp"
+#include "no_brush.hpp"
 #include "noise_covariance.hpp"
 #include "refusal.hpp"
 #include "run_way.hpp"
@@ -255,27 +257,58 @@ TEST_CASE("marks that no brush paints are refused, and one of them is named") {
         return out;
     };
     Ring square(4, 2);
-    square << 0, 0, 40, 0, 40, 40, 0, 40;
-    const auto refused = [&](const Ring& ring) {
+    square << 0, 0, 40, 0, 40, 40, 0, 40;  // huge footprints lie on each other, and the work is counted
+    const std::string sentence = no_brush_paints("this one").what();
+    const auto check_refused = [&](const std::function<void()>& does) {
         try {
-            fit_marks({{"this one", poses, {ring}}}, std::nullopt, {});
-        } catch (const Error& refusal) {
-            CHECK(refusal.where() == "this one");
-            return std::string(refusal.what());
+            does();
+            FAIL_CHECK("nothing was refused");
+        } catch (const Error& error) {
+            CHECK(error.code() == "fit-failed");
+            CHECK(error.where() == "this one");
+            CHECK(std::string(error.what()) == sentence);
         }
-        return std::string("fitted");
     };
-    // fits are found, of edges that err by 8 mm, or none is: where a search ends that nothing fits is chance
-    int by_edges = 0;
+    const auto check_no_fit = [&](const Poses& stroke, const Ring& ring, const MarkOptions& options = {}) {
+        check_refused([&] { fit_marks({{"this one", stroke, {ring}}}, std::nullopt, options); });
+    };
+    // where a search ends that nothing fits is chance: the refusal must not depend on it
+    MarkOptions hasty;
+    hasty.most_iterations = 1;
     for (const int points : {12, 16, 20, 24, 28}) {
-        const std::string told = refused(star(points));
-        CHECK(told.find("no brush was found that paints these marks") == 0);
-        by_edges += told.find("their edges lie off by more (standard deviation) than they are wide") != told.npos;
+        CAPTURE(points);
+        check_no_fit(poses, star(points));
+        check_no_fit(poses, star(points), hasty);
     }
-    CHECK(by_edges > 0);
-    // none is: huge footprints lie on each other, and the work is counted
-    CHECK(refused(square).find("no brush was found that paints these marks, least of all this one") !=
-          std::string::npos);
+    check_no_fit(poses, square);
+
+    // and each way to find out, on its own
+    Poses above = poses;  // no lag that is tried predicts a mark
+    above.col(2).setConstant(1.0);
+    check_no_fit(above, square);
+    MarkProblem fit({{"this one", poses, {square}}}, {});
+    fit.begin({{3.0}, {0.0, 0.3}, {0.0, 400.0}});  // laws that predict no mark
+    check_refused([&] { weighed(fit); });
+    fit.begin({{3.0}, {0.0, 0.3}, {0.0, 4.0}});  // more work than a brush's mark takes
+    REQUIRE(std::isfinite(fit.loss()));
+    check_refused([&] {
+        for (int i = 0; i < 100000; ++i) fit.loss();
+    });
+}
+
+TEST_CASE("a brush to start from that paints no mark is refused as such") {
+    Poses poses(2, 3);
+    poses << 0, 0, -3, 30, 0, -3;
+    Ring ring(4, 2);
+    ring << 0, -2, 30, -2, 30, 2, 0, 2;
+    const MarkLaws huge{{3.0}, {0.0, 0.3}, {0.0, 400.0}};
+    MarkOptions expected;
+    expected.noise_mm = 0.1;
+    for (const MarkOptions& options : {MarkOptions{}, expected}) {
+        const auto refused = refusal([&] { fit_marks({{"s", poses, {ring}}}, huge, options); });
+        CHECK(agrees(refused, "fit-failed", "s"));
+        CHECK(std::string(refused->what()) != no_brush_paints("s").what());
+    }
 }
 
 TEST_CASE("what cannot be fitted is refused") {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "brushsvg/error.hpp"
+
 using namespace brushsvg;
 
 TEST_CASE("a floor takes over where the polynomial falls below it, and the pieces meet there") {
@@ -23,6 +25,23 @@ TEST_CASE("a floor takes over where the polynomial falls below it, and the piece
         for (std::size_t i = part.coefficients.size(); i-- > 0;) y = y * d + part.coefficients[i];
         CHECK(std::abs(y - w(d)) < 1e-12);
     }
+}
+
+TEST_CASE("a law of a brush refuses depths that the brush cannot have") {
+    Profile lag;
+    lag.coefficients = {3.0, 1.0};
+    CHECK(lag.at(50.0) == 53.0);  // of no brush yet
+    lag.depth_range_mm = {1.0, 10.0};
+    CHECK(lag.at(10.0 + 1e-9) == doctest::Approx(13.0));
+    CHECK(lag.at(0.0) == 3.0);  // passed as the brush is set down
+    CHECK(lag(50.0) == 53.0);   // not checked
+    for (const double depth : {50.0, 10.1, -0.1, double(NAN)}) try {
+            lag.at(depth);
+            FAIL("it follows the polynomial to any depth");
+        } catch (const Error& error) {
+            CHECK(error.code() == "depth-out-of-range");
+            CHECK((*error.range())[1] == 10.0);
+        }
 }
 
 TEST_CASE("difference of laws is split where either changes") {

@@ -89,8 +89,27 @@ TEST_CASE("a pass that is above the paper from end to end is refused, a way abov
         CHECK(error.code() == "never-pressed");
         CHECK(error.value() == 5.0);
     }
-    CHECK(simulate(pass_of({{0, 0, 5}, {20, 0, -2}, {40, 0, 5}}), shipped("round-6")).pose.size() > 3);
+    const Pass rising = pass_of({{0, 0, 5}, {20, 0, -2}, {40, 0, 5}});
+    CHECK(simulate(rising, shipped("round-6"), 0.02, true, true).pose.size() > 3);
+    try {
+        simulate(rising, shipped("round-6"));
+        FAIL("a pose above the paper is taken for one of a pass");
+    } catch (const Error& error) {
+        CHECK(error.code() == "above-paper");
+        CHECK(error.value() == 5.0);
+    }
     CHECK_NOTHROW(simulate(pass_of({{0, 0, 0}, {20, 0, 0}}), shipped("round-6")));  // some brushes paint at depth 0
+}
+
+TEST_CASE("each pose has its row, also where a pass ends on the paper") {
+    const PassMarks m = simulate(pass_of({{0, 0, -3}, {30, 0, -5}, {60, 0, -5}}), shipped("round-6"));
+    const std::vector<std::size_t> rows = pose_rows(m);
+    REQUIRE(rows.size() == 3);
+    CHECK(m.depth_mm[rows[0]] == doctest::Approx(3.0));
+    CHECK(m.depth_mm[rows[2]] == doctest::Approx(5.0));
+    CHECK(rows[2] + 1 < m.pose.size());  // then it is lifted on the spot
+    CHECK(m.contact_mm(Eigen::Index(rows[2]), 0) == doctest::Approx(60.0 - shipped("round-6").lag(5.0)).epsilon(1e-3));
+    CHECK(m.contact_mm(m.contact_mm.rows() - 1, 0) > m.contact_mm(Eigen::Index(rows[2]), 0) + 3.0);
 }
 
 TEST_CASE("an arc is followed on its circle: rows at its poses and between, fractional within each") {

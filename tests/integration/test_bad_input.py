@@ -7,6 +7,7 @@ import resource
 import pytest
 from command import LINE, OPEN, SOUND, brush_file, brushsvg, path, refusal, refused
 from diagnostics import agrees, is_told
+from sampling import sample
 
 ROOM = 3 << 30  # bytes of address space: a bomb that goes off must not take the machine with it
 
@@ -64,7 +65,7 @@ DRAWINGS = {
 }
 
 
-@pytest.mark.parametrize("case", DRAWINGS)
+@sample("case", DRAWINGS, keep=6)
 def test_a_bad_drawing_is_refused_by_every_command(desk, case):
     content, said = DRAWINGS[case]
     if content is not None:
@@ -196,7 +197,7 @@ PLANS = {  # a change, and what is told of which key or stroke
 }
 
 
-@pytest.mark.parametrize("case", PLANS)
+@sample("case", PLANS, keep=4)
 def test_a_bad_plan_is_refused(desk, case):
     brushsvg("convert", "sound.svg", "plan.json", cwd=desk, status=0)
     plan = json.loads((desk / "plan.json").read_text())

@@ -15,8 +15,8 @@ from pathlib import Path
 
 import cv2
 import ezdxf
-import pytest
 from command import COMMAND
+from sampling import sample
 from shown_code import HOUSE, PAGES, Block, blocks, why_not_run
 
 for place in ("tools", "tests/laws"):
@@ -98,6 +98,9 @@ class Desk:
             words = shlex.split(re.sub(" > .*", "", command), comments=True)
             if words[0] == "brushsvg":
                 written = _written(words[1:])
+                for name in filter(None, written):  # commands replace no file that might be somebody's own
+                    if (self.folder / name).is_file():
+                        (self.folder / name).unlink()
                 for word in words:
                     if word not in written:
                         self.make(word)
@@ -191,7 +194,7 @@ MADE = {
 }
 
 
-@pytest.mark.parametrize("block", to_run(), ids=lambda block: f"{block.page}:{block.line}")
+@sample("block", to_run(), ids=lambda block: f"{block.page}:{block.line}", keep=8)
 def test_a_block_of_commands_can_be_typed_as_it_stands(block, tmp_path):
     (tmp_path / "desk").mkdir()
     desk = Desk(tmp_path / "desk")

@@ -11,6 +11,7 @@ import dxf_features
 import dxf_shown
 import pytest
 from dxf_text import drawing, encoded, save_font
+from sampling import sample
 
 from brushsvg.drawing.dxf.ezdxf_import import ezdxf
 
@@ -50,7 +51,7 @@ def off(draw):
     return dxf_shown.difference(dxf_shown.shown(data), ours), told
 
 
-@pytest.mark.parametrize("table", dxf_features.TABLES)
+@sample("table", dxf_features.TABLES, keep=5)
 def test_what_is_not_painted_as_shown_is_told(table):
     silent, stale = {}, []
     for name, draw in dxf_features.TABLES[table].items():

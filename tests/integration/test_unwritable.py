@@ -56,7 +56,7 @@ def test_without_the_right_to_write_or_read(as_nobody):
         return notice
 
     assert agrees(told("convert", "sound.svg", "out.ngc"), "file-unwritable")
-    assert agrees(told("convert", "sound.svg", "open/old.ngc"), "file-unwritable")
+    assert agrees(told("convert", "sound.svg", "open/old.ngc", "--force"), "file-unwritable")
     assert agrees(told("convert", "secret.svg", "open/out.ngc"), "file-unreadable")
     assert (folder / "open" / "old.ngc").read_text() == "kept\n"
     assert sorted(os.listdir(folder / "open")) == ["old.ngc"]

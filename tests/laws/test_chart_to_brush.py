@@ -54,7 +54,7 @@ def painted(tmp_path_factory):
         rows.append({"stroke": trace.stroke, "outline_mm": [ring.round(4).tolist() for ring in rings]})
     content = {"format": "brushsvg/measurements", "version": 1, "plan": "plan.json", "marks": rows}
     (desk / "marks.json").write_text(json.dumps(content | {"expected": {"displacement_mm": DISPLACED_MM}}))
-    assert main(["calibrate", str(desk / "marks.json"), "-o", str(desk / "own.json")]) == 0
+    assert main(["calibrate", "--force", str(desk / "marks.json"), "-o", str(desk / "own.json")]) == 0
     return made, find_brush(desk / "own.json")
 
 

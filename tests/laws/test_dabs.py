@@ -118,7 +118,18 @@ def calibrated(folder, capsys, photo, *words, before=None):
     (folder / "dabs.json").write_text(write_chart(printed()))
     save_brush(before or assumed(), folder / "before.json")
     files = [str(folder / name) for name in ("photo.jpg", "dabs.json", "before.json", "own.json")]
-    words = ["calibrate", files[0], "--chart", files[1], "--brush", files[2], "-o", files[3], *words]
+    words = [
+        "calibrate",
+        "--force",
+        files[0],
+        "--chart",
+        files[1],
+        "--brush",
+        files[2],
+        "-o",
+        files[3],
+        *words,
+    ]
     return *in_json(capsys, *words), folder / "own.json"
 
 
@@ -266,5 +277,5 @@ def test_a_chart_of_dabs_needs_the_brush_whose_lag_is_known(tmp_path, capsys):
     (tmp_path / "photo.jpg").write_bytes(photographed("lopsided"))
     (tmp_path / "dabs.json").write_text(write_chart(printed()))
     files = [str(tmp_path / name) for name in ("photo.jpg", "dabs.json", "own.json")]
-    assert main(["calibrate", files[0], "--chart", files[1], "-o", files[2]]) == 2
+    assert main(["calibrate", "--force", files[0], "--chart", files[1], "-o", files[2]]) == 2
     assert "--brush" in capsys.readouterr().err and not (tmp_path / "own.json").exists()

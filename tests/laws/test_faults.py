@@ -35,7 +35,7 @@ def job(tmp_path_factory):
 def compared(job, amiss, seed=1, *flags):
     folder, plan = job
     (folder / "photo.jpg").write_bytes(studio.photographed(plan, studio.painted(plan, amiss, seed), "word"))
-    words = ["compare", "photo.jpg", "word.svg", "--brush", "mine.json", "-o", "seen.json"]
+    words = ["compare", "--force", "photo.jpg", "word.svg", "--brush", "mine.json", "-o", "seen.json"]
     words = [str(folder / word) if "." in word else word for word in words]
     assert main([*words, "--quiet", *flags]) == 0
     return json.loads((folder / "seen.json").read_text())["faults"]

@@ -246,7 +246,7 @@ def test_a_scan_gives_the_brush_back(tmp_path, capsys):
     (tmp_path / "scan.png").write_bytes(cv2.imencode(".png", scanned(300, 92)[..., ::-1])[1].tobytes())
     (tmp_path / "chart.json").write_text(write_chart(a5()))
     photo, made, out = (str(tmp_path / name) for name in ("scan.png", "chart.json", "own.json"))
-    assert main(["calibrate", photo, "--chart", made, "--dpi", "300", "-o", out]) == 0
+    assert main(["calibrate", "--force", photo, "--chart", made, "--dpi", "300", "-o", out]) == 0
     found = find_brush(out)
     for law in ("lag", "half_width"):
         off = [abs(getattr(found, law)(depth) / TRUTH.law(law)(depth) - 1) for depth in DEPTHS]
@@ -254,6 +254,6 @@ def test_a_scan_gives_the_brush_back(tmp_path, capsys):
     assert gives(capsys.readouterr().err, "24")
     marks_file, again = str(tmp_path / "marks.json"), str(tmp_path / "again.json")
     assert main(["scan", photo, "--chart", made, "--dpi", "300", "-o", marks_file]) == 0
-    assert main(["calibrate", marks_file, "-o", again]) == 0
+    assert main(["calibrate", "--force", marks_file, "-o", again]) == 0
     off = [abs(find_brush(again).lag(depth) / TRUTH.law("lag")(depth) - 1) for depth in DEPTHS]
     assert max(off) < 0.03, off

@@ -6,6 +6,7 @@ import numpy as np
 import oracle
 import pytest
 from conftest import LAGS, law, make_brush, make_pass, make_plan, profile, random_poses
+from diagnostics import refused
 from hypothesis import example, given
 from hypothesis import strategies as st
 from sampling import sample
@@ -16,7 +17,7 @@ ROUND = law("round")
 
 
 def rows_of(poses, brush, tolerance_mm=0.02):
-    return core.simulate(make_plan(poses), brush, tolerance_mm).passes[0]
+    return core.simulate(make_plan(poses), brush, tolerance_mm, may_rise=True).passes[0]
 
 
 def at_poses(rows):
@@ -427,3 +428,33 @@ def test_poses_no_brush_can_hold_are_refused():
     for poses in ([[0, 0, 0], [5, 0, -10.5]], [[0, 0, 0], [np.nan, 0, -1]], [[0, 0, 0], [np.inf, 0, -1.0]]):
         with pytest.raises(ValueError, match=r"."):
             core.simulate(core.Plan(passes=[make_pass(np.array(poses, float))]), make_brush())
+
+
+def test_poses_above_the_paper_are_refused_unless_they_are_a_machines_motion():
+    rising = [[0, 0, 0], [8, 0, -4], [20, 0, 0.5], [30, 0, -4], [40, 0, 0]]
+    plan, brush = make_plan(np.array(rising, float)), make_brush()
+    with refused("above-paper 'pose 2' 0.5") as caught:
+        core.simulate(plan, brush)
+    assert caught.value.value == 0.5
+    ran = core.simulate(plan, brush, may_rise=True).passes[0]
+    assert ran.depth_mm.min() == -0.5
+    # rounding is no rise: plans are written to 1e-7 mm
+    flat = [[0, 0, 0], [8, 0, -4], [20, 0, -4], [40, 0, 1e-7]]
+    assert core.simulate(make_plan(np.array(flat, float)), brush).passes[0].depth_mm[-1] <= 1e-7
+
+
+@pytest.mark.parametrize(("first", "last"), [(-4.0, -6.0), (0.0, -6.0), (-4.0, 0.0), (0.0, 0.0)])
+def test_each_pose_has_its_row_also_where_a_pass_begins_or_ends_on_the_paper(first, last):
+    poses = np.array([[0, 0, first], [9, 0, -4], [40, 0, -6], [40, 30, last]])
+    rows = core.simulate(make_plan(poses), make_brush()).passes[0]
+    at = rows.pose_rows
+    assert rows.pose[at] == pytest.approx(np.arange(4), abs=1e-9)
+    assert rows.tcp_mm[at] == pytest.approx(poses[:, :2], abs=1e-9)
+    assert rows.depth_mm[at] == pytest.approx(-poses[:, 2], abs=1e-9)
+    # the patch trails the last pose by the lag; the rows that follow it are those of the lift on the spot
+    end = at[-1]
+    assert np.hypot(*(rows.contact_mm[end] - poses[-1, :2])) == pytest.approx(ROUND(-last), abs=1e-3)
+    assert (len(rows.pose) > end + 1) == (last < 0)
+    if last < 0:
+        assert rows.depth_mm[-1] == 0
+        assert np.hypot(*(rows.contact_mm[-1] - rows.contact_mm[end])) > 3.0

@@ -96,7 +96,7 @@ class Studio:
 
     def words(self, out="mine-2.json", photo="photo.jpg", plan="word.json", prior="mine.json"):
         files = [self.folder / name for name in (photo, plan, prior, out)]
-        words = ("calibrate", files[0], "--plan", files[1], "--prior", files[2], "-o", files[3])
+        words = ("calibrate", "--force", files[0], "--plan", files[1], "--prior", files[2], "-o", files[3])
         return tuple(map(str, words))
 
     def brush(self, name="mine-2.json"):

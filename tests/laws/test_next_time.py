@@ -97,7 +97,7 @@ class Studio:
 
     def compared(self, photo, *flags):
         out = self.folder / f"{photo.stem}.json"
-        words = ["compare", photo, self.folder / "five.svg", "-o", out, "--quiet", *flags]
+        words = ["compare", "--force", photo, self.folder / "five.svg", "-o", out, "--quiet", *flags]
         assert main([*map(str, words)]) == 0
         return out
 
@@ -193,7 +193,7 @@ def test_strokes_that_lie_farther_aside_are_told(tmp_path, capsys):
     """A stroke that the machine leads elsewhere on the second sheet, and no other."""
     first, photo = sheet_with_the_bar_elsewhere(tmp_path)
     out = tmp_path / "second.json"
-    words = ("compare", photo, tmp_path / "five.svg", "--corrections", first, "-o", out)
+    words = ("compare", "--force", photo, tmp_path / "five.svg", "--corrections", first, "-o", out)
     status, _, told = in_json(capsys, *words)
     assert status == 0 and is_told(told, "stroke-farther", "bar"), told
     before, now = (
@@ -283,7 +283,7 @@ def test_a_new_brush_and_corrections_in_one_round(tmp_path, capsys):
     status, _, told = in_json(capsys, *words)
     assert status == 1 and is_told(told, "corrections-of-another-brush"), told
     again = tmp_path / "again.json"
-    words = ("compare", photo, tmp_path / "first.json", "--brush", longer, "-o", again)
+    words = ("compare", "--force", photo, tmp_path / "first.json", "--brush", longer, "-o", again)
     assert in_json(capsys, *words)[0] == 0
     plan_1 = studio.plan("--brush", longer)
     plan_2 = studio.plan("--brush", longer, "--corrections", again)
@@ -314,7 +314,7 @@ def test_two_strokes_tell_no_corrections(tmp_path, capsys):
     assert [row["correction"] for row in json.loads(found.read_text())["strokes"]] == [None, None]
     words = ("convert", tmp_path / "five.svg", tmp_path / "a.ngc", "--corrections", found)
     status, _, told = in_json(capsys, *words)
-    assert status == 1 and is_told(told, "corrections-missing"), told
+    assert status == 1 and is_told(told, "corrections-missing 2 3", "strokes"), told
 
 
 @pytest.fixture(scope="module")
@@ -415,7 +415,16 @@ def test_a_width_that_no_depth_paints_is_refused(tmp_path, capsys):
     studio.own = {each.stroke: np.zeros(2) for each in plan.passes}
     studio.grown = {"line": 0.5}
     photo = studio.photographed(studio.plan("--brush", brush))
-    words = ("compare", photo, tmp_path / "five.svg", "--brush", brush, "-o", tmp_path / "seen.json")
+    words = (
+        "compare",
+        "--force",
+        photo,
+        tmp_path / "five.svg",
+        "--brush",
+        brush,
+        "-o",
+        tmp_path / "seen.json",
+    )
     status, _, told = in_json(capsys, *words)
     assert status == 0 and is_told(told, "width-correction-refused", "line"), told
     rows = {row["stroke"]: row for row in json.loads((tmp_path / "seen.json").read_text())["strokes"]}

@@ -153,7 +153,7 @@ def test_the_command_writes_it(tmp_path, capsys):
     _, told = sheet(6, 0.8, True)
     path, out = tmp_path / "m.json", tmp_path / "b.json"
     path.write_text(json.dumps({"format": "brushsvg/measurements", "version": 1, **told}))
-    assert main(["calibrate", str(path), "-o", str(out), "--paint"]) == 0
+    assert main(["calibrate", "--force", str(path), "-o", str(out), "--paint"]) == 0
     paint = json.loads(out.read_text())["paint"]
     assert paint["narrows_per_m"] == pytest.approx(0.8, abs=0.06) and paint["assumed"] is False
     assert f" {paint['narrows_per_m']:.3f} +- " in capsys.readouterr().out

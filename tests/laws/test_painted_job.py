@@ -227,7 +227,7 @@ def seen(job, capsys, photo):
     """Status, what was told, and by stroke whether it was found and is corrected."""
     folder, out = job[0], job[0] / "bad.json"
     out.unlink(missing_ok=True)
-    status, _, told = in_json(capsys, "compare", folder / photo, folder / "four.svg", "-o", out)
+    status, _, told = in_json(capsys, "compare", "--force", folder / photo, folder / "four.svg", "-o", out)
     rows = json.loads(out.read_text())["strokes"] if out.exists() else []
     return status, told, {row["stroke"]: (row["found"], row["correction"] is not None) for row in rows}
 

@@ -72,7 +72,10 @@ def desk(tmp_path_factory):
 
 def test_one_photograph_gives_the_brush_back(desk, capsys):
     files = [str(desk / name) for name in ("photo.jpg", "chart.json", "own.json", "read.png")]
-    assert main(["calibrate", files[0], "--chart", files[1], "-o", files[2], "--picture", files[3]]) == 0
+    assert (
+        main(["calibrate", "--force", files[0], "--chart", files[1], "-o", files[2], "--picture", files[3]])
+        == 0
+    )
     told = capsys.readouterr()
     assert re.search(r"\b24 .*\b6 [a-z ]+ 0\.0", told.err)
     assert gives(told.out, "0.01 mm")
@@ -90,7 +93,15 @@ def test_one_photograph_gives_the_brush_back(desk, capsys):
 
 def calibrating(folder):
     """Words of the command that reads photo.jpg by chart.json."""
-    return ["calibrate", folder / "photo.jpg", "--chart", folder / "chart.json", "-o", folder / "own.json"]
+    return [
+        "calibrate",
+        "--force",
+        folder / "photo.jpg",
+        "--chart",
+        folder / "chart.json",
+        "-o",
+        folder / "own.json",
+    ]
 
 
 def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
@@ -116,7 +127,7 @@ def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
 def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, capsys):
     """By itself the fit finds the height within 0.03 mm. The outlines are then taken for measured ones: they are the
     drops with which this brush paints, so the lag stays what it was."""
-    photo = ["calibrate", str(desk / "photo.jpg"), "--chart", str(desk / "chart.json")]
+    photo = ["calibrate", "--force", str(desk / "photo.jpg"), "--chart", str(desk / "chart.json")]
     assert main([*photo, "-o", str(desk / "surer.json"), "--height", "0.005"]) == 0
     told = re.search(r"(0\.\d+) \+- (0\.\d+) mm [a-z]", capsys.readouterr().out)
     assert float(told[1]) < 0.02 and float(told[2]) <= 0.01, told[0]
@@ -135,7 +146,15 @@ def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, caps
 
 
 def test_a_lag_by_outlines_needs_outlines_that_were_measured(desk, capsys):
-    words = ["calibrate", str(desk / "photo.jpg"), "--chart", str(desk / "chart.json"), "--brush", "round-6"]
+    words = [
+        "calibrate",
+        "--force",
+        str(desk / "photo.jpg"),
+        "--chart",
+        str(desk / "chart.json"),
+        "--brush",
+        "round-6",
+    ]
     status, _, told = in_json(capsys, *words, "-o", str(desk / "none.json"))
     assert status == 1 and told[-1][1].code == "footprints-assumed", told
     assert not (desk / "none.json").exists()
@@ -150,7 +169,7 @@ def test_marks_that_are_covered_or_elsewhere_are_named_and_left_out(tmp_path, ca
     photo, out = tmp_path / "photo.jpg", tmp_path / "own.json"
     photo.write_bytes(photo_of(moved, (disc, INK)))
     (tmp_path / "chart.json").write_text(write_chart(printed()))
-    words = ["calibrate", str(photo), "--chart", str(tmp_path / "chart.json"), "-o", str(out)]
+    words = ["calibrate", "--force", str(photo), "--chart", str(tmp_path / "chart.json"), "-o", str(out)]
     status, report, told = in_json(capsys, *words)
     assert status == 0
     named = [notice for _, notice in told if notice.code == "mark-astray"]

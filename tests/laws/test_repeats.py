@@ -111,13 +111,35 @@ def test_the_next_calibration_takes_the_spread(sheets, painted, tmp_path, capsys
     laws = []
     for k, flags in enumerate(((), ("--spread", str(out)))):
         made = str(tmp_path / f"brush-{k}.json")
-        words = ["calibrate", photos[0], "--plan", plan, "--prior", "round-6", "-o", made, "--quiet", *flags]
+        words = [
+            "calibrate",
+            "--force",
+            photos[0],
+            "--plan",
+            plan,
+            "--prior",
+            "round-6",
+            "-o",
+            made,
+            "--quiet",
+            *flags,
+        ]
         assert main(words) == 0, capsys.readouterr().err
         laws.append(json.loads((tmp_path / f"brush-{k}.json").read_text())["lag"]["coefficients"])
     assert laws[1] != laws[0], "the fit was told"
     damaged = json.loads(out.read_text()) | {"displacement_mm": -1}
     (tmp_path / "bad.json").write_text(json.dumps(damaged))
-    words = ["calibrate", photos[0], "--plan", plan, "--prior", "round-6", "-o", str(tmp_path / "no.json")]
+    words = [
+        "calibrate",
+        "--force",
+        photos[0],
+        "--plan",
+        plan,
+        "--prior",
+        "round-6",
+        "-o",
+        str(tmp_path / "no.json"),
+    ]
     status, _, told = in_json(capsys, *words, "--spread", tmp_path / "bad.json")
     assert status == 1 and is_told(told, "out-of-range"), told
 

@@ -539,7 +539,7 @@ def test_a_page_printed_at_another_size_is_read_by_its_bar():
 def test_wrong_usage(tmp_path, capsys):
     out = str(tmp_path / "out.json")
     for words, said in (
-        (["calibrate", "a.jpg", "-o", out], "--chart"),
+        (["calibrate", "--force", "a.jpg", "-o", out], "--chart"),
         (["calibrate", "a.json", "--chart", "c.json", "-o", out], "--chart"),
         (["calibrate", "a.json", "--bar", "150", "-o", out], "--bar"),
         (["calibrate", "a.json", "b.json", "-o", out], "brushsvg calibrate --help"),
@@ -561,7 +561,7 @@ def test_refusals_name_the_file(tmp_path, capsys):
     photo, file, out = tmp_path / "photo.png", tmp_path / "chart.json", tmp_path / "own.json"
     photo.write_bytes(cv2.imencode(".png", np.full((300, 300, 3), 200, np.uint8))[1].tobytes())
     file.write_text("{")
-    words = ["calibrate", str(photo), "--chart", str(file), "-o", str(out)]
+    words = ["calibrate", "--force", str(photo), "--chart", str(file), "-o", str(out)]
     status, _, ((about, told),) = in_json(capsys, *words)
     assert (status, about) == (1, str(file)) and agrees(told, "not-json"), told
     file.write_text(write_chart(a5()))

@@ -156,10 +156,10 @@ def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, ca
     page = str(tmp_path / "page.svg")
     assert main(["chart", plan, "--sheet", "a5", "--page", page, "--chart", chart, "--quiet"]) == 0
     assert main(["simulate-photo", plan, photo, "--quiet"]) == 0
-    status, _, told = in_json(capsys, "calibrate", photo, "--chart", chart, "-o", found)
+    status, _, told = in_json(capsys, "calibrate", "--force", photo, "--chart", chart, "-o", found)
     assert status == 1 and is_told(told, "photo-of-another-chart"), told
     assert all(flag in told[-1][1].advice for flag in ("--plan", "--prior", "--chart"))
-    assert main(["calibrate", photo, "--plan", plan, "--prior", "round-6", "-o", found, "--quiet"]) == 0
+    assert main(["calibrate", "--force", photo, "--plan", plan, "--prior", "round-6", "-o", found, "--quiet"]) == 0
     assert json.loads((tmp_path / "mine.json").read_text())["format"] == "brushsvg/brush"
 
 
@@ -237,11 +237,11 @@ def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
     assert main(["chart", plan, "--brush", "round-6", "--sheet", "a5", "--chart", chart]) == 0
     (tmp_path / "studio.toml").write_text(HEAD)
     assert main(["simulate-photo", chart, photo, "--studio", str(tmp_path / "studio.toml")]) == 0
-    assert main(["calibrate", photo, "--chart", chart, "-o", found]) == 0
+    assert main(["calibrate", "--force", photo, "--chart", chart, "-o", found]) == 0
     own, true, depths = find_brush(found), find_brush("round-6"), np.linspace(3, 10, 8)
     for law in ("lag", "half_width"):
         values, truth = (np.array([getattr(each, law)(d) for d in depths]) for each in (own, true))
         assert np.abs(values / truth - 1).max() < 0.05, (law, values / truth)
     capsys.readouterr()
-    status, _, told = in_json(capsys, "calibrate", photo, "--chart", plan, "-o", found)
+    status, _, told = in_json(capsys, "calibrate", "--force", photo, "--chart", plan, "-o", found)
     assert status == 1 and is_told([each for _, each in told], "format-unknown '--chart FILE'"), told

@@ -9,19 +9,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from arm_judge import judge_of
-from diagnostics import gives, in_json, is_told
+from diagnostics import agrees, gives, in_json, is_told
 from sampling import sample
+from test_arm import DESCRIBED, about, placed
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
 from brushsvg.cli import main
 from brushsvg.machine import preflight
 from brushsvg.machine.arm import joints, place
-from brushsvg.machine.arm.follow import flange_at, rates
+from brushsvg.machine.arm.follow import flange_at, follow, lowest_joint_mm, rates
 from brushsvg.machine.cell import robot_from_paper
 from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.frames import moved
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.program import unchecked_program
+from brushsvg.machine.setup_programs import over_sheet
 
 pytestmark = pytest.mark.arm
 
@@ -166,8 +169,61 @@ def test_place_tells_where_the_paper_would_do_and_draws_the_table(tmp_path, caps
     assert status == 1 and is_told(told, "arm-out-of-reach UR5e")
     assert picture.read_text().count('class="sheet"') == 2
     numbers = re.search(r"origin_mm = \[(.*?)\]", said).group(1).split(",")
-    moved = replace(cell.paper, origin_mm=tuple(map(float, numbers)))
-    near.write_text(write_cell(replace(cell, paper=moved)))
+    paper = replace(cell.paper, origin_mm=tuple(map(float, numbers)))
+    near.write_text(write_cell(replace(cell, paper=paper)))
     assert in_json(capsys, "cell", "place", near, drawing)[0] == 0
     status, _, told = in_json(capsys, "cell", "place", "linuxcnc-3axis")
     assert status == 1 and is_told(told, "arm-missing")
+
+
+def elbow_mm(name, joints_rad):
+    """(3,) joint 3 in the robot's frame, by the arm's own description."""
+    here = np.eye(4)
+    for (xyz, rpy, axis), angle in zip(DESCRIBED[name][0][:3], joints_rad, strict=False):
+        here = here @ placed(xyz, rpy) @ about(axis, angle)
+    return here[:3, 3]
+
+
+@pytest.mark.parametrize("name", ["ur10e", "ur5e", "ur3e", "irb120", "kr6-r900"])
+def test_the_posture_with_the_highest_elbow_is_suggested(name):
+    """That of ur10e had its elbow 221 mm below the paper."""
+    cell = find_cell(name)
+    made = over_sheet(BRUSH, cell, (200.0, 100.0))
+    solved = joints.joints_of(cell.arm)
+    found = follow(made, solved)
+    assert not found.problems
+    height = elbow_mm(name, found.start_rad)[2]
+    assert height > robot_from_paper(cell)[2, 3]
+    first = moved(made.robot_from_frame, next(made.sections()).moves[0].points_mm[:1])[0]
+    for start in solved.solutions(flange_at(cell, made.robot_from_frame, first)):
+        named = replace(cell.arm, posture_deg=tuple(np.degrees(start).tolist()))
+        other = follow(replace(made, cell=replace(cell, arm=named)), joints.joints_of(named))
+        if not other.problems:
+            assert elbow_mm(name, other.start_rad)[2] < height + 0.01
+
+
+def test_joints_below_the_table_are_refused_unless_the_cell_names_the_posture():
+    cell = find_cell("ur10e")
+    (x, y, z), first = cell.paper.origin_mm, robot_from_paper(cell)
+    below = [
+        angles
+        for angles in joints.joints_of(cell.arm).solutions(flange_at(cell, first, np.array([x, y, z + 40.0])))
+        if elbow_mm("ur10e", angles)[2] < min(0.0, z)
+    ]
+    assert below
+    bends = np.sign(below[0][2])
+    only = [(-360.0, 360.0)] * 6
+    only[2] = (0.0, 180.0) if bends > 0 else (-180.0, 0.0)
+    shoulder = np.degrees(below[0][0])
+    only[0] = (shoulder - 40, shoulder + 40)
+    arm = replace(cell.arm, limits_deg=tuple(only))
+    made = over_sheet(BRUSH, replace(cell, arm=arm), (200.0, 100.0))
+    (notice,) = follow(made, joints.joints_of(arm)).problems
+    assert agrees(notice, "joint-below-table mm")
+    named = replace(arm, posture_deg=tuple(np.degrees(below[0]).tolist()))
+    made = over_sheet(BRUSH, replace(cell, arm=named), (200.0, 100.0))
+    assert not follow(made, joints.joints_of(named)).problems
+    # paper far below the robot's base: what is lower than the base alone is in the air
+    there, low = joints.frames(arm, below[0]), first.copy()
+    low[2, 3] = -1000.0
+    assert lowest_joint_mm(there, first) < 0 < lowest_joint_mm(there, low)

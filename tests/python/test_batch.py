@@ -11,6 +11,7 @@ import threading
 import time
 from concurrent.futures import CancelledError, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -23,7 +24,10 @@ from test_conversion import LINE, PAGE
 import brushsvg
 from brushsvg.batch import executors, one, run
 from brushsvg.batch.items import words
+from brushsvg.batch.manifest import FORMAT, as_line
 from brushsvg.cli import main
+from brushsvg.machine.cell import MOST_POINTS, RoboDK
+from brushsvg.machine.cell_file import find_cell, write_cell
 from brushsvg.pictures.contact_sheet import (
     ACROSS,
     CARD_W,
@@ -67,9 +71,9 @@ def done_again(monkeypatch):
     names = []
     kept = run._kept
 
-    def noted(folder, item, key, done):
+    def noted(folder, item, *others):
         names.append(item.name)
-        return kept(folder, item, key, done)
+        return kept(folder, item, *others)
 
     monkeypatch.setattr(run, "_kept", noted)
     return names
@@ -136,11 +140,11 @@ def test_a_cluster_makes_the_same_and_outlives_a_worker(desk, monkeypatch):
 
 
 CHANGES = {
-    "nothing": (lambda: None, {}, []),
-    "a drawing": (lambda: Path("in/1.svg").write_text(drawing(9)), {}, ["1"]),
-    "a new one": (lambda: Path("in/3.svg").write_text(drawing(9)), {}, ["3"]),
-    "a program": (lambda: Path("out/programs/2.ngc").write_text("M2"), {}, ["2"]),
-    "a picture that went": (lambda: Path("out/pictures/0.png").unlink(), {}, ["0"]),
+    "nothing": (lambda: None, {}, ["below/wide"]),  # what was refused is always tried again
+    "a drawing": (lambda: Path("in/1.svg").write_text(drawing(9)), {}, ["1", "below/wide"]),
+    "a new one": (lambda: Path("in/3.svg").write_text(drawing(9)), {}, ["3", "below/wide"]),
+    "a program": (lambda: Path("out/programs/2.ngc").write_text("M2"), {}, ["2", "below/wide"]),
+    "a picture that went": (lambda: Path("out/pictures/0.png").unlink(), {}, ["0", "below/wide"]),
     "an option": (lambda: None, {"tolerance": 0.06}, ["0", "1", "2", "below/wide"]),
     "the brush": (lambda: None, {"brush": "rigid"}, ["0", "1", "2", "below/wide"]),
     "the cell": (lambda: None, {"cell": "grbl-3axis"}, ["0", "1", "2", "below/wide"]),
@@ -265,7 +269,7 @@ def test_another_batch_into_the_folder_leaves_what_is_known_of_the_first(desk, m
     assert [row["name"] for row in rows] == ["1", "2", "0", "wide"], "its own first"
     assert "0.svg" not in Path("out/table.csv").read_text()
     names = done_again(monkeypatch)
-    assert brushsvg.batch(first, "out", jobs=1, wide="refuse").resumed == 2 and names == []
+    assert brushsvg.batch(first, "out", jobs=1, wide="refuse").resumed == 1 and names == ["wide"]
     Path("other").mkdir()
     Path("other/1.svg").write_text(drawing(3))
     with refused("name-taken 1.svg --out"):
@@ -283,7 +287,7 @@ def test_equal_drawings_are_each_done_once(desk, monkeypatch):
         brushsvg.batch(["in"], "out", executor=executor)
         names, before = done_again(monkeypatch), contents()
         done = brushsvg.batch(["in"], "out", executor=executor)
-    assert names == [] and done.resumed == 5 and contents() == before
+    assert names == ["below/wide"] and done.resumed == 4 and contents() == before
     Path("words.txt").write_text("T\nT\nTT\n")
     with threads() as executor:
         for _ in range(2):
@@ -401,6 +405,82 @@ def test_a_missing_drawing_is_a_row_and_tried_again(desk, monkeypatch):
         names = done_again(monkeypatch)
         done = brushsvg.batch(["in/1.svg", "gone.svg", "odd.pdf"], "out", executor=executor)
     assert [row.code for row in done.rows] == ["", "", "drawing-format"] and "1" not in names
+
+
+def test_a_refused_drawing_is_tried_again_once_its_cause_is_gone(desk, monkeypatch):
+    """A worker without a package, or a mistake of ours that was fixed: the drawing itself did not change."""
+    with threads() as executor, monkeypatch.context() as broken:
+        broken.setattr(one.outputs, "overlap_picture", lambda *_: 1 / 0)
+        assert brushsvg.batch(["in/1.svg"], "out", executor=executor).refused
+    with threads() as executor:
+        assert not brushsvg.batch(["in/1.svg"], "out", executor=executor).refused
+    assert Path("out/programs/1.ngc").exists()
+
+
+@pytest.mark.parametrize("edited", ["post.py", "helper.py"])
+def test_an_edited_post_makes_all_programs_anew(desk, edited):
+    Path("helper.py").write_text("WORD = 'first'\n")
+    post = Path(__file__).with_name("robodk_post.py").read_text()
+    Path("post.py").write_text(f"import helper\n{post}")
+    cell = replace(find_cell("kr6-r900"), name="mine", language="robodk", robodk=RoboDK("post.py"), arm=None)
+    Path("mine.toml").write_text(write_cell(cell))
+    with threads() as executor:
+        assert brushsvg.batch(["in/1.svg"], "out", executor=executor, cell="mine.toml").resumed == 0
+        assert brushsvg.batch(["in/1.svg"], "out", executor=executor, cell="mine.toml").resumed == 1
+        Path(edited).write_text(Path(edited).read_text() + "# edited\n")
+        assert brushsvg.batch(["in/1.svg"], "out", executor=executor, cell="mine.toml").resumed == 0
+        assert brushsvg.batch(["in/1.svg"], "out", executor=executor, cell="mine.toml").resumed == 1
+
+
+@pytest.mark.parametrize("small", ["a/a.svg", "A/a.svg", "a/A.svg"])
+def test_a_program_in_several_files_does_not_replace_that_of_another_drawing(desk, monkeypatch, small):
+    """a.svg becomes programs/a/a.ls and those that it calls, a/a.svg programs/a/a.ls."""
+    Path("two", small).parent.mkdir(parents=True)
+    many = "".join(LINE.format(f"s{k}", 20 + 5 * k, 90, "#203060", 3) for k in range(3))
+    Path("two/a.svg").write_text(PAGE.format("", many))
+    Path("two", small).write_text(drawing(0))
+    monkeypatch.setitem(MOST_POINTS, "fanuc", 40)
+    with threads() as executor:
+        done = brushsvg.batch(["two"], "out", executor=executor, cell="lrmate200id", width=3)
+        (row,) = done.refused
+        assert (row.name, row.code) == ("a", "name-taken")
+        assert contents().keys() >= {f"programs/{small[:-4]}.ls"}
+        alone = brushsvg.convert(Path("two", small), cell="lrmate200id", width=3)
+        assert Path("out/programs", f"{small[:-4]}.ls").read_bytes() == alone.text.encode()
+        assert not brushsvg.batch(
+            ["two/a.svg"], "own", executor=executor, cell="lrmate200id", width=3
+        ).refused
+        again = brushsvg.batch([("a/a", drawing(0))], "own", executor=executor, cell="lrmate200id", width=3)
+    assert [each.code for each in again.refused] == ["name-taken"]
+
+
+def test_a_program_is_not_written_where_another_drawing_needs_a_folder(desk):
+    Path("in/1.ngc").mkdir()
+    Path("in/1.ngc/x.svg").write_text(drawing(4))
+    with threads() as executor:
+        done = brushsvg.batch(["in/1.svg", ("1.ngc/x", drawing(4))], "out", executor=executor)
+    assert [(row.name, row.code) for row in done.rows] == [("1", "name-taken"), ("1.ngc/x", "")]
+
+
+def test_names_that_macos_holds_for_one_are_refused(desk):
+    with refused("name-taken"):
+        brushsvg.batch([("\u00e9", drawing(0)), ("e\u0301", drawing(1))], "out", jobs=1)
+
+
+@pytest.mark.parametrize(
+    "way", ["../victim.txt", "below/../../victim.txt", "{}/victim.txt", "link/victim.txt"]
+)
+def test_a_manifest_of_others_names_no_file_outside_of_its_folder(desk, way):
+    """What outdated rows name is deleted: a folder from elsewhere could delete anything."""
+    Path("victim.txt").write_text("mine")
+    Path("out").mkdir()
+    Path("out/link").symlink_to(desk)
+    files = {way.format(desk): one.sha256(b"mine")}
+    row = run.Row("wide", "in/below/wide.svg", "", None, "not-xml", files=files)
+    Path("out/manifest.jsonl").write_text(json.dumps(FORMAT) + "\n" + as_line(row))
+    with refused("path-outside wide"), threads() as executor:
+        brushsvg.batch(["in/below"], "out", executor=executor)
+    assert Path("victim.txt").read_text() == "mine"
 
 
 def test_what_is_a_mistake_of_ours_is_a_row_too(desk, monkeypatch):

@@ -214,6 +214,7 @@ def _drop(*keys):
             "footprint-invalid 64 65",
         ),
         (_set("half_width", "coefficients", to=[4.2, -0.42]), "half_width", "width-falls"),
+        (_set("kind", to="flat"), "kind", "choice-unknown flat round liner pen"),
         (_set("paint", to={}), "paint.narrows_per_m", "key-missing"),
         (_set("paint", to={"narrows_per_m": 30}), "paint.narrows_per_m", "out-of-range 0 20"),
         (_set("paint", to={"narrows_per_m": 0.3, "lasts_mm": 0}), "paint.lasts_mm", "out-of-range 1 1e6"),
@@ -377,3 +378,35 @@ def test_a_file_that_lies_here_is_named_where_its_ending_was_left_out(tmp_path, 
     with refused("brush-unknown") as caught:
         find_brush("other")
     assert caught.value.advice == ""
+
+
+@pytest.mark.parametrize("kind", ["round", "liner", "pen", "", "flat", "Round"])
+def test_a_brush_of_a_kind_that_is_not_modelled_is_not_simulated(kind):
+    brush = find_brush("round-6")
+    brush.kind = kind
+    plan = _core.Plan(passes=[_core.Pass("a", np.array([[0, 0, 0], [20, 0, -4], [60, 0, -4.0]]))])
+    if kind in ("flat", "Round"):
+        for use in (lambda: _core.simulate(plan, brush), lambda: _core.check(brush)):
+            with refused(f"choice-unknown {kind} round liner pen", "kind"):
+                use()
+    else:
+        assert _core.simulate(plan, brush).passes[0].pose[-1] == 2
+
+
+@pytest.mark.parametrize("law", [*LAWS, "lever_to_widest"])
+def test_a_law_of_a_brush_refuses_depths_that_the_brush_cannot_have(law):
+    brush = find_brush("round-6")
+    for depth in (50, -1, 10.001, math.nan):
+        with refused("depth-out-of-range 10") as caught:
+            getattr(brush, law)(depth)
+        assert caught.value.range == (0.0, 10.0)
+    value = getattr(brush, law)
+    assert value(10 + 1e-9) == pytest.approx(value(10)) and value(0.0) == value(-1e-9)
+    if law != "lever_to_widest":
+        with refused("depth-out-of-range 50"):
+            value([1.0, 50.0])
+        assert value.extrapolated(50) > 10 and value.depth_range_mm == (0.0, 10.0)
+        brush.depth_range_mm = (0.0, 60.0)  # the law that is asked is that of the brush as it is
+        assert getattr(brush, law)(50) == value.extrapolated(50)
+        alone = brushsvg.Profile(value.coefficients)
+        assert alone.depth_range_mm is None and alone(50) == pytest.approx(alone.extrapolated(50))

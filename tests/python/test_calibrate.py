@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +15,13 @@ from brushsvg import _core, find_brush
 from brushsvg.brush.confidence import law_band
 from brushsvg.calibration import plausibility
 from brushsvg.calibration.from_measurements import calibrate
+from brushsvg.calibration.machine_found import PARTS
 from brushsvg.calibration.measurements import Row, read_measurements
 from brushsvg.cli import main
 from brushsvg.errors import Error
+from brushsvg.machine.cell import Machine
+from brushsvg.machine.cell_file import cell_names, find_cell, parse_cell, write_cell
+from brushsvg.pipeline.machine_parts import undoable_parts
 
 ROOT = Path(__file__).parents[2]
 TABLE = "kind,depth_mm,value_mm\n" + "".join(
@@ -588,12 +593,62 @@ def test_quantiles_are_scipys(freedom):
     )
 
 
+@pytest.mark.parametrize(
+    ("machine", "code"),
+    [
+        ("lean", "wrong-type"),
+        (("leam",), "choice-unknown"),
+        (("lean", 3), "choice-unknown"),
+        (3, "wrong-type"),
+        (None, "wrong-type"),
+    ],
+)
+def test_parts_of_a_machine_that_there_are_not_are_refused_with_those_that_there_are(machine, code):
+    with refused(f"{code} lean axes tilt backlash field"):
+        brushsvg.calibrate("marks.json", machine=machine)
+
+
 def test_measured_numbers_say_nothing_of_a_machine(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out = tmp_path / "own.json"
     status, _, ((_, told),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--machine", "lean")
     assert status == 1 and agrees(told, "options-contradict --machine")
     assert not out.exists()
+
+
+@pytest.mark.parametrize("name", cell_names())
+def test_every_cell_takes_the_table_of_what_is_looked_for_with_it(name):
+    """16 of 21 cells refused the table that --machine printed for them."""
+    cell = find_cell(name)
+    parts, told = undoable_parts(tuple(PARTS), cell)
+    values = {
+        "lean": {"lean_mm_per_mm": (-0.03, 0.04)},
+        "axes": {"scale": (1.01, 0.99), "skew": 0.002},
+        "tilt": {"height_mm": -0.012, "tilt_mm_per_mm": (0.001, -0.0008)},
+        "backlash": {"backlash_mm": (0.4, 0.0)},
+        "field": {
+            "field_mm": ((0.6, -0.2, 0.1), (-0.3, 0.4, 0.5)),
+            "field_middle_mm": (105.0, 148.5),
+            "field_reach_mm": (90.0, 130.0),
+        },
+    }
+    machine = Machine(**{key: value for part in parts for key, value in values[part].items()})
+    assert parse_cell(write_cell(replace(cell, machine=machine))).machine == machine
+    rest = [part for part in PARTS if part not in parts]
+    for part in rest:
+        with refused("cell-machine"):
+            parse_cell(write_cell(replace(cell, machine=Machine(**values[part]))))
+    assert len(told) == bool(rest)
+    assert all(agrees(each, f"machine-not-undone {name} {' '.join(rest)}") for each in told)
+
+
+def test_what_a_machine_cannot_undo_is_reported_once_and_not_looked_for(tmp_path, capsys):
+    (tmp_path / "m.csv").write_text(TABLE)
+    words = ("calibrate", tmp_path / "m.csv", "-o", tmp_path / "own.json", "--cell", "grbl-servo")
+    status, _, told = in_json(capsys, *words, "--machine", "lean,tilt")
+    assert status == 0 and (tmp_path / "own.json").exists()
+    assert [each.code for _, each in told].count("machine-not-undone") == 1
+    assert in_json(capsys, *words)[0] == 2, "--cell alone says nothing"
 
 
 def test_measured_numbers_say_nothing_of_paint(tmp_path, capsys):

@@ -744,7 +744,7 @@ CHANGED = {
         (edited(r"(?m)^G4 P0\.150\n", "", 0), 'program-changed "\'G4"'),
         (edited(r"(?m)^(M3 .*\n)((?:.*\n)*?)(\(stroke 2.*\n)", r"\2\1\3G4 P0.017\n"), "program-changed"),
         (edited(r"S800", "S750", 0), "travel-too-low 5"),
-        (edited(r"S800", "S950", 0), "servo-out-of-range S950 200 800"),
+        (edited(r"S800", "S1050", 0), "servo-out-of-range S1050 200 1000"),
         (edited(r"(?m)^(G1 .* S)48\d$", r"\g<1>220"), "speed-out-of-range"),
         (edited(r"(?m)^(G1 .* S)4(\d\d)$", r"\g<1>5\2", 0), "path-elsewhere"),
         (edited(r"(?m)^G1 F3000.0\n", ""), "line-incomplete"),

@@ -82,6 +82,50 @@ def test_a_circle_about_another_centre_or_the_other_way_round_is_another_path(aw
     assert notice.code == "path-elsewhere" and re.search(r"\d mm", notice.sentence)
 
 
+@pytest.mark.parametrize("decimals", [3, 4])
+@pytest.mark.parametrize(("chord_mm", "rise_mm"), [(61.0, 0.58), (42.0, 0.05), (5.0, 0.02), (60.0, 20.0)])
+@pytest.mark.parametrize("inner", [[3], [2, 4], [1, 2, 3, 4, 5]])
+def test_a_flat_circle_read_from_rounded_places_is_the_same_path(chord_mm, rise_mm, inner, decimals):
+    """A robot is given three places of a circle. Rounded, those of a flat one move its centre by a millimetre, and its
+    way by no more than themselves."""
+    random = np.random.default_rng(1)
+    radius = (chord_mm**2 / 4 + rise_mm**2) / (2 * rise_mm)
+    half = np.arcsin(chord_mm / 2 / radius)
+    for _ in range(20):
+        middle = random.uniform(0, 2 * np.pi)
+        angles = middle + np.linspace(half, -half, 7)
+        outwards = np.array([np.cos(middle), np.sin(middle), 0.0])
+        centre = random.uniform(0, 100, 2) - radius * outwards[:2]
+        points = np.column_stack(
+            [centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]), [-2] * 7]
+        )
+        meant = turned(points[[0, 0, *inner, 6, 6]], centre, -1)
+        read = np.round(points[[0, 3, 6]], decimals)
+        again = turned(read[[0, 0, 1, 2, 2]], centre_of(read[:, :2]), -1)
+        assert strayed(again, meant) == []
+        lower = np.round(points[[0, 3, 6]] - [[0], [0.04], [0]] * outwards, decimals)
+        other = turned(lower[[0, 0, 1, 2, 2]], centre_of(lower[:, :2]), -1 if rise_mm > 0.04 else 1)
+        assert [notice.code for notice in strayed(other, meant)] == ["path-elsewhere"]
+
+
+def centre_of(places):
+    """The centre of the circle through three places."""
+    a, b, c = places
+    return np.linalg.solve(2 * np.array([b - a, c - a]), [b @ b - a @ a, c @ c - a @ a])
+
+
+@pytest.mark.parametrize("count", [2, 4, 8, 16])
+def test_a_flat_circle_run_along_its_chords_is_the_same_path_where_they_keep_to_it(count):
+    def on_circle(angles):
+        return np.column_stack([600 * np.sin(angles), 600 * np.cos(angles) - 600, np.full(len(angles), -2.0)])
+
+    few, many = (on_circle(np.linspace(-0.04, 0.04, n)) for n in (3, count + 1))
+    meant = turned(few[[0, 0, 1, 2, 2]], (0, -600), -1)
+    chords = _core.Pass("turn", many[[0, *range(len(many)), -1]], 20.0)
+    off_mm = 600 * (1 - np.cos(0.04 / count))
+    assert bool(strayed(chords, meant)) == (off_mm > 0.02)
+
+
 STEP_MM = 0.05
 
 

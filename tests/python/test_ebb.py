@@ -149,7 +149,7 @@ def test_what_is_written_is_allowed(desk, capsys):
         (r"SR,0,1\n", "", "line-unread"),
         (r"EM,1,1\n", "", "mode-missing"),
         (r"EM,1,1", "EM,2,2", "line-unread"),
-        (r"S2,21200,4,0,0", "S2,25000,4,0,0", "servo-out-of-range 10800 22000"),
+        (r"S2,21200,4,0,0", "S2,25000,4,0,0", "servo-out-of-range 10800 23600"),
         (r"S2,\d+,4,0,(?=[1-9])", "S2,21200,5,0,", "line-unread"),
         (r"S2,21200,4,0,\d+\n(?=SM,150,0,0\n# stroke 2)", "", "program-changed"),
         (rf"# {HOME}\n[^#]*", "", "line-unread"),

@@ -32,6 +32,15 @@ def test_permissions_are_the_usual_ones_or_kept(tmp_path):
     assert stat.S_IMODE((tmp_path / "mine").stat().st_mode) == 0o640
 
 
+def test_writing_never_changes_the_umask(tmp_path, monkeypatch):
+    """Python can read the umask only by setting it: other threads made files for everybody meanwhile."""
+    monkeypatch.setattr(os, "umask", lambda mask: pytest.fail("the umask of the whole process was set"))
+    (tmp_path / "mine").write_text("")
+    (tmp_path / "mine").chmod(0o666)
+    write_files({tmp_path / "mine": "2", tmp_path / "new": ""})
+    assert stat.S_IMODE((tmp_path / "mine").stat().st_mode) == 0o666
+
+
 def test_a_link_stays_a_link(tmp_path):
     (tmp_path / "target").write_text("old")
     (tmp_path / "link").symlink_to("target")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from diagnostics import in_json, is_told
@@ -9,10 +11,12 @@ from programs import SERVOS
 from sampling import sample
 
 from brushsvg.brush.library import find_brush
+from brushsvg.machine.cell import robot_from_paper
 from brushsvg.machine.cell_file import cell_names, find_cell
 from brushsvg.machine.motion import Wait
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.setup_programs import first_run
+from brushsvg.machine.writer import text_of
 
 pytestmark = pytest.mark.arm
 
@@ -47,6 +51,29 @@ def test_it_does_what_a_careful_person_does_in_this_order(name):
     for before, move in zip(all_moves(sections), all_moves(sections)[1:], strict=False):
         if min(before.points_mm[-1, 2], move.points_mm[:, 2].min()) < 1.5:  # the paper may lie 1 mm higher
             assert move.speed_mm_s <= max(cell.speeds.press_mm_s, 15.0)
+
+
+@pytest.mark.parametrize("name", WAITING)
+def test_it_rises_to_its_own_height_and_is_never_lowered_fast(name):
+    """It rose to the safe height, and went on to the height of its air run on a slant, from wherever the tool was."""
+    cell = find_cell(name)
+    made = first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1)
+    moves = all_moves(made.sections())
+    start = moves[0].points_mm[0]
+    assert made.rise_mm == pytest.approx(start[2]) and start[2] > cell.heights.safe_mm
+    assert made.rise_in_robot_mm == pytest.approx(robot_from_paper(cell)[2, 3] + start[2])
+    post, here = POSTS[cell.language], [made.rise_mm + 100.0]  # the tool may stand higher
+    for move in moves:
+        down_mm = max(a - b for a, b in pairwise([*here[-1:], *move.points_mm[:, 2]]))
+        assert down_mm <= 0 or move.speed_mm_s <= cell.speeds.approach_mm_s
+        here.append(float(move.points_mm[-1, 2]))
+    if ".ngc" in post.extensions:
+        lines = [line for line in "".join(text_of(post, made)).splitlines() if line[:3] in ("G0 ", "G1 ")]
+        lines = [line for line in lines if not line.startswith("G1 F")]
+        assert float(lines[0].removeprefix("G1 Z")) == made.rise_mm
+        heights = [float(line.partition("Z")[2]) for line in lines]
+        fast = [line.startswith("G0") for line in lines]
+        assert not any(b < a and quick for a, b, quick in zip(heights, heights[1:], fast[1:], strict=False))
 
 
 @pytest.mark.parametrize(

@@ -213,6 +213,8 @@ def test_a_mark_that_lies_over_itself_all_over_is_refused_by_counted_work():
 
 
 STARS = """
+import ctypes
+from pathlib import Path
 import numpy as np
 from brushsvg import Error, _core
 poses = np.array([[0.0, 0, 0], [12, 0, -3], [30, 0, -3], [30, 25, -3]])
@@ -223,18 +225,26 @@ for points in (12, 16, 20, 24, 28):
         _core.fit_marks([_core.PaintedMark("one", poses, [star])], None, _core.MarkOptions())
     except Error as error:
         print(error.code)
+maps = Path("/proc/self/maps")
+lines = maps.read_text().splitlines() if maps.exists() else []
+for path in {line.split()[-1] for line in lines if "/libglog" in line}:
+    print("level", ctypes.c_int.in_dll(ctypes.CDLL(path), "_ZN3fLI17FLAGS_minloglevelE").value)
 """
 
 
-def test_a_search_that_leads_nowhere_is_told_by_its_error_alone():
-    """Of marks that no brush paints; Ceres logs what it could not solve."""
+def test_a_search_that_leads_nowhere_is_reported_by_its_error_alone():
+    """Of marks that no brush paints. Whether Ceres logs a warning there depends on rounding: its log level does not."""
 
-    def told(**surroundings: str):
-        surroundings = {k: v for k, v in os.environ.items() if k != "GLOG_minloglevel"} | surroundings
+    def run(**environment: str):
+        environment = {k: v for k, v in os.environ.items() if k != "GLOG_minloglevel"} | environment
         return subprocess.run(
-            [sys.executable, "-c", STARS], capture_output=True, text=True, check=True, env=surroundings
+            [sys.executable, "-c", STARS], capture_output=True, text=True, check=True, env=environment
         )
 
-    done = told()
-    assert (done.stdout.split(), done.stderr) == (["fit-failed"] * 5, "")
-    assert "Linear solver failure" in told(GLOG_minloglevel="0").stderr, "who asks for them reads them"
+    done = run()
+    printed = done.stdout.splitlines()
+    assert (printed[:5], done.stderr) == (["fit-failed"] * 5, "")
+    if len(printed) == 5:
+        pytest.skip("Ceres does not log by glog here")
+    assert printed[5:] == ["level 2"], "errors only"
+    assert run(GLOG_minloglevel="0").stdout.splitlines()[5:] == ["level 0"], "users can ask for all messages"

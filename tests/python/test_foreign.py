@@ -96,11 +96,31 @@ def test_a_servos_pen_is_down_between_m3_and_m5():
         ("X2.5", "G4 P1 X2.5", "line-unread 13"),
         ("J0.5", "J0.5 R0.5", "line-unread 8"),
         ("J0.5", "J0.5 P2", "line-unread 8"),
+        ("I0 J0.5", "I99999999999999999999 J0.5", "line-unread 8"),  # its radius divided by zero
+        ("I0 J0.5", "R99999999999999999999", "line-unread 8"),
     ],
 )
 def test_what_is_not_known_is_refused(old, new, told):
     with refused(told):
         ways(INCHES.replace(old, new, 1))
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("G1 Z-1 F300\nG1 X30 Y12 F1200\nG1 X30 Y32\nG0 Z5\nG1 Y10", {"line3": [[30, 12], [30, 32]]}),
+        ("G21\nM3 S90\nG1 X10 Y10 F3000\nM3 S50\nG1 X60 Y10\nM5\nG0 X0 Y0", {"line5": [[10, 10], [60, 10]]}),
+        (  # homed with the pen down: the next line begins where nobody knows, and not at the end of the one before
+            "G21\nG0 X0 Y0\nM3 S50\nG1 X9 Y9 F900\nG28 X0 Y0\nG1 X50 Y20\nG1 X60\nM5",
+            {"line4": [[0, 0], [9, 9]], "line7": [[50, 20], [60, 20]]},
+        ),
+    ],
+)
+def test_a_line_begins_at_the_first_place_that_is_known(text, lines):
+    """A pen that is down before any place is named ended in an IndexError."""
+    design = read_gcode(text.encode(), ReadOptions(sheet_mm=(100, 100)))
+    found = {each.id: each.subpaths[0].cubics for each in design.elements}
+    assert {name: [cubics[0, 0].tolist(), cubics[-1, 3].tolist()] for name, cubics in found.items()} == lines
 
 
 def test_where_nothing_tells_when_the_pen_is_down_it_is_refused():

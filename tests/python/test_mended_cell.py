@@ -5,17 +5,19 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from diagnostics import agrees, are_told
 
 core = pytest.importorskip("brushsvg._core")
 
 from brushsvg import find_brush  # noqa: E402
 from brushsvg.machine.cell import Machine, Paper, axes_along_paper  # noqa: E402
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell  # noqa: E402
+from brushsvg.machine.cell_file import cell_names, find_cell, parse_cell, write_cell  # noqa: E402
 from brushsvg.machine.distortion import told_mm, true_mm  # noqa: E402
 from brushsvg.painted.fault_model import BRUSH, MACHINE, PAPER, FaultModel  # noqa: E402
 from brushsvg.painted.mended_cell import as_table, mended  # noqa: E402
 from brushsvg.painted.next_time import next_corrections  # noqa: E402
 from brushsvg.painted.placing import Placed  # noqa: E402
+from brushsvg.pipeline.comparing import _not_undone, _undoable  # noqa: E402
 
 MIDDLE = np.array([70.0, 40.0])
 TRUE = Machine((0.1, -0.05), (1.01, 0.992), 0.004, -0.3, (0.006, -0.008))
@@ -91,6 +93,33 @@ def test_backlash_goes_into_the_cell_on_top_of_what_it_undid(along, wanted):
     before = replace(UNDONE, backlash_mm=(0.1, 0.2))
     assert mended(found(TRUE), MIDDLE, before, along).backlash_mm == pytest.approx(wanted)
     assert mended(found(TRUE, half=10.0), MIDDLE, before, along) is None
+
+
+@pytest.mark.parametrize("name", cell_names())
+def test_every_cell_takes_what_it_can_undo_and_the_rest_is_reported(name):
+    """A servo refused lean, and the whole comparison was lost."""
+    cell = find_cell(name)
+    along = axes_along_paper(cell)
+    machine, left_out = _undoable(found(TRUE), MIDDLE, cell, along)
+    assert parse_cell(write_cell(replace(cell, machine=machine))).machine.scale == TRUE.scale
+    leans, has_backlash = not (cell.servo or cell.pen), along is not None
+    assert machine.lean_mm_per_mm == (TRUE.lean_mm_per_mm if leans else (0.0, 0.0))
+    assert bool(any(machine.backlash_mm)) == has_backlash
+    if not cell.pen:
+        middle_mm = machine.height_mm + np.dot(machine.tilt_mm_per_mm, MIDDLE)
+        assert middle_mm == pytest.approx(TRUE.height_mm + np.dot(TRUE.tilt_mm_per_mm, MIDDLE), abs=1e-3)
+    notices = _not_undone(found(TRUE), cell, left_out)
+    assert len(notices) == (not (leans and has_backlash))
+    for notice in notices:
+        assert agrees(notice, "machine-not-undone")
+        assert ("lean" in notice.sentence, "backlash" in notice.sentence) == (not leans, not has_backlash)
+
+
+def test_a_number_that_no_cell_may_have_is_left_out():
+    far = replace(TRUE, scale=(1.2, 1.0))
+    machine, left_out = _undoable(found(far), MIDDLE, find_cell("linuxcnc-3axis"), (0, 1))
+    assert machine.scale == (1.0, 1.0) and machine.lean_mm_per_mm == TRUE.lean_mm_per_mm
+    assert are_told(_not_undone(found(far), find_cell("linuxcnc-3axis"), left_out), "machine-not-undone 1.2")
 
 
 @pytest.mark.parametrize("turned_deg, along", [(2.0, (0, 1)), (90.0, (1, 0)), (183.0, (0, 1)), (30.0, None)])

@@ -70,6 +70,38 @@ def test_passes_cover_the_shape_and_stay_in_it(brush):
         assert _core.overlap(paint, shape) > 0.97, d
 
 
+def test_a_line_thinner_than_the_brush_is_painted_at_its_least_width():
+    """The whole job was refused for it."""
+    liner = find_brush("liner-1")  # 1 to 2 mm wide
+    for width, is_told in ((0.9, False), (0.4, True)):
+        made = of("M10 20H60", f'fill="none" stroke="red" stroke-width="{width}"')
+        (painted_line,), wanted, notices = within_reach(made, liner)
+        assert wanted == made
+        assert [half for _, half in painted_line.half_width] == [0.5]
+        assert [
+            agrees(notice, f"width-out-of-reach {width} '[1, 2] mm' nearest", "p") for notice in notices
+        ] == ([True] * is_told)
+        with refused(f"width-out-of-reach {width} '[1, 2] mm'", "p"):
+            within_reach(made, liner, "refuse")
+    rigid = find_brush("rigid")
+    assert within_reach(made, rigid, "passes")[0] == made  # its one width is not asked
+
+
+def test_a_sliver_that_is_less_than_half_of_the_smallest_mark_is_left_out():
+    liner = find_brush("liner-1")  # its smallest mark is 0.79 mm2
+    sliver, dot = "M60 10h0.6v0.6h-0.6z", "M60 10h0.7v0.7h-0.7z"
+    made = of(f"M10 20H50V21.5H10Z{sliver}")
+    passes, wanted, (notice,) = within_reach(made, liner)
+    assert len(made) == 2 and len(passes) == len(wanted) == 1
+    assert agrees(notice, "width-out-of-reach 0.36 0.79 liner-1", next(s.id for s in made if s != wanted[0]))
+    assert len(within_reach(of(f"M10 20H50V21.5H10Z{dot}"), liner)[0]) == 2
+    assert len(within_reach(made, find_brush("round-6"))[0]) == 2  # it paints down to no width
+    with refused("nothing-to-paint 0.36", "p"):
+        within_reach(of(sliver), liner)
+    with refused("width-out-of-reach"):
+        within_reach(made, liner, "refuse")
+
+
 def test_refusal_names_stroke_width_and_range(brush):
     with refused("width-out-of-reach 16 '[0, 8.4] mm' round-6", "p") as caught:
         within_reach(of(WIDE), brush, "refuse")

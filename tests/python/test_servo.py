@@ -12,9 +12,10 @@ from diagnostics import refused
 from programs import RUNNABLE, call, program
 from test_gcode import TWO, text_of
 
+from brushsvg import _core
 from brushsvg.brush.library import find_brush
 from brushsvg.machine.cell import Reload, Servo, Station
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.cell_file import cell_names, find_cell, parse_cell, write_cell
 from brushsvg.machine.posts.gcode_servo import grbl_servo, value_at
 from brushsvg.machine.program import Job
 from brushsvg.machine.setup_programs import border
@@ -123,7 +124,7 @@ def test_a_clearance_that_a_value_of_the_servo_does_not_know_is_refused():
 @pytest.mark.parametrize(
     ("z_offset", "height"),
     [
-        (2.0, "7.0"),  # the safe height
+        (6.0, "11.0"),  # the safe height
         (-9.0, "-11.0"),  # the deepest pose
     ],
 )
@@ -143,7 +144,7 @@ def test_paper_so_high_or_low_that_heights_leave_the_table_is_refused(z_offset, 
     )
     brush = SimpleNamespace(name="b", max_speed_mm_s=25.0)
     assert list(program(plan, brush, CELL, (), Job(-8.0)).sections())
-    with refused(f"servo-out-of-range {height} '[-10, 5] mm'"):
+    with refused(f"servo-out-of-range {height} '[-10, 10] mm'"):
         program(plan, brush, CELL, (), Job(z_offset))
     with refused("servo-out-of-range grbl-servo"):
         border((10, 20, 60, 45), brush, CELL, plan.sheet_mm, z_offset * 10)
@@ -158,7 +159,7 @@ def test_only_what_grbl_knows():
 
 
 def test_values_follow_the_table():
-    assert [value_at(CELL.servo, height) for height in (-10, -5, 0, 5, 9)] == [200, 400, 600, 800, 800]
+    assert [value_at(CELL.servo, height) for height in (-10, -5, 0, 5, 12)] == [200, 400, 600, 800, 1000]
 
 
 def test_the_output_is_never_switched_off():
@@ -220,3 +221,13 @@ def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():
             feeds.setdefault(13 < float(words["X"]) <= 20, []).append(feed)
     assert set(feeds[True]) == {20.0}
     assert max(feeds[False][2:-1]) <= 25 / np.hypot(1, 1.2), "the first is travel"
+
+
+@pytest.mark.parametrize("name", [name for name in cell_names() if find_cell(name).servo])
+def test_shipped_tables_hold_the_safe_height_over_thicker_paper(name):
+    """The table of grbl-servo ended at the safe height: each positive --z-offset was refused."""
+    cell = find_cell(name)
+    poses = np.array([(10, 10, 0), (12, 10, -2.0), (40, 10, -2.0), (42, 10, 0)])
+    plan = _core.Plan("round-6", "", (100, 60), [_core.Pass("s", poses, 9.0)])
+    for z_offset in (-1.0, 0.3, 2.0):
+        assert list(program(plan, find_brush("round-6"), cell, (), Job(z_offset)).sections())

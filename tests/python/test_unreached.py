@@ -1,9 +1,13 @@
 """What no stroke reaches is named, shown, and the reason that the report gives."""
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 from diagnostics import agrees, is_told
 
+import brushsvg
 from brushsvg import _core, find_brush
 from brushsvg.evaluation import report
 from brushsvg.pipeline import outputs
@@ -46,6 +50,26 @@ def test_a_bar_without_a_stroke_is_named_with_its_place_and_share(tmp_path):
     (notice,) = notices(found)
     assert agrees(notice, "unreached 2", "p")
     assert unreached(drawn, drawn, find_brush("round-6")) == []
+
+
+@pytest.mark.parametrize("measured_mm", [(0.0, 10.0), None])
+def test_a_brush_that_begins_with_no_width_is_looked_at_as_any(tmp_path, measured_mm):
+    """Photographed brushes are measured from depth 0 on: each filled shape ended in a ZeroDivisionError."""
+    file = brush_file(tmp_path, lambda lag: lag.update(calibrated_mm=measured_mm) or lag)
+    drawn, stem = bar_less(tmp_path)
+    found = unreached(drawn, [stem], find_brush("round-6"))
+    same = unreached(drawn, [stem], find_brush(file))
+    assert [piece.at_mm for piece in same] == [piece.at_mm for piece in found]
+    assert prepared(tmp_path, T, brush=find_brush(file)).unreached == ()
+
+
+def brush_file(tmp_path, changed) -> str:
+    """A file of round-6 with another lag."""
+    shipped = json.loads((Path(brushsvg.__file__).parent / "data/brushes/round-6.json").read_text())
+    lag = {key: value for key, value in changed(shipped["lag"]).items() if value is not None}
+    file = tmp_path / "other.json"
+    file.write_text(json.dumps({**shipped, "lag": lag}))
+    return str(file)
 
 
 def test_blunt_corners_are_not_named(tmp_path):

@@ -35,6 +35,7 @@ constexpr double kLeastPositiveMm = 0.01;  // of a law that must stay above 0: a
 struct Problem {
     VectorXd depth, value;
     LawShape shape;
+    VectorXd worth;  ///< 1 / scatter of each value, root mean square 1
     Index terms() const { return shape.degree + (shape.through_zero ? 0 : 1); }
 };
 
@@ -243,20 +244,20 @@ VectorXd solve_floored(const Problem& problem) {
             const Side side = way[place[std::size_t(i)]];
             kept[i] = side == Side::on ? kHeld : side == Side::below ? 0.0 : 1.0;
             wanted[i] = side == Side::on ? shape.floor : problem.value[i];
-            const double off = std::abs(problem.value[i] - shape.floor);
+            const double off = problem.worth[i] * std::abs(problem.value[i] - shape.floor);
             if (side != Side::above) floored += shape.norm == Norm::squares ? off * off : off;
         }
         // The best law lies one of these ways and costs at least that: with all but a few ways it is already too much.
         if (floored > least) continue;
         const auto solve_kept = [&](const VectorXd& weight) -> VectorXd {
-            const VectorXd both = weight.cwiseProduct(kept);
+            const VectorXd both = weight.cwiseProduct(kept).cwiseProduct(problem.worth);
             return (both.asDiagonal() * a).colPivHouseholderQr().solve(both.cwiseProduct(wanted));
         };
         const auto left = [&](const VectorXd& free) -> VectorXd {
-            return (kept.array() == 1.0).select(wanted - a * free, 0.0);
+            return (kept.array() == 1.0).select(problem.worth.cwiseProduct(wanted - a * free), 0.0);
         };
         const VectorXd free = in_norm(shape.norm, a.rows(), solve_kept, left);
-        const double cost = size(residuals(problem, free), shape.norm);
+        const double cost = size(problem.worth.cwiseProduct(residuals(problem, free)), shape.norm);
         if (cost < least) {
             least = cost;
             best = free;
@@ -285,7 +286,12 @@ double variance(const VectorXd& residual, Index terms, int freedom, Norm norm) {
 }
 
 void refuse_what_cannot_be_fitted(const std::vector<double>& depth, const std::vector<double>& value,
-                                  const LawShape& shape) {
+                                  const LawShape& shape, const std::vector<double>& scatter) {
+    if (!scatter.empty() && scatter.size() != value.size())
+        throw Error("sizes-differ", "there are " + std::to_string(value.size()) + " values and " +
+                                        std::to_string(scatter.size()) + " scatters; each value needs its scatter");
+    for (std::size_t i = 0; i < scatter.size(); ++i)
+        require_within(scatter[i], {1.0 / kGreatest, kGreatest}, "the scatter of value " + std::to_string(i + 1));
     if (depth.size() != value.size())
         throw Error("sizes-differ", "there are " + std::to_string(depth.size()) + " depths and " +
                                         std::to_string(value.size()) + " values; each value needs its depth");
@@ -323,16 +329,20 @@ void refuse_what_cannot_be_fitted(const std::vector<double>& depth, const std::v
 
 }  // namespace
 
-LawFit fit_law(const std::vector<double>& depth_mm, const std::vector<double>& value_mm, const LawShape& shape) {
-    refuse_what_cannot_be_fitted(depth_mm, value_mm, shape);
+LawFit fit_law(const std::vector<double>& depth_mm, const std::vector<double>& value_mm, const LawShape& shape,
+               const std::vector<double>& scatter) {
+    refuse_what_cannot_be_fitted(depth_mm, value_mm, shape, scatter);
     const Index count = Index(depth_mm.size());
+    VectorXd worth = VectorXd::Ones(count);
+    for (std::size_t i = 0; i < scatter.size(); ++i) worth[Index(i)] = 1.0 / scatter[i];
+    if (count > 0) worth /= std::sqrt(worth.squaredNorm() / double(count));
     const Problem problem{Eigen::Map<const VectorXd>(depth_mm.data(), count),
-                          Eigen::Map<const VectorXd>(value_mm.data(), count), shape};
+                          Eigen::Map<const VectorXd>(value_mm.data(), count), shape, worth};
     LawFit out;
     const auto solved = [&](bool held) {
         return in_norm(
-            shape.norm, count, [&](const VectorXd& weight) { return solve(problem, weight, held); },
-            [&](const VectorXd& free) { return residuals(problem, free); });
+            shape.norm, count, [&](const VectorXd& weight) { return solve(problem, weight.cwiseProduct(worth), held); },
+            [&](const VectorXd& free) -> VectorXd { return worth.cwiseProduct(residuals(problem, free)); });
     };
     VectorXd free = std::isfinite(shape.floor) ? solve_floored(problem) : solved(false);
     if (!keeps(coefficients_of(free, shape.through_zero), shape)) {
@@ -347,19 +357,21 @@ LawFit fit_law(const std::vector<double>& depth_mm, const std::vector<double>& v
     out.residual_mm.assign(residual.data(), residual.data() + count);
     const double spread = (problem.value.array() - problem.value.mean()).matrix().squaredNorm();
     out.r_squared = spread > 0.0 ? 1.0 - residual.squaredNorm() / spread : 1.0;
-    out.degrees_of_freedom = int(count - problem.terms());
-    if (out.degrees_of_freedom < 1) return out;
-    out.law.rmse_mm = std::sqrt(residual.squaredNorm() / out.degrees_of_freedom);
-    out.law.degrees_of_freedom = out.degrees_of_freedom;
+    const int freedom = int(count - problem.terms());
+    out.degrees_of_freedom = freedom;
+    if (freedom < 1) return out;
+    out.law.rmse_mm = std::sqrt(residual.squaredNorm() / freedom);
+    out.law.degrees_of_freedom = freedom;
 
     MatrixXd slope = powers(problem.depth, shape);
     const VectorXd polynomial = slope * free;
     for (Index i = 0; i < count; ++i)
         if (polynomial[i] < shape.floor) slope.row(i).setZero();
+    slope = worth.asDiagonal() * slope;
     Eigen::ColPivHouseholderQR<MatrixXd> qr(slope);
     if (qr.rank() < slope.cols()) return out;  // all but a few values lie on the floor
     const MatrixXd inverse = (slope.transpose() * slope).ldlt().solve(MatrixXd::Identity(slope.cols(), slope.cols()));
-    const MatrixXd covariance = variance(residual, problem.terms(), out.degrees_of_freedom, shape.norm) * inverse;
+    const MatrixXd covariance = variance(worth.cwiseProduct(residual), problem.terms(), freedom, shape.norm) * inverse;
     const double t = deviations_of_95(out.law.degrees_of_freedom);
     const Index first = shape.through_zero ? 1 : 0, size = covariance.rows() + first;
     out.covariance.assign(std::size_t(size), std::vector<double>(std::size_t(size), 0.0));

@@ -28,16 +28,22 @@ struct LawFit {
     std::vector<std::vector<double>> covariance;  ///< of all coefficients, or empty
     std::vector<double> residual_mm;              ///< measured minus law, in the order of the data
     double r_squared = 0.0;                       ///< 1 - SSE / sum of squares about the mean
-    int degrees_of_freedom = 0;                   ///< values minus free coefficients
+    double degrees_of_freedom =
+        0.0;            ///< values minus free coefficients; of laws fitted together a mean, with fractions
     bool held = false;  ///< the data alone would break `positive` or `rising`: the shape is kept by constraint
 };
 
 /// Least squares, or least absolute residuals, over polynomials of the shape asked for.
 ///
+/// `scatter`: how much each value scatters, up to a common factor; empty if all scatter alike. Values are weighted by
+/// 1 / scatter. rmse_mm and r_squared count all values alike.
+///
 /// Covariance: s^2 (J^T J)^-1 with s^2 = SSE / degrees of freedom; for absolute residuals pi/2 s^2 (J^T J)^-1 with s
 /// from the median absolute residual, which holds for normal noise with outliers. Where the shape is held by
 /// constraint it is that of the unconstrained law there, and so rather too wide. Half intervals: Student's t, 95 %.
-/// Throws Error: numbers that are not finite, too few values or depths for the degree.
-LawFit fit_law(const std::vector<double>& depth_mm, const std::vector<double>& value_mm, const LawShape& shape);
+/// Throws Error: numbers that are not finite, too few values or depths for the degree, a scatter that
+/// is not positive.
+LawFit fit_law(const std::vector<double>& depth_mm, const std::vector<double>& value_mm, const LawShape& shape,
+               const std::vector<double>& scatter = {});
 
 }  // namespace brushsvg::fit

@@ -10,6 +10,7 @@
 #include "lack_of_fit.hpp"
 #include "mark_problem.hpp"
 #include "multistart.hpp"
+#include "no_brush.hpp"
 #include "noise_covariance.hpp"
 #include "within.hpp"
 
@@ -129,10 +130,7 @@ void refuse_unlike_any(const std::vector<PaintedMark>& marks, const MarkFit& fit
     std::size_t worst = 0;
     for (std::size_t i = 0; i < fit.marks.size(); ++i)
         if (fit.marks[i].rms_mm > fit.marks[worst].rms_mm) worst = i;
-    throw Error("fit-failed",
-                "no brush was found that paints these marks: their edges lie off by more (standard deviation) than "
-                "they are wide, those of this one most: is it the mark of this stroke, in mm?",
-                marks[worst].stroke, fit.noise_mm, std::array<double, 2>{0.0, wide});
+    throw no_brush_paints(marks[worst].stroke);
 }
 
 /// What is to expect of edges this uncertain, which forget themselves as exp(-s / length).
@@ -141,6 +139,7 @@ void expect(MarkProblem& at, const std::optional<MarkLaws>& from, const MarkOpti
     at.begin(*from);
     at.shared[at.model.layout().widest()] = from->widest_per_half;
     at.shared[at.model.layout().front()] = from->front_per_half;
+    at.require_prediction();
     at.weighing.noise_mm = std::max(1e-3, *options.noise_mm);
     at.weighing.is_asked = true;
     const double kept = std::exp(-options.spacing_mm / std::max(1e-6, options.noise_length_mm));
@@ -239,7 +238,6 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     else
         solved = solve(fit, from, marks, options);
     out.converged = solved.converged;
-    if (!fit.shared.allFinite()) throw Error("fit-failed", "no brush was found that paints these marks");
     out.laws = fit.model.laws(fit.shared);
     const MatrixXd to = fit.model.to_coefficients();
     VectorXd wider = VectorXd::Constant(to.rows(), std::sqrt(unsurer(solved.departing)));
@@ -264,7 +262,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
         const Eigen::Vector2d& own = fit.own[std::size_t(i)];
         VectorXd distance;
         if (!fit.model.distances(i, fit.shared.data(), own.data(), distance, nullptr, nullptr))
-            throw Error("fit-failed", "the laws to start from predict no mark", marks[std::size_t(i)].stroke);
+            throw no_brush_paints(marks[std::size_t(i)].stroke);
         MarkMiss miss;
         miss.point_mm = fit.model.placed(i, fit.shared.data(), own.data());
         miss.distance_mm.assign(distance.data(), distance.data() + distance.size());

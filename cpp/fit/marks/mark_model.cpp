@@ -7,6 +7,7 @@
 
 #include "bernstein.hpp"
 #include "brushsvg/error.hpp"
+#include "no_brush.hpp"
 
 namespace brushsvg::fit {
 namespace {
@@ -221,22 +222,19 @@ void MarkModel::refuse_endless() const {
     std::size_t which = 0;
     for (std::size_t i = 0; i < painted_.size(); ++i) {
         const double size = double(painted_[i].at.size()) + double(painted_[i].point_mm.rows());
-        if (double(looks_[i]) > kMostLooksOfOne)
-            throw Error("fit-failed",
-                        "the stroke is so long and lies so often over itself that its mark cannot be fitted: leave it "
-                        "out",
-                        painted_[i].stroke);
         looks += double(looks_[i]);
         most += kMostLooksEach * size;
         if (double(looks_[i]) <= worst * size) continue;
         worst = double(looks_[i]) / size;
         which = i;
     }
-    if (looks <= most) return;
-    throw Error(
-        "fit-failed",
-        "no brush was found that paints these marks, least of all this one: is it the mark of this stroke, in mm?",
-        painted_[which].stroke);
+    if (looks > most) throw no_brush_paints(painted_[which].stroke);
+    for (std::size_t i = 0; i < painted_.size(); ++i)
+        if (double(looks_[i]) > kMostLooksOfOne)
+            throw Error("fit-failed",
+                        "the stroke is so long and lies so often over itself that its mark cannot be fitted: leave it "
+                        "out",
+                        painted_[i].stroke);
 }
 
 VectorXd MarkModel::unbounded(const MarkLaws& laws) const {

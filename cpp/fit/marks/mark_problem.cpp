@@ -9,6 +9,8 @@
 #include <numeric>
 #include <utility>
 
+#include "brushsvg/error.hpp"
+
 namespace brushsvg::fit {
 namespace {
 
@@ -156,10 +158,25 @@ void MarkProblem::expect(const MatrixXd& rows) {
     law_mean_ = VectorXd::Zero(shared.size());
 }
 
+VectorXd MarkProblem::losses() const {
+    VectorXd out(model.marks());
+    model.for_each([&](Index i) { out[i] = loss_of(i, own[std::size_t(i)]); });
+    return out;
+}
+
 double MarkProblem::loss() const {
-    VectorXd losses(model.marks());
-    model.for_each([&](Index i) { losses[i] = loss_of(i, own[std::size_t(i)]); });
-    return std::accumulate(losses.begin(), losses.end(), 0.0);
+    const VectorXd all = losses();
+    return std::accumulate(all.begin(), all.end(), 0.0);
+}
+
+void MarkProblem::require_prediction() const {
+    const VectorXd all = losses();
+    for (Index i = 0; i < all.size(); ++i)
+        if (!std::isfinite(all[i]))
+            throw Error("fit-failed",
+                        "the brush to start from paints no mark along this stroke. Start from another brush, or leave "
+                        "this stroke out",
+                        model.stroke(i));
 }
 
 double MarkProblem::loss_of(Index mark, const Eigen::Vector2d& displacement) const {

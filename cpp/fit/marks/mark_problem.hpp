@@ -23,8 +23,12 @@ class MarkProblem {
     /// Points beside which what is predicted is hardly wider than its edges err have no say from now on. At a pointed
     /// end noise never leaves the paint narrower than nothing: it draws the end out, and the paper seems nearer.
     void leave_slim_aside();
-    /// Half the loss of all marks; infinite where there is no prediction.
+    /// Half the loss of each mark; infinite where there is no prediction.
+    VectorXd losses() const;
+    /// Half the loss of all marks.
     double loss() const;
+    /// Throws Error where these laws, which the caller chose, predict no mark for a stroke.
+    void require_prediction() const;
     /// tolerance: ends when a step lowers the loss by less than this share of it. Whether it ended so.
     bool solve(int most_iterations, double tolerance);
     /// Laws depart from their numbers by no more than is expected: each of these rows makes a standard normal number of

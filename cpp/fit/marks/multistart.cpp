@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "brushsvg/error.hpp"
+#include "no_brush.hpp"
 #include "noise_covariance.hpp"
 
 namespace brushsvg::fit {
@@ -47,14 +48,21 @@ std::vector<MarkLaws> starts(const std::vector<PaintedMark>& marks, const MarkOp
     return out;
 }
 
-/// Those of the starts that come nearest to the marks.
+/// Those of the starts that come nearest to the marks. Throws Error where none predicts them all.
 std::vector<MarkLaws> nearest_starts(MarkProblem& at, const std::vector<PaintedMark>& marks,
                                      const MarkOptions& options) {
     std::vector<std::pair<double, MarkLaws>> from;
+    Eigen::VectorXi unpredicted = Eigen::VectorXi::Zero(at.model.marks());  // by how many starts, each mark
     for (const MarkLaws& laws : starts(marks, options)) {
         at.begin(laws);
-        const double loss = at.loss();
-        if (std::isfinite(loss)) from.emplace_back(loss, laws);
+        const VectorXd losses = at.losses();
+        unpredicted += (!losses.array().isFinite()).cast<int>().matrix();
+        if (losses.allFinite()) from.emplace_back(std::accumulate(losses.begin(), losses.end(), 0.0), laws);
+    }
+    if (from.empty()) {
+        Index worst = 0;
+        unpredicted.maxCoeff(&worst);
+        throw no_brush_paints(at.model.stroke(worst));
     }
     std::stable_sort(from.begin(), from.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<MarkLaws> out;
@@ -77,11 +85,6 @@ void try_lags(MarkProblem& at, const std::vector<MarkLaws>& starts, bool is_held
         shared = at.shared;
         own = at.own;
     }
-    if (!std::isfinite(best))
-        throw Error(
-            "fit-failed",
-            "no lag that was tried predicts these marks: are plan and marks those of one sheet, and is there no pose "
-            "above the paper as it was taught?");
     at.shared = shared;
     at.own = own;
     at.hold_shape(false, false);
@@ -118,6 +121,7 @@ void start(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vect
     MarkProblem tried(marks, sparse, kCoarse);
     if (from) {
         tried.begin(*from);
+        tried.require_prediction();
         tried.solve(options.most_iterations, kTolerance);
     } else {
         try_both(tried, marks, options);

@@ -5,8 +5,8 @@
 #include <map>
 
 #include "brushsvg/checkpoint.hpp"
-#include "brushsvg/error.hpp"
 #include "meanwhile.hpp"
+#include "no_brush.hpp"
 
 namespace brushsvg::fit {
 namespace {
@@ -29,7 +29,7 @@ std::vector<Seen> look(const MarkProblem& at) {
         RowMajor by(at.model.points(i), g), own(at.model.points(i), 2);
         Seen& seen = out[std::size_t(i)];
         if (!at.model.distances(i, at.shared.data(), at.own[std::size_t(i)].data(), seen.distance_mm, &by, &own))
-            throw Error("fit-failed", "the laws come to predict no mark", at.model.stroke(i));
+            throw no_brush_paints(at.model.stroke(i));
         seen.by.resize(by.rows(), g + 2);
         seen.by << by, own;
         seen.says = at.says[std::size_t(i)];

@@ -12,11 +12,15 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
+/// Kinds of brush that the model covers: footprints are the same in every direction. liner: round, with long bristles.
+inline constexpr std::array<const char*, 3> kBrushKinds{"round", "liner", "pen"};
+
 /// A measured (or assumed) brush: four laws against depth and its footprints. All lengths in mm.
 struct Brush {
     std::string name;
-    std::string kind;
+    std::string kind;  ///< one of kBrushKinds, or empty: round
     std::array<double, 2> depth_range_mm{0.0, 0.0};
+    // Laws: law(d) follows the polynomial to any depth, law.at(d) refuses depths that the brush cannot have.
     Profile lag;            ///< r(d): lever from the centre of friction to the TCP, taut
     Profile tip_gap;        ///< b(d): from the patch's tip to the centre of friction
     Profile tip_to_widest;  ///< x_w(d): from the tip to the widest section
@@ -32,7 +36,7 @@ struct Brush {
     bool is_rigid() const;             ///< r identically 0: a pen; p = q, no loose rule
     bool width_follows_depth() const;  ///< false where half_width is constant over the depth range
 
-    /// Depth [mm] that paints a half width [mm]. Error with the reachable range when there is none.
+    /// Depth [mm], never 0, that paints a half width [mm] to 0.05 mm. Error with the reachable range if there is none.
     double depth_for_half_width(double half_width_mm, const std::string& where) const;
     /// Half widths [mm] reachable over the depth range.
     std::array<double, 2> half_width_range_mm() const;

@@ -37,13 +37,14 @@ struct LawPiece {
     double most_twisted = 0.0;                ///< bound of |d3r/dd3| on [lo, hi]
 
     T at(const T& depth) const {
-        T r = coefficients[degree];
+        std::size_t i = std::size_t(degree);
+        T r = coefficients[i];
         if constexpr (std::is_arithmetic_v<T>) {
-            for (int i = degree; i-- > 0;) r = r * depth + coefficients[i];
+            while (i-- > 0) r = r * depth + coefficients[i];
         } else {  // the chain rule once, not at every power
             const double x = value_of(depth);
             double by_depth = 0.0;
-            for (int i = degree; i-- > 0;) {
+            while (i-- > 0) {
                 by_depth = by_depth * x + value_of(r);
                 r = r * x + coefficients[i];
             }
@@ -53,12 +54,13 @@ struct LawPiece {
     }
     T slope(const T& depth) const {
         T r(0.0);
-        for (int i = degree; i > 0; --i) r = r * depth + double(i) * coefficients[i];
+        for (std::size_t i = std::size_t(degree); i > 0; --i) r = r * depth + double(i) * coefficients[i];
         return r;
     }
     T curvature(const T& depth) const {
         T r(0.0);
-        for (int i = degree; i > 1; --i) r = r * depth + double(i) * double(i - 1) * coefficients[i];
+        for (std::size_t i = std::size_t(degree); i > 1; --i)
+            r = r * depth + double(i) * double(i - 1) * coefficients[i];
         return r;
     }
 };

@@ -143,8 +143,8 @@ T tightening(const T& r, const ArcMove<T>& arc, const LagState<T>& state, const 
     T sine2 = sin(T(0.5 * beta0));
     sine2 = sine2 * sine2 + slack / (4.0 * arc.radius * sqrt(T(ahead * ahead + outward * outward)));
     if (!(sine2 <= T(1.0))) return T(2.0);
-    const T beta = 2.0 * atan2(T(sqrt(sine2)), T(sqrt(T(1.0 - sine2))));
-    return begin + (beta - beta0) / whole;
+    const T later = (2.0 * atan2(T(sqrt(sine2)), T(sqrt(T(1.0 - sine2)))) - beta0) / whole;
+    return later > T(0.0) ? T(begin + later) : begin;  // with next to no slack rounding can leave it negative
 }
 
 }  // namespace detail

@@ -50,7 +50,7 @@ T mean_reciprocal(const LawPiece<T>& law, const T& middle, const T& half) {
     for (int i = 0; i < N; ++i) {
         const double depth = value_of(middle) + Gauss<N>::x[i] * value_of(half);
         double r = 0.0, slope = 0.0;
-        for (int k = law.degree; k >= 0; --k) {
+        for (std::size_t k = std::size_t(law.degree) + 1; k-- > 0;) {
             slope = slope * depth + r;
             r = r * depth + value_of(law.coefficients[k]);
         }
@@ -58,11 +58,11 @@ T mean_reciprocal(const LawPiece<T>& law, const T& middle, const T& half) {
         double by_r = -Gauss<N>::w[i] / (r * r);
         by_middle += by_r * slope;
         by_half += by_r * slope * Gauss<N>::x[i];
-        for (int k = 0; k <= law.degree; ++k, by_r *= depth) by_coefficient[k] += by_r;
+        for (std::size_t k = 0; k <= std::size_t(law.degree); ++k, by_r *= depth) by_coefficient[k] += by_r;
     }
     T mean(sum);
     mean.v = by_middle * middle.v + by_half * half.v;
-    for (int k = 0; k <= law.degree; ++k) mean.v += by_coefficient[k] * law.coefficients[k].v;
+    for (std::size_t k = 0; k <= std::size_t(law.degree); ++k) mean.v += by_coefficient[k] * law.coefficients[k].v;
     return mean;
 }
 
@@ -74,7 +74,7 @@ Vec2<double> values_of(const Vec2<T>& v) {
 template <class T>
 LawPiece<double> values_of(const LawPiece<T>& law) {
     LawPiece<double> out{law.lo, law.hi, law.degree, {}, law.roots, law.clear2, law.steepest, law.most_twisted};
-    for (int k = 0; k <= law.degree; ++k) out.coefficients[k] = value_of(law.coefficients[k]);
+    for (std::size_t k = 0; k <= std::size_t(law.degree); ++k) out.coefficients[k] = value_of(law.coefficients[k]);
     return out;
 }
 template <class T>
@@ -99,13 +99,13 @@ double first_negative(double begin, double end, Lower&& lower, Value&& value) {
         double a, b;
     };
     std::array<Span, 128> stack;
-    int top = 0;
+    std::size_t top = 0;
     stack[top++] = {begin, end};
     for (int looks = 0; top > 0 && looks < kMostLooks; ++looks) {
         const auto [a, b] = stack[--top];
         if (lower(a, b) >= 0.0) continue;
         const double middle = 0.5 * (a + b);
-        if (b - a < 1e-15 || !(a < middle && middle < b) || top + 2 > int(stack.size())) {
+        if (b - a < 1e-15 || !(a < middle && middle < b) || top + 2 > stack.size()) {
             if (value(b) < 0.0) return b;
             continue;
         }

@@ -11,7 +11,7 @@ namespace [[gnu::visibility("default")]] brushsvg {
 /// What the patch does during one pass. Rows are parallel. depth_mm < 0 marks rows where the brush is lifted.
 struct PassMarks {
     std::string stroke;
-    std::vector<double> pose;  ///< index into the pass's poses, fractional between poses
+    std::vector<double> pose;  ///< index into the pass's poses, fractional between poses; see pose_rows()
     Ring tcp_mm;               ///< q
     Ring contact_mm;           ///< p, centre of friction
     std::vector<double> heading_rad;

@@ -22,8 +22,15 @@ struct Profile {
     std::optional<double> rmse_mm;
     std::optional<double> degrees_of_freedom;  ///< values to spare, from which its scatter is known
     std::string extra = "{}";  ///< JSON object of the keys this version does not know; written back as read
+    /// Depths at which at() answers: how deep its brush may be pressed. read_brush() sets it; none: any depth. It is
+    /// no part of the law: laws are equal, and written, without it.
+    std::optional<std::array<double, 2>> depth_range_mm;
 
-    /// Value at a depth [mm]; any scalar with arithmetic (a solver differentiates it).
+    /// Value at a depth [mm] that the brush can have, from touching the paper to the deepest of `depth_range_mm`.
+    /// Throws Error (depth-out-of-range) for any other depth: a polynomial is soon nonsense beyond its measurements.
+    double at(double depth_mm) const;
+
+    /// Value at any depth [mm], not checked; any scalar with arithmetic (a solver differentiates it). For inner loops.
     template <class T>
     T operator()(const T& depth_mm) const {
         T polynomial(0.0);

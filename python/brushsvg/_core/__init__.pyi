@@ -136,6 +136,12 @@ class Profile:
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: tuple) -> None: ...
+    @typing.overload
+    def extrapolated(self, depth_mm: float) -> float: ...  # type: ignore[overload-overlap]
+    @typing.overload
+    def extrapolated(
+        self, depth_mm: numpy.typing.ArrayLike
+    ) -> numpy.typing.NDArray[numpy.float64]: ...
     @property
     def assumed(self) -> bool: ...
     @property
@@ -144,6 +150,11 @@ class Profile:
     def coefficients(self) -> tuple[float, ...]: ...
     @property
     def degrees_of_freedom(self) -> float | None: ...
+    @property
+    def depth_range_mm(self) -> tuple[float, float] | None:
+        """
+        Depths [mm] at which it can be asked, of a law of a Brush: its depth_range_mm. None: any.
+        """
     @property
     def extra(self) -> str: ...
     @property
@@ -259,7 +270,7 @@ class Brush:
     """
     Four laws against depth and the footprints; all lengths in mm, depths in mm from first contact down.
 
-    lag, tip_gap, tip_to_widest, half_width: the laws, each a Profile; footprints: a FootprintTable. Outlines rule what is
+    lag, tip_gap, tip_to_widest, half_width: the laws, each a Profile that refuses depths at which the brush cannot be; footprints: a FootprintTable. Outlines rule what is
     painted, laws where the tool goes: they may differ by 0.5 mm. Begin with Brush() and set all of them, name and
     depth_range_mm, or with the copy of a known one. Set each as a whole: it is a value that cannot be changed.
     save_brush, simulate, compensate and convert refuse what no brush can be.
@@ -333,7 +344,7 @@ class Brush:
     @property
     def kind(self) -> str:
         """
-        A word for people: round, pen.
+        round, liner (a round brush of long bristles), pen, or empty: round. Another one is refused.
         """
     @kind.setter
     def kind(self, arg0: str) -> None: ...
@@ -685,6 +696,10 @@ class PassMarks:
     """
     What the patch does during one pass; parallel rows (mm, rad), read only.
 
+    pose: the index of the plan's pose, with fractions in between. contact_mm[pose_rows] is the contact at each pose. Rows after
+    the last pose's are the lift on the spot of a pass that ends on the paper (the patch moves as the bristles straighten), rows
+    before the first pose's the brush being set down.
+
     lean_mm_per_mm (n, 2): how far the axis of a tilted brush goes sideways for each mm up; empty for one that is upright.
     """
 
@@ -713,6 +728,11 @@ class PassMarks:
     ) -> None: ...
     @property
     def pose(self) -> numpy.typing.NDArray[numpy.float64]: ...
+    @property
+    def pose_rows(self) -> numpy.typing.NDArray[numpy.int64]:
+        """
+        For each pose of the pass the index of its row.
+        """
     @property
     def pull(self) -> numpy.typing.NDArray[numpy.float64]: ...
     @property
@@ -942,12 +962,22 @@ class LawFit:
     def __eq__(self, other: object, /) -> bool: ...
     def __getstate__(self) -> tuple: ...
     def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        law: Profile,
+        covariance: collections.abc.Sequence[collections.abc.Sequence[float]],
+        residual_mm: collections.abc.Sequence[float],
+        r_squared: float,
+        degrees_of_freedom: float,
+        held: bool,
+    ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: tuple) -> None: ...
     @property
     def covariance(self) -> tuple[tuple[float, ...], ...]: ...
     @property
-    def degrees_of_freedom(self) -> int: ...
+    def degrees_of_freedom(self) -> float: ...
     @property
     def held(self) -> bool: ...
     @property
@@ -1543,9 +1573,10 @@ def fit_law(
     depth_mm: collections.abc.Sequence[float],
     value_mm: collections.abc.Sequence[float],
     shape: LawShape,
+    scatter: collections.abc.Sequence[float] = [],
 ) -> LawFit:
     """
-    Law of a shape through measured values [mm] at depths [mm], by least squares or absolute residuals.
+    Law of a shape through measured values [mm] at depths [mm], by least squares or absolute residuals. scatter: of each value, up to a common factor; empty: alike.
     """
 
 def fit_marks(
@@ -1729,6 +1760,8 @@ def simulate(
     tolerance_mm: float = 0.02,
     for_outlines: bool = True,
     progress: collections.abc.Callable[[int, int], object] | None = None,
+    *,
+    may_rise: bool = False,
 ) -> Marks:
     """
     What the brush does along a plan: Marks without outlines (see trace_outlines and coverage).
@@ -1737,8 +1770,10 @@ def simulate(
     tolerance that a plan was made with. for_outlines: False leaves out the rows that only the outline needs: enough for
     widest_points. progress: called with (passes done, passes).
 
-    z = -depth: on the way above the paper, z > 0, the brush hangs free. Error for a pass all of which is above the paper, and
-    for a pose deeper than the brush may be pressed.
+    z = -depth. A pass that begins or ends below 0 is set down or lifted on the spot, with rows of its own: pose_rows of the
+    PassMarks finds the poses. may_rise: the passes are motions of a machine that may leave the paper, z > 0; there the brush
+    hangs free. Error for z > 0 otherwise, for a pass all of which is above the paper, and for a pose deeper than the brush may
+    be pressed.
     """
 
 def thin_out(pass_: Pass, brush: Brush, tolerance_mm: float = 0.05) -> Pass:

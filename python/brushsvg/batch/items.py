@@ -150,7 +150,7 @@ def words(
     items = []
     for line in lines:
         name = "".join(each if _may_name(each) else "_" for each in line)[:MOST_LETTERS]
-        count = names[name.casefold()] = names.get(name.casefold(), 0) + 1
+        count = names[as_one_file(name)] = names.get(as_one_file(name), 0) + 1
         items.append(item(line, name if count == 1 else f"{name}~{count}"))
     return items
 
@@ -197,10 +197,15 @@ def _told_apart(items: list[Item]) -> None:
         parts = Path(item.name).parts
         if not parts or Path(item.name).is_absolute() or ".." in parts or not item.name.isprintable():
             raise Error(f"{item.name[:60]!r} cannot be the name of a file", code="name-invalid")
-        other = by_name.setdefault(item.name.casefold(), item)
+        other = by_name.setdefault(as_one_file(item.name), item)
         if other is not item:
             sentence = f"{other.source} and {item.source} would both be written as {item.name}"
             raise Error(sentence, code="name-taken", advice=_way_out(other, item, items))
+
+
+def as_one_file(name: str) -> str:
+    """Equal for names that are one file on Windows or macOS, which ignore case and how accents are composed."""
+    return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold())
 
 
 def _way_out(one: Item, other: Item, items: list[Item]) -> str:

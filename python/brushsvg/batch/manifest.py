@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ..errors import Error, Notice
 from ..files import read_bytes, reason, write_files
-from .items import Item
+from .items import Item, as_one_file
 from .one import Figures, sha256
 
 try:
@@ -53,12 +53,14 @@ def as_line(row: Row) -> str:
 
 
 def _row(line: bytes) -> Row | None:
-    """None for a line that a killed run left half."""
+    """None for a line that a killed run left half, and for one that is no row."""
     try:
         said = json.loads(line)
         figures = said.pop("figures")
         notices = tuple(Notice(*each.values()) for each in said.pop("notices"))
-        return Row(**said, notices=notices, figures=figures and Figures(**figures))
+        row = Row(**said, notices=notices, figures=figures and Figures(**figures))
+        texts = [row.name, row.source, row.key, row.path, *row.files, *row.files.values()]
+        return row if all(isinstance(each, str) and "\0" not in each for each in texts) else None
     except (ValueError, TypeError, KeyError, AttributeError):
         return None
 
@@ -69,6 +71,7 @@ class Manifest:
     def __init__(self, folder: Path):
         self.folder, self.path = folder, folder / NAME
         self._by_name: dict[str, list[Row]] = {}
+        self._by_file: dict[str, list[Row]] = {}
         try:
             self._place = os.path.realpath(folder)
             folder.mkdir(parents=True, exist_ok=True)
@@ -102,9 +105,25 @@ class Manifest:
             sentence = f"this is not a manifest of {FORMAT['format']}, version {FORMAT['version']}"
             raise Error(sentence, file=str(self.path), code="format-unknown")
         for row in filter(None, map(_row, lines)):
+            self._refuse_outside(row)
             self._by_name.setdefault(row.name, []).append(row)
+            for name in row.files:
+                self._by_file.setdefault(as_one_file(name), []).append(row)
         if lines and lines[-1]:
             self._add("\n")  # what was left half stays a line of its own
+
+    def _refuse_outside(self, row: Row) -> None:
+        """Error for a file outside of the folder: outdated files are deleted, and a manifest may be anybody's."""
+        for name in row.files:
+            way = os.path.normpath(os.path.join(self._place, name))
+            real = os.path.realpath(os.path.dirname(way))
+            if not (self._is_inside(way) and self._is_inside(real)):
+                sentence = f"row {row.name}: {name[:200]!r} is outside of the folder"
+                advice = "delete the manifest, or give another --out"
+                raise Error(sentence, file=str(self.path), code="path-outside", advice=advice)
+
+    def _is_inside(self, path: str) -> bool:
+        return Path(path) == Path(self._place) or Path(self._place) in Path(path).parents
 
     def _add(self, text: str) -> None:
         self._file.write(text.encode())
@@ -115,9 +134,10 @@ class Manifest:
         self._add(as_line(row))
 
     def done(self, key: str, item: Item) -> Row | None:
-        """The row of what is done already and lies there as it was written."""
+        """The row of what is done already and lies there as it was written. A refused drawing is not done: its cause
+        may be gone, as a missing font or a full disk."""
         for row in self._by_name.get(item.name, []):
-            if row.key == key and all(map(self._lies_there, row.files.items())):
+            if row.figures and row.key == key and all(map(self._lies_there, row.files.items())):
                 return replace(row, source=item.source, path=self.way_to(item))
         return None
 
@@ -138,6 +158,14 @@ class Manifest:
                     f"{here[0][0]} was made of {row.source}: that of {item.source} would be written over it"
                 )
                 raise Error(sentence, file=str(self.folder), code="name-taken", advice="give another --out")
+
+    def other_source(self, item: Item, path: str) -> str:
+        """The other drawing, still there, that an earlier run made this file of; "" where there is none."""
+        for row in self._by_file.get(as_one_file(path), []):
+            is_other = row.name != item.name and row.path not in ("", self.way_to(item))
+            if is_other and (self.folder / path).exists() and (self.folder / row.path).exists():
+                return row.source
+        return ""
 
     def remove_outdated(self, row: Row) -> list[str]:
         """Files that were made under the name of what is refused, as they were written, are removed: their paths."""

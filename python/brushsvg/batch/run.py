@@ -19,14 +19,14 @@ from ..errors import Error, need, need_number, need_one_of, need_truth
 from ..files import find_file, read_bytes, write_files
 from ..machine import cell_file
 from ..machine.cell_file import write_cell
-from ..machine.posts import POSTS
+from ..machine.posts import POSTS, sources_of_post
 from ..pictures.contact_sheet import Card, contact_sheets
 from ..pipeline.cancelling import Cancel
 from ..pipeline.choices import Choices, Given, cell_of
 from ..pipeline.conversion import ORDERS, chosen_of
 from ..units import clock
 from . import executors, one, tables
-from .items import Item, given
+from .items import Item, as_one_file, given
 from .manifest import Manifest, Row, below
 from .one import Made, SentBrush, Task, made, sha256
 
@@ -123,6 +123,7 @@ def batch(
         left = [index for index, row in enumerate(rows) if row is None]
         for index in left:
             manifest.refuse_other_drawing(listed[index])
+        places = _Places(listed, manifest)
         removed = [path for row in rows if row for path in manifest.remove_outdated(row)]
         tell = _told(len(listed), resumed, progress or (lambda text: None))
         with ExitStack() as stack:
@@ -131,7 +132,7 @@ def batch(
                 place = executors.cluster(cluster) if cluster else executors.processes(min(count, len(left)))
                 executor = stack.enter_context(place)
             for index, done in _each_made(executor, is_ours, left, listed, way, is_over):
-                row = _kept(folder, listed[index], keys[index], done)
+                row = _kept(folder, listed[index], keys[index], done, places)
                 row = rows[index] = replace(row, path=manifest.way_to(listed[index]))
                 removed += manifest.remove_outdated(row)
                 manifest.add(row)
@@ -170,7 +171,8 @@ def _way(chosen: Choices, format: str, order: str, lenient: bool) -> _Way:
     along = [sha256(read_bytes(path)) for paths in shipped for path in sorted(paths)]
     chosen = replace(chosen, z_offset=chosen.z_offset or 0.0, join=bool(chosen.join))  # as flags have them
     typed = asdict(replace(chosen, brush=None, cell=None))
-    known = [brush and (brush.sha256, sha256(brush.data)), cell and write_cell(cell), along]
+    post = [sha256(read_bytes(path)) for path in sources_of_post(cell)] if cell else []
+    known = [brush and (brush.sha256, sha256(brush.data)), cell and write_cell(cell), post, along]
     said = json.dumps([typed, format, order, lenient, version, known])
     chosen = replace(chosen, brush=None, cell=cell)
     return _Way(chosen, brush, format, order, lenient, version, said)
@@ -234,7 +236,35 @@ def _result(future: Future, item: Item, version: str) -> Made:
     return found
 
 
-def _kept(folder: Path, item: Item, key: str, done: Made) -> Row:
+class _Places:
+    """Where the files of each drawing may be written, with no regard to case, as on Windows and macOS.
+
+    A program in several files is a folder: that of `a` may contain the file that `a/a` is written to.
+    """
+
+    def __init__(self, items: list[Item], manifest: Manifest):
+        self.manifest = manifest
+        self.sources = {as_one_file(item.name): item.source for item in items}
+        self.folders = {
+            as_one_file(folder.as_posix()): item.source
+            for item in items
+            for folder in Path(item.name).parents
+        }
+
+    def refuse_taken(self, item: Item, paths: Iterable[str]) -> None:
+        """Error where a file of this drawing would be one of another drawing, or a folder that contains one."""
+        for path in paths:
+            place = Path(path).relative_to(Path(path).parts[0])
+            stem, own = as_one_file(place.with_suffix("").as_posix()), as_one_file(item.name)
+            other = self.sources.get(stem) if stem != own else None
+            other = other or self.folders.get(as_one_file(place.as_posix()))
+            other = other or self.manifest.other_source(item, path)
+            if other:
+                sentence = f"{path} belongs to {other}: {item.source} would be written over it"
+                raise Error(sentence, code="name-taken", advice="rename one of the two drawings")
+
+
+def _kept(folder: Path, item: Item, key: str, done: Made, places: _Places) -> Row:
     """Its row, once its files are written, all or none."""
     if done.figures is None:
         return Row(item.name, item.source, key, None, done.code, done.where, done.sentence, done.notices)
@@ -246,6 +276,10 @@ def _kept(folder: Path, item: Item, key: str, done: Made) -> Row:
         for name, text in done.texts.items()
     }
     data[f"{PICTURES}/{item.name}.png"] = done.picture
+    try:
+        places.refuse_taken(item, data)
+    except Error as refusal:
+        return Row(item.name, item.source, key, None, refusal.code, refusal.where, str(refusal), done.notices)
     write_files({below(folder, name): text for name, text in data.items()})
     sums = {name: sha256(text) for name, text in data.items()}
     return Row(item.name, item.source, key, done.figures, notices=done.notices, files=sums)

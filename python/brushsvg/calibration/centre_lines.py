@@ -21,7 +21,7 @@ OFF = 0.15  # of the lag: lines that lie farther off on the mean are no turns
 @dataclass(frozen=True)
 class Turn:
     """Lag r and r - e [mm], e the lever from centre of friction to widest section, their covariance (2, 2) [mm^2] by
-    the points of this line alone, and how far these lie off, root mean square [mm].
+    the points of this line alone, how far these are off, root mean square [mm], and the number of values to spare.
 
     other: the reading with the other sign of e, where the points allow both; this one then is that of e > 0."""
 
@@ -29,6 +29,7 @@ class Turn:
     turning_mm: float
     covariance_mm2: np.ndarray
     rmse_mm: float
+    freedom: int
     other: Turn | None = None
 
 
@@ -111,8 +112,10 @@ def read_turn(points_mm, where: str = "") -> Turn:
             where,
             code="law-undetermined",
         )
-    other = Turn(float(above.x[0]), float(above.x.prod()), *_spread(above, freedom)) if both else None
-    return Turn(lag, turning, covariance, rmse, other)
+    other = (
+        Turn(float(above.x[0]), float(above.x.prod()), *_spread(above, freedom), freedom) if both else None
+    )
+    return Turn(lag, turning, covariance, rmse, freedom, other)
 
 
 def _spread(fit, freedom: int) -> tuple[np.ndarray, float]:

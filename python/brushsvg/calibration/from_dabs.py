@@ -45,7 +45,7 @@ def calibrate_dabs(
     _refuse_other_lag(dabs, before)
 
     def slid_mm(dab: Dab) -> float:
-        return dab.run_mm - before.lag(dab.depth_mm)
+        return dab.run_mm - before.lag.extrapolated(dab.depth_mm)
 
     outlines = outlines_of(dabs, set(joined), slid_mm)
     shapes = outlines.shapes
@@ -78,15 +78,17 @@ def _refuse_other_lag(dabs: list[Dab], before: _core.Brush) -> None:
                 code="depth-out-of-range",
             )
     off = {
-        dab.name: dab.run_mm / before.lag(dab.depth_mm) - 1 for dab in dabs if before.lag(dab.depth_mm) > 0
+        dab.name: dab.run_mm / before.lag.extrapolated(dab.depth_mm) - 1
+        for dab in dabs
+        if before.lag.extrapolated(dab.depth_mm) > 0
     }
     worst = max(off, key=lambda name: abs(off[name]), default=None)
     if worst is None or abs(off[worst]) > OTHER_LAG:
         dab = next(dab for dab in dabs if worst in (None, dab.name))
         raise Error(
             f"the tool ran {dab.run_mm:.1f} mm while it was pressed, brush {before.name} lags "
-            f"{before.lag(dab.depth_mm):.1f} mm there, more than {100 * OTHER_LAG:g} % off: make the page of dabs with "
-            "`brushsvg chart --dabs --brush` of this brush, and paint it",
+            f"{before.lag.extrapolated(dab.depth_mm):.1f} mm there, more than {100 * OTHER_LAG:g} % off: make the page "
+            "of dabs with `brushsvg chart --dabs --brush` of this brush, and paint it",
             dab.name,
             dab.run_mm,
             code="dabs-of-another-brush",

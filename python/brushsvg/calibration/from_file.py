@@ -16,7 +16,7 @@ from .by_overlap import OverlapCalibration, by_overlap
 from .from_marks import MarkCalibration, calibrate_marks, options_for
 from .from_measurements import Calibration
 from .from_measurements import calibrate as calibrate_measured
-from .machine_found import ask_for
+from .machine_found import ask_for, refuse_unknown_parts
 from .mark_input import read_painted
 from .measurements import FORMAT, Measurements, Row, read_measurements
 from .paint_found import calibrate_paint
@@ -109,17 +109,18 @@ def calibrate(
     measured: the path, or what stands in such a .json, without format and version if you like, with a Plan and Marks
     for their files, and arrays for lists. name: of the brush, where the measurements do not say one; else the file's
     own. absolute: least absolute residuals instead of squares; total: total least squares for series of angles.
-    machine: of painted marks, what else to find: "lean", "axes", "tilt", "backlash". paint: they were painted in the
-    plan's order with one load of paint: find how they narrow. aim: of painted marks, "edges" of the usual mark, or from
-    there to the "overlap" that predicts further marks best, without intervals and not with paint; progress: is told in
-    words how far that is. Returns what was found: brush, a Brush [mm] that save_brush writes; of numbers laws and
-    remarks, too, of marks what moved and what is left.
+    machine: of painted marks, what else to find: "lean", "axes", "tilt", "backlash", "field". paint: they were painted
+    in the plan's order with one load of paint: find how they narrow. aim: of painted marks, "edges" of the usual mark,
+    or from there to the "overlap" that predicts further marks best, without intervals and not with paint; progress: is
+    called with words that say how far that is. Returns what was found: brush, a Brush [mm] that save_brush writes; of
+    numbers laws and remarks, too, of marks what moved and what is left.
 
     Raises Error for a file that cannot be read, and measurements that leave a law open or that no brush can have.
     """
     need(measured, (str, os.PathLike, dict), "a path, or a dict of measurements")
     need(name, str, "the name of a brush")
     need_one_of(aim, AIMS, "aim")
+    refuse_unknown_parts(machine)
     if progress is not None and not callable(progress):
         need(progress, Callable, "a callable, which progress is")
     if isinstance(measured, dict):

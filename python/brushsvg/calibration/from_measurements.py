@@ -14,9 +14,10 @@ from ..brush.confidence import half_interval_mm
 from ..errors import Error, Notice
 from ..laws.fitted import need_fits
 from . import plausibility
+from .angle_series import read_series, scatter_of_series
 from .centre_lines import Turn, read_turn
 from .from_widths import GAP_PER_HALF, WIDEST_PER_HALF, outlines_assumed
-from .joint_fit import Reading, Together, fit_together
+from .joint_fit import EXACT_MM, LEAST_MM, Reading, Together, fit_together
 from .measurements import Measurements, Row
 
 LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
@@ -34,27 +35,19 @@ SUMS = ("angular", "straight", "side_view", "video")  # these say how long r + b
 FROM_TOUCH = ("side_view", "video")  # counted from first touch
 OUTLINES = 10
 MOST_CHANGES = 5  # of the signs that centre lines are read with
+OPEN_SHARE = 0.025  # a reading less likely than this is left out of 95 % intervals
 
 
 @dataclass(frozen=True)
 class Point:
-    """A law's value at a depth [mm], and the measurement it comes from."""
+    """A law's value at a depth [mm], and the measurement it comes from.
+
+    scatter: its standard deviation by that of others of its kind."""
 
     where: str
     depth_mm: float
     value_mm: float
-
-
-@dataclass(frozen=True)
-class JointLaw:
-    """One law of those that were fitted together: what a LawFit says of one that was fitted alone. residual_mm (n,): of
-    its points, measured less law."""
-
-    law: _core.Profile
-    covariance: np.ndarray
-    residual_mm: np.ndarray
-    r_squared: float
-    held: bool
+    scatter: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -112,6 +105,8 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     maker.fit("tip_to_widest", points)
     maker.fit("tip_gap", points)
     maker.fit("lag", points)
+    if measured.rows.get("angles"):
+        maker.weigh_angles(points, total)
     maker.fit_sums(points)
     if "lag" not in maker.done:
         raise Error(
@@ -140,7 +135,7 @@ def _direct(
     for row in measured.rows.get("centre_line", []):
         points["lag"].append(Point(row.where, row.depth_mm, turns[row.where].lag_mm))
     for row in measured.rows.get("angles", []):
-        found = _of_angles(row, total)
+        found = read_series(row, total)
         points["lag"].append(Point(row.where, row.depth_mm, found["lag_mm"]))
         if math.isfinite(found["tip_gap_mm"]):
             points["tip_gap"].append(Point(row.where, row.depth_mm, found["tip_gap_mm"]))
@@ -164,24 +159,6 @@ def _degree(law: str, depths_mm: list[float]) -> tuple[int, list[str]]:
     return degree, [f"of degree {degree} instead of {DEGREES[law]}, for there are {few}"]
 
 
-def _of_angles(row: Row, total: bool) -> dict:
-    degrees = math.radians(1.0)
-    series = [row.numbers[name] for name in ("alpha0_deg", "s_mm", "alpha_deg")]
-    plausibility.refuse_series(row.where, *series)
-    try:
-        found = _core.from_angles(
-            row.numbers["alpha0_deg"] * degrees,
-            row.numbers["s_mm"],
-            [a * degrees for a in row.numbers["alpha_deg"]],
-            [b * degrees for b in row.numbers["beta_deg"]],
-            _core.Lines.total if total else _core.Lines.plain,
-        )
-    except Error as refusal:
-        raise Error(str(refusal), row.where, refusal.value, code=refusal.code) from None
-    plausibility.refuse_other_start(row.where, *series)
-    return found
-
-
 class _Maker:
     def __init__(self, measured: Measurements, absolute: bool, turns: dict[str, Turn]):
         self.measured = measured
@@ -196,11 +173,36 @@ class _Maker:
         if points[law]:
             self._fit(law, points[law])
 
+    def weigh_angles(self, points: dict[str, list[Point]], total: bool) -> None:
+        """Fit lag and tip gap of angle series anew, each series weighted by what its angles say of it.
+
+        The noise of an angle displaces both in proportion to the lag, so it grows with depth.
+        """
+        laws = {law: self.done[law].fit.law for law in ("lag", "tip_gap") if law in self.done}
+        scatters: dict[str, dict[str, float]] = {law: {} for law in laws}
+        for row in self.measured.rows["angles"]:
+            lengths = [max(law(row.depth_mm), LEAST_MM) for law in laws.values()]
+            found = scatter_of_series(row, lengths[0], lengths[1] if len(lengths) > 1 else 0.0, total)
+            for law, scatter in zip(laws, found, strict=False):
+                if math.isfinite(scatter):
+                    scatters[law][row.where] = scatter
+        for law, of in scatters.items():
+            if of:
+                usual = math.sqrt(np.mean(np.square(list(of.values()))))
+                points[law] = [replace(p, scatter=of.get(p.where, usual) / usual) for p in points[law]]
+                self.fit(law, points)
+
     def fit_sums(self, points: dict[str, list[Point]]) -> None:
         """Lag, tip gap and widest section anew, in one fit to all that speaks of them, where sums do."""
         rows = [row for kind in SUMS for row in self.measured.rows.get(kind, [])]
+        lines = self.measured.rows.get("centre_line", [])
         if "tip_to_widest" in self.done:
-            rows += self.measured.rows.get("centre_line", [])
+            rows += lines
+        elif unsure := [row.where for row in lines if self.turns[row.where].other]:
+            self.remarks.append(
+                f"{', '.join(unsure)} can be read in two ways; read as if the widest section of the footprint were in "
+                "front of the centre of friction. Add rows of tip_to_widest, which decide"
+            )
         if not rows:
             return
         if "tip_gap" not in self.done and "lag" not in self.done:
@@ -222,28 +224,69 @@ class _Maker:
         absolute = self.norm == _core.Norm.absolute
         readings = self._readings(laws, points, rows)
         start = {law: self._to_start_from(law, readings) for law in laws}
-        self.joint = fit_together(readings, start, self.range_mm, absolute)
-        for _ in range(MOST_CHANGES):
-            if not self._change_turns():
-                break
-            readings = self._readings(laws, points, rows)
-            self.joint = fit_together(readings, start, self.range_mm, absolute)
+
+        def fit(without: Row | None = None) -> Together:
+            kept = self._readings(laws, points, [row for row in rows if row is not without])
+            return fit_together(kept, start, self.range_mm, absolute)
+
+        likely = self._choose_turns(fit) if widest else {}
+        self.joint = fit()
+        for where, share in likely.items():
+            if share > OPEN_SHARE:
+                self._allow_other_sign(where, share, fit)
+        readings = self._readings(laws, points, rows)
         self._take(readings, shown="tip_gap" if points["lag"] else "lag")
 
-    def _change_turns(self) -> bool:
-        """Whether a centre line that allows both signs of e was read with the other one, which the laws agree with."""
-        changed = False
-        laws = self.joint.laws
-        for row in self.measured.rows.get("centre_line", []):
-            turn = self.turns[row.where]
-            if turn.other is None or "tip_to_widest" not in laws:
-                continue
-            d = row.depth_mm
-            told = laws["lag"](d) + laws["tip_gap"](d) - laws["tip_to_widest"](d)
-            if abs(turn.other.turning_mm - told) < abs(turn.turning_mm - told):
-                self.turns[row.where] = replace(turn.other, other=replace(turn, other=None))
-                changed = True
-        return changed
+    def _choose_turns(self, fit) -> dict[str, float]:
+        """Read each centre line that allows both signs of e with the one that all other measurements agree with.
+
+        A law that was fitted to a wrong reading agrees with it, so each line is compared with the laws of the others.
+        Returns how likely the other sign is, for each line.
+        """
+        lines = [row for row in self.measured.rows.get("centre_line", []) if self.turns[row.where].other]
+        likely: dict[str, float] = {}
+        for _ in range(MOST_CHANGES):
+            changed = False
+            for row in lines:
+                turn = self.turns[row.where]
+                others = fit(without=row)
+                worse = [self._misfit(row, each, others) for each in (turn, turn.other)]
+                likely[row.where] = 1.0 / (1.0 + math.exp(min(0.5 * (worse[1] - worse[0]), 700.0)))
+                if worse[1] < worse[0]:
+                    self.turns[row.where] = replace(turn.other, other=replace(turn, other=None))
+                    likely[row.where] = 1.0 - likely[row.where]
+                    changed = True
+            if not changed:
+                break
+        return likely
+
+    def _allow_other_sign(self, where: str, share: float, fit) -> None:
+        """Widen the intervals of all laws by what the other reading of a centre line, so likely, would change."""
+        turn = self.turns[where]
+        self.turns[where] = turn.other
+        self.joint = self.joint.widened(fit(), share)
+        self.turns[where] = turn
+        depth = next(row.depth_mm for row in self.measured.rows["centre_line"] if row.where == where)
+        self.remarks.append(
+            f"{where} can be read in two ways (lag {turn.lag_mm:.2f} or {turn.other.lag_mm:.2f} mm), and the other "
+            f"measurements do not decide which; the confidence intervals allow for both. Measure tip_to_widest at "
+            f"depth {depth:g} mm"
+        )
+
+    def _misfit(self, row: Row, turn: Turn, others: Together) -> float:
+        """-2 ln of the likelihood of a reading of a centre line, by its own points and by the laws of all others."""
+        predicted, covariance = others.predict(
+            row.depth_mm, ({"lag": 1}, {"lag": 1, "tip_gap": 1, "tip_to_widest": -1})
+        )
+        own = np.array(turn.covariance_mm2)
+        for kind in others.kinds:  # lines scatter by more than their points do
+            if kind.name == row.kind:
+                more = np.maximum(np.array(kind.weighed_by_mm) / np.sqrt(np.diag(own) + EXACT_MM**2), 1.0)
+                own = own * np.outer(more, more)
+        covariance = covariance + own + EXACT_MM**2 * np.eye(2)
+        off = np.array([turn.lag_mm, turn.turning_mm]) - predicted
+        by_others = off @ np.linalg.solve(covariance, off) + np.linalg.slogdet(covariance)[1]
+        return float(by_others) + turn.freedom * 2.0 * math.log(max(turn.rmse_mm, EXACT_MM))
 
     def _to_start_from(self, law: str, readings: list[Reading]) -> _core.Profile:
         """The law that was found alone, of the degree that all that speaks of it allows."""
@@ -255,7 +298,7 @@ class _Maker:
         more = [0.0] * (degree + 1 - len(found.coefficients))
         return _core.Profile([*found.coefficients, *more], floor=found.floor)
 
-    def _refuse_negative(self, law: str, points: tuple[Point, ...], fit: JointLaw) -> None:
+    def _refuse_negative(self, law: str, points: tuple[Point, ...], fit: _core.LawFit) -> None:
         """Error for values that lie below 0 on the whole, by more than the law's interval."""
         mean = float(np.mean([point.value_mm for point in points]))
         depths = np.array([point.depth_mm for point in points])
@@ -309,7 +352,16 @@ class _Maker:
                 if point.where not in alone:
                     of = point.where.split("[")[0]
                     kind = f"{law} of {of}" if of in ("angles", "centre_line") else law
-                    out.append(Reading(kind, point.where, point.depth_mm, (point.value_mm,), ({law: 1},)))
+                    out.append(
+                        Reading(
+                            kind,
+                            point.where,
+                            point.depth_mm,
+                            (point.value_mm,),
+                            ({law: 1},),
+                            scatter=point.scatter,
+                        )
+                    )
         both = {"lag": 1, "tip_gap": 1}
         for row in rows:
             touch = row.kind in FROM_TOUCH
@@ -329,7 +381,7 @@ class _Maker:
                 law = next(iter(of)) if len(of) == 1 else shown
                 left, spare = float(found.residual_mm[at]), float(found.spare[at])
                 point = Point(reading.where, reading.depth_mm, found.laws[law](reading.depth_mm) + left)
-                spread = (freedom[reading.kind][0], freedom[reading.kind][1][k])
+                spread = (freedom[reading.kind][0], reading.scatter * freedom[reading.kind][1][k])
                 shown_at[law].append((point, left, spare, *spread))
                 at += 1
         for law, rows in shown_at.items():
@@ -339,7 +391,7 @@ class _Maker:
             spread = np.array([point.value_mm for point in points])
             total = float(((spread - spread.mean()) ** 2).sum())
             place = found.places[law]
-            fit = JointLaw(
+            fit = _core.LawFit(
                 law=_core.Profile(
                     profile.coefficients,
                     floor=profile.floor,
@@ -348,9 +400,10 @@ class _Maker:
                     rmse_mm=float(np.sqrt(left @ left / max(spare.sum(), 1e-9))),
                     degrees_of_freedom=profile.degrees_of_freedom,
                 ),
-                covariance=found.covariance[place, place],
-                residual_mm=left,
+                covariance=found.covariance[place, place].tolist(),
+                residual_mm=left.tolist(),
                 r_squared=1.0 - float(left @ left) / total if total > 0.0 else 1.0,
+                degrees_of_freedom=profile.degrees_of_freedom,
                 held=found.held,
             )
             outliers = plausibility.outliers_of_kinds(left, spare, np.array(scatter), np.array(freedoms))
@@ -404,7 +457,8 @@ class _Maker:
             norm=self.norm,
             **({"floor": 0.0} if widest else {}),
         )
-        fit = _core.fit_law(depths, values, shape)
+        scatter = [p.scatter for p in points]
+        fit = _core.fit_law(depths, values, shape, scatter)
         if law == "half_width":
             plausibility.refuse_unexplained(law, points, fit)
         if fit.held:
@@ -417,7 +471,7 @@ class _Maker:
             outliers = plausibility.outliers_above_floor(depths, values, self.range_mm, degree)
         else:
             free = len(fit.law.coefficients) - first
-            outliers = plausibility.outliers(depths, fit.residual_mm, free, first)
+            outliers = plausibility.outliers(depths, fit.residual_mm, free, first, scatter)
         self.done[law] = Fitted(law, tuple(points), fit, tuple(remarks), outliers)
 
     def covariance(self) -> np.ndarray | None:

@@ -278,8 +278,8 @@ def _reshaped(brush, made, longer: float) -> _core.FootprintTable:
     def reshaped(shape):
         d = shape.depth_mm
         x, y = np.array(shape.outline_mm).T
-        wide = made.half_width(d) / max(brush.half_width(d), 1e-9)
-        widest, now = brush.tip_to_widest(d), made.tip_to_widest(d)
+        wide = made.half_width.extrapolated(d) / max(brush.half_width.extrapolated(d), 1e-9)
+        widest, now = brush.tip_to_widest.extrapolated(d), made.tip_to_widest.extrapolated(d)
         behind = x * (now / widest if widest > 1e-9 else wide)
         x = np.where(x <= widest, behind, now + (x - widest) * wide * longer)
         return _core.Footprint(d, np.column_stack([x, y * wide]))

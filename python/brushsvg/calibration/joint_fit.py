@@ -5,7 +5,7 @@ What a kind of measurement is worth is found along with the laws: the scatter of
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import comb
 
 import numpy as np
@@ -24,7 +24,7 @@ BORROWED = 2.0
 class Reading:
     """One measurement: lengths [mm] at a depth [mm], and of which laws each is the sum, with +1 or -1.
 
-    from_touch: counted from first touch, so less the lag there.
+    from_touch: counted from first touch, so less the lag there. scatter: of its values, by what others of its kind do.
     """
 
     kind: str
@@ -33,6 +33,7 @@ class Reading:
     values_mm: tuple[float, ...]
     sums: tuple[dict[str, int], ...]
     from_touch: bool = False
+    scatter: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,36 @@ class Together:
     spare: np.ndarray
     kinds: tuple[Kind, ...]
     held: bool
+
+    def predict(self, depth_mm: float, sums: tuple[dict[str, int], ...]) -> tuple[np.ndarray, np.ndarray]:
+        """Sums of laws at a depth, each with +1 or -1 [mm], and their covariance [mm^2]."""
+        rows = np.zeros((len(sums), len(self.covariance)))
+        for row, each in zip(rows, sums, strict=True):
+            for name, sign in each.items():
+                # a polynomial below its floor may be above it as well, so it is as unsure
+                row[self.places[name]] = sign * depth_mm ** np.arange(len(self.laws[name].coefficients))
+        values = [sum(sign * self.laws[name](depth_mm) for name, sign in each.items()) for each in sums]
+        return np.array(values), rows @ self.covariance @ rows.T
+
+    def widened(self, other: Together, share: float) -> Together:
+        """The same laws with intervals that allow for those of another fit, which are true with this probability."""
+        coefficients = [
+            np.concatenate([fit.laws[name].coefficients for name in self.places]) for fit in (self, other)
+        ]
+        off = coefficients[1] - coefficients[0]
+        covariance = (1.0 - share) * self.covariance + share * (other.covariance + np.outer(off, off))
+        laws = {}
+        for name, law in self.laws.items():
+            variance = np.diag(covariance)[self.places[name]]
+            half = _core.deviations_of_95(law.degrees_of_freedom) * np.sqrt(np.maximum(variance, 0.0))
+            laws[name] = _core.Profile(
+                law.coefficients,
+                floor=law.floor,
+                calibrated_mm=law.calibrated_mm,
+                half_interval_95=half.tolist(),
+                degrees_of_freedom=law.degrees_of_freedom,
+            )
+        return replace(self, laws=laws, covariance=covariance)
 
 
 def fit_together(
@@ -128,7 +159,7 @@ def fit_together(
             degrees_of_freedom=freedom,
         )
     whole, places = _with_zeros(covariance * np.outer(scale, scale), unknowns)
-    return Together(laws, whole, places, left, spare, kinds, held)
+    return Together(laws, whole, places, left * unknowns.unit, spare, kinds, held)
 
 
 class _Unknowns:
@@ -146,7 +177,10 @@ class _Unknowns:
         self.start = (
             np.concatenate([law.coefficients[self.first[n] :] for n, law in start.items()]) / self.scale
         )
-        self.values = np.array([value for reading in readings for value in reading.values_mm])
+        # values, and rows, are counted in their scatter, so that those of one kind scatter alike
+        self.unit = np.array([reading.scatter for reading in readings for _ in reading.values_mm])
+        values = [value for reading in readings for value in reading.values_mm]
+        self.values = np.array(values) / self.unit
 
     def powers(self, name: str, depth_mm) -> np.ndarray:
         size = self.first[name] + self.sizes[name]
@@ -154,7 +188,7 @@ class _Unknowns:
         return np.vander(depth, size, increasing=True)[:, self.first[name] :]
 
     def rows(self, x: np.ndarray) -> np.ndarray:
-        """d value / d unknown. Where a polynomial lies below its floor it says nothing."""
+        """d value / d unknown, over the scatter. Where a polynomial lies below its floor it says nothing."""
         out = []
         for reading in self.readings:
             for each in reading.sums:
@@ -166,7 +200,7 @@ class _Unknowns:
                 if reading.from_touch:
                     row[self.places["lag"]] -= self.powers("lag", 0.0)[0]
                 out.append(row)
-        return np.array(out)
+        return np.array(out) / self.unit[:, None]
 
     def _shallow_to_deep(self) -> np.ndarray:
         return np.linspace(*self.range_mm, 201)

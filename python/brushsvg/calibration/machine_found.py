@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _core
-from ..errors import Notice
+from ..errors import Error, Notice, need
 
 # Standard deviation of each number beforehand. A tool on a long thin arm gives way by half as much as it is pressed;
 # a printed or scanned page is as long as it should be to 1 %; 1 mm over a sheet is what a table is off level; worn
@@ -41,6 +41,26 @@ class Number:
     value: float
     half: float
     unit: str
+
+
+def refuse_unknown_parts(machine) -> None:
+    """Error for what is no list of names of machine parts."""
+    known = ", ".join(PARTS)
+    if isinstance(machine, str):
+        example = f"({machine!r},)" if machine in PARTS else repr(tuple(PARTS)[:2])
+        raise Error(
+            f"machine must be a tuple of names (known: {known}), not the text {machine[:40]!r}. Write {example}",
+            "machine",
+            code="wrong-type",
+        )
+    need(machine, (tuple, list, set, frozenset), f"a tuple of names (known: {known})")
+    for part in machine:
+        if not (isinstance(part, str) and part in PARTS):
+            raise Error(
+                f"{str(part)[:40]!r} is no part of a machine (known: {known})",
+                "machine",
+                code="choice-unknown",
+            )
 
 
 def ask_for(options: _core.MarkOptions, parts: tuple[str, ...]) -> None:

@@ -104,23 +104,29 @@ class Outlier:
     off_mm: float
 
 
-def outliers(depths_mm: list[float], residual_mm, free: int, powers_from: int) -> dict[int, Outlier]:
+def outliers(
+    depths_mm: list[float], residual_mm, free: int, powers_from: int, scatter=1.0
+) -> dict[int, Outlier]:
     """Values that do not belong to the others, by index.
 
-    free: coefficients that were fitted, the least power powers_from. By studentized residuals of least squares, each
-    against the noise without it, where as unlikely as a normal value beyond OUTLYING.
+    free: coefficients that were fitted, the least power powers_from; scatter: of each value, by that of the others. By
+    studentized residuals of least squares, each against the noise without it, where as unlikely as a normal value
+    beyond OUTLYING.
     """
-    left, depths = np.array(residual_mm), np.array(depths_mm)
+    unit = np.broadcast_to(scatter, len(residual_mm))
+    left, depths = np.array(residual_mm) / unit, np.array(depths_mm)
     spare = len(left) - free - 1
     if spare < 1:
         return {}
     columns = np.vander(depths / depths.max(), powers_from + free, increasing=True)[:, powers_from:]
+    columns = columns / unit[:, None]
     apart = 1.0 - np.sum(np.linalg.qr(columns)[0] ** 2, axis=1)
     apart = np.maximum(apart, 1e-9)
     others = np.maximum((left @ left - left**2 / apart) / spare, 1e-18)
     size = _core.as_normal(left / np.sqrt(apart * others), spare)
     return {
-        int(k): Outlier(float(size[k]), float(left[k] / apart[k])) for k in np.flatnonzero(size > OUTLYING)
+        int(k): Outlier(float(size[k]), float(unit[k] * left[k] / apart[k]))
+        for k in np.flatnonzero(size > OUTLYING)
     }
 
 

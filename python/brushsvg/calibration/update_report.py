@@ -76,7 +76,7 @@ def _table(made) -> list[str]:
 
 def _cell(made, law: str, depths: np.ndarray, i: int) -> str:
     now, was = (
-        f"{getattr(brush, law)(depths[i]):.2f}" + (f" +- {band[0][i]:.2f}" if band else "")
+        f"{getattr(brush, law).extrapolated(depths[i]):.2f}" + (f" +- {band[0][i]:.2f}" if band else "")
         for brush in (made.brush, made.before)
         for band in [law_band(brush, law, depths)]
     )

@@ -532,6 +532,21 @@ def why_no_backlash(cell: Cell) -> str:
     return OF_JOINTS if cell.arm else NO_BACKLASH.get(cell.language, "")
 
 
+def not_undone(cell: Cell) -> dict[str, str]:
+    """The keys of a table machine that this machine cannot undo, each with the reason."""
+    found = {}
+    if cell.servo:  # at its steps a way would jump aside
+        found |= dict.fromkeys(
+            ("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm"), "a servo's depth goes in steps"
+        )
+    if cell.pen:
+        keys = ("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm", "height_mm")
+        found |= dict.fromkeys(keys, "a pen knows no height")
+    if why := why_no_backlash(cell):
+        found["backlash_mm"] = why
+    return found
+
+
 ALONG_RAD = 0.1  # an axis that is turned by less goes along the paper's edge, as far as its play shows
 
 

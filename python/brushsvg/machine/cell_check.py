@@ -23,9 +23,9 @@ from .cell import (
     Station,
     entries,
     least_backlash_mm,
+    not_undone,
     robot_from_paper,
     value_mm,
-    why_no_backlash,
     why_no_waiting,
 )
 from .frames import moved, normal_tilt_deg
@@ -71,17 +71,13 @@ def check(cell: Cell) -> None:
         _check_map(cell.machine.map_mm)
     if cell.machine:
         _check_field(cell.machine)
-    if cell.machine and any(cell.machine.backlash_mm):
-        _check_backlash(cell)
+        _check_undone(cell)
     if cell.pen:
         _check_pen(cell)
     if cell.motors:
         _check_motors(cell)
     if cell.servo:
         _check_servo(cell)
-        _check_machine_keeps_heights(
-            cell, "servo, whose depth goes in steps"
-        )  # at which a way would jump aside
     _check_paint(cell)
     if cell.contact:
         _check_contact(cell)
@@ -326,7 +322,6 @@ def _check_pen(cell: Cell) -> None:
         ):
             sentence = f"colour {colour[:24]!r} of pen {number} is not written as #rrggbb, or given twice"
             raise Error(sentence, where="pen.colours", code="colour-invalid")
-    _check_machine_keeps_heights(cell, "pen, which knows no height", "height_mm")
 
 
 MOST_STEPS_S = 25_000  # of each motor of an EBB
@@ -402,20 +397,18 @@ def _check_servo(cell: Cell) -> None:
         )
 
 
-def _check_backlash(cell: Cell) -> None:
-    where, values = "machine.backlash_mm", [*cell.machine.backlash_mm]
-    if why := why_no_backlash(cell):
-        raise Error(
-            f"backlash_mm {values} is outside the range [0, 0] of language {cell.language!r}: {why}",
-            where=where,
-            code="cell-machine",
-        )
+def _check_undone(cell: Cell) -> None:
+    for key, why in not_undone(cell).items():
+        values = np.atleast_1d(getattr(cell.machine, key)).tolist()
+        if np.any(values):
+            sentence = f"{key} {values} is outside the range [0, 0] of this machine: {why}"
+            raise Error(sentence, where=f"machine.{key}", code="cell-machine")
     least = least_backlash_mm(cell)
-    for value in values:
+    for value in cell.machine.backlash_mm:
         if 0 < value < least:
             raise Error(
                 f"backlash_mm {value:g} is neither 0 nor in the range [{least:g}, 3] mm",
-                where=where,
+                where="machine.backlash_mm",
                 code="cell-machine",
             )
 
@@ -468,17 +461,6 @@ def _check_field(machine: Machine) -> None:
             f"field_reach_mm {[*machine.field_reach_mm]} its numbers are too large"
         )
         raise Error(sentence, where="machine.field_mm", code="cell-machine")
-
-
-def _check_machine_keeps_heights(cell: Cell, whose: str, *keys: str) -> None:
-    for key in ("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm", *keys):
-        values = np.atleast_1d(getattr(cell.machine, key, ())).tolist()
-        if np.any(values):
-            raise Error(
-                f"{key} {values} is outside the range [0, 0] of a {whose}",
-                where=f"machine.{key}",
-                code="cell-machine",
-            )
 
 
 def _check_paint(cell: Cell) -> None:

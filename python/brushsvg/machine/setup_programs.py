@@ -36,7 +36,8 @@ def around(bounds_mm) -> tuple[float, float, float, float]:
 
 def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, step_mm: float) -> Program:
     """What a careful person does before the first job: round the sheet high in the air and again at safe height, down
-    to the paper at four points, the strokes of `paper_height`, one stroke; a person lets it go on in between.
+    to the paper at four points, the strokes of `paper_height`, one stroke; a person lets it go on in between. The tool
+    first rises straight up to the height of the air run, and is never lowered at travel speed.
 
     Error when the program cannot wait for a person, when it leaves the workspace, when the strokes do not fit.
     """
@@ -63,10 +64,14 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
 
     def sections() -> Iterator[Section]:
         (look,) = round_it.sections()
-        lifted = tuple(_raised(step, high_mm) for step in look.steps)
+        start, *others = look.steps
+        slowly = Move(
+            "approach", start.points_mm, approach_mm_s(brush, cell)
+        )  # it may go down from higher up
+        lifted = tuple(_raised(step, high_mm) for step in (slowly, *others))
         yield Section("first run: round the sheet, high in the air", lifted)
         yield Section(
-            "first run: round the sheet, at safe height", (_ask("all clear of the tool"), *look.steps)
+            "first run: round the sheet, at safe height", (_ask("all clear of the tool"), slowly, *others)
         )
         for number, corner in enumerate(_inner_corners(sheet_mm), 1):
             yield Section(
@@ -85,7 +90,7 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
             f"first run: one stroke, {depth_mm:g} mm deep", (_ask("the brush has paint again"), *one)
         )
 
-    return _unless_astray(sections, brush, cell, sheet_mm)
+    return _unless_astray(sections, brush, cell, sheet_mm, rise_more_mm=high_mm)
 
 
 def _ask(message: str) -> Wait:
@@ -272,9 +277,13 @@ def _lanes(count: int, sheet_mm) -> list[tuple[float, float]]:
     return [(LANE_MM + pitch * (k // rows), height - LANE_MM * (1 + k % rows)) for k in range(count)]
 
 
-def _unless_astray(sections, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
+def _unless_astray(
+    sections, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0, rise_more_mm: float = 0.0
+) -> Program:
+    """rise_more_mm: how far over the safe height the tool rises before anything else."""
     frame = robot_from_paper(cell, z_offset_mm)
-    rises_mm = (rise_over(cell, sheet_mm, of) for of in (np.eye(4), frame))
+    high = replace(cell, heights=replace(cell.heights, safe_mm=cell.heights.safe_mm + rise_more_mm))
+    rises_mm = (rise_over(high, sheet_mm, of) for of in (np.eye(4), frame))
 
     def told() -> Iterator[Section]:
         return (at_told_speeds(section, cell) for section in sections())

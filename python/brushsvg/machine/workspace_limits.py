@@ -251,6 +251,8 @@ def _box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: float) -
                     f"height {_told(height, low, high)} mm is outside the range [{low:g}, {high:g}] mm of the servo "
                     f"of cell {cell.name}"
                 )
+                if height > high:  # where the paper lies higher than the table leaves room for
+                    sentence += ": measure a higher row of its table, or lower safe_mm"
                 yield Notice("", sentence, code="servo-out-of-range")
 
 

@@ -17,6 +17,7 @@ from ..scan.flatten import Flat, flatten
 from ..scan.markers import Printed, View, find_view
 from ..scan.photo import read_photo, refuse_twice
 from ..scan.whole_page import refuse_cropped, refuse_unsure
+from .corrections import LEAST_MARKS
 from .job_page import JobPage, box_ring
 from .placing import NOWHERE, Canvas, Placed, grown, place
 
@@ -35,7 +36,6 @@ DRIER = 0.1  # share of a mark without paint, beyond that of most: its middle is
 THING_MM2 = 100.0  # of one piece beside all marks: a hand, a tool or a large blot
 PALEST = 0.15  # of the usual paint, that of a stroke
 ALIKE = 0.9  # overlap of the paint of two photographs of one sheet, at least
-LEAST_MARKS = 3  # fewer do not tell a sheet's place from their own
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from .led_width import wider
 
 FORMAT = "brushsvg/comparison"
 BESIDE = "beside_machine"  # of the file: what is left of each stroke once the cell is mended
+LEAST_MARKS = 3  # fewer do not tell a sheet's place from their own
 MARK = "corrections"  # of a plan that was corrected: the key, with how many strokes were
 MOST_WIDER_MM = 1.0  # of each edge: a mark that is off by more is another brush's
 MOST_MM, MOST_DEG = 3.0, 3.0  # a mark that lies farther off does so for a reason that is to be found
@@ -175,12 +176,23 @@ def read_sheet_before(path: str | os.PathLike[str]) -> SheetBefore:
             (mended,) = json_fields.objects([content[BESIDE]], BESIDE)
             found += _strokes(mended, f"{BESIDE}.", of_brush)
         if not found:
-            sentence = "it says of no stroke where to lead it: the photograph did not show where marks lie"
-            raise Error(sentence, "strokes", code="corrections-missing")
+            raise Error(_why_none(content["strokes"]), "strokes", code="corrections-missing")
     except Error as refusal:
         refusal.file = os.fspath(path)
         raise
     return SheetBefore(found, _aside_mm(content["strokes"]))
+
+
+def _why_none(rows: list[dict]) -> str:
+    seen = sum(row.get("found") is True for row in rows)
+    if 0 < seen < LEAST_MARKS:
+        return (
+            f"it corrects no stroke: {seen} of its marks {'was' if seen == 1 else 'were'} found, and at least "
+            f"{LEAST_MARKS} are needed to tell a stroke's own place from the sheet's"
+        )
+    if seen:
+        return "it corrects no stroke: no mark is seen well enough and near enough to where it was predicted"
+    return "it corrects no stroke: the photograph did not show where marks lie"
 
 
 def _strokes(content: dict, at: str, of_brush: dict) -> tuple[Correction, ...]:

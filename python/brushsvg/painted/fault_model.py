@@ -119,7 +119,9 @@ class FaultModel:
             for name, (even, slope) in (("lag", lag), ("half_width", width))
         }
         brush = with_factors(self.brush, factors)
-        marks = _core.simulate(_core.Plan("", "", self.plan.sheet_mm, asked), brush, ROUGHLY_MM)
+        marks = _core.simulate(
+            _core.Plan("", "", self.plan.sheet_mm, asked), brush, ROUGHLY_MM, may_rise=True
+        )
         lie = rotation(turn)
         with ThreadPoolExecutor(AT_ONCE) as pool:  # without the interpreter's lock
             outlines = list(pool.map(lambda mark: _traced(mark, brush), marks.passes))

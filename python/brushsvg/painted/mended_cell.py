@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
+
 import numpy as np
 
 from ..calibration.machine_found import field_lines
@@ -14,13 +16,35 @@ SURE = 1.0  # half intervals from 0, from where on a number goes into a cell
 Along = tuple[int, int] | None
 
 
-def sure(faults: Faults, before: Machine | None, along: Along) -> dict[str, float]:
-    """By the name of each number what of it goes into a cell: 0 where it is not certain."""
-    certain = {
+KEYS = {  # of a table machine, by the first word of a number's name
+    "lean": "lean_mm_per_mm",
+    "scale": "scale",
+    "skew": "skew",
+    "height": "height_mm",
+    "tilt": "tilt_mm_per_mm",
+    "backlash": "backlash_mm",
+}
+
+
+def key_of(name: str) -> str:
+    return KEYS[name.partition(" ")[0]]
+
+
+def certain_of(faults: Faults) -> dict[str, float]:
+    """By the name of each number of the machine and the paper its value, 0 where it is not certain."""
+    return {
         one.number.name: one.value if abs(one.value) > SURE * one.half else 0.0
         for one in faults.found
         if one.number.cause in (MACHINE, PAPER)
     }
+
+
+def sure(
+    faults: Faults, before: Machine | None, along: Along, left_out: Container[str] = ()
+) -> dict[str, float]:
+    """By the name of each number what of it goes into a cell: 0 where it is not certain. left_out: keys of the table
+    that this machine cannot undo."""
+    certain = {name: 0.0 if key_of(name) in left_out else value for name, value in certain_of(faults).items()}
     for paper, name in enumerate("xy"):
         was = before.backlash_mm[along[paper]] if before and along else 0.0
         now = was + certain.get(f"backlash in {name}", 0.0) if along else was
@@ -28,9 +52,15 @@ def sure(faults: Faults, before: Machine | None, along: Along) -> dict[str, floa
     return certain
 
 
-def mended(faults: Faults, middle_mm, before: Machine | None, along: Along = (0, 1)) -> Machine | None:
+def mended(
+    faults: Faults,
+    middle_mm,
+    before: Machine | None,
+    along: Along = (0, 1),
+    left_out: Container[str] = (),
+) -> Machine | None:
     """before: what the painted job's cell undid; the rest comes on top. None where nothing is certain."""
-    certain = sure(faults, before, along)
+    certain = sure(faults, before, along, left_out)
     if not any(certain.values()):
         return None
     before = before or Machine()

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..errors import Error, Notice
 from ..geometry.rotation import rotation
-from .comparison import LEAST_MARKS, Compared, Comparison
-from .corrections import MOST_DEG, MOST_MM, MOST_WIDER_MM, Correction, way_of
+from .comparison import Compared, Comparison
+from .corrections import LEAST_MARKS, MOST_DEG, MOST_MM, MOST_WIDER_MM, Correction, way_of
 from .led_width import refuse_width
 
 # Of what was seen so much is taken back as repeats: a brush set down twice is taken to lie 0.1 mm elsewhere in x and in

@@ -13,7 +13,8 @@ from ..errors import Error
 from ..files import read_bytes
 from ..geometry.polylines import evenly
 from ..geometry.rotation import rotation
-from .comparison import LEAST_MARKS, Comparison
+from .comparison import Comparison
+from .corrections import LEAST_MARKS
 from .next_time import UNSEEN
 
 FORMAT = "brushsvg/repeatability"

@@ -24,7 +24,7 @@ from ..machine.posts import GCODE
 from ..machine.program import out_of_arm
 from ..machine.setup_programs import around
 from ..machine.writer import beside
-from ..verification import against_plan, against_regenerated, setup_programs, simulate_program
+from ..verification import against_plan, against_regenerated, pace, setup_programs, simulate_program
 from ..verification.readback import read_program, text_of_file
 from ..verification.readback.fanuc import called
 from ..verification.readback.header import made as made_of
@@ -249,7 +249,8 @@ def _written_again(
         at_most = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, None, fastest)
         least_s = duration_s(at_most)
     changed = against_regenerated.differing_line(program.text, program.read, again, cell, least_s)
-    return again, [Notice("", changed, code="program-changed")] if changed else []
+    said = [Notice("", changed, code="program-changed")] if changed else pace.stops(program.read, again)
+    return again, said
 
 
 def _told_by(made, work: Work | None) -> tuple[str, tuple[str, ...]]:

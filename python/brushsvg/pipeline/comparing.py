@@ -14,8 +14,8 @@ from ..calibration.from_prior import has_learned
 from ..errors import Error, Notice, need
 from ..evaluation.report import wanted_rings
 from ..files import read_bytes
-from ..machine.cell import Cell, axes_along_paper
-from ..machine.cell_file import own_name
+from ..machine.cell import Cell, Machine, axes_along_paper, not_undone
+from ..machine.cell_file import own_name, parse_cell, write_cell
 from ..painted import report
 from ..painted.beside_machine import beside_machine as left_beside
 from ..painted.comparison import Compared, Comparison, Wanted, compare_photos
@@ -32,7 +32,7 @@ from ..painted.fault_model import BRUSH
 from ..painted.faults import Faults, whose_fault
 from ..painted.job_marks import job_marks
 from ..painted.job_page import JobPage, job_page
-from ..painted.mended_cell import mended, sure
+from ..painted.mended_cell import certain_of, key_of, mended, sure
 from ..painted.next_time import farther, next_corrections
 from ..painted.picture import comparison_png
 from . import cancelling, prediction, preparation
@@ -169,9 +169,11 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], tol
     cell, machine, beside = work.options.cell, None, None
     if cell and faults:
         along = axes_along_paper(cell)
-        machine = mended(faults, found.middle_mm, cell.machine, along)
+        machine, left_out = _undoable(faults, found.middle_mm, cell, along)
+        told(paths[0], _not_undone(faults, cell, left_out))
         if machine:
-            rest = left_beside(found, sure(faults, cell.machine, along), sheet.plan, brush, strokes)
+            certain = sure(faults, cell.machine, along, left_out)
+            rest = left_beside(found, certain, sheet.plan, brush, strokes)
             beside = machine_sha256(machine), next_corrections(rest, work.plan, before, brush)[0]
     ends = ends_of(found, strokes, work.strokes or ())
     made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_undone(work)))
@@ -190,6 +192,34 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], tol
         report.as_json(sheet.title, found, corrections, faults, ends, made_with, beside),
         (sheet.page, strokes, found, sheet.title),
     )
+
+
+def _undoable(faults: Faults, middle_mm, cell: Cell, along) -> tuple[Machine | None, dict[str, str]]:
+    """The machine for the next cell, without the numbers that such a cell refuses; and why, by key."""
+    left_out = not_undone(cell)
+    while True:
+        machine = mended(faults, middle_mm, cell.machine, along, left_out)
+        try:
+            if machine:
+                parse_cell(write_cell(replace(cell, machine=machine)))
+            return machine, left_out
+        except Error as problem:
+            key = problem.where.removeprefix("machine.")
+            if key == problem.where or key in left_out:
+                raise
+            left_out[key] = str(problem)
+
+
+def _not_undone(faults: Faults, cell: Cell, left_out: dict[str, str]) -> list[Notice]:
+    """One notice on all that is certain of the machine and goes into no cell of its kind."""
+    certain = [name for name, value in certain_of(faults).items() if value]
+    rest = [name for name in certain if key_of(name) in left_out]
+    if not rest:
+        return []
+    why = "; ".join(dict.fromkeys(left_out[key_of(name)] for name in rest))
+    sentence = f"cell {cell.name} cannot undo {', '.join(rest)}: {why}"
+    advice = "repair the machine, or give the corrections to convert"
+    return [Notice("machine", sentence, code="machine-not-undone", advice=advice)]
 
 
 def _undone(work: Work):

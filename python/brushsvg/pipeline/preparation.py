@@ -250,10 +250,11 @@ def _beside_shapes(lines: _Lines, way: _Way, brush, options: Options) -> tuple[l
 
 
 def _refuse_wide_lines(strokes: list, brush) -> None:
-    """Error for the first line that the brush cannot paint, before the time is taken that shapes do."""
+    """Error for the first line that is wider than the brush, before the time is taken that shapes do."""
+    least = brush.half_width_range_mm()[0]
     for stroke in strokes if brush.width_follows_depth() else ():
         if not stroke.wanted_mm:
-            brush.depth_for_half_width(max(half for _, half in stroke.half_width), stroke.id)
+            brush.depth_for_half_width(max(least, *(half for _, half in stroke.half_width)), stroke.id)
 
 
 def _design(source, reading: drawing.ReadOptions) -> Design:

@@ -42,7 +42,9 @@ def painted(
     brush = with_factors(brush, {"lag": (studio.brush.lag,), "half_width": (studio.brush.half_width,)})
     run = _as_run(plan, studio, undone)
     try:
-        marks = _core.simulate(_core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, run), brush)
+        marks = _core.simulate(
+            _core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, run), brush, may_rise=True
+        )
     except Error as refusal:
         if refusal.code == "depth-out-of-range" and _deepest_mm(plan.passes) <= brush.depth_range_mm[1]:
             refusal = Error(

@@ -274,7 +274,7 @@ def _limb_towards(place: np.ndarray, piece: Blank, own: list, shape: list[np.nda
     halves = np.where(shapely.intersects(area, points), shapely.distance(area.boundary, points), 0.0)
     is_out = at > np.hypot(*(np.array(piece.at_mm) - root))
     reach_mm = ((np.vstack(piece.rings) - root) @ onward).max() / to_place  # beyond, others have painted
-    is_end = (halves < finest(brush)) | (is_out & (np.gradient(halves, at) < _ROUND))
+    is_end = (halves <= finest(brush)) | (is_out & (np.gradient(halves, at) < _ROUND))
     is_end |= is_out & (at + halves > reach_mm)
     count = int(is_end.argmax()) if is_end.any() else len(at)
     if count < 3:

@@ -201,7 +201,8 @@ def _may_leave(rings: list[np.ndarray], coverage, least: float, least_half: floa
     """Whether `_left` may find anything. coverage: makes of a window and px/mm what covers the shape."""
     points = np.vstack(rings)
     low, size = points.min(axis=0), np.ptp(points, axis=0) + 1.0
-    fine, most = max(_PX_PER_MM, _PX_OF_FINEST / least_half), _SIDE_PX / size.max()
+    seen_mm = max(least_half, _EDGE_MM)  # `_left` leaves out what is thinner
+    fine, most = max(_PX_PER_MM, _PX_OF_FINEST / seen_mm), _SIDE_PX / size.max()
     window = (*low, *size), min(fine, most)
     blank = (_core.coverage(rings, *window) > 0.5) & (coverage(*window) < 0.5)
     for piece in known:
@@ -288,7 +289,8 @@ def _limbs(rings: list[np.ndarray]) -> np.ndarray:
 
 
 def finest(brush) -> float:
-    """Half the width of the finest line that the brush paints, as far as it was measured."""
+    """Half the width of the finest line that the brush paints, as far as it was measured; 0 for a brush that begins to
+    paint with no width."""
     measured = brush.lag.calibrated_mm
     least = brush.half_width_range_mm()[0]
     return max(least, brush.half_width(measured[0])) if measured else least

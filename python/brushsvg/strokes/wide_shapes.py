@@ -34,11 +34,13 @@ def within_reach(
 ) -> tuple[list[_core.Stroke], list[_core.Stroke], list[Notice]]:
     """What to paint, stroke by stroke, and what each should become: (strokes to paint, strokes wanted, notices).
 
-    Only strokes that carry an outline are changed: widths that were drawn as such are refused when the plan is made.
+    A line that was drawn narrower than the brush is painted at the brush's least width; one drawn wider is refused when
+    the plan is made. Other widths are changed only where strokes carry an outline. A stroke whose shape is less than
+    half of the smallest mark of the brush is left out: its mark would paint more outside of the shape than inside.
     wide: "clamp", the nearest width; "passes", several passes, called id, id~2, id~3 ..., which fill the shape that is
     wider than the brush and stay in it; "auto", passes for all wider shapes that they paint better, if at the nearest
     widths the mark of one of them overlaps with it by less than 0.8, or marks of all of them by 0.1 less than passes;
-    "refuse", Error naming stroke, width and range.
+    "refuse", Error naming stroke, width and range. Error if nothing is left to paint.
     """
     need(brush, _core.Brush, "a brush")
     need_one_of(wide, ("auto", "clamp", "passes", "refuse"), "what becomes of wide shapes")
@@ -48,14 +50,19 @@ def within_reach(
         return strokes, strokes, []
     least, greatest = brush.half_width_range_mm()
     reach = f"[{2 * least:.3g}, {2 * greatest:.3g}] mm of brush {brush.name}"
-    beyond = {k: _beyond(stroke, least, greatest) for k, stroke in enumerate(strokes)}
+    strokes, notices = _without_slivers(strokes, least, brush) if wide != "refuse" else (strokes, [])
+    beyond = {
+        k: _beyond(stroke, least, greatest) if stroke.wanted_mm or brush.width_follows_depth() else None
+        for k, stroke in enumerate(strokes)
+    }
     if wide == "refuse":
         for stroke, (_, worst) in ((strokes[k], found) for k, found in beyond.items() if found):
-            sentence = f"width {2 * worst:.3g} mm of its outline is outside the range {reach}"
+            whose = "outline" if stroke.wanted_mm else "line"
+            sentence = f"width {2 * worst:.3g} mm of its {whose} is outside the range {reach}"
             bounds = (2 * least, 2 * greatest)
             raise Error(sentence, stroke.id, 2 * worst, bounds, code="width-out-of-reach")
     filled, fillable = _filled(strokes, _wide(strokes, beyond, greatest), brush, wide)
-    painted, wanted, notices = [], [], []
+    painted, wanted = [], []
     for k, stroke in enumerate(strokes):
         made, meant, how = filled.get(k) or ([stroke], [stroke], "")
         if beyond[k] and k not in filled:
@@ -81,16 +88,41 @@ def _shows(half: float, least: float, greatest: float) -> bool:
     return not least - UNSEEN_MM <= half <= greatest + UNSEEN_MM
 
 
+def _without_slivers(strokes: list, least: float, brush) -> tuple[list, list[Notice]]:
+    """The strokes but those of shapes that are less than half of the smallest mark of the brush."""
+    dab_mm2 = np.pi * least**2
+    areas = [_core.area(stroke.wanted_mm) if stroke.wanted_mm and dab_mm2 else np.inf for stroke in strokes]
+    notices = [
+        Notice(
+            stroke.id,
+            f"its shape of {area:.2g} mm2 is less than half of the smallest mark of brush {brush.name}, "
+            f"{dab_mm2:.2g} mm2: left out",
+            code="width-out-of-reach",
+            about="sliver",
+        )
+        for stroke, area in zip(strokes, areas, strict=True)
+        if area < dab_mm2 / 2
+    ]
+    if strokes and len(notices) == len(strokes):
+        first = notices[0]
+        sentence = f"there is nothing to paint: {first.sentence}; draw it larger, or take a finer brush"
+        raise Error(sentence, where=first.where, code="nothing-to-paint")
+    return [stroke for stroke, area in zip(strokes, areas, strict=True) if area >= dab_mm2 / 2], notices
+
+
 def _beyond(stroke, least: float, greatest: float) -> tuple[str, float] | None:
-    """How many widths of an outline are out of reach, in words, and half the worst."""
+    """How many widths are out of reach, in words, and half the worst; None for a line that was drawn too wide, which is
+    refused."""
     halves = np.array([half for _, half in stroke.half_width])
-    off = (halves < least - 1e-9) | (halves > greatest + 1e-9)
-    if not stroke.wanted_mm or not off.any():
+    is_narrow, is_wide = halves < least - 1e-9, halves > greatest + 1e-9
+    off = is_narrow | is_wide if stroke.wanted_mm else is_narrow
+    if not off.any() or (is_wide.any() and not stroke.wanted_mm):
         return None
-    worst = halves.max() if halves.max() > greatest + 1e-9 else halves.min()
+    worst = halves.max() if is_wide.any() else halves.min()
+    whose = "of its outline" if stroke.wanted_mm else "of its line"
     if len(off) == 1:
-        return "the width of its outline,", worst
-    return f"{off.sum()} of {len(off)} widths of its outline, up to", worst
+        return f"the width {whose},", worst
+    return f"{off.sum()} of {len(off)} widths {whose}, {'up' if is_wide.any() else 'down'} to", worst
 
 
 def _wide(strokes: list, beyond: dict, greatest: float) -> list[int]:

@@ -7,9 +7,7 @@ import math
 
 import numpy as np
 
-from .. import _core
 from ..errors import Error, Notice
-from ..machine.arc_chords import with_chords
 from ..machine.cell import Cell, least_move_mm, unit_mm, value_mm
 from ..machine.paint_reload import PlanInLoads, visits
 from ..machine.posts.text import spelled
@@ -89,7 +87,6 @@ def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
     """Where a pass that was read, its poses in these lines of the program, does not run where it should, in the order
     in which it should, or not as fast."""
     problems = _held_otherwise(a_pass, lines, meant)
-    meant = _with_circles_of(a_pass, meant)
     # where units are coarse, a pose gives way to one that is less than a move away
     limit_mm = max(STRAY_MM, slack_mm(cell), least_move_mm(cell) + unit_mm(cell))
     # a servo's height goes in steps of whole values, beside the line by half of both
@@ -153,21 +150,7 @@ def _astray(away_mm: float, limit_mm: float) -> str:
     return f"from here on the stroke is not painted once, from its start to its end, as the drawing asks: {changed}"
 
 
-def _with_circles_of(a_pass, meant):
-    """A plan's pass with only those circles that the pass has, too: others are run as lines, as on paper that leans.
-    What was told by a pose on a flat one's way has its centre elsewhere, and runs beside these lines."""
-    known = [(*arc.centre_mm, arc.direction) for arc in a_pass.arcs]
-    meant = with_chords(meant)
-    arcs = [
-        arc
-        for arc in meant.arcs
-        if any(math.dist(each, (*arc.centre_mm, arc.direction)) < CIRCLE_MM for each in known)
-    ]
-    return _core.Pass(meant.stroke, meant.poses_mm, meant.speed_mm_s, arcs=arcs)
-
-
-# farther apart, two centres are those of two circles; less than the 2 between both directions
-CIRCLE_MM = 0.5
+PLACES = 17  # along a circle, of which two are compared
 
 
 def _pose_by_pose(a_pass, meant) -> float:
@@ -181,9 +164,18 @@ def _pose_by_pose(a_pass, meant) -> float:
     for k, arc in our_arcs.items():
         if arc.direction != their_arcs[k].direction:
             return np.inf
-        # a radius is off by no more than centre and ends together
-        away_mm = max(away_mm, ends_mm + 2 * math.dist(arc.centre_mm, their_arcs[k].centre_mm))
+        apart = _way_round(a_pass, arc) - _way_round(meant, their_arcs[k])
+        away_mm = max(away_mm, float(np.hypot(*apart.T).max()))
     return away_mm
+
+
+def _way_round(a_pass, arc) -> np.ndarray:
+    """Places (n, 2) evenly along a circle from its first pose to its last. The centre of a flat one says little: where
+    three of its places are rounded by a thousandth of a millimetre, it moves by a millimetre, and the way does not."""
+    way = np.asarray(a_pass.poses_mm)[arc.first : arc.last + 1, :2] - arc.centre_mm
+    angles = np.unwrap(np.arctan2(way[:, 1], way[:, 0]))
+    angles, radii = (np.linspace(each[0], each[-1], PLACES) for each in (angles, np.hypot(*way.T)))
+    return arc.centre_mm + radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
 def _corners(a_pass) -> tuple[np.ndarray, dict[int, object]]:

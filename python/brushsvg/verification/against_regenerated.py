@@ -16,6 +16,7 @@ from ..machine.header_lines import header_of
 from ..machine.motion import Program, duration_s, painting_mm
 from ..machine.paint_reload import PlanInLoads
 from ..machine.posts import POSTS
+from ..machine.posts.fanuc import cnt_mm
 from ..machine.posts.script import down
 from ..machine.program import Job, unchecked_program
 from ..machine.writer import text_of
@@ -185,6 +186,9 @@ def _differs(ours: list[str], theirs: list[str], a: Act | None, b: Act | None, l
     ):
         speeds = f"runs at {a.at_most[0]:.1f} mm/s: for these strokes and this cell brushsvg would write"
         return f"line {a.line}: {line.strip()[:60]!r} {speeds} {b.at_most[0]:.1f} mm/s"
+    if b and a.kind == b.kind == "move" and a.text and a.same[0] == 0 < b.same[0]:
+        stands = "the brush stands still in the paint: for these strokes and this cell brushsvg would write"
+        return f"line {a.line}: {line.strip()[:60]!r}: {stands} {expected.strip()[:90]!r}"
     if b and a.kind == b.kind == "move" and not a.text and a.place == b.place and a.same != b.same:
         corners = next((line for line in theirs if line.startswith("G6")), "nothing")
         most = f"by up to {a.same[0]:g} mm" if math.isfinite(a.same[0]) else "as far as the machine likes"
@@ -245,6 +249,7 @@ class _Alike:
         header_ranges: tuple = ((0.0, math.inf), (0.0, math.inf)),
         upright: np.ndarray | None = None,
     ):
+        self.cell = cell
         self.length_mm, self.time_s = header_ranges
         self.near_mm = max(NEAR_MM, 3.1 * unit_mm(cell))
         self.upright = upright
@@ -265,12 +270,18 @@ class _Alike:
             return a.text == b.text or self._says_same(a.text, b.text)
         if a.kind == "move" and a.text != "movel":  # how much of its corners is cut: by G64 P, by a blend
             slack = max(LEAST_BLEND_MM, self.blends * b.same[0]) if a.text else self.near_mm / 2
-            is_cut = a.same[0] > 0 or bool(a.text)
+            is_cut = a.same[0] > 0 or b.same[0] <= max(slack, self.least_blend_mm(b))
             return a.text == b.text and (a.same == b.same or (is_cut and a.same[0] <= b.same[0] + slack))
         return a.text == b.text and all(
             found == wanted or abs(found - wanted) <= slack
             for found, wanted, slack in zip(a.same, b.same, self._slacks(b), strict=True)
         )
+
+    def least_blend_mm(self, act: Act) -> float:
+        """The smallest cut that a language has a word for: rounding makes it none, by which the tool stands still."""
+        if self.cell.language == "fanuc":
+            return cnt_mm(1, act.at_most[0], self.cell.blending.ramp_s)
+        return 0.0
 
     def is_slow(self, a: Act, b: Act) -> bool:
         """No faster than another, which may be rapid."""
@@ -296,10 +307,16 @@ class _Alike:
 
     def is_none(self, lift: Act) -> bool:
         """Whether a servo's lift in paint goes no further than rounding makes of none, and waits no longer than that
-        and its rest take."""
+        and its rest take. Rounding makes no wait without a lift: there the brush stands still in the paint."""
         _, waited_s, least, most = lift.same
         going_s = (most - least) * self.value_s
-        return bool(lift.text) and most - least <= self.step_values and waited_s <= self.rest_s + going_s
+        goes = most > least or waited_s <= WAITS_S
+        return (
+            bool(lift.text)
+            and goes
+            and most - least <= self.step_values
+            and waited_s <= self.rest_s + going_s
+        )
 
     def is_idle(self, act: Act, here: tuple) -> bool:
         """Goes to where the tool is, or nowhere that a brush shows: the tool counts as where it was."""

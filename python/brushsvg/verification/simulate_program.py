@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
+from ..machine.arc_chords import OFF_MM
 from ..machine.cell import MOST_TILT_DEG, Blending, Cell, robot_from_paper, unit_mm, value_mm
 from ..machine.corner_blending import blend_radii
 from ..machine.distortion import is_similar, told_pass, true_mm, true_pass
@@ -99,7 +100,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             rests.append(np.array([_rests(section.steps[number], cell) for number in track.step[on]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
     ran = _core.Plan(brush.name, "", tuple(sheet_mm), cut)
-    marks = _core.simulate(ran, brush)
+    marks = _core.simulate(ran, brush, may_rise=True)
     visited = _visits(read, cell)
     if brush.paint:
         # where visits belong to no stroke each begins freshly dipped, as in predictions
@@ -296,11 +297,12 @@ def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> 
 
 
 def chords(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, int]) -> list[np.ndarray]:
-    """Points of a circle between its ends, CHORD_RAD apart."""
+    """Points of a circle between its ends, CHORD_RAD apart or as close as their chords stay within OFF_MM of it."""
     x, y, _ = centre
     first, sweep = np.arctan2(start[1] - y, start[0] - x), _sweep_rad(start, end, centre)
     radius = np.hypot(end[0] - x, end[1] - y)
-    count = int(np.ceil(abs(sweep) / CHORD_RAD))
+    least = min(CHORD_RAD, 2 * np.arccos(1 - OFF_MM / max(radius, OFF_MM)))
+    count = int(np.ceil(abs(sweep) / least))
     angles = first + sweep * np.arange(1, count) / max(count, 1)
     heights = np.linspace(start[2], end[2], count + 1)[1:-1]
     return [
@@ -453,6 +455,7 @@ def _careless(
         for on in map(slice, first, last):
             top = paper_mm + slack
             yield from _ahead(steps[on], before[on], track.points[on], cell, limit, top)
+        yield from _lifts_at_once(steps, before, track.points, cell, paper_mm)
 
 
 def _rapid(step: Step, where: str = "") -> Notice:
@@ -491,7 +494,7 @@ def _ahead(
     """A notice where a servo's tip is faster than the limit, from the steps of one touch. Its feed is that of the
     way beside the lift alone, and its heights go in steps, of a value at least: over any number of moves the tip may be
     no more than two steps and a value ahead of what the limit allows for their time."""
-    lead_mm = 2 * max(cell.servo.step_mm, value_mm(cell)) + value_mm(cell) + 1e-6
+    lead_mm = _lead_mm(cell)
     ways_mm = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)
     speeds = np.array([step.speed_mm_s for step in steps])
     took_s = np.divide(ways_mm, speeds, out=np.zeros(len(steps)), where=speeds > 0)
@@ -522,6 +525,33 @@ def _ahead(
             return
 
 
+def _lead_mm(cell: Cell) -> float:
+    """How far rounded heights, which go in steps, may be ahead: a lift begins where the last part of a way was held."""
+    return 2 * max(cell.servo.step_mm, value_mm(cell)) + value_mm(cell) + 1e-6
+
+
+def _lifts_at_once(
+    steps: list, before: np.ndarray, after: np.ndarray, cell: Cell, paper_mm: float
+) -> Iterator[Notice]:
+    """A notice where a servo lifts or lowers the brush alone, between the clearance and the paper, in a larger step
+    than brushsvg writes, or faster than the cell presses. What is wholly in the paint is held against the brush's limit
+    elsewhere."""
+    paper, clearance = paper_mm + slack_mm(cell), paper_mm + cell.heights.clearance_mm - value_mm(cell)
+    stands = ~(after[:, :2] != before[:, :2]).any(axis=1)
+    highest = np.maximum(before[:, 2], after[:, 2])
+    rise_mm = np.abs(np.minimum(after[:, 2], clearance) - np.minimum(before[:, 2], clearance))
+    waits_s = np.array([step.wait_s for step in steps])
+    least_s = rise_mm / cell.speeds.press_mm_s - ROUNDED_S
+    for k in np.flatnonzero(stands & (highest > paper) & ((rise_mm > _lead_mm(cell)) | (waits_s < least_s))):
+        sentence = (
+            f"line {steps[k].line}: the servo moves the brush by {rise_mm[k]:.2f} mm in {waits_s[k]:.3f} s near the "
+            f"paper (steps of {cell.servo.step_mm:g} mm, at most {cell.speeds.press_mm_s:g} mm/s)"
+        )
+        yield Notice("", sentence, code="speed-out-of-range")
+        return
+
+
+ROUNDED_S = 1e-3  # of a wait, by its decimals
 ROUNDED_MM = 4e-3  # of a way by the decimals of its ends
 
 

@@ -6,7 +6,7 @@ import argparse
 
 from ...drawing import READERS
 from . import values
-from .flags import add_looks, add_quiet, add_z_offset, plans_and_programs
+from .flags import add_looks, add_writes, add_z_offset, plans_and_programs
 from .usage_checks import PHOTOS, PICTURES, PROGRAMS, check_files, check_job, suffix_of
 
 
@@ -57,7 +57,7 @@ def add_chart(commands) -> None:
         f"default: {values.EDGE_NOISE_MM:g}",
     )
     add_z_offset(chart)
-    add_quiet(chart)
+    add_writes(chart)
     chart.set_defaults(run="chart_file", parser=chart, check=_check_chart)
 
 
@@ -118,6 +118,11 @@ def add_calibrate(commands) -> None:
         "lean,axes,tilt,backlash,field",
     )
     fit.add_argument(
+        "--cell",
+        metavar="NAME|FILE",
+        help="the machine that painted: with --machine, find only what its cell can undo",
+    )
+    fit.add_argument(
         "--paint",
         action="store_true",
         help="from marks painted in the order of their plan with one load of paint: also find how they narrow",
@@ -141,7 +146,7 @@ def add_calibrate(commands) -> None:
         "brushsvg height; default: 0.3, as by eye",
     )
     fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
-    add_quiet(fit)
+    add_writes(fit)
     fit.set_defaults(run="calibrate_file", parser=fit, check=_check_calibrate)
 
 
@@ -174,6 +179,8 @@ def _add_photo(command, needed: bool) -> None:
 def _check_calibrate(args) -> None:
     args.input = args.inputs[0]
     args.photos = [path for path in args.inputs if suffix_of(path) in PHOTOS]
+    if args.cell is not None and not args.machine:
+        args.parser.error("--cell says what of --machine can be undone: give --machine")
     if args.plan is not None or args.prior is not None:
         _check_update(args)
         return
@@ -231,7 +238,7 @@ def add_scan(commands) -> None:
         help="outlines in mm, as calibrate takes them (.json)",
     )
     _add_photo(scan, True)
-    add_quiet(scan)
+    add_writes(scan)
     scan.set_defaults(run="scan_file", parser=scan, check=_check_scan)
 
 
@@ -294,19 +301,19 @@ def add_brush(commands) -> None:
     new.add_argument(
         "--speed", metavar="MM/S", type=values.speed, help="at most; default: 25, or as --like has it"
     )
-    add_quiet(new)
+    add_writes(new)
     new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
     plot = whats.add_parser("plot", help="draw the laws with confidence bands, and the footprints")
     plot.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
     plot.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
-    add_quiet(plot)
+    add_writes(plot)
     plot.set_defaults(run="brush_plot", parser=plot, check=_check_brush_plot)
 
 
 def add_article(commands) -> None:
     article = commands.add_parser("article", help="draw the article's figures and tables anew, as a page")
     article.add_argument("output", metavar="OUTDIR", help="a folder; gets article.md and article/*.png")
-    add_quiet(article)
+    add_writes(article)
     article.set_defaults(run="article_files", parser=article)
 
 

@@ -13,6 +13,7 @@ from .flags import (
     add_order,
     add_quiet,
     add_speed,
+    add_writes,
     add_z_offset,
     plans_and_programs,
 )
@@ -42,7 +43,7 @@ def add_convert(commands) -> None:
         "--page", metavar="FILE", help="also write the page to paint on, with markers for compare (.pdf .svg)"
     )
     convert.add_argument("--report", metavar="FILE", help="also write the figures (.txt .json)")
-    add_quiet(convert)
+    add_writes(convert)
     convert.set_defaults(run="convert_file", parser=convert, check=_check_convert)
 
 
@@ -150,7 +151,7 @@ def add_compare(commands) -> None:
         help="each photograph shows another sheet, or the one shows copies of strokes: how well they repeat",
     )
     compare.add_argument("--json", action="store_true", help="as JSON")
-    add_quiet(compare)
+    add_writes(compare)
     compare.set_defaults(run="compare_files", parser=compare, check=_check_compare)
 
 
@@ -189,7 +190,7 @@ def add_simulate_photo(commands) -> None:
         "--true-brush", metavar="NAME|FILE", help="the brush that paints; default: the one of the plan"
     )
     simulate.add_argument("--seed", metavar="N", type=values.count, default=1, help="of chance; default: 1")
-    add_quiet(simulate)
+    add_writes(simulate)
     simulate.set_defaults(run="simulate_photo_file", parser=simulate, check=_check_simulate_photo)
 
 
@@ -214,7 +215,7 @@ def add_predict(commands) -> None:
         action="store_true",
         help="also draw the 95 %% confidence band of the edges",
     )
-    add_quiet(predict)
+    add_writes(predict)
     predict.set_defaults(run="predict_file", parser=predict, check=_check_predict)
 
 
@@ -235,7 +236,7 @@ def add_report(commands) -> None:
         "--preview", metavar="FILE", help="also draw where paint is missing or too much (.png .svg)"
     )
     report.add_argument("--json", action="store_true", help="as JSON")
-    add_quiet(report)
+    add_writes(report)
     report.set_defaults(run="report_file", parser=report, check=_check_report)
 
 
@@ -265,7 +266,7 @@ def add_animate(commands) -> None:
         default=1.0,
         help="how much faster than the robot; default: 1",
     )
-    add_quiet(animate)
+    add_writes(animate)
     animate.set_defaults(run="animate_file", parser=animate, check=_check_animate)
 
 
@@ -284,7 +285,7 @@ def add_import(commands) -> None:
         action="store_true",
         help="the strokes as lines with a width, to go on drawing with (.svg)",
     )
-    add_quiet(look)
+    add_writes(look)
     look.set_defaults(run="import_file", parser=look, check=_check_import, brush=None, lag=None)
 
 
@@ -312,7 +313,7 @@ def add_text(commands) -> None:
     text.add_argument(
         "--sheet", metavar="WxH", type=values.sheet, help="the sheet; default: the text and 20 mm around it"
     )
-    add_quiet(text)
+    add_writes(text)
     text.set_defaults(run="text_file", parser=text, check=_check_text)
 
 

@@ -71,6 +71,17 @@ def add_quiet(command: argparse.ArgumentParser) -> None:
     command.add_argument("--quiet", action="store_true", help="do not say what was written; warnings stay")
 
 
+def add_writes(command: argparse.ArgumentParser) -> None:
+    """For a command that writes files of names that were typed."""
+    command.add_argument(
+        "--force",
+        action="store_true",
+        help="replace files that are there already: brushes, cells, corrections, drawings, and what was changed since "
+        "brushsvg wrote it",
+    )
+    add_quiet(command)
+
+
 def add_input(command: argparse.ArgumentParser) -> None:
     command.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)}) or plan (.json)")
 

@@ -11,9 +11,9 @@ from .flags import (
     add_join,
     add_layout,
     add_looks,
-    add_quiet,
     add_speed,
     add_wide,
+    add_writes,
     add_z_offset,
     programs,
 )
@@ -28,7 +28,7 @@ def add_first_run(commands) -> None:
     first.add_argument(
         "--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100"
     )
-    add_quiet(first)
+    add_writes(first)
     first.set_defaults(run="first_run_file", parser=first, check=_check_first_run)
 
 
@@ -42,7 +42,7 @@ def add_border(commands) -> None:
     border.add_argument("output", metavar="OUT", help=programs())
     add_choices(border)
     add_z_offset(border)
-    add_quiet(border)
+    add_writes(border)
     border.set_defaults(run="border_file", parser=border, check=_check_border)
 
 
@@ -78,7 +78,7 @@ def add_height(commands) -> None:
     height.add_argument(
         "--step", metavar="MM", type=values.step, default=0.1, help="between strokes; default: 0.1"
     )
-    add_quiet(height)
+    add_writes(height)
     height.set_defaults(run="height_file", parser=height, check=_check_height)
 
 
@@ -108,7 +108,7 @@ def add_check(commands) -> None:
     check.add_argument("--lenient", action="store_true", help="paint what is sound of damaged geometry")
     check.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
     check.add_argument("--json", action="store_true", help="figures as JSON")
-    add_quiet(check)
+    add_writes(check)
     check.set_defaults(
         run="check_file",
         parser=check,
@@ -149,7 +149,7 @@ def add_cell(commands) -> None:
         help="three or four times: the tip at the sheet's lower left corner, along its lower edge, along its "
         "left edge, and anywhere else on it, each just touching, in the robot's frame",
     )
-    add_quiet(new)
+    add_writes(new)
     new.set_defaults(run="cell_new", parser=new, check=_check_cell_new)
     _add_cell_place(whats)
 
@@ -162,7 +162,7 @@ def _add_cell_place(whats) -> None:
     place.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     add_layout(place)
     add_wide(place)
-    add_quiet(place)
+    add_writes(place)
     place.set_defaults(run="cell_place", parser=place, check=_check_cell_place)
 
 

@@ -10,7 +10,7 @@ from ..steps.prepared import look
 
 
 def animate_file(args) -> None:
-    check_places(args.output)
+    check_places(args, args.output)
     looked = look(settled(typed(args), args.input), outlines=True, at_loads=True)
     work, loads, cell = looked.work, looked.loads, looked.work.options.cell
     with about(args.input):

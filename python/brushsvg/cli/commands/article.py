@@ -22,5 +22,5 @@ def article_files(args) -> None:
         why = Notice("", f"the folder cannot be made: {reason.lower()}", code="file-unwritable")
         raise RefusedError(folder, [why]) from None
     files = {os.path.join(folder, name): data for name, data in made.items()}
-    check_places(*files)
+    check_places(args, *files)
     write(args, files)

@@ -17,7 +17,7 @@ from ..steps.prepared import look
 def border_file(args) -> None:
     from ...machine.setup_programs import around, border
 
-    check_places(args.output)
+    check_places(args, args.output)
     looked = look(settled(typed(args), args.input), outlines=False)
     work, cell = looked.work, looked.work.options.cell
     with about(args.output):

@@ -39,14 +39,7 @@ def brush_new(args) -> None:
     if not os.path.basename(args.name).strip(". "):
         why = Notice("", "a brush needs a name, as in brushsvg brush new mine", code="name-invalid")
         raise RefusedError(args.name, [why])
-    check_places(path)
-    if os.path.exists(path):
-        why = Notice(
-            "",
-            "the file is there already: it might be somebody's brush; give yours another name",
-            code="file-exists",
-        )
-        raise RefusedError(path, [why])
+    check_places(args, path, sources=[path])
     widths = list(args.width_at)
     if args.widths:
         with about(args.widths):
@@ -62,7 +55,7 @@ def brush_new(args) -> None:
         else:
             brush = new_brush(name, args.lag_at or args.lag, widths, args.depth_max, args.speed or 25.0)
         text = write_brush(brush)
-    write(args, {path: text})
+    write(args, {path: text}, sources=[path])
     tell(f"{path}: {reach(brush)}\n")
     if args.like is not None:
         tell(f"assumed: all of it, as {args.like} has it; brushsvg brush show {path} says how\n")
@@ -84,7 +77,7 @@ def brush_new(args) -> None:
 def brush_plot(args) -> None:
     from ...brush.plot import brush_picture
 
-    check_places(args.output)
+    check_places(args, args.output)
     with about(args.input):
         picture = brush_picture(find_brush(args.input), suffix_of(args.output))
     write(args, {args.output: picture})

@@ -7,8 +7,9 @@ import os
 from ..._core import remarks, write_brush
 from ...files import read_bytes
 from ...pipeline.json_files import read_plan
+from ...pipeline.machine_parts import undoable_parts
 from ..console import about, stage, tell, warn
-from ..steps.options import brush_of
+from ..steps.options import brush_of, cell_of
 from ..steps.output_places import check_places, suffix_of, write
 from .scan import read_photographs
 
@@ -20,7 +21,11 @@ def calibrate_file(args) -> None:
     from ...calibration.law_report import report, report_picture
     from ...calibration.machine_found import doubts
 
-    check_places(args.output, args.plot, args.picture)
+    check_places(args, args.output, args.plot, args.picture, sources=[args.output])
+    if args.cell is not None:
+        cell = cell_of(args.cell)
+        args.machine, left_out = undoable_parts(args.machine, cell)
+        warn(args.cell, left_out)
     if args.plan is not None:
         update_file(args)
         return
@@ -75,7 +80,7 @@ def calibrate_file(args) -> None:
             if args.picture:
                 files[args.picture] = read_picture(read, made.made if args.aim == "overlap" else made)
     warn(args.output, remarks(made.brush))
-    write(args, files, more=more)
+    write(args, files, more=more, sources=[args.output])
     tell(report(made))
 
 
@@ -111,7 +116,7 @@ def _calibrate_dabs(args, read, name: str) -> None:
         files[args.picture] = dabs_picture(read, made)
     warn(args.input, made.remarks)
     warn(args.output, remarks(made.brush))
-    write(args, files, more=told(read))
+    write(args, files, more=told(read), sources=[args.output])
     tell(report(made))
 
 
@@ -137,7 +142,7 @@ def _calibrate_lag(args, read, name: str) -> None:
         files[args.picture] = read_picture(read, found.made)
     warn(args.photos[0], strays_told(made))
     warn(args.output, remarks(found.brush))
-    write(args, files, more=told(read))
+    write(args, files, more=told(read), sources=[args.output])
     tell(report(found))
 
 
@@ -193,7 +198,7 @@ def update_file(args) -> None:
     with_lineage(made.brush, before, of_photos)
     warn(args.photos[0], list(learnt.notices))
     warn(args.output, remarks(made.brush))
-    write(args, {args.output: write_brush(made.brush)})
+    write(args, {args.output: write_brush(made.brush)}, sources=[args.output])
     tell(report(made))
 
 

@@ -51,7 +51,7 @@ def cell_place(args) -> None:
     from ...machine.setup_programs import over_sheet
     from ...pictures.table_picture import table_picture
 
-    check_places(args.output)
+    check_places(args, args.output)
     cell = exact_cell(args.input)
     with about(args.input):
         if cell.arm is None:
@@ -102,10 +102,7 @@ def _pose(paper) -> str:
 
 
 def cell_new(args) -> None:
-    check_places(args.output)
-    if os.path.exists(args.output):
-        why = Notice("", "the file is there already: it might be somebody's machine", code="file-exists")
-        raise RefusedError(args.output, [why])
+    check_places(args, args.output, sources=[args.output])
     with about(args.like or DEFAULT_CELL):
         cell = find_cell(args.like or DEFAULT_CELL)
     name = os.path.splitext(os.path.basename(args.output))[0]
@@ -124,4 +121,4 @@ def cell_new(args) -> None:
         text = write_cell(replace(cell, name=own_name(name), paper=paper))
         made = parse_cell(text)
     warn(args.output, cell_checks.out_of_reach(made) or cell_checks.remarks(made))
-    write(args, {args.output: text})
+    write(args, {args.output: text}, sources=[args.output])

@@ -23,7 +23,7 @@ def chart_file(args) -> None:
     from ...calibration.chart.layout import chart
     from ...calibration.chart.page import chart_page, chart_pdf
 
-    check_places(args.output, args.page, args.chart)
+    check_places(args, args.output, args.page, args.chart)
     chosen = typed(args)
     if args.drawing:
         chosen = settled(chosen, args.drawing, alone=True)

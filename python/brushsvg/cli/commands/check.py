@@ -19,7 +19,7 @@ RUNNABLE = "nothing forbids to run it"
 
 
 def check_file(args) -> None:
-    check_places(args.preview)
+    check_places(args, args.preview)
     with about(""):  # errors name their file
         done = checked(args.program, typed(args), stage, warn)
     with about(args.program):

@@ -12,7 +12,8 @@ from ..steps.output_places import check_places, suffix_of, write
 def compare_files(args) -> None:
     from ...pipeline.comparing import compared, painted_sheet
 
-    check_places(args.output, args.picture, args.mended_cell)
+    sources = _sources(args)
+    check_places(args, args.output, args.picture, args.mended_cell, sources=sources)
     with about(args.input):
         sheet = painted_sheet(typed(args), stage, warn)
     if args.sheets:
@@ -34,12 +35,18 @@ def compare_files(args) -> None:
             )
             warn(args.mended_cell, [Notice("machine", sentence, code="cell-unchanged")])
     if files:
-        write(args, files)
+        write(args, files, sources=sources)
     tell(job.json if args.json else job.text)
     if args.at_least is not None and job.overlap < args.at_least:
         sentence = f"the overlap {job.overlap:.3f} is below {args.at_least:g}"
         low = Error(sentence, value=job.overlap, code="overlap-low")
         raise RefusedError(args.photos[0], [low.notice()])
+
+
+def _sources(args) -> list[str]:
+    """Corrections, or how well a studio repeats, and a cell: files that later commands read."""
+    made = [args.output] if suffix_of(args.output) == ".json" else []
+    return [*made, *([args.mended_cell] if args.mended_cell else [])]
 
 
 def _cell_text(cell) -> str:
@@ -70,5 +77,5 @@ def _repeats(args, sheet) -> None:
     if args.picture:
         files[args.picture] = repeats_png(title, found, sheets, strokes)
     if files:
-        write(args, files)
+        write(args, files, sources=_sources(args))
     tell(as_json(title, found) if args.json else as_text(title, found))

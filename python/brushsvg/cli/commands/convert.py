@@ -13,7 +13,7 @@ from ..steps.prepared import prepare
 
 
 def convert_file(args) -> None:
-    check_places(args.output, args.preview, args.report, args.page)
+    check_places(args, args.output, args.preview, args.report, args.page)
     work = prepare(settled(typed(args), args.input))
     suffix, job = suffix_of(args.output), Job(args.z_offset, args.from_stroke)
     warn(args.input, [notice for notice in work.notices if args.lenient or not notice.damaged])

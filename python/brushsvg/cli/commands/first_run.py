@@ -18,7 +18,7 @@ HEIGHTS_MM = (1.0, -1.0, 0.1)  # as of the command height
 def first_run_file(args) -> None:
     from ...machine.setup_programs import first_run
 
-    check_places(args.output)
+    check_places(args, args.output)
     cell = exact_cell(args.input)
     brush = brush_of(args.brush) or find_brush(DEFAULT_BRUSH)
     with about(args.output):

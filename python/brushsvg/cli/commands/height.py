@@ -16,7 +16,7 @@ from ..steps.output_places import check_places, suffix_of, write
 def height_file(args) -> None:
     from ...machine.setup_programs import paper_height
 
-    check_places(args.output)
+    check_places(args, args.output)
     cell = exact_cell(args.cell)
     brush = brush_of(args.brush) or find_brush(DEFAULT_BRUSH)
     with about(args.output):

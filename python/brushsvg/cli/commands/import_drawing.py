@@ -13,7 +13,7 @@ from ..steps.output_places import check_places, suffix_of, write
 
 
 def import_file(args) -> None:
-    check_places(args.output)
+    check_places(args, args.output)
     chosen = typed(args)
     with about(args.input):
         stage("reading")

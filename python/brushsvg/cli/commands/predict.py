@@ -10,7 +10,7 @@ from ..steps.prepared import look
 
 
 def predict_file(args) -> None:
-    check_places(args.output)
+    check_places(args, args.output)
     suffix = suffix_of(args.output)
     outlines = suffix != ".png" or args.band
     looked = look(settled(typed(args), args.input), outlines=outlines, whole=suffix == ".json", tilted=True)

@@ -17,7 +17,7 @@ from ..steps.prepared import look
 
 
 def report_file(args) -> None:
-    check_places(args.preview)
+    check_places(args, args.preview)
     if args.all_brushes:
         return _all_brushes(args)
     chosen = settled(typed(args, brush=args.brush[0] if args.brush else None), args.input)

@@ -11,7 +11,7 @@ def scan_file(args) -> None:
     from ...calibration.chart.photograph import told, write_marks
     from ...calibration.photo_report import read_picture
 
-    check_places(args.output, args.picture)
+    check_places(args, args.output, args.picture)
     read = read_photographs(args, [args.input])
     files = {args.output: write_marks(read)}
     if args.picture:

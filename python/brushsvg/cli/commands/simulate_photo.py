@@ -16,7 +16,7 @@ def simulate_photo_file(args) -> None:
     from ...simulated.photo import simulated_photo
     from ...simulated.studio import random_studio, read_studio, write_studio
 
-    check_places(args.output)
+    check_places(args, args.output)
     if args.studio is not None:
         with about(args.studio):
             studio = read_studio(read_bytes(args.studio))

@@ -13,7 +13,7 @@ _INKSCAPES = Path("/usr/share/inkscape/extensions/svg_fonts")
 
 
 def text_file(args) -> None:
-    check_places(args.output)
+    check_places(args, args.output, sources=[args.output])
     from ...drawing.text import text_svg
 
     with about(args.font):
@@ -26,7 +26,7 @@ def text_file(args) -> None:
             sheet_mm=args.sheet,
         )
     warn(args.font, notices)
-    write(args, {args.output: drawing.encode()})
+    write(args, {args.output: drawing.encode()}, sources=[args.output])
 
 
 def font_of(name: str) -> bytes:

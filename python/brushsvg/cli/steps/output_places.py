@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Collection
 
 from ...errors import Notice
 from ...files import write_files
 from ...units import clock
 from ..console import RefusedError, about, clear_stage, say, stage, tell
+from .replacing import refuse_replacing, remember
 
 
 def suffix_of(path: str | None) -> str:
     return os.path.splitext(path or "")[1].lower()
 
 
-def check_places(*paths: str | None) -> None:
-    """Whether the outputs can be written, as far as that can be said before any work is done."""
+def check_places(args, *paths: str | None, sources: Collection[str | None] = ()) -> None:
+    """Whether the outputs can be written, as far as that can be said before any work is done. sources: those of them
+    that are brushes, cells, corrections or drawings, see refuse_replacing."""
     for path in filter(None, paths):
         folder = os.path.dirname(os.path.realpath(path))
         reason = None
@@ -28,15 +31,24 @@ def check_places(*paths: str | None) -> None:
         if reason:
             why = Notice("", f"the file cannot be written: {reason}", code="file-unwritable")
             raise RefusedError(path, [why])
+    refuse_replacing(filter(None, paths), sources, args.force)
 
 
 def write(
-    args, files, strokes: int | None = None, seconds: float | None = None, overlap=None, more: str = ""
+    args,
+    files,
+    strokes: int | None = None,
+    seconds: float | None = None,
+    overlap=None,
+    more: str = "",
+    sources: Collection[str | None] = (),
 ) -> None:
-    """Write all files, and say so with what is known of them, unless --quiet."""
+    """Write all files, and say so with what is known of them, unless --quiet. sources: as for check_places."""
     stage("writing")
+    refuse_replacing(files, sources, args.force)
     with about(""):  # the error names the file
         write_files(files)
+    remember(path for path in files if path not in sources)
     clear_stage()
     if args.quiet:
         return

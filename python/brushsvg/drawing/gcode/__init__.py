@@ -30,13 +30,13 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
         )
     some = ways(text)
     chains: list[list] = []
-    last = None
+    is_drawn = False
     for way, is_down in zip(some, pen_is_down(some) if some else [], strict=True):
-        if is_down and np.isfinite(way.points_mm[:, :2]).all():
-            if last is None:
-                chains.append([])
+        was_drawn, is_drawn = is_drawn, is_down and bool(np.isfinite(way.points_mm[:, :2]).all())
+        if is_drawn and not was_drawn:
+            chains.append([])
+        if is_drawn:  # the way to the first place begins where nobody knows
             chains[-1].append(way)
-        last = way if is_down else None
     elements = [_element(chain) for chain in chains]
     if not elements:
         raise nothing_to_paint([])

@@ -198,7 +198,7 @@ class _Reader:
                     self.at[k] = start[k] = 0.0  # what begins relative begins at its zero
                 end[k] = told + self.shift[k] if self.absolute else self.at[k] + told
         if np.abs(np.nan_to_num(end)).max() > LARGEST_MM:
-            raise Error(f"line {number}: {line.strip()[:40]!r} leads beyond 1e6 mm", code="line-unread")
+            raise _too_far(number, line)
         straight = np.array([start, end])
         way = Way(number, straight, self.motion == 0, self.feed_mm_s, self.pen(), self.unit_told)
         if self.motion in (2, 3):
@@ -226,6 +226,8 @@ class _Reader:
             centre = told + self.shift[:2] if self.absolute_centres else start[:2] + told
         else:
             raise Error(f"line {number}: {line.strip()[:40]!r} is no circle", code="line-incomplete")
+        if not np.abs(centre).max() <= LARGEST_MM:
+            raise _too_far(number, line)
         radii = [math.dist(point[:2], centre) for point in (start, end)]
         if min(radii) < 1e-6 or abs(radii[0] - radii[1]) > max(0.02, 0.002 * radii[0]):
             raise Error(
@@ -246,6 +248,10 @@ class _Reader:
         )
         points[0], points[-1] = start, end
         return replace(way, points_mm=points, centre_mm=tuple(centre.tolist()), turn=turn)
+
+
+def _too_far(number: int, line: str) -> Error:
+    return Error(f"line {number}: {line.strip()[:40]!r} leads beyond 1e6 mm", code="line-unread")
 
 
 def _unread(number: int, line: str) -> Error:

@@ -20,7 +20,7 @@ from ..frames import frame_of_pose, moved
 from ..motion import Program
 from ..posts.script import down
 from ..tool_axes import across, between_deg, turned_to, unit
-from .joints import Joints, flange_rates, rates_at, towards
+from .joints import Joints, flange_rates, frames, rates_at, towards
 
 STEP_MM = 5.0
 # Joints may turn by so much between two places: less would only cost time, more could pass a peak of speed unseen.
@@ -34,6 +34,7 @@ CALM_RAD_MM = (
 )  # before and behind a singularity, where joints tell whether the wrist turned over
 AHEAD_MM = 30.0  # so far behind it that is looked for
 FLIP_RAD, SAME_ARM_RAD = np.radians(90.0), np.radians(30.0)
+ELBOW = 2  # joint 3
 BENDS, TWISTS = 4, [3, 5]  # joint 5 bends a wrist, 4 and 6 twist it
 
 
@@ -52,7 +53,7 @@ class Place:
 @dataclass(frozen=True)
 class Followed:
     """problems: what the arm cannot do, empty when it can; start_rad: (6,) joints at the first place in a posture that
-    does it all."""
+    does it all, of several the one with the highest elbow."""
 
     problems: tuple[Notice, ...]
     start_rad: np.ndarray | None
@@ -66,6 +67,7 @@ class _Found:
     rates: np.ndarray
     most: np.ndarray  # (k,) of any joint, by mm
     sides: np.ndarray  # (k,) on which side of all singularities: where two differ, there is one between them
+    lowest_mm: np.ndarray  # (k,) how far the lowest joint is above the table
 
 
 @dataclass
@@ -106,12 +108,12 @@ def follow(made: Program, joints: Joints, to_the_end: bool = True) -> Followed:
 
     def find(place: Place) -> _Found:
         angles = joints.solutions(flange(place))
-        return _found(angles, flange_rates(arm, angles, place.robot_mm))
+        return _found(angles, frames(arm, angles), place, frame)
 
     postures: list[_Posture] | None = None
     before = None
     for number, place in enumerate(places(made)):
-        found = (_gone_on(arm, postures, flange(place), place) if postures else None) or find(place)
+        found = (_gone_on(arm, postures, flange(place), place, frame) if postures else None) or find(place)
         if not len(found.angles_rad):
             return Followed((_out_of_reach(place, arm),), None)
         if postures is None:
@@ -131,19 +133,34 @@ def follow(made: Program, joints: Joints, to_the_end: bool = True) -> Followed:
             break
     if not postures:
         return Followed((), None)
-    for posture in postures:
-        if posture.failure is None:
-            return Followed((), posture.start_rad)
+    if able := [posture.start_rad for posture in postures if posture.failure is None]:
+        elbows_mm = frames(arm, np.array(able))[:, ELBOW, 2, 3]
+        return Followed((), able[int(np.round(elbows_mm, 3).argmax())])
     return Followed((max(postures, key=lambda each: (each.failed_at, -each.beyond_deg)).failure,), None)
 
 
-def _found(angles: np.ndarray, jacobian: np.ndarray) -> _Found:
+def _found(angles: np.ndarray, there: np.ndarray, place: Place, frame: np.ndarray) -> _Found:
+    jacobian = rates_at(there, place.robot_mm)
     turns = _inverse(jacobian)
     most = np.sqrt((turns[..., :3] ** 2).sum(axis=-1)).max(axis=-1, initial=0.0)
-    return _Found(angles, turns, most, np.sign(np.linalg.det(jacobian)))
+    return _Found(angles, turns, most, np.sign(np.linalg.det(jacobian)), lowest_joint_mm(there, frame))
 
 
-def _gone_on(arm: Arm, postures: list[_Posture], flange: np.ndarray, place: Place) -> _Found | None:
+def lowest_joint_mm(there: np.ndarray, frame: np.ndarray) -> np.ndarray:
+    """(...) how far the lowest joint from the elbow on is above the table, by the frames (..., n + 1, 4, 4) of joints.
+    Paper may lie on a block and a robot stand on a pedestal: what is lower than both paper and base is in the table.
+
+    frame: (4, 4) the paper's in the robot's.
+    """
+    joints = there[..., ELBOW:-1, :3, 3]
+    over_paper = (joints - frame[:3, 3]) @ frame[:3, 2]
+    over_base = joints[..., 2] - there[..., :1, 2, 3]
+    return np.maximum(over_paper, over_base).min(axis=-1, initial=np.inf)
+
+
+def _gone_on(
+    arm: Arm, postures: list[_Posture], flange: np.ndarray, place: Place, frame: np.ndarray
+) -> _Found | None:
     """The angles of postures that go on, each by Newton's steps from where it was; None where all angles for a place
     must be looked for: one comes nowhere near, or a singularity lies behind one."""
     if any(_may_have_flipped(posture, place.robot_mm) for posture in postures):
@@ -155,7 +172,7 @@ def _gone_on(arm: Arm, postures: list[_Posture], flange: np.ndarray, place: Plac
     angles, there = towards(arm, before, flange, 5, SAME_RAD)
     if there is None or np.abs(angles - before).max() > SAME_RAD:
         return None
-    return _found(angles, rates_at(there, place.robot_mm))
+    return _found(angles, there, place, frame)
 
 
 def within_limits(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
@@ -246,6 +263,12 @@ def _go_on(posture: _Posture, before: Place | None, place: Place, found: _Found,
         return
     posture.side = found.sides[which]
     posture.failure = _forbidden(posture, place, found.rates[which], arm)
+    if posture.failure is None and not arm.posture_deg and found.lowest_mm[which] < 0:
+        sentence = (
+            f"{_near(place)} a joint of arm {arm.name} would be {-found.lowest_mm[which]:.0f} mm below the table, "
+            "lower than the paper and its base"
+        )
+        posture.failure = Notice(place.name, sentence, code="joint-below-table")
 
 
 def _turned(here_rad: np.ndarray, found: np.ndarray) -> np.ndarray:

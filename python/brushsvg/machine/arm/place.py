@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...errors import Notice
-from ..cell import Cell
+from ..cell import Arm, Cell
 from ..frames import frame_of_pose, moved, rotation, rotation_deg
 from ..motion import Program
-from .follow import extremes, far_from_singular, flange_at, follow, within_limits
-from .joints import Joints, joints_of
+from .follow import extremes, far_from_singular, flange_at, follow, lowest_joint_mm, within_limits
+from .joints import Joints, frames, joints_of
 
 SHIFTS_MM = (10, 20, 40, 60, 80, 100, 125, 150, 175, 200, 250, 300, 350, 400, 500, 600)
 DIRECTIONS = 16
@@ -104,7 +104,13 @@ def _elsewheres(made: Program, outermost: np.ndarray):
 
 def _some(joints: Joints, cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> bool:
     found = joints.solutions(flange_at(cell, frame, robot_mm))
-    return bool((within_limits(joints.arm, found) & far_from_singular(joints.arm, found, robot_mm)).any())
+    within = within_limits(joints.arm, found) & _above_table(joints.arm, found, frame)
+    return bool((within & far_from_singular(joints.arm, found, robot_mm)).any())
+
+
+def _above_table(arm: Arm, joints_rad: np.ndarray, frame: np.ndarray) -> np.ndarray:
+    """(k,) which of joints (k, 6) keep all of them above the table; all do where the cell names the posture."""
+    return (lowest_joint_mm(frames(arm, joints_rad), frame) >= 0) | bool(arm.posture_deg)
 
 
 @dataclass(frozen=True)
@@ -141,6 +147,7 @@ def table_of(cell: Cell, frame: np.ndarray, joints: Joints) -> Table:
 
 def _what(joints: Joints, cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> int:
     found = joints.solutions(flange_at(cell, frame, robot_mm))
+    found = found[_above_table(joints.arm, found, frame)]
     if not len(found):
         return UNREACHED
     far, within = far_from_singular(joints.arm, found, robot_mm), within_limits(joints.arm, found)

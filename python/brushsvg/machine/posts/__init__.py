@@ -147,6 +147,15 @@ def _robodk(program: Program) -> Iterator[str]:
     return robodk(program)
 
 
+def sources_of_post(cell: Cell) -> list[str]:
+    """The files that decide, next to the cell itself, what is written for it: those of a post that it names."""
+    if cell.robodk is None:
+        return []
+    from .robodk import sources
+
+    return sources(cell.robodk.post)
+
+
 def circles_by(cell: Cell) -> str:
     """What tells a circle on this cell, see Post."""
     from ..cell import ARCS_IN_SEGMENTS

@@ -107,10 +107,11 @@ def _program(program: Program, modes: list[str], dialect: Dialect) -> Iterator[s
     for section in program.sections():
         if here is None:  # up before going anywhere
             first = next((step for step in section.steps if isinstance(step, Move)), None)
-            if first is not None and not dialect.has_blocks:
+            is_slow = first is not None and first.meaning not in SAFE_MEANINGS
+            if first is not None and (is_slow or not dialect.has_blocks):
                 feed = f"F{feed_mm_min(first.speed_mm_s):.1f}\n"
-                yield f"G1 {feed}"
-            yield f"G0 Z{number(program.rise_mm, decimals)}\n"
+                yield feed if dialect.has_blocks else f"G1 {feed}"
+            yield f"{'G1' if is_slow else 'G0'} Z{number(program.rise_mm, decimals)}\n"
         yield "\n" + dialect.comment(section.title)
         for step in section.steps:
             if isinstance(step, Wait):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import importlib.util
 import io
@@ -57,6 +58,28 @@ def robodk(program: Program) -> Iterator[str]:
             raise Error(sentence, where="robodk.post", code="post-failed")
         text = saved[0].read_bytes().decode("utf-8", "replace")
     yield text
+
+
+def sources(where: str) -> list[str]:
+    """Paths of a post and of the modules next to it that it imports, and they in turn."""
+    left, found = [Path(where).expanduser().resolve()], []
+    while left:
+        path = left.pop()
+        if path.is_file() and str(path) not in found:
+            found.append(str(path))
+            left += [path.with_name(f"{name}.py") for name in _imported(path)]
+    return found
+
+
+def _imported(path: Path) -> list[str]:
+    """First parts of the names that a file imports; none of what is no Python, which is refused when it is run."""
+    try:
+        nodes = list(ast.walk(ast.parse(path.read_bytes())))
+    except (ValueError, SyntaxError, RecursionError, MemoryError):
+        return []
+    names = [each.name for node in nodes if isinstance(node, ast.Import) for each in node.names]
+    names += [node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)]
+    return [name.partition(".")[0] for name in names if name]
 
 
 def _loaded(where: str) -> ModuleType:

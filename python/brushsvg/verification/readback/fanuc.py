@@ -39,7 +39,11 @@ _LINES = tuple(
             "move",
             rf"L {place('xyz')} turned (?P<turned>{N}, {N}, {N}) at (?P<speed>{N}) blend (?P<blend>{N})",
         ),
-        ("circle", rf"C {place('uvw')} to {place('xyz')} turned (?P<turned>{N}, {N}, {N}) at (?P<speed>{N})"),
+        (
+            "circle",
+            rf"C {place('uvw')} turned (?P<turned_via>{N}, {N}, {N}) "
+            rf"to {place('xyz')} turned (?P<turned>{N}, {N}, {N}) at (?P<speed>{N})",
+        ),
         ("wait", rf"WAIT (?P<seconds>{N})\(sec\)"),
         ("rise", r"L PR\[2\] (?P<speed>\d{1,4})mm/sec FINE"),
         ("text", rf"IF \(R\[1\]<(?P<height>{N})\) THEN|PR\[2,3\]={_C}|ENDIF|PAUSE"),
@@ -160,8 +164,8 @@ def _with_places(lines: Numbered, said: Numbered, cell: Cell) -> Iterator[tuple[
         elif circle:
             opened = circle[1]
         elif onward:
-            (via, _), (to, turned) = at(number, opened), at(number, onward[1])
-            yield number, f"C {via} to {to} turned {turned} at {_mm_s(onward[2]):.6f}"
+            (via, via_turned), (to, turned) = at(number, opened), at(number, onward[1])
+            yield number, f"C {via} turned {via_turned} to {to} turned {turned} at {_mm_s(onward[2]):.6f}"
             opened = None
         else:
             yield number, line

@@ -19,6 +19,7 @@ def _point(names: str, turned: str) -> str:
 
 _TURN = rf"a {N}, b {N}, c {N}"
 _TO = _point("xyz", f"(?P<turned>{_TURN})")
+_VIA = _point("uvw", f"(?P<turned_via>{_TURN})")
 _FRAME = rf"\{{x {N}, y {N}, z {N}, {_TURN}\}}"
 _LINES = tuple(  # in small letters
     (kind, re.compile(pattern))
@@ -27,7 +28,7 @@ _LINES = tuple(  # in small letters
         ("sets", rf"\$apo\.cdis = (?P<blend>{N})"),
         ("move", rf"lin {_TO}"),
         ("sets", rf"\$vel\.cp = (?P<speed>{N})"),
-        ("circle", rf"circ {_point('uvw', _TURN)}, {_TO}"),
+        ("circle", rf"circ {_VIA}, {_TO}"),
         ("wait", rf"wait sec (?P<seconds>{N})"),
         ("rise", r"lin here"),
         ("sets", rf"\$acc\.cp = (?P<acceleration>{N})"),

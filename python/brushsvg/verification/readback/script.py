@@ -26,7 +26,8 @@ class Script:
         rise: straight up; wait: for seconds; most: an acceleration that holds for all moves; text: what else stands
         there, perhaps with a height that the tool rises to.
     again: texts that do nothing when they stand there twice; last: of the program, without blanks around them;
-    units_mm: of groups that are not in mm; turned_deg: what the group `turned` of a move must be, but where the header
+    units_mm: of groups that are not in mm; turned_deg: what the groups `turned` of a move and `turned_via` of a
+    circle's middle must be, but where the header
     says that the brush is tilted: there it is the tool's rotation, which `rotation` makes (3, 3) of, None where it is
     none; least: of `most`;
     sets_after: the text before which nothing may be set; is_indented: whether blanks before a line mean something;
@@ -113,6 +114,8 @@ class _Reader:
         said = {name: text for name, text in found.groupdict().items() if text is not None}
         if kind != "move" or "x" in said:
             self.turned = ()
+        if turned := said.pop("turned_via", ""):  # on the way along a circle
+            self._stands(number, line, [float(value) for value in re.findall(N, turned)])
         if turned := said.pop("turned", ""):
             values = [float(value) for value in re.findall(N, turned)]
             is_end = kind == "move" or (

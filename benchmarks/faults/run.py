@@ -1,0 +1,333 @@
+"""Runs tests of the planted tree: all without a fault, to see who comes by which; then those with each fault."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+from collections import defaultdict
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+from fault import BUILD, Fault
+
+# what .ci/run runs, as pytest is asked for it; `make thorough` runs the rest
+CI = (
+    ("not long and not thorough", "tests/python", "tests/laws"),
+    ("long and not thorough", "tests/laws"),
+    ("not thorough", "tests/integration"),
+)
+ALL = (("tests/python", "tests/laws"), ("tests/integration",))  # each with a conftest of its own
+CPP = "cpp::"  # before the names of C++ tests
+FIRST_TESTS, FIRST_S, MORE = (
+    30,
+    20.0,
+    4,
+)  # a process of pytest costs seconds: the first has few tests, the next more
+SLOWER, LATE_S = 5.0, 30.0  # a test may take so many times as long, and so much longer
+MEMORY = 8 << 30  # bytes for a process: loops that do not end fill it
+
+
+@dataclass
+class Test:
+    name: str
+    outcome: str
+    seconds: float
+    shared: list[str]
+    tier: str = ""
+
+    @property
+    def file(self) -> str:
+        return self.name.split("::")[0]
+
+
+@dataclass
+class Outcome:
+    """What became of a fault."""
+
+    number: int
+    tier: str = ""  # ci or thorough, where a test caught it
+    test: str = ""
+    why: str = ""
+    tried: int = 0  # tests that ran with it
+    left: int = 0  # that should have, beyond the budget
+    seconds: float = 0.0
+    unreliable: list[str] = field(default_factory=list)  # tests that fail without it, too
+
+
+class Tree:
+    """The planted tree and its work folder."""
+
+    def __init__(self, work: Path):
+        self.work, self.root = work, work / "tree"
+        self.map, self.tiers = work / "map", work / "tiers.json"
+        self.python = self.root / ".venv/bin/python"
+
+    def start(
+        self, words: list, limit: float | None = None, show: bool = False, **env: str
+    ) -> tuple[int, str]:
+        """Run a command in the tree; its status and output. At the limit it ends with all that it started."""
+        surroundings = {
+            k: v for k, v in os.environ.items() if not k.startswith(("PYTEST_", "FAULTS_", "BRUSHSVG_"))
+        }
+        path = f"{self.root}/.venv/bin:{os.environ['PATH']}"
+        process = subprocess.Popen(
+            [*map(str, words)],
+            cwd=self.root,
+            env={**surroundings, "PATH": path, **env},
+            stdout=None if show else subprocess.PIPE,
+            stderr=None if show else subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            start_new_session=True,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY)),
+            encoding="utf-8",
+            errors="replace",
+        )
+        try:
+            out = process.communicate(timeout=limit)[0]
+        except subprocess.TimeoutExpired:
+            out = "time limit"
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)  # what a test left behind, too
+            process.wait()
+        return process.returncode, out or ""
+
+    def pytest(self, *words, **settings) -> tuple[int, str]:
+        return self.start([self.python, "-m", "pytest", "-p", "brushsvg_faults_pytest", *words], **settings)
+
+    # the map
+
+    def map_tests(self, paths: list[str], processes: int) -> None:
+        """Run tests without a fault, and write down who comes by which; those that ran before are left out."""
+        self.map.mkdir(exist_ok=True)
+        settings = {
+            "FAULTS_RESULTS": str(self.map),
+            "FAULTS_RESUME": "1",
+            "BRUSHSVG_FAULT_HITS": str(self.map),
+        }
+        if "cpp" in paths:
+            self._map_cpp(settings["BRUSHSVG_FAULT_HITS"])
+        for rest in apart([path for path in paths if path != "cpp"]):
+            self.pytest("-n", processes, "--dist", "loadfile", *rest, show=True, **settings)
+
+    def _map_cpp(self, hits: str) -> None:
+        with (self.map / "tests-cpp.jsonl").open("w", encoding="utf-8") as out:
+            for name, words in self.cpp_tests().items():
+                begin = time.perf_counter()
+                status, _ = self.start(words, BRUSHSVG_FAULT_HITS=hits, PYTEST_CURRENT_TEST=f"{name} (call)")
+                outcome = "failed" if status else "passed"
+                record = {"test": name, "outcome": outcome, "seconds": round(time.perf_counter() - begin, 3)}
+                out.write(json.dumps({**record, "shared": []}) + "\n")
+
+    def cpp_tests(self) -> dict[str, list]:
+        binary = self.root / BUILD / "tests/cpp/brushsvg_tests"
+        _, listed = self.start([binary, "--list-test-cases", "--no-version"])
+        names = [line for line in listed.splitlines() if line and not line.startswith(("[doctest]", "==="))]
+        tests = {f"{CPP}{name}": [binary, f"-tc={name.replace(',', chr(92) + ',')}"] for name in names}
+        examples = self.root / BUILD / "examples"
+        brush = self.root / "python/brushsvg/data/brushes/round-6.json"
+        out = Path(tempfile.gettempdir()) / "faults_example_02.ngc"
+        tests[f"{CPP}example_01"] = [examples / "example_01"]
+        tests[f"{CPP}example_02"] = [examples / "example_02", brush, out]
+        return tests
+
+    def collect_tiers(self) -> None:
+        """Which tier each test is in, by the markers of the tree."""
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "names"
+
+            def names(*words: str) -> list[str]:
+                status, said = self.pytest("--collect-only", "-q", *words, FAULTS_COLLECT=str(out))
+                if status:
+                    raise SystemExit(said[-3000:])
+                return json.loads(out.read_text(encoding="utf-8"))
+
+            tiers = dict.fromkeys([name for paths in ALL for name in names(*paths)], "thorough")
+            for markers, *paths in CI:
+                tiers.update(dict.fromkeys(names("-m", markers, *paths), "ci"))
+        self.tiers.write_text(json.dumps(tiers, indent=0), encoding="utf-8")
+
+    def tests(self) -> dict[str, Test]:
+        """All tests that ran without a fault."""
+        tiers = json.loads(self.tiers.read_text(encoding="utf-8"))
+        found = {}
+        for path in sorted(self.map.glob("tests-*.jsonl")):
+            for line in path.read_text(encoding="utf-8").splitlines():
+                record = json.loads(line)
+                name = record["test"]
+                tier = "ci" if name.startswith(CPP) else tiers.get(name)
+                if "outcome" in record and tier:
+                    found[name] = Test(
+                        name, record["outcome"], record["seconds"], record.get("shared", []), tier
+                    )
+        return found
+
+    def hits(self) -> dict[int, set[str]]:
+        """{number of a fault: tests, and files, that came by}; files are those whose import did."""
+        found = defaultdict(set)
+        for path in self.map.glob("hits-*.txt"):
+            for line in path.read_text(encoding="utf-8").splitlines():
+                number, _, test = line.partition("\t")
+                found[int(number)].add(re.sub(r" \(\w+\)$", "", test))
+        return found
+
+    # one fault
+
+    def run_tests(self, number: int, tests: list[Test]) -> tuple[Test | None, str, int]:
+        """Run tests with a fault (0: none) until one fails: that one, why, and how many ran."""
+        ran = 0
+        names = self.cpp_tests() if any(test.name.startswith(CPP) for test in tests) else {}
+        for test in [test for test in tests if test.name in names]:
+            ran += 1
+            limit = SLOWER * test.seconds + LATE_S
+            status, out = self.start(names[test.name], limit, BRUSHSVG_FAULT=str(number))
+            if status:
+                return test, out.strip()[-300:], ran
+        for files in apart(list(dict.fromkeys(test.file for test in tests if not test.name.startswith(CPP)))):
+            folder = Path(tempfile.mkdtemp(prefix="faults-"))
+            try:
+                test, why, more = self._run_pytest(
+                    number, [test for test in tests if test.file in files], folder
+                )
+            finally:
+                shutil.rmtree(folder, ignore_errors=True)
+            ran += more
+            if test:
+                return test, why, ran
+        return None, "", ran
+
+    def _run_pytest(self, number: int, tests: list[Test], folder: Path) -> tuple[Test | None, str, int]:
+        limits = {test.name: SLOWER * test.seconds + LATE_S for test in tests}
+        select = folder / "select.json"
+        select.write_text(json.dumps(limits), encoding="utf-8")
+        files = list(dict.fromkeys(test.file for test in tests))
+        status, out = self.pytest(
+            "-x",
+            f"--basetemp={folder}/pytest",
+            *files,
+            limit=sum(limits.values()) + 60,
+            BRUSHSVG_FAULT=str(number),
+            FAULTS_SELECT=str(select),
+            FAULTS_RESULTS=str(folder),
+        )
+        lines = [
+            json.loads(line)
+            for path in folder.glob("tests-*.jsonl")
+            for line in path.read_text().splitlines()
+        ]
+        by_name = {test.name: test for test in tests}
+        ended = {line["test"] for line in lines if "outcome" in line}
+        for line in lines:
+            if line.get("outcome") == "failed":
+                # of a file that cannot be imported: all its tests
+                test = by_name.get(line["test"]) or next(
+                    (t for t in tests if t.file == line["test"]), tests[0]
+                )
+                return test, line["why"], len(ended)
+        for line in lines:
+            if "begun" in line and line["test"] not in ended:
+                return by_name[line["test"]], f"the process ended ({status}) or took too long", len(ended) + 1
+        if status not in (0, 5):
+            return tests[0], f"pytest: {status}: {out.strip()[-300:]}", len(ended)
+        return None, "", len(ended)
+
+    def try_fault(self, fault: Fault, tests: dict[str, Test], hits: set[str], budget: float) -> Outcome:
+        outcome, begin = Outcome(fault.number), time.perf_counter()
+        direct, near = reaching(tests, hits)
+        for tier in ("ci", "thorough"):
+            waiting = [[test for test in group if test.tier == tier] for group in (direct, near)]
+            spent, size, seconds = 0.0, FIRST_TESTS, FIRST_S
+            for group in waiting:
+                while group and spent < budget:
+                    chunk = first(group, size, seconds)
+                    caught, why, ran = self.run_tests(fault.number, chunk)
+                    outcome.tried += ran
+                    if caught and self.run_tests(0, [caught])[0]:
+                        outcome.unreliable.append(caught.name)
+                        group.remove(caught)
+                        continue
+                    if caught:
+                        outcome.tier, outcome.test, outcome.why = tier, caught.name, why
+                        outcome.seconds = time.perf_counter() - begin
+                        return outcome
+                    del group[: len(chunk)]
+                    spent += sum(test.seconds for test in chunk)
+                    size, seconds = MORE * size, MORE * seconds
+                outcome.left += len(group)
+        outcome.seconds = time.perf_counter() - begin
+        return outcome
+
+    def try_all(self, faults: list[Fault], jobs: int, budget: float, again: bool) -> None:
+        """Try each fault that was not tried before, or (again) that no test caught."""
+        folder = self.work / "tried"
+        folder.mkdir(exist_ok=True)
+        tests, hits = self.tests(), self.hits()
+        lock, begin = threading.Lock(), time.perf_counter()
+
+        def one(fault: Fault) -> None:
+            path = folder / f"{fault.number}.json"
+            if path.exists() and not (again and not json.loads(path.read_text())["tier"]):
+                return
+            outcome = self.try_fault(fault, tests, hits.get(fault.number, set()), budget)
+            path.write_text(json.dumps(asdict(outcome), indent=1), encoding="utf-8")
+            with lock:
+                said = f"caught by {outcome.test} ({outcome.tier})" if outcome.tier else "SURVIVED"
+                clock = time.perf_counter() - begin
+                print(
+                    f"{clock:6.0f} s  {fault.number:3} {fault.file}:{fault.line} {fault.kind}: {said}",
+                    flush=True,
+                )
+
+        with ThreadPoolExecutor(jobs) as pool:
+            list(pool.map(one, faults))
+
+    def outcomes(self) -> dict[int, Outcome]:
+        found = [Outcome(**json.loads(path.read_text())) for path in (self.work / "tried").glob("*.json")]
+        return {outcome.number: outcome for outcome in found}
+
+
+def reaching(tests: dict[str, Test], hits: set[str]) -> tuple[list[Test], list[Test]]:
+    """Tests that come by a fault, and those that share with these what is made once for many; the quickest first.
+
+    Shared are fixtures and cached results, of a file or of a whole run: only the first test that needs one comes by.
+    """
+    passing = sorted(
+        (test for test in tests.values() if test.outcome == "passed"), key=lambda test: test.seconds
+    )
+    files = {name for name in hits if "::" not in name}
+    direct = [test for test in passing if test.name in hits or test.file in files]
+    near_files = {test.file for test in direct if not test.name.startswith(CPP)}
+    fixtures = {name for test in direct for name in test.shared}
+    # a hit by a test that fails without faults still tells of its file
+    near_files |= {name.split("::")[0] for name in hits if not name.startswith(CPP)}
+    known = {test.name for test in direct}
+    if any("::" not in name for name in hits):  # what an import computes, others find there
+        return direct, [test for test in passing if test.name not in known]
+    near = [test for test in passing if test.file in near_files or fixtures & set(test.shared)]
+    return direct, [test for test in near if test.name not in known]
+
+
+def apart(paths: list[str]) -> list[list[str]]:
+    """Paths that one process of pytest can run, and those of the next."""
+    groups = [[path for path in paths if path.startswith(folders)] for folders in ALL]
+    return [group for group in groups if group]
+
+
+def first(tests: list[Test], most: int, seconds: float) -> list[Test]:
+    """The first tests, so many at most, that take so long together; one at least."""
+    total = 0.0
+    for count, test in enumerate(tests[:most]):
+        total += test.seconds
+        if count and total > seconds:
+            return tests[:count]
+    return tests[:most]

@@ -1,0 +1,68 @@
+"""Where a program that says when the tool is where stands still in the paint."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from ..errors import Notice
+from ..machine.motion import Program
+from ..machine.posts import POSTS
+from ..machine.writer import text_of
+from .readback import Act, Readback, read_program
+
+TIMED = ("ebb", "ros2")  # languages whose lines say how long they take; others say how fast they are at most
+FASTER_MM_S = 0.011  # of a speed that is written in steps of 0.01
+STANDS_S = 0.01  # rounded places and times make up to 0.003 s of a part's time
+
+
+def stops(read: Readback, program: Program) -> list[Notice]:
+    """A notice for the first part of a stroke that takes longer than the rest of it does.
+
+    read: the program that was read; program: what brushsvg would write. A stroke may be slower as a whole: its parts
+    are held against the median of how much slower they are. What is faster than the brush may touch is in the air.
+    """
+    language, touching_mm_s = program.cell.language, program.touching_mm_s
+    if language not in TIMED:
+        return []
+    text = "".join(text_of(POSTS[language], program))
+    found, wanted = read.acts, read_program(text, POSTS[language].extensions[0], program.cell).acts
+    for (name, ours), (_, theirs) in zip(
+        _strokes(found, touching_mm_s), _strokes(wanted, touching_mm_s), strict=False
+    ):
+        (along, when_s), (asked_mm, asked_s) = _times(ours), _times(theirs)
+        if not (along[-1:] > 0 and asked_mm[-1:] > 0):
+            continue
+        least_s = np.diff(np.interp(along / along[-1], asked_mm / asked_mm[-1], asked_s))
+        took_s = np.diff(when_s)
+        slower = max(1.0, float(np.median(took_s[least_s > 0] / least_s[least_s > 0])))
+        late_s = took_s - slower * least_s
+        if late_s[worst := int(late_s.argmax())] > STANDS_S:
+            sentence = (
+                f"line {ours[worst + 1].line}: the brush stands still in the paint for {late_s[worst]:.3f} s"
+            )
+            return [Notice(name, sentence, code="stands-in-paint")]
+    return []
+
+
+def _strokes(acts: list[Act], touching_mm_s: float) -> list[tuple[str, list[Act]]]:
+    """The name of each stroke, and the acts that say when it is where on the paper."""
+    found: list[tuple[str, list[Act]]] = []
+    is_stroke = False
+    for act in acts:
+        if act.kind == "text" and act.text.startswith("("):
+            is_stroke = act.text.startswith("(stroke ")
+            if is_stroke:
+                found.append((act.text.strip("()").partition(": ")[2], []))
+        elif is_stroke and act.kind in ("way", "move") and act.at_most[0] <= touching_mm_s + FASTER_MM_S:
+            found[-1][1].append(act)
+    return found
+
+
+def _times(acts: list[Act]) -> tuple[np.ndarray, np.ndarray]:
+    """How far along a stroke [mm], and when [s], each act ends; from where the first one does."""
+    ways_mm = np.array([np.linalg.norm(np.subtract(b.place, a.place)) for a, b in pairwise(acts)])
+    speeds = np.array([act.at_most[1] for act in acts[1:]])
+    took_s = np.divide(ways_mm, speeds, out=np.zeros(len(ways_mm)), where=speeds > 0)
+    return np.r_[0.0, np.cumsum(ways_mm)], np.r_[0.0, np.cumsum(took_s)]

@@ -1,0 +1,235 @@
+"""Every kind of brush file paints every kind of drawing, through the command line, or is refused for a physical reason.
+
+Brushes and drawings are made by the public commands, as a user makes them.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from diagnostics import in_json, is_told
+from dxf_text import save_font
+
+import brushsvg
+from brushsvg.cli import main
+
+SHIPPED = Path(brushsvg.__file__).parent / "data/brushes"
+SHEET = 'xmlns="http://www.w3.org/2000/svg" width="100mm" height="70mm" viewBox="0 0 100 70"'
+
+
+def run(*words) -> None:
+    assert main([*map(str, words), "--quiet"]) == 0, words
+
+
+def typed(at: Path) -> None:
+    run("brush", "new", at, "--lag", 6, "--width-at", "3=2.2", "--width-at", "8=4.8")
+
+
+def lag_at(at: Path) -> None:
+    run(
+        "brush",
+        "new",
+        at,
+        *"--lag-at 1=4 --lag-at 4=6 --lag-at 8=9 --width-at 3=2.2 --width-at 8=4.8".split(),
+    )
+
+
+def pen(at: Path) -> None:
+    run("brush", "new", at, "--lag", 0, "--width-at", "3=2.2", "--width-at", "8=4.8")
+
+
+def like(at: Path) -> None:
+    run("brush", "new", at, "--like", "liner-1")
+
+
+def measured(at: Path) -> None:
+    table = at.with_suffix(".csv")
+    rows = [f"lag,{d},{3 + 0.8 * d}\nwidth,{d},{0.7 * d}" for d in (1, 2, 3, 4, 6, 8)]
+    table.write_text("\n".join(["kind,depth_mm,value_mm", *rows]))
+    run("calibrate", table, "-o", at)
+
+
+def photographed(at: Path) -> None:
+    """A small chart, painted and photographed by the simulated studio."""
+    plan, chart, photo = (at.with_suffix(end) for end in (".plan.json", ".chart.json", ".jpg"))
+    run("chart", plan, "--strokes", "few", "--chart", chart)
+    run("simulate-photo", plan, photo, "--seed", 1)
+    run("calibrate", photo, "--chart", chart, "-o", at)
+
+
+def measured_from_depth_0(at: Path) -> None:
+    """As the file of a photographed brush: its laws hold from depth 0 on, where it has no width."""
+    brush = json.loads((SHIPPED / "round-6.json").read_text())
+    for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
+        brush[law] |= {"calibrated_mm": [0, 10], "source": "Fitted to 49 painted marks.", "assumed": False}
+    at.write_text(json.dumps({**brush, "name": at.stem}))
+
+
+def from_dabs(at: Path) -> None:
+    plan, chart, photo = (at.with_suffix(end) for end in (".plan.json", ".chart.json", ".jpg"))
+    run("chart", plan, "--dabs", "--brush", "round-6", "--chart", chart)
+    run("simulate-photo", plan, photo, "--seed", 1)
+    run("calibrate", photo, "--chart", chart, "--brush", "round-6", "-o", at)
+
+
+def running_dry(at: Path) -> None:
+    """With paint that narrows its mark, as calibrate --paint adds it."""
+    brush = json.loads((SHIPPED / "round-6.json").read_text())
+    at.write_text(json.dumps({**brush, "name": at.stem, "paint": {"narrows_per_m": 0.4, "lasts_mm": 700}}))
+
+
+def shipped(name: str):
+    return lambda at: at.write_bytes((SHIPPED / f"{name}.json").read_bytes())
+
+
+BRUSHES = {
+    "typed": typed,
+    "lag-at": lag_at,
+    "pen": pen,
+    "like": like,
+    "measured": measured,
+    "from-depth-0": measured_from_depth_0,
+    "running-dry": running_dry,
+    "round-6": shipped("round-6"),
+    "round-6-angles": shipped("round-6-angles"),
+    "liner-1": shipped("liner-1"),
+    "rigid": shipped("rigid"),
+}
+SLOW_BRUSHES = {"photographed": photographed, "from-dabs": from_dabs}
+
+
+def svg(*elements: str):
+    return lambda at: at.with_suffix(".svg").write_text(f"<svg {SHEET}>{''.join(elements)}</svg>")
+
+
+LINE = '<path id="line" fill="none" stroke="#000" stroke-width="1.8" d="M20 20C40 10 60 30 80 20"/>'
+THIN = '<path id="thin" fill="none" stroke="#000" stroke-width="{}" d="M20 50C40 40 60 60 80 50"/>'
+SHAPE = '<path id="shape" d="M20 15H24V45H34L36 48H20Z"/>'
+SLIVER = '<path id="sliver" d="M60 20L60.2 20.01L60 20.03Z"/>'
+DOTS = '<circle id="dot" cx="70" cy="40" r="1.2"/>' + (
+    '<path id="point" fill="none" stroke="#000" stroke-width="1.5" stroke-linecap="round" d="M30 30h0.01"/>'
+)
+GCODE = "G21\nG90\nG0 Z5\nG0 X10 Y10\nG1 Z-1 F300\nG1 X60 Y10 F1200\nG3 X60 Y30 I0 J10\nG0 Z5\nM2\n"
+SVG_FONT = (
+    '<svg xmlns="http://www.w3.org/2000/svg"><defs><font horiz-adv-x="600"><font-face units-per-em="1000"/>'
+    '<glyph unicode="L" d="M0 700L0 0L400 0"/></font></defs></svg>'
+)
+
+
+def dxf(at: Path) -> None:
+    import ezdxf
+
+    document = ezdxf.new("R2010", units=4)
+    document.modelspace().add_lwpolyline([(0, 0), (40, 0), (40, 20)])
+    document.modelspace().add_circle((20, 30), 8)
+    document.saveas(at.with_suffix(".dxf"))
+
+
+def gcode(at: Path) -> None:
+    at.with_suffix(".gcode").write_text(GCODE)
+
+
+def plan(at: Path) -> None:
+    """One that another brush's convert wrote."""
+    svg(LINE)(at)
+    run("convert", at.with_suffix(".svg"), at.with_suffix(".json"))
+    at.with_suffix(".svg").unlink()
+
+
+def outline_text(at: Path) -> None:
+    save_font(at.with_suffix(".ttf"), "Boxes", wide=150)
+    run("text", "Ax", at.with_suffix(".svg"), "--font", at.with_suffix(".ttf"), "--size", 20)
+    at.with_suffix(".ttf").unlink()
+
+
+def line_text(at: Path) -> None:
+    font = at.with_name("font.svg")
+    font.write_text(SVG_FONT)
+    run("text", "LL", at.with_suffix(".svg"), "--font", font, "--width", 1.6)
+    font.unlink()
+
+
+DRAWINGS = {
+    "line": svg(LINE),
+    "thinnest line": svg(LINE, THIN.format(1.0)),
+    "thinner line": svg(LINE, THIN.format(0.4)),
+    "shape": svg(SHAPE),
+    "shape and sliver": svg(SHAPE, SLIVER),
+    "sliver": svg(SLIVER),
+    "dots": svg(DOTS),
+    "outline text": outline_text,
+    "line text": line_text,
+    "dxf": dxf,
+    "gcode": gcode,
+    "plan": plan,
+}
+
+# Brush and drawing: what is refused, and why no brush of this kind can do it.
+REFUSED = {
+    ("like", "sliver"): "nothing-to-paint",  # a hundredth of its smallest mark
+    ("liner-1", "sliver"): "nothing-to-paint",
+    ("rigid", "plan"): "depth-out-of-range",  # the plan presses round-6 deeper than this pen gives way
+}
+
+
+@pytest.fixture(scope="session")
+def desk(tmp_path_factory):
+    """A folder in which brushes and drawings are made once."""
+    return tmp_path_factory.mktemp("desk")
+
+
+def brush_file(desk: Path, kind: str) -> Path:
+    at = desk / f"{kind}.json"
+    if not at.exists():
+        (BRUSHES | SLOW_BRUSHES)[kind](at)
+    return at
+
+
+def drawing_file(desk: Path, kind: str) -> Path:
+    folder = desk / "drawings" / kind.replace(" ", "-")
+    if not folder.exists():
+        folder.mkdir(parents=True)
+        DRAWINGS[kind](folder / "drawing")
+    (file,) = folder.iterdir()
+    return file
+
+
+def paints(desk: Path, brush: str, drawing: str, capsys) -> None:
+    out = desk / "out.ngc"
+    out.unlink(missing_ok=True)
+    words = "convert", drawing_file(desk, drawing), out, "--brush", brush_file(desk, brush)
+    status, _, told = in_json(capsys, *words)
+    if code := REFUSED.get((brush, drawing)):
+        assert status == 1 and is_told(told, code), told
+        assert not out.exists()
+        return
+    assert status == 0, told
+    assert "G1" in out.read_text()
+    assert not is_told(told, "internal-error")
+
+
+@pytest.mark.parametrize("drawing", DRAWINGS)
+@pytest.mark.parametrize("brush", BRUSHES)
+def test_every_brush_paints_every_drawing(desk, capsys, brush, drawing):
+    paints(desk, brush, drawing, capsys)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("drawing", DRAWINGS)
+@pytest.mark.parametrize("brush", SLOW_BRUSHES)
+def test_every_photographed_brush_paints_every_drawing(desk, capsys, brush, drawing):
+    paints(desk, brush, drawing, capsys)
+
+
+@pytest.mark.parametrize("brush", ["from-depth-0", "liner-1", "rigid"])
+@pytest.mark.parametrize("drawing", ["shape", "line", "dots"])
+def test_every_brush_is_reported_on_and_its_program_checked(desk, capsys, brush, drawing):
+    at = drawing_file(desk, drawing)
+    status, _, told = in_json(capsys, "report", at, "--brush", brush_file(desk, brush))
+    assert status == 0, told
+    out = desk / "checked.ngc"
+    assert in_json(capsys, "convert", at, out, "--brush", brush_file(desk, brush))[0] == 0
+    status, _, told = in_json(capsys, "check", out, at, "--brush", brush_file(desk, brush))
+    assert status == 0, told

@@ -1,0 +1,116 @@
+"""A command replaces what brushsvg wrote and nobody changed; anything else only with --force."""
+
+import os
+from pathlib import Path
+
+import pytest
+from diagnostics import in_json, is_told
+
+from brushsvg.cli.steps import replacing
+from brushsvg.machine.cell import MOST_POINTS
+
+DRAWING = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60"><g fill="none" '
+    'stroke="#000"><path d="M20 30c10-20 30 20 50 0" stroke-width="{}"/></g></svg>'
+)
+FONT = (
+    '<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>'
+    '<glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/></font></svg>'
+)
+CONVERT = ("convert", "a.svg", "a.ngc", "--preview", "a.png")
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    Path("a.svg").write_text(DRAWING.format(2))
+    return tmp_path
+
+
+def is_kept(capsys, path, *words):
+    """That the command is refused for this file, and leaves it as it was; and replaces it with --force."""
+    before = Path(path).read_bytes()
+    status, _, told = in_json(capsys, *words)
+    kept = status == 1 and is_told(told, "file-exists") and told[-1][0] == path
+    kept &= Path(path).read_bytes() == before
+    return kept and in_json(capsys, *words, "--force")[0] == 0
+
+
+def test_a_program_and_a_picture_are_replaced_as_they_were_written(desk, capsys):
+    assert in_json(capsys, *CONVERT)[0] == 0
+    first = Path("a.ngc").read_bytes()
+    Path("a.svg").write_text(DRAWING.format(3))
+    assert in_json(capsys, *CONVERT)[0] == 0
+    assert Path("a.ngc").read_bytes() != first
+
+
+@pytest.mark.parametrize("name", ["a.ngc", "a.png"])
+def test_what_was_edited_since_is_kept(desk, capsys, name):
+    assert in_json(capsys, *CONVERT)[0] == 0
+    with open(name, "ab") as file:
+        file.write(b"\n(mine)\n")
+    other = {"a.ngc": "a.png", "a.png": "a.ngc"}[name]
+    Path(other).unlink()
+    assert is_kept(capsys, name, *CONVERT)
+    assert in_json(capsys, *CONVERT)[0] == 0, "as it was written now"
+
+
+def test_what_brushsvg_did_not_write_is_kept(desk, capsys):
+    Path("a.ngc").write_text("(mine)\n")
+    assert is_kept(capsys, "a.ngc", *CONVERT)
+    Path("b.json").write_text("{}")
+    assert is_kept(capsys, "b.json", "convert", "a.svg", "b.json")
+
+
+def test_a_program_in_several_files_replaces_none_of_others(desk, capsys, monkeypatch):
+    monkeypatch.setitem(MOST_POINTS, "fanuc", 60)
+    two = DRAWING.format(2).replace("</g>", '<path d="M20 50c10-20 30 20 50 0" stroke-width="2"/></g>')
+    Path("a.svg").write_text(two)
+    words = ("convert", "a.svg", "a.ls", "--cell", "lrmate200id")
+    assert in_json(capsys, *words)[0] == 0
+    part = next(path.name for path in Path().glob("B*.ls"))
+    assert in_json(capsys, *words)[0] == 0
+    Path(part).write_text("mine")
+    assert is_kept(capsys, part, *words)
+
+
+SOURCES = {
+    "a brush": ("own.json", ("brush", "new", "own", "--lag", "4", "--width-at", "3=2")),
+    "a cell": ("own.toml", ("cell", "new", "own.toml")),
+    "a drawing": ("t.svg", ("text", "T", "t.svg", "--font", "font.svg")),
+}
+
+
+@pytest.mark.parametrize("kind", SOURCES)
+def test_brushes_cells_and_drawings_are_never_replaced_by_themselves(desk, capsys, kind):
+    path, words = SOURCES[kind]
+    Path("font.svg").write_text(FONT)
+    assert in_json(capsys, *words)[0] == 0, words
+    assert is_kept(capsys, path, *words)
+
+
+def test_no_program_replaces_a_brush(desk, capsys):
+    assert in_json(capsys, *SOURCES["a brush"][1])[0] == 0
+    assert is_kept(capsys, "own.json", "convert", "a.svg", "own.json")
+
+
+def test_where_nothing_can_be_remembered_files_are_somebodys(desk, capsys, monkeypatch):
+    Path("state").write_text("no folder")
+    assert in_json(capsys, *CONVERT)[0] == 0
+    assert is_kept(capsys, "a.ngc", *CONVERT)
+
+
+def test_a_device_is_written_through(desk, capsys):
+    Path("out.ngc").symlink_to(os.devnull)
+    assert [in_json(capsys, "convert", "a.svg", "out.ngc")[0] for _ in range(2)] == [0, 0]
+
+
+def test_what_is_remembered_stays_small(desk, monkeypatch):
+    Path("x").write_text("x")
+    monkeypatch.setattr(replacing, "MOST_BYTES", 1000)
+    for _ in range(20):
+        replacing.remember(["x"])
+    replacing.refuse_replacing(["x"])
+    (written,) = Path("state").rglob("*.txt")
+    assert written.stat().st_size <= 1000

@@ -1,0 +1,129 @@
+"""`check` looks at what few programs change by accident: how the tool is turned amid a circle, each step of a servo's
+lift, and stops within a stroke."""
+
+import re
+from pathlib import Path
+
+import pytest
+from diagnostics import in_json, is_told, refused
+
+import brushsvg
+from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.posts import POSTS
+
+CURVES = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60"><g fill="none" '
+    'stroke="#000" stroke-width="4"><path id="s" d="M15,45 C 20,35 30,55 40,40 S 50,50 52,45"/>'
+    '<path id="a" d="M70,15 A 10 10 0 1 1 90 20"/></g></svg>'
+)
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("a.svg").write_text(CURVES)
+    return tmp_path
+
+
+def written(cell):
+    """The path of a program in the cell's language, and its text."""
+    path = Path(f"a{POSTS[find_cell(cell).language].extensions[0]}")
+    brushsvg.convert("a.svg", path, cell=cell)
+    assert brushsvg.check(path, "a.svg", cell=cell).problems == ()
+    return path, path.read_bytes().decode()
+
+
+def problems(path, text, cell):
+    path.write_bytes(text.encode())
+    return brushsvg.check(path, "a.svg", cell=cell).problems
+
+
+def test_the_middle_of_a_circle_holds_the_brush_upright(desk):
+    path, text = written("lrmate200id")
+    number = re.search(r"C P\[(\d+)\]", text)[1]
+    point = re.search(rf"P\[{number}\]\{{[^}}]*\}}", text)[0]
+    path.write_bytes(text.replace(point, point.replace("W = 180.000", "W = 0.000")).encode())
+    with refused("tool-turned 180"):
+        brushsvg.check(path, "a.svg", cell="lrmate200id")
+    path, text = written("kr6-r900")
+    turned = re.sub(r"(CIRC \{[^}]*), A 0.00000", r"\1, A 90.00000", text, count=1)
+    assert turned != text
+    path.write_bytes(turned.encode())
+    with refused("tool-turned 90"):
+        brushsvg.check(path, "a.svg", cell="kr6-r900")
+
+
+RAMPS = {  # a lift in small steps: its lines, of which the last one is left
+    "axidraw-ebb": (r"(?:S2,\d+,4,0,[1-9]\d*\n)+(?=(S2,\d+,4,0,)[1-9]\d*\n)", r"(S2,\d+,4,0,)(\d+)\n"),
+    "grbl-servo": (r"(?:M3 S\d+\nG4 P[\d.]+\n)+(?=M3 S\d+\nG4 P[\d.]+\n)", r"(M3 S\d+\nG4 P)([\d.]+)\n"),
+}
+
+
+@pytest.mark.parametrize("number", [0, 1])  # down to the paper, and up
+@pytest.mark.parametrize("cell", RAMPS)
+def test_a_servo_goes_to_the_paper_in_small_steps(desk, cell, number):
+    """All of a lift at once, which then waits as long as all its steps did."""
+    path, text = written(cell)
+    lifts, step = RAMPS[cell]
+    ramp = [each for each in re.finditer(lifts, text) if len(re.findall(step, each[0])) > 5][number]
+    last = re.compile(step).match(text, ramp.end())
+    waits = [float(each[1]) for each in re.findall(step, ramp[0] + last[0])]
+    total = f"{sum(waits):.3f}" if cell == "grbl-servo" else f"{sum(waits):.0f}"
+    slam = text[: ramp.start()] + f"{last[1]}{total}\n" + text[last.end() :]
+    assert is_told(problems(path, slam, cell), "speed-out-of-range servo")
+    # each step as small, but all of them at once: only the last one waits
+    rush = re.sub(step, lambda each: f"{each[1]}{'0.001' if cell == 'grbl-servo' else 1}\n", ramp[0])
+    rush = text[: ramp.start()] + rush + f"{last[1]}{total}\n" + text[last.end() :]
+    assert is_told(problems(path, rush, cell), "speed-out-of-range servo")
+
+
+STOPS = [
+    ("kr6-r900", r"( C_DIS)(?=\r)", ""),
+    ("irb120", r"within\([\d.]+\)", "fine"),
+    ("lrmate200id", r"CNT[2-9]\b", "FINE"),
+    ("ur5e", r", r=0\.[\d]+\)", ")"),
+    ("m0609", r", radius=[\d.]+", ""),
+    ("grbl-servo", r"(\nG1 X.*\n)(?=G1 X)", r"\1G4 P0.15\n"),
+    ("axidraw-ebb", r"(\nSM,\d+,-?[1-9]\d*,-?[1-9]\d*\n)(?=SM)", r"\1SM,150,0,0\n"),
+]
+
+
+@pytest.mark.parametrize(("cell", "old", "new"), STOPS)
+def test_a_stop_within_a_stroke_is_refused(desk, cell, old, new):
+    path, text = written(cell)
+    found = [*re.finditer(old, text)]
+    amid = found[len(found) // 2]
+    stopped = text[: amid.start()] + amid.expand(new) + text[amid.end() :]
+    assert is_told(problems(path, stopped, cell), "program-changed")
+
+
+def later(text, from_row, more_s):
+    """All rows of a table of times from one on, so much later."""
+    rows, count = [], 0
+    for line in text.splitlines():
+        if re.match(r"\d", line):
+            count += 1
+            seconds, _, rest = line.partition(",")
+            line = f"{float(seconds) + more_s:.7f},{rest}" if count > from_row else line
+        rows.append(line)
+    return "\n".join(rows) + "\n"
+
+
+def test_a_part_of_a_stroke_that_takes_longer_is_a_stop(desk, capsys):
+    path, text = written("axidraw-ebb")
+    slices = [*re.finditer(r"SM,(\d+)(?=,-?[1-9]\d?,-?[1-9]\d?\n)", text)]
+    amid = slices[len(slices) // 2]
+    slow = text[: amid.start()] + f"SM,{int(amid[1]) + 50}" + text[amid.end() :]
+    assert is_told(problems(path, slow, "axidraw-ebb"), "stands-in-paint 0.050")
+    status, _, told = in_json(capsys, "check", path, "a.svg", "--cell", "axidraw-ebb")
+    assert status == 1 and is_told(told, "stands-in-paint")
+    path, text = written("fr3")
+    paints = [k for k, line in enumerate(re.findall(r"^\d.*", text, re.MULTILINE)) if line.endswith(",pose")]
+    slow = later(text, paints[len(paints) // 2], 0.05)
+    assert is_told(problems(path, slow, "fr3"), "stands-in-paint")
+
+
+def test_a_stroke_that_is_slower_as_a_whole_is_none(desk):
+    path, text = written("axidraw-ebb")
+    slow = re.sub(r"SM,(\d+)(?=,-?\d+,-?\d+\n)", lambda each: f"SM,{int(each[1]) * 5 // 4}", text)
+    assert not is_told(problems(path, slow, "axidraw-ebb"), "stands-in-paint")
