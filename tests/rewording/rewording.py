@@ -58,10 +58,10 @@ def reworded(text: str) -> str:
 
 class Reworder(ast.NodeTransformer):
     """Rewords the sentences of a module; what is compared, looked up or split is no sentence. everything: not only
-    those of refusals and notices."""
+    those of refusals and notices; lists: names of texts that are split."""
 
-    def __init__(self, everything: bool):
-        self.everything = everything
+    def __init__(self, everything: bool, lists: set[str]):
+        self.everything, self.lists = everything, lists
 
     def visit(self, node: ast.AST) -> ast.AST:
         return (
@@ -119,6 +119,8 @@ class Reworder(ast.NodeTransformer):
         return self._wholly(node, isinstance(called, ast.Name) and called.id in SAID)
 
     def visit_Assign(self, node: ast.Assign) -> ast.AST:
+        if isinstance(node.targets[0], ast.Name) and node.targets[0].id in self.lists:
+            return node
         return self._wholly(
             node, isinstance(node.targets[0], ast.Name) and node.targets[0].id in ("sentence", "advice")
         )
@@ -146,5 +148,9 @@ class Reworder(ast.NodeTransformer):
 
 
 def reworded_module(source: str | bytes, path: str) -> ast.Module:
-    everything = PROGRAMS.search(path) is None
-    return ast.fix_missing_locations(Reworder(everything).visit(ast.parse(source, path)))
+    module = ast.parse(source, path)
+    split = (
+        each.value for each in ast.walk(module) if isinstance(each, ast.Attribute) and each.attr == "split"
+    )
+    lists = {each.id for each in split if isinstance(each, ast.Name)}
+    return ast.fix_missing_locations(Reworder(PROGRAMS.search(path) is None, lists).visit(module))
