@@ -7,6 +7,7 @@
 
 #include "brushsvg/error.hpp"
 #include "brushsvg/student_t.hpp"
+#include "refuse_unusable.hpp"
 
 namespace brushsvg {
 namespace {
@@ -321,6 +322,7 @@ void check(const Brush& brush) {
     if (brush.name.empty() ||
         std::any_of(brush.name.begin(), brush.name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
         throw Error("name-invalid", "the name must be one line of text", "name");
+    require_known_kind(brush);
     if (!(std::isfinite(lo) && std::isfinite(hi) && lo >= 0.0 && hi > lo && hi <= kDeepestMm))
         throw Error("out-of-range",
                     format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kDeepestMm),

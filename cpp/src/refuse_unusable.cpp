@@ -67,7 +67,7 @@ void require_outlines(const std::vector<Footprint>& shapes, Eigen::Index vertice
 
 }  // namespace
 
-void require_usable(const Brush& brush) {
+void require_known_kind(const Brush& brush) {
     if (!brush.kind.empty() && std::find(kBrushKinds.begin(), kBrushKinds.end(), brush.kind) == kBrushKinds.end()) {
         std::string known;
         for (const char* kind : kBrushKinds) known += (known.empty() ? "" : ", ") + std::string(kind);
@@ -76,6 +76,10 @@ void require_usable(const Brush& brush) {
                         "). Use round if its footprint is the same in every direction",
                     "kind");
     }
+}
+
+void require_usable(const Brush& brush) {
+    require_known_kind(brush);
     const auto [lo, hi] = brush.depth_range_mm;
     if (!(lo >= 0.0 && hi > lo && hi <= kDeepestMm))
         throw Error("out-of-range",
