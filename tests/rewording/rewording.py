@@ -152,5 +152,5 @@ def reworded_module(source: str | bytes, path: str) -> ast.Module:
     split = (
         each.value for each in ast.walk(module) if isinstance(each, ast.Attribute) and each.attr == "split"
     )
-    lists = {each.id for each in split if isinstance(each, ast.Name)}
+    lists = {name.id for each in split for name in ast.walk(each) if isinstance(name, ast.Name)}
     return ast.fix_missing_locations(Reworder(PROGRAMS.search(path) is None, lists).visit(module))
