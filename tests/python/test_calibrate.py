@@ -259,7 +259,7 @@ def test_a_table_that_names_another_unit_is_refused(head, row, where):
         ("lag,3,1200", "out-of-range"),
         ("straight,3,7", "measurement-kind JSON"),
         ("lag,3,7 mm", "not-a-number"),
-        ("", "measurement-missing rows lag width"),
+        ("", "measurement-missing lag"),
     ],
 )
 def test_a_row_that_is_refused_is_told_how_to_write_it(row, expected):
