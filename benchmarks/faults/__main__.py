@@ -15,8 +15,8 @@ commands that a test starts among them. So a fault costs the tests that come by 
 A comparison or `and`, `or` is only come by where it makes a difference. A test may find a result made by another, in a
 fixture or a cache: after the tests that come by a fault, the others of their files and of their shared fixtures run.
 A test catches a fault if it fails, dies or takes five times as long and half a minute more with it, and passes without.
-Tests that do not pass in the planted tree without a fault (some read the sources) count for nothing; tests/consumer, the
-sanitizers and the linters are not run.
+Tests that do not pass in the planted tree without a fault (some read the sources) count for nothing. The linters,
+sanitizers and tests/consumer are not run.
 
 Tests of .ci/run come first; what none of them catches goes to the tests marked `thorough`. Every step goes on where it
 was stopped; what is in the work folder (--work) may be deleted. Survivors are judged by hand: those that change nothing

@@ -20,8 +20,7 @@ from pathlib import Path
 
 from fault import BUILD, Fault
 
-# What `make thorough` runs, as pytest is asked for it. .ci/run runs the same but for tests marked thorough. Each line has
-# a conftest of its own, or other tests.
+# The suites of `make thorough`, one call of pytest each: markers and folders. .ci/run leaves out tests marked thorough.
 SUITES = (
     ("not long", "tests/python", "tests/laws", "tests/journeys"),
     ("long", "tests/laws"),
