@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "brushsvg/error.hpp"
-#include "known_kind.hpp"
 
 namespace brushsvg {
 namespace {
@@ -69,7 +68,7 @@ void require_outlines(const std::vector<Footprint>& shapes, Eigen::Index vertice
 }  // namespace
 
 void require_usable(const Brush& brush) {
-    require_known_kind(brush.kind, kBrushKinds);
+    require_known_kind(brush);
     const auto [lo, hi] = brush.depth_range_mm;
     if (!(lo >= 0.0 && hi > lo && hi <= kDeepestMm))
         throw Error("out-of-range",
