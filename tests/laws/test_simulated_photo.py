@@ -159,7 +159,10 @@ def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, ca
     status, _, told = in_json(capsys, "calibrate", "--force", photo, "--chart", chart, "-o", found)
     assert status == 1 and is_told(told, "photo-of-another-chart"), told
     assert all(flag in told[-1][1].advice for flag in ("--plan", "--prior", "--chart"))
-    assert main(["calibrate", "--force", photo, "--plan", plan, "--prior", "round-6", "-o", found, "--quiet"]) == 0
+    assert (
+        main(["calibrate", "--force", photo, "--plan", plan, "--prior", "round-6", "-o", found, "--quiet"])
+        == 0
+    )
     assert json.loads((tmp_path / "mine.json").read_text())["format"] == "brushsvg/brush"
 
 
