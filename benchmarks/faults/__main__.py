@@ -15,8 +15,8 @@ commands that a test starts among them. So a fault costs the tests that come by 
 A comparison or `and`, `or` is only come by where it makes a difference. A test may find a result made by another, in a
 fixture or a cache: after the tests that come by a fault, the others of their files and of their shared fixtures run.
 A test catches a fault if it fails, dies or takes five times as long and half a minute more with it, and passes without.
-Tests that do not pass in the planted tree without a fault (some read the sources) count for nothing. The C++ is built
-without assertions, as for users, so that the C++ tests catch a little less than in .ci/run.
+Tests that do not pass in the planted tree without a fault (some read the sources) count for nothing. The linters,
+sanitizers and tests/consumer are not run.
 
 Tests of .ci/run come first; what none of them catches goes to the tests marked `thorough`. Every step goes on where it
 was stopped; what is in the work folder (--work) may be deleted. Survivors are judged by hand: those that change nothing
@@ -29,7 +29,7 @@ import argparse
 from pathlib import Path
 
 from fault import read_faults
-from run import ALL, Tree
+from run import Tree
 
 ROOT = Path(__file__).parents[2]
 
@@ -63,7 +63,7 @@ def main() -> None:
         return
     faults = read_faults(work)
     if args.step == "map":
-        tree.map_tests(args.paths or ["cpp", *(path for paths in ALL for path in paths)], args.jobs)
+        tree.map_tests(args.paths, args.jobs)
     elif args.step == "try":
         if not tree.tiers.exists():
             tree.collect_tiers()

@@ -26,10 +26,11 @@ def plant(root: Path, work: Path, seed: int, python: int, cpp: int) -> list[Faul
     tree = work / "tree"
     copy_tree(root, tree)
     make_venv(root, tree)
+    sources = read_sources(tree)
     faults = choose_python(tree, seed, python)
     if not cpp:  # nothing to build
         number_all(faults)
-        write(root, tree, faults)
+        write(tree, sources, faults)
         code = "import brushsvg._core; print(brushsvg._core.__file__)"
         done = subprocess.run(
             [root / ".venv/bin/python", "-c", code], capture_output=True, text=True, check=True
@@ -39,7 +40,7 @@ def plant(root: Path, work: Path, seed: int, python: int, cpp: int) -> list[Faul
     choice = choose_cpp(tree, seed, cpp)
     while True:
         number_all([*faults, *choice.chosen])
-        write(root, tree, [*faults, *choice.chosen])
+        write(tree, sources, [*faults, *choice.chosen])
         refused = build(tree, choice.chosen)
         if not refused:
             break
@@ -236,15 +237,21 @@ def with_switches(source: bytes, faults: list[Fault], tree: Path) -> bytes:
     return text
 
 
-def write(root: Path, tree: Path, faults: list[Fault]) -> None:
+def read_sources(tree: Path) -> dict[str, bytes]:
+    paths = [path for folder in (PACKAGE, "cpp") for path in sorted((tree / folder).rglob("*"))]
+    return {
+        path.relative_to(tree).as_posix(): path.read_bytes()
+        for path in paths
+        if path.suffix in (".py", ".cpp", ".hpp")
+    }
+
+
+def write(tree: Path, sources: dict[str, bytes], faults: list[Fault]) -> None:
     by_file: dict[str, list[Fault]] = {}
     for fault in faults:
         by_file.setdefault(fault.file, []).append(fault)
-    for folder in (PACKAGE, "cpp"):
-        for path in (tree / folder).rglob("*"):
-            if path.suffix in (".py", ".cpp", ".hpp"):
-                file = path.relative_to(tree).as_posix()
-                update(path, with_switches((root / file).read_bytes(), by_file.get(file, []), tree))
+    for file, source in sources.items():
+        update(tree / file, with_switches(source, by_file.get(file, []), tree))
 
 
 def build(tree: Path, faults: list[Fault]) -> list[Fault]:

@@ -20,13 +20,12 @@ from pathlib import Path
 
 from fault import BUILD, Fault
 
-# what .ci/run runs, as pytest is asked for it; `make thorough` runs the rest
-CI = (
-    ("not long and not thorough", "tests/python", "tests/laws"),
-    ("long and not thorough", "tests/laws"),
-    ("not thorough", "tests/integration"),
+# The suites of `make thorough`, one call of pytest each: markers and folders. .ci/run leaves out tests marked thorough.
+SUITES = (
+    ("not long", "tests/python", "tests/laws", "tests/journeys"),
+    ("long", "tests/laws"),
+    ("not long", "tests/integration"),
 )
-ALL = (("tests/python", "tests/laws"), ("tests/integration",))  # each with a conftest of its own
 CPP = "cpp::"  # before the names of C++ tests
 FIRST_TESTS, FIRST_S, MORE = (
     30,
@@ -108,17 +107,25 @@ class Tree:
     # the map
 
     def map_tests(self, paths: list[str], processes: int) -> None:
-        """Run tests without a fault, and write down who comes by which; those that ran before are left out."""
+        """Run tests without a fault, and write down who comes by which; those that ran before are left out.
+
+        paths: files and folders, cpp for the tests of C++; none for all suites.
+        """
         self.map.mkdir(exist_ok=True)
         settings = {
             "FAULTS_RESULTS": str(self.map),
             "FAULTS_RESUME": "1",
             "BRUSHSVG_FAULT_HITS": str(self.map),
         }
-        if "cpp" in paths:
+        if not paths or "cpp" in paths:
             self._map_cpp(settings["BRUSHSVG_FAULT_HITS"])
-        for rest in apart([path for path in paths if path != "cpp"]):
-            self.pytest("-n", processes, "--dist", "loadfile", *rest, show=True, **settings)
+        runs = (
+            apart([path for path in paths if path != "cpp"])
+            if paths
+            else [("-m", *suite) for suite in SUITES]
+        )
+        for words in runs:
+            self.pytest("-n", processes, "--dist", "loadfile", *words, show=True, **settings)
 
     def _map_cpp(self, hits: str) -> None:
         with (self.map / "tests-cpp.jsonl").open("w", encoding="utf-8") as out:
@@ -152,9 +159,10 @@ class Tree:
                     raise SystemExit(said[-3000:])
                 return json.loads(out.read_text(encoding="utf-8"))
 
-            tiers = dict.fromkeys([name for paths in ALL for name in names(*paths)], "thorough")
-            for markers, *paths in CI:
-                tiers.update(dict.fromkeys(names("-m", markers, *paths), "ci"))
+            tiers = {}
+            for tier, left_out in (("thorough", ""), ("ci", " and not thorough")):
+                for markers, *paths in SUITES:
+                    tiers.update(dict.fromkeys(names("-m", markers + left_out, *paths), tier))
         self.tiers.write_text(json.dumps(tiers, indent=0), encoding="utf-8")
 
     def tests(self) -> dict[str, Test]:
@@ -319,7 +327,8 @@ def reaching(tests: dict[str, Test], hits: set[str]) -> tuple[list[Test], list[T
 
 def apart(paths: list[str]) -> list[list[str]]:
     """Paths that one process of pytest can run, and those of the next."""
-    groups = [[path for path in paths if path.startswith(folders)] for folders in ALL]
+    integration = [path for path in paths if path.startswith("tests/integration")]
+    groups = ([path for path in paths if path not in integration], integration)
     return [group for group in groups if group]
 
 

@@ -316,11 +316,23 @@ double Brush::depth_for_half_width(double half_width_mm, const std::string& wher
     return b;
 }
 
+void require_known_kind(const Brush& brush) {
+    if (!brush.kind.empty() && std::find(kBrushKinds.begin(), kBrushKinds.end(), brush.kind) == kBrushKinds.end()) {
+        std::string known;
+        for (const char* kind : kBrushKinds) known += (known.empty() ? "" : ", ") + std::string(kind);
+        throw Error("choice-unknown",
+                    "brushes of kind " + brush.kind.substr(0, 40) + " are not simulated (known: " + known +
+                        "). Use round if its footprint is the same in every direction",
+                    "kind");
+    }
+}
+
 void check(const Brush& brush) {
     const auto [lo, hi] = brush.depth_range_mm;
     if (brush.name.empty() ||
         std::any_of(brush.name.begin(), brush.name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
         throw Error("name-invalid", "the name must be one line of text", "name");
+    require_known_kind(brush);
     if (!(std::isfinite(lo) && std::isfinite(hi) && lo >= 0.0 && hi > lo && hi <= kDeepestMm))
         throw Error("out-of-range",
                     format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kDeepestMm),

@@ -490,7 +490,7 @@ TEST_CASE("marks.json: each fault is named with its key") {
 
 TEST_CASE("any reader: not an object, not UTF-8, nested without end") {
     CHECK(agrees(refusal([] { io::read_marks("[]"); }), "wrong-type", ""));
-    CHECK(agrees(refusal([] { io::read_plan("{\"format\": \"\xff\"}"); }), "not-text", ""));
+    CHECK(agrees(refusal([] { io::read_plan("{\"format\": \"\xff\"}"); }), "not-json", "format"));
     const std::string deep = "{\"a\": " + std::string(500000, '[') + std::string(500000, ']') + "}";
     CHECK(agrees(refusal([&] { io::read_plan(deep); }), "not-json", "a", {"100"}));
     const std::string two_lines = "{\"format\": \"brushsvg/plan\",\n \"brush\" 1}";

@@ -35,7 +35,7 @@ LagLaw<double> law_of(const Brush& brush) {
 TEST_CASE("the brush itself on its marks' way does what the simulator says at every row") {
     const Brush brush = shipped("round-6");
     const Pass pass = pass_with_arc();
-    const PassMarks marks = simulate(pass, brush);
+    const PassMarks marks = simulate(pass, brush, 0.02, true, true);
     const ManyStates again = follow_many(way_of(pass, marks), {law_of(brush), law_of(brush)});
     REQUIRE(again.taut.rows() == marks.contact_mm.rows());
     REQUIRE((way_of(pass, marks).turn_rad != 0.0).count() > 5);
@@ -53,7 +53,7 @@ TEST_CASE("another lag on these marks' way is where its own simulation has it at
     Brush other = brush;
     for (double& c : other.lag.coefficients) c *= 1.2;
     const Pass pass = pass_with_arc();
-    const PassMarks marks = simulate(pass, brush), own = simulate(pass, other);
+    const PassMarks marks = simulate(pass, brush, 0.02, true, true), own = simulate(pass, other, 0.02, true, true);
     const ManyStates led = follow_many(way_of(pass, marks), {law_of(other)});
     int compared = 0;
     for (std::size_t i = 0; i < marks.pose.size(); ++i)
@@ -70,7 +70,7 @@ TEST_CASE("another lag on these marks' way is where its own simulation has it at
 TEST_CASE("marks that are not those of the pass") {
     const Brush brush = shipped("round-6");
     Pass pass = pass_with_arc();
-    PassMarks marks = simulate(pass, brush);
+    PassMarks marks = simulate(pass, brush, 0.02, true, true);
     marks.pose.back() = 99.0;
     CHECK(agrees(refusal([&] { way_of(pass, marks); }), "not-ascending", "s"));
     marks.depth_mm.pop_back();

@@ -61,8 +61,8 @@ TEST_CASE("a pass that begins or ends below the surface is set down and lifted o
 
 TEST_CASE("moves are split where z crosses 0") {
     const Brush brush = shipped("round-6");
-    const PassMarks m =
-        simulate(pass_of({{0, 0, 2}, {10, 0, -3}, {30, 0, -3}, {40, 0, 7}, {50, 0, 7}, {60, 0, -3}}), brush);
+    const PassMarks m = simulate(pass_of({{0, 0, 2}, {10, 0, -3}, {30, 0, -3}, {40, 0, 7}, {50, 0, 7}, {60, 0, -3}}),
+                                 brush, 0.02, true, true);
     int touching = 0;
     for (std::size_t i = 0; i < m.pose.size(); ++i) {
         if (m.depth_mm[i] == 0.0) ++touching;

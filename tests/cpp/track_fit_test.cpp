@@ -82,7 +82,7 @@ TEST_CASE("strokes that leave the lag open are refused, and so is nonsense") {
     straight.seen_mm.resize(2, 2);
     straight.seen_mm << 8, 0, 23, 0;
     CHECK(fit_tracks({straight}, {5.0}, {}).lag(3.0) == doctest::Approx(7.0));
-    CHECK(agrees(refusal([&] { fit_tracks({straight}, {5.0, 1.0}, {}); }), "law-undetermined", ""));
+    CHECK(agrees(refusal([&] { fit_tracks({straight}, {5.0, 1.0}, {}); }), "law-undetermined", "lag"));
     CHECK_THROWS_AS(fit_tracks({straight}, {-5.0}, {}), Error);
     straight.seen_mm(0, 0) = NAN;
     CHECK_THROWS_AS(fit_tracks({straight}, {5.0}, {}), Error);

@@ -104,9 +104,9 @@ def test_only_what_is_left_out_is_warned_of(source, drawing, converted, tmp_path
     count = 0
     if source == "kanji-eternity":
         (_, texts), (_, depths) = told  # five of one kind, five of another, folded
-        assert agrees(texts, "text-unread", "text 1 and 4 like it")
+        assert agrees(texts, "text-unread 'text 1' 4")
         strokes = ids_in_order(drawing(source))
-        assert agrees(depths, "depth-not-measured 0.94", f"{strokes[0]} and {len(strokes) - 1} like it")
+        assert agrees(depths, f"depth-not-measured '{strokes[0]}' {len(strokes) - 1} 0.94")
         count = len(strokes) + 5
     else:
         assert told == []

@@ -154,7 +154,7 @@ def region_of(rings):
 
 
 def marks_of(poses, brush, tolerance_mm=0.02):
-    marks = core.simulate(make_plan(np.array(poses, float)), brush, tolerance_mm)
+    marks = core.simulate(make_plan(np.array(poses, float)), brush, tolerance_mm, may_rise=True)
     core.trace_outlines(marks, brush)
     return marks
 

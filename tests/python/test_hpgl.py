@@ -190,7 +190,7 @@ def test_a_plotter_takes_its_pens_by_the_colours_of_the_cell(tmp_path, capsys, m
     assert status == 1 and is_told(said, "colour-not-served #fedcba")
     one = replace(own, pen=replace(own.pen, colours=own.pen.colours[:1]))
     Path("own.toml").write_text(write_cell(one))
-    status, _, said = in_json(capsys, "convert", *words)
+    status, _, said = in_json(capsys, "convert", "--force", *words)
     assert status == 1 and is_told(said, "colour-not-served")
 
 

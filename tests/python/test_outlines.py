@@ -522,7 +522,7 @@ def test_scribbles_beyond_all_lettering_are_left_out_with_a_warning():
     made, (notice,) = strokes(design)
     assert [stroke.id for stroke in made] == ["bar"]
     assert agrees(notice, "outline-too-complex 10000", "p")
-    with refused("nothing-to-paint crosses"):
+    with refused("nothing-to-paint"):
         painted(path(scribble))
 
 

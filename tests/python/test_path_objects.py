@@ -78,9 +78,9 @@ def test_a_stroke_of_a_path_is_painted_and_its_way_comes_back_as_one():
         ("M0 0 L10 x", 2, "geometry-damaged x"),
         ("M0 0 L1e9 0", 2, "geometry-out-of-range 1e6"),
         (svgpathtools.Path(), 2, "wrong-type"),
-        (svgpathtools.parse_path("M0 0 L10 0 M20 0 L30 0"), 2, "wrong-type 2 lines"),
-        (np.zeros((2, 3)), 2, "wrong-type shape"),
-        (None, 2, "wrong-type shape"),
+        (svgpathtools.parse_path("M0 0 L10 0 M20 0 L30 0"), 2, "wrong-type 2"),
+        (np.zeros((2, 3)), 2, "wrong-type '(n, 4, 2)'"),
+        (None, 2, "wrong-type '(n, 4, 2)'"),
         (np.array([[0, 0, 1, 0, 2, 0, 3, 0], [4, 0, 5, 0, 6, 0, 7, 0]]), 2, "wrong-type 2"),
         (np.array([[0, 0, 1, 0, 2, 0, np.nan, 0]]), 2, "not-finite"),
         (np.zeros((0, 8)), 2, "stroke-empty"),
@@ -120,5 +120,5 @@ def test_an_ezdxf_document_is_read_as_its_file_is(tmp_path):
 
 def test_what_is_neither_file_nor_document_is_refused():
     for wrong in (None, 3, io.BytesIO(b"x"), object()):
-        with refused("drawing-format path ElementTree"):
+        with refused("drawing-format ElementTree"):
             brushsvg.read_drawing(wrong)

@@ -1,7 +1,7 @@
 """Other words for all that people read: which tests fail with these depend on wording.
 
-Words get a letter in their middle. Numbers, names in quotes, options, files, codes and what stands for a value stay. So
-do the lines of programs: they are a format that `check` reads, and tests/golden has them.
+Words get a letter in their middle. Numbers, directions, names in quotes, options, files, codes and what stands for a
+value stay. So do the lines of programs: they are a format that `check` reads, and tests/golden has them.
 """
 
 import ast
@@ -36,6 +36,9 @@ SENTENCE = re.compile(
 )
 
 
+DIRECTIONS = {"left", "right", "upper", "lower", "clockwise"}
+
+
 def is_sentence(text: str) -> bool:
     return SENTENCE.search(text) is not None and NO_SENTENCE.search(text) is None
 
@@ -45,7 +48,7 @@ def reworded(text: str) -> str:
 
     def other(found: re.Match) -> str:
         word = found[0]
-        if any(start <= found.start() < end for start, end in kept):
+        if word in DIRECTIONS or any(start <= found.start() < end for start, end in kept):
             return word
         middle = len(word) // 2
         return f"{word[:middle]}q{word[middle:]}"
@@ -55,10 +58,10 @@ def reworded(text: str) -> str:
 
 class Reworder(ast.NodeTransformer):
     """Rewords the sentences of a module; what is compared, looked up or split is no sentence. everything: not only
-    those of refusals and notices."""
+    those of refusals and notices; lists: names of texts that are split."""
 
-    def __init__(self, everything: bool):
-        self.everything = everything
+    def __init__(self, everything: bool, lists: set[str]):
+        self.everything, self.lists = everything, lists
 
     def visit(self, node: ast.AST) -> ast.AST:
         return (
@@ -116,6 +119,8 @@ class Reworder(ast.NodeTransformer):
         return self._wholly(node, isinstance(called, ast.Name) and called.id in SAID)
 
     def visit_Assign(self, node: ast.Assign) -> ast.AST:
+        if isinstance(node.targets[0], ast.Name) and node.targets[0].id in self.lists:
+            return node
         return self._wholly(
             node, isinstance(node.targets[0], ast.Name) and node.targets[0].id in ("sentence", "advice")
         )
@@ -143,5 +148,9 @@ class Reworder(ast.NodeTransformer):
 
 
 def reworded_module(source: str | bytes, path: str) -> ast.Module:
-    everything = PROGRAMS.search(path) is None
-    return ast.fix_missing_locations(Reworder(everything).visit(ast.parse(source, path)))
+    module = ast.parse(source, path)
+    split = (
+        each.value for each in ast.walk(module) if isinstance(each, ast.Attribute) and each.attr == "split"
+    )
+    lists = {name.id for each in split for name in ast.walk(each) if isinstance(name, ast.Name)}
+    return ast.fix_missing_locations(Reworder(PROGRAMS.search(path) is None, lists).visit(module))

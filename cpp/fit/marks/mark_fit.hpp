@@ -122,8 +122,8 @@ struct MarkFit {
 ///
 /// Covariance: sandwich of the loss times (J^T J)^-1, J with the priors; the samples along an outline depend on each
 /// other and count as fewer, by the integral of their autocorrelation. Points beside ends narrower than three times the
-/// noise have no say. Throws Error: no mark, numbers that are not finite or no millimetres, a start that paints no mark,
-/// marks that no brush paints (no_brush.hpp).
+/// noise have no say. Throws Error: no mark, numbers that are not finite or no millimetres, a start that paints no
+/// mark, marks that no brush paints (no_brush.hpp).
 MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<MarkLaws>& start,
                   const MarkOptions& options);
 

@@ -76,7 +76,7 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
         for number, corner in enumerate(_inner_corners(sheet_mm), 1):
             yield Section(
                 f"first run: touch the paper, point {number} of 4",
-                _touch(corner, _over_all(highest_mm, cell), brush, cell),
+                _touch(corner, slow_below_mm(highest_mm, cell), brush, cell),
             )
         for number, section in enumerate(strokes.sections()):
             steps = (
@@ -85,7 +85,7 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
                 else section.steps
             )
             yield Section(section.title, steps)
-        one = _stroke_at(ends, -depth_mm, _over_all(highest_mm, cell), brush, cell)
+        one = _stroke_at(ends, -depth_mm, slow_below_mm(highest_mm, cell), brush, cell)
         yield Section(
             f"first run: one stroke, {depth_mm:g} mm deep", (_ask("the brush has paint again"), *one)
         )
@@ -183,7 +183,7 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
         )
     starts = _lanes(len(heights), sheet_mm)
     safe = cell.heights.safe_mm
-    clearance = _over_all(highest_mm, cell)
+    clearance = slow_below_mm(highest_mm, cell)
     if clearance > safe:
         raise Error(
             f"height {highest_mm:g} mm is outside the range [{lowest_mm:g}, {safe - 0.5:g}] mm below safe height",
@@ -210,7 +210,7 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
     return _unless_astray(sections, brush, cell, sheet_mm)
 
 
-def _over_all(highest_mm: float, cell: Cell) -> float:
+def slow_below_mm(highest_mm: float, cell: Cell) -> float:
     """From there down all is slow, since the paper may lie as high as highest_mm [mm]."""
     return max(cell.heights.clearance_mm, highest_mm + 0.5)
 

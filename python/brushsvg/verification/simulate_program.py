@@ -21,6 +21,7 @@ from ..machine.paint_reload import may_pause, pen
 from ..machine.posts.text import NAMED, spelled
 from ..machine.preflight import as_run, off_sheet
 from ..machine.program import names_of_stations
+from ..machine.setup_programs import slow_below_mm
 from ..machine.tool_axes import tilts_deg
 from ..machine.workspace_limits import (
     astray,
@@ -536,13 +537,17 @@ def _lifts_at_once(
     """A notice where a servo lifts or lowers the brush alone, between the clearance and the paper, in a larger step
     than brushsvg writes, or faster than the cell presses. What is wholly in the paint is held against the brush's limit
     elsewhere."""
-    paper, clearance = paper_mm + slack_mm(cell), paper_mm + cell.heights.clearance_mm - value_mm(cell)
+    slow_mm = slow_below_mm(paper_mm, cell) if paper_mm else cell.heights.clearance_mm
+    paper, clearance = paper_mm + slack_mm(cell), slow_mm - value_mm(cell)
     stands = ~(after[:, :2] != before[:, :2]).any(axis=1)
     highest = np.maximum(before[:, 2], after[:, 2])
     rise_mm = np.abs(np.minimum(after[:, 2], clearance) - np.minimum(before[:, 2], clearance))
     waits_s = np.array([step.wait_s for step in steps])
     least_s = rise_mm / cell.speeds.press_mm_s - ROUNDED_S
-    for k in np.flatnonzero(stands & (highest > paper) & ((rise_mm > _lead_mm(cell)) | (waits_s < least_s))):
+    # along a way, heights change without a wait; then the way follows
+    is_way = (waits_s == 0) & ~np.r_[stands[1:], False]
+    fast = (rise_mm > _lead_mm(cell)) | ((waits_s < least_s) & ~is_way)
+    for k in np.flatnonzero(stands & (highest > paper) & fast):
         sentence = (
             f"line {steps[k].line}: the servo moves the brush by {rise_mm[k]:.2f} mm in {waits_s[k]:.3f} s near the "
             f"paper (steps of {cell.servo.step_mm:g} mm, at most {cell.speeds.press_mm_s:g} mm/s)"
