@@ -30,8 +30,10 @@ PYBIND11_MODULE(_core, m) {
             if (p) std::rethrow_exception(p);
         } catch (const brushsvg::Error& e) {
             const py::object type = py::module_::import("brushsvg.errors").attr("Error");
+            py::object range = py::none();
+            if (e.range()) range = py::make_tuple((*e.range())[0], (*e.range())[1]);  // as Error documents it
             const py::object error = type(e.what(), py::arg("where") = e.where(), py::arg("value") = e.value(),
-                                          py::arg("range") = e.range(), py::arg("code") = e.code());
+                                          py::arg("range") = range, py::arg("code") = e.code());
             PyErr_SetObject(type.ptr(), error.ptr());
         }
     });

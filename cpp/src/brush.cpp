@@ -7,7 +7,6 @@
 
 #include "brushsvg/error.hpp"
 #include "brushsvg/student_t.hpp"
-#include "refuse_unusable.hpp"
 
 namespace brushsvg {
 namespace {
@@ -315,6 +314,17 @@ double Brush::depth_for_half_width(double half_width_mm, const std::string& wher
         (half_width(middle) < half_width_mm ? a : b) = middle;
     }
     return b;
+}
+
+void require_known_kind(const Brush& brush) {
+    if (!brush.kind.empty() && std::find(kBrushKinds.begin(), kBrushKinds.end(), brush.kind) == kBrushKinds.end()) {
+        std::string known;
+        for (const char* kind : kBrushKinds) known += (known.empty() ? "" : ", ") + std::string(kind);
+        throw Error("choice-unknown",
+                    "brushes of kind " + brush.kind.substr(0, 40) + " are not simulated (known: " + known +
+                        "). Use round if its footprint is the same in every direction",
+                    "kind");
+    }
 }
 
 void check(const Brush& brush) {

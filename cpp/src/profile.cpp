@@ -31,6 +31,7 @@ double Profile::at(double depth_mm) const {
                           deepest);
             throw Error("depth-out-of-range", text, "", depth_mm, std::array<double, 2>{0.0, deepest});
         }
+        depth_mm = std::clamp(depth_mm, 0.0, deepest);
     }
     return (*this)(depth_mm);
 }

@@ -67,17 +67,6 @@ void require_outlines(const std::vector<Footprint>& shapes, Eigen::Index vertice
 
 }  // namespace
 
-void require_known_kind(const Brush& brush) {
-    if (!brush.kind.empty() && std::find(kBrushKinds.begin(), kBrushKinds.end(), brush.kind) == kBrushKinds.end()) {
-        std::string known;
-        for (const char* kind : kBrushKinds) known += (known.empty() ? "" : ", ") + std::string(kind);
-        throw Error("choice-unknown",
-                    "brushes of kind " + brush.kind.substr(0, 40) + " are not simulated (known: " + known +
-                        "). Use round if its footprint is the same in every direction",
-                    "kind");
-    }
-}
-
 void require_usable(const Brush& brush) {
     require_known_kind(brush);
     const auto [lo, hi] = brush.depth_range_mm;

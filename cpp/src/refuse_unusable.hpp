@@ -8,9 +8,6 @@ namespace brushsvg {
 /// Marks reach beyond what was drawn by a brush's lag, no more: a coordinate beyond it is damage.
 inline constexpr double kFarthestPaintedMm = 1e7;
 
-/// Throws Error where the kind of a brush is none of kBrushKinds; without one it is round.
-void require_known_kind(const Brush& brush);
-
 /// Refuses what cannot be computed with, quickly: check(brush) says whether a brush makes sense. Throws Error when the
 /// kind is unknown, the depth range does not rise, a law is not finite, negative where it is a length or larger than
 /// any brush, or an outline is missing, too large or not as long as the others.

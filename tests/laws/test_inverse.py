@@ -476,10 +476,10 @@ def test_rigid_pen_follows_the_line():
 
 
 def test_widths_out_of_reach_are_refused_with_the_range():
-    for half_width in (4.3, -1.0, np.nan):
+    for half_width, code in ((4.3, "width-out-of-reach"), (-1.0, "out-of-range"), (np.nan, "out-of-range")):
         with pytest.raises(Error) as refusal:
             core.compensate([stroke_of(line((0, 0), (40, 0)), [(0.0, half_width)])], ROUND, (99.0, 99.0))
-        assert (refusal.value.code, refusal.value.where) == ("width-out-of-reach", "s")
+        assert (refusal.value.code, refusal.value.where) == (code, "s")
     with pytest.raises(ValueError, match=r"8\.4") as refusal:
         core.compensate([stroke_of(line((0, 0), (40, 0)), [(0.0, 1.0), (1.0, 4.5)])], ROUND, (99.0, 99.0))
     assert refusal.value.range is not None

@@ -214,7 +214,7 @@ def _drop(*keys):
             "footprint-invalid 64 65",
         ),
         (_set("half_width", "coefficients", to=[4.2, -0.42]), "half_width", "width-falls"),
-        (_set("kind", to="flat"), "kind", "choice-unknown flat round liner pen"),
+        (_set("kind", to="flat"), "kind", "choice-unknown flat"),
         (_set("paint", to={}), "paint.narrows_per_m", "key-missing"),
         (_set("paint", to={"narrows_per_m": 30}), "paint.narrows_per_m", "out-of-range 0 20"),
         (_set("paint", to={"narrows_per_m": 0.3, "lasts_mm": 0}), "paint.lasts_mm", "out-of-range 1 1e6"),

@@ -529,7 +529,7 @@ def test_several_outputs_are_written_all_or_none(desk, capsys, full):
             (desk / name).write_text("old")
     before = sorted(os.listdir(desk))
     status, _, ((file, told),) = in_json(
-        capsys, "convert", "a.svg", outputs[0], "--preview", outputs[1], "--report", outputs[2]
+        capsys, "convert", "a.svg", outputs[0], "--preview", outputs[1], "--report", outputs[2], "--force"
     )
     assert (status, file) == (1, full) and agrees(told, "file-unwritable"), told
     assert all((desk / name).read_text() == "old" for name in outputs if name != full)

@@ -46,6 +46,9 @@ struct Brush {
     }
 };
 
+/// Throws Error where the kind of a brush is none of kBrushKinds; without one it is round.
+void require_known_kind(const Brush& brush);
+
 /// Refuses a brush that would lead a robot astray: negative lag, or lag zero in part of the range; falling
 /// half width; footprints that are not simple counter-clockwise rings with the tip first and equal counts;
 /// outlines that disagree with the laws by more than 0.5 mm. Throws Error naming the law and the depth.

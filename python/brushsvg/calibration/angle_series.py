@@ -43,7 +43,10 @@ def scatter_of_series(row: Row, lag_mm: float, tip_gap_mm: float, total: bool) -
     )
     shown = [alpha0, *decayed]
     if beta:
-        shown += [*_core.lag.tip_direction(alpha0, decayed, s, lag_mm, max(tip_gap_mm, 0.0))]
+        betas = _core.lag.tip_direction(alpha0, decayed, s, lag_mm, max(tip_gap_mm, 0.0))
+        shown += [
+            *np.clip(betas, 2 * STEP_RAD, np.pi - 2 * STEP_RAD)
+        ]  # or a step would leave what can be read
 
     def lengths(angles) -> np.ndarray:
         first, alphas, betas = angles[0], angles[1 : 1 + len(s)], angles[1 + len(s) :]

@@ -176,7 +176,7 @@ def _moved(brush, passes, traces, sides) -> list[tuple[np.ndarray, np.ndarray]]:
 
 
 def _effects(brush, trace, parts, d_contact, d_along) -> _Effects:
-    depth = np.asarray(trace.depth_mm)
+    depth = np.maximum(trace.depth_mm, 0.0)  # a program that was read may rise over the paper
     contact, along = np.asarray(trace.contact_mm), _unit(np.asarray(trace.heading_rad))
     gap, widest, half = (getattr(brush, law)(depth) for law in LAWS[1:])
     d_gap, d_widest, d_half = (_powers(getattr(brush, law), depth) @ parts[law] for law in LAWS[1:])

@@ -103,7 +103,7 @@ def _without_slivers(strokes: list, least: float, brush) -> tuple[list, list[Not
         for stroke, area in zip(strokes, areas, strict=True)
         if area < dab_mm2 / 2
     ]
-    if strokes and len(notices) == len(strokes):
+    if notices and len(notices) == len(strokes):
         first = notices[0]
         sentence = f"there is nothing to paint: {first.sentence}; draw it larger, or take a finer brush"
         raise Error(sentence, where=first.where, code="nothing-to-paint")
