@@ -24,7 +24,7 @@ endif
 WERROR ?= OFF
 PIP_INSTALL := $(BIN)/pip install -q --no-build-isolation -C build-dir=$(BUILD) -C cmake.define.BRUSHSVG_WERROR=$(WERROR) -e
 
-.PHONY: docs plugins help setup system test-system demo test lint format clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan clean quick FORCE
+.PHONY: docs plugins help setup system test-system demo test lint format clang-headers clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
@@ -37,6 +37,7 @@ help:
 	@echo "make test-times   run the tests and show which tests, fixtures and builds take longest (SUITES='python long integration')"
 	@echo "make plugins      the Inkscape extension as a zip for its extension manager, in dist/"
 	@echo "make docs         the documentation as pages to read in a browser, with a search, in docs/_build"
+	@echo "make clang-headers  the public headers read by clang and g++ with all warnings as errors"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
 	@echo "make bench        our figures beside the peers' and the floor"
 	@echo "make bench-compare REV=main    what became slower than at a revision, both run in turn"
@@ -104,23 +105,26 @@ lint: $(VENV)/.dev test-system
 	$(BIN)/clang-format --dry-run --Werror $$(git ls-files '*.cpp' '*.hpp')
 	cppcheck -q --std=c++17 --language=c++ --enable=warning,performance,portability --inline-suppr --error-exitcode=1 --suppress=missingIncludeSystem -I cpp/include -I cpp/io -I cpp/posts cpp examples benchmarks
 
-# Read by clang, which refuses what g++ lets pass (clang 14: captured structured bindings); nothing is compiled or run.
-clang-check: $(VENV)/.dev
+INCLUDES := $(patsubst %,-Icpp/%,include io posts fit/laws fit/marks fit/tracks many refine src) -isystem /usr/include/eigen3
+
+clang-headers: setup
 	@$(call install,clang)
-	includes="$$(printf -- '-Icpp/%s ' include io posts fit/laws fit/marks fit/tracks many refine src) $$($(BIN)/python -m pybind11 --includes) -isystem /usr/include/eigen3"
 	# public headers as a consumer with strict warnings reads them, by both compilers
 	for compiler in clang++ g++; do
 	  { for header in cpp/include/brushsvg/*.hpp cpp/io/{brush,plan,marks}_json.hpp cpp/posts/linuxcnc.hpp cpp/fit/*/{law_fit,angles,track_fit,mark_fit}.hpp cpp/refine/refine.hpp cpp/many/{many_strokes,marks_way}.hpp; do
 	      if [ -e "$$header" ]; then echo "#include \"$$PWD/$$header\""; fi; done; } | \
-	    $$compiler -x c++ -std=c++17 -fsyntax-only -Wall -Wextra -Wconversion -Wsign-conversion -Werror $$includes -
+	    $$compiler -x c++ -std=c++17 -fsyntax-only -Wall -Wextra -Wconversion -Wsign-conversion -Werror $(INCLUDES) -
 	done
 	# the sources as a part of a consumer's project: no flag that clang does not know
 	rm -rf build/clang-consumer && mkdir -p build/clang-consumer/source
 	{ echo 'cmake_minimum_required(VERSION 3.25)'; echo 'project(consumer CXX)'; echo "add_subdirectory($$PWD brushsvg)"; } >build/clang-consumer/source/CMakeLists.txt
 	cmake -S build/clang-consumer/source -B build/clang-consumer/build -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS=-Werror >/dev/null
 	cmake --build build/clang-consumer/build --target brushsvg/CMakeFiles/brushsvg_core.dir/cpp/src/profile.cpp.o >/dev/null
-	git ls-files 'cpp/*.cpp' | xargs -P "$$(nproc)" -n 1 clang++ -std=c++17 -fsyntax-only -Wall -Wextra -Werror \
-	  -Wno-missing-field-initializers -DBRUSHSVG_FIT '-DBRUSHSVG_VERSION="0"' $$includes
+
+# Read by clang, which refuses what g++ lets pass (clang 14: captured structured bindings); nothing is compiled or run.
+clang-check: clang-headers $(VENV)/.dev
+	@git ls-files 'cpp/*.cpp' | xargs -P "$$(nproc)" -n 1 clang++ -std=c++17 -fsyntax-only -Wall -Wextra -Werror \
+	  -Wno-missing-field-initializers -DBRUSHSVG_FIT '-DBRUSHSVG_VERSION="0"' $(INCLUDES) $$($(BIN)/python -m pybind11 --includes)
 
 format: $(VENV)/.dev
 	@$(BIN)/ruff check --fix -q .

@@ -73,7 +73,7 @@ save_brush, simulate, compensate and convert refuse what no brush can be.)");
         .def(
             "lever_to_widest",
             [](const Brush& b, double depth_mm) {
-                return law_of(&Brush::tip_to_widest)(b).at(depth_mm) - b.tip_gap(depth_mm);
+                return law_of(&Brush::tip_to_widest)(b).at(depth_mm) - law_of(&Brush::tip_gap)(b).at(depth_mm);
             },
             py::arg("depth_mm"), "e(d) = x_w(d) - b(d) [mm], signed.")
         .def("__repr__", [](const Brush& b) {

@@ -57,7 +57,7 @@ def read_until(terminal, word, timeout_s=60):
 def test_ctrl_c_stops_at_once_and_leaves_nothing(desk, long_drawing, stage):
     (desk / "long.svg").write_text(long_drawing)
     before = listing(desk)
-    words = ["convert", "long.svg", "old.ngc", "--preview", "out.svg", "--report", "out.json"]
+    words = ["convert", "long.svg", "old.ngc", "--force", "--preview", "out.svg", "--report", "out.json"]
     process, terminal = started_at_terminal(desk, *words)
     try:
         seen = read_until(terminal, stage)

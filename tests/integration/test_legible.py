@@ -32,6 +32,7 @@ def fonts(npm):
     return [*files, Lettering(npm("lettering", PACKAGES)).font("brush")]
 
 
+@pytest.mark.thorough  # all of them, or chance decides: minutes
 def test_what_is_painted_is_read_as_what_was_drawn(fonts):
     texts_drawn = texts_painted = count = 0
     with ProcessPoolExecutor(2) as pool:

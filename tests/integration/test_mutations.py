@@ -26,7 +26,7 @@ def made(name, dialect, tmp_path):
     return make(name, dialect, tmp_path / dialect / str(list(WORKS).index(name)))
 
 
-@sample("dialect", CELLS, keep=4)
+@sample("dialect", CELLS, keep=3)
 def test_check_tells_dangerous_from_harmless(dialect, tmp_path, capsys):
     figures = Figures()
     for name in WORKS:

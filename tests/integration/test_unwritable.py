@@ -71,7 +71,7 @@ def test_a_file_that_grows_too_large_leaves_nothing(desk, out):
     def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300))
 
-    file, told = refusal(desk, "convert", "sound.svg", out, preexec_fn=limit)
+    file, told = refusal(desk, "convert", "sound.svg", out, "--force", preexec_fn=limit)
     assert file == out and agrees(told, "file-unwritable")
 
 
@@ -116,7 +116,7 @@ def full_disk(desk):
 )
 def test_a_full_disk_leaves_nothing(desk, full_disk, words):
     before = listing(desk)
-    words = ("--messages", "json", "convert", "sound.svg", *words)
+    words = ("--messages", "json", "convert", "sound.svg", *words, "--force")
     done = brushsvg(*words, cwd=desk, before=full_disk, status=1)
     ((_, told),) = done.told
     assert agrees(told, "file-unwritable")

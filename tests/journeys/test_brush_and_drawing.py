@@ -16,6 +16,7 @@ import brushsvg
 from brushsvg.cli import main
 
 SHIPPED = Path(brushsvg.__file__).parent / "data/brushes"
+STUDIO = 'format = "brushsvg/studio"\nversion = 1\n'
 SHEET = 'xmlns="http://www.w3.org/2000/svg" width="100mm" height="70mm" viewBox="0 0 100 70"'
 
 
@@ -52,11 +53,18 @@ def measured(at: Path) -> None:
 
 
 def photographed(at: Path) -> None:
-    """A small chart, painted and photographed by the simulated studio."""
-    plan, chart, photo = (at.with_suffix(end) for end in (".plan.json", ".chart.json", ".jpg"))
-    run("chart", plan, "--strokes", "few", "--chart", chart)
-    run("simulate-photo", plan, photo, "--seed", 1)
-    run("calibrate", photo, "--chart", chart, "-o", at)
+    run("calibrate", photograph(at, "--sheet", "a5"), "--chart", at.with_suffix(".chart.json"), "-o", at)
+
+
+def photograph(at: Path, *flags: str) -> Path:
+    """A small chart, painted and photographed in a studio in which nothing is amiss."""
+    plan, chart, photo, studio = (
+        at.with_suffix(end) for end in (".plan.json", ".chart.json", ".jpg", ".toml")
+    )
+    studio.write_text(STUDIO)
+    run("chart", plan, "--chart", chart, *flags)
+    run("simulate-photo", chart, photo, "--studio", studio)
+    return photo
 
 
 def measured_from_depth_0(at: Path) -> None:
@@ -68,10 +76,8 @@ def measured_from_depth_0(at: Path) -> None:
 
 
 def from_dabs(at: Path) -> None:
-    plan, chart, photo = (at.with_suffix(end) for end in (".plan.json", ".chart.json", ".jpg"))
-    run("chart", plan, "--dabs", "--brush", "round-6", "--chart", chart)
-    run("simulate-photo", plan, photo, "--seed", 1)
-    run("calibrate", photo, "--chart", chart, "--brush", "round-6", "-o", at)
+    photo = photograph(at, "--dabs", "--brush", "round-6")
+    run("calibrate", photo, "--chart", at.with_suffix(".chart.json"), "--brush", "round-6", "-o", at)
 
 
 def running_dry(at: Path) -> None:

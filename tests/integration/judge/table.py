@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections import Counter
 from dataclasses import dataclass, field
 
@@ -65,11 +66,34 @@ def changed(before: str, after: str, most: int = 6) -> tuple[str, ...]:
     return tuple(line for line in differing if line[:2] not in ("--", "++", "@@"))[:most]
 
 
+# What a brush does between places, of which the judge knows nothing: blends of KRL, a servo's steps and its waits.
+BLENDED = re.compile(r"^(?:LIN|CIRC) .*?(C_DIS)?[ \t]*$", re.MULTILINE)
+STEP_OR_WAIT = re.compile(r"^((?:M3|M280|G4|SP|S2|SM)\b[^\d\n]*)(\d*)", re.MULTILINE)
+SAME_STEP = 2  # whole values of a servo, some hundredths of a millimetre
+
+
+def is_paced_alike(text: str, other: str) -> bool:
+    """Whether two programs blend, stop, step and wait in the same order."""
+    if BLENDED.findall(text) != BLENDED.findall(other):
+        return False
+    ours, theirs = STEP_OR_WAIT.findall(text), STEP_OR_WAIT.findall(other)
+    return len(ours) == len(theirs) and all(
+        word == its
+        and (
+            value == other_value
+            or (value and other_value and abs(int(value) - int(other_value)) <= SAME_STEP)
+        )
+        for (word, value), (its, other_value) in zip(ours, theirs, strict=True)
+    )
+
+
 def measure(made: Made, count: int, seed: int, figures: Figures) -> None:
     """So many damaged programs of one job, judged and checked."""
     with quick_check() as check:
         for damage, text in damaged(made.whole.text, made.dialect, count, [seed, *made.name.encode()]):
             verdict, why = judged(text, made.whole)
+            if verdict == "harmless" and not is_paced_alike(text, made.whole.text):
+                verdict, why = "neither", "it stops or waits elsewhere, where paint may bleed"
             refusals = tuple(check(put(made.program, text), *made.words))
             figures.counts[made.dialect, verdict, bool(refusals)] += 1
             wrong = verdict == "harmless" and refusals
