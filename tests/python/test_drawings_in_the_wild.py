@@ -270,3 +270,46 @@ def test_weights_of_a_spline_may_all_be_negative(tmp_path):
         document.modelspace().add_open_spline(points).weights = [sign * w for w in (1, 2, 1, 1)]
         found.append(saved(document, tmp_path).elements[0].subpaths[0].cubics)
     assert np.array_equal(*found)
+
+
+def pen_stroke(points, widths, element):
+    """The way that a program writes a pressure stroke: a piece with a width of its own between two samples."""
+    pairs = zip(points[:-1], points[1:], widths, strict=True)
+    return "".join(element.format(*begin, *end, width) for begin, end, width in pairs)
+
+
+PIECES = {
+    "tuhi": '<line x1="{:.3f}" y1="{:.3f}" x2="{:.3f}" y2="{:.3f}" style="stroke-width:{:.3f};stroke-linecap:round"/>',
+    "xournal": '<path d="M {:.4f} {:.4f} L {:.4f} {:.4f}" style="fill:none;stroke-width:{:.4f}"/>',
+    "fabric": '<g><path d="M {:.2f} {:.2f} L {:.2f} {:.2f}" stroke-width="{:.2f}" fill="none"/></g>',
+    "polyline": '<polyline points="{:.2f},{:.2f} {:.2f},{:.2f}" stroke-width="{:.1f}" fill="none"/>',
+}
+
+
+@pytest.mark.parametrize("program", PIECES)
+def test_strokes_of_a_pressure_pen_are_one_line_each(tmp_path, program):
+    t = np.linspace(0, 1, 81)
+    paths = [np.column_stack([10 + 70 * t, y + 8 * np.sin(5 * t)]) for y in (15, 35)]
+    widths = [2 + np.sin(4 * (t[1:] + t[:-1]) / 2 + k) for k in range(2)]
+    body = "".join(pen_stroke(*each, PIECES[program]) for each in zip(paths, widths, strict=True))
+    design = from_file(tmp_path, f'<svg {PAGE}><g stroke="#000">{body}</g></svg>'.encode())
+    assert len(design.elements) == 2
+    assert are_told(design.notices, "pressure-strokes 160 2")
+    for element, path, wanted in zip(design.elements, paths, widths, strict=True):
+        (line,) = element.subpaths
+        assert line.cubics[:, 3] * [1, -1] + [0, 60] == pytest.approx(path[1:], abs=0.01)
+        middles = np.cumsum(np.hypot(*np.diff(path, axis=0).T)) - np.hypot(*np.diff(path, axis=0).T) / 2
+        found = np.interp(middles / np.hypot(*np.diff(path, axis=0).T).sum(), *line.widths.T)
+        assert found == pytest.approx(wanted, rel=0.05)
+
+
+def test_lines_that_only_meet_are_no_pressure_stroke(tmp_path):
+    square = "".join(
+        f'<path d="M{a}L{b}" stroke="#000" stroke-width="2"/>'
+        for a, b in (("10 10", "50 10"), ("50 10", "50 40"), ("50 40", "10 40"))
+    )
+    corner = (
+        '<g stroke="#000"><path d="M60 10H80" stroke-width="1"/><path d="M80 10V40" stroke-width="1.5"/></g>'
+    )
+    design = from_file(tmp_path, f'<svg {PAGE} fill="none">{square}{corner}</svg>'.encode())
+    assert len(design.elements) == 5 and not design.notices

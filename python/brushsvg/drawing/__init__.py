@@ -141,9 +141,10 @@ def read_drawing(path: Source, options: ReadOptions = AS_DRAWN) -> Design:
     """
     refuse_unusable(options)
     reader, data = _opened(path)
-    from .duplicates import without_duplicates  # loaded for who reads, as the readers are
+    from .duplicates import without_duplicates  # loaded to read, as the readers are
+    from .pressure_strokes import with_pressure_strokes
 
-    design = without_duplicates(reader(data, options))
+    design = without_duplicates(with_pressure_strokes(reader(data, options)))
     if not options.lenient:
         refuse_damage(design)
     return design
