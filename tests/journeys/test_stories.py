@@ -69,6 +69,14 @@ def test_a_servo_plotter_paints_three_colours(user):
         program = user.reads(f"{colour}.gcode")
         assert gives(program, stroke) and "M3" in program
 
+    # The plotter moves 0.5 % too far. The page with all colours shows it, so the second page is corrected.
+    user.saves("studio.toml", f"{STUDIO}[machine]\nscale = [1.005, 1.005]\n")
+    user.types(f"simulate-photo colours.svg page.jpg {job} --studio studio.toml")
+    user.types(f"compare page.jpg colours.svg {job} -o page.json --mended-cell corrected.toml")
+    corrected = "--brush mine.json --cell corrected.toml --corrections page.json"
+    user.types(f"convert colours.svg second.gcode {corrected}")
+    user.types(f"check second.gcode colours.svg {corrected}")
+
     # The paper turned out 0.3 mm higher than it was thought to be.
     user.types(f"convert colours.svg higher.gcode {job} --layer red --z-offset 0.3")
     assert user.reads("higher.gcode") != user.reads("red.gcode")
@@ -112,7 +120,7 @@ def test_a_ur5e_learns_its_brush_from_a_job(user):
     taught = "--taught=-150,-650,20 --taught=150,-650,20 --taught=-150,-450,20.2"
     user.types(f"cell new arm.toml --like ur5e {taught}")
     user.types("cell check arm.toml")
-    user.types("first-run first.script --cell arm.toml")
+    user.types("first-run arm.toml -o first.script")
 
     # A first job with the brush as it comes along.
     job = "--brush round-6 --cell arm.toml"
