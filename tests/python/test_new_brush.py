@@ -321,7 +321,7 @@ def test_a_terminal_is_asked_at_three_depths_and_shows_the_flags_that_do_the_sam
     answers = "2 1.5 4 nonsense 5 3,5 6 8 5 7.5".split()
     status, out, shown = answered(monkeypatch, capsys, ["brush", "new", asked], answers)
     assert status == 0 and out.startswith(str(asked))
-    flags = shown.split(f"brush new {asked} ")[1].splitlines()[0].split()
+    flags = shown[shown.index("--lag-at 2=") :].splitlines()[0].split()
     lags = {2: 4.45, 5: 7.05, 8: 9.0}  # the turn and 0.3 of the width
     widths = {2: 1.5, 5: 3.5, 8: 5}
     assert flags == [
@@ -337,6 +337,11 @@ def test_answers_that_end_write_nothing(tmp_path, monkeypatch, capsys):
     out = tmp_path / "mine.json"
     status, _, _ = answered(monkeypatch, capsys, ["brush", "new", out], ["2", "1.5"])
     assert status == 1 and not out.exists()
+
+
+def test_programs_that_read_messages_are_not_asked(tmp_path, monkeypatch, capsys):
+    words = ["--messages", "json", "brush", "new", tmp_path / "mine.json"]
+    assert answered(monkeypatch, capsys, words, "2 1.5 4 5 3.5 6 8 5 7.5".split())[0] == 2
 
 
 def test_without_a_terminal_it_explains_how_to_measure(tmp_path, capsys):

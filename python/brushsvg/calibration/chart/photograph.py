@@ -88,7 +88,7 @@ def read_chart_photos(
             try:
                 reads.append(_read(chart, page, rooms, pixels, view, fine))
             except Error as refusal:
-                if refusal.code not in OF_ANOTHER_PLACE:
+                if refusal.code not in OF_ANOTHER_PLACE or reads:  # photographs of one sheet have one place
                     raise
                 page = _moved_page(chart, page, size, rooms, pixels, view, refusal)
                 view = _view(pixels, page.printed, mirrored)

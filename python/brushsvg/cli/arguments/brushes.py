@@ -327,9 +327,9 @@ def _check_brush_new(args) -> None:
         return
     is_empty = args.lag is None and not (args.lag_at or args.width_at or args.widths)
     if is_empty:
-        from ..steps.ask_measurements import FLAGS, HOW_TO_MEASURE, is_asked
+        from ..steps.ask_measurements import FLAGS, HOW_TO_MEASURE, can_answer
 
-        if not is_asked():
+        if not can_answer(args):
             args.parser.error(
                 f"nothing was measured. {' '.join(HOW_TO_MEASURE)} Give {FLAGS}; or --like BRUSH"
             )

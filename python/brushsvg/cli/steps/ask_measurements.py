@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
 
 from ...calibration.from_widths import lag_of_turn
@@ -24,9 +25,11 @@ PLACES = ("shallow", "middle", "deep")
 FLAGS = "--lag-at DEPTH=LAG --width-at DEPTH=WIDTH, once for each depth"
 
 
-def is_asked() -> bool:
-    """Check whether somebody can answer: a terminal on both sides."""
-    return all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr))
+def can_answer(args) -> bool:
+    """Check whether somebody can answer: a terminal on both sides, and messages for people."""
+    return args.messages == "text" and all(
+        stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr)
+    )
 
 
 def ask_measurements(name: str) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
@@ -44,7 +47,7 @@ def ask_measurements(name: str) -> tuple[list[tuple[float, float]], list[tuple[f
         f"--lag-at {depth:g}={lag:g} --width-at {depth:g}={width:g}"
         for (depth, lag), (_, width) in zip(lags, widths, strict=True)
     ]
-    say(f"The same without questions: brushsvg brush new {name} {' '.join(flags)}")
+    say(f"The same without questions: brushsvg brush new {shlex.quote(name)} {' '.join(flags)}")
     return lags, widths
 
 
