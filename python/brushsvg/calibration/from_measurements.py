@@ -35,6 +35,7 @@ SUMS = ("angular", "straight", "side_view", "video")  # these say how long r + b
 FROM_TOUCH = ("side_view", "video")  # counted from first touch
 OUTLINES = 10
 MOST_CHANGES = 5  # of the signs that centre lines are read with
+READ_TO_MM = 0.01  # nobody reads points finer: lines that fit better than this are equally certain
 OPEN_SHARE = 0.025  # a reading less likely than this is left out of 95 % intervals
 
 
@@ -366,15 +367,20 @@ class _Maker:
         for row in rows:
             touch = row.kind in FROM_TOUCH
             values, sums = (self._reading(row),), (both if touch else both | {"tip_to_widest": -1},)
-            own = None
+            own, scatter = None, 1.0
             if row.kind == "centre_line":
                 turn = self.turns[row.where]
                 values, sums = (turn.lag_mm, *values), ({"lag": 1}, *sums)
-                own = turn.covariance_mm2
-            out.append(
-                Reading(row.kind, row.where, row.depth_mm, values, sums, touch, own_covariance_mm2=own)
-            )
+                own, scatter = turn.covariance_mm2, self._scatter_of(turn)
+            out.append(Reading(row.kind, row.where, row.depth_mm, values, sums, touch, scatter, own))
         return out
+
+    def _scatter_of(self, turn: Turn) -> float:
+        """How much less certain the lengths of a line are than those of all lines, by their points (geometric mean)."""
+        of_reading = READ_TO_MM**2 * np.eye(2)
+        covariances = [each.covariance_mm2 + of_reading for each in (turn, *self.turns.values())]
+        found = np.linalg.slogdet(np.array(covariances))[1] / 4
+        return float(np.exp(found[0] - found[1:].mean()))
 
     def _take(self, readings: list[Reading], shown: str) -> None:
         """What was found together: each value is shown at the law that it is of, sums at this one, less the others."""

@@ -264,7 +264,7 @@ def _groups(readings: list[Reading]) -> list[_Group]:
         count = len(reading.values_mm)
         places.setdefault(reading.kind, []).append(range(at, at + count))
         if reading.own_covariance_mm2 is not None:
-            own.setdefault(reading.kind, []).append(reading.own_covariance_mm2)
+            own.setdefault(reading.kind, []).append(reading.own_covariance_mm2 / reading.scatter**2)
         at += count
     means = {kind: np.mean(each, axis=0) for kind, each in own.items()}
     return [_Group(kind, np.array(each), means.get(kind)) for kind, each in places.items()]
