@@ -248,3 +248,8 @@ def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
     capsys.readouterr()
     status, _, told = in_json(capsys, "calibrate", "--force", photo, "--chart", plan, "-o", found)
     assert status == 1 and is_told([each for _, each in told], "format-unknown '--chart FILE'"), told
+
+
+def test_a_plan_that_is_not_there_is_reported(tmp_path, capsys):
+    status, _, told = in_json(capsys, "simulate-photo", tmp_path / "none.json", tmp_path / "x.jpg")
+    assert status == 1 and is_told(told, "file-missing"), told

@@ -24,8 +24,9 @@ from ..painted.corrections import (
     SheetBefore,
     beside_machine,
     corrected,
+    is_corrected,
     machine_sha256,
-    refuse_corrected,
+    uncorrected,
 )
 from ..painted.ends import Ends, ends_of
 from ..painted.fault_model import BRUSH
@@ -138,13 +139,24 @@ def painted_sheet(chosen: Choices, stage: Callable[[str], object], told: Told) -
         told(name, without_effect(chosen))
         work = preparation.prepare(chosen.input, options_of(chosen), stage)
         told(name, work.notices)
-        refuse_corrected(work.plan)
+        painted = None
+        if is_corrected(work.plan):  # a plan.json, which says itself what it was painted with
+            _refuse_corrections_of_two(before)
+            painted = work.plan
+            planned, known = uncorrected(painted)
+            work, before = replace(work, plan=planned), SheetBefore(known)
         marks = prediction.predict(work, True, stage)
         before = replace(before, corrections=beside_machine(before.corrections, _undone(work)))
-        plan = corrected(work.plan, before.corrections, work.brush)
+        plan = painted or corrected(work.plan, before.corrections, work.brush)
         wanted = {} if work.strokes is None else {one.id: wanted_rings([one]) for one in work.strokes}
         strokes = (Wanted(each.stroke, wanted.get(each.stroke), [*each.outline_mm]) for each in marks.passes)
         return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes))
+
+
+def _refuse_corrections_of_two(given: SheetBefore) -> None:
+    if given.corrections:
+        sentence = "the plan was written with corrections and holds them: leave --corrections out"
+        raise Error(sentence, "corrections", code="corrections-twice")
 
 
 def photographs(paths: Iterable[str], stage: Callable[[str], object]) -> list[tuple[str, bytes]]:

@@ -51,6 +51,6 @@ def _chart(path: str):
 
     if suffix_of(path) != ".json":
         return None
-    data = read_bytes(path)
     with about(path):
+        data = read_bytes(path)
         return read_chart(data) if is_chart(data) else None
