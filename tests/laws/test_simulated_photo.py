@@ -252,4 +252,4 @@ def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
 
 def test_a_plan_that_is_not_there_is_reported(tmp_path, capsys):
     status, _, told = in_json(capsys, "simulate-photo", tmp_path / "none.json", tmp_path / "x.jpg")
-    assert status == 1 and is_told(told, "file-missing"), told
+    assert status == 1 and is_told(told, "file-unreadable"), told
