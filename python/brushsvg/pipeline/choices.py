@@ -19,8 +19,13 @@ from ..painted.corrections import SheetBefore, read_sheet_before
 from .options import Options
 
 LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
-NAMED_OTHERWISE = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset"}  # flag: choice
-MADE_FLAGS = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end")
+NAMED_OTHERWISE = {  # flag: choice
+    "as": "paths_as",
+    "speed": "paint_speed",
+    "z-offset": "z_offset",
+    "margin-strokes": "margin_strokes",
+}
+MADE_FLAGS = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end", "margin-strokes")
 RANGES = {  # the same as a flag's
     "width": (0.001, 1000.0),
     "scale": (1e-4, 1e4),
@@ -37,6 +42,7 @@ ONE_OF = {
     "compensation": ("none", "constant", "closed", "refined"),
     "start": ("exposed", "hidden", "squared", "auto"),
     "end": ("lifted", "squared", "auto"),
+    "margin_strokes": ("auto", "on", "off"),
 }
 
 
@@ -70,6 +76,7 @@ class Choices:
     end: str | None = None
     z_offset: float | None = None
     corrections: str | os.PathLike[str] | None = None
+    margin_strokes: str | None = None
 
 
 class Given(TypedDict, total=False):
@@ -97,6 +104,7 @@ class Given(TypedDict, total=False):
     end: str | None
     z_offset: float | None
     corrections: str | os.PathLike[str] | None
+    margin_strokes: str | None
 
 
 def checked(chosen: Choices) -> Choices:
@@ -202,6 +210,13 @@ def without_effect(chosen: Choices) -> list[Notice]:
     ]
 
 
+def on_a_page(chosen: Choices) -> Choices:
+    """The same for a page that is painted and photographed: strokes in its margin where the brush is not calibrated."""
+    if chosen.margin_strokes or suffix_of(chosen.input) == ".json":
+        return chosen
+    return replace(chosen, margin_strokes="auto")
+
+
 def brush_of(given):
     """The brush of a name or path, itself, or None."""
     if given is None or isinstance(given, _core.Brush):
@@ -251,6 +266,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options
         wide=chosen.wide or Options.wide,
         corners=chosen.corners or Options.corners,
         join=bool(chosen.join),
+        margin_strokes=chosen.margin_strokes or Options.margin_strokes,
         speed_mm_s=min(Options.speed_mm_s, cell.speeds.paint_mm_s),
         speed_of_all_mm_s=chosen.paint_speed,
         cell=cell,

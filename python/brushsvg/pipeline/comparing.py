@@ -18,7 +18,7 @@ from ..machine.cell import Cell, Machine, axes_along_paper, not_undone
 from ..machine.cell_file import own_name, parse_cell, write_cell
 from ..painted import report
 from ..painted.beside_machine import beside_machine as left_beside
-from ..painted.comparison import Compared, Comparison, Wanted, compare_photos
+from ..painted.comparison import Compared, Comparison, Wanted, compare_photos, of_drawing
 from ..painted.corrections import (
     Correction,
     SheetBefore,
@@ -39,8 +39,19 @@ from ..painted.picture import comparison_png
 from . import cancelling, prediction, preparation
 from .cancelling import Cancel
 from .checking import Told
-from .choices import Choices, Given, concerning, name_of, options_of, settled, sheet_before_of, without_effect
+from .choices import (
+    Choices,
+    Given,
+    concerning,
+    name_of,
+    on_a_page,
+    options_of,
+    settled,
+    sheet_before_of,
+    without_effect,
+)
 from .conversion import chosen_of
+from .margin_strokes import is_margin
 from .work import Work
 
 if TYPE_CHECKING:
@@ -137,6 +148,7 @@ def painted_sheet(chosen: Choices, stage: Callable[[str], object], told: Told) -
     with concerning(name):
         chosen = settled(replace(chosen, corrections=None), chosen.input)
         told(name, without_effect(chosen))
+        chosen = on_a_page(chosen)
         work = preparation.prepare(chosen.input, options_of(chosen), stage)
         told(name, work.notices)
         painted = None
@@ -149,7 +161,10 @@ def painted_sheet(chosen: Choices, stage: Callable[[str], object], told: Told) -
         before = replace(before, corrections=beside_machine(before.corrections, _undone(work)))
         plan = painted or corrected(work.plan, before.corrections, work.brush)
         wanted = {} if work.strokes is None else {one.id: wanted_rings([one]) for one in work.strokes}
-        strokes = (Wanted(each.stroke, wanted.get(each.stroke), [*each.outline_mm]) for each in marks.passes)
+        strokes = (
+            Wanted(mark.stroke, wanted.get(mark.stroke), [*mark.outline_mm], not is_margin(a_pass))
+            for mark, a_pass in zip(marks.passes, work.plan.passes, strict=True)
+        )
         return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes))
 
 
@@ -172,6 +187,8 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], tol
         photos = photographs(paths, stage)
         found = compare_photos(sheet.page, strokes, photos)
     stage("looking for what is amiss")
+    any_alone = bool(job_marks(found, sheet.page, strokes).rings)
+    found, strokes = of_drawing(found, strokes)
     learned = has_learned(brush, [hashlib.sha256(data).hexdigest() for _, data in photos])
     faults = whose_fault(sheet.plan, brush, strokes, found, learned)
     before = sheet.before.corrections
@@ -189,7 +206,6 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], tol
             beside = machine_sha256(machine), next_corrections(rest, work.plan, before, brush)[0]
     ends = ends_of(found, strokes, work.strokes or ())
     made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_undone(work)))
-    any_alone = faults is None or faults.first != BRUSH or bool(job_marks(found, sheet.page, strokes).rings)
     return PaintedJob(
         sheet.title,
         found.overlap_predicted if found.overlap_wanted is None else found.overlap_wanted,
@@ -200,7 +216,9 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], tol
         replace(cell, name=own_name(cell.name), machine=machine) if machine else cell,
         machine is not None,
         (),
-        report.as_text(sheet.title, found, faults, ends, machine, any_alone),
+        report.as_text(
+            sheet.title, found, faults, ends, machine, faults is None or faults.first != BRUSH or any_alone
+        ),
         report.as_json(sheet.title, found, corrections, faults, ends, made_with, beside),
         (sheet.page, strokes, found, sheet.title),
     )
