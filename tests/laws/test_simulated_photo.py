@@ -38,6 +38,7 @@ def shown(drawing, capsys, toml, *flags):
         "--studio",
         folder / "studio.toml",
         "--quiet",
+        *("--margin-strokes", "off"),
         *flags,
     ]
     assert main([*map(str, words)]) == 0, capsys.readouterr().err
@@ -172,8 +173,8 @@ def letters(tmp_path_factory):
     folder = tmp_path_factory.mktemp("letters")
     for words in (
         ("convert", EXAMPLE, folder / "word.json"),
-        ("simulate-photo", EXAMPLE, folder / "3.jpg", "--seed", "3"),
-        ("simulate-photo", EXAMPLE, folder / "4.jpg", "--seed", "4"),
+        ("simulate-photo", EXAMPLE, folder / "3.jpg", "--seed", "3", "--margin-strokes", "off"),
+        ("simulate-photo", EXAMPLE, folder / "4.jpg", "--seed", "4", "--margin-strokes", "off"),
     ):
         assert main([*map(str, words), "--quiet"]) == 0
     return folder

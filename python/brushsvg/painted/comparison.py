@@ -147,10 +147,8 @@ def _refuse_other_sheets(painted: list[np.ndarray], photos: list[tuple[str, byte
 def _of_a_job(refusal: Error, name: str) -> Error:
     sentence, advice = refusal.sentence, refusal.advice
     if refusal.code == "photo-of-another-chart":
-        sentence = (
-            "the picture shows the page of another job, or of another plan of this one: give the drawing with the "
-            "flags that the page was made with, or the plan.json"
-        )
+        sentence = "the picture shows the page of another job, or of another plan of this one"
+        advice = "give the drawing with the flags that the page was made with, or the plan.json"
     return Error(
         sentence, refusal.where, refusal.value, refusal.range, name, code=refusal.code, advice=advice
     )

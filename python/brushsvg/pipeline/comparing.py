@@ -3,11 +3,12 @@ Python."""
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, TypeVar, Unpack
 
 from .. import _core
 from ..calibration.from_prior import has_learned
@@ -57,17 +58,21 @@ from .work import Work
 if TYPE_CHECKING:
     from .preparation import Source
 
+Read = TypeVar("Read")
+
 
 @dataclass(frozen=True)
 class Sheet:
     """What was told to the machine, and the page that it painted on: plan, with the corrections of before, as far as
-    they are of its cell; strokes: rings on the sheet of what was wanted and predicted."""
+    they are of its cell; strokes: rings on the sheet of what was wanted and predicted; otherwise: makes the sheet of
+    the other page that this drawing may have been painted on, without strokes in its margin."""
 
     work: Work
     plan: _core.Plan
     before: SheetBefore
     page: JobPage
     strokes: tuple[Wanted, ...]
+    otherwise: Callable[[], Sheet] | None = None
 
     @property
     def title(self) -> str:
@@ -143,15 +148,19 @@ def compare(
 
 def painted_sheet(chosen: Choices, stage: Callable[[str], object], told: Told) -> Sheet:
     """What stands on the page that was painted on; notices are told with the file that they are of."""
-    name = name_of(chosen.input)
     before = sheet_before_of(chosen.corrections)
+    return _sheet(replace(chosen, corrections=None), before, stage, told)
+
+
+def _sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], told: Told) -> Sheet:
+    name = name_of(given.input)
     with concerning(name):
-        chosen = settled(replace(chosen, corrections=None), chosen.input)
+        chosen = settled(given, given.input)
         told(name, without_effect(chosen))
         chosen = on_a_page(chosen)
         work = preparation.prepare(chosen.input, options_of(chosen), stage)
         told(name, work.notices)
-        painted = None
+        painted, corrections_before = None, before
         if is_corrected(work.plan):  # a plan.json, which says itself what it was painted with
             _refuse_corrections_of_two(before)
             painted = work.plan
@@ -165,7 +174,26 @@ def painted_sheet(chosen: Choices, stage: Callable[[str], object], told: Told) -
             Wanted(mark.stroke, wanted.get(mark.stroke), [*mark.outline_mm], not is_margin(a_pass))
             for mark, a_pass in zip(marks.passes, work.plan.passes, strict=True)
         )
-        return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes))
+        otherwise = None
+        if given.margin_strokes is None and any(map(is_margin, work.strokes or ())):
+            without = replace(given, margin_strokes="off")
+            otherwise = functools.partial(_sheet, without, corrections_before, stage, untold)
+        return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes), otherwise)
+
+
+def untold(file: str, notices: Iterable[Notice]) -> None:
+    """Of what was warned of before."""
+
+
+def on_its_page(sheet: Sheet, read: Callable[[Sheet], Read]) -> tuple[Sheet, Read]:
+    """What photographs show, read with the sheet whose page they show."""
+    try:
+        return sheet, read(sheet)
+    except Error as refusal:
+        if refusal.code != "photo-of-another-chart" or sheet.otherwise is None:
+            raise
+    sheet = sheet.otherwise()
+    return sheet, read(sheet)
 
 
 def _refuse_corrections_of_two(given: SheetBefore) -> None:
@@ -182,10 +210,10 @@ def photographs(paths: Iterable[str], stage: Callable[[str], object]) -> list[tu
 
 def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], told: Told) -> PaintedJob:
     """paths: photographs of one sheet; notices are told with the first of them."""
-    work, brush, strokes = sheet.work, sheet.work.brush, list(sheet.strokes)
     with concerning(paths[0]):
         photos = photographs(paths, stage)
-        found = compare_photos(sheet.page, strokes, photos)
+        sheet, found = on_its_page(sheet, lambda one: compare_photos(one.page, [*one.strokes], photos))
+    work, brush, strokes = sheet.work, sheet.work.brush, list(sheet.strokes)
     stage("looking for what is amiss")
     any_alone = bool(job_marks(found, sheet.page, strokes).rings)
     found, strokes = of_drawing(found, strokes)

@@ -25,23 +25,26 @@ DEPTHS = 3  # a straight stroke at the least, a corner at each of the others
 # Room for a brush that nobody measured: it may trail and spread by half of it more or less.
 LAG_SHARES, WIDER = (0.5, 1.0, 1.5), 1.5
 EDGE_NOISE_MM = 0.1  # that edges are seen to in a photograph, as of a chart
+HAIR_MM = 0.02  # a stroke is as wide everywhere; where the brush just touches it paints nothing
 
 
 def is_margin(one) -> bool:
-    """Whether a stroke or a pass is one of the margin."""
-    return one.settings.kind == KIND
+    """Whether a stroke or a pass is one of the margin; None, for a part of a stroke, is not."""
+    return one is not None and one.settings.kind == KIND
 
 
 def is_calibrated(brush, deepest_mm: float) -> bool:
     """Whether lag and width were fitted to marks or measurements, down to this depth."""
     if brush.is_rigid() or not brush.width_follows_depth():
         return True  # there is no law to learn
-    covariance = np.array(brush.covariance)
-    return bool(len(covariance)) and all(
-        np.any(covariance[places(brush)[law]][:, places(brush)[law]])
-        and deepest_mm <= (getattr(brush, law).calibrated_mm or (0.0, np.inf))[1]
-        for law in ("lag", "half_width")
-    )
+    return all(_is_fitted(brush, law, deepest_mm) for law in ("lag", "half_width"))
+
+
+def _is_fitted(brush, law: str, deepest_mm: float) -> bool:
+    """Fits to marks and to tables of measurements leave a covariance; typed values and shipped brushes have none."""
+    profile, place = getattr(brush, law), places(brush)[law]
+    has_covariance = len(brush.covariance) and np.any(np.array(brush.covariance)[place, place])
+    return bool(has_covariance) and deepest_mm <= (profile.calibrated_mm or (0.0, np.inf))[1]
 
 
 def with_margin_strokes(work: Work) -> Work:
@@ -79,7 +82,7 @@ def without_margin_strokes(work: Work, marks, as_run=None) -> tuple[Work, _core.
     """The same without strokes of the margin: the drawing's own. as_run: what the marks are of, where that differs."""
     if not any(map(is_margin, work.strokes or ())):
         return work, marks, as_run
-    own = [k for k, stroke in enumerate(work.strokes) if not (stroke and is_margin(stroke))]
+    own = [k for k, stroke in enumerate(work.strokes) if not is_margin(stroke)]
     alone = _core.Marks()
     alone.passes = [marks.passes[k] for k in own]
     plans = [each and _with(each, [each.passes[k] for k in own]) for each in (work.plan, as_run)]
@@ -164,7 +167,7 @@ def _as_drawn(plan, brush) -> list:
     _core.trace_outlines(marks, brush)
     strokes = []
     for a_pass, mark in zip(plan.passes, marks.passes, strict=True):
-        widths = np.maximum(2 * brush.half_width(np.asarray(mark.depth_mm)), 2 * GAP_MM / 100)
+        widths = np.maximum(2 * brush.half_width(np.asarray(mark.depth_mm)), HAIR_MM)
         stroke = _core.Stroke.from_points(np.asarray(mark.contact_mm), widths, a_pass.stroke)
         stroke.wanted_mm, stroke.settings = mark.outline_mm, a_pass.settings
         stroke.layer, stroke.colour = a_pass.layer, a_pass.colour

@@ -47,5 +47,5 @@ def convert_file(args) -> None:
     write(
         args, files, len(one.loads.loads) - job.first_stroke + 1, one.time_s(), overlap, more if stops else ""
     )
-    if words := expected_in_words(work):
+    if not args.quiet and (words := expected_in_words(work)):
         tell(f"{words}\n")
