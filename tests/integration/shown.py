@@ -49,21 +49,21 @@ def _shown(drawings: list[str], folder) -> list[np.ndarray]:
     ]
 
 
-def painted(text: str):
+def painted(text: str, cap: str = "round"):
     """Darkness (h, w) of what we take a drawing for, and every sentence told about it."""
     try:
         design = read_svg(text.encode(), ReadOptions(lenient=True))
     except Error as refusal:
         return np.zeros((SIDE * SCALE, SIDE * SCALE)), [str(refusal)]
     sheet = (0.0, 0.0, SIDE * MM, SIDE * MM)
-    mark = shapely.union_all([_mark(element) for element in design.elements]).intersection(
+    mark = shapely.union_all([_mark(element, cap) for element in design.elements]).intersection(
         shapely.box(*sheet)
     )
     told = [f"{n.where}: {n.sentence}" for n in design.notices if n.code != "dashed"]
     return _pixels(mark, design.sheet_mm[1]), told
 
 
-def _mark(element):
+def _mark(element, cap: str):
     rings = [_line(subpath.cubics) for subpath in element.subpaths]
     mark = shapely.Polygon()
     if element.fill_rule:
@@ -73,7 +73,9 @@ def _mark(element):
                 mark = join(mark, shapely.Polygon(ring).buffer(0))
     if element.stroke_width_mm:
         mark = mark.union(
-            shapely.union_all([shapely.LineString(r).buffer(element.stroke_width_mm / 2) for r in rings])
+            shapely.union_all(
+                [shapely.LineString(r).buffer(element.stroke_width_mm / 2, cap_style=cap) for r in rings]
+            )
         )
     return mark
 

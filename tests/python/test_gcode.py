@@ -23,17 +23,7 @@ GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
 
 
 def text_of(*passes, header=("title: test",), sheet=(100.0, 60.0), limit=25.0, cell="linuxcnc-3axis"):
-    passes = [
-        SimpleNamespace(
-            stroke=stroke,
-            poses_mm=np.array(poses, float),
-            speed_mm_s=speed,
-            arcs=(),
-            tool_axes=(),
-            colour="",
-        )
-        for stroke, poses, speed in passes
-    ]
+    passes = [_core.Pass(stroke, np.array(poses, float), speed) for stroke, poses, speed in passes]
     brush = SimpleNamespace(name="b", max_speed_mm_s=limit)
     cell = find_cell(cell)
     made = program(SimpleNamespace(sheet_mm=sheet, passes=passes), brush, cell, header)

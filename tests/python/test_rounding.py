@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import in_json, is_told, refused
+from diagnostics import in_json, refused
 from programs import LANGUAGES, call, whole
 from sampling import sample
 
@@ -122,25 +122,31 @@ def to_and_fro(chance: random.Random) -> list:
 def test_what_a_servo_paints_to_and_fro_is_known_again(tmp_path, capsys, table, step_mm):
     """Half of these were refused by check: a rest amid a lift was read as none, moves of a unit were left out, and a
     lift that rounding may make none had to be there."""
-    chance = random.Random(f"{table} {step_mm}")
+    chance = random.Random(f"to and fro {table} {step_mm}")
     cell = cell_of("grbl-servo", chance.choice([3, 4]))
     servo = replace(cell.servo, table=table, step_mm=step_mm)
     cell = replace(cell, name="mine", servo=servo, heights=replace(cell.heights, clearance_mm=0.6))
     toml, source, program = (str(tmp_path / name) for name in ("c.toml", "a.json", "a.nc"))
     Path(toml).write_text(write_cell(cell), encoding="utf-8")
-    written = 0
     for _ in range(12):
         both = [_core.Pass(name, np.array(to_and_fro(chance)), chance.choice([5.0, 20.0])) for name in "ab"]
         Path(source).write_text(_core.write_plan(_core.Plan(BRUSH.name, "", SHEET_MM, both)))
         status, _, told = in_json(capsys, "convert", source, program, "--cell", toml)
-        if status:
-            assert is_told(told, "too-steep"), told
-            continue
-        written += 1
+        assert status == 0, told
         for words in ((program, source), (program,)):
             status, _, told = in_json(capsys, "check", *words, "--cell", toml)
             assert status == 0, ([each.poses_mm for each in both], told)
-    assert written >= 8
+
+
+@pytest.mark.xfail(strict=True, reason="a landing between two values of 0.25 mm is read as the other one")
+def test_a_landing_between_two_coarse_values_is_known_again():
+    poses = [
+        (25.711771, 28.8686, -0.368637),
+        (25.560389, 28.99917, -2.423742),
+        (25.711957, 28.8686, -2.154541),
+    ]
+    servo = replace(find_cell("grbl-servo").servo, table=((-10.0, 0.0), (5.0, 60.0)), step_mm=0.05)
+    assert found_by_check(poses, [], replace(cell_of("grbl-servo", 3), servo=servo))[1] is None
 
 
 @pytest.mark.parametrize("turn_deg", np.linspace(99.99, 100.01, 9))

@@ -183,14 +183,21 @@ def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
     assert not like.is_same(lift(0.150), lift(0.325)), "shorter than that something was taken away"
 
 
-def test_a_way_too_steep_for_values_that_change_along_with_it_is_refused():
-    """Its parts were shorter than the last decimal: all its heights came at once, at a feed that grbl does not run."""
-    steep = [(20, 20, 0), (20.003, 20, -4), (40, 20, -4), (40, 20, 0)]
-    with refused("too-steep 'x 20.0, y 20.0 mm' 4.00 0.003"):
-        text_of(("a", steep, 20.0), cell="grbl-servo")
-    for width in (0.0004, 0.002, 0.08):  # the lift alone, and what every part of is left
-        steep[1] = (20 + width, 20, -4)
-        assert text_of(("a", steep, 20.0), cell="grbl-servo")
+@pytest.mark.parametrize("width_mm", [0.0004, 0.002, 0.003, 0.006, 0.04, 0.08, 0.3])
+@pytest.mark.parametrize(("name", "suffix"), [("grbl-servo", ".nc"), ("axidraw-ebb", ".ebb")])
+def test_a_steep_way_is_pressed_and_lifted_on_the_spot(name, suffix, width_mm):
+    """The typed brush's strokes begin this steeply, and no servo plotter took them (too-steep)."""
+    steep = [(20, 20, 0), (20 + width_mm, 20, -4), (40, 20, -4), (40 + width_mm, 20, 0)]
+    cell = find_cell(name)
+    text = text_of(("a", steep, 20.0), cell=name)
+    read = read_program(text, suffix, cell)
+    ran = simulate_program.run(read, find_brush("round-6"), cell, (100.0, 60.0))
+    assert ran.problems == []
+    [path] = [np.asarray(each.poses_mm) for each in ran.plan.passes]
+    assert path[:, 2].min() == pytest.approx(-4, abs=0.15)
+    deep = path[path[:, 2] < -2]
+    assert deep[:, 0].min() == pytest.approx(20, abs=0.16)
+    assert deep[:, 0].max() == pytest.approx(40 + width_mm, abs=0.16)
 
 
 @pytest.mark.parametrize("width_mm", [0.0503, 0.0707, 0.1103])

@@ -583,7 +583,7 @@ GRADIENT = '<linearGradient id="g"><stop/><stop stop-color="red"/></linearGradie
         ('<g marker-end="url(#a)"><path id="p" d="M0 0H5"/></g>', "p", "markers-unread"),
         ('<path id="p" d="M0 0H5" style="marker:url(#a)"/>', "p", "markers-unread"),
         ('<path id="p" d="M0 0H5" stroke-opacity=".5"/>', "p", "opacity-unread stroke-opacity"),
-        ('<g id="g" clip-path="url(#a)"><path d="M0 0H5"/></g>', "g", "css-unread clip-path"),
+        ('<g id="g" clip-path="inset(2px)"><path d="M0 0H5"/></g>', "g", "clipping-unread"),
         ('<g id="g" style="mask:url(#a)"><path d="M0 0H5"/></g>', "g", "css-unread mask"),
         ('<g id="g" opacity=".5"><path d="M0 0H5"/></g>', "g", "css-unread opacity"),
         ('<g id="g" opacity="0"><path d="M0 0H5"/></g>', "g", "transparent"),

@@ -86,7 +86,8 @@ def test_what_a_viewport_hides_is_left_out_or_told():
     body = '<svg width="10" height="10"><path id="out" d="M20 1H30"/><path id="over" d="M5 5H15"/>{}</svg>'
     design = read(body.format('<path id="in" d="M1 1Q5 -1 9 1"/>'))
     assert [element.id for element in design.elements] == ["over", "in"]
-    assert are_told(design.notices, "outside-viewport out", "viewport-cuts over")
+    assert lines(design)[0] == ("over", (5, 5), (10, 5))
+    assert are_told(design.notices, "clipped-away out")
     shown = read(body.replace("<svg", '<svg overflow="visible"').format(""))
     assert len(shown.elements) == 2 and not shown.notices
 
@@ -356,8 +357,8 @@ def test_illustrator_is_known_by_its_comment():
 
     design = read_svg(head + b'<path d="M0 0H5" stroke="red"/></svg>')
     told = design.notices[0]
-    assert told.code == "illustrator-pixels" and "25.4 x 25.4 mm" in told.sentence
-    assert 'width="72pt" height="72pt"' in told.sentence
+    assert told.code == "other-pixels" and "25.4 x 25.4 mm" in told.sentence
+    assert 'width="25.4mm" height="25.4mm"' in told.advice
 
 
 def test_settings_are_inherited_and_carried():
@@ -416,7 +417,7 @@ def test_the_advice_for_illustrator_is_of_the_drawing_whatever_the_sheet():
     )
     for sheet_mm in (None, (200.0, 150.0)):
         (notice,) = read_svg(text.encode(), ReadOptions(sheet_mm=sheet_mm)).notices
-        assert 'width="283.5pt" height="198.4pt"' in notice.sentence
+        assert 'width="100.013mm" height="69.9911mm"' in notice.advice
 
 
 @pytest.mark.parametrize(

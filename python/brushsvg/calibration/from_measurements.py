@@ -366,9 +366,14 @@ class _Maker:
         for row in rows:
             touch = row.kind in FROM_TOUCH
             values, sums = (self._reading(row),), (both if touch else both | {"tip_to_widest": -1},)
+            own = None
             if row.kind == "centre_line":
-                values, sums = (self.turns[row.where].lag_mm, *values), ({"lag": 1}, *sums)
-            out.append(Reading(row.kind, row.where, row.depth_mm, values, sums, touch))
+                turn = self.turns[row.where]
+                values, sums = (turn.lag_mm, *values), ({"lag": 1}, *sums)
+                own = turn.covariance_mm2
+            out.append(
+                Reading(row.kind, row.where, row.depth_mm, values, sums, touch, own_covariance_mm2=own)
+            )
         return out
 
     def _take(self, readings: list[Reading], shown: str) -> None:

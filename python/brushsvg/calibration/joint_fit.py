@@ -15,8 +15,8 @@ from .. import _core
 LEAST_MM = 0.01  # of a lag that must stay above 0: a lever of no length has no heading
 EXACT_MM = 1e-6  # scatter below is rounding
 MOST_ROUNDS = 100
-# A kind of few values may lie on the laws by chance, and would then outweigh all others: its scatter is taken from so
-# many values of a mean kind, too.
+# A kind with few values may match the laws by chance and would then outweigh all others. Its scatter is estimated as if
+# it had this many values more, which scatter as its own points predict or, where nothing predicts it, as the mean kind.
 BORROWED = 2.0
 
 
@@ -25,6 +25,7 @@ class Reading:
     """One measurement: lengths [mm] at a depth [mm], and of which laws each is the sum, with +1 or -1.
 
     from_touch: counted from first touch, so less the lag there. scatter: of its values, by what others of its kind do.
+    own_covariance_mm2: covariance (k, k) of its k values as predicted by the points they were read from.
     """
 
     kind: str
@@ -34,6 +35,7 @@ class Reading:
     sums: tuple[dict[str, int], ...]
     from_touch: bool = False
     scatter: float = 1.0
+    own_covariance_mm2: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -242,10 +244,12 @@ class _Unknowns:
 
 @dataclass(frozen=True)
 class _Group:
-    """Measurements of one kind: the places of their values among all, (n, lengths of one)."""
+    """Measurements of one kind: the places of their values among all, (n, lengths of one); own_covariance_mm2: the mean
+    covariance of one measurement as predicted by its own points, or None."""
 
     name: str
     at: np.ndarray
+    own_covariance_mm2: np.ndarray | None
 
     @property
     def rows(self) -> np.ndarray:
@@ -253,13 +257,17 @@ class _Group:
 
 
 def _groups(readings: list[Reading]) -> list[_Group]:
-    found: dict[str, list] = {}
+    places: dict[str, list] = {}
+    own: dict[str, list] = {}
     at = 0
     for reading in readings:
         count = len(reading.values_mm)
-        found.setdefault(reading.kind, []).append(range(at, at + count))
+        places.setdefault(reading.kind, []).append(range(at, at + count))
+        if reading.own_covariance_mm2 is not None:
+            own.setdefault(reading.kind, []).append(reading.own_covariance_mm2)
         at += count
-    return [_Group(kind, np.array(places)) for kind, places in found.items()]
+    means = {kind: np.mean(each, axis=0) for kind, each in own.items()}
+    return [_Group(kind, np.array(each), means.get(kind)) for kind, each in places.items()]
 
 
 def _spare(rows: np.ndarray) -> np.ndarray:
@@ -291,13 +299,15 @@ def _scatters(groups, left: np.ndarray, spare: np.ndarray, absolute: bool) -> tu
     whites, kinds = [], []
     for group, squares, freedom in zip(groups, sums, freedoms, strict=True):
         known = np.sqrt(freedom + BORROWED)
-        borrowed = (squares + BORROWED * mean * np.eye(len(known))) / np.outer(known, known)
+        own = group.own_covariance_mm2
+        predicted = mean * np.eye(len(known)) if own is None else own
+        borrowed = (squares + BORROWED * predicted) / np.outer(known, known)
         borrowed += EXACT_MM**2 * np.eye(len(known))
         whites.append(np.linalg.inv(np.linalg.cholesky(borrowed)))
-        own = np.sqrt(np.diag(squares) / np.maximum(freedom, 1e-9)) * (freedom > 1e-6)
+        seen = np.sqrt(np.diag(squares) / np.maximum(freedom, 1e-9)) * (freedom > 1e-6)
         weighed = np.sqrt(np.diag(borrowed))
         few = float(freedom.min()) + BORROWED
-        kinds.append(Kind(group.name, len(group.at), tuple(own.tolist()), tuple(weighed.tolist()), few))
+        kinds.append(Kind(group.name, len(group.at), tuple(seen.tolist()), tuple(weighed.tolist()), few))
     return whites, tuple(kinds)
 
 

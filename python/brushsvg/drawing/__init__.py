@@ -23,19 +23,22 @@ class ReadOptions:
     """What a reader is asked for.
 
     sheet_mm: (w, h) in place of the drawing's own; units: "mm" or "in", of a drawing that has numbers only (DXF);
-    select: a CSS selector, what neither matches it nor lies in what matches is left out (SVG); lenient: take what
-    is sound of damaged geometry, with a notice for what is not.
+    select: a CSS selector, what neither matches it nor lies in what matches is left out (SVG); background: "auto"
+    leaves out a white shape that comes first and covers the page, "keep" paints it (SVG); lenient: take what is sound
+    of damaged geometry, with a notice for what is not.
     """
 
     sheet_mm: tuple[float, float] | None = None
     units: str | None = None
     select: str | None = None
+    background: str = "auto"
     lenient: bool = False
 
 
 AS_DRAWN = ReadOptions()
 SIZE_MM = (0.001, 1e6)  # of a sheet's sides
 UNITS = ("mm", "in")
+BACKGROUNDS = ("auto", "keep")
 
 
 def refuse_unusable(options: ReadOptions) -> None:
@@ -51,6 +54,7 @@ def refuse_unusable(options: ReadOptions) -> None:
             need_number(side, "a side of the sheet [mm]", *SIZE_MM)
     if options.units is not None:
         need_one_of(options.units, UNITS, "units")
+    need_one_of(options.background, BACKGROUNDS, "background")
     need_truth(options.lenient, "lenient")
     if options.select is not None:
         need(options.select, str, "a text, which select is")
@@ -137,7 +141,10 @@ def read_drawing(path: Source, options: ReadOptions = AS_DRAWN) -> Design:
     """
     refuse_unusable(options)
     reader, data = _opened(path)
-    design = reader(data, options)
+    from .duplicates import without_duplicates  # loaded to read, as the readers are
+    from .pressure_strokes import with_pressure_strokes
+
+    design = without_duplicates(with_pressure_strokes(reader(data, options)))
     if not options.lenient:
         refuse_damage(design)
     return design

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import Error
 from ..geometry.arc_length import knots, parameters_at
-from ..geometry.cubics import split
+from ..geometry.cubics import between
 from .design import SubPath
 
 _ROUNDING = 1e-9  # of a length: a dash that begins nearer to the end would be a dab that nobody drew
@@ -48,19 +48,7 @@ def dashed(subpath: SubPath, pattern_mm: list[float], offset_mm: float, most: in
         return [subpath]
     number, t = parameters_at(subpath.cubics, known, spans.ravel())
     places = list(zip(number.tolist(), t.tolist(), strict=True))
-    pieces = [_piece(subpath.cubics, *ends) for ends in zip(places[0::2], places[1::2], strict=True)]
+    pieces = [between(subpath.cubics, *ends) for ends in zip(places[0::2], places[1::2], strict=True)]
     if subpath.closed and len(pieces) > 1 and spans[0, 0] == 0 and spans[-1, 1] == end:
         pieces[0] = np.concatenate([pieces.pop(), pieces[0]])
     return [SubPath(piece) for piece in pieces]
-
-
-def _piece(cubics: np.ndarray, begin: tuple[int, float], end: tuple[int, float]) -> np.ndarray:
-    """Cubics between two places on the line, each a cubic's number and a parameter in it."""
-    (first, t0), (last, t1) = begin, end
-    if begin == end:
-        return np.repeat(split(cubics[first], t0)[0][None, 3:], 4, axis=1)
-    if first == last:
-        return split(split(cubics[last], t1)[0], t0 / t1)[1][None]
-    head = [split(cubics[first], t0)[1][None]] if t0 < 1 else []
-    tail = [split(cubics[last], t1)[0][None]] if t1 > 0 else []
-    return np.concatenate([*head, cubics[first + 1 : last], *tail])

@@ -43,3 +43,15 @@ def split(cubic: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
         right.append(cubic[-1])
         cubic = (1 - t) * cubic[:-1] + t * cubic[1:]
     return np.array(left), np.array(right[::-1])
+
+
+def between(cubics: np.ndarray, begin: tuple[int, float], end: tuple[int, float]) -> np.ndarray:
+    """The part of joined cubics (n, 4, 2) between two places, each a cubic's number and a parameter in it."""
+    (first, t0), (last, t1) = begin, end
+    if begin == end:
+        return np.repeat(split(cubics[first], t0)[0][None, 3:], 4, axis=1)
+    if first == last:
+        return split(split(cubics[last], t1)[0], t0 / t1)[1][None]
+    head = [split(cubics[first], t0)[1][None]] if t0 < 1 else []
+    tail = [split(cubics[last], t1)[0][None]] if t1 > 0 else []
+    return np.concatenate([*head, cubics[first + 1 : last], *tail])

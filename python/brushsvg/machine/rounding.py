@@ -10,12 +10,13 @@ from math import atan2, ceil, dist, hypot, inf, tau
 import numpy as np
 
 from .. import _core
-from .arc_chords import OFF_MM, with_chords_on
-from .cell import RADII_MM, Cell, least_move_mm, rounded, unit_mm
+from .arc_chords import OFF_MM, with_chords, with_chords_on
+from .cell import RADII_MM, Cell, least_move_mm, rounded, servo_is_outrun, unit_mm
 from .corner_blending import ON_THE_SPOT_MM
 from .distortion import leans, told_pass
 from .frames import is_upright, moved
 from .motion import via
+from .pass_way import on_way
 from .posts import POSTS, circles_by
 from .tool_axes import axes_of
 
@@ -40,7 +41,7 @@ class Written:
 def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
     """A pass as the cell's language has it; frame: (4, 4) the paper's in the robot's. The pass is what shall be run,
     written is what the cell's machine is told for it."""
-    a_pass = told_pass(a_pass, cell)
+    a_pass = told_pass(steep_ways_lifted(a_pass, cell) if cell.servo else a_pass, cell)
     post = POSTS.get(cell.language)
     unit = unit_mm(cell)
     meant = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
@@ -77,6 +78,22 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
         poses[:, :2], told_mm[:, :2] = poses[held, :2], told_mm[held, :2]
     axes = axes_of(a_pass)  # without arcs
     return Written(told_mm, poses, arcs, sideways_mm, axes if axes is None else axes[kept])
+
+
+def steep_ways_lifted(a_pass, cell: Cell):
+    """The same pass for a servo. Its height changes in steps along a way, each with a move of its own. Where a way is
+    too steep for that, the brush is pressed before it, or lifted after it, on the spot: both are at an end of a stroke
+    for most, and a way that steep is shorter than a tenth of its change of height."""
+    straight = with_chords(a_pass)
+    poses = np.asarray(straight.poses_mm, dtype=float).reshape(-1, 3)
+    ways = np.diff(poses, axis=0)
+    rows = np.flatnonzero(servo_is_outrun(ways, a_pass.speed_mm_s, cell))
+    if not len(rows):
+        return a_pass
+    presses = ways[rows, 2] < 0
+    places = np.where(presses[:, None], poses[rows, :2], poses[rows + 1, :2])
+    heights = np.where(presses, poses[rows + 1, 2], poses[rows, 2])
+    return on_way(a_pass, np.insert(poses, rows + 1, np.column_stack([places, heights]), axis=0), [])
 
 
 def _held(places: np.ndarray, least_mm: float) -> np.ndarray:

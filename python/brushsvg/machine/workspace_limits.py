@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import Notice
-from .cell import LEAST_SPEED_MM_S, Cell, servo_parts, servo_stands
+from .cell import LEAST_SPEED_MM_S, Cell
 from .motion import Move, Section
 from .move_extents import Ways, bounds, from_origin, place_inside, ways, ways_in
 from .tilt import broken_limits as tilted_too_far
@@ -49,8 +49,6 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
                 found.append(Notice("", sentence, code="never-pressed"))
             if cell.pen:
                 found += _off_pen(poses, cell)
-            if cell.servo:
-                found += _too_steep(poses, cell, limit)
         speed = a_pass.speed_mm_s
         if not least_mm_s <= speed <= limit:
             sentence = (
@@ -196,29 +194,6 @@ def _off_pen(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:
 
 
 PEN_MM = 0.005  # of height, that no pen shows
-
-
-def _too_steep(poses: np.ndarray, cell: Cell, fastest_mm_s: float) -> Iterator[Notice]:
-    """A notice for a way that a servo could not go: its values change along with moves beside the lift, by no more than
-    two steps with any part that the rounding leaves, and whose feed must not be below the least."""
-    steps = np.diff(poses, axis=0)
-    flat_mm, way_mm = np.linalg.norm(steps[:, :2], axis=1), np.linalg.norm(steps, axis=1)
-    rises_mm = np.abs(steps[:, 2])
-    least_mm_min = 60 * LEAST_SPEED_MM_S.get(cell.language, LEAST_MM_MIN / 60)
-    is_steep = (rises_mm > cell.servo.step_mm + 1e-9) & (
-        (rises_mm > 2 * cell.servo.step_mm * servo_parts(steps, cell))
-        | (60 * fastest_mm_s * flat_mm < least_mm_min * way_mm)
-    )
-    for k in np.flatnonzero(is_steep & ~servo_stands(steps, cell))[:1]:
-        x, y, _ = poses[k]
-        sentence = (
-            f"near x {x:.1f}, y {y:.1f} mm the height changes by {abs(steps[k, 2]):.2f} mm over {flat_mm[k]:.2g} mm: "
-            f"too steep for the servo of cell {cell.name}; on the spot it could be done"
-        )
-        yield Notice("", sentence, code="too-steep")
-
-
-LEAST_MM_MIN = 1.0  # grbl runs a lower feed at this one
 
 
 def _sheet(low: np.ndarray, high: np.ndarray, sheet_mm, cell: Cell, slack_mm: float) -> Iterator[Notice]:

@@ -10,7 +10,7 @@ from typing import TypedDict
 
 from .. import _core
 from ..brush.library import brush_names, find_brush
-from ..drawing import SIZE_MM, UNITS, ReadOptions, settings_in
+from ..drawing import BACKGROUNDS, SIZE_MM, UNITS, ReadOptions, settings_in
 from ..drawing.layout import Layout
 from ..errors import Error, Notice, as_listed, need, need_number, need_one_of, need_truth
 from ..machine.cell import Cell
@@ -18,7 +18,7 @@ from ..machine.cell_file import cell_names, find_cell, parse_cell, write_cell
 from ..painted.corrections import SheetBefore, read_sheet_before
 from .options import Options
 
-LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "width", "fit", "scale", "origin", "as")
+LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "background", "width", "fit", "scale", "origin", "as")
 NAMED_OTHERWISE = {  # flag: choice
     "as": "paths_as",
     "speed": "paint_speed",
@@ -36,6 +36,7 @@ RANGES = {  # the same as a flag's
 }
 ONE_OF = {
     "units": UNITS,
+    "background": BACKGROUNDS,
     "paths_as": ("stroke", "outline"),
     "wide": ("auto", "clamp", "passes", "refuse"),
     "corners": ("auto", "turn"),
@@ -60,6 +61,7 @@ class Choices:
     units: str | None = None
     layer: list[str] | None = None
     select: str | None = None
+    background: str | None = None
     width: float | None = None
     paths_as: str | None = None
     fit: tuple[float, float] | None = None
@@ -88,6 +90,7 @@ class Given(TypedDict, total=False):
     units: str | None
     layer: Sequence[str] | None
     select: str | None
+    background: str | None
     width: float | None
     paths_as: str | None
     fit: tuple[float, float] | None
@@ -241,9 +244,8 @@ def sheet_before_of(path: str | os.PathLike[str] | None) -> SheetBefore:
 
 
 def reading_of(chosen: Choices) -> ReadOptions:
-    return ReadOptions(
-        chosen.sheet, chosen.units, chosen.select, lenient=True
-    )  # damage is told with all the rest
+    background = chosen.background or ReadOptions.background
+    return ReadOptions(chosen.sheet, chosen.units, chosen.select, background, lenient=True)
 
 
 def layout_of(chosen: Choices) -> Layout:

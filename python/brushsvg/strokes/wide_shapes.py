@@ -26,6 +26,7 @@ _NEARLY = 0.035  # less of overlap, before bare places are painted: then it may 
 _POSE_MM2 = 0.02  # of faults, which a pose of a filling is worth
 _ALIKE = 0.003  # of overlap: less is not worth the direction of writing, or more passes
 _BLOT, _MOST_BLOTS = 3.0, 60  # in half widths, a line of a filling that is looked at; of one shape
+POINT_MM = 1e-3  # half the width of a line where it ends in a point
 UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge lies beside the shape's by more
 
 
@@ -51,6 +52,7 @@ def within_reach(
     least, greatest = brush.half_width_range_mm()
     reach = f"[{2 * least:.3g}, {2 * greatest:.3g}] mm of brush {brush.name}"
     strokes, notices = _without_slivers(strokes, least, brush) if wide != "refuse" else (strokes, [])
+    least = max(least, POINT_MM)
     beyond = {
         k: _beyond(stroke, least, greatest) if stroke.wanted_mm or brush.width_follows_depth() else None
         for k, stroke in enumerate(strokes)

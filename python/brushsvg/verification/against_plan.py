@@ -11,6 +11,7 @@ from ..errors import Error, Notice
 from ..machine.cell import Cell, least_move_mm, unit_mm, value_mm
 from ..machine.paint_reload import PlanInLoads, visits
 from ..machine.posts.text import spelled
+from ..machine.rounding import steep_ways_lifted
 from ..machine.tool_axes import axes_of, between_deg, mixed, tilts_deg
 from .simulate_program import Problems, Ran, chords, slack_mm
 
@@ -87,6 +88,7 @@ def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
     """Where a pass that was read, its poses in these lines of the program, does not run where it should, in the order
     in which it should, or not as fast."""
     problems = _held_otherwise(a_pass, lines, meant)
+    meant = steep_ways_lifted(meant, cell) if cell.servo else meant
     # where units are coarse, a pose gives way to one that is less than a move away
     limit_mm = max(STRAY_MM, slack_mm(cell), least_move_mm(cell) + unit_mm(cell))
     # a servo's height goes in steps of whole values, beside the line by half of both

@@ -34,10 +34,16 @@ def stops(read: Readback, program: Program) -> list[Notice]:
         (along, when_s), (asked_mm, asked_s) = _times(ours), _times(theirs)
         if not (along[-1:] > 0 and asked_mm[-1:] > 0):
             continue
-        least_s = np.diff(np.interp(along / along[-1], asked_mm / asked_mm[-1], asked_s))
+        at_mm = along / along[-1] * asked_mm[-1]
+        least_s = np.diff(np.interp(at_mm, asked_mm, asked_s))
         took_s = np.diff(when_s)
         slower = max(1.0, float(np.median(took_s[least_s > 0] / least_s[least_s > 0])))
-        late_s = took_s - slower * least_s
+        # paths of other length have their corners elsewhere by as much
+        off_mm = abs(along[-1] - asked_mm[-1])
+        most_s = np.interp(at_mm[1:] + off_mm, asked_mm, asked_s) - np.interp(
+            at_mm[:-1] - off_mm, asked_mm, asked_s
+        )
+        late_s = took_s - slower * most_s
         if late_s[worst := int(late_s.argmax())] > STANDS_S:
             sentence = (
                 f"line {ours[worst + 1].line}: the brush stands still in the paint for {late_s[worst]:.3f} s"

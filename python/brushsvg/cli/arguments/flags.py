@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from ...drawing import READERS
+from ...drawing import BACKGROUNDS, READERS
 from ...machine.posts import POSTS
 from . import values
 
@@ -196,6 +196,11 @@ def add_layout(command: argparse.ArgumentParser) -> None:
         metavar="CSS",
         type=values.words,
         help="paint what this selector names and what lies in it (SVG)",
+    )
+    add(
+        "--background",
+        choices=BACKGROUNDS,
+        help="keep: paint a white shape that covers the page; default: auto, leave it out (SVG)",
     )
     add("--width", metavar="MM", type=values.width, help="of all strokes, whatever the drawing says")
     add(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -75,6 +75,13 @@ class _Place:
         squeezed = np.abs(tx * ny - ty * nx) / np.hypot(tx, ty) / mean
         # Rounded, for one width is to stay one; where a piece has no length, it has no direction.
         return line.widths * mean * np.where(np.isfinite(squeezed), squeezed.round(9), 1.0)
+
+
+def _shift(by) -> np.ndarray:
+    """(4, 4) of rows, as ezdxf's matrices: a point (1, 4) stands on its left."""
+    matrix = np.eye(4)
+    matrix[3, :3] = by
+    return matrix
 
 
 def _top(name: str) -> str:
@@ -201,7 +208,10 @@ class Walk:
             self._leave_out(pen.layer, pen.hidden, pen.layer, code="hidden")
             return
         shown_here = [attribute for attribute in insert.attribs if not attribute.is_invisible]
-        self._parts([_lines_of(attribute) for attribute in shown_here], name, pen, place)
+        attributes, cells = [_lines_of(attribute) for attribute in shown_here], self._array(insert, name)
+        for suffix, shift in cells if attributes else ():
+            there = replace(place, mm_from_block=_shift(shift) @ place.mm_from_block)
+            self._parts(attributes, name + suffix, pen, there)
         block = insert.block()
         block_name = shown(insert.dxf.get("name", ""), 40)
         if block is None:
@@ -225,7 +235,7 @@ class Walk:
             )
         self._deeper(name, place)
         matrix = np.array(list(insert.matrix44())).reshape(4, 4)
-        for suffix, shift in self._array(insert, name):
+        for suffix, shift in cells:
             moved = matrix.copy()
             moved[3, :3] += shift
             inner = moved @ place.mm_from_block

@@ -53,9 +53,9 @@ def b_spline(degree: int, knots, points, weights, tolerance: float) -> list[np.n
         raise ValueError(f"{len(knots)} knots do not go with {len(points)} control points of degree {degree}")
     if not (np.diff(knots) >= 0).all():
         raise ValueError("the knots do not ascend")
-    if len(weights) != len(points) or not (weights > 0).all():
-        raise ValueError("each control point needs one weight above 0")
-    weights = weights / weights.max()
+    if len(weights) != len(points) or not ((weights > 0).all() or (weights < 0).all()):
+        raise ValueError("each control point needs a weight, and all above 0 or all below")
+    weights = weights / weights[np.abs(weights).argmax()]  # a common factor, its sign too, cancels out
     pieces = _beziers(np.column_stack((points * weights[:, None], weights)), knots, degree)
     is_exact = degree <= 3 and np.ptp(weights) == 0
     cubics = _elevated(pieces[..., :3]) if is_exact else _fitted(pieces, tolerance)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ET
 
 from ...errors import Error
 from ...units import MM_PER
 from .. import AS_DRAWN, ReadOptions
+from ..background import without_background
 from ..design import Design, Notice
 from ..empty_drawing import nothing_to_paint
+from ..off_page import on_page
 from .context import local, one_line
 from .css_cascade import INITIAL, cascade
 from .selection import selected
@@ -16,6 +19,8 @@ from .settings import PREFIX, document_settings
 from .tree_walk import SVG, Walk
 from .viewport import Page, read_page
 from .xml import Document, parse_xml
+
+_INKSCAPE_VERSION = "{http://www.inkscape.org/namespaces/inkscape}version"
 
 
 def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
@@ -60,9 +65,11 @@ def _read(document: Document, options: ReadOptions) -> Design:
     walk.run()
     if not walk.elements:
         raise nothing_to_paint(walk.notices, walk.left_out)
+    elements, off_page = on_page(walk.elements, page.sheet_mm)
     title = root.find(SVG + "title" if root.tag.startswith("{") else "title")
     name = "" if title is None else one_line("".join(title.itertext()))
-    return Design(page.sheet_mm, tuple(walk.elements), tuple(walk.notices), name, walk.layers)
+    design = Design(page.sheet_mm, elements, (*walk.notices, *off_page), name, walk.layers)
+    return design if options.background == "keep" else without_background(design)
 
 
 def _outside_the_tree(document: Document, root: ET.Element, page: Page) -> list[Notice]:
@@ -71,13 +78,28 @@ def _outside_the_tree(document: Document, root: ET.Element, page: Page) -> list[
     if "xml-stylesheet" in document.instructions:
         sentence = "CSS in another file is not read: what it says is missing"
         notices.append(Notice("xml-stylesheet", sentence, code="css-unread"))
-    if any("Adobe Illustrator" in comment for comment in document.comments) and page.in_px:
+    if page.in_px and (found := _other_pixels(document, root)):
         own = page if root.get("viewBox") is None else read_page(root.attrib)  # whatever sheet is asked for
-        w, h = own.sheet_mm
-        sentence = (
-            "written by Adobe Illustrator, which counts 72 px to the inch: if it has "
-            f"{w * 96 / 72:.4g} x {h * 96 / 72:.4g} mm there, give its svg "
-            f'width="{w / MM_PER["px"]:.6g}pt" height="{h / MM_PER["px"]:.6g}pt"'
-        )
-        notices.append(Notice("svg", sentence, code="illustrator-pixels"))
+        notices.append(_probable_size(*found, own.sheet_mm, root.get("viewBox") is not None))
     return notices
+
+
+def _other_pixels(document: Document, root: ET.Element) -> tuple[str, int] | None:
+    """The program that wrote the drawing and its pixels per inch, where these are not 96.
+
+    Illustrator's "Save as" leaves a comment, its "Export as" a data-name on the root. Inkscape counted 90 px until 0.91
+    (wiki.inkscape.org, "Release notes/0.92").
+    """
+    if any("Adobe Illustrator" in comment for comment in document.comments) or root.get("data-name"):
+        return "Adobe Illustrator", 72
+    version = re.match(r"0\.(\d+)", root.get(_INKSCAPE_VERSION, ""))
+    return (f"Inkscape {version[0]}", 90) if version and int(version[1]) < 92 else None
+
+
+def _probable_size(program: str, per_inch: int, read_mm: tuple[float, float], has_box: bool) -> Notice:
+    w, h = (side * 96 / per_inch for side in read_mm)
+    sentence = f"written by {program}, which counts {per_inch} px to the inch, so it was probably drawn as "
+    advice = f'give its svg width="{w:.6g}mm" height="{h:.6g}mm"'
+    if not has_box:
+        advice += f' viewBox="0 0 {read_mm[0] / MM_PER["px"]:.6g} {read_mm[1] / MM_PER["px"]:.6g}"'
+    return Notice("svg", f"{sentence}{w:.4g} x {h:.4g} mm", code="other-pixels", advice=advice)

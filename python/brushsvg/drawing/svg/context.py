@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 import xml.etree.ElementTree as ET
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ...units import length_px
 from ..design import Notice
 from .css_cascade import Style
 from .transform import Matrix
-from .viewport import Box
+
+if TYPE_CHECKING:
+    import shapely
 
 
 class Context(NamedTuple):
-    """viewport: (w, h) in user units; window_mm: outside of which a nested viewport shows nothing; prefix: ids of the
+    """viewport: (w, h) in user units; clip: the region on paper that clip paths and
+    nested viewports show, None for all; prefix: ids of the
     uses that led here; copied: what the innermost of them copies; size: width and height that it asks of a symbol or
     svg right below it.
     """
@@ -24,7 +27,7 @@ class Context(NamedTuple):
     layer: str
     settings: dict
     viewport: tuple[float, float]
-    window_mm: Box | None
+    clip: shapely.Geometry | None
     prefix: str
     chosen: bool
     copied: ET.Element | None = None

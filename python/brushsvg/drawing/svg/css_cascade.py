@@ -22,6 +22,7 @@ INHERITED = {
     "fill": "",  # SVG's default, black, that nobody asked for
     "fill-opacity": "1",
     "fill-rule": "nonzero",
+    "clip-rule": "nonzero",
     "color": "#000000",
     "visibility": "visible",
     "marker-start": "none",
@@ -48,7 +49,7 @@ _CSS_ALONE = {
     "content-visibility": "visible",
     "all": "",
 }
-_UNREAD = ("clip-path", "mask", "filter", *_CSS_ALONE)
+_UNREAD = ("mask", "filter", *_CSS_ALONE)
 OWN |= _CSS_ALONE
 # Attributes that CSS may set as well; CSS wins.
 _GEOMETRY = frozenset(

@@ -66,7 +66,7 @@ def computed(name: str, value: str, inherited: dict[str, str]) -> str:
         return f"{min(1.0, max(0.0, length_px(value, 1.0))):.15g}"
     if name == "visibility":
         return value.lower() if value.lower() in ("visible", "hidden", "collapse") else inherited[name]
-    if name == "fill-rule":
+    if name in ("fill-rule", "clip-rule"):
         return "evenodd" if value.lower() == "evenodd" else "nonzero"
     if name == "font-size":
         return _font_size(value.lower(), inherited["font-size"])
@@ -74,7 +74,7 @@ def computed(name: str, value: str, inherited: dict[str, str]) -> str:
         return _OF_FONT.sub(
             lambda found: f"{length_px(found[0], 0.0, float(inherited['font-size'])):.15g}", value
         )
-    return value if name.startswith("marker") else value.lower()
+    return value if name.startswith(("marker", "clip-path")) else value.lower()
 
 
 def _font_size(value: str, parents: str) -> str:

@@ -99,17 +99,25 @@ class Painted:
             self.notes.add(node, context, sentence, code="colours-joined")
         if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
             self.notes.add(node, context, "markers are not read: left out", code="markers-unread")
-        self.elements.append(
-            Element(
-                id=self._named(node, context, before),
-                subpaths=subpaths,
-                stroke_width_mm=0.0 if stroke == "none" else width_mm,
-                colour=fill if stroke == "none" else stroke,
-                layer=context.layer,
-                settings=context.settings,
-                fill_rule="" if fill == "none" else properties["fill-rule"],
-            )
+        element = Element(
+            id=self._named(node, context, before),
+            subpaths=subpaths,
+            stroke_width_mm=0.0 if stroke == "none" else width_mm,
+            colour=fill if stroke == "none" else stroke,
+            layer=context.layer,
+            settings=context.settings,
+            fill_rule="" if fill == "none" else properties["fill-rule"],
         )
+        self.elements += [element] if context.clip is None else self._clipped(node, context, element)
+
+    def _clipped(self, node: ET.Element, context: Context, element: Element) -> list[Element]:
+        from ..clipping import clipped
+
+        found = clipped(element, context.clip)
+        if not found:
+            sentence = "it lies outside of the clip path or viewport that would show it: left out"
+            self.notes.add(node, context, sentence, code="clipped-away")
+        return found
 
     def _why_unpainted(self, properties: dict[str, str], tag: str, width_mm: float) -> str:
         """What of a stroke or fill that the drawing does ask for is the cause."""
@@ -164,7 +172,7 @@ class Painted:
         if is_line:
             mm_per_unit = MM_PER["px"] if context.is_of_screen else mm_per_user
             subpaths = self._dashed(node, context, subpaths, mm_per_unit)
-        return self._shown(node, context, subpaths)
+        return subpaths
 
     def _sound(self, node, tag: str, attributes, context: Context, greatest: float) -> tuple[SubPath, ...]:
         self.data += len(attributes.get("d", "")) + len(attributes.get("points", ""))
@@ -250,29 +258,6 @@ class Painted:
             return 1.0
         length_mm = sum(float(knots(subpath.cubics)[:, -1].sum()) for subpath in subpaths)
         return length_mm / mm_per_unit / said if said else math.inf
-
-    def _shown(self, node, context: Context, subpaths) -> tuple[SubPath, ...]:
-        """What a nested viewport shows of it: all, or nothing. A line is not cut."""
-        window = context.window_mm
-        if window is None or not subpaths:
-            return subpaths
-        points = np.concatenate([extremes(subpath.cubics) for subpath in subpaths])
-        (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
-        if x0 > window[2] or x1 < window[0] or y0 > window[3] or y1 < window[1]:
-            self.notes.add(
-                node,
-                context,
-                "it lies outside of the viewport that would show it: left out",
-                code="outside-viewport",
-            )
-            return ()
-        slack = 1e-6
-        beyond = (window[0] - x0, window[1] - y0, x1 - window[2], y1 - window[3])
-        if max(beyond) > slack:
-            self.notes.add(
-                node, context, "its viewport cuts it off in the drawing: painted whole", code="viewport-cuts"
-            )
-        return subpaths
 
 
 def _beyond(attributes, tag: str, place: int) -> str:

@@ -46,6 +46,12 @@ def layer_names(root: ET.Element) -> dict[ET.Element, str]:
     return names
 
 
+def is_documentation(path: str) -> bool:
+    """Whether a layer holds notes for people: AxiDraw's software never plots layers whose names start with %
+    (wiki.evilmadscientist.com, "AxiDraw Layer Control")."""
+    return path.rpartition("/")[2].startswith("%")
+
+
 def _by_convention(root: ET.Element) -> dict[ET.Element, str]:
     names: dict[ET.Element, str] = {}
     inside: ET.Element | None = root

@@ -22,6 +22,7 @@ from .path_data import numbers
 from .references import referred
 
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
+_CAPS = ("round", "butt", "zerowidth")  # the first two end as the brush does
 _PER_SEGMENT = 16  # knots of the width profile on each segment
 # Effects whose result is a line again: d holds it.
 _LINES = frozenset(
@@ -31,12 +32,14 @@ _LINES = frozenset(
 
 @dataclass(frozen=True)
 class PowerStroke:
-    """A line with a width along it. d: as drawn; offsets: (k, 2), place and half width [user units]."""
+    """A line with a width along it. d: as drawn; offsets: (k, 2), place and half width [user units]; tapers: whether
+    the width begins and ends at 0 (cap "zero width"), rather than with that of the nearest offset."""
 
     d: str
     offsets: np.ndarray
     interpolator: str
     beta: float
+    tapers: tuple[bool, bool] = (False, False)
 
 
 def in_effects_of_groups(root: ET.Element) -> set[ET.Element]:
@@ -92,7 +95,15 @@ def drawn_line(
     if interpolator not in _INTERPOLATORS:
         how = re.sub("[^A-Za-z]", "", interpolator)[:30]
         told.append(_unread(f"the width of its PowerStroke is interpolated {how}, read as Linear"))
-    return PowerStroke(original, offsets, interpolator, beta[0]), told
+    caps = [said.get(f"{end}_linecap_type", "round") for end in ("start", "end")]
+    for cap in dict.fromkeys(caps):
+        if cap not in _CAPS:
+            how = re.sub("[^A-Za-z_]", "", cap)[:30]
+            told.append(
+                _unread(f"the cap {how} of its PowerStroke is not read: its ends are as the brush makes them")
+            )
+    tapers = (caps[0] == "zerowidth", caps[1] == "zerowidth")
+    return PowerStroke(original, offsets, interpolator, beta[0], tapers), told
 
 
 def _unread(sentence: str) -> Notice:
@@ -138,7 +149,10 @@ def _half_widths(power: PowerStroke, place: np.ndarray, first: int, last: int, c
             [np.subtract(points[-1:], (period, 0)), points, np.add(points[:1], (period, 0))]
         )
     else:
-        points = np.concatenate([[[first, points[0, 1]]], points, [[last, points[-1, 1]]]])
+        begin, end = np.where(power.tapers, 0.0, points[[0, -1], 1])
+        before = [[first, begin]] if points[0, 0] > first else []
+        after = [[last, end]] if points[-1, 0] < last else []
+        points = np.array([*before, *points, *after])
     points = points[np.concatenate([[True], np.diff(points[:, 0]) > 0])]
     if len(points) == 1:
         return np.full(len(place), points[0, 1])

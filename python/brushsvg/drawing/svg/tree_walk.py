@@ -10,18 +10,19 @@ from functools import cache
 from ...errors import Error
 from ..design import Element, Notice
 from . import shapes
+from .clip_paths import ClipPaths
 from .context import Context, Notes, local
 from .css_cascade import INITIAL, Style, cascade, unread_own
 from .css_transform import ReferenceBox, about, css_transform, individual_transform, origin
 from .element import Painted
-from .layers import layer_names
+from .layers import is_documentation, layer_names
 from .paint_servers import UNSEEN, Paints
 from .power_stroke import in_effects_of_groups
 from .references import href, referred
 from .settings import own_settings
 from .style_sheets import Rules
 from .transform import IDENTITY, Matrix, multiply, parse_transform
-from .viewport import Page, box_of, nested_viewport, overlap
+from .viewport import Page, corners_of, nested_viewport
 
 SVG = "{http://www.w3.org/2000/svg}"
 # Never painted by themselves.
@@ -60,6 +61,7 @@ class Walk:
             notices = [*notices, Notice("svg", sentence, code="animations-unread")]
         self.notes = Notes(root, [*page.notices, *self.rules.notices, *notices])
         paints = Paints(self.by_id, self.rules.of)
+        self.clip_paths = ClipPaths(self.by_id, self.rules)
         self.painted = Painted(self.by_id, self.notes, paints, in_effects_of_groups(root))
         self.layer_names = layer_names(root)
         self.layers = dict.fromkeys(self.layer_names.values(), "it is hidden in the drawing")
@@ -119,6 +121,9 @@ class Walk:
             problems.append(Notice("", _ELSEWHERE, code="css-of-copies"))
         if node in self.layer_names and context.copied is None:
             context = context._replace(layer=self.layer_names[node])
+            if is_documentation(context.layer):
+                self._leave_documentation_out(node, context)
+                return
             if style.own["display"] != "none" and style.inherited["visibility"] == "visible":
                 self.layers[context.layer] = ""
         if style.own["display"] == "none" or (style.own["display"] == "contents" and tag in shapes.TAGS):
@@ -156,6 +161,15 @@ class Walk:
         else:
             self.painted.add(node, tag, inner)
 
+    def _leave_documentation_out(self, node: ET.Element, context: Context) -> None:
+        sentence = (
+            f"layer {context.layer!r} is left out: a name that starts with % marks notes that are not painted"
+        )
+        self.layers[context.layer] = (
+            "a name that starts with % marks notes, as in AxiDraw's software; rename it"
+        )
+        self.notes.add(node, context, sentence, code="layer-of-notes", advice="rename it to paint it")
+
     def _leave_out(self, why: str) -> None:
         self.left_out[why] = self.left_out.get(why, 0) + 1
 
@@ -174,6 +188,8 @@ class Walk:
             self.notes.add(node, context, sentence, code="css-unread", about=name)
         if matrix := self._transform(node, context):
             context = context._replace(matrix=multiply(context.matrix, matrix))
+        if (value := style.own["clip-path"]) != "none":
+            context = self._clip(node, context, value)
         if not all(map(math.isfinite, context.matrix)):
             self.notes.add(
                 node,
@@ -184,6 +200,20 @@ class Walk:
             )
             return None
         return context
+
+    def _clip(self, node: ET.Element, context: Context, value: str) -> Context:
+        """The context with the region that a clip path of the node leaves."""
+        is_shape = local(node) in shapes.TAGS
+        try:
+            region = self.clip_paths.region(
+                value, context, lambda: self.painted.bounds(node, context) if is_shape else None
+            )
+        except Error as unread:
+            self.notes.add(node, context, str(unread), code="clipping-unread", about="clip-path")
+            return context
+        if region is None:
+            return context
+        return context._replace(clip=region if context.clip is None else context.clip.intersection(region))
 
     def _transform(self, node: ET.Element, context: Context) -> Matrix | None:
         """Of its properties as far as they make sense, else of its attribute; about its transform-origin."""
@@ -254,12 +284,12 @@ class Walk:
         inner, viewport, corners, notices = found
         for notice in notices:
             self.notes.add(node, context, notice.sentence, code=notice.code)
-        window = context.window_mm
+        clip = context.clip
         if context.style.own["overflow"] not in ("visible", "auto"):
-            window = overlap(window, box_of(context.matrix, corners))
+            clip = _within(clip, corners_of(context.matrix, corners))
         matrix = multiply(context.matrix, inner)
         self._enter(
-            node, iter(node), context._replace(matrix=matrix, viewport=viewport, window_mm=window, size=None)
+            node, iter(node), context._replace(matrix=matrix, viewport=viewport, clip=clip, size=None)
         )
 
     def _use(self, node: ET.Element, context: Context) -> None:
@@ -297,6 +327,14 @@ class Walk:
             size=(attributes.get("width"), attributes.get("height")),
         )
         self._enter(node, iter((target,)), inner)
+
+
+def _within(clip, corners: list[tuple[float, float]]):
+    """What of a region lies within a quadrilateral."""
+    import shapely  # loaded for drawings that cut something
+
+    window = shapely.Polygon(corners)
+    return window if clip is None else clip.intersection(window)
 
 
 def _why_nothing(reference: str, by_id: dict[str, ET.Element]) -> str:

@@ -15,8 +15,6 @@ from .path_data import numbers, snippet
 from .path_to_cubics import LARGEST_MM
 from .transform import IDENTITY, Matrix, multiply
 
-Box = tuple[float, float, float, float]
-
 
 @dataclass(frozen=True)
 class Page:
@@ -80,9 +78,9 @@ def read_page(
     in_px = all(
         attributes.get(name, "").strip("0123456789.+- ") in ("", "px", "%") for name in ("width", "height")
     )
-    width, height = (_extent(attributes.get(name), name) for name in ("width", "height"))
+    width, height = (_extent(attributes.get(name), name, bool(box)) for name in ("width", "height"))
     styled = [
-        _extent(style.get(name), name) if _is_length(style.get(name)) else None
+        _extent(style.get(name), name, bool(box)) if _is_length(style.get(name)) else None
         for name in ("width", "height")
     ]
     for name, own, other in zip(("width", "height"), (width, height), styled, strict=True):
@@ -153,10 +151,17 @@ def _is_length(text: str | None) -> bool:
     )
 
 
-def _extent(text: str | None, name: str) -> float | None:
+_OF_FONT = re.compile(r".*[0-9.]\s*(?:em|ex|rem|ch)\s*", re.I)
+
+
+def _extent(text: str | None, name: str, has_box: bool) -> float | None:
+    """A side of the page in mm, None where it depends on something else: a window, or a font where a viewBox says how
+    large the drawing is (icons are 1em high)."""
     if text is None or text.strip() in ("", "auto") or text.strip().endswith("%"):
         return None
     try:
+        if _OF_FONT.fullmatch(text):
+            return None if has_box else length_px(text, 0.0) * MM_PER["px"]
         return length_mm(text, "px")
     except Error as error:
         raise Error(f"the page's {name}: {error}", where="svg", code=error.code) from None
@@ -187,16 +192,9 @@ def _fit(box, width: float, height: float, text: str | None, notices: list[Notic
     return (s, 0.0, 0.0, s, left - x * s, top - y * s)
 
 
-def box_of(matrix: Matrix, corners: tuple[float, float, float, float]) -> Box:
-    """Bounds [mm] of a rectangle (x, y, width, height) in user units."""
+def corners_of(matrix: Matrix, rectangle: tuple[float, float, float, float]) -> list[tuple[float, float]]:
+    """Corners [mm] of a rectangle (x, y, width, height) in user units, one after the other."""
     a, b, c, d, e, f = matrix
-    x, y, width, height = corners
-    points = [(a * u + c * v + e, b * u + d * v + f) for u in (x, x + width) for v in (y, y + height)]
-    xs, ys = zip(*points, strict=True)
-    return min(xs), min(ys), max(xs), max(ys)
-
-
-def overlap(one: Box | None, other: Box) -> Box:
-    if one is None:
-        return other
-    return max(one[0], other[0]), max(one[1], other[1]), min(one[2], other[2]), min(one[3], other[3])
+    x, y, width, height = rectangle
+    places = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+    return [(a * u + c * v + e, b * u + d * v + f) for u, v in places]

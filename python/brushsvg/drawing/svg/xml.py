@@ -51,7 +51,8 @@ def parse_xml(data: bytes) -> Document:
     data = _unpacked(data) if data.startswith(b"\x1f\x8b") else data
     if kind := next((kind for begin, kind in _OTHERS.items() if data.startswith(begin)), None):
         raise Error(f"this is {kind}, not an SVG: export the drawing as SVG", code="not-xml")
-    parser = expat.ParserCreate(namespace_separator="}")
+    data, encoding = _decoded(data)
+    parser = expat.ParserCreate(encoding, namespace_separator="}")
     parser.buffer_text = True
     builder = ET.TreeBuilder()
     instructions: list[str] = []
@@ -123,6 +124,34 @@ def parse_xml(data: bytes) -> Document:
             raise
         raise Error(f"this is not XML that can be read: {error}", code="not-xml") from None
     return Document(builder.close(), instructions, comments)
+
+
+# What expat cannot decode, by its label and the codec that browsers read it with (WHATWG Encoding Standard).
+_MULTI_BYTE = {
+    "gb2312": "gb18030",
+    "gbk": "gb18030",
+    "gb18030": "gb18030",
+    "big5": "big5hkscs",
+    "shift_jis": "cp932",
+    "windows-31j": "cp932",
+    "euc-jp": "euc_jp",
+    "iso-2022-jp": "iso2022_jp",
+    "euc-kr": "cp949",
+}
+_DECLARED = re.compile(rb"""\s*<\?xml\s[^>]*?encoding\s*=\s*["']([A-Za-z0-9._-]+)""")
+
+
+def _decoded(data: bytes) -> tuple[bytes, str | None]:
+    """The document in UTF-8 and that name, where it is in an encoding of several bytes a character; else as it is."""
+    declared = _DECLARED.match(data[:200])
+    codec = _MULTI_BYTE.get(declared[1].decode().lower()) if declared else None
+    if codec is None:
+        return data, None
+    try:
+        return data.decode(codec).encode(), "utf-8"
+    except UnicodeDecodeError as error:
+        sentence = f"the file says that it is in {declared[1].decode()}, but byte {error.start + 1} is not"
+        raise Error(f"{sentence}; save it in UTF-8", code="not-xml") from None
 
 
 def _unpacked(data: bytes) -> bytes:

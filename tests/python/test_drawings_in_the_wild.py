@@ -1,0 +1,315 @@
+"""What drawing programs leave in their files: backgrounds, notes, copies, other pages, other pixels, clips."""
+
+import re
+
+import ezdxf
+import numpy as np
+import pytest
+from diagnostics import agrees, are_told, refused
+
+import brushsvg
+from brushsvg.drawing import ReadOptions
+from brushsvg.drawing.svg import read_svg
+
+PAGE = 'xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60"'
+INKSCAPE = 'xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
+LINE = '<path id="line" fill="none" stroke="#000" stroke-width="3" d="M10 30h60"/>'
+
+
+def read(body, page=PAGE, **options):
+    return read_svg(f"<svg {page}>{body}</svg>".encode(), ReadOptions(lenient=True, **options))
+
+
+def from_file(tmp_path, data, name="drawing.svg"):
+    file = tmp_path / name
+    file.write_bytes(data)
+    return brushsvg.read_drawing(file, ReadOptions(lenient=True))
+
+
+def ids(design):
+    return [element.id for element in design.elements]
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        '<rect width="100" height="60" fill="#fff"/>',
+        '<path d="M0 0C33 0 66 0 100 0C100 20 100 40 100 60C66 60 33 60 0 60Z" fill="#FDFDFD"/>',
+        '<rect x="-5" y="-5" width="120" height="80" fill="#f8f8f4" stroke="#fff"/>',
+        '<rect width="100" height="60" fill="#fff"/><rect width="100" height="60" fill="#fefefe"/>',
+    ],
+)
+def test_a_white_shape_below_all_is_background(shape):
+    design = read(shape + LINE)
+    assert ids(design) == ["line"]
+    assert are_told(design.notices, "background")
+    assert len(read(shape + LINE, background="keep").elements) == 1 + shape.count("<rect") + shape.count(
+        "<path"
+    )
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        '<rect width="100" height="60" fill="#eee"/>',  # grey
+        '<rect width="80" height="60" fill="#fff"/>',  # part of the page
+        '<path d="M0 0H100V60H0Z M20 20V40H80V20Z" fill="#fff" fill-rule="evenodd"/>',  # a frame
+    ],
+)
+def test_other_shapes_are_no_background(shape):
+    assert len(read(shape + LINE).elements) == 2
+    white = '<rect width="100" height="60" fill="#fff"/>'
+    assert len(read(LINE + white).elements) == 2, "it covers what was drawn before"
+    assert len(read(white).elements) == 1, "nothing else is there"
+
+
+def test_what_is_off_the_page_is_left_out():
+    body = (
+        LINE
+        + LINE.replace("M10", "M-200").replace('"line"', '"off"')
+        + LINE.replace("M10", "M80").replace("line", "edge")
+    )
+    design = read(body)
+    assert ids(design) == ["line", "edge"]
+    assert are_told(design.notices, "off-page off")
+    alone = read(LINE.replace("M10", "M-200"))
+    assert len(alone.elements) == 1 and not alone.notices, "all of it can still be moved with --fit"
+
+
+def test_layers_of_notes_are_left_out():
+    layer = '<g inkscape:groupmode="layer" inkscape:label="{}">' + LINE.replace('id="line"', "") + "</g>"
+    design = read("".join(map(layer.format, ("1 ink", "%notes", "!2 pause"))), f"{PAGE} {INKSCAPE}")
+    assert len(design.elements) == 2
+    assert are_told(design.notices, "layer-of-notes %notes")
+    assert "%" in design.layers["%notes"], "--layer says why it is not painted"
+
+
+def test_what_lies_on_another_is_painted_once(tmp_path):
+    twice = (
+        LINE
+        + LINE.replace("line", "copy")
+        + '<path id="back" fill="none" stroke="#000" stroke-width="3" d="M70 30h-60"/>'
+    )
+    others = LINE.replace("line", "red").replace("#000", "red") + LINE.replace("line", "wide").replace(
+        '"3"', '"4"'
+    )
+    design = from_file(tmp_path, f"<svg {PAGE}>{twice}{others}</svg>".encode())
+    assert ids(design) == ["line", "red", "wide"]
+    assert are_told(design.notices, "drawn-twice copy back")
+
+
+OLD_INKSCAPE = f'{INKSCAPE} width="744.09448" height="1052.3622" inkscape:version="0.91 r13725"'
+ILLUSTRATOR = 'data-name="Layer 1" width="595.28" height="841.89" viewBox="0 0 595.28 841.89"'
+
+
+@pytest.mark.parametrize(("root", "per_inch"), [(OLD_INKSCAPE, 90), (ILLUSTRATOR, 72)])
+def test_programs_with_other_pixels_are_named(root, per_inch):
+    design = read(LINE, f'xmlns="http://www.w3.org/2000/svg" {root}')
+    (notice,) = design.notices
+    assert agrees(notice, f"other-pixels {per_inch} 210 297")
+    # following the advice gives that size
+    kept = re.sub(r'(?:width|height)="[^"]*"', "", root)
+    advised = read(
+        LINE, f'xmlns="http://www.w3.org/2000/svg" {kept} {notice.advice.removeprefix("give its svg ")}'
+    )
+    assert advised.sheet_mm == pytest.approx((210, 297), abs=0.01) and not advised.notices
+    lengths = [np.ptp(each.elements[0].subpaths[0].cubics[..., 0]) for each in (advised, design)]
+    assert lengths[0] / lengths[1] == pytest.approx(96 / per_inch, rel=1e-4)
+
+
+def test_later_inkscape_counts_as_everyone():
+    assert not read(
+        LINE,
+        f'xmlns="http://www.w3.org/2000/svg" {INKSCAPE} width="100" height="60" inkscape:version="0.92.4"',
+    ).notices
+
+
+def test_a_size_in_em_follows_from_the_view_box():
+    icon = read(LINE, 'xmlns="http://www.w3.org/2000/svg" width="1em" height="1em" viewBox="0 0 96 96"')
+    assert icon.sheet_mm == pytest.approx((25.4, 25.4)) and are_told(icon.notices, "size-assumed 25.4")
+    plain = read(LINE, 'xmlns="http://www.w3.org/2000/svg" width="6em" height="12ex"')
+    assert plain.sheet_mm == pytest.approx((25.4, 25.4))
+
+
+@pytest.mark.parametrize(
+    ("label", "codec", "name"),
+    [
+        ("gb2312", "gbk", "图层"),
+        ("GBK", "gbk", "镕"),
+        ("Shift_JIS", "cp932", "レイヤー①"),
+        ("EUC-KR", "cp949", "층"),
+        ("Big5", "big5", "層"),
+    ],
+)
+def test_xml_in_encodings_of_two_bytes_is_read(label, codec, name):
+    text = f'<?xml version="1.0" encoding="{label}"?><svg {PAGE}>{LINE.replace("line", name)}</svg>'
+    assert ids(read_svg(text.encode(codec), ReadOptions())) == [name]
+
+
+def test_bytes_that_are_not_of_the_encoding_are_refused():
+    with refused("not-xml GBK"):
+        read_svg(
+            f'<?xml version="1.0" encoding="GBK"?><svg {PAGE}>'.encode() + b"\xff\xff</svg>", ReadOptions()
+        )
+
+
+def clip(clips, body, more=""):
+    return read(f'<defs><clipPath id="Clip" {more}>{clips}</clipPath></defs>{body}')
+
+
+CUT = LINE.replace("/>", ' clip-path="url(#Clip)"/>')
+
+
+def spans(element):
+    return [(p.cubics[0, 0, 0], p.cubics[-1, 3, 0]) for p in element.subpaths]
+
+
+def test_lines_are_cut_by_clip_paths():
+    (element,) = clip('<circle cx="40" cy="30" r="15"/>', CUT).elements
+    assert spans(element) == [pytest.approx((25, 55), abs=0.01)]
+    (element,) = clip(
+        '<rect x="20" width="10" height="60"/><rect x="50" width="5" height="60"/>', CUT
+    ).elements
+    assert np.ravel(spans(element)) == pytest.approx([20, 30, 50, 55])
+    whole = clip('<rect width="100" height="60"/>', CUT)
+    assert spans(whole.elements[0]) == [(10, 70)] and not whole.notices
+    gone = clip('<rect x="90" width="10" height="60"/>', CUT + LINE.replace("line", "other"))
+    assert ids(gone) == ["other"] and are_told(gone.notices, "clipped-away line")
+
+
+def test_shapes_are_intersected_with_clip_paths():
+    square = '<rect id="s" x="10" y="10" width="40" height="40" clip-path="url(#Clip)"/>'
+    (element,) = clip('<rect x="30" y="30" width="40" height="30"/>', square).elements
+    points = np.concatenate([p.cubics[:, 0] for p in element.subpaths])
+    assert points.min(axis=0) == pytest.approx((30, 10)) and points.max(axis=0) == pytest.approx((50, 30))
+    half = 'clipPathUnits="objectBoundingBox"'
+    (element,) = clip('<rect width=".5" height="1"/>', square, half).elements
+    points = np.concatenate([p.cubics[:, 0] for p in element.subpaths])
+    assert points.max(axis=0) == pytest.approx((30, 50))
+
+
+def test_a_clipped_shape_has_no_stroke_along_the_clip():
+    both = '<rect id="s" x="10" y="10" width="40" height="40" stroke="#000" stroke-width="2" clip-path="url(#Clip)"/>'
+    shape, stroke = clip('<rect x="0" y="0" width="30" height="60"/>', both).elements
+    assert (
+        (shape.id, stroke.id) == ("s", "s-stroke") and shape.stroke_width_mm == 0 and stroke.fill_rule == ""
+    )
+    ends = stroke.subpaths[0].cubics
+    assert {round(ends[0, 0, 0], 6), round(ends[-1, 3, 0], 6)} == {30.0}
+
+
+def test_a_cut_line_keeps_its_widths():
+    from brushsvg.drawing.clipping import clipped, region_of
+    from brushsvg.drawing.design import Element, SubPath
+
+    cubics = np.array([[(0, 0), (10, 0), (20, 0), (30, 0)]], float)
+    line = SubPath(cubics, widths=np.array([(0.0, 1.0), (0.5, 3.0), (1.0, 1.0)]))
+    window = region_of([np.array([(10, -5), (25, -5), (25, 5), (10, 5.0)])], "nonzero")
+    (piece,) = clipped(Element("a", (line,), 0.0), window)[0].subpaths
+    along = 10 + 15 * piece.widths[:, 0]
+    assert piece.widths[:, 1] == pytest.approx(np.interp(along, [0, 15, 30], [1, 3, 1]), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("clips", "more"), [("<text>A</text>", ""), ('<rect width="50" height="60"/>', 'clip-path="url(#Clip)"')]
+)
+def test_a_clip_path_that_is_not_read_is_reported(clips, more):
+    design = clip(clips, CUT, more)
+    assert spans(design.elements[0]) == [(10, 70)]
+    assert are_told(design.notices, "clipping-unread")
+
+
+POWER = (
+    '<defs><inkscape:path-effect id="pe" effect="powerstroke" is_visible="true" scale_width="1" {caps}'
+    ' interpolator_type="Linear" offset_points="0.2,1.2 | 0.8,1"/></defs>'
+    '<path id="p" inkscape:path-effect="#pe" inkscape:original-d="M10 30H70" d="M10 30H70"/>'
+)
+
+
+def test_a_powerstroke_with_a_cap_of_zero_width_tapers():
+    design = read(
+        POWER.format(caps='start_linecap_type="zerowidth" end_linecap_type="round"'), f"{PAGE} {INKSCAPE}"
+    )
+    at, widths = design.elements[0].subpaths[0].widths.T
+    assert np.interp([0.0, 0.1, 0.2, 1.0], at, widths) == pytest.approx([0.0, 1.2, 2.4, 2.0])
+    round_ends = read(POWER.format(caps=""), f"{PAGE} {INKSCAPE}").elements[0].subpaths[0].widths
+    assert round_ends[0, 1] == pytest.approx(2.4)
+    peak = read(POWER.format(caps='start_linecap_type="peak"'), f"{PAGE} {INKSCAPE}")
+    assert are_told(peak.notices, "path-effect-unread peak")
+
+
+def saved(document, tmp_path):
+    document.saveas(tmp_path / "a.dxf")
+    return brushsvg.read_drawing(tmp_path / "a.dxf", ReadOptions(sheet_mm=(200, 200), lenient=True))
+
+
+def test_attributes_of_a_block_array_are_in_each_cell(tmp_path):
+    document = ezdxf.new("R2010", units=4)
+    block = document.blocks.new("B")
+    block.add_line((0, 0), (5, 0))
+    insert = document.modelspace().add_blockref("B", (10, 10), {"row_count": 2, "column_count": 3})
+    insert.dxf.row_spacing, insert.dxf.column_spacing = 20, 15
+    insert.add_attrib("T", "I", (10, 12), {"height": 5})
+    design = saved(document, tmp_path)
+    places = [
+        np.concatenate([p.cubics for p in e.subpaths]).reshape(-1, 2).min(axis=0) for e in design.elements
+    ]
+    texts, lines = (
+        [p for p, e in zip(places, design.elements, strict=True) if e.fill_rule],
+        len(design.elements) - 6,
+    )
+    assert len(texts) == 6 and lines == 6
+    assert np.ptp(texts, axis=0) == pytest.approx((30, 20), abs=1e-6)
+
+
+def test_weights_of_a_spline_may_all_be_negative(tmp_path):
+    found = []
+    for sign in (1, -1):
+        document = ezdxf.new("R2010", units=4)
+        points = [(0, 0, 0), (0, 10, 0), (10, 10, 0), (10, 0, 0)]
+        document.modelspace().add_open_spline(points).weights = [sign * w for w in (1, 2, 1, 1)]
+        found.append(saved(document, tmp_path).elements[0].subpaths[0].cubics)
+    assert np.array_equal(*found)
+
+
+def pen_stroke(points, widths, element):
+    """The way that a program writes a pressure stroke: a piece with a width of its own between two samples."""
+    pairs = zip(points[:-1], points[1:], widths, strict=True)
+    return "".join(element.format(*begin, *end, width) for begin, end, width in pairs)
+
+
+PIECES = {
+    "tuhi": '<line x1="{:.3f}" y1="{:.3f}" x2="{:.3f}" y2="{:.3f}" style="stroke-width:{:.3f};stroke-linecap:round"/>',
+    "xournal": '<path d="M {:.4f} {:.4f} L {:.4f} {:.4f}" style="fill:none;stroke-width:{:.4f}"/>',
+    "fabric": '<g><path d="M {:.2f} {:.2f} L {:.2f} {:.2f}" stroke-width="{:.2f}" fill="none"/></g>',
+    "polyline": '<polyline points="{:.2f},{:.2f} {:.2f},{:.2f}" stroke-width="{:.1f}" fill="none"/>',
+}
+
+
+@pytest.mark.parametrize("program", PIECES)
+def test_strokes_of_a_pressure_pen_are_one_line_each(tmp_path, program):
+    t = np.linspace(0, 1, 81)
+    paths = [np.column_stack([10 + 70 * t, y + 8 * np.sin(5 * t)]) for y in (15, 35)]
+    widths = [2 + np.sin(4 * (t[1:] + t[:-1]) / 2 + k) for k in range(2)]
+    body = "".join(pen_stroke(*each, PIECES[program]) for each in zip(paths, widths, strict=True))
+    design = from_file(tmp_path, f'<svg {PAGE}><g stroke="#000">{body}</g></svg>'.encode())
+    assert len(design.elements) == 2
+    assert are_told(design.notices, "pressure-strokes 160 2")
+    for element, path, wanted in zip(design.elements, paths, widths, strict=True):
+        (line,) = element.subpaths
+        assert line.cubics[:, 3] * [1, -1] + [0, 60] == pytest.approx(path[1:], abs=0.01)
+        middles = np.cumsum(np.hypot(*np.diff(path, axis=0).T)) - np.hypot(*np.diff(path, axis=0).T) / 2
+        found = np.interp(middles / np.hypot(*np.diff(path, axis=0).T).sum(), *line.widths.T)
+        assert found == pytest.approx(wanted, rel=0.05)
+
+
+def test_lines_that_only_meet_are_no_pressure_stroke(tmp_path):
+    square = "".join(
+        f'<path d="M{a}L{b}" stroke="#000" stroke-width="2"/>'
+        for a, b in (("10 10", "50 10"), ("50 10", "50 40"), ("50 40", "10 40"))
+    )
+    corner = (
+        '<g stroke="#000"><path d="M60 10H80" stroke-width="1"/><path d="M80 10V40" stroke-width="1.5"/></g>'
+    )
+    design = from_file(tmp_path, f'<svg {PAGE} fill="none">{square}{corner}</svg>'.encode())
+    assert len(design.elements) == 5 and not design.notices
