@@ -22,9 +22,7 @@ from .led_width import wider
 FORMAT = "brushsvg/comparison"
 BESIDE = "beside_machine"  # of the file: what is left of each stroke once the cell is mended
 LEAST_MARKS = 3  # fewer do not tell a sheet's place from their own
-MARK = (
-    "corrections"  # of a plan that was corrected: the key of what it was corrected by, and of the plan before
-)
+MARK = "corrections"  # key of a corrected plan: the corrections and the plan before
 KEYS = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm", "way_mm")
 MOST_WIDER_MM = 1.0  # of each edge: a mark that is off by more is another brush's
 MOST_MM, MOST_DEG = 3.0, 3.0  # a mark that lies farther off does so for a reason that is to be found

@@ -177,12 +177,12 @@ def _sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], 
         otherwise = None
         if given.margin_strokes is None and any(map(is_margin, work.strokes or ())):
             without = replace(given, margin_strokes="off")
-            otherwise = functools.partial(_sheet, without, corrections_before, stage, untold)
+            otherwise = functools.partial(_sheet, without, corrections_before, stage, drop_notices)
         return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes), otherwise)
 
 
-def untold(file: str, notices: Iterable[Notice]) -> None:
-    """Of what was warned of before."""
+def drop_notices(file: str, notices: Iterable[Notice]) -> None:
+    """Keep warnings from being printed twice when a drawing is prepared again."""
 
 
 def on_its_page(sheet: Sheet, read: Callable[[Sheet], Read]) -> tuple[Sheet, Read]:
@@ -215,7 +215,7 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], tol
         sheet, found = on_its_page(sheet, lambda one: compare_photos(one.page, [*one.strokes], photos))
     work, brush, strokes = sheet.work, sheet.work.brush, list(sheet.strokes)
     stage("looking for what is amiss")
-    any_alone = bool(job_marks(found, sheet.page, strokes).rings)
+    every = found, sheet.page, strokes
     found, strokes = of_drawing(found, strokes)
     learned = has_learned(brush, [hashlib.sha256(data).hexdigest() for _, data in photos])
     faults = whose_fault(sheet.plan, brush, strokes, found, learned)
@@ -234,6 +234,7 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], tol
             beside = machine_sha256(machine), next_corrections(rest, work.plan, before, brush)[0]
     ends = ends_of(found, strokes, work.strokes or ())
     made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_undone(work)))
+    any_alone = faults is None or faults.first != BRUSH or bool(job_marks(*every).rings)
     return PaintedJob(
         sheet.title,
         found.overlap_predicted if found.overlap_wanted is None else found.overlap_wanted,
@@ -244,9 +245,7 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], tol
         replace(cell, name=own_name(cell.name), machine=machine) if machine else cell,
         machine is not None,
         (),
-        report.as_text(
-            sheet.title, found, faults, ends, machine, faults is None or faults.first != BRUSH or any_alone
-        ),
+        report.as_text(sheet.title, found, faults, ends, machine, any_alone),
         report.as_json(sheet.title, found, corrections, faults, ends, made_with, beside),
         (sheet.page, strokes, found, sheet.title),
     )
