@@ -1,6 +1,6 @@
 """Hidden brushes paint a word sheet after sheet, and the file that stands for each learns from every photograph.
 
-    sheets.py [--count 16] [--starts three one round-6] [--margin auto] [--own-mm 0] [--processes 1] [--keep FOLDER]
+    sheets.py [--count 16] [--starts three one round-6] [--margin auto] [--plain] [--own-mm 0] [--keep FOLDER]
 
 Each brush is drawn at random and painted with by the slow stepping simulator of tests/laws. It is known at first as a
 person would know it: lag and width typed at three depths, each read to 0.5 mm; one lag and two widths; or not at all,
