@@ -52,6 +52,10 @@ WORD = re.sub(
     lambda found: f'stroke-width="{float(found[1]) * WIDEST_MM / 5.5:.2f}"',
     studio.WORD,
 )
+PLAIN = re.sub(
+    r'stroke-width="[^"]*"', 'stroke-width="2.40"', WORD
+)  # one width; of its strokes only the loop is alone
+PLAIN = re.sub(r'<path id="(line|wave|stem)"[^>]*/>', "", PLAIN).replace("L94 48 L112 24", "L94 48 L104 16")
 SHARES = (0.3, 0.6, 0.95)  # of the deepest, where somebody measures
 
 
@@ -109,14 +113,14 @@ def overlap(regions: dict, plan, drawn) -> float:
     return over(studio.unary_union(own), drawn)
 
 
-def paint_sheets(job: tuple[int, str], folder: Path, margin: str, own_mm: float) -> dict:
+def paint_sheets(job: tuple[int, str], folder: Path, margin: str, own_mm: float, word: str = WORD) -> dict:
     number, start = job
     began, folder = time.process_time(), folder / f"{number}-{start}"
     if (folder / "result.json").exists():
         return json.loads((folder / "result.json").read_text())
     folder.mkdir(parents=True)
     brush = hidden_brush(number)
-    (folder / "word.svg").write_text(WORD)
+    (folder / "word.svg").write_text(word)
     laws = MarkLaws(
         brush.lag.tolist(),
         brush.tip_gap.tolist(),
@@ -203,6 +207,9 @@ def main_() -> None:
         "--margin", choices=("auto", "on", "off"), default="auto", help="as convert --margin-strokes"
     )
     parser.add_argument(
+        "--plain", action="store_true", help="a word of one width, most of whose strokes touch"
+    )
+    parser.add_argument(
         "--own-mm", type=float, default=0.0, help="standard deviation of each stroke's own place"
     )
     parser.add_argument("--processes", type=int, default=1)
@@ -211,7 +218,11 @@ def main_() -> None:
     jobs = [(number, start) for number in range(1, args.count + 1) for start in args.starts]
     with tempfile.TemporaryDirectory() as made, multiprocessing.Pool(args.processes) as pool:
         one = functools.partial(
-            paint_sheets, folder=args.keep or Path(made), margin=args.margin, own_mm=args.own_mm
+            paint_sheets,
+            folder=args.keep or Path(made),
+            margin=args.margin,
+            own_mm=args.own_mm,
+            word=PLAIN if args.plain else WORD,
         )
         rows = []
         for row in pool.imap(one, jobs):
