@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import tempfile
-from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 import click
@@ -13,7 +11,7 @@ import vpype
 import vpype_cli
 
 import brushsvg
-from brushsvg.brush.confidence import unseen_mm
+from brushsvg.drawing import InMemory
 
 MM_PER_PX = 25.4 / 96
 CORNER_RAD = np.radians(
@@ -48,7 +46,16 @@ def choices(command):
 @vpype_cli.global_processor
 def brush(document, brush_name, compensation, tolerance, start, end, width):
     """Replace lines by the outlines of the marks that a brush paints along them."""
-    done, found = _compensated(document, brush_name, compensation, tolerance, start, end, width)
+    done = _convert(
+        document,
+        width,
+        brush=brush_name,
+        compensation=compensation,
+        tolerance=tolerance,
+        start=start,
+        end=end,
+    )
+    found = brushsvg.find_brush(brush_name)
     marks = brushsvg.simulate(done.plan, found)
     brushsvg.trace_outlines(marks, found)
     height_mm = done.plan.sheet_mm[1]
@@ -71,43 +78,30 @@ def brush(document, brush_name, compensation, tolerance, start, end, width):
 @vpype_cli.global_processor
 def brushwrite(document, output, cell, brush_name, compensation, tolerance, start, end, width):
     """Write the robot program (or plan.json) with which a brush paints the lines."""
-    done, found = _compensated(document, brush_name, compensation, tolerance, start, end, width)
-    try:
-        machine = brushsvg.find_cell(cell) if cell else brushsvg.find_cell()
-        brushsvg.write_program(output, done.plan, found, cell=machine)
-    except brushsvg.Error as refused:
-        raise _sentence(refused) from None
+    _convert(
+        document,
+        width,
+        out=output,
+        cell=cell,
+        brush=brush_name,
+        compensation=compensation,
+        tolerance=tolerance,
+        start=start,
+        end=end,
+    )
     return document
 
 
-def _compensated(document, brush_name, compensation, tolerance_mm, start, end, width_px):
-    """The plan that paints the document's lines, and the brush. Warnings go to stderr."""
+def _convert(document, width_px, **choices) -> brushsvg.Conversion:
+    """What `brushsvg convert` makes of the document's lines. Warnings go to stderr."""
+    drawing = InMemory(".svg", _svg(document, width_px).encode())
     try:
-        found = brushsvg.find_brush(brush_name)
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder, "lines.svg")
-            path.write_text(_svg(document, width_px), encoding="utf-8")
-            drawing = brushsvg.read_drawing(path)
-        strokes, notices = brushsvg.strokes(drawing)
-        done = brushsvg.compensate(
-            strokes, found, drawing.sheet_mm, compensation, tolerance_mm, start=start, end=end
-        )
+        done = brushsvg.convert(drawing, **choices)
     except brushsvg.Error as refused:
         raise _sentence(refused) from None
-    for where, sentence in (*drawing.notices, *notices, *done.warnings):
-        click.echo("brushsvg: " + ": ".join(filter(None, (where, sentence))), err=True)
-    missed = [
-        stroke.id
-        for stroke, miss in zip(strokes, done.misses, strict=True)
-        if not miss.within_tolerance and miss.largest_mm > unseen_mm(found, found.paint_depth_mm)
-    ]
-    if missed and compensation == "closed":
-        many = f" and {len(missed) - 1} more" if len(missed) > 1 else ""
-        click.echo(
-            f"brushsvg: {missed[0]}{many}: tracking error above the tolerance of {tolerance_mm:g} mm",
-            err=True,
-        )
-    return done, found
+    for notice in done.notices:
+        click.echo("brushsvg: " + ": ".join(filter(None, (notice.where, notice.sentence))), err=True)
+    return done
 
 
 def _sentence(refused: brushsvg.Error) -> click.ClickException:
@@ -158,7 +152,7 @@ def _layer(number: int, lines, width_px: float | None) -> list[str]:
 def _path_data(line: np.ndarray) -> str:
     """Cubics through the points of a polyline, smooth except at its corners."""
     points = line[np.append(True, np.abs(np.diff(line)) > 0)]
-    text = f"M{points[0].real:.9g} {points[0].imag:.9g}"
+    text = f"M{points[0].real:.12g} {points[0].imag:.12g}"
     if len(points) < 2:
         return text + "h0"
     steps = np.diff(points)
@@ -170,5 +164,9 @@ def _path_data(line: np.ndarray) -> str:
         unit /= abs(unit)
         arriving[k], leaving[k + 1] = unit * lengths[k], unit * lengths[k + 1]
     first, last = points[:-1] + leaving / 3, points[1:] - arriving / 3
+    is_straight = (leaving == steps) & (arriving == steps)
     rows = np.column_stack([first.real, first.imag, last.real, last.imag, points[1:].real, points[1:].imag])
-    return text + "".join("C" + " ".join(f"{value:.9g}" for value in row) for row in rows)
+    return text + "".join(
+        ("L" if straight else "C") + " ".join(f"{value:.12g}" for value in (row[4:] if straight else row))
+        for row, straight in zip(rows, is_straight, strict=True)
+    )

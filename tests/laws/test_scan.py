@@ -20,7 +20,7 @@ from sampling import sample
 from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.chart.photograph import marks_of, read_chart_photos
+from brushsvg.calibration.chart.photograph import expected, marks_of, read_chart_photos
 from brushsvg.cli import main
 from brushsvg.scan.edges import Room, paint_seen, told_apart
 from brushsvg.scan.flatten import Flat
@@ -504,23 +504,29 @@ def test_photographs_of_one_sheet_are_averaged_and_must_agree():
 # The bar --------------------------------------------------------------------------------------------
 
 
+def printed_at(size, about):
+    """The chart's page with everything printed on it scaled about a point; the robot paints in true mm as ever."""
+
+    def scaled(points):
+        return tuple(map(tuple, (np.array(points) - about) * size + about))
+
+    made = a5()
+    markers = tuple(replace(marker, corners_mm=scaled(marker.corners_mm)) for marker in made.markers)
+    return replace(made, markers=markers, labels=(), bar=None)
+
+
+def photo_of(printed, marks=None):
+    shown = photograph.page(printed)
+    for rings in (marks or painted_marks()).values():
+        shown.paint(rings, BLUE)
+    return photograph.exposed(shown, SMALL)
+
+
 def test_a_page_printed_at_another_size_is_read_by_its_bar():
     """Everything printed at 97 % about the middle of the sheet; the robot paints as long as ever."""
-    made, size, middle = a5(), 0.97, np.array(A5) / 2
-
-    def shrunk(points):
-        return tuple(map(tuple, (np.array(points) - middle) * size + middle))
-
-    printed = replace(
-        made,
-        markers=tuple(replace(marker, corners_mm=shrunk(marker.corners_mm)) for marker in made.markers),
-        labels=(),
-        bar=None,
-    )
-    shown = photograph.page(printed)
-    for rings in painted_marks().values():
-        shown.paint(rings, BLUE)
-    pixels = photograph.exposed(shown, SMALL)
+    made, size = a5(), 0.97
+    printed = printed_at(size, np.array(A5) / 2)
+    pixels = photo_of(printed)
     found = read(pixels, bar_mm=size * made.bar.length_mm)
     for stroke, rings in painted_marks().items():
         mean, rms = off_mm(found.marks.outlines_mm[stroke], rings)
@@ -531,6 +537,76 @@ def test_a_page_printed_at_another_size_is_read_by_its_bar():
         read(pixels, bar_mm=55.0)
     with refused("bar-missing"):
         read_chart_photos(printed, [("", b"")], bar_mm=100.0)
+
+
+@pytest.mark.parametrize("size", [0.97, 1.03])
+def test_a_page_printed_about_its_corner_names_its_scale_and_is_read_by_its_bar(size):
+    """Its upper end is then 6 mm from where the paint expects it."""
+    pixels = photo_of(printed_at(size, np.zeros(2)))
+    bar_mm = a5().bar.length_mm
+    with refused(f"page-scale --bar {bar_mm:g}") as caught:
+        read(pixels)
+    assert caught.value.value == pytest.approx(size, abs=0.01)
+    found = read(pixels, bar_mm=size * bar_mm)
+    assert not found.marks.missing and not found.marks.joined
+    sigma_mm = expected(found)["placement_mm"]
+    marks = painted_marks()
+    moves = [
+        np.array(shape(found.marks.outlines_mm[stroke]).centroid.coords[0]) - shape(rings).centroid.coords[0]
+        for stroke, rings in marks.items()
+    ]
+    common = np.mean(moves, axis=0)
+    assert np.hypot(*common) < 2 * sigma_mm, "the fit finds the sheet's place"
+    read_mm = found.marks.outlines_mm
+    off = {name: off_mm([ring - common for ring in read_mm[name]], rings)[1] for name, rings in marks.items()}
+    assert sorted(off.values())[-2] < 0.12, "only one reaches over what is printed, and the fit leaves it out"
+
+
+# Markers that are covered in part -------------------------------------------------------------------
+
+PAIRS = list(itertools.combinations(range(len(a5().markers)), 2))
+
+
+def painted_over(pixels, numbers, camera=SMALL):
+    """Paint from beyond one edge of each of these markers, slanting a little way into it."""
+    for number in numbers:
+        corners = np.array(a5().markers[number].corners_mm)
+        a, b = corners[[number % 4, (number + 1) % 4]]
+        out = (a + b) / 2 - corners.mean(axis=0)
+        out /= np.hypot(*out)
+        ring = np.array([a - 0.8 * out, a + 0.7 * (b - a), a + 0.7 * (b - a) + 4 * out, a + 4 * out])
+        at = photograph.corners_seen(camera, A5, ring)
+        cv2.fillPoly(pixels, [np.round(16 * at).astype(np.int32)], (170, 170, 170), cv2.LINE_AA, 4)
+    return pixels
+
+
+def view_of(pixels):
+    corners = {marker.id: np.array(marker.corners_mm) for marker in a5().markers}
+    return find_view(pixels, Printed(A5, corners, a5().dictionary))
+
+
+@sample("pair", PAIRS, keep=4)
+def test_markers_that_paint_covers_in_part_are_left_out(pair):
+    """Two of them once had the page refused as not flat."""
+    view = view_of(painted_over(small().copy(), pair))
+    covered = {a5().markers[number].id for number in pair}
+    assert not covered & set(view.seen) and len(view.seen) == len(a5().markers) - 2
+    at = np.array([(x, y) for x in np.linspace(15, 133, 8) for y in np.linspace(15, 195, 10)])
+    off = np.hypot(*(view.to_px(at) - photograph.corners_seen(SMALL, A5, at)).T) / view.px_per_mm
+    assert np.sqrt(np.mean(off**2)) < 0.15
+
+
+@cache
+def bulging():
+    camera = replace(SMALL, sag_mm=3.0)
+    return camera, photograph.exposed(page(), camera)
+
+
+@sample("pair", PAIRS, keep=3)
+def test_paper_that_bulges_is_not_flat_with_any_markers_left_out(pair):
+    camera, pixels = bulging()
+    with refused("photo-not-flat"):
+        view_of(painted_over(pixels.copy(), pair, camera))
 
 
 # The commands ---------------------------------------------------------------------------------------

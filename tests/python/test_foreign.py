@@ -10,7 +10,8 @@ from programs import RUNNABLE, call
 
 from brushsvg.drawing import ReadOptions
 from brushsvg.drawing.gcode import read_gcode
-from brushsvg.drawing.gcode.toolpaths import pen_is_down, ways
+from brushsvg.drawing.gcode.pen import read_pen
+from brushsvg.drawing.gcode.toolpaths import ways
 from brushsvg.machine.cell import Workspace
 from brushsvg.machine.cell_file import find_cell, write_cell
 
@@ -58,7 +59,7 @@ def desk(tmp_path, monkeypatch):
 def drawn(text):
     """Places (n, 2) [mm] to which the pen goes while it is down, with their lines."""
     some = ways(text)
-    down = zip(some, pen_is_down(some), strict=True)
+    down = zip(some, read_pen(some).down, strict=True)
     return {way.line: way.points_mm[-1, :2].round(6).tolist() for way, is_down in down if is_down}
 
 
@@ -125,7 +126,7 @@ def test_a_line_begins_at_the_first_place_that_is_known(text, lines):
 
 def test_where_nothing_tells_when_the_pen_is_down_it_is_refused():
     with refused("pen-unknown"):
-        pen_is_down(ways("G21\nG0 X1 Y1\nG1 X5 Y5 F100\n"))
+        read_pen(ways("G21\nG0 X1 Y1\nG1 X5 Y5 F100\n"))
 
 
 def test_check_predicts_what_a_brush_paints(desk, capsys):

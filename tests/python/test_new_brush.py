@@ -9,7 +9,7 @@ import pytest
 from diagnostics import agrees, gives, in_json, refused
 
 from brushsvg import _core, brush_like, compensate, find_brush, read_drawing, strokes
-from brushsvg.calibration.from_widths import new_brush
+from brushsvg.calibration.from_widths import lag_of_turn, new_brush
 from brushsvg.calibration.measurements import read_measurements, read_widths
 from brushsvg.cli import main
 
@@ -296,3 +296,85 @@ def test_a_brush_without_a_name_is_refused(tmp_path, monkeypatch, capsys):
     status, _, ((_, told),) = in_json(capsys, "brush", "new", "", "--lag", "5", "--width-at", "3=3")
     assert (status, told.code) == (1, "name-invalid")
     assert not list(tmp_path.iterdir())
+
+
+# Three depths ---------------------------------------------------------------------------------------
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def answered(monkeypatch, capsys, words, answers):
+    """Status, standard output, and what the terminal showed."""
+    shown = Terminal()
+    monkeypatch.setattr("sys.stdin", Terminal("\n".join(answers)))
+    monkeypatch.setattr("sys.stderr", shown)
+    return main([*map(str, words)]), capsys.readouterr().out, shown.getvalue()
+
+
+def test_a_terminal_is_asked_at_three_depths_and_shows_the_flags_that_do_the_same(
+    tmp_path, monkeypatch, capsys
+):
+    asked, typed = tmp_path / "asked.json", tmp_path / "typed.json"
+    answers = "2 1.5 4 nonsense 5 3,5 6 8 5 7.5".split()
+    status, out, shown = answered(monkeypatch, capsys, ["brush", "new", asked], answers)
+    assert status == 0 and out.startswith(str(asked))
+    flags = shown[shown.index("--lag-at 2=") :].splitlines()[0].split()
+    lags = {2: 4.45, 5: 7.05, 8: 9.0}  # the turn and 0.3 of the width
+    widths = {2: 1.5, 5: 3.5, 8: 5}
+    assert flags == [
+        word for d in lags for word in ("--lag-at", f"{d}={lags[d]:g}", "--width-at", f"{d}={widths[d]:g}")
+    ]
+    status, _, told = in_json(capsys, "brush", "new", typed, *flags)
+    assert (status, told) == (0, [])
+    one, other = (json.loads(at.read_text()) | {"name": ""} for at in (asked, typed))
+    assert one == other
+
+
+def test_answers_that_end_write_nothing(tmp_path, monkeypatch, capsys):
+    out = tmp_path / "mine.json"
+    status, _, _ = answered(monkeypatch, capsys, ["brush", "new", out], ["2", "1.5"])
+    assert status == 1 and not out.exists()
+
+
+def test_programs_that_read_messages_are_not_asked(tmp_path, monkeypatch, capsys):
+    words = ["--messages", "json", "brush", "new", tmp_path / "mine.json"]
+    assert answered(monkeypatch, capsys, words, "2 1.5 4 5 3.5 6 8 5 7.5".split())[0] == 2
+
+
+def test_without_a_terminal_it_explains_how_to_measure(tmp_path, capsys):
+    out = tmp_path / "mine.json"
+    assert main(["brush", "new", str(out)]) == 2
+    told = capsys.readouterr()
+    assert told.out == "" and not out.exists()
+    assert gives(told.err, "90", "--lag-at", "--width-at", "--like")
+
+
+@pytest.mark.parametrize(
+    ("words", "depths"),
+    [
+        ("--lag 5 --width-at 3=2.5", 1),
+        ("--lag 5 --width-at 2=2 --width-at 3=2.5 --width-at 4=3", 1),
+        ("--lag-at 2=5 --lag-at 3=6 --lag-at 4=7 --width-at 2=2 --width-at 4=3", 2),
+        ("--lag-at 2=5 --lag-at 3=6 --lag-at 4=7 --width-at 2=2 --width-at 3=2.5 --width-at 4=3", None),
+        ("--lag 0 --width-at 3=2.5", None),
+        ("--like round-6", None),
+    ],
+)
+def test_fewer_than_three_depths_are_warned_about(tmp_path, capsys, words, depths):
+    status, _, told = in_json(capsys, "brush", "new", tmp_path / "mine.json", *words.split())
+    assert status == 0
+    notices = [notice for _, notice in told if notice.code == "few-depths"]
+    assert len(notices) == (depths is not None)
+    assert not depths or agrees(notices[0], f"few-depths {depths}")
+
+
+def test_the_lag_of_a_turn_is_that_of_the_brush_it_makes():
+    """The middle of the mark of such a brush turns where the ruler read it."""
+    brush = new_brush("mine", [(2, 4.45), (5, 7.05), (8, 9.0)], [(2, 1.5), (5, 3.5), (8, 5)])
+    for depth, width, turn in ((2, 1.5, 4.0), (5, 3.5, 6.0), (8, 5.0, 7.5)):
+        assert lag_of_turn(turn, width) == pytest.approx(brush.lag(depth), abs=0.3)
+        ahead = brush.tip_to_widest(depth) - brush.tip_gap(depth)
+        assert brush.lag(depth) - ahead == pytest.approx(turn, abs=0.3)

@@ -84,6 +84,14 @@ def new_brush(
     return brush
 
 
+def lag_of_turn(turn_mm: float, width_mm: float) -> float:
+    """Return the lag of a brush by where its mark turns: so far before the tool's second line, after 90 degrees.
+
+    The middle of the mark follows the widest section, which is assumed to be in front of the centre of friction.
+    """
+    return turn_mm + (WIDEST_PER_HALF - GAP_PER_HALF) * width_mm / 2
+
+
 def outlines_assumed(source: str) -> str:
     """What a brush file says beside its laws when nobody measured its outlines, as JSON."""
     return json.dumps({"footprints": {"source": f"Assumed: {source}", "assumed": True}})

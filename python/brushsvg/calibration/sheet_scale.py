@@ -13,8 +13,9 @@ from ..errors import Error
 LEAST_MARKS = 8  # of fewer the scatter of the displacements is not known
 CERTAIN = 4.0  # standard deviations of a normal value that do not come about by chance
 LEAST_SCALE = 0.003  # a scan is as good; lag and width are then off by as much at most
-OR_ELSE = (
-    ", did the paper bulge in the picture, or does the machine go farther than it is told (--machine axes)?"
+REMEDY = (
+    "For a printed page, measure its bar and give the length (--bar MM). For a scan, check its resolution in dpi. If "
+    "both are right, the machine moves too far or too little: add --machine axes"
 )
 
 
@@ -69,16 +70,13 @@ def refuse_scale(scale: SheetScale | None) -> None:
     apart = (scale.x[0] - scale.y[0], math.hypot(scale.x[1], scale.y[1]))
     if scale.is_off(apart):
         raise Error(
-            f"the sheet is {scale.told(scale.x)} than the plan in x and {scale.told(scale.y)} in y: was it scanned at "
-            f"different resolutions in x and y{OR_ELSE} Outlines count in mm of the tool's way",
+            f"the sheet is {scale.told(scale.x)} than the plan in x and {scale.told(scale.y)} in y. {REMEDY}",
             "marks",
             code="marks-scaled",
         )
     if scale.is_off(scale.both):
         raise Error(
-            f"the sheet is {scale.told(scale.both)} than the plan: was the page printed, or the paint scanned, at "
-            f"another scale{OR_ELSE} Outlines count in mm of the tool's way; for photographs, --bar says how long its "
-            "bar is",
+            f"the sheet is {scale.told(scale.both)} than the plan. {REMEDY}",
             "marks",
             code="marks-scaled",
         )

@@ -24,14 +24,20 @@ class ReadOptions:
 
     sheet_mm: (w, h) in place of the drawing's own; units: "mm" or "in", of a drawing that has numbers only (DXF);
     select: a CSS selector, what neither matches it nor lies in what matches is left out (SVG); background: "auto"
-    leaves out a white shape that comes first and covers the page, "keep" paints it (SVG); lenient: take what is sound
-    of damaged geometry, with a notice for what is not.
+    leaves out a white shape that comes first and covers the page, "keep" paints it (SVG). Of G-code, pen: "z" or
+    "servo", what moves its pen; paper_z_mm: the height at which it draws; skip_regions_mm: (x0, y0, x1, y1), strokes
+    inside are left out; skip_comments: so are those behind comments that hold such a text. lenient: take what is
+    sound of damaged geometry, with a notice for what is not.
     """
 
     sheet_mm: tuple[float, float] | None = None
     units: str | None = None
     select: str | None = None
     background: str = "auto"
+    pen: str | None = None
+    paper_z_mm: float | None = None
+    skip_regions_mm: tuple[tuple[float, float, float, float], ...] = ()
+    skip_comments: tuple[str, ...] = ()
     lenient: bool = False
 
 
@@ -39,6 +45,7 @@ AS_DRAWN = ReadOptions()
 SIZE_MM = (0.001, 1e6)  # of a sheet's sides
 UNITS = ("mm", "in")
 BACKGROUNDS = ("auto", "keep")
+PENS = ("z", "servo")  # what moves the pen of a program
 
 
 def refuse_unusable(options: ReadOptions) -> None:
@@ -55,6 +62,16 @@ def refuse_unusable(options: ReadOptions) -> None:
     if options.units is not None:
         need_one_of(options.units, UNITS, "units")
     need_one_of(options.background, BACKGROUNDS, "background")
+    if options.pen is not None:
+        need_one_of(options.pen, PENS, "pen")
+    if options.paper_z_mm is not None:
+        need_number(options.paper_z_mm, "the height at which a program draws [mm]", -1e4, 1e4)
+    for region in options.skip_regions_mm:
+        need(region, (tuple, list), "a region, four numbers [mm]")
+        if len(region) != 4:
+            raise Error(f"a region has {len(region)} numbers, not four", "skip_regions_mm", code="wrong-type")
+    for text in options.skip_comments:
+        need(text, str, "a text of comments")
     need_truth(options.lenient, "lenient")
     if options.select is not None:
         need(options.select, str, "a text, which select is")

@@ -275,11 +275,12 @@ def _foreign(path: str, text: str, chosen: Choices, told: Told) -> Check:
         sentence = "brushsvg did not write it: it paints no drawing that is known; check it alone"
         raise Error(sentence, code="nothing-to-compare")
     for flag in (*LAYOUT_FLAGS, *MADE_FLAGS, "speed", "z-offset", "corrections"):
-        if flag != "sheet" and getattr(chosen, NAMED_OTHERWISE.get(flag, flag)):
+        given = getattr(chosen, NAMED_OTHERWISE.get(flag, flag))
+        if flag not in ("sheet", "paper-z") and given:
             sentence = f"brushsvg did not write it: --{flag} would change nothing"
             raise Error(sentence, code="flag-without-effect")
     cell, brush = cell_of(chosen.cell), brush_of(chosen.brush) or find_brush(DEFAULT_BRUSH)
-    found = foreign_program(text, brush, cell, chosen.sheet)
+    found = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z or 0.0)
     told(path, found.warnings)
     shown = Work("", brush, found.plan, None, (), Options(cell=cell), ())
     figures = outputs.reported(shown, found.marks, cell)

@@ -10,7 +10,7 @@ from typing import TypedDict
 
 from .. import _core
 from ..brush.library import brush_names, find_brush
-from ..drawing import BACKGROUNDS, SIZE_MM, UNITS, ReadOptions, settings_in
+from ..drawing import BACKGROUNDS, PENS, SIZE_MM, UNITS, ReadOptions, settings_in
 from ..drawing.layout import Layout
 from ..errors import Error, Notice, as_listed, need, need_number, need_one_of, need_truth
 from ..machine.cell import Cell
@@ -18,13 +18,25 @@ from ..machine.cell_file import cell_names, find_cell, parse_cell, write_cell
 from ..painted.corrections import SheetBefore, read_sheet_before
 from .options import Options
 
-LAYOUT_FLAGS = ("sheet", "units", "select", "layer", "background", "width", "fit", "scale", "origin", "as")
-NAMED_OTHERWISE = {  # flag: choice
-    "as": "paths_as",
-    "speed": "paint_speed",
-    "z-offset": "z_offset",
-    "margin-strokes": "margin_strokes",
-}
+LAYOUT_FLAGS = (
+    "sheet",
+    "units",
+    "select",
+    "layer",
+    "background",
+    "pen",
+    "paper-z",
+    "skip-region",
+    "skip-comment",
+    "width",
+    "fit",
+    "scale",
+    "origin",
+    "as",
+)
+NAMED_OTHERWISE = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset", "paper-z": "paper_z"} | {
+    name: name.replace("-", "_") for name in ("skip-region", "skip-comment", "margin-strokes")
+}  # flag: choice
 MADE_FLAGS = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end", "margin-strokes")
 RANGES = {  # the same as a flag's
     "width": (0.001, 1000.0),
@@ -33,10 +45,12 @@ RANGES = {  # the same as a flag's
     "tolerance": (1e-5, 10.0),
     "paint_speed": (0.001, 5000.0),
     "z_offset": (-20.0, 20.0),
+    "paper_z": (-1000.0, 1000.0),
 }
 ONE_OF = {
     "units": UNITS,
     "background": BACKGROUNDS,
+    "pen": PENS,
     "paths_as": ("stroke", "outline"),
     "wide": ("auto", "clamp", "passes", "refuse"),
     "corners": ("auto", "turn"),
@@ -62,6 +76,10 @@ class Choices:
     layer: list[str] | None = None
     select: str | None = None
     background: str | None = None
+    pen: str | None = None
+    paper_z: float | None = None
+    skip_region: list[tuple[float, float, float, float]] | None = None
+    skip_comment: list[str] | None = None
     width: float | None = None
     paths_as: str | None = None
     fit: tuple[float, float] | None = None
@@ -91,6 +109,10 @@ class Given(TypedDict, total=False):
     layer: Sequence[str] | None
     select: str | None
     background: str | None
+    pen: str | None
+    paper_z: float | None
+    skip_region: Sequence[tuple[float, float, float, float]] | None
+    skip_comment: Sequence[str] | None
     width: float | None
     paths_as: str | None
     fit: tuple[float, float] | None
@@ -127,13 +149,16 @@ def checked(chosen: Choices) -> Choices:
             chosen = replace(
                 chosen, **{name: tuple(need_number(each, f"a number of {name}", *limits) for each in pair)}
             )
+    if chosen.skip_region is not None:
+        need(chosen.skip_region, (tuple, list), "a list of regions, which skip_region is")
     if chosen.join is not None:
         need_truth(chosen.join, "join")
-    for name in ("layer", "select"):
+    for name in ("layer", "select", "skip_comment"):
         given = getattr(chosen, name)
-        if name == "layer" and given is not None:
-            need(given, (tuple, list), "a list of names, which layers are")
-        for text in () if given is None else given if name == "layer" else [given]:
+        is_list = name != "select"
+        if is_list and given is not None:
+            need(given, (tuple, list), f"a list of texts, which {name} is")
+        for text in () if given is None else given if is_list else [given]:
             need(text, str, f"a text, which {name} is")
     for name in ("brush", "cell", "corrections"):
         kinds = {"brush": (_core.Brush,), "cell": (Cell,)}.get(name, ())
@@ -244,8 +269,17 @@ def sheet_before_of(path: str | os.PathLike[str] | None) -> SheetBefore:
 
 
 def reading_of(chosen: Choices) -> ReadOptions:
-    background = chosen.background or ReadOptions.background
-    return ReadOptions(chosen.sheet, chosen.units, chosen.select, background, lenient=True)
+    return ReadOptions(
+        chosen.sheet,
+        chosen.units,
+        chosen.select,
+        chosen.background or ReadOptions.background,
+        chosen.pen,
+        chosen.paper_z,
+        tuple(map(tuple, chosen.skip_region or ())),
+        tuple(chosen.skip_comment or ()),
+        lenient=True,  # damage is reported with all the rest
+    )
 
 
 def layout_of(chosen: Choices) -> Layout:

@@ -33,18 +33,21 @@ class Foreign:
     warnings: tuple[Notice, ...] = ()
 
 
-def foreign_program(text: str, brush, cell: Cell, sheet_mm=None) -> Foreign:
-    """The program's ways on the cell, its zero the sheet's lower left corner, z 0 where the brush just touches; by
-    default the sheet ends 20 mm beyond what is painted. A pen that goes by M3 and M5 goes as the cell's servo does; M5
-    lifts it.
+def foreign_program(text: str, brush, cell: Cell, sheet_mm=None, paper_z_mm: float = 0.0) -> Foreign:
+    """The program's ways on the cell, its zero the sheet's lower left corner, paper_z_mm where the brush just touches.
+    By default the sheet ends 20 mm beyond what is painted. A pen that goes by M3 and M5 goes as the cell's servo does;
+    M5 lifts it.
 
     Error for lines not read, places never named, a pen without a servo in the cell, and where nothing touches.
     """
     some, power = ways_and_end(text)
+    some = [replace(way, points_mm=way.points_mm - (0.0, 0.0, paper_z_mm)) for way in some]
     passes, careless = _touches(some, cell)
     outside = _outside(some, cell, sheet_mm)
     if not passes:
-        raise Error("the brush never touches the paper: nothing is below z 0", code="nothing-painted")
+        advice = "--paper-z MM says at which height its pen just touches the paper"
+        sentence = f"the brush never touches the paper: nothing is below z {paper_z_mm:g}"
+        raise Error(sentence, code="nothing-painted", advice=advice)
     if sheet_mm is None:
         highest = np.max([np.asarray(a_pass.poses_mm)[:, :2].max(axis=0) for a_pass in passes], axis=0)
         sheet_mm = tuple(np.maximum(highest + MARGIN_MM, MARGIN_MM).tolist())

@@ -66,15 +66,21 @@ class Marks:
 def find_marks(flat: Flat, rooms: list[Room], printed_mm: list[np.ndarray], labels_mm: list) -> Marks:
     """printed_mm: rings round markers and all that is as dark as paint; labels_mm: boxes of pale text, which a mark may
     cover. Error where there is no paint."""
-    print_ = np.zeros(flat.pixels.shape[:2], np.uint8)
-    for ring in printed_mm:
-        cv2.fillPoly(print_, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
+    print_ = printed_pixels(flat, printed_mm)
     try:
         paint = paint_seen(flat, print_, rooms, labels_mm)
         return told_apart(paint, flat, rooms, labels_mm)
     except Error:
         refuse_grainy(grey_light(flat.pixels), "the strokes cannot be told")
         raise
+
+
+def printed_pixels(flat: Flat, printed_mm) -> np.ndarray:
+    """Mask (rows, columns) of rings round what is printed."""
+    print_ = np.zeros(flat.pixels.shape[:2], np.uint8)
+    for ring in printed_mm:
+        cv2.fillPoly(print_, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
+    return print_
 
 
 def paint_seen(flat: Flat, print_: np.ndarray, rooms: list[Room], labels_mm=()) -> np.ndarray:

@@ -4,6 +4,7 @@ view of the sheet from them. Refuses pictures that cannot be measured in."""
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import cv2
 import numpy as np
@@ -25,7 +26,10 @@ MOST_BLUR_MM = 0.3  # standard deviation: half way is then still half way, but n
 # bulges by a millimetre leaves 0.15 on A4 with eight and moves marks by as much; on A5 with six it leaves 0.10 and
 # moves them by 0.4. Half of it is remarked on.
 MOST_MM, MOST_MM_OF_FEW, MANY, MOST_PX = 0.12, 0.06, 8, 0.2
-COVERED = 2.0  # times the limit that one marker is off, and the others within: something lies on its edge
+# Times the limit that a covered marker is displaced at least, and that the others fit better than it
+COVERED = 2.0
+# Less of the usual contrast along a marker's edges hides a place; more hidden places of an edge cover it
+HIDDEN, LEAST_HIDDEN = 0.75, 0.05
 # Shares of half the picture's diagonal: how finely the middle of a lens is looked for, and how much of a picture counts
 # as cut off
 CUT_STEPS, LEAST_CUT = np.array([0.2, 0.08, 0.03]), 0.05
@@ -92,12 +96,13 @@ def find_view(pixels: np.ndarray, printed: Printed) -> View:
     light = grey_light(pixels)
     found = _of_this_chart(pixels, light, printed)
     modules = _modules(printed.dictionary)
-    corners, blurs = {}, []
+    corners, blurs, clear = {}, [], {}
     for number, rough in found.items():
-        corners[number], blur = _exact(light, rough, modules)
+        corners[number], blur, clear[number] = _exact(light, rough, modules)
         blurs.append(blur)
     try:
-        view = _without_a_covered_one(_fitted(corners, printed, pixels.shape), corners, printed, pixels.shape)
+        view = _fitted(corners, printed, pixels.shape)
+        view = _without_covered(view, corners, clear, printed, pixels.shape)
         blur_mm = float(np.median(blurs)) / view.px_per_mm
         view = replace(view, blur_mm=blur_mm, white=white_share(_of_sheet(light, view, printed)))
         _refuse_unmeasurable(view, printed)
@@ -249,22 +254,29 @@ def _listed(numbers) -> str:
     return ", ".join(map(str, sorted(numbers)))
 
 
-def _exact(light: np.ndarray, corners: np.ndarray, modules: int) -> tuple[np.ndarray, float]:
-    """Corners where lines through the edges meet, and the blur [px] of the edges."""
-    blur = 0.0
-    for _ in range(2):  # the second time the lines run where they should
-        lines, blurs = [], []
+def _exact(light: np.ndarray, corners: np.ndarray, modules: int) -> tuple[np.ndarray, float, np.ndarray]:
+    """Corners where lines through the edges meet, the blur [px] of the edges, and between which edges that nothing
+    covers corners (4,) are."""
+    blur, is_seen = 0.0, np.ones(4, bool)
+    for again in range(3):  # the second time the lines run where they should; the third only looks along them
+        lines, blurs, contrasts = [], [], []
         for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-            points, spread = _edge_points(light, a, b, np.hypot(*(b - a)) / modules)
+            points, spread, contrast = _edge_points(light, a, b, np.hypot(*(b - a)) / modules)
             lines.append(_line(points))
             blurs.append(spread)
-        corners = np.array([_meet(lines[k - 1], lines[k]) for k in range(4)])
-        blur = max(blurs[0] + blurs[2], blurs[1] + blurs[3]) / 2  # a camera that moves blurs one way alone
-    return corners, blur
+            contrasts.append(contrast)
+        lost = np.array(contrasts) < HIDDEN * np.median(contrasts)
+        is_seen &= lost.mean(axis=1) <= LEAST_HIDDEN
+        if again < 2:
+            corners = np.array([_meet(lines[k - 1], lines[k]) for k in range(4)])
+            # a camera that moves blurs one way alone
+            blur = max(blurs[0] + blurs[2], blurs[1] + blurs[3]) / 2
+    return corners, blur, is_seen & np.roll(is_seen, 1)
 
 
-def _edge_points(light, a, b, module_px: float) -> tuple[np.ndarray, float]:
-    """Points (n, 2) of the edge from a to b, white on its left as the picture is drawn, and its blur [px].
+def _edge_points(light, a, b, module_px: float) -> tuple[np.ndarray, float, np.ndarray]:
+    """Points (n, 2) of the edge from a to b, white on its left as the picture is drawn, its blur [px], and by how much
+    each place (n,) is lighter outside of the edge than inside.
 
     Across an edge from black to white, the light that is there beside all white says where the edge lies, however much
     it is blurred: area under the profile = white times the way behind the edge.
@@ -289,7 +301,7 @@ def _edge_points(light, a, b, module_px: float) -> tuple[np.ndarray, float]:
     middle = np.median(share, axis=0)
     rising = np.maximum.accumulate(middle) + 1e-9 * np.arange(count)
     low, high = np.interp([0.2, 0.8], rising, across)
-    return at + offset[:, None] * out, float(high - low) / 1.683
+    return at + offset[:, None] * out, float(high - low) / 1.683, (white - black)[:, 0]
 
 
 def _line(points: np.ndarray) -> tuple[np.ndarray, float]:
@@ -309,10 +321,12 @@ def _meet(one, other) -> np.ndarray:
 
 
 def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape, aside_px=(0.0, 0.0)) -> View:
-    """Least squares of all corners. aside_px: where the lens's middle lies from the picture's."""
-    ids = tuple(sorted(corners))
-    mm = np.vstack([printed.corners_mm[i] for i in ids])
-    px = np.vstack([corners[i] for i in ids])
+    """Least squares of all corners that are not NaN. aside_px: where the lens's middle lies from the picture's."""
+    ids = tuple(number for number in sorted(corners) if np.isfinite(corners[number]).all())
+    marker = np.repeat(sorted(corners), 4)
+    mm = np.vstack([printed.corners_mm[i] for i in sorted(corners)])
+    px = np.vstack([corners[i] for i in sorted(corners)])
+    marker, mm, px = (each[np.isfinite(px).all(axis=1)] for each in (marker, mm, px))
     middle = np.array([(shape[1] - 1) / 2, (shape[0] - 1) / 2])
     radius = float(np.hypot(*middle))
     middle = middle + aside_px
@@ -346,7 +360,7 @@ def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape, aside_px=(0
     scale = _px_per_mm(found, printed.sheet_mm)
     squares = np.sum((found.to_px(mm) - px) ** 2, axis=1) / scale**2
     freedom = len(mm) - 4.5  # the homography and k1, two numbers a corner
-    each = {number: float(np.sqrt(squares[4 * k : 4 * k + 4].mean())) for k, number in enumerate(ids)}
+    each = {number: float(np.sqrt(squares[marker == number].mean())) for number in np.unique(marker).tolist()}
     worst = max(each, key=lambda number: each[number])
     residual = float(np.sqrt(squares.sum() / freedom))
     unsure = _unsure_px(view, unknowns, np.linalg.pinv(slopes.T @ slopes), printed.sheet_mm) / scale
@@ -363,14 +377,33 @@ def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape, aside_px=(0
     )
 
 
-def _without_a_covered_one(view: View, corners: dict, printed: Printed, shape) -> View:
-    """Something that covers the edge of one marker moves its corners; paper that bulges moves all."""
+def _without_covered(view: View, corners: dict, clear: dict, printed: Printed, shape) -> View:
+    """Leave out the corners that something covers, of as few markers as possible, so that the others fit flat paper.
+
+    clear: by marker, which of its corners (4,) are between edges that are seen. The marker that is displaced most is
+    tried as a whole as well: what covers it may have its own edge next to the marker's. Paper that bulges moves all
+    markers, and the clear corners of covered ones with them.
+    """
     number, own = view.worst
     limit = view.most_residual_mm
-    if view.residual_mm <= limit or own < COVERED * limit or len(corners) <= FEWEST:
+    if view.residual_mm <= limit:
         return view
-    others = _fitted({k: c for k, c in corners.items() if k != number}, printed, shape)
-    return others if others.residual_mm < others.most_residual_mm / COVERED else view
+    hidden = {k: ~each for k, each in clear.items() if not each.all()}
+    if own >= COVERED * limit:
+        hidden.setdefault(number, np.ones(4, bool))
+    for count in range(1, min(len(hidden), len(corners) - FEWEST) + 1):
+        fits = [
+            _fitted(corners | {k: _without(corners[k], hidden[k]) for k in chosen}, printed, shape)
+            for chosen in combinations(sorted(hidden), count)
+        ]
+        others = min(fits, key=lambda each: each.residual_mm)
+        if others.residual_mm < others.most_residual_mm / COVERED:
+            return others
+    return view
+
+
+def _without(corners: np.ndarray, hidden: np.ndarray) -> np.ndarray:
+    return np.where(hidden[:, None], np.nan, corners)
 
 
 def _unsure_px(view, unknowns: np.ndarray, covariance: np.ndarray, sheet_mm) -> float:

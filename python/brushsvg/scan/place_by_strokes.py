@@ -125,18 +125,8 @@ def _usual(dpi: float) -> str:
 
 def _along_ways(paint: np.ndarray, ways_mm: list[np.ndarray]) -> tuple[float, complex]:
     """Turn [rad] and shift [mm, down], roughly: place in the scan = (x - iy) e^(i turn) + shift."""
-    small = cv2.resize(
-        paint.astype(np.float32),
-        None,
-        fx=1 / COARSE_PX_PER_MM,
-        fy=1 / COARSE_PX_PER_MM,
-        interpolation=cv2.INTER_AREA,
-    )
-    # both beside each other with what is blurred around the ways: what lies beyond one end must not meet the other
-    reach = math.ceil(math.hypot(*np.ptp(np.vstack(ways_mm), axis=0))) + 2 * AROUND_MM + max(small.shape)
-    size = cv2.getOptimalDFTSize(reach)
-    seen = np.fft.rfft2(cv2.GaussianBlur(small, None, NEAR_MM), (size, size))
     down = [way[:, 0] - 1j * way[:, 1] for way in ways_mm]
+    seen, shape = spectrum(paint, down)
     best = {}
     for is_mirrored in (False, True):
         ways = [-way.conj() for way in down] if is_mirrored else down
@@ -145,34 +135,51 @@ def _along_ways(paint: np.ndarray, ways_mm: list[np.ndarray]) -> tuple[float, co
             for quarter in (0, 90, 180, 270)
             for askew in range(-ASKEW_DEG, ASKEW_DEG + 1, STEP_DEG)
         ]
-        best[is_mirrored] = max(
-            (_tried(seen, small.shape, size, ways, turn) for turn in turns), key=lambda each: each[0]
-        )
+        tried = [
+            (*match_ways(seen, shape, [way * cmath.exp(1j * turn) for way in ways]), turn) for turn in turns
+        ]
+        best[is_mirrored] = max(tried, key=lambda each: each[0])
     if best[True][0] > MIRRORED * best[False][0]:
         raise Error(
             "the scan is mirrored: turn off the mirroring of the scanner's program, or flip the picture back",
             code="photo-mirrored",
         )
-    return best[False][1:]
+    _, shift, turn = best[False]
+    return turn, shift
 
 
-def _tried(
-    seen: np.ndarray, shape: tuple[int, int], size: int, ways: list[np.ndarray], turn: float
-) -> tuple[float, float, complex]:
-    """How much paint lies along the ways at the best shift; the turn; that shift. shape: of the picture that was seen,
-    beyond which shifts are those up and to the left."""
-    turned = [way * cmath.exp(1j * turn) for way in ways]
-    every = np.concatenate(turned)
+def spectrum(paint: np.ndarray, ways: list[np.ndarray]) -> tuple[np.ndarray, tuple[int, int]]:
+    """Spectrum of a coarse picture of paint, with so much room around it that ways fit next to it; the picture's shape
+    at a pixel per mm."""
+    small = cv2.resize(
+        paint.astype(np.float32),
+        None,
+        fx=1 / COARSE_PX_PER_MM,
+        fy=1 / COARSE_PX_PER_MM,
+        interpolation=cv2.INTER_AREA,
+    )
+    # both beside each other with what is blurred around the ways: what lies beyond one end must not meet the other
+    every = np.concatenate(ways)
+    reach = math.ceil(math.hypot(np.ptp(every.real), np.ptp(every.imag))) + 2 * AROUND_MM + max(small.shape)
+    size = cv2.getOptimalDFTSize(reach)
+    return np.fft.rfft2(cv2.GaussianBlur(small, None, NEAR_MM), (size, size)), small.shape
+
+
+def match_ways(seen: np.ndarray, shape: tuple[int, int], ways: list[np.ndarray]) -> tuple[float, complex]:
+    """How much paint lies along the ways (x - iy) at the best shift, and that shift. seen, shape: of `spectrum`; shifts
+    beyond the picture are those up and to the left."""
+    size = len(seen)
+    every = np.concatenate(ways)
     corner = complex(math.floor(every.real.min()), math.floor(every.imag.min())) - AROUND_MM * (1 + 1j)
     drawn = np.zeros((size, size), np.float32)
-    for way in turned:
+    for way in ways:
         points = np.column_stack([(way - corner).real, (way - corner).imag])
         cv2.polylines(drawn, [np.round(points).astype(np.int32)[:, None]], False, 1.0, round(WAYS_MM))
     drawn = cv2.GaussianBlur(drawn, None, NEAR_MM)
     match = np.fft.irfft2(seen * np.conj(np.fft.rfft2(drawn)), (size, size))
     row, column = np.unravel_index(int(match.argmax()), match.shape)
     row, column = (k - size if k >= end else k for k, end in zip((row, column), shape, strict=True))
-    return float(match.max() / np.linalg.norm(drawn)), turn, complex(column, row) - corner
+    return float(match.max() / np.linalg.norm(drawn)), complex(column, row) - corner
 
 
 def _into_rooms(
@@ -190,7 +197,7 @@ def _into_rooms(
         lying = cv2.warpAffine(
             np.uint8(paint), to_scan, (columns, rows), flags=cv2.WARP_INVERSE_MAP | cv2.INTER_NEAREST
         )
-        of, places = _marks_in(lying, sheet_mm, rooms)
+        of, places = marks_in(lying, sheet_mm, rooms)
         if len(of) < max(FEWEST, FOUND * len(rooms)):
             raise Error(
                 f"only {len(of)} of the {len(rooms)} strokes of this chart are found where they should be on the scan, "
@@ -199,7 +206,7 @@ def _into_rooms(
                 value=len(of),
                 code="photo-paint-elsewhere",
             )
-        change, moved = _similar(middles[of], places)
+        change, moved = similar(middles[of], places)
         size = abs(change)
         shift += unit * moved
         unit *= change / size
@@ -213,7 +220,7 @@ def _into_rooms(
     return unit, shift
 
 
-def _marks_in(lying: np.ndarray, sheet_mm, rooms: list[Room]) -> tuple[list[int], np.ndarray]:
+def marks_in(lying: np.ndarray, sheet_mm, rooms: list[Room]) -> tuple[list[int], np.ndarray]:
     """Numbers of the rooms that hold one mark, and the middles of those marks' boxes, down."""
     fine = COARSE_PX_PER_MM
     count, part, stats, _ = cv2.connectedComponentsWithStats(lying, connectivity=8)
@@ -235,7 +242,7 @@ def _marks_in(lying: np.ndarray, sheet_mm, rooms: list[Room]) -> tuple[list[int]
     return of, np.array(places)
 
 
-def _similar(middles: np.ndarray, places: np.ndarray) -> tuple[complex, complex]:
+def similar(middles: np.ndarray, places: np.ndarray) -> tuple[complex, complex]:
     """(a, b) of places = a middles + b, without those that lie off."""
     kept = np.ones(len(middles), bool)
     for _ in range(4):

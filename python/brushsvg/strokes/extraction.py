@@ -82,7 +82,8 @@ def _left_out(elements: list[Element], paths_as: str | None) -> list[Notice]:
         if len(elements) > 2
         else ", nor does another" * (len(elements) - 1)
     )
-    advice = "--as stroke counts fills as none" if paths_as == "stroke" else ""
+    for_lines = "lines need a stroke instead of a fill; brushsvg text sets single-line fonts as lines"
+    advice = "--as stroke counts fills as none" if paths_as == "stroke" else for_lines
     return [Notice(first, f"its outline {what}{others}: left out", code="outline-empty", advice=advice)]
 
 

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ... import _core
 from ...errors import Error, Notice
-from ...scan.edges import Marks, Room, find_marks, told_apart
+from ...scan.edges import Marks, Room, find_marks, printed_pixels, told_apart
 from ...scan.flatten import Flat, flatten
 from ...scan.markers import TOO_WHITE, Printed, View, find_view
 from ...scan.photo import grey_light, jpeg_quality, read_photo, refuse_dark_paper, refuse_twice
 from ...scan.place_by_strokes import find_scan_view
+from ...scan.print_scale import find_paint
 from ...scan.whole_page import refuse_cropped, refuse_unsure
 from .layout import Chart
 from .page import bar_rings, label_box
@@ -30,18 +31,27 @@ UNSURE_MM = 0.1  # of a place on the sheet: remarked on
 # Standard deviation of a sheet's place on a scan, by rooms that hold the marks of brushes that trail as thought
 SCAN_PLACEMENT_MM = 3.0
 HALF_TURN_DEG = 179.0  # from here on it is upside down, whichever way it was turned
+# Refusals of paint that is not where the page has its strokes: then the page may have been printed at another scale
+OF_ANOTHER_PLACE = ("photo-paint-elsewhere", "photo-covered", "mark-missing")
+LEAST_SCALE_SEEN = (
+    0.01  # of the paint against its page: brushes that trail otherwise scatter what strokes show of it
+)
 ALIKE_MM = 0.15  # photographs of one flat sheet; a robot paints a second one less alike
 
 
 @dataclass(frozen=True)
 class Read:
-    """What a photograph told: the flattened picture, the camera's view, marks by stroke."""
+    """What a photograph shows: the flattened picture, the camera's view, marks by stroke.
+
+    is_rescaled: the page was not printed at 100 %, so its place is known by its strokes only.
+    """
 
     chart: Chart
     flat: Flat
     view: View
     marks: Marks
     photos: int = 1
+    is_rescaled: bool = False
 
 
 def read_chart_photos(
@@ -57,16 +67,7 @@ def read_chart_photos(
     photographs must agree; their paint is averaged, and the view is that of the one whose markers lie farthest off.
     Error in one sentence, with the file."""
     size = _size(chart, bar_mm)
-    middle = np.array(chart.plan.sheet_mm) / 2
-
-    def lies(points) -> np.ndarray:
-        return (np.asarray(points, float) - middle) * size + middle
-
-    corners = {marker.id: lies(marker.corners_mm) for marker in chart.markers}
-    shown = Printed(chart.plan.sheet_mm, corners, chart.dictionary, chart.id)
-    printed = [each.mean(axis=0) + (each - each.mean(axis=0)) * (1 + 2 * MARGIN) for each in corners.values()]
-    printed += [lies(ring) for ring in bar_rings(chart.bar, beyond_mm=0.5)] if chart.bar else []
-    labels = [lies(np.reshape(label_box(label), (2, 2))).ravel() for label in chart.labels]
+    page = _page(chart, size)
     rooms = [Room(stroke.id, stroke.box_mm, stroke.depth_mm) for stroke in chart.strokes]
     refuse_twice(photos)
     reads: list[Read] = []
@@ -76,19 +77,22 @@ def read_chart_photos(
             _refuse_compressed(data)
             if mirrored:
                 pixels = np.ascontiguousarray(pixels[:, ::-1])
-            if dpi is None:
-                view = _view(pixels, shown, mirrored)
-            else:
-                pixels, view = find_scan_view(
-                    pixels, dpi, shown.sheet_mm, rooms, _pressed(chart), shown.dictionary
-                )
-                printed, labels = [], []
-            refuse_cropped(pixels, view, rooms)
-            refuse_unsure(pixels, view, corners)
             fine = reads[0].flat.px_per_mm if reads else None
-            flat = flatten(pixels, view, chart.plan.sheet_mm, fine)
-            refuse_dark_paper(float(np.median(grey_light(flat.pixels[::3, ::3]))))
-            reads.append(Read(chart, flat, view, find_marks(flat, rooms, printed, labels)))
+            if dpi is not None:
+                pixels, view = find_scan_view(
+                    pixels, dpi, chart.plan.sheet_mm, rooms, _pressed(chart), chart.dictionary
+                )
+                reads.append(_read(chart, replace(page, rings=(), labels=()), rooms, pixels, view, fine))
+                continue
+            view = _view(pixels, page.printed, mirrored)
+            try:
+                reads.append(_read(chart, page, rooms, pixels, view, fine))
+            except Error as refusal:
+                if refusal.code not in OF_ANOTHER_PLACE or reads:  # photographs of one sheet have one place
+                    raise
+                page = _moved_page(chart, page, size, rooms, pixels, view, refusal)
+                view = _view(pixels, page.printed, mirrored)
+                reads.append(_read(chart, page, rooms, pixels, view, fine))
         except Error as refusal:
             raise Error(
                 refusal.sentence,
@@ -101,11 +105,74 @@ def read_chart_photos(
             ) from None
     if len(reads) == 1:
         return reads[0]
-    marks = told_apart(np.mean([each.marks.paint for each in reads], axis=0), reads[0].flat, rooms, labels)
+    marks = told_apart(
+        np.mean([each.marks.paint for each in reads], axis=0), reads[0].flat, rooms, page.labels
+    )
     for (name, _), each in zip(photos, reads, strict=True):
         _refuse_another_sheet(each.marks, marks, name)
     worst = max((each.view for each in reads), key=lambda view: view.residual_mm)
-    return Read(chart, reads[0].flat, worst, marks, len(reads))
+    return Read(chart, reads[0].flat, worst, marks, len(reads), page.is_rescaled)
+
+
+@dataclass(frozen=True)
+class _Page:
+    """What is printed, where it is on the sheet: markers; rings round all that is as dark as paint; boxes of labels.
+    is_rescaled: at another scale than 100 %, about a point that is not known."""
+
+    printed: Printed
+    rings: tuple
+    labels: tuple
+    is_rescaled: bool = False
+
+
+def _page(chart: Chart, size: float, shift_mm=None) -> _Page:
+    """Print the page at `size` about its middle, then move it."""
+    middle = np.array(chart.plan.sheet_mm) / 2
+
+    def lies(points) -> np.ndarray:
+        return (np.asarray(points, float) - middle) * size + middle + (0.0 if shift_mm is None else shift_mm)
+
+    corners = {marker.id: lies(marker.corners_mm) for marker in chart.markers}
+    rings = [each.mean(axis=0) + (each - each.mean(axis=0)) * (1 + 2 * MARGIN) for each in corners.values()]
+    rings += [lies(ring) for ring in bar_rings(chart.bar, beyond_mm=0.5)] if chart.bar else []
+    labels = [lies(np.reshape(label_box(label), (2, 2))).ravel() for label in chart.labels]
+    printed = Printed(chart.plan.sheet_mm, corners, chart.dictionary, chart.id)
+    return _Page(printed, tuple(rings), tuple(labels), size != 1.0)
+
+
+def _read(chart: Chart, page: _Page, rooms: list[Room], pixels: np.ndarray, view: View, fine) -> Read:
+    refuse_cropped(pixels, view, rooms)
+    refuse_unsure(pixels, view, page.printed.corners_mm)
+    flat = flatten(pixels, view, chart.plan.sheet_mm, fine)
+    refuse_dark_paper(float(np.median(grey_light(flat.pixels[::3, ::3]))))
+    marks = find_marks(flat, rooms, page.rings, page.labels)
+    return Read(chart, flat, view, marks, is_rescaled=page.is_rescaled)
+
+
+def _moved_page(chart: Chart, page: _Page, size: float, rooms, pixels, view: View, refusal: Error) -> _Page:
+    """Where strokes are not where the page has them: the page of a known size that was printed about another point than
+    its middle. Error naming the scale where the page seems to have been printed at another one; else the refusal."""
+    flat = flatten(pixels, view, chart.plan.sheet_mm)
+    known = 1.0 if size != 1.0 else None
+    found = find_paint(flat, printed_pixels(flat, page.rings), rooms, _pressed(chart), known)
+    if found is None:
+        raise refusal
+    if known is not None:
+        return _page(chart, size, -np.array(found.shift_mm))
+    if abs(found.scale - 1) < LEAST_SCALE_SEEN:
+        raise refusal
+    share = f"{100 * abs(found.scale - 1):.0f} % {'larger' if found.scale > 1 else 'smaller'}"
+    sentence = f"the paint is {share} than the printed page: the page was printed at about {100 / found.scale:.0f} %. "
+    if chart.bar is None:
+        sentence += "Print it again at 100 %"
+    else:
+        full = chart.bar.length_mm
+        sentence += (
+            f"Measure the bar on the page and give its length, as in --bar {full / found.scale:.0f}. "
+            f"If it is {full:g} mm long, the machine moves too {'far' if found.scale > 1 else 'little'}: correct its "
+            "steps per mm"
+        )
+    raise Error(sentence, "bar", 1 / found.scale, code="page-scale") from None
 
 
 def _view(pixels: np.ndarray, shown: Printed, mirrored: bool) -> View:
@@ -190,7 +257,7 @@ def marks_of(read: Read) -> list[dict]:
 
 def expected(read: Read) -> dict:
     """How far the sheet may be off, as a measurement file says it."""
-    return {} if read.view.seen else {"placement_mm": SCAN_PLACEMENT_MM}
+    return {} if read.view.seen and not read.is_rescaled else {"placement_mm": SCAN_PLACEMENT_MM}
 
 
 def write_marks(read: Read) -> str:
@@ -245,7 +312,7 @@ def remarks(read: Read) -> list[Notice]:
         out.append(Notice(one, sentence, code="marks-touch"))
     unseen = [marker.id for marker in read.chart.markers if marker.id not in view.seen]
     if unseen and view.seen:
-        sentence = f"marker{'s' * (len(unseen) > 1)} {', '.join(map(str, unseen))} cannot be seen"
+        sentence = f"marker{'s' * (len(unseen) > 1)} {', '.join(map(str, unseen))} cannot be seen whole"
         if view.unsure_mm > UNSURE_MM:
             sentence += f": places on the sheet may lie off by {view.unsure_mm:.2f} mm (standard deviation)"
         out.append(Notice("", sentence, code="photo-markers-missing"))

@@ -267,7 +267,7 @@ def _check_photos(args, photos: list[str], written) -> None:
 
 def add_brush(commands) -> None:
     whats = add_looks(commands, "brush", "look at brushes", "laws and ranges", "brush.json")
-    new = whats.add_parser("new", help="write a brush file from a few numbers")
+    new = whats.add_parser("new", help="write a brush file from a few numbers, asked for if none is given")
     new.add_argument("name", metavar="NAME", help="of the brush; writes NAME.json, or the path given")
     new.add_argument(
         "--lag",
@@ -324,6 +324,15 @@ def _check_brush_new(args) -> None:
         for flag, value in given:
             if value is not None:
                 args.parser.error(f"argument {flag}: --like takes it from the other brush")
+        return
+    is_empty = args.lag is None and not (args.lag_at or args.width_at or args.widths)
+    if is_empty:
+        from ..steps.ask_measurements import FLAGS, HOW_TO_MEASURE, can_answer
+
+        if not can_answer(args):
+            args.parser.error(
+                f"nothing was measured. {' '.join(HOW_TO_MEASURE)} Give {FLAGS}; or --like BRUSH"
+            )
         return
     if args.lag is None and not args.lag_at:
         args.parser.error("the following arguments are required: --lag or --lag-at, or --like BRUSH")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from ...drawing import BACKGROUNDS, READERS
+from ...drawing import BACKGROUNDS, PENS, READERS
 from ...machine.posts import POSTS
 from . import values
 
@@ -201,6 +201,22 @@ def add_layout(command: argparse.ArgumentParser) -> None:
         "--background",
         choices=BACKGROUNDS,
         help="keep: paint a white shape that covers the page; default: auto, leave it out (SVG)",
+    )
+    add("--pen", choices=PENS, help="what lifts the pen of G-code: Z, or a servo (M3); default: found out")
+    add("--paper-z", metavar="MM", type=values.paper_z, help="the height at which G-code draws, and below it")
+    add(
+        "--skip-region",
+        metavar="X0,Y0,X1,Y1",
+        action="append",
+        type=values.region,
+        help="leave out strokes of G-code in this rectangle (mm), such as dips at a pot; several: more than once",
+    )
+    add(
+        "--skip-comment",
+        metavar="TEXT",
+        action="append",
+        type=values.words,
+        help="leave out strokes of G-code that follow a comment with this text; several: more than once",
     )
     add("--width", metavar="MM", type=values.width, help="of all strokes, whatever the drawing says")
     add(

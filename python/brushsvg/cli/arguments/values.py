@@ -152,6 +152,20 @@ def point(text: str) -> tuple[float, float]:
     return x, y
 
 
+def region(text: str) -> tuple[float, float, float, float]:
+    from ...units import length_mm
+
+    parts = text.split(",")
+    if len(parts) != 4:
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a region; write for example 0,0,30,20")
+    x0, y0, x1, y1 = (_read(length_mm, part) for part in parts)
+    return min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
+
+
+def paper_z(text: str) -> float:
+    return _length(text, -1000.0, 1000.0)
+
+
 def point3(text: str) -> tuple[float, float, float]:
     from ...units import length_mm
 

@@ -10,6 +10,7 @@ from ...brush.library import brush_like, brush_names, find_brush, unknown_keys
 from ...errors import Error, Notice
 from ...files import read_bytes
 from ..console import RefusedError, about, tell, warn
+from ..steps.ask_measurements import ask_measurements, few_depths
 from ..steps.output_places import check_places, suffix_of, tell_list, write
 
 
@@ -40,6 +41,8 @@ def brush_new(args) -> None:
         why = Notice("", "a brush needs a name, as in brushsvg brush new mine", code="name-invalid")
         raise RefusedError(args.name, [why])
     check_places(args, path, sources=[path])
+    if args.like is None and args.lag is None and not (args.lag_at or args.width_at or args.widths):
+        args.lag_at, args.width_at = ask_measurements(args.name)
     widths = list(args.width_at)
     if args.widths:
         with about(args.widths):
@@ -55,6 +58,7 @@ def brush_new(args) -> None:
         else:
             brush = new_brush(name, args.lag_at or args.lag, widths, args.depth_max, args.speed or 25.0)
         text = write_brush(brush)
+    warn(path, few_depths(args, widths))
     write(args, {path: text}, sources=[path])
     tell(f"{path}: {reach(brush)}\n")
     if args.like is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -10,10 +11,13 @@ from ...errors import Error
 from .. import AS_DRAWN, ReadOptions
 from ..design import Design, Element, Notice, SubPath
 from ..empty_drawing import nothing_to_paint
-from .toolpaths import pen_is_down, ways
+from .dips import comments, dips
+from .pen import HOP_MM, read_pen
+from .toolpaths import Way, ways
 
 MARGIN_MM = 20.0
 WIDTH_MM = 1.0
+LEAST_SHARE, SURE_SHARE = 0.5, 0.95  # of what a program seems to draw: less is refused, or said
 
 
 def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
@@ -22,27 +26,35 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
 
     Error for a program of brushsvg's own, whose ways lead the brush and are no drawing, and for lines not read.
     """
-    text = data.decode("utf-8", errors="replace")
+    text = data.decode("utf-8-sig", errors="replace")
     if is_ours(text):
         raise Error(
             "brushsvg wrote this program: its ways lead a brush and are no drawing; convert the drawing",
             code="program-ours",
         )
     some = ways(text)
-    chains: list[list] = []
-    is_drawn = False
-    for way, is_down in zip(some, pen_is_down(some) if some else [], strict=True):
-        was_drawn, is_drawn = is_drawn, is_down and bool(np.isfinite(way.points_mm[:, :2]).all())
-        if is_drawn and not was_drawn:
-            chains.append([])
-        if is_drawn:  # the way to the first place begins where nobody knows
-            chains[-1].append(way)
+    pen = read_pen(some, options.pen, options.paper_z_mm) if some else None
+    if pen and pen.share < LEAST_SHARE and options.pen is None and options.paper_z_mm is None:
+        sentence = f"only {100 * pen.share:.0f} % of what it seems to draw is read: {pen.how}"
+        advice = "--pen z or --pen servo chooses the other reading, --paper-z MM the height at which it draws"
+        raise Error(sentence, code="pen-unclear", advice=advice)
+    chains = _chains(some, pen.down if pen else ())
+    notices = []
+    if pen:
+        is_unsure = pen.share < SURE_SHARE
+        sentence = (
+            f"{100 * pen.share:.0f} % of what it seems to draw is read: {pen.how}" if is_unsure else pen.how
+        )
+        notices.append(Notice("pen", sentence, code="pen-reading"))
+        notices += pen.notices
+    chains, left_out = _without_dips(chains, comments(text), options)
+    notices += left_out
     elements = [_element(chain) for chain in chains]
     if not elements:
-        raise nothing_to_paint([])
+        raise nothing_to_paint(notices)
     ends = np.concatenate([sub.cubics[:, ::3].reshape(-1, 2) for each in elements for sub in each.subpaths])
     sentence = f"a program has no widths: its lines count as {WIDTH_MM:g} mm wide where --width tells none"
-    notices = [Notice("", sentence, code="gcode-no-width")]
+    notices.append(Notice("", sentence, code="gcode-no-width"))
     down = np.concatenate([way.points_mm[:, 2] for chain in chains for way in chain])
     if np.isfinite(down).all() and np.ptp(down) > 1e-3:
         sentence = f"its pen goes at heights from {down.min():.6g} to {down.max():.6g} mm: they are left out"
@@ -52,6 +64,52 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     shift = MARGIN_MM - ends.min(axis=0)
     width, height = (ends.max(axis=0) + shift + MARGIN_MM).tolist()
     return Design((width, height), tuple(_moved(each, shift) for each in elements), tuple(notices))
+
+
+def _chains(some: list[Way], down: Sequence[bool]) -> list[list[Way]]:
+    """Ways that are drawn one after the other. A pen that comes down again where it went up goes on with its line."""
+    chains: list[list[Way]] = []
+    is_drawn = False
+    for way, is_down in zip(some, down, strict=True):
+        was_drawn, is_drawn = is_drawn, is_down and bool(np.isfinite(way.points_mm[:, :2]).all())
+        if not is_drawn:  # the way to the first place begins where nobody knows
+            continue
+        if not was_drawn and not (chains and _goes_on(chains[-1], way)):
+            chains.append([])
+        chains[-1].append(way)
+    return chains
+
+
+def _goes_on(chain: list[Way], way: Way) -> bool:
+    gap = way.points_mm[0, :2] - chain[-1].points_mm[-1, :2]
+    is_line = all(np.ptp(each.points_mm[:, :2], axis=0).any() for each in (chain[-1], way))
+    return is_line and bool(np.hypot(*gap) <= HOP_MM)
+
+
+def _without_dips(chains: list, said: dict[int, str], options: ReadOptions) -> tuple[list, list[Notice]]:
+    """The lines that draw, with a notice for those that fetch paint and for those that were asked to be left out."""
+    strokes = [(chain[0].line, np.concatenate([way.points_mm[:, :2] for way in chain])) for chain in chains]
+    asked = [_is_skipped(line, points, said, options) for line, points in strokes]
+    notices = []
+    if any(asked):
+        sentence = f"{sum(asked)} of {len(asked)} strokes are left out, by region or comment"
+        notices.append(Notice("skip", sentence, code="strokes-skipped"))
+    left = [(chain, stroke) for chain, stroke, gone in zip(chains, strokes, asked, strict=True) if not gone]
+    are_dips, how = dips([stroke for _, stroke in left], said)
+    if any(are_dips):
+        lines = [stroke[0] for (_, stroke), dip in zip(left, are_dips, strict=True) if dip]
+        sentence = f"{len(lines)} dips are left out, recognised {how}; the first is in line {lines[0]}"
+        notices.append(Notice("dips", sentence, code="dips-left-out"))
+    return [chain for (chain, _), dip in zip(left, are_dips, strict=True) if not dip], notices
+
+
+def _is_skipped(line: int, points: np.ndarray, said: dict[int, str], options: ReadOptions) -> bool:
+    before = [number for number in said if number <= line]
+    words = said[max(before)].casefold() if before else ""
+    if any(word.casefold() in words for word in options.skip_comments):
+        return True
+    regions = (np.array(region) for region in options.skip_regions_mm)
+    return any(bool(((points >= region[:2]) & (points <= region[2:])).all()) for region in regions)
 
 
 def is_ours(text: str) -> bool:

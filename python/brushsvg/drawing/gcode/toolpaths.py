@@ -15,11 +15,13 @@ from ...errors import Error
 
 _WORD = re.compile(r"([A-Z])\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*")
 _PASSED_OVER = {  # of which no pen's way hangs
-    "G": {4, 17, 21.1, 40, 49, 54, 61, 64, 80, 94},
-    "M": {0, 1, 2, 6, 7, 8, 9, 17, 18, 30, 82, 83, 84, 105, 106, 107, 114, 117, 201, 203, 204, 205, 400},
+    "G": {4, 10, 17, 21.1, 40, 43, 43.1, 49, 54, 61, 64, 80, 94},
+    "M": {0, 1, 2, 6, 7, 8, 9, 17, 18, 30, 82, 83, 84, 105, 106, 107, 114, 117, 201, 203, 204, 205, 300, 400},
 }
+_WITH_TEXT = re.compile(r"(?:N\d+\s*)?M\s*0*(?:0|1|117)(?![\d.])")  # a message may follow: M0 change the pen
 _ONE_OF = ({0, 1, 2, 3}, {20, 21}, {90, 91}, {90.1, 91.1})  # G: a line may have one of each
-_LETTERS = set("GMNTXYZIJRFSPE")
+_LETTERS = set("GMNTXYZIJRFSPELHOQKD")
+_OTHER_S = (("G", 4.0), ("M", 280.0), ("M", 300.0))  # whose S is a time, an angle, a tone
 CHORD_MM = 0.005
 LARGEST_MM = 1e6
 
@@ -68,30 +70,6 @@ def _sinks(way: Way, turn: int = 1) -> bool:
     return x == u and y == v and not way.turn and turn * (high - low) > 0
 
 
-def pen_is_down(some: list[Way]) -> list[bool]:
-    """For each way whether the pen is on the paper all along it. Error where nothing tells.
-
-    By M3 and M5 where there is either: down is what holds on no rapid way, and with neither M5 nor M3 S0. Else by
-    height: down is below all rapid ways to the side; without these, below the middle of the highest and the lowest way.
-    """
-    across = [way for way in some if np.ptp(way.points_mm[:, :2], axis=0).any()]
-    if any(way.power is not None for way in some):
-        up = {way.power for way in across if way.rapid} | {None}
-        return [not way.rapid and way.power not in up for way in some]
-    heights = [float(way.points_mm[:, 2].max()) for way in across]
-    heights += [float(way.points_mm[-1, 2]) for way in some if not np.ptp(way.points_mm, axis=0).any()]
-    known = [height for height in heights if math.isfinite(height)]
-    if not known or len({round(height, 6) for height in known}) < 2:
-        raise Error(
-            "nothing tells when its pen is down: there is neither M3 and M5 nor a height that changes",
-            code="pen-unknown",
-        )
-    rapid = [float(way.points_mm[:, 2].min()) for way in across if way.rapid]
-    rapid = [height for height in rapid if math.isfinite(height)]
-    least_up = min(rapid) if rapid and min(rapid) > min(known) else (min(known) + max(known)) / 2
-    return [not way.rapid and float(way.points_mm[:, 2].max()) < least_up - 1e-6 for way in some]
-
-
 class _Reader:
     def __init__(self):
         self.ways: list[Way] = []
@@ -106,7 +84,10 @@ class _Reader:
     def line(self, number: int, line: str) -> None:
         code = re.sub(r"\([^()]*\)", "", line.partition(";")[0]).strip().upper()
         code = re.sub(r"\*\d+$", "", code.lstrip("/"))  # a checksum
-        if not code or self.ended:
+        if (
+            not code or self.ended or code.startswith("$")
+        ):  # a setting of grbl's, or $H: where it goes, nobody knows
+            self.at[:] = np.nan if code.startswith("$H") else self.at
             return
         if code.startswith("%"):  # the second ends the program
             self.percents += 1
@@ -117,7 +98,7 @@ class _Reader:
         words, at = [], 0
         while at < len(code):
             if not (found := _WORD.match(code, at)):
-                if re.match(r"M117\b", code):
+                if _WITH_TEXT.match(code):
                     return
                 raise _unread(number, line)
             words.append((found[1], float(found[2])))
@@ -137,13 +118,16 @@ class _Reader:
                 self._mode(number, line, letter, code_number, values)
         if "F" in values:
             self.feed_mm_s = values["F"] * self.mm / 60
-        if "S" in values and not any(word in (("G", 4.0), ("M", 280.0)) for word in words):
+        if "S" in values and not any(word in _OTHER_S for word in words):
             self.power = values["S"]
         if self.pen() != power:
             self._dot(number, power)
         if 4 in codes and set("XYZIJ") & set(values):  # a wait by some, a way behind it by others
             raise _unread(number, line)
-        if 92 in codes:
+        if codes & {92, 10, 43, 43.1}:  # offsets, not places
+            return
+        if 53 in codes:  # a place of the machine's own frame
+            self.at[[k for k, axis in enumerate("XYZ") if axis in values]] = np.nan
             return
         if set("XYZ") & set(values) or (self.motion in (2, 3) and set("IJ") & set(values)):
             self._move(number, line, values)
@@ -168,7 +152,7 @@ class _Reader:
             self.absolute = code == 90
         elif letter == "G" and code in (90.1, 91.1):
             self.absolute_centres = code == 90.1
-        elif letter == "G" and code == 92:
+        elif letter == "G" and (code == 92 or (code == 10 and values.get("L") == 20)):
             for k, axis in enumerate("XYZ"):
                 if axis in values:
                     # of a place that nobody knows it is the beginning
@@ -182,6 +166,8 @@ class _Reader:
             self.on, self.by_angle = code != 5, False
         elif letter == "M" and code == 280 and "S" in values:  # a servo's angle
             self.on, self.power, self.by_angle = True, values["S"], True
+        elif letter == "G" and code == 53:
+            pass
         elif code not in _PASSED_OVER[letter]:
             raise _unread(number, line)
         self.ended = letter == "M" and code in (2, 30)
@@ -189,7 +175,7 @@ class _Reader:
 
     def _move(self, number: int, line: str, values: dict) -> None:
         if self.motion is None:
-            raise _unread(number, line)
+            self.motion = 0  # what grbl and Marlin begin with
         start, end = self.at.copy(), self.at.copy()
         for k, axis in enumerate("XYZ"):
             if axis in values:

@@ -9,6 +9,7 @@ import io
 import struct
 import zlib
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import uharfbuzz as hb
@@ -16,12 +17,16 @@ from fontTools.pens.basePen import BasePen
 from fontTools.ttLib import TTFont
 
 from ...errors import Error
+from ...geometry.rings import signed_area
 from ..design import Notice, SubPath
 from .setting import Placed, Setting, is_seen
 
 _UNPACKED = 200_000_000  # bytes: the largest fonts there are, of all Chinese characters, take a fifth of it
 _UNITS = (16, 16384)  # to the em, of the format
 _COLOURS = ("COLR", "CBDT", "sbix", "SVG ")  # tables of glyphs in colours or as pictures
+_LETTERS = "AEFHIKLMNTVWXYZilt"  # straight ones: in a font of lines, contours of many of them have no area
+_LINES_NOTICE = "it is a single-line font: its contours are read as lines"
+_CLOSED = 8  # cubics of a contour from which its last one may be as short as the others: an O, and no V
 _NOTICE = "its letters are outlines, which become strokes as filled shapes do"
 
 
@@ -33,8 +38,16 @@ def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
     unpacked = _unpacked(data)
     setter = _Setter(unpacked, size_mm)
     placed = tuple(map(setter.place, lines))
-    told = Notice("font", _NOTICE, code="font-of-outlines"), *_choices(unpacked, setter.face)
-    return Setting(placed, True, tuple(setter.missing), told, tuple(setter.blank))
+    is_filled = not setter.is_of_lines()
+    if is_filled:
+        kind = Notice("font", _NOTICE, code="font-of-outlines")
+    else:
+        kind = Notice("font", _LINES_NOTICE, code="font-of-lines")
+        placed = tuple(
+            tuple(replace(each, subpaths=as_lines(each.subpaths)) for each in line) for line in placed
+        )
+    told = kind, *_choices(unpacked, setter.face)
+    return Setting(placed, is_filled, tuple(setter.missing), told, tuple(setter.blank))
 
 
 def _choices(data: bytes, face: hb.Face) -> Iterator[Notice]:
@@ -113,6 +126,14 @@ class _Setter:
                 self.blank.update(dict.fromkeys(filter(is_seen, line[cluster : ends[cluster]])))
         return tuple(placed)
 
+    def is_of_lines(self) -> bool:
+        """Whether it is a single-line font: TrueType knows no open lines, so these go back as they came, or are two
+        points. At least a third of the straight letters have a contour without area then, and none in other fonts."""
+        glyphs = [self.font.get_nominal_glyph(ord(letter)) for letter in _LETTERS]
+        shapes = [shape for glyph in glyphs if glyph and (shape := self._shape(glyph))]
+        flat = sum(any(map(_is_flat, shape)) for shape in shapes)
+        return bool(shapes) and 3 * flat >= len(shapes)
+
     def _shape(self, glyph: int) -> tuple[SubPath, ...]:
         if glyph not in self.shapes:
             pen = _Cubics()
@@ -121,6 +142,34 @@ class _Setter:
             contours = (np.array(contour).reshape(-1, 4, 2) * to_mm for contour in pen.contours if contour)
             self.shapes[glyph] = tuple(SubPath(cubics, closed=True) for cubics in contours)
         return self.shapes[glyph]
+
+
+def _is_flat(contour: SubPath) -> bool:
+    ring = contour.cubics[:, :3].reshape(-1, 2)
+    around = np.hypot(*np.diff(ring, axis=0, append=ring[:1]).T).sum()
+    return abs(signed_area(ring)) < 1e-6 * around**2
+
+
+def as_lines(contours: tuple[SubPath, ...]) -> tuple[SubPath, ...]:
+    """The lines of a single-line font: contours without what they go over twice, and without the edge that closes them
+    where that is longer than those that were drawn."""
+    lines = []
+    for contour in contours:
+        cubics, known, kept = contour.cubics, set(), []
+        lengths = np.hypot(*(cubics[:, 3] - cubics[:, 0]).T)
+        if len(cubics) < _CLOSED or lengths[-1] > 2 * np.median(lengths):
+            cubics = cubics[:-1]
+        for cubic in cubics:
+            key = np.round(cubic, 6)
+            if (key.tobytes() in known) or (key[::-1].tobytes() in known):
+                continue
+            known.add(key.tobytes())
+            if kept and np.allclose(kept[-1][-1][3], cubic[0]):
+                kept[-1].append(cubic)
+            else:
+                kept.append([cubic])
+        lines += [SubPath(np.array(line)) for line in kept]
+    return tuple(lines)
 
 
 def _refuse_unmeasured(face: hb.Face) -> None:

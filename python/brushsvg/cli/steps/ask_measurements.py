@@ -1,0 +1,79 @@
+"""Ask on a terminal for what a ruler measured of a brush, and explain how to measure it."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import sys
+
+from ...calibration.from_widths import lag_of_turn
+from ...errors import Notice
+from ..arguments import values
+from ..console import RefusedError, say
+
+# Medians of 12 hidden brushes: benchmarks/typed_brushes.py
+WORTH = "paint overlaps a drawn word by 0.87 with lag and width of three depths, by 0.62 with those of one"
+HOW_TO_MEASURE = (
+    "Choose three press depths, for example a quarter, half and all of the deepest that you use.",
+    "At each depth paint a straight line of 40 mm, turn by 90 degrees, and paint 40 mm more.",
+    "Width: measure across the straight part of the mark.",
+    "Turn: measure how far before the tool's second line the middle of the mark starts to turn.",
+    "Lag: the turn plus 0.3 times the width.",
+    f"What it is worth: {WORTH}.",
+)
+PLACES = ("shallow", "middle", "deep")
+FLAGS = "--lag-at DEPTH=LAG --width-at DEPTH=WIDTH, once for each depth"
+
+
+def can_answer(args) -> bool:
+    """Check whether somebody can answer: a terminal on both sides, and messages for people."""
+    return args.messages == "text" and all(
+        stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr)
+    )
+
+
+def ask_measurements(name: str) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
+    """Return lags and widths, each (depth, length) in mm. Refuse where the answers end."""
+    for line in HOW_TO_MEASURE:
+        say(line)
+    lags, widths = [], []
+    for place in PLACES:
+        depth = _number(f"{place} depth [mm]: ")
+        width = _number("  width of the mark [mm]: ")
+        turn = _number("  turn, before the second line [mm]: ", values.lag)
+        widths.append((depth, width))
+        lags.append((depth, round(lag_of_turn(turn, width), 2)))
+    flags = [
+        f"--lag-at {depth:g}={lag:g} --width-at {depth:g}={width:g}"
+        for (depth, lag), (_, width) in zip(lags, widths, strict=True)
+    ]
+    say(f"The same without questions: brushsvg brush new {shlex.quote(name)} {' '.join(flags)}")
+    return lags, widths
+
+
+def _number(question: str, read=values.width) -> float:
+    """Ask until the answer is a length."""
+    while True:
+        sys.stderr.write(question)
+        sys.stderr.flush()
+        answer = sys.stdin.readline()
+        if not answer:
+            why = Notice(
+                "", f"the answers ended. Answer all questions, or give {FLAGS}", code="measurement-missing"
+            )
+            raise RefusedError("brush new", [why])
+        try:
+            return read(answer.strip().replace(",", "."))
+        except argparse.ArgumentTypeError as problem:
+            say(str(problem))
+
+
+def few_depths(args, widths) -> list[Notice]:
+    """Warn about what lag and width at fewer depths than three cost; not for pens and copies."""
+    if args.like is not None or args.lag == 0:
+        return []
+    fewest = min(len({depth for depth, _ in each}) for each in (args.lag_at or [(0.0, args.lag)], widths))
+    if fewest >= len(PLACES):
+        return []
+    sentence = f"lag or width is known at {fewest} depth{'s' * (fewest > 1)}. Typically {WORTH}"
+    return [Notice("", sentence, code="few-depths", advice=f"measure at three depths: {FLAGS}")]
