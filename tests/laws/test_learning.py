@@ -181,9 +181,6 @@ def test_what_is_not_this_job_is_refused(tmp_path, capsys):
     assert main([*map(str, words), "--quiet"]) == 0
     status, _, told = in_json(capsys, *studio.words(plan="other.json"))
     assert status == 1 and is_told(told, "photo-of-another-chart"), told
-    save_brush(known_brush(0.01), tmp_path / "thine.json")
-    status, _, told = in_json(capsys, *studio.words(prior="thine.json"))
-    assert status == 1 and is_told(told, "plan-of-other-brush mine"), told
     assert main([*studio.words(), "--chart", "chart.json"]) == 2
     assert main([*studio.words()[:4], "-o", str(tmp_path / "out.json")]) == 2
     assert not (tmp_path / "mine-2.json").exists()

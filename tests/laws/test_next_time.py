@@ -220,17 +220,53 @@ def test_corrections_are_read_once(tmp_path, capsys):
     assert status == 0 and is_told(told, "stroke-farther", "bar"), told
 
 
-def test_corrections_are_taken_back_once(tmp_path, capsys):
-    """A corrected plan does not say where its strokes should be painted: again, they would go twice as far."""
+def test_a_corrected_plan_holds_its_corrections_and_the_plan_before(tmp_path, capsys):
+    """Corrected again its strokes go no farther, and it is compared as the drawing with these corrections is."""
     studio = Studio(tmp_path, 6)
     found = studio.compared(studio.photographed(studio.plan()))
     photo = studio.photographed(studio.plan("--corrections", found))  # leaves plan.json
-    plan = tmp_path / "plan.json"
-    for words in (("convert", plan, tmp_path / "a.ngc", "--corrections", found), ("compare", photo, plan)):
-        status, _, told = in_json(capsys, *words)
-        assert status == 1 and is_told(told, "corrections-twice"), told
+    plan, again = tmp_path / "plan.json", tmp_path / "again.json"
+    assert in_json(capsys, "convert", plan, again, "--corrections", found)[0] == 0
+    for one, other in zip(read_plan(plan).passes, read_plan(again).passes, strict=True):
+        np.testing.assert_allclose(one.poses_mm, other.poses_mm, atol=1e-5)
+    seen = []
+    for of in ((tmp_path / "five.svg", "--corrections", found), (plan,)):
+        out = tmp_path / f"seen-{len(seen)}.json"
+        assert in_json(capsys, "compare", photo, *of, "-o", out)[0] == 0
+        seen.append([each.get("correction") for each in json.loads(out.read_text())["strokes"]])
+    for one, other in zip(*seen, strict=True):
+        np.testing.assert_allclose(one["shift_mm"], other["shift_mm"], atol=0.005)
+        assert one["turn_deg"] == pytest.approx(other["turn_deg"], abs=0.05)
+    status, _, told = in_json(capsys, "compare", photo, plan, "--corrections", found)
+    assert status == 1 and is_told(told, "corrections-twice"), told
     assert in_json(capsys, "convert", plan, tmp_path / "a.ngc")[0] == 0
     assert main(["check", str(tmp_path / "a.ngc"), "--corrections", str(found)]) == 2  # of which drawing?
+
+
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [
+        (lambda extra: extra.update(corrections=5), "corrections-twice"),
+        (lambda extra: extra.update(corrections=[]), "wrong-type"),
+        (lambda extra: extra["corrections"].pop("plan"), "wrong-type"),
+        (lambda extra: extra["corrections"]["plan"]["passes"].pop(), "wrong-type"),
+        (lambda extra: extra["corrections"].pop("strokes"), "wrong-type"),
+        (lambda extra: extra["corrections"]["strokes"][0]["correction"].pop("start_mm"), "wrong-type"),
+    ],
+)
+def test_damaged_corrections_in_a_plan_are_refused(tmp_path, capsys, change, code):
+    """5: how many strokes were corrected, which is all that plans said once."""
+    studio = Studio(tmp_path, 6)
+    photo = studio.photographed(studio.plan())
+    found = studio.compared(photo)
+    plan = tmp_path / "plan.json"
+    studio.plan("--corrections", found)
+    extra = json.loads(plan.read_text())
+    change(extra)
+    plan.write_text(json.dumps(extra))
+    for words in (("compare", photo, plan), ("convert", plan, tmp_path / "a.ngc", "--corrections", found)):
+        status, _, told = in_json(capsys, *words)
+        assert status == 1 and is_told(told, code), told
 
 
 @pytest.mark.parametrize(

@@ -298,6 +298,7 @@ def test_the_page_names_its_plan(job, tmp_path, capsys):
     folder, page, *_ = job
     for name in ("page.svg", "page.pdf"):
         words = ["convert", str(folder / "four.svg"), str(tmp_path / "a.ngc"), "--page", str(tmp_path / name)]
+        words += ["--margin-strokes", "off"]
         made = main([*words, "--quiet"])
         assert made == 0, capsys.readouterr().err
     text = (tmp_path / "page.svg").read_text()

@@ -38,6 +38,7 @@ def shown(drawing, capsys, toml, *flags):
         "--studio",
         folder / "studio.toml",
         "--quiet",
+        *("--margin-strokes", "off"),
         *flags,
     ]
     assert main([*map(str, words)]) == 0, capsys.readouterr().err
@@ -172,8 +173,8 @@ def letters(tmp_path_factory):
     folder = tmp_path_factory.mktemp("letters")
     for words in (
         ("convert", EXAMPLE, folder / "word.json"),
-        ("simulate-photo", EXAMPLE, folder / "3.jpg", "--seed", "3"),
-        ("simulate-photo", EXAMPLE, folder / "4.jpg", "--seed", "4"),
+        ("simulate-photo", EXAMPLE, folder / "3.jpg", "--seed", "3", "--margin-strokes", "off"),
+        ("simulate-photo", EXAMPLE, folder / "4.jpg", "--seed", "4", "--margin-strokes", "off"),
     ):
         assert main([*map(str, words), "--quiet"]) == 0
     return folder
@@ -248,3 +249,8 @@ def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
     capsys.readouterr()
     status, _, told = in_json(capsys, "calibrate", "--force", photo, "--chart", plan, "-o", found)
     assert status == 1 and is_told([each for _, each in told], "format-unknown '--chart FILE'"), told
+
+
+def test_a_plan_that_is_not_there_is_reported(tmp_path, capsys):
+    status, _, told = in_json(capsys, "simulate-photo", tmp_path / "none.json", tmp_path / "x.jpg")
+    assert status == 1 and is_told(told, "file-unreadable"), told

@@ -88,7 +88,7 @@ WRITERS = {  # what is typed, what is written, and what more is said of it
     "import a.svg out.png": "2 [a-z]+",
     "import one.svg out.svg --editable": "1 [a-z]+",
     "text T out.svg --font font.svg": "",
-    "simulate-photo a.svg out.jpg": "2 [a-z]+, [a-z]+",
+    "simulate-photo a.svg out.jpg": "5 [a-z]+, [a-z]+",
     "border a.svg out.ngc": "[a-z ]+ [0-9]+ s",
     "height out.ngc": "21 [a-z]+, [a-z ]+ [0-9]+ s",
     "chart out.ngc --page out.svg --chart out.json --strokes few": "[0-9]+ [a-z]+, [a-z ]+ [0-9] min [0-9]{2} s",
@@ -759,6 +759,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
     assert flags == choices | job | {
         "--corrections",
         "--help",
+        "--margin-strokes",
         "--page",
         "--preview",
         "--report",

@@ -11,7 +11,7 @@ from numpy.polynomial.polynomial import polyval
 
 from .. import _core
 from ..brush.confidence import LAWS, half_interval_mm, law_band, places
-from ..errors import Error
+from ..errors import Error, Notice
 from ..laws.fitted import need_fits
 from .from_marks import (
     GAP_TERMS,
@@ -304,16 +304,17 @@ def refuse_learned(brush: _core.Brush, photos: list[str]) -> None:
         )
 
 
-def refuse_other_brush(plan, brush: _core.Brush) -> None:
-    """Where the plan was made neither for this brush nor for one that it was made from."""
+def other_brush(plan, brush: _core.Brush) -> list[Notice]:
+    """A notice where the plan was made neither for this brush nor for one that it was made from."""
     line = {brush.sha256, *_learned(brush)["brushes"]}
-    if plan.brush_sha256 and plan.brush_sha256 not in line:
-        raise Error(
-            f"the plan was made for another brush, {plan.brush} (sha256 {plan.brush_sha256[:12]}), not for "
-            f"{brush.name} ({brush.sha256[:12]}) nor one that this was made from: give the brush of the plan as prior",
-            "brush_sha256",
-            code="plan-of-other-brush",
-        )
+    if not plan.brush_sha256 or plan.brush_sha256 in line:
+        return []
+    sentence = (
+        f"the plan was made for another brush, {plan.brush} (sha256 {plan.brush_sha256[:12]}), not for {brush.name} "
+        f"({brush.sha256[:12]}) nor one that this was made from"
+    )
+    advice = f"make sure that the photograph shows paint of brush {brush.name}"
+    return [Notice("brush_sha256", sentence, code="plan-of-other-brush", advice=advice)]
 
 
 def with_lineage(made: _core.Brush, brush: _core.Brush, photos: list[str]) -> None:

@@ -40,11 +40,13 @@ ALIKE = 0.9  # overlap of the paint of two photographs of one sheet, at least
 
 @dataclass(frozen=True)
 class Wanted:
-    """One stroke: rings on the sheet of what was wanted (None where only a plan is known), and predicted."""
+    """One stroke: rings on the sheet of what was wanted (None where only a plan is known), and predicted. is_drawn: a
+    stroke of the drawing; others, in the margin, count in no figure of the sheet."""
 
     stroke: str
     wanted: list[np.ndarray] | None
     predicted: list[np.ndarray]
+    is_drawn: bool = True
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,13 @@ def compare_photos(page: JobPage, strokes: list[Wanted], photos: list[tuple[str,
     return replace(compare_paint(strokes, mean, canvas, photos[0][0]), view=view, flat=flat, paint=paint)
 
 
+def of_drawing(found: Comparison, strokes: list[Wanted]) -> tuple[Comparison, list[Wanted]]:
+    """Leave out strokes that are not of the drawing."""
+    drawn = [stroke for stroke in strokes if stroke.is_drawn]
+    names = {stroke.stroke for stroke in drawn}
+    return replace(found, strokes=tuple(row for row in found.strokes if row.stroke in names)), drawn
+
+
 def compare_sheets(page: JobPage, strokes: list[Wanted], photos: list[tuple[str, bytes]]) -> list[Comparison]:
     """Each photograph of another sheet. Error as for compare_photos."""
     refuse_twice(photos)
@@ -138,10 +147,8 @@ def _refuse_other_sheets(painted: list[np.ndarray], photos: list[tuple[str, byte
 def _of_a_job(refusal: Error, name: str) -> Error:
     sentence, advice = refusal.sentence, refusal.advice
     if refusal.code == "photo-of-another-chart":
-        sentence = (
-            "the picture shows the page of another job, or of another plan of this one: give the drawing with the "
-            "flags that the page was made with, or the plan.json"
-        )
+        sentence = "the picture shows the page of another job, or of another plan of this one"
+        advice = "give the drawing with the flags that the page was made with, or the plan.json"
     return Error(
         sentence, refusal.where, refusal.value, refusal.range, name, code=refusal.code, advice=advice
     )
@@ -206,13 +213,27 @@ class _Seen:
 
 
 def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
+    """Figures are of the drawing; strokes that are not of it have their rows."""
     moved = [[common.moved(ring, middle) for ring in stroke.predicted] for stroke in strokes]
     is_painted = painted > LEVEL
-    found = []
+    every = []
     for k, stroke in enumerate(strokes):
         if stroke.predicted:
             others = [*chain(*moved[:k], *moved[k + 1 :])]
-            found.append(_stroke(stroke, moved[k], others, painted, is_painted, common, middle, canvas))
+            every.append(_stroke(stroke, moved[k], others, painted, is_painted, common, middle, canvas))
+    found = every
+    if not all(stroke.is_drawn for stroke in strokes):
+        drawn, others = (
+            [rings for rings, stroke in zip(moved, strokes, strict=True) if stroke.is_drawn == is_drawn]
+            for is_drawn in (True, False)
+        )
+        away, away_from_others = (
+            _away(_any([*chain(*each)], canvas), canvas.px_per_mm) for each in (drawn, others)
+        )
+        is_painted, painted = (np.where(away <= away_from_others, each, 0) for each in (is_painted, painted))
+        is_painted = is_painted.astype(bool)
+        moved, found = drawn, [seen for seen in every if seen.stroke.is_drawn]
+        strokes = [stroke for stroke in strokes if stroke.is_drawn]
     predicted = _overlap(_any([*chain(*(stroke.predicted for stroke in strokes))], canvas), is_painted)
     _refuse_other_job(max(predicted, _overlap(_any([*chain(*moved)], canvas), is_painted)), name)
     sheet, spread_mm = _sheet([seen.row for seen in found], common, middle)
@@ -228,7 +249,7 @@ def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
     things = _things(beside, canvas)
     near = _away(things, canvas.px_per_mm) < BLOT_MM + BESIDE_MM
     return Comparison(
-        tuple(_uncovered(seen, near, canvas) for seen in found),
+        tuple(_uncovered(seen, near, canvas) for seen in every),
         sheet,
         middle,
         spread_mm,

@@ -22,7 +22,8 @@ from .led_width import wider
 FORMAT = "brushsvg/comparison"
 BESIDE = "beside_machine"  # of the file: what is left of each stroke once the cell is mended
 LEAST_MARKS = 3  # fewer do not tell a sheet's place from their own
-MARK = "corrections"  # of a plan that was corrected: the key, with how many strokes were
+MARK = "corrections"  # key of a corrected plan: the corrections and the plan before
+KEYS = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm", "way_mm")
 MOST_WIDER_MM = 1.0  # of each edge: a mark that is off by more is another brush's
 MOST_MM, MOST_DEG = 3.0, 3.0  # a mark that lies farther off does so for a reason that is to be found
 SAME_MM = 0.1  # where the same stroke begins, and where its way leads, in depth as well: less is within a correction
@@ -94,11 +95,12 @@ def beside_machine(corrections: tuple[Correction, ...], machine: Machine | None)
 
 
 def corrected(plan, corrections: tuple[Correction, ...], brush):
-    """The plan, made for this brush, with its strokes led elsewhere, which it says. Error for corrections of another
-    job, or beside another brush: what a brush has learnt from a sheet, corrections of that sheet would undo again."""
+    """The plan, made for this brush, with its strokes led elsewhere, which it says. Corrections that it has already are
+    replaced. Error for corrections of another job, or beside another brush: what a brush has learnt from a sheet,
+    corrections of that sheet would undo again."""
     if not corrections:
         return plan
-    refuse_corrected(plan)
+    plan, _ = uncorrected(plan)
     _core.refuse_tilted(plan.passes, "strokes are corrected for a brush held upright")
     beside = corrections[0].brush_sha256
     if beside and brush.sha256 and beside != brush.sha256:
@@ -116,15 +118,42 @@ def corrected(plan, corrections: tuple[Correction, ...], brush):
         passes.append(_led(a_pass, correction, brush) if correction else a_pass)
     if left:
         raise _of_another_job(next(iter(left)), "there is no such stroke")
-    extra = json.dumps(json.loads(plan.extra or "{}") | {MARK: len(corrections)})
+    said = {
+        "machine_sha256": corrections[0].machine_sha256,
+        "strokes": [{"stroke": each.stroke, "correction": as_json(each)} for each in corrections],
+        "plan": json.loads(_core.write_plan(plan)),
+    }
+    extra = json.dumps(json.loads(plan.extra or "{}") | {MARK: said})
     return _core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, passes, extra)
 
 
-def refuse_corrected(plan) -> None:
-    """Error for a plan whose strokes were led elsewhere: it does not say where they should be painted."""
-    if MARK in json.loads(plan.extra or "{}"):
-        sentence = "its strokes were led elsewhere by corrections: give the drawing, or the plan without them"
-        raise Error(sentence, MARK, code="corrections-twice")
+def as_json(correction: Correction | None) -> dict | None:
+    """A correction as the files of `compare` and corrected plans hold it."""
+    return {key: getattr(correction, key) for key in KEYS} if correction else None
+
+
+def is_corrected(plan) -> bool:
+    return MARK in json.loads(plan.extra or "{}")
+
+
+def uncorrected(plan) -> tuple[_core.Plan, tuple[Correction, ...]]:
+    """Return the plan without its corrections, and the corrections.
+
+    Error for a plan of an earlier version, which says only how many strokes were corrected.
+    """
+    if not is_corrected(plan):
+        return plan, ()
+    said = json.loads(plan.extra)[MARK]
+    if isinstance(said, int):
+        sentence = "its strokes were corrected by a version of brushsvg that did not keep the corrections"
+        raise Error(
+            sentence, MARK, code="corrections-twice", advice="give the drawing or the plan without them"
+        )
+    (said, before) = json_fields.objects([said, said.get("plan") if isinstance(said, dict) else None], MARK)
+    before = _core.read_plan(json.dumps(before))
+    if sorted(each.stroke for each in before.passes) != sorted(each.stroke for each in plan.passes):
+        raise Error("these must be the strokes of the plan", f"{MARK}.plan", code="wrong-type")
+    return before, _strokes(said, f"{MARK}.", {})
 
 
 def _led(a_pass, correction: Correction, brush):

@@ -11,6 +11,7 @@ import numpy as np
 from ..machine.cell import Machine
 from .comparison import BLOT_MM, Compared, Comparison
 from .corrections import BESIDE, FORMAT, Correction
+from .corrections import as_json as in_file
 from .ends import UNSEEN, Ends
 from .fault_report import in_json, in_words
 from .faults import Faults
@@ -142,21 +143,16 @@ def as_json(
                 "began_mm": ends.get(one.stroke, UNSEEN).began_mm,
                 "ended_mm": ends.get(one.stroke, UNSEEN).ended_mm,
                 "missing": one.missing,
-                "correction": _told(corrections.get(one.stroke)),
+                "correction": in_file(corrections.get(one.stroke)),
             }
             for one in found.strokes
         ],
     }
     if beside:
         machine, left = beside
-        rows = [{"stroke": name, "correction": _told(each)} for name, each in left.items()]
+        rows = [{"stroke": name, "correction": in_file(each)} for name, each in left.items()]
         made[BESIDE] = {"machine_sha256": machine, "strokes": rows}
     return json.dumps(_rounded(made), indent=1, ensure_ascii=False) + "\n"
-
-
-def _told(correction: Correction | None) -> dict | None:
-    keys = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm", "way_mm")
-    return {key: getattr(correction, key) for key in keys} if correction else None
 
 
 def _rounded(value):

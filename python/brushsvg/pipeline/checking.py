@@ -48,6 +48,7 @@ from .choices import (
 )
 from .conversion import chosen_of, of_arm
 from .foreign_program import foreign_program
+from .margin_strokes import is_margin
 from .options import DEFAULT_BRUSH, Options
 from .work import Work, nearest_first, whole_strokes
 
@@ -56,7 +57,7 @@ if TYPE_CHECKING:
 
 Told = Callable[[str, Iterable[Notice]], object]
 STRAY_MM = 0.02  # what a plan's rounding makes of where its paint ends
-SAID = ("compensation", "tolerance", "lag", "start", "end")  # by the program
+SAID = ("compensation", "tolerance", "lag", "start", "end", "margin_strokes")  # by the program
 
 
 @dataclass(frozen=True)
@@ -212,7 +213,8 @@ def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:
             if work.strokes is not None:
                 whole = whole_strokes(work, loads)
                 strokes = None if None in which else [whole[k] for k in which]
-                drawn = work.strokes if made.first_stroke == 1 else None
+                whole_job = made.first_stroke == 1
+                drawn = [each for each in work.strokes if not is_margin(each)] if whole_job else None
         again, changed = _written_again(program, ran, work, speeds, z_offset_mm)
         problems = problems + changed
         if again and not problems:
@@ -353,6 +355,7 @@ def _as_made(program: _Program, chosen: Choices, stage, told: Told) -> Work:
             end=made.end,
             z_offset=made.z_offset_mm,
             wide=wide,
+            margin_strokes="on" if made.has_margin else "off",
         )
     told(name_of(source), without_effect(chosen))
     options = options_of(chosen, program.cell, program.brush)

@@ -35,9 +35,9 @@ LAYOUT_FLAGS = (
     "as",
 )
 NAMED_OTHERWISE = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset", "paper-z": "paper_z"} | {
-    name: name.replace("-", "_") for name in ("skip-region", "skip-comment")
+    name: name.replace("-", "_") for name in ("skip-region", "skip-comment", "margin-strokes")
 }  # flag: choice
-MADE_FLAGS = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end")
+MADE_FLAGS = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end", "margin-strokes")
 RANGES = {  # the same as a flag's
     "width": (0.001, 1000.0),
     "scale": (1e-4, 1e4),
@@ -57,6 +57,7 @@ ONE_OF = {
     "compensation": ("none", "constant", "closed", "refined"),
     "start": ("exposed", "hidden", "squared", "auto"),
     "end": ("lifted", "squared", "auto"),
+    "margin_strokes": ("auto", "on", "off"),
 }
 
 
@@ -95,6 +96,7 @@ class Choices:
     end: str | None = None
     z_offset: float | None = None
     corrections: str | os.PathLike[str] | None = None
+    margin_strokes: str | None = None
 
 
 class Given(TypedDict, total=False):
@@ -127,6 +129,7 @@ class Given(TypedDict, total=False):
     end: str | None
     z_offset: float | None
     corrections: str | os.PathLike[str] | None
+    margin_strokes: str | None
 
 
 def checked(chosen: Choices) -> Choices:
@@ -235,6 +238,13 @@ def without_effect(chosen: Choices) -> list[Notice]:
     ]
 
 
+def on_a_page(chosen: Choices) -> Choices:
+    """The same for a page that is painted and photographed: strokes in its margin where the brush is not calibrated."""
+    if chosen.margin_strokes or suffix_of(chosen.input) == ".json":
+        return chosen
+    return replace(chosen, margin_strokes="auto")
+
+
 def brush_of(given):
     """The brush of a name or path, itself, or None."""
     if given is None or isinstance(given, _core.Brush):
@@ -292,6 +302,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options
         wide=chosen.wide or Options.wide,
         corners=chosen.corners or Options.corners,
         join=bool(chosen.join),
+        margin_strokes=chosen.margin_strokes or Options.margin_strokes,
         speed_mm_s=min(Options.speed_mm_s, cell.speeds.paint_mm_s),
         speed_of_all_mm_s=chosen.paint_speed,
         cell=cell,

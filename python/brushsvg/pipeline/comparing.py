@@ -3,11 +3,12 @@ Python."""
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, TypeVar, Unpack
 
 from .. import _core
 from ..calibration.from_prior import has_learned
@@ -18,14 +19,15 @@ from ..machine.cell import Cell, Machine, axes_along_paper, not_undone
 from ..machine.cell_file import own_name, parse_cell, write_cell
 from ..painted import report
 from ..painted.beside_machine import beside_machine as left_beside
-from ..painted.comparison import Compared, Comparison, Wanted, compare_photos
+from ..painted.comparison import Compared, Comparison, Wanted, compare_photos, of_drawing
 from ..painted.corrections import (
     Correction,
     SheetBefore,
     beside_machine,
     corrected,
+    is_corrected,
     machine_sha256,
-    refuse_corrected,
+    uncorrected,
 )
 from ..painted.ends import Ends, ends_of
 from ..painted.fault_model import BRUSH
@@ -38,24 +40,39 @@ from ..painted.picture import comparison_png
 from . import cancelling, prediction, preparation
 from .cancelling import Cancel
 from .checking import Told
-from .choices import Choices, Given, concerning, name_of, options_of, settled, sheet_before_of, without_effect
+from .choices import (
+    Choices,
+    Given,
+    concerning,
+    name_of,
+    on_a_page,
+    options_of,
+    settled,
+    sheet_before_of,
+    without_effect,
+)
 from .conversion import chosen_of
+from .margin_strokes import is_margin
 from .work import Work
 
 if TYPE_CHECKING:
     from .preparation import Source
 
+Read = TypeVar("Read")
+
 
 @dataclass(frozen=True)
 class Sheet:
     """What was told to the machine, and the page that it painted on: plan, with the corrections of before, as far as
-    they are of its cell; strokes: rings on the sheet of what was wanted and predicted."""
+    they are of its cell; strokes: rings on the sheet of what was wanted and predicted; otherwise: makes the sheet of
+    the other page that this drawing may have been painted on, without strokes in its margin."""
 
     work: Work
     plan: _core.Plan
     before: SheetBefore
     page: JobPage
     strokes: tuple[Wanted, ...]
+    otherwise: Callable[[], Sheet] | None = None
 
     @property
     def title(self) -> str:
@@ -131,20 +148,58 @@ def compare(
 
 def painted_sheet(chosen: Choices, stage: Callable[[str], object], told: Told) -> Sheet:
     """What stands on the page that was painted on; notices are told with the file that they are of."""
-    name = name_of(chosen.input)
     before = sheet_before_of(chosen.corrections)
+    return _sheet(replace(chosen, corrections=None), before, stage, told)
+
+
+def _sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], told: Told) -> Sheet:
+    name = name_of(given.input)
     with concerning(name):
-        chosen = settled(replace(chosen, corrections=None), chosen.input)
+        chosen = settled(given, given.input)
         told(name, without_effect(chosen))
+        chosen = on_a_page(chosen)
         work = preparation.prepare(chosen.input, options_of(chosen), stage)
         told(name, work.notices)
-        refuse_corrected(work.plan)
+        painted, corrections_before = None, before
+        if is_corrected(work.plan):  # a plan.json, which says itself what it was painted with
+            _refuse_corrections_of_two(before)
+            painted = work.plan
+            planned, known = uncorrected(painted)
+            work, before = replace(work, plan=planned), SheetBefore(known)
         marks = prediction.predict(work, True, stage)
         before = replace(before, corrections=beside_machine(before.corrections, _undone(work)))
-        plan = corrected(work.plan, before.corrections, work.brush)
+        plan = painted or corrected(work.plan, before.corrections, work.brush)
         wanted = {} if work.strokes is None else {one.id: wanted_rings([one]) for one in work.strokes}
-        strokes = (Wanted(each.stroke, wanted.get(each.stroke), [*each.outline_mm]) for each in marks.passes)
-        return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes))
+        strokes = (
+            Wanted(mark.stroke, wanted.get(mark.stroke), [*mark.outline_mm], not is_margin(a_pass))
+            for mark, a_pass in zip(marks.passes, work.plan.passes, strict=True)
+        )
+        otherwise = None
+        if given.margin_strokes is None and any(map(is_margin, work.strokes or ())):
+            without = replace(given, margin_strokes="off")
+            otherwise = functools.partial(_sheet, without, corrections_before, stage, drop_notices)
+        return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes), otherwise)
+
+
+def drop_notices(file: str, notices: Iterable[Notice]) -> None:
+    """Keep warnings from being printed twice when a drawing is prepared again."""
+
+
+def on_its_page(sheet: Sheet, read: Callable[[Sheet], Read]) -> tuple[Sheet, Read]:
+    """What photographs show, read with the sheet whose page they show."""
+    try:
+        return sheet, read(sheet)
+    except Error as refusal:
+        if refusal.code != "photo-of-another-chart" or sheet.otherwise is None:
+            raise
+    sheet = sheet.otherwise()
+    return sheet, read(sheet)
+
+
+def _refuse_corrections_of_two(given: SheetBefore) -> None:
+    if given.corrections:
+        sentence = "the plan was written with corrections and holds them: leave --corrections out"
+        raise Error(sentence, "corrections", code="corrections-twice")
 
 
 def photographs(paths: Iterable[str], stage: Callable[[str], object]) -> list[tuple[str, bytes]]:
@@ -155,11 +210,13 @@ def photographs(paths: Iterable[str], stage: Callable[[str], object]) -> list[tu
 
 def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], told: Told) -> PaintedJob:
     """paths: photographs of one sheet; notices are told with the first of them."""
-    work, brush, strokes = sheet.work, sheet.work.brush, list(sheet.strokes)
     with concerning(paths[0]):
         photos = photographs(paths, stage)
-        found = compare_photos(sheet.page, strokes, photos)
+        sheet, found = on_its_page(sheet, lambda one: compare_photos(one.page, [*one.strokes], photos))
+    work, brush, strokes = sheet.work, sheet.work.brush, list(sheet.strokes)
     stage("looking for what is amiss")
+    every = found, sheet.page, strokes
+    found, strokes = of_drawing(found, strokes)
     learned = has_learned(brush, [hashlib.sha256(data).hexdigest() for _, data in photos])
     faults = whose_fault(sheet.plan, brush, strokes, found, learned)
     before = sheet.before.corrections
@@ -177,7 +234,7 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], tol
             beside = machine_sha256(machine), next_corrections(rest, work.plan, before, brush)[0]
     ends = ends_of(found, strokes, work.strokes or ())
     made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_undone(work)))
-    any_alone = faults is None or faults.first != BRUSH or bool(job_marks(found, sheet.page, strokes).rings)
+    any_alone = faults is None or faults.first != BRUSH or bool(job_marks(*every).rings)
     return PaintedJob(
         sheet.title,
         found.overlap_predicted if found.overlap_wanted is None else found.overlap_wanted,

@@ -32,6 +32,7 @@ from .choices import (
     checked,
     concerning,
     name_of,
+    on_a_page,
     options_of,
     settled,
     suffix_of,
@@ -108,7 +109,8 @@ def convert(
     origin (x, y), width, lag, tolerance, z_offset: mm; paint_speed: mm/s; scale: a factor; units: "mm", "in";
     layer: a list of names; select: CSS; paths_as: "stroke", "outline"; wide: "auto", "clamp", "passes", "refuse";
     corners: "auto", "turn"; join: bool; compensation: "none", "constant", "closed", "refined"; start: "exposed",
-    "hidden", "squared", "auto"; end: "lifted", "squared", "auto"; corrections: the path of what compare wrote.
+    "hidden", "squared", "auto"; end: "lifted", "squared", "auto"; corrections: the path of what compare wrote;
+    margin_strokes: "auto", "on", "off".
     docs/python.md has them in a table.
 
     Raises Error, with a code of docs/diagnostics.md, for what cannot be read, painted or run; of several reasons it
@@ -171,6 +173,7 @@ def _converted(
     with concerning(name_of(source)):
         chosen = settled(chosen, source)
         ignored = without_effect(chosen)
+        chosen = on_a_page(chosen) if "page" in paths else chosen
         work = preparation.prepare(source, options_of(chosen), stage)
         cell = work.options.cell
         if out is not None:

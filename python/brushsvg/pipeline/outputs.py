@@ -19,6 +19,7 @@ from ..pictures.animation import animation
 from ..pictures.marks_svg import marks_svg
 from ..pictures.overlap_svg import overlap_svg
 from ..pictures.timeline import timeline
+from .margin_strokes import KIND, is_margin, without_margin_strokes
 from .options import Options
 from .work import Work
 
@@ -35,6 +36,10 @@ def notes(work: Work) -> tuple[str, ...]:
     damaged = sum(notice.damaged for notice in work.notices)
     count = f"warnings: {len(work.notices)}" + (f", {damaged} of them damaged geometry" if damaged else "")
     lines = (made, count) if work.strokes is not None else (count,)
+    if any(map(is_margin, work.strokes or ())):
+        lines += (f"{KIND}: {sum(map(is_margin, work.strokes))} strokes",)
+    elif any(notice.code == "margin-strokes-left-out" for notice in work.notices):
+        lines += (f"{KIND}: 0 strokes",)
     if options.corrections:
         farthest_mm = max(np.hypot(*each.shift_mm) for each in options.corrections)
         lines += (
@@ -125,6 +130,9 @@ def reported(
     that is known better than from the plan; advice: on the size; as_run: what the marks are of, where a machine cuts
     corners of the work's plan."""
     known = warnings if warnings is not None else work.notices
+    if seconds is None:
+        seconds = time_s(in_loads(work.plan, work.brush, cell), work.brush, cell)
+    work, marks, as_run = without_margin_strokes(work, marks, as_run)
     leans = any(map(is_tilted, work.plan.passes))
     is_drawing = work.strokes is not None
     rows, total = report.measure(
@@ -144,9 +152,7 @@ def reported(
         tolerance_mm=work.options.tolerance_mm if is_drawing else None,
         strokes=rows,
         total=total,
-        time_s=time_s(in_loads(work.plan, work.brush, cell), work.brush, cell)
-        if seconds is None
-        else seconds,
+        time_s=seconds,
         warnings=tuple(known),
         refused=tuple(work.refused),
         forbidden=tuple(forbidden),

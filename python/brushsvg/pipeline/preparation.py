@@ -32,6 +32,7 @@ from ..strokes.unreached import notices as blank_notices
 from ..strokes.wide_shapes import within_reach
 from .compensated import begun_within_reach, compensation_by
 from .json_files import read_plan
+from .margin_strokes import with_margin_strokes
 from .options import DEFAULT_BRUSH, DEFAULTS, Options
 from .paint_astray import off_middle_line, outside
 from .width_advice import warnings_with_advice
@@ -90,10 +91,10 @@ def _planned(design: Design, brush, options: Options, stage, partly: bool, notic
         *blank_notices(blank, is_reached=True),
         *(astray if _leads(options) else []),
     )
-    return Work(
+    work = Work(
         design.title,
         brush,
-        corrected(way.plan, options.corrections, brush),
+        way.plan,
         lines.wanted,
         tuple(way.tracking_errors),
         options,
@@ -106,6 +107,8 @@ def _planned(design: Design, brush, options: Options, stage, partly: bool, notic
         tuple(notice.where for notice in astray),
         way.known,
     )
+    work = with_margin_strokes(work)
+    return replace(work, plan=corrected(work.plan, options.corrections, brush))
 
 
 def _leads(options: Options) -> bool:

@@ -162,9 +162,10 @@ def _of_this_chart(pixels: np.ndarray, light: np.ndarray, printed: Printed) -> d
     if len(others) >= FEWEST:
         raise Error(
             f"the picture shows another chart: its markers are {_listed(others)}, those of chart{name} are "
-            f"{_listed(printed.corners_mm)}; give the chart.json that was written with this page, or calibrate the "
-            "page of a job (convert --page, simulate-photo) with --plan and --prior instead of --chart",
+            f"{_listed(printed.corners_mm)}",
             code="photo-of-another-chart",
+            advice="give the --chart that was written with this page; calibrate the page of a job (convert --page, "
+            "simulate-photo) with --plan and --prior",
         )
     mirrored = [number for number, _ in detected(pixels[:, ::-1], printed.dictionary)]
     if len(set(mirrored) & set(printed.corners_mm)) >= FEWEST:

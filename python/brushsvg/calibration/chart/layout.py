@@ -115,7 +115,7 @@ def chart_id(plan: _core.Plan) -> str:
 
 
 @dataclass(frozen=True)
-class _Drawn:
+class Drawn:
     """A stroke before it has its place."""
 
     kind: str
@@ -128,7 +128,7 @@ class _Drawn:
 class _Unit:
     """Strokes that keep together, boxes as they were drawn."""
 
-    strokes: tuple[_Drawn, ...]
+    strokes: tuple[Drawn, ...]
     boxes_mm: tuple[tuple[float, float, float, float], ...]
 
     @cached_property
@@ -189,7 +189,7 @@ def chart(
         if dabs:
             units = _dab_units(brush, dab_depths(brush, depths, deepest_mm), repeats)
         else:
-            units = _units(brush, _depths(brush, depths, deepest_mm), repeats)
+            units = _units(brush, chart_depths(brush, depths, deepest_mm), repeats)
         # the first choice settles where markers stand at the sides; strokes matter more than these two
         for tried in (beside,) if best is not None else (*_marker_gaps(sheet_mm, side), None):
             placed, used = _packed(units, room[0], side, room[1], tried)
@@ -236,7 +236,7 @@ def _dab_choices() -> Iterator[tuple[int, int]]:
     yield MOST_DAB_SETS, 2
 
 
-def _depths(brush, count: int, deepest_mm: float) -> list[float]:
+def chart_depths(brush, count: int, deepest_mm: float) -> list[float]:
     least, deepest = brush.depth_range_mm[0], min(brush.depth_range_mm[1], deepest_mm)
     depths = np.linspace(max(least, SHALLOWEST * deepest), deepest, count).round(2)
     return np.clip(depths, least, deepest).tolist()
@@ -245,24 +245,24 @@ def _depths(brush, count: int, deepest_mm: float) -> list[float]:
 def _units(brush, depths: list[float], repeats: int) -> list[_Unit]:
     least, deepest = depths[0], depths[-1]
     shallow = least + 0.3 * (deepest - least)
-    groups: list[tuple[_Drawn, ...]] = list(_references(brush, least + 0.4 * (deepest - least)))
+    groups: list[tuple[Drawn, ...]] = list(_references(brush, least + 0.4 * (deepest - least)))
     for _ in range(repeats):
         for number, depth in enumerate(depths):
-            groups.append((_straight(brush, depth),))
-            groups.append((_angular(brush, depth), _auxiliary(brush, depth, shallow)))
+            groups.append((straight(brush, depth),))
+            groups.append((angular(brush, depth), _auxiliary(brush, depth, shallow)))
             groups.append((_arc(brush, depth, 1 if number % 2 else -1),))
             groups.append((_reversal(brush, depth),))
-    boxes = _boxes(brush, [stroke for group in groups for stroke in group])
+    boxes = room_for(brush, [stroke for group in groups for stroke in group])
     return [_Unit(group, tuple(next(boxes) for _ in group)) for group in groups]
 
 
 def _dab_units(brush, depths: list[float], repeats: int) -> list[_Unit]:
     dabs = [
-        _Drawn(KIND, depth, dab_poses(brush, depth, heading))
+        Drawn(KIND, depth, dab_poses(brush, depth, heading))
         for depth in depths
         for heading in HEADINGS_DEG * repeats
     ]
-    boxes = _boxes(brush, dabs, DAB_LAG_SHARES, DAB_WIDER, DAB_BEYOND_MM)
+    boxes = room_for(brush, dabs, DAB_LAG_SHARES, DAB_WIDER, DAB_BEYOND_MM)
     return [_Unit((dab,), (next(boxes),)) for dab in dabs]
 
 
@@ -280,9 +280,9 @@ def _unit(vector: np.ndarray) -> np.ndarray:
     return vector / np.hypot(*vector)
 
 
-def _straight(brush, depth: float) -> _Drawn:
+def straight(brush, depth: float) -> Drawn:
     length = depth / RAMP + brush.lag(depth) + 15.0 + depth / LIFT_STEP
-    return _Drawn("straight", depth, _path(depth, [(0, 0), (length, 0)], RAMP))
+    return Drawn("straight", depth, _path(depth, [(0, 0), (length, 0)], RAMP))
 
 
 def _before_corner(brush, depth: float) -> float:
@@ -290,20 +290,20 @@ def _before_corner(brush, depth: float) -> float:
     return depth / LIFT_STEP + 1.5 * brush.lag(depth) + 5.0
 
 
-def _angular(brush, depth: float) -> _Drawn:
+def angular(brush, depth: float) -> Drawn:
     first = _before_corner(brush, depth)
     second = 2.0 * brush.lag(depth) + 3.0 + depth / LIFT_STEP
-    return _Drawn("angular", depth, _path(depth, [(0, 0), (first, 0), (first, -second)]))
+    return Drawn("angular", depth, _path(depth, [(0, 0), (first, 0), (first, -second)]))
 
 
-def _auxiliary(brush, depth: float, shallow: float) -> _Drawn:
+def _auxiliary(brush, depth: float, shallow: float) -> Drawn:
     """Beyond the second line, parallel to it: where it lies on the paper says where that line is."""
     x = _before_corner(brush, depth) + WIDER * (brush.half_width(depth) + brush.half_width(shallow)) + GAP_MM
     length = 2 * shallow / LIFT_STEP + brush.lag(shallow) + 5.0
-    return _Drawn("auxiliary", shallow, _path(shallow, [(x, 0), (x, -length)]))
+    return Drawn("auxiliary", shallow, _path(shallow, [(x, 0), (x, -length)]))
 
 
-def _arc(brush, depth: float, direction: int) -> _Drawn:
+def _arc(brush, depth: float, direction: int) -> Drawn:
     """A third of a circle whose radius leaves the brush taut, entered straight."""
     radius = 1.6 * max(brush.lag(depth), 2.0)
     start = depth / LIFT_STEP + 0.7 * brush.lag(depth) + 2.0
@@ -313,29 +313,29 @@ def _arc(brush, depth: float, direction: int) -> _Drawn:
     along = np.array([math.cos(turn[-1]), direction * math.sin(turn[-1])])
     end = xy[-1] + (depth / LIFT_STEP + 2.0) * along
     poses = _path(depth, [(0, 0), *xy.tolist(), end])
-    return _Drawn("arc", depth, poses, (_core.Arc(2, 1 + count, (start, direction * radius), direction),))
+    return Drawn("arc", depth, poses, (_core.Arc(2, 1 + count, (start, direction * radius), direction),))
 
 
-def _reversal(brush, depth: float) -> _Drawn:
+def _reversal(brush, depth: float) -> Drawn:
     """Nearly back: the patch rests for almost two lags, then turns."""
     back = math.radians(155.0)
     first = _before_corner(brush, depth)
     second = 3.5 * brush.lag(depth) + 3.0 + depth / LIFT_STEP
     end = (first + second * math.cos(back), second * math.sin(back))
-    return _Drawn("reversal", depth, _path(depth, [(0, 0), (first, 0), end]))
+    return Drawn("reversal", depth, _path(depth, [(0, 0), (first, 0), end]))
 
 
-def _references(brush, depth: float) -> Iterator[tuple[_Drawn, ...]]:
+def _references(brush, depth: float) -> Iterator[tuple[Drawn, ...]]:
     """Two pairs there and back, along x and along y."""
     length = 2 * depth / LIFT_STEP + brush.lag(depth) + 8.0
     apart = 2 * WIDER * brush.half_width(depth) + GAP_MM
     for turn in (lambda x, y: (x, y), lambda x, y: (y, x)):
         there, back = [turn(0, 0), turn(length, 0)], [turn(length, apart), turn(0, apart)]
-        yield tuple(_Drawn("reference", depth, _path(depth, points)) for points in (there, back))
+        yield tuple(Drawn("reference", depth, _path(depth, points)) for points in (there, back))
 
 
-def _boxes(
-    brush, strokes: list[_Drawn], lag_shares=LAG_SHARES, wider: float = WIDER, beyond_mm: float = 0.0
+def room_for(
+    brush, strokes: list[Drawn], lag_shares=LAG_SHARES, wider: float = WIDER, beyond_mm: float = 0.0
 ) -> Iterator[tuple[float, float, float, float]]:
     """Of what brushes that trail a little less and more than this one paint, and a little wider."""
     plan = _plan(brush, (1e4, 1e4), [(f"{k}", stroke, (0.0, 0.0)) for k, stroke in enumerate(strokes)])

@@ -10,6 +10,7 @@ from .flags import (
     add_input,
     add_job,
     add_layout,
+    add_margin_strokes,
     add_order,
     add_quiet,
     add_speed,
@@ -38,6 +39,7 @@ def add_convert(commands) -> None:
     add_speed(convert)
     add_job(convert)
     add_corrections(convert)
+    add_margin_strokes(convert)
     convert.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
     convert.add_argument(
         "--page", metavar="FILE", help="also write the page to paint on, with markers for compare (.pdf .svg)"
@@ -128,6 +130,7 @@ def add_compare(commands) -> None:
     add_input(compare)
     add_choices(compare)
     add_corrections(compare)
+    add_margin_strokes(compare)
     compare.add_argument("-o", metavar="FILE", dest="output", help="also write the figures (.json .txt)")
     compare.add_argument(
         "--picture",
@@ -181,6 +184,7 @@ def add_simulate_photo(commands) -> None:
     simulate.add_argument("output", metavar="OUT", help="a photograph (.jpg)")
     add_choices(simulate)
     add_corrections(simulate)
+    add_margin_strokes(simulate)
     simulate.add_argument(
         "--studio",
         metavar="FILE",

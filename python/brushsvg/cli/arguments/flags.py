@@ -67,6 +67,15 @@ def add_corrections(command: argparse.ArgumentParser) -> None:
     )
 
 
+def add_margin_strokes(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--margin-strokes",
+        choices=("auto", "on", "off"),
+        help="short strokes above the drawing, from which the brush learns; auto: on a page, for a "
+        "brush that is not calibrated; default: auto",
+    )
+
+
 def add_quiet(command: argparse.ArgumentParser) -> None:
     command.add_argument("--quiet", action="store_true", help="do not say what was written; warnings stay")
 

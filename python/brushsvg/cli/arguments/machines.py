@@ -11,6 +11,7 @@ from .flags import (
     add_join,
     add_layout,
     add_looks,
+    add_margin_strokes,
     add_speed,
     add_wide,
     add_writes,
@@ -42,6 +43,7 @@ def add_border(commands) -> None:
     border.add_argument("output", metavar="OUT", help=programs())
     add_choices(border)
     add_z_offset(border)
+    add_margin_strokes(border)
     add_writes(border)
     border.set_defaults(run="border_file", parser=border, check=_check_border)
 

@@ -174,7 +174,7 @@ def update_file(args) -> None:
     """A brush that is known, updated by photographs of a painted job."""
     import hashlib
 
-    from ...calibration.from_prior import refuse_learned, refuse_other_brush, with_lineage
+    from ...calibration.from_prior import other_brush, refuse_learned, with_lineage
     from ...calibration.update_report import report
     from ...painted.learning import learn
     from ...painted.repeats import read_displacement_mm
@@ -188,8 +188,7 @@ def update_file(args) -> None:
     of_photos = [hashlib.sha256(data).hexdigest() for _, data in photos]
     with about(args.prior):
         refuse_learned(before, of_photos)
-    with about(args.plan):
-        refuse_other_brush(plan, before)
+    warn(args.plan, other_brush(plan, before))
     name = os.path.splitext(os.path.basename(args.output))[0]
     with about(args.photos[0]):
         stage("reading the photographs and fitting the brush")

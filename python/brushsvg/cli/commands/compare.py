@@ -61,11 +61,12 @@ def _repeats(args, sheet) -> None:
     from ...painted.comparison import compare_sheets
     from ...painted.repeats import as_json, as_text, repeats
     from ...painted.repeats_picture import repeats_png
-    from ...pipeline.comparing import photographs
+    from ...pipeline.comparing import on_its_page, photographs
 
-    title, strokes = sheet.title, list(sheet.strokes)
     with about(args.photos[0]):
-        sheets = compare_sheets(sheet.page, strokes, photographs(args.photos, stage))
+        photos = photographs(args.photos, stage)
+        sheet, sheets = on_its_page(sheet, lambda one: compare_sheets(one.page, [*one.strokes], photos))
+    title, strokes = sheet.title, list(sheet.strokes)
     for path, each in zip(args.photos, sheets, strict=True):
         warn(path, list(each.notices))
     with about(args.photos[0]):

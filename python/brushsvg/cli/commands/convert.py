@@ -6,7 +6,9 @@ from ...evaluation import report
 from ...machine.paint_reload import has_pens, may_pause, pens_changed
 from ...machine.program import Job
 from ...pipeline import conversion, outputs
-from ..console import RefusedError, about, stage, warn
+from ...pipeline.choices import on_a_page
+from ...pipeline.margin_strokes import expected_in_words
+from ..console import RefusedError, about, stage, tell, warn
 from ..steps.options import settled, typed, warn_of_cell
 from ..steps.output_places import check_places, suffix_of, write
 from ..steps.prepared import prepare
@@ -14,7 +16,8 @@ from ..steps.prepared import prepare
 
 def convert_file(args) -> None:
     check_places(args, args.output, args.preview, args.report, args.page)
-    work = prepare(settled(typed(args), args.input))
+    chosen = settled(typed(args), args.input)
+    work = prepare(on_a_page(chosen) if args.page else chosen)
     suffix, job = suffix_of(args.output), Job(args.z_offset, args.from_stroke)
     warn(args.input, [notice for notice in work.notices if args.lenient or not notice.damaged])
     files = {}
@@ -44,3 +47,5 @@ def convert_file(args) -> None:
     write(
         args, files, len(one.loads.loads) - job.first_stroke + 1, one.time_s(), overlap, more if stops else ""
     )
+    if not args.quiet and (words := expected_in_words(work)):
+        tell(f"{words}\n")

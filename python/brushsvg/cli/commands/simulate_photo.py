@@ -12,6 +12,7 @@ from ..steps.prepared import prepare
 def simulate_photo_file(args) -> None:
     from ...machine.paint_reload import fetched_mm
     from ...painted.job_page import JobPage, job_page
+    from ...pipeline.choices import on_a_page
     from ...simulated.painting import low_enough, painted
     from ...simulated.photo import simulated_photo
     from ...simulated.studio import random_studio, read_studio, write_studio
@@ -21,7 +22,7 @@ def simulate_photo_file(args) -> None:
         with about(args.studio):
             studio = read_studio(read_bytes(args.studio))
     chart = _chart(args.input)
-    work = prepare(settled(typed(args), args.input), plan=chart and chart.plan)
+    work = prepare(on_a_page(settled(typed(args), args.input)), plan=chart and chart.plan)
     warn(args.input, work.notices)
     brush = brush_of(args.true_brush) or work.brush
     if args.studio is None:
@@ -51,6 +52,6 @@ def _chart(path: str):
 
     if suffix_of(path) != ".json":
         return None
-    data = read_bytes(path)
     with about(path):
+        data = read_bytes(path)
         return read_chart(data) if is_chart(data) else None

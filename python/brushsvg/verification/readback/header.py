@@ -35,6 +35,7 @@ class Made:
     border_mm: tuple[float, ...] | None = None
     heights_mm: tuple[float, ...] | None = None
     first_mm: tuple[float, ...] | None = None
+    has_margin: bool = False  # margin strokes were asked for, whether there was room or not
 
 
 def made(text: str) -> Made:
@@ -66,6 +67,7 @@ def made(text: str) -> Made:
     if header.get("order", "nearest first") != "nearest first":
         raise _damaged("order", header["order"])
     _said(header, "corrections", r"(\d+) strokes, shifted by (\S+) mm at most", (0, 1e6))
+    _said(header, "margin", r"(\d+) strokes", (0, 1e6))
     strokes = re.search(r", (\d{1,7}) strokes$", header["brush"])
     return Made(
         title=header["title"],
@@ -84,12 +86,13 @@ def made(text: str) -> Made:
         strokes=int(strokes[1]) if strokes else 0,
         notes=tuple(
             f"{word}: {header[word]}"
-            for word in ("compensation", "warnings", "corrections", "order")
+            for word in ("compensation", "warnings", "margin", "corrections", "order")
             if word in header
         ),
         border_mm=(border[0], border[2], border[1], border[3]) if border else None,
         heights_mm=tuple(heights) if heights else None,
         first_mm=tuple(first) if first else None,
+        has_margin="margin" in header,
     )
 
 
