@@ -84,12 +84,15 @@ def steep_ways_lifted(a_pass, cell: Cell):
     """The same pass for a servo. Its height changes in steps along a way, each with a move of its own. Where a way is
     too steep for that, the brush is pressed before it, or lifted after it, on the spot: both are at an end of a stroke
     for most, and a way that steep is shorter than a tenth of its change of height."""
-    straight = with_chords(a_pass)
-    poses = np.asarray(straight.poses_mm, dtype=float).reshape(-1, 3)
-    ways = np.diff(poses, axis=0)
-    rows = np.flatnonzero(servo_is_outrun(ways, a_pass.speed_mm_s, cell))
-    if not len(rows):
+
+    def outrun(poses: np.ndarray) -> np.ndarray:
+        return np.flatnonzero(servo_is_outrun(np.diff(poses, axis=0), a_pass.speed_mm_s, cell))
+
+    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    if not len(outrun(poses)):
         return a_pass
+    poses = np.asarray(with_chords(a_pass).poses_mm, dtype=float)
+    rows, ways = outrun(poses), np.diff(poses, axis=0)
     presses = ways[rows, 2] < 0
     places = np.where(presses[:, None], poses[rows, :2], poses[rows + 1, :2])
     heights = np.where(presses, poses[rows + 1, 2], poses[rows, 2])
