@@ -122,6 +122,17 @@ def test_a_number_that_no_cell_may_have_is_left_out():
     assert are_told(_not_undone(found(far), find_cell("linuxcnc-3axis"), left_out), "machine-not-undone 1.2")
 
 
+def test_a_page_printed_at_97_percent_is_no_machine_that_is_3_percent_off():
+    """The scale went into the cell without a word, and each program after that was 3 % too small."""
+    printed, cell = replace(TRUE, scale=(1 / 0.97, 1 / 0.9702)), find_cell("linuxcnc-3axis")
+    machine, left_out = _undoable(found(printed), MIDDLE, cell, (0, 1))
+    assert machine.scale == (1.0, 1.0) and machine.lean_mm_per_mm == TRUE.lean_mm_per_mm
+    assert are_told(_not_undone(found(printed), cell, left_out), "page-scale 97.0")
+    for scale in ((1.031, 1.0), (1.012, 1.012)):  # one axis; as little as a machine may be off
+        machine, left_out = _undoable(found(replace(TRUE, scale=scale)), MIDDLE, cell, (0, 1))
+        assert machine.scale == scale and not left_out
+
+
 @pytest.mark.parametrize("turned_deg, along", [(2.0, (0, 1)), (90.0, (1, 0)), (183.0, (0, 1)), (30.0, None)])
 def test_the_axes_along_the_paper(turned_deg, along):
     turned = Paper(rotation_deg=(0.0, 0.0, turned_deg))

@@ -61,6 +61,9 @@ if TYPE_CHECKING:
 Read = TypeVar("Read")
 
 
+LEAST_PRINT_SCALE, SAME_SCALE = 0.015, 0.006  # shares: print scales begin at 2 %, and both axes share one
+
+
 @dataclass(frozen=True)
 class Sheet:
     """What was told to the machine, and the page that it painted on: plan, with the corrections of before, as far as
@@ -254,6 +257,8 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], tol
 def _undoable(faults: Faults, middle_mm, cell: Cell, along) -> tuple[Machine | None, dict[str, str]]:
     """The machine for the next cell, without the numbers that such a cell refuses; and why, by key."""
     left_out = not_undone(cell)
+    if printed := _printed_at(faults):
+        left_out["scale"] = f"the page was probably printed at {100 * printed:.1f} %"
     while True:
         machine = mended(faults, middle_mm, cell.machine, along, left_out)
         try:
@@ -270,13 +275,30 @@ def _undoable(faults: Faults, middle_mm, cell: Cell, along) -> tuple[Machine | N
 def _not_undone(faults: Faults, cell: Cell, left_out: dict[str, str]) -> list[Notice]:
     """One notice on all that is certain of the machine and goes into no cell of its kind."""
     certain = [name for name, value in certain_of(faults).items() if value]
-    rest = [name for name in certain if key_of(name) in left_out]
+    printed = _printed_at(faults)
+    rest = [
+        name for name in certain if key_of(name) in left_out and not (printed and key_of(name) == "scale")
+    ]
+    notices = []
+    if printed:
+        sentence = f"the page was probably printed at {100 * printed:.1f} %: both axes seem to be as much off"
+        advice = "measure its bar and print it at 100 %; the scale goes into no cell"
+        notices.append(Notice("page", sentence, code="page-scale", advice=advice))
     if not rest:
-        return []
+        return notices
     why = "; ".join(dict.fromkeys(left_out[key_of(name)] for name in rest))
     sentence = f"cell {cell.name} cannot undo {', '.join(rest)}: {why}"
     advice = "repair the machine, or give the corrections to convert"
-    return [Notice("machine", sentence, code="machine-not-undone", advice=advice)]
+    return [*notices, Notice("machine", sentence, code="machine-not-undone", advice=advice)]
+
+
+def _printed_at(faults: Faults) -> float | None:
+    """The scale of the page's print, where both axes of the machine seem to be off by as much: printers shrink a page
+    to its printable area, and machines seldom have the same fault in both axes."""
+    x, y = (certain_of(faults).get(f"scale in {axis}", 0.0) for axis in "xy")
+    if min(abs(x), abs(y)) < LEAST_PRINT_SCALE or abs(x - y) > SAME_SCALE:
+        return None
+    return 1.0 / (1.0 + (x + y) / 2)
 
 
 def _undone(work: Work):
