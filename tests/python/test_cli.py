@@ -741,6 +741,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
         "--layer",
         "--select",
         "--background",
+        "--colour",
         "--pen",
         "--paper-z",
         "--skip-region",
@@ -755,7 +756,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
         "--join",
         "--speed",
     }
-    job = {"--z-offset", "--from-stroke", "--order"}
+    job = {"--z-offset", "--from-stroke", "--order", "--per-colour"}
     assert flags == choices | job | {
         "--corrections",
         "--help",

@@ -80,6 +80,7 @@ class Choices:
     paper_z: float | None = None
     skip_region: list[tuple[float, float, float, float]] | None = None
     skip_comment: list[str] | None = None
+    colour: str | None = None
     width: float | None = None
     paths_as: str | None = None
     fit: tuple[float, float] | None = None
@@ -113,6 +114,7 @@ class Given(TypedDict, total=False):
     paper_z: float | None
     skip_region: Sequence[tuple[float, float, float, float]] | None
     skip_comment: Sequence[str] | None
+    colour: str | None
     width: float | None
     paths_as: str | None
     fit: tuple[float, float] | None
@@ -151,6 +153,13 @@ def checked(chosen: Choices) -> Choices:
             )
     if chosen.skip_region is not None:
         need(chosen.skip_region, (tuple, list), "a list of regions, which skip_region is")
+        for region in chosen.skip_region:
+            need(region, (tuple, list), "a region, (x0, y0, x1, y1) in mm")
+            for side in region:
+                need_number(side, "a number of skip_region", -1e6, 1e6)
+    if chosen.colour is not None:
+        need(chosen.colour, str, "a colour, as #1a237e")
+        chosen = replace(chosen, colour=colour_of(chosen.colour))
     if chosen.join is not None:
         need_truth(chosen.join, "join")
     for name in ("layer", "select", "skip_comment"):
@@ -180,6 +189,20 @@ def checked(chosen: Choices) -> Choices:
         sentence = "select is for SVG; layers of a DXF are chosen by layer"
         raise Error(sentence, "select", code="options-contradict")
     return chosen
+
+
+def colour_of(text: str) -> str:
+    """A colour as SVG writes it, as "#rrggbb". Error for anything else."""
+    from ..drawing.svg.colour import parse_colour
+
+    found = parse_colour(text.strip())
+    if found is None or not found.startswith("#"):
+        raise Error(
+            f"{text[:24]!r} is not a colour; write for example #1a237e or red",
+            "colour",
+            code="colour-invalid",
+        )
+    return found[:7]
 
 
 def suffix_of(source) -> str:
@@ -301,6 +324,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options
         paths_as=chosen.paths_as,
         wide=chosen.wide or Options.wide,
         corners=chosen.corners or Options.corners,
+        colour=chosen.colour,
         join=bool(chosen.join),
         margin_strokes=chosen.margin_strokes or Options.margin_strokes,
         speed_mm_s=min(Options.speed_mm_s, cell.speeds.paint_mm_s),

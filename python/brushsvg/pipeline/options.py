@@ -31,6 +31,7 @@ class Options:
     wide: str = "auto"  # outlines wider than the brush: "auto", "clamp", "passes", "refuse"
     corners: str = "auto"  # "auto": lifted at sharp corners where the mark is better; "turn": never
     margin_strokes: str = "off"  # "auto": where the brush is not calibrated, "on", "off"
+    colour: str | None = None  # "#rrggbb": paint the strokes of this colour
     join: bool = False  # lines that meet end to end are one stroke
     cell: Cell | None = None  # whose limits no refined stroke breaks, unless its closed form does
     z_offset_mm: float = 0.0  # of the paper, against the cell's

@@ -36,7 +36,7 @@ from .margin_strokes import with_margin_strokes
 from .options import DEFAULT_BRUSH, DEFAULTS, Options
 from .paint_astray import off_middle_line, outside
 from .width_advice import warnings_with_advice
-from .work import Known, Work
+from .work import Known, Work, of_colour
 
 if TYPE_CHECKING:
     Source = drawing.Source | Design | _core.Plan
@@ -51,6 +51,11 @@ def prepare(
     """Read a drawing or plan.json and lay out the TCP's path. source: the path of one, a Plan, a Design, or an open
     drawing as read_drawing takes it. Error when it cannot be read or painted; partly: strokes that are refused are left
     out."""
+    work = _prepared(source, options, stage, partly)
+    return work if options.colour is None else of_colour(work, options.colour)
+
+
+def _prepared(source: Source, options: Options, stage: Callable[[str], object], partly: bool) -> Work:
     if isinstance(source, _core.Plan):
         _core.write_plan(source)  # refuses what no file may hold
         return _prepare_plan(source, options)

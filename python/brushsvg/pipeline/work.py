@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from .. import _core
 from ..drawing.design import Notice
+from ..errors import Error
 from ..machine.cell import Cell
 from ..machine.paint_reload import PlanInLoads, is_later_part
 from ..machine.program import WHOLE_JOB, Job, Walked
@@ -69,15 +70,39 @@ def whole_strokes(work: Work, loads: PlanInLoads) -> list:
     return whole
 
 
+def colours(work: Work) -> list[str]:
+    """Colours of the work's strokes, the lightest first: dark paint covers light, and rests of it spoil light paint."""
+
+    def lightness(colour: str) -> float:  # luma of ITU-R BT.601
+        red, green, blue = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
+        return 0.299 * red + 0.587 * green + 0.114 * blue
+
+    found = dict.fromkeys(each.colour for each in work.plan.passes if each.colour)
+    return sorted(found, key=lightness, reverse=True)
+
+
+def of_colour(work: Work, colour: str) -> Work:
+    """The strokes of one colour; those without one are painted with the first. Error if there are none."""
+    all_colours = colours(work)
+    if colour not in all_colours:
+        known = ", ".join(all_colours) or "none"
+        sentence = f"nothing is painted in {colour}; colours of this drawing: {known}"
+        raise Error(sentence, "colour", code="nothing-to-paint")
+    without = {"", colour} if colour == all_colours[0] else {colour}
+    return _of_rows(work, [k for k, each in enumerate(work.plan.passes) if each.colour in without])
+
+
+def _of_rows(work: Work, rows: list[int]) -> Work:
+    was = work.plan
+    plan = _core.Plan(was.brush, was.brush_sha256, was.sheet_mm, [was.passes[k] for k in rows], was.extra)
+    strokes = None if work.strokes is None else [work.strokes[k] for k in rows]
+    tracking_errors = tuple(work.tracking_errors[k] for k in rows) if work.tracking_errors else ()
+    return replace(work, plan=plan, strokes=strokes, tracking_errors=tracking_errors)
+
+
 def nearest_first(work: Work) -> Work:
     """The work with its strokes in the order of the shortest way from the end of one to the start of the next.
 
     Only strokes that follow each other in one layer change places; none is painted backwards.
     """
-    passes = work.plan.passes
-    order = travel_order.nearest_first(passes)
-    was = work.plan
-    plan = _core.Plan(was.brush, was.brush_sha256, was.sheet_mm, [passes[k] for k in order], was.extra)
-    strokes = None if work.strokes is None else [work.strokes[k] for k in order]
-    tracking_errors = tuple(work.tracking_errors[k] for k in order) if work.tracking_errors else ()
-    return replace(work, plan=plan, strokes=strokes, tracking_errors=tracking_errors)
+    return _of_rows(work, travel_order.nearest_first(work.plan.passes))

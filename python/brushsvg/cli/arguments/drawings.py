@@ -40,6 +40,11 @@ def add_convert(commands) -> None:
     add_job(convert)
     add_corrections(convert)
     add_margin_strokes(convert)
+    convert.add_argument(
+        "--per-colour",
+        action="store_true",
+        help="write a program for each colour, the lightest first: OUT-1-ffd400.EXT, OUT-2-1a237e.EXT ...",
+    )
     convert.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
     convert.add_argument(
         "--page", metavar="FILE", help="also write the page to paint on, with markers for compare (.pdf .svg)"
@@ -52,6 +57,10 @@ def add_convert(commands) -> None:
 def _check_convert(args) -> None:
     check_drawing(args)
     check_job(args)
+    if args.per_colour and (args.colour or args.from_stroke != 1):
+        args.parser.error(
+            "--per-colour writes all strokes of each colour: leave --colour and --from-stroke out"
+        )
     written = [
         (args.output, (".json", *PROGRAMS)),
         (args.preview, PICTURES),

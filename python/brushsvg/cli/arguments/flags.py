@@ -104,6 +104,7 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
         add("--brush", metavar="NAME|FILE", help=default)
     add("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     add_layout(command)
+    add_colour(command)
     add_wide(command)
     add_corners(command)
     add_join(command)
@@ -137,6 +138,15 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
         "default: auto",
     )
     add("--lenient", action="store_true", help="paint what is sound of damaged geometry")
+
+
+def add_colour(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--colour",
+        metavar="COLOUR",
+        type=values.colour,
+        help="paint the strokes of this colour: #1a237e, red",
+    )
 
 
 def add_speed(command: argparse.ArgumentParser) -> None:

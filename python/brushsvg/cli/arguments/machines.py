@@ -5,6 +5,7 @@ from __future__ import annotations
 from . import values
 from .flags import (
     add_choices,
+    add_colour,
     add_corners,
     add_corrections,
     add_input,
@@ -99,6 +100,7 @@ def add_check(commands) -> None:
     check.add_argument("--brush", metavar="NAME|FILE", help="default: the one that the program names")
     check.add_argument("--cell", metavar="NAME|FILE", help="default: the one that the program names")
     add_layout(check)
+    add_colour(check)
     add_wide(check)
     add_corners(check)
     add_join(check)

@@ -162,6 +162,12 @@ def region(text: str) -> tuple[float, float, float, float]:
     return min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
 
 
+def colour(text: str) -> str:
+    from ...pipeline.choices import colour_of
+
+    return _read(colour_of, text)
+
+
 def paper_z(text: str) -> float:
     return _length(text, -1000.0, 1000.0)
 

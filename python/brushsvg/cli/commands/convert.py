@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from ...evaluation import report
 from ...machine.paint_reload import has_pens, may_pause, pens_changed
 from ...machine.program import Job
-from ...pipeline import conversion, outputs
+from ...pipeline import conversion, outputs, prediction
 from ...pipeline.choices import on_a_page
 from ...pipeline.margin_strokes import expected_in_words
+from ...pipeline.work import Work, colours, of_colour
 from ..console import RefusedError, about, stage, tell, warn
 from ..steps.options import settled, typed, warn_of_cell
 from ..steps.output_places import check_places, suffix_of, write
@@ -18,34 +21,64 @@ def convert_file(args) -> None:
     check_places(args, args.output, args.preview, args.report, args.page)
     chosen = settled(typed(args), args.input)
     work = prepare(on_a_page(chosen) if args.page else chosen)
-    suffix, job = suffix_of(args.output), Job(args.z_offset, args.from_stroke)
     warn(args.input, [notice for notice in work.notices if args.lenient or not notice.damaged])
-    files = {}
+    parts = _per_colour(args.output, work) if args.per_colour else [(args.output, work)]
+    check_places(args, *(path for path, _ in parts))
+    files, overlap = {}, None
     if args.page:
         with about(args.page):
             files[args.page] = outputs.page(suffix_of(args.page), work)
     with about(args.input):
-        rings = suffix_of(args.preview) == ".svg"
-        one = conversion.tried(work, suffix, job, args.order, args.lenient, rings, stage, path=args.output)
-        if one.problems:
-            raise RefusedError(args.input, one.problems)
-        files = one.encoded(args.output) | files
+        tries = [_tried(args, path, part) for path, part in parts]
+        for (path, _), one in reversed([*zip(parts, tries, strict=True)]):
+            files = one.encoded(path) | files
+        shown = tries[0] if len(tries) == 1 else None
+        if args.preview or args.report:
+            marks = (
+                shown.marks if shown else prediction.predict(work, suffix_of(args.preview) == ".svg", stage)
+            )
+            of_all = shown.work if shown else work
         if args.preview:
-            files[args.preview] = outputs.picture(suffix_of(args.preview), one.work, one.marks)
-        overlap = None
+            files[args.preview] = outputs.picture(suffix_of(args.preview), of_all, marks)
         if args.report:
-            figures = outputs.reported(one.work, one.marks, work.options.cell)
+            figures = outputs.reported(of_all, marks, work.options.cell)
             files[args.report] = report.as_text(suffix_of(args.report), figures)
             overlap = figures.total.overlap
-    warn(args.input, one.remarks())
-    warn_of_cell(args, one.cell)
-    stops = (
-        pens_changed(one.loads, one.cell, job.first_stroke) if one.is_program and may_pause(one.cell) else 0
-    )
-    times = "once" if stops == 1 else f"{stops} times"
-    more = f"takes another pen {times}" if has_pens(one.cell) else f"stops {times} for another pen"
+    warn(args.input, dict.fromkeys(notice for one in tries for notice in one.remarks()))
+    warn_of_cell(args, tries[0].cell)
+    strokes = sum(len(one.loads.loads) for one in tries) - args.from_stroke + 1
+    times_s = [one.time_s() for one in tries]
+    seconds = None if None in times_s else sum(times_s)
     write(
-        args, files, len(one.loads.loads) - job.first_stroke + 1, one.time_s(), overlap, more if stops else ""
+        args, files, strokes, seconds, overlap, "" if args.per_colour else _pens(tries[0], args.from_stroke)
     )
     if not args.quiet and (words := expected_in_words(work)):
         tell(f"{words}\n")
+
+
+def _per_colour(output: str, work: Work) -> list[tuple[str, Work]]:
+    """A file and the strokes of one colour each, the lightest first."""
+    path = Path(output)
+    return [
+        (str(path.with_name(f"{path.stem}-{number}-{colour[1:]}{path.suffix}")), of_colour(work, colour))
+        for number, colour in enumerate(colours(work), 1)
+    ]
+
+
+def _tried(args, path: str, work: Work) -> conversion.Tried:
+    """A program that may be written. RefusedError with all that forbids it."""
+    rings, job = suffix_of(args.preview) == ".svg", Job(args.z_offset, args.from_stroke)
+    one = conversion.tried(work, suffix_of(path), job, args.order, args.lenient, rings, stage, path=path)
+    if one.problems:
+        raise RefusedError(args.input, one.problems)
+    return one
+
+
+def _pens(one: conversion.Tried, from_stroke: int) -> str:
+    """How often somebody has to change the pen, in words."""
+    if not (one.is_program and may_pause(one.cell)):
+        return ""
+    stops = pens_changed(one.loads, one.cell, from_stroke)
+    times = "once" if stops == 1 else f"{stops} times"
+    more = f"takes another pen {times}" if has_pens(one.cell) else f"stops {times} for another pen"
+    return more if stops else ""

@@ -1,0 +1,74 @@
+"""A program for each colour: the strokes of one colour each, where they are in the whole drawing."""
+
+import re
+
+import pytest
+from diagnostics import in_json, is_told
+
+import brushsvg
+
+INKS = {"#ffd700": "bd", "#d32f2f": "e", "#1a237e": "ac"}  # the lightest first
+DRAWING = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60" fill="none" '
+    'stroke-width="2">{}</svg>'
+)
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    inks = {name: ink for ink, names in INKS.items() for name in names}
+    lines = (
+        f'<path id="{name}" stroke="{inks[name]}" d="M10 {8 + 8 * k}H50"/>' for k, name in enumerate("abcde")
+    )
+    (tmp_path / "word.svg").write_text(DRAWING.format("".join(lines)))
+    return tmp_path
+
+
+def names(text):
+    return "".join(re.findall(r"(?m)^\(stroke \d+ of \d+: (\w+)\)", text))
+
+
+def test_each_colour_has_a_program(desk, capsys):
+    status, _, told = in_json(
+        capsys, "convert", "word.svg", "out.ngc", "--per-colour", "--preview", "all.png"
+    )
+    assert status == 0 and not told
+    files = sorted(path.name for path in desk.glob("out*"))
+    assert files == [f"out-{k}-{ink[1:]}.ngc" for k, ink in enumerate(INKS, 1)]
+    assert [names((desk / file).read_text()) for file in files] == [*INKS.values()]
+    assert (desk / "all.png").stat().st_size > 1000
+    for file, ink in zip(files, INKS, strict=True):
+        assert in_json(capsys, "check", file, "word.svg", "--colour", ink)[0] == 0
+        one = brushsvg.convert("word.svg", colour=ink)
+        assert one.text == (desk / file).read_text(), "the same by --colour and from Python"
+
+
+def test_strokes_of_a_colour_are_where_they_are_in_all(desk, capsys):
+    """With --fit they would each fill the sheet, were they fitted alone."""
+    words = "convert", "word.svg", "all.json", "--fit", "80x40"
+    assert in_json(capsys, *words)[0] == 0
+    assert in_json(capsys, "convert", "word.svg", "part.json", "--fit", "80x40", "--colour", "gold")[0] == 0
+    whole, part = (brushsvg.read_plan(desk / f"{name}.json").passes for name in ("all", "part"))
+    places = {each.stroke: each.poses_mm.tolist() for each in whole}
+    assert len(part) == 2 and all(places[each.stroke] == each.poses_mm.tolist() for each in part)
+
+
+def test_a_plan_is_parted_as_its_drawing_is(desk, capsys):
+    assert in_json(capsys, "convert", "word.svg", "plan.json")[0] == 0
+    assert in_json(capsys, "convert", "plan.json", "out.ngc", "--per-colour")[0] == 0
+    assert [names(path.read_text()) for path in sorted(desk.glob("out*"))] == [*INKS.values()]
+
+
+def test_a_colour_that_is_not_there_is_refused(desk, capsys):
+    status, _, told = in_json(capsys, "convert", "word.svg", "out.ngc", "--colour", "#00ff00")
+    assert status == 1 and is_told(told, "nothing-to-paint #00ff00 #ffd700 #d32f2f #1a237e", "colour")
+    assert in_json(capsys, "convert", "word.svg", "out.ngc", "--per-colour", "--from-stroke", "2")[0] == 2
+    assert not list(desk.glob("out*"))
+
+
+def test_none_is_written_where_one_is_there_already(desk, capsys):
+    (desk / "out-2-d32f2f.ngc").write_text("mine")
+    status, _, told = in_json(capsys, "convert", "word.svg", "out.ngc", "--per-colour")
+    assert status == 1 and is_told(told, "file-exists")
+    assert [path.read_text() for path in desk.glob("out*")] == ["mine"]
