@@ -6,10 +6,12 @@ from __future__ import annotations
 import contextlib
 import glob
 import os
+import re
 import sys
 
 UNATTENDED = (b"--batch-process", b"--export-", b"-o")  # with these Inkscape opens no window that stays
 IN_DIALOGS = {  # by the code of what brushsvg tells: what is done in Inkscape where it advises those who type
+    "background": "raise it above another object to paint it",
     "brush-unknown": "choose another one in Brush settings, or a brush file in this dialog",
     "cell-unknown": "choose another one in Brush settings",
     "program-format": "choose it in Brush settings",
@@ -20,16 +22,20 @@ IN_DIALOGS = {  # by the code of what brushsvg tells: what is done in Inkscape w
     "text-unread": "turn it into paths with Path > Object to Path, or into strokes with Extensions > Brush > Convert "
     "to strokes",
 }
+FLAG = re.compile(r"(?:^|[\s(`])(?:brushsvg [a-z]+ [^;]*)?--[a-z]")
 MEND = "mend or delete it, or draw it anew"  # what is damaged, whatever its code
 
 
 def in_dialogs(notice: dict) -> str:
     """What brushsvg tells, with its advice worded for who has dialogs and no flags."""
     sentence, advice = notice["sentence"], notice["advice"]
-    if not advice:
-        return sentence
-    done = IN_DIALOGS.get(notice["code"], MEND if notice["damaged"] else advice)
-    return sentence[: len(sentence) - len(advice)] + done
+    done = IN_DIALOGS.get(notice["code"], MEND if notice["damaged"] else "") if advice else ""
+    if done:
+        sentence = sentence[: len(sentence) - len(advice)].removesuffix("; ")
+    # what is left may name flags: who has dialogs cannot type them
+    clauses = [clause for clause in sentence.split("; ") if not FLAG.search(clause)]
+    first = re.match(r"(.*?)(?:[:,] [^:,]*)?$", FLAG.split(sentence)[0].rstrip(" ,:("), re.DOTALL)[1]
+    return "; ".join([*(clauses or [first]), *([done] if done else [])])
 
 
 def tell(text: str) -> None:

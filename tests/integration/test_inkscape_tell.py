@@ -52,6 +52,10 @@ def document(setting: str) -> str:
 
 
 ADVICE = {  # by the code of what brushsvg tells: a script of ours and a drawing that are told so
+    "background": (
+        "save",
+        SOUND.replace("<path", '<rect x="-1" y="-1" width="900" height="900" fill="#fff"/><path', 1),
+    ),
     "brush-unknown": ("preview", document('data-brushsvg-brush="mine"')),
     "cell-unknown": ("preview", document('data-brushsvg-cell="mine"')),
     "depth-not-measured": ("preview", path("M20 30 H90", width="0.1")),
@@ -87,6 +91,24 @@ def test_advice_is_worded_for_who_has_dialogs(plugin, tmp_path, in_dialogs, code
     )  # a check breaks its lines
     assert in_dialogs[code] in told.replace("&gt;", ">")
     assert "--" not in told.replace("brushsvg cell new --taught, in a terminal", ""), "a flag"
+
+
+@pytest.mark.parametrize(
+    ("sentence", "advice", "shown"),
+    [
+        ("it is wide; --wide passes paints more of it", "--wide passes paints more of it", "it is wide"),
+        ("the height is 0 mm; --brush rigid draws as a pen does", "", "the height is 0 mm"),
+        ("it does not say its unit: give --units mm or --units in", "", "it does not say its unit"),
+        ("no map: brushsvg height --x", "", "no map"),
+        ("it is cut short", "", "it is cut short"),
+    ],
+)  # fmt: skip
+def test_no_flag_is_shown_in_a_dialog(monkeypatch, sentence, advice, shown):
+    monkeypatch.syspath_prepend(SOURCE)
+    from brushsvg_tell import in_dialogs
+
+    notice = {"sentence": sentence, "advice": advice, "code": "any", "damaged": False}
+    assert in_dialogs(notice) == shown
 
 
 def test_damage_is_to_be_mended_whatever_its_code(plugin, tmp_path):
