@@ -38,6 +38,17 @@ def test_what_is_in_reach_and_what_was_drawn_stays(brush):
         _core.compensate(line, brush, (100, 50))
 
 
+@pytest.mark.parametrize(("width", "is_painted"), [(8.41, True), (8.59, True), (8.7, False)])
+def test_a_line_that_is_too_wide_by_less_than_one_sees_is_painted(brush, width, is_painted):
+    """A brush typed in with 4.8 mm painted 4.791 mm, and refused a job for one dot of 4.8 mm."""
+    line = of("M10 20H60", f'fill="none" stroke="red" stroke-width="{width}"')
+    (made,), wanted, notices = within_reach(line, brush)
+    assert wanted == line and not notices
+    assert max(half for _, half in made.half_width) == pytest.approx(4.2 if is_painted else width / 2)
+    if is_painted:
+        _core.compensate([made], brush, (100, 50))
+
+
 def test_the_nearest_width_is_painted_and_the_outline_stays_wanted(brush):
     made = of(WEDGE)
     (narrower,), wanted, (notice,) = within_reach(made, brush, "clamp")

@@ -29,7 +29,7 @@ from ..strokes.left_limbs import with_left_limbs
 from ..strokes.outline_corners import squared_at_corners
 from ..strokes.unreached import left_blank, missed, unreached
 from ..strokes.unreached import notices as blank_notices
-from ..strokes.wide_shapes import within_reach
+from ..strokes.wide_shapes import is_within_reach, within_reach
 from .compensated import begun_within_reach, compensation_by
 from .json_files import read_plan
 from .margin_strokes import with_margin_strokes
@@ -259,10 +259,10 @@ def _beside_shapes(lines: _Lines, way: _Way, brush, options: Options) -> tuple[l
 
 def _refuse_wide_lines(strokes: list, brush) -> None:
     """Error for the first line that is wider than the brush, before the time is taken that shapes do."""
-    least = brush.half_width_range_mm()[0]
     for stroke in strokes if brush.width_follows_depth() else ():
-        if not stroke.wanted_mm:
-            brush.depth_for_half_width(max(least, *(half for _, half in stroke.half_width)), stroke.id)
+        widest = max(half for _, half in stroke.half_width)
+        if not stroke.wanted_mm and not is_within_reach(widest, brush.half_width_range_mm()[1]):
+            brush.depth_for_half_width(widest, stroke.id)
 
 
 def _design(source, reading: drawing.ReadOptions) -> Design:

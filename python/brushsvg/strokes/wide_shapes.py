@@ -112,13 +112,18 @@ def _without_slivers(strokes: list, least: float, brush) -> tuple[list, list[Not
     return [stroke for stroke, area in zip(strokes, areas, strict=True) if area >= dab_mm2 / 2], notices
 
 
+def is_within_reach(half: float, greatest: float) -> bool:
+    """Whether half the width of a line is at most the brush's greatest, or exceeds it by less than one sees."""
+    return half <= greatest + UNSEEN_MM
+
+
 def _beyond(stroke, least: float, greatest: float) -> tuple[str, float] | None:
-    """How many widths are out of reach, in words, and half the worst; None for a line that was drawn too wide, which is
-    refused."""
+    """How many widths are out of reach, in words, and half the worst; None for a line that was drawn visibly too wide,
+    which is refused."""
     halves = np.array([half for _, half in stroke.half_width])
     is_narrow, is_wide = halves < least - 1e-9, halves > greatest + 1e-9
-    off = is_narrow | is_wide if stroke.wanted_mm else is_narrow
-    if not off.any() or (is_wide.any() and not stroke.wanted_mm):
+    off = is_narrow | is_wide
+    if not off.any() or (not stroke.wanted_mm and not is_within_reach(halves.max(), greatest)):
         return None
     worst = halves.max() if is_wide.any() else halves.min()
     whose = "of its outline" if stroke.wanted_mm else "of its line"
