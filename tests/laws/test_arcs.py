@@ -5,9 +5,9 @@ import itertools
 import numpy as np
 import oracle
 import pytest
-from conftest import law, make_brush, make_plan
 from hypothesis import given
 from hypothesis import strategies as st
+from made_up_brushes import law, make_brush, make_plan
 
 core = pytest.importorskip("brushsvg._core")
 find_brush = pytest.importorskip("brushsvg.brush.library").find_brush

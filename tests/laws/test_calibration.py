@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 import oracle
 import pytest
-from conftest import law
 from diagnostics import refused
+from made_up_brushes import law
 from sampling import sample
 
 from brushsvg import _core, laws

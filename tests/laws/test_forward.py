@@ -5,10 +5,10 @@ import itertools
 import numpy as np
 import oracle
 import pytest
-from conftest import LAGS, law, make_brush, make_pass, make_plan, profile, random_poses
 from diagnostics import refused
 from hypothesis import example, given
 from hypothesis import strategies as st
+from made_up_brushes import LAGS, law, make_brush, make_pass, make_plan, profile, random_poses
 from sampling import sample
 
 core = pytest.importorskip("brushsvg._core")

@@ -7,7 +7,7 @@ import numpy as np
 import oracle
 import pytest
 import shapely
-from conftest import LAGS, WIDEST, make_brush, make_plan
+from made_up_brushes import LAGS, WIDEST, make_brush, make_plan
 from sampling import sample
 from scipy.integrate import solve_ivp
 

@@ -7,7 +7,7 @@ import numpy as np
 import oracle
 import pytest
 import shapely
-from conftest import LAGS, law, make_brush, make_plan, random_poses, section_6_footprints
+from made_up_brushes import LAGS, law, make_brush, make_plan, random_poses, section_6_footprints
 from sampling import sample
 
 core = pytest.importorskip("brushsvg._core")

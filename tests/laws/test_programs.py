@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import make_brush, random_poses
 from hypothesis import given
 from hypothesis import strategies as st
+from made_up_brushes import make_brush, random_poses
 from sampling import sample
 
 from brushsvg import _core

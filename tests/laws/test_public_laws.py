@@ -3,7 +3,7 @@
 import numpy as np
 import oracle
 import pytest
-from conftest import LAGS, law, profile, random_poses
+from made_up_brushes import LAGS, law, profile, random_poses
 from scipy.integrate import quad, solve_bvp, solve_ivp
 
 import brushsvg

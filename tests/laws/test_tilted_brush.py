@@ -3,7 +3,7 @@
 import numpy as np
 import oracle
 import pytest
-from conftest import LAGS, WIDEST, law, make_brush
+from made_up_brushes import LAGS, WIDEST, law, make_brush
 from scipy.spatial.transform import Rotation
 
 core = pytest.importorskip("brushsvg._core")

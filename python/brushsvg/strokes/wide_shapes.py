@@ -133,8 +133,10 @@ def _beyond(stroke, least: float, greatest: float) -> tuple[str, float] | None:
 
 
 def _wide(strokes: list, beyond: dict, greatest: float) -> list[int]:
-    """The strokes that are wider than the brush, of elements where one of them is so by more than hardly."""
-    wider = {k: found[1] for k, found in beyond.items() if found and found[1] > greatest}
+    """The strokes of shapes that are wider than the brush, of elements where one of them is so by more than hardly."""
+    wider = {
+        k: found[1] for k, found in beyond.items() if found and found[1] > greatest and strokes[k].wanted_mm
+    }
     elements = {strokes[k].origin.element for k, half in wider.items() if half > greatest * _WORTH_PASSES}
     return [k for k in wider if strokes[k].origin.element in elements]
 
