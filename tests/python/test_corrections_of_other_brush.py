@@ -1,0 +1,31 @@
+"""Corrections of a sheet that was planned for another brush: its strokes began elsewhere, by up to a lag."""
+
+import numpy as np
+import pytest
+from diagnostics import refused
+
+from brushsvg import _core, find_brush
+from brushsvg.painted.corrections import Correction, corrected
+
+BRUSH = find_brush("round-6")  # trails by 10.2 mm at 5 mm of depth
+POSES = [(30, 30, 0), (32, 30, -5), (70, 30, -5), (72, 30, 0)]
+
+
+def plan():
+    return _core.Plan("round-6", BRUSH.sha256, (100.0, 60.0), [_core.Pass("a", np.array(POSES, float), 20.0)])
+
+
+def correction(away_mm, replanned):
+    return Correction("a", (30 - away_mm, 30), (50, 30), (0.5, 0.0), 0.0, BRUSH.sha256, replanned)
+
+
+def test_a_stroke_may_begin_as_far_away_as_the_brush_trails():
+    """The guess of one lag was 6 mm short, and the second sheet's corrections were refused as those of another job."""
+    (made,) = corrected(plan(), (correction(5.8, True),), BRUSH).passes
+    assert made.poses_mm[0].tolist() == pytest.approx([30.5, 30, 0])
+
+
+@pytest.mark.parametrize(("away_mm", "replanned"), [(5.8, False), (12.0, True)])
+def test_farther_away_it_is_another_job(away_mm, replanned):
+    with refused("corrections-of-another-job", "a"):
+        corrected(plan(), (correction(away_mm, replanned),), BRUSH)
