@@ -18,6 +18,7 @@ from shapely.ops import substring
 
 import brushsvg
 from brushsvg.drawing import ReadOptions
+from brushsvg.drawing.svg.element import Painted as OurPainted
 
 DRAWINGS = svg_features.DRAWINGS | svg_styles.DRAWINGS
 TOLD_OTHERWISE = svg_features.TOLD_OTHERWISE | svg_styles.TOLD_OTHERWISE
@@ -41,7 +42,11 @@ def read(text: str, folder) -> Page:
     """What our reader makes of a drawing, in the terms of resvg's page."""
     file = folder / "drawing.svg"
     file.write_text(text, encoding="utf-8")
-    design = brushsvg.read_drawing(file, ReadOptions(lenient=True))
+    with pytest.MonkeyPatch.context() as patch:  # resvg's tree has whole paths in groups with clips
+        patch.setattr(OurPainted, "_clipped", lambda self, node, context, whole: [whole])
+        patch.setattr("brushsvg.drawing.duplicates.without_duplicates", lambda design: design)
+        patch.setattr("brushsvg.drawing.svg.on_page", lambda elements, sheet_mm: (tuple(elements), []))
+        design = brushsvg.read_drawing(file, ReadOptions(background="keep", lenient=True))
     height_mm = design.sheet_mm[1]
 
     def line(subpath) -> Line:

@@ -100,7 +100,7 @@ def _inside(subpath: SubPath, region: shapely.Geometry) -> list[SubPath]:
         places += [(k + chords[k].project(shapely.Point(at), normalized=True)) / _PARTS for at in crossings]
     places = np.unique(places)
     middles = _at_places(cubics, (places[1:] + places[:-1]) / 2)
-    is_in = shapely.contains_xy(region, *middles.T)
+    is_in = shapely.intersects_xy(region, *middles.T)  # half of a line along the edge shows, too
     spans: list[list[float]] = []
     for begin, end in np.column_stack([places[:-1], places[1:]])[is_in].tolist():
         if spans and spans[-1][1] == begin:
