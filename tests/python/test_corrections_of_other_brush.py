@@ -19,13 +19,13 @@ def correction(away_mm, replanned):
     return Correction("a", (30 - away_mm, 30), (50, 30), (0.5, 0.0), 0.0, BRUSH.sha256, replanned)
 
 
-def test_a_stroke_may_begin_as_far_away_as_the_brush_trails():
+def test_a_stroke_may_begin_twice_as_far_away_as_the_brush_trails():
     """The guess of one lag was 6 mm short, and the second sheet's corrections were refused as those of another job."""
     (made,) = corrected(plan(), (correction(5.8, True),), BRUSH).passes
     assert made.poses_mm[0].tolist() == pytest.approx([30.5, 30, 0])
 
 
-@pytest.mark.parametrize(("away_mm", "replanned"), [(5.8, False), (12.0, True)])
+@pytest.mark.parametrize(("away_mm", "replanned"), [(5.8, False), (21.0, True)])
 def test_farther_away_it_is_another_job(away_mm, replanned):
     with refused("corrections-of-another-job", "a"):
         corrected(plan(), (correction(away_mm, replanned),), BRUSH)

@@ -28,7 +28,7 @@ MOST_WIDER_MM = 1.0  # of each edge: a mark that is off by more is another brush
 MOST_MM, MOST_DEG = 3.0, 3.0  # a mark that lies farther off does so for a reason that is to be found
 SAME_MM = 0.1  # where the same stroke begins, and where its way leads, in depth as well: less is within a correction
 PLACES = 9  # of a way, equal lengths apart
-OTHER_LAG_MM = 5.0  # the same where it was planned for another brush, or this brush's lag where that is longer
+OTHER_LAG_MM = 5.0  # the same where it was planned for another brush, or twice this brush's lag where that is longer
 
 
 @dataclass(frozen=True)
@@ -159,9 +159,9 @@ def uncorrected(plan) -> tuple[_core.Plan, tuple[Correction, ...]]:
 def _led(a_pass, correction: Correction, brush):
     poses = np.array(a_pass.poses_mm, dtype=float)
     away_mm = math.dist(poses[0, :2], correction.start_mm)
-    # a plan for a brush that trails by nothing, or twice as far, begins a lag elsewhere
+    # a plan for a brush that trails by nothing, or three times as far, begins up to two lags elsewhere
     deepest_mm = min(max(-poses[:, 2].min(), brush.depth_range_mm[0]), brush.depth_range_mm[1])
-    if away_mm > (max(OTHER_LAG_MM, brush.lag(deepest_mm)) if correction.replanned else SAME_MM):
+    if away_mm > (max(OTHER_LAG_MM, 2 * brush.lag(deepest_mm)) if correction.replanned else SAME_MM):
         raise _of_another_job(a_pass.stroke, f"it begins {away_mm:.2f} mm from where they say")
     if correction.way_mm and not correction.replanned:
         _refuse_other_way(a_pass, np.array(correction.way_mm))
