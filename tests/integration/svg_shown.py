@@ -605,7 +605,11 @@ TABLES = {
 CHROMIUMS_OWN = {
     *("rect ry ''", "rect ry 'auto'", "ellipse rx ''", "ellipse rx 'auto'", "pathLength ''"),
     *("requiredExtensions html", "nested a"),
-    *("clip-path", "clip-path on a group", "overflow hidden"),  # lines are cut at their middle, across, as brushes end
+    *(
+        "clip-path",
+        "clip-path on a group",
+        "overflow hidden",
+    ),  # lines are cut at their middle, across, as brushes end
     *(name for name in TABLES["geometries"] if name.startswith("CSS svg")),
 }
 # Of them, what must be painted as shown and without a word: a reader that names everything has read nothing.

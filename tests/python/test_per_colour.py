@@ -67,6 +67,25 @@ def test_a_colour_that_is_not_there_is_refused(desk, capsys):
     assert not list(desk.glob("out*"))
 
 
+def test_programs_of_colours_that_are_gone_are_named(desk, capsys):
+    assert in_json(capsys, "convert", "word.svg", "out.ngc", "--per-colour")[0] == 0
+    text = (desk / "word.svg").read_text().replace("#ffd700", "#d32f2f")
+    (desk / "word.svg").write_text(text)
+    status, _, told = in_json(capsys, "convert", "word.svg", "out.ngc", "--per-colour")
+    assert status == 0 and is_told(
+        told, "colours-of-before out-1-ffd700.ngc out-2-d32f2f.ngc out-3-1a237e.ngc"
+    ), told
+
+
+def test_a_page_has_the_same_sheet_in_each_program(desk, capsys):
+    """Strokes in the margin were in one of them, and check refused the others."""
+    words = "convert", "word.svg", "out.ngc", "--per-colour", "--page", "page.svg"
+    assert in_json(capsys, *words)[0] == 0
+    for file, ink in zip(sorted(desk.glob("out*")), INKS, strict=True):
+        assert in_json(capsys, "check", file, "word.svg", "--colour", ink)[0] == 0
+    assert in_json(capsys, *words, "--margin-strokes", "on")[0] == 2
+
+
 def test_none_is_written_where_one_is_there_already(desk, capsys):
     (desk / "out-2-d32f2f.ngc").write_text("mine")
     status, _, told = in_json(capsys, "convert", "word.svg", "out.ngc", "--per-colour")

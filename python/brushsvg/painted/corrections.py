@@ -28,7 +28,9 @@ MOST_WIDER_MM = 1.0  # of each edge: a mark that is off by more is another brush
 MOST_MM, MOST_DEG = 3.0, 3.0  # a mark that lies farther off does so for a reason that is to be found
 SAME_MM = 0.1  # where the same stroke begins, and where its way leads, in depth as well: less is within a correction
 PLACES = 9  # of a way, equal lengths apart
-OTHER_LAG_MM = 5.0  # the same where it was planned for another brush, or twice this brush's lag where that is longer
+OTHER_LAG_MM = (
+    5.0  # the same where it was planned for another brush, or twice this brush's lag where that is longer
+)
 
 
 @dataclass(frozen=True)

@@ -61,6 +61,8 @@ def _check_convert(args) -> None:
         args.parser.error(
             "--per-colour writes all strokes of each colour: leave --colour and --from-stroke out"
         )
+    if args.per_colour and args.margin_strokes == "on":
+        args.parser.error("strokes in the margin have one colour: leave --per-colour or --margin-strokes out")
     written = [
         (args.output, (".json", *PROGRAMS)),
         (args.preview, PICTURES),

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Collection
 from pathlib import Path
 
+from ...errors import Notice
 from ...evaluation import report
 from ...machine.paint_reload import has_pens, may_pause, pens_changed
 from ...machine.program import Job
@@ -20,7 +23,8 @@ from ..steps.prepared import prepare
 def convert_file(args) -> None:
     check_places(args, args.output, args.preview, args.report, args.page)
     chosen = settled(typed(args), args.input)
-    work = prepare(on_a_page(chosen) if args.page else chosen)
+    # check knows strokes in the margin by the program that paints them: of several, only one would
+    work = prepare(on_a_page(chosen) if args.page and not args.per_colour else chosen)
     warn(args.input, [notice for notice in work.notices if args.lenient or not notice.damaged])
     parts = _per_colour(args.output, work) if args.per_colour else [(args.output, work)]
     check_places(args, *(path for path, _ in parts))
@@ -46,6 +50,8 @@ def convert_file(args) -> None:
             overlap = figures.total.overlap
     warn(args.input, dict.fromkeys(notice for one in tries for notice in one.remarks()))
     warn_of_cell(args, tries[0].cell)
+    if args.per_colour:
+        warn(args.output, _left_from_before(args.output, files))
     strokes = sum(len(one.loads.loads) for one in tries) - args.from_stroke + 1
     times_s = [one.time_s() for one in tries]
     seconds = None if None in times_s else sum(times_s)
@@ -63,6 +69,18 @@ def _per_colour(output: str, work: Work) -> list[tuple[str, Work]]:
         (str(path.with_name(f"{path.stem}-{number}-{colour[1:]}{path.suffix}")), of_colour(work, colour))
         for number, colour in enumerate(colours(work), 1)
     ]
+
+
+def _left_from_before(output: str, files: Collection[str]) -> list[Notice]:
+    """A notice of programs of colours that an earlier run wrote and this one does not: nobody should run them."""
+    path = Path(output)
+    name = re.compile(rf"{re.escape(path.stem)}-\d+-[0-9a-f]{{6}}{re.escape(path.suffix)}")
+    left = sorted(each.name for each in path.parent.glob("*") if name.fullmatch(each.name))
+    left = [each for each in left if str(path.with_name(each)) not in files]
+    if not left:
+        return []
+    sentence = f"programs of an earlier run are still here and belong to another version: {', '.join(left)}"
+    return [Notice("", sentence, code="colours-of-before", advice="delete them")]
 
 
 def _tried(args, path: str, work: Work) -> conversion.Tried:
