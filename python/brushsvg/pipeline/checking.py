@@ -24,6 +24,7 @@ from ..machine.posts import GCODE
 from ..machine.program import out_of_arm
 from ..machine.setup_programs import around
 from ..machine.writer import beside
+from ..painted.corrections import is_corrected
 from ..verification import against_plan, against_regenerated, pace, setup_programs, simulate_program
 from ..verification.readback import read_program, text_of_file
 from ..verification.readback.fanuc import called
@@ -48,6 +49,7 @@ from .choices import (
 )
 from .conversion import chosen_of, of_arm
 from .foreign_program import foreign_program
+from .json_files import read_plan
 from .margin_strokes import is_margin
 from .options import DEFAULT_BRUSH, Options
 from .work import Work, nearest_first, whole_strokes
@@ -332,11 +334,18 @@ def _border_notices(made, work: Work, stage) -> list[Notice]:
     return [Notice("", sentence, code="border-elsewhere")]
 
 
+def _is_corrected_plan(source) -> bool:
+    if isinstance(source, str | os.PathLike) and suffix_of(source) == ".json":
+        with concerning(name_of(source)):
+            source = read_plan(source)
+    return isinstance(source, _core.Plan) and is_corrected(source)
+
+
 def _as_made(program: _Program, chosen: Choices, stage, told: Told) -> Work:
     """The drawing or plan that a program should paint, prepared as its header says; what of it is left out, or painted
     otherwise, is told again: this is the last look."""
     made, source = program.made, chosen.input
-    if made.is_corrected and chosen.corrections is None:
+    if made.is_corrected and chosen.corrections is None and not _is_corrected_plan(source):
         with concerning(program.path):
             raise Error(
                 "its strokes were led elsewhere by corrections, which are not known here",

@@ -162,12 +162,12 @@ def _by_servo(some: list[Way], across: list[bool]) -> tuple[list[bool], str]:
     said = sorted(value for value in values if value not in up)
     raised = sorted(value for value in up if value is not None)
     how = (
-        f"its pen goes by M3: down at S{', S'.join(f'{value:g}' for value in said[:3])}"
+        f"its pen goes by a servo: down at S{', S'.join(f'{value:g}' for value in said[:3])}"
         if said
-        else "its pen goes by M3"
+        else "its pen goes by a servo"
     )
     return down, how + (
-        f", up at S{', S'.join(f'{value:g}' for value in raised[:3])}" if raised else ", up behind M5"
+        f", up at S{', S'.join(f'{value:g}' for value in raised[:3])}" if raised else ", up at S0 or M5"
     )
 
 
