@@ -66,7 +66,9 @@ def paint_three_sheets(desk: Desk) -> list[float]:
         desk.run(f"convert word.svg plan-{sheet}.json {planned} --page page-{sheet}.svg")
         desk.run(f"convert word.svg job-{sheet}.ngc {planned} --page page.svg --force")
         desk.run(f"check job-{sheet}.ngc word.svg {planned}")
-        desk.run(f"check job-{sheet}.ngc plan-{sheet}.json --brush mine-{sheet}.json --cell cell-{sheet}.toml")
+        desk.run(
+            f"check job-{sheet}.ngc plan-{sheet}.json --brush mine-{sheet}.json --cell cell-{sheet}.toml"
+        )
         desk.run(
             f"simulate-photo plan-{sheet}.json photo-{sheet}.jpg --brush mine-{sheet}.json --cell cell-{sheet}.toml "
             f"--true-brush round-6 --studio studio.toml --seed {sheet}"
