@@ -95,11 +95,11 @@ def run(line: str, folder: Path) -> None:
         else each
         for each in line.split()
     ]
-    told, out = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stderr(told), contextlib.redirect_stdout(out):
+    errors, out = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stderr(errors), contextlib.redirect_stdout(out):
         status = main([*words, "--quiet", "--force"])
     if status != 0:
-        raise RuntimeError(f"{line}: exit {status}: {told.getvalue()[-300:]}")
+        raise RuntimeError(f"{line}: exit {status}: {errors.getvalue()[-300:]}")
 
 
 def swept(plan, brush) -> dict:

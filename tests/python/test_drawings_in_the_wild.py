@@ -210,8 +210,29 @@ def test_a_cut_line_keeps_its_widths():
     assert piece.widths[:, 1] == pytest.approx(np.interp(along, [0, 15, 30], [1, 3, 1]), abs=1e-6)
 
 
+def test_a_closed_line_of_varying_width_keeps_its_widths_where_it_begins_inside():
+    """The two parts that meet at its beginning were joined without their widths, and painted 0 mm wide."""
+    from brushsvg.drawing.clipping import clipped, region_of
+    from brushsvg.drawing.design import Element, SubPath
+
+    corners = np.array([(0, 0), (30, 0), (30, 30), (0, 30), (0, 0)], float)
+    a, b = corners[:-1], corners[1:]
+    cubics = np.stack([a, a + (b - a) / 3, b - (b - a) / 3, b], axis=1)
+    ring = SubPath(cubics, True, np.array([(0.0, 2.0), (0.5, 4.0), (1.0, 2.0)]))
+    window = region_of([np.array([(-5, -5), (15, -5), (15, 15), (-5, 15.0)])], "nonzero")
+    first, last = clipped(Element("a", (ring,), 0.0), window)[0].subpaths
+    assert first.widths[[0, -1], 1] == pytest.approx([2.0, 2.5]) and last.widths[[0, -1], 1] == pytest.approx(
+        [2.5, 2.0]
+    )
+
+
 @pytest.mark.parametrize(
-    ("clips", "more"), [("<text>A</text>", ""), ('<rect width="50" height="60"/>', 'clip-path="url(#Clip)"')]
+    ("clips", "more"),
+    [
+        ("<text>A</text>", ""),
+        ('<rect width="50" height="60" style="transform: translate(9px, 0)"/>', ""),
+        ('<rect width="50" height="60"/>', 'clip-path="url(#Clip)"'),
+    ],
 )
 def test_a_clip_path_that_is_not_read_is_reported(clips, more):
     design = clip(clips, CUT, more)

@@ -9,8 +9,9 @@ import numpy as np
 import shapely
 
 from ..geometry.arc_length import knots
-from ..geometry.cubics import between, flattened
+from ..geometry.cubics import at, between, flattened
 from .design import Element, SubPath
+from .layout import half_width_mm
 
 FLAT_MM = 0.005  # off the curves: a tenth of what a brush shows
 _PARTS = 64  # of each cubic, to find where it crosses an edge
@@ -48,7 +49,7 @@ def outlines_of(subpaths: Iterable[SubPath]) -> list[np.ndarray]:
 def clipped(element: Element, region: shapely.Geometry) -> list[Element]:
     """What is inside the region: the element itself where nothing is cut, none where nothing is left. A filled shape
     with a stroke becomes two elements, for the clip path cuts through both and is no edge that was drawn."""
-    half = max((_half_width(element, subpath) for subpath in element.subpaths), default=0.0)
+    half = max((half_width_mm(element, subpath) for subpath in element.subpaths), default=0.0)
     points = np.concatenate([subpath.cubics.reshape(-1, 2) for subpath in element.subpaths])
     low, high = points.min(axis=0) - half, points.max(axis=0) + half
     if region.contains(shapely.box(*low, *high)):
@@ -68,10 +69,6 @@ def clipped(element: Element, region: shapely.Geometry) -> list[Element]:
     return out
 
 
-def _half_width(element: Element, subpath: SubPath) -> float:
-    return 0.5 * (element.stroke_width_mm if subpath.widths is None else float(subpath.widths[:, 1].max()))
-
-
 def _rings(region: shapely.Geometry) -> tuple[SubPath, ...]:
     rings = []
     for part in shapely.get_parts(region):
@@ -86,10 +83,10 @@ def _polygon(points: np.ndarray) -> SubPath:
 
 
 def _inside(subpath: SubPath, region: shapely.Geometry) -> list[SubPath]:
-    """The parts of a line inside the region, in order; those that meet where a closed line begins are one."""
+    """The parts of a line inside the region. Two of one width that meet where a closed line begins are one."""
     cubics = subpath.cubics
     t = np.linspace(0.0, 1.0, _PARTS + 1)
-    points = _at(cubics, t)
+    points = at(t[:, None], *cubics.transpose(1, 0, 2)[:, :, None])
     if not np.ptp(points.reshape(-1, 2), axis=0).any():
         return [subpath] if region.covers(shapely.Point(points[0, 0])) else []
     chords = shapely.linestrings(np.stack([points[:, :-1], points[:, 1:]], axis=2).reshape(-1, 2, 2))
@@ -97,9 +94,13 @@ def _inside(subpath: SubPath, region: shapely.Geometry) -> list[SubPath]:
     shapely.prepare(region)
     for k in np.flatnonzero(shapely.intersects(chords, region.boundary)):
         crossings = shapely.get_coordinates(chords[k].intersection(region.boundary))
-        places += [(k + chords[k].project(shapely.Point(at), normalized=True)) / _PARTS for at in crossings]
+        places += [
+            (k + chords[k].project(shapely.Point(place), normalized=True)) / _PARTS for place in crossings
+        ]
     places = np.unique(places)
-    middles = _at_places(cubics, (places[1:] + places[:-1]) / 2)
+    middle = (places[1:] + places[:-1]) / 2
+    number = np.minimum(middle.astype(int), len(cubics) - 1)
+    middles = at((middle - number)[:, None], *cubics[number].transpose(1, 0, 2))
     is_in = shapely.intersects_xy(region, *middles.T)  # half of a line along the edge shows, too
     spans: list[list[float]] = []
     for begin, end in np.column_stack([places[:-1], places[1:]])[is_in].tolist():
@@ -110,26 +111,13 @@ def _inside(subpath: SubPath, region: shapely.Geometry) -> list[SubPath]:
     if spans == [[0.0, float(len(cubics))]]:
         return [subpath]
     pieces = [_piece(subpath, *span) for span in spans]
-    if subpath.closed and len(spans) > 1 and spans[0][0] == 0.0 and spans[-1][1] == len(cubics):
+    is_through_start = (
+        subpath.closed and len(spans) > 1 and spans[0][0] == 0.0 and spans[-1][1] == len(cubics)
+    )
+    if is_through_start and subpath.widths is None:  # else each part has its own widths
         last = pieces.pop()
         pieces[0] = SubPath(np.concatenate([last.cubics, pieces[0].cubics]))
     return pieces
-
-
-def _at(cubics: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """(n, m, 2) points of cubics (n, 4, 2) at parameters (m,)."""
-    u = 1 - t
-    weights = np.stack([u**3, 3 * t * u**2, 3 * t**2 * u, t**3], axis=1)
-    return np.einsum("mk,nkd->nmd", weights, cubics)
-
-
-def _at_places(cubics: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """(m, 2) points at places that count cubics."""
-    number = np.minimum(places.astype(int), len(cubics) - 1)
-    t = places - number
-    u = 1 - t
-    weights = np.stack([u**3, 3 * t * u**2, 3 * t**2 * u, t**3], axis=1)
-    return np.einsum("mk,mkd->md", weights, cubics[number])
 
 
 def _piece(subpath: SubPath, begin: float, end: float) -> SubPath:
@@ -148,10 +136,9 @@ def _piece(subpath: SubPath, begin: float, end: float) -> SubPath:
         / float(total.sum())
         for k, t in ends
     ]
-    at, widths = subpath.widths.T
-    inner = subpath.widths[(at > upto[0]) & (at < upto[1])]
-    rows = np.vstack(
-        [(upto[0], np.interp(upto[0], at, widths)), inner, (upto[1], np.interp(upto[1], at, widths))]
-    )
+    shares, widths = subpath.widths.T
+    inner = subpath.widths[(shares > upto[0]) & (shares < upto[1])]
+    first, last = ((share, np.interp(share, shares, widths)) for share in upto)
+    rows = np.vstack([first, inner, last])
     rows[:, 0] = (rows[:, 0] - upto[0]) / max(upto[1] - upto[0], 1e-12)
     return SubPath(cubics, widths=rows)

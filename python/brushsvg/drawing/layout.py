@@ -68,7 +68,7 @@ def bounds_mm(design: Design, with_widths: bool = True) -> np.ndarray:
     for element in design.elements:
         if not element.subpaths:
             continue
-        halves = [_half_width_mm(element, subpath) if with_widths else 0.0 for subpath in element.subpaths]
+        halves = [half_width_mm(element, subpath) if with_widths else 0.0 for subpath in element.subpaths]
         half = np.repeat(halves, [len(subpath.cubics) for subpath in element.subpaths])[:, None]
         points = extremes(np.concatenate([subpath.cubics for subpath in element.subpaths]))
         half = np.tile(half, (len(points) // len(half), 1))
@@ -77,7 +77,7 @@ def bounds_mm(design: Design, with_widths: bool = True) -> np.ndarray:
     return box
 
 
-def _half_width_mm(element: Element, subpath: SubPath) -> float:
+def half_width_mm(element: Element, subpath: SubPath) -> float:
     return (element.stroke_width_mm if subpath.widths is None else float(subpath.widths[:, 1].max())) / 2
 
 

@@ -19,11 +19,19 @@ from .transform import Matrix, multiply, parse_transform, scales
 if TYPE_CHECKING:
     import shapely
 
+_CSS_TRANSFORMS = frozenset(("transform", "translate", "rotate", "scale"))
 _DEEPEST = 20  # clip paths and uses in each other
 
 
 class ClipPathError(Error):
     """A clip path that cannot be read: the element is painted whole."""
+
+
+def _refuse_css_transform(style: Style) -> None:
+    """Attributes are read; a transform that CSS says would be passed over, and the clip path be elsewhere."""
+    if not _CSS_TRANSFORMS.isdisjoint(style.geometry):
+        sentence = "its clip path has a transform in CSS, which is not read: painted whole"
+        raise ClipPathError(sentence, code="clipping-unread")
 
 
 class ClipPaths:
@@ -60,9 +68,10 @@ class ClipPaths:
                 sentence = "its clip path counts in the size of a group, which is not read: painted whole"
                 raise ClipPathError(sentence, code="clipping-unread")
             matrix = multiply(matrix, (box[2], 0.0, 0.0, box[3], box[0], box[1]))
+        style, _ = cascade(context.style, node.attrib, self._rules.of(node), context.diagonal)
+        _refuse_css_transform(style)
         parts = [*self._shapes(node, context._replace(matrix=matrix), context.style, depth)]
         region = shapely.union_all(parts)
-        style, _ = cascade(context.style, node.attrib, self._rules.of(node), context.diagonal)
         return self._own(style, context, region, depth)
 
     def _own(self, style: Style, context: Context, region, depth: int) -> shapely.Geometry:
@@ -84,6 +93,7 @@ class ClipPaths:
             style, _ = cascade(parent, child.attrib, self._rules.of(child), context.diagonal)
             if style.own["display"] == "none" or style.inherited["visibility"] != "visible":
                 continue
+            _refuse_css_transform(style)
             matrix: Matrix = context.matrix
             if child.get("transform"):
                 matrix = multiply(matrix, parse_transform(child.get("transform", "")))
