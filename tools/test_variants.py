@@ -1,10 +1,10 @@
 """Run the tests under other arithmetic and list what changes: `make test-variants`.
 
 Processors differ in the last bits of sums and functions: fused multiply-adds, other kernels of OpenBLAS, numpy, glibc
-and Highway. No test may depend on them. Each variant here changes one of these. Variants that need another build
-have their own in build/variants; the others use the plain build there.
+and Highway. No test may depend on them. Each variant here is a processor: everything that calculates takes the way that
+it would take there. What fails under one is tried again under each of its parts, which are variants as well.
 
-    tools/test_variants.py --variant v3-fma --variant glibc-no-fma --suite python --tests 'test_fit*'
+    tools/test_variants.py --variant haswell --variant glibc-no-fma --suite python --tests 'test_fit*'
 """
 
 from __future__ import annotations
@@ -24,8 +24,15 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 SITE = ROOT / "tools/variant_site"
 BUILDS = ROOT / "build/variants"
-OPENBLAS_CORES = ("Haswell", "Zen", "SkylakeX")
+OPENBLAS_CORES = ("Nehalem", "Haswell", "Zen", "SkylakeX")
 HIGHWAY_BITS = (("baseline", "14"), ("ssse3", "12"), ("sse4", "11"), ("avx2", "9"))  # hwy/detect_targets.h
+# of the parts of find_variants: what these processors are made of. The first has no FMA, the second no AVX-512.
+PROCESSORS = {
+    "nehalem": ("glibc-no-fma", "numpy-baseline", "openblas-nehalem", "highway-sse4"),
+    "haswell": ("v3-fma", "numpy-no-avx512", "openblas-haswell", "highway-avx2"),
+    "skylake-x": ("openblas-skylakex",),
+    "no-contraction": ("no-contract",),
+}
 PYTEST_SUITES = {
     "python": ["tests/python", "tests/laws", "-m", "not long and not thorough"],
     "laws": ["tests/laws", "-m", "long"],
@@ -37,16 +44,16 @@ SWITCHES = ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "GLIBC_TUNABLES")
 
 @dataclass(frozen=True)
 class Variant:
-    """What is different from the plain build. `changes` names the entry of the fingerprint that must show it."""
+    """What is different from the plain build. `changes` names the entries of the fingerprint that show it."""
 
     name: str
-    changes: str = ""
+    changes: tuple[str, ...] = ()
     flags: str = ""  # of the compiler
     environment: dict[str, str] = field(default_factory=dict)
 
     @property
     def build(self) -> Path:
-        return BUILDS / (self.name if self.flags else "plain")
+        return BUILDS / ("flags" + self.flags.replace(" ", "") if self.flags else "plain")
 
     @property
     def results(self) -> Path:
@@ -54,12 +61,12 @@ class Variant:
 
 
 def find_variants(plain: dict) -> list[Variant]:
-    """List all variants of a processor on which the plain build calculates like this."""
+    """List the parts that can be changed on a processor on which the plain build calculates like this."""
     of_512 = [name for name in plain["numpy"] if name.startswith(("X86_V4", "AVX512"))]
     out = [
-        Variant("no-contract", "core", "-ffp-contract=off"),
+        Variant("no-contract", ("core",), "-ffp-contract=off"),
         # tables of Eigen go to the distribution's Ceres, which aligns them by 16
-        Variant("v3-fma", "core", "-march=x86-64-v3 -ffp-contract=fast -DEIGEN_MAX_ALIGN_BYTES=16"),
+        Variant("v3-fma", ("core",), "-march=x86-64-v3 -ffp-contract=fast -DEIGEN_MAX_ALIGN_BYTES=16"),
     ]
     for name, changes, switch, value in (
         ("glibc-no-fma", "glibc", "GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4"),
@@ -68,8 +75,14 @@ def find_variants(plain: dict) -> list[Variant]:
         *((f"openblas-{core.lower()}", "blas", "OPENBLAS_CORETYPE", core) for core in OPENBLAS_CORES),
         *((f"highway-{name}", "highway", "BRUSHSVG_VARIANT_HIGHWAY_BIT", bit) for name, bit in HIGHWAY_BITS),
     ):
-        out.append(Variant(name, changes, environment={switch: value}))
+        out.append(Variant(name, (changes,), environment={switch: value}))
     return out
+
+
+def together(name: str, parts: list[Variant]) -> Variant:
+    changes = tuple(dict.fromkeys(change for part in parts for change in part.changes))
+    environment = {key: value for part in parts for key, value in part.environment.items()}
+    return Variant(name, changes, " ".join(part.flags for part in parts if part.flags), environment)
 
 
 def run(*words: str | Path, **settings) -> subprocess.CompletedProcess:
@@ -119,7 +132,11 @@ def why_skipped(variant: Variant, found: dict, known: dict[str, dict]) -> str:
     """Say which variant already calculates like this one, or nothing. Another build is always run."""
     if variant.flags:
         return ""
-    alike = [name for name, other in known.items() if found[variant.changes] == other[variant.changes]]
+    alike = [
+        name
+        for name, other in known.items()
+        if all(found[change] == other[change] for change in variant.changes)
+    ]
     return f"skipped: calculates like {alike[0]} on this processor" if alike else ""
 
 
@@ -189,7 +206,11 @@ def read_options() -> argparse.Namespace:
     formatter = argparse.RawDescriptionHelpFormatter
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=formatter)
     add = parser.add_argument
-    add("--variant", action="append", help="run only this one; repeat it for more (default: all)")
+    add(
+        "--variant",
+        action="append",
+        help="processor or part; repeat it for more (default: plain and processors)",
+    )
     add(
         "--suite",
         action="append",
@@ -212,11 +233,14 @@ def main() -> int:
     targets = ["_core", *(["brushsvg_tests"] if "cpp" in suites else [])]
     build(plain, targets)
     known = {"plain": fingerprint(plain)}
-    variants = [plain, *find_variants(known["plain"])]
+    parts = {variant.name: variant for variant in find_variants(known["plain"])}
+    processors = [together(name, [parts[part] for part in made_of]) for name, made_of in PROCESSORS.items()]
+    variants = [plain, *processors, *parts.values()]
     names = [variant.name for variant in variants]
     if unknown := set(options.variant or []) - set(names):
         raise SystemExit(f"unknown variant {', '.join(sorted(unknown))}: choose from {', '.join(names)}")
-    variants = [variant for variant in variants if not options.variant or variant.name in options.variant]
+    chosen = options.variant or [variant.name for variant in (plain, *processors)]
+    variants = [variant for variant in variants if variant.name in chosen]
 
     rows, results = [], {}
     for variant in variants:
@@ -232,7 +256,7 @@ def main() -> int:
             rows.append((variant.name, "", "runs here"))
             continue
         for suite in suites:
-            if suite == "cpp" and variant.changes == "highway":
+            if suite == "cpp" and variant.changes == ("highway",):
                 continue  # these tests go through all targets on their own
             now = results[variant.name, suite] = run_suite(variant, suite, options.tests, options.processes)
             failed = [name for name, passed in now.items() if not passed]
@@ -245,6 +269,9 @@ def main() -> int:
     print()
     for name, suite, line in [("variant", "suite", "outcome"), *rows]:
         print(f"{name:18} {suite:7} {line}")
+    print()
+    for name, made_of in PROCESSORS.items():
+        print(f"{name:18} {', '.join(made_of)}")
     return int(any(not passed for now in results.values() for passed in now.values()))
 
 
