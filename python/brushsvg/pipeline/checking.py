@@ -301,7 +301,7 @@ def _foreign(path: str, text: str, chosen: Choices, told: Told) -> Check:
             sentence = f"brushsvg did not write it: --{flag} would change nothing"
             raise Error(sentence, code="flag-without-effect")
     cell, brush = cell_of(chosen.cell), brush_of(chosen.brush) or find_brush(DEFAULT_BRUSH)
-    found = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z or 0.0)
+    found = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z)
     told(path, found.warnings)
     shown = Work("", brush, found.plan, None, (), Options(cell=cell), ())
     figures = outputs.reported(shown, found.marks, cell)

@@ -36,8 +36,7 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     pen = read_pen(some, options.pen, options.paper_z_mm) if some else None
     if pen and pen.share < LEAST_SHARE and options.pen is None and options.paper_z_mm is None:
         sentence = f"only {100 * pen.share:.0f} % of what it seems to draw is read: {pen.how}"
-        advice = "--pen z or --pen servo chooses the other reading, --paper-z MM the height at which it draws"
-        raise Error(sentence, code="pen-unclear", advice=advice)
+        raise Error(sentence, code="pen-unclear", advice=_other_readings(some, pen.kind))
     chains = _chains(some, pen.down if pen else ())
     notices = []
     if pen:
@@ -64,6 +63,15 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     shift = MARGIN_MM - ends.min(axis=0)
     width, height = (ends.max(axis=0) + shift + MARGIN_MM).tolist()
     return Design((width, height), tuple(_moved(each, shift) for each in elements), tuple(notices))
+
+
+def _other_readings(some: list[Way], kind: str) -> str:
+    """What to type for those that a program has."""
+    has_height = any(np.isfinite(way.points_mm[:, 2]).any() for way in some)
+    other = "servo" if kind == "z" else "z"
+    has_other = any(way.power is not None for way in some) if kind == "z" else has_height
+    readings = [f"--pen {other} chooses the other reading"] if has_other else []
+    return ", ".join(readings + (["--paper-z MM gives the height at which it draws"] if has_height else []))
 
 
 def _chains(some: list[Way], down: Sequence[bool]) -> list[list[Way]]:

@@ -43,25 +43,34 @@ def read_pen(some: list[Way], kind: str | None = None, paper_z_mm: float | None 
     across = [bool(np.ptp(way.points_mm[:, :2], axis=0).any()) for way in some]
     by_z, by_servo = _levels(some, across), _values(some, across)
     if kind is None:
-        has_servo = any(way.power is not None for way in some)
-        by_height = not has_servo or _changes(by_z) >= max(_changes(by_servo), 1)
-        kind = "z" if paper_z_mm is not None or by_height else "servo"
+        kind = "z" if paper_z_mm is not None else pen_kind(some)
     if kind == "z":
         down, how = _by_height(some, across, by_z, paper_z_mm)
     else:
         down, how = _by_servo(some, across)
     if not any(down) and paper_z_mm is None and len(set(filter(None, by_z))) < 2 and _changes(by_servo) == 0:
-        raise _unknown()
+        raise _unknown(by_z)
     return Pen(
         tuple(down), kind, how, _share(some, across, down), tuple(_rapids_that_paint(some, across, down))
     )
 
 
-def _unknown() -> Error:
+def pen_kind(some: list[Way]) -> str:
+    """ "z" or "servo": whichever the program moves between strokes, Z where both do equally often."""
+    if all(way.power is None for way in some):
+        return "z"
+    across = [bool(np.ptp(way.points_mm[:, :2], axis=0).any()) for way in some]
+    changes_z, changes_servo = _changes(_levels(some, across)), _changes(_values(some, across))
+    return "z" if changes_z >= max(changes_servo, 1) else "servo"
+
+
+def _unknown(levels: list[float | None]) -> Error:
     sentence = (
-        "nothing shows when its pen is down: no height that changes between strokes, and neither M3 nor M5"
+        "nothing shows when its pen is down: no height changes between strokes, and no M3, M5 or M280 stands"
     )
-    return Error(sentence, code="pen-unknown", advice="--paper-z MM gives the height at which it draws")
+    known = [level for level in levels if level is not None]
+    advice = f"--paper-z {known[0]:g} reads all lines at this height" if known else ""
+    return Error(sentence, code="pen-unknown", advice=advice)
 
 
 def _levels(some: list[Way], across: list[bool]) -> list[float | None]:
@@ -95,7 +104,7 @@ def _by_height(
     if paper_z_mm is not None:
         least_up = paper_z_mm + 2 * SAME_MM
     elif len(known) < 2:
-        raise _unknown()
+        raise _unknown(levels)
     else:
         least_up = _least_of_travel(some, across, known)
     down = [not _is_vertical(way) and float(way.points_mm[:, 2].max()) < least_up - SAME_MM for way in some]
