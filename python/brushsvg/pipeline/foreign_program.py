@@ -52,6 +52,8 @@ def foreign_program(text: str, brush, cell: Cell, sheet_mm=None, paper_z_mm: flo
             f"its pen goes by a servo, whose heights cell {cell.name} gives: --paper-z would change nothing"
         )
         raise Error(sentence, code="flag-without-effect")
+    if not lift and paper_z_mm is None:
+        _refuse_inverted(some)
     some = [replace(way, points_mm=_at_heights(way, lift, paper_z_mm or 0.0)) for way in some]
     passes, careless = _touches(some, cell)
     outside = _outside(some, cell, sheet_mm)
@@ -170,6 +172,17 @@ def _below(start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:
         return np.array([*place[:2], 0.0])
 
     return [at_paper() if start[2] > 0 else start, at_paper() if end[2] > 0 else end]
+
+
+def _refuse_inverted(some: list[Way]) -> None:
+    """Error where Z counts downwards, as no cell's does: what is drawn would be travel, and travel would be drawn."""
+    try:
+        pen = read_pen(some, "z") if some else None
+    except Error:  # nothing shows it
+        return
+    if pen and pen.is_inverted:
+        advice = "convert it for your machine, or give --paper-z MM where Z counts upwards"
+        raise Error(f"{pen.how}: no cell's does", code="z-inverted", advice=advice)
 
 
 def _at_heights(way: Way, lift: Lift | None, paper_z_mm: float) -> np.ndarray:
