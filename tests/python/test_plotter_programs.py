@@ -264,5 +264,7 @@ def test_the_flags_reach_the_reader(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "sketch.gcode").write_bytes(SKETCH)
     words = "--width 3 --paper-z 0 --pen z --skip-region 30,30,100,50 --skip-comment nothing".split()
+    assert is_told(in_json(capsys, "convert", "sketch.gcode", "out.ngc")[2], "gcode-no-width 1 --width")
     status, _, told = in_json(capsys, "convert", "sketch.gcode", "out.ngc", *words)
+    assert not is_told(told, "gcode-no-width"), "they have one"
     assert status == 0 and is_told(told, "strokes-skipped 1 2"), told

@@ -52,8 +52,8 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     if not elements:
         raise nothing_to_paint(notices)
     ends = np.concatenate([sub.cubics[:, ::3].reshape(-1, 2) for each in elements for sub in each.subpaths])
-    sentence = f"a program has no widths: its lines count as {WIDTH_MM:g} mm wide where --width tells none"
-    notices.append(Notice("", sentence, code="gcode-no-width"))
+    sentence = f"G-code has no widths: its lines count as {WIDTH_MM:g} mm wide"
+    notices.append(Notice("", sentence, code="gcode-no-width", advice="--width MM sets their width"))
     down = np.concatenate([way.points_mm[:, 2] for chain in chains for way in chain])
     if np.isfinite(down).all() and np.ptp(down) > 1e-3:
         sentence = f"its pen goes at heights from {down.min():.6g} to {down.max():.6g} mm: they are left out"
