@@ -47,6 +47,7 @@ KINDS_OF_PAGES = {
     "diagnostics.md": "json",
     "drawings.md": "flags",
     "index.md": "{toctree}",
+    "install.md": "make",
     "letters.md": "commands",
     "machines.md": "commands python toml",
     "performance.md": "make",
@@ -231,7 +232,7 @@ README = [
 
 @pytest.mark.slow
 def test_commands_of_the_readme_run_in_their_order(folder, capsys):
-    assert len(README) >= 15
+    assert len(README) >= 5
     for line in README:
         first, *others = line.split(" | ")
         for command in [first, *(f"{line.split()[0]} {other}" for other in others)]:

@@ -125,7 +125,7 @@ class Painted:
 
         found = clipped(element, context.clip)
         if not found:
-            sentence = "it lies outside of the clip path or viewport that would show it: left out"
+            sentence = "it is outside the clip path, mask or viewport that would show it: left out"
             self.notes.add(node, context, sentence, code="clipped-away")
         return found
 
