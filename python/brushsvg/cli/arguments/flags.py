@@ -213,7 +213,9 @@ def add_layout(command: argparse.ArgumentParser) -> None:
         help="keep: paint a white shape that covers the page; default: auto, leave it out (SVG)",
     )
     add("--pen", choices=PENS, help="what lifts the pen of G-code: Z, or a servo (M3); default: found out")
-    add("--paper-z", metavar="MM", type=values.paper_z, help="the height at which G-code draws, and below it")
+    add(
+        "--paper-z", metavar="MM", type=values.paper_z, help="the height at which G-code draws, and beyond it"
+    )
     add(
         "--skip-region",
         metavar="X0,Y0,X1,Y1",
