@@ -405,6 +405,7 @@ UNITS_MM = {"hpgl": 0.025}  # of places in languages that know no fractions
 ARCS_IN_SEGMENTS = ("marlin", "klipper")  # whose firmware makes lines of circles, where it knows any
 RADII_MM = {"fluidnc": 0.005}  # a circle's ends may be so much farther from its centre than each other
 MOST_POINTS = {"fanuc": 1000}  # of one program: longer jobs are parted between strokes
+MOST_LINES = {"urscript": 1000, "krl": 2500}  # the same; a stroke that has more is a program by itself
 RELOADS = ("length", "stroke", "layer")
 
 

@@ -12,7 +12,7 @@ from .. import _core
 from ..errors import Error, Notice
 from .arm.joints import is_installed
 from .arm.place import unreachable
-from .cell import MOST_POINTS, Cell, Station, robot_from_paper, value_mm
+from .cell import MOST_LINES, MOST_POINTS, Cell, Station, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blends, on_the_spot
 from .distortion import told_high_mm, told_mm, true_mm
 from .frames import moved
@@ -110,6 +110,21 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         drawn = dict(zip((a_pass.stroke for a_pass in loads.loads), loads.strokes(), strict=True))
         problems = [replace(each, where=drawn.get(each.where, each.where)) for each in problems]
     return Walked(loads, job, made, written, list(dict.fromkeys(problems)))
+
+
+def beyond_part(loads: PlanInLoads, cell: Cell) -> list[Notice]:
+    """A notice of each stroke that alone has more lines than a program of the language should."""
+    most = MOST_LINES.get(cell.language)
+    return [
+        Notice(
+            a_pass.stroke,
+            f"{count} poses are outside the range [1, {most}] of one program, which the controller may not load",
+            code="poses-too-many",
+            advice="--tolerance makes them fewer",
+        )
+        for a_pass in (loads.loads if most else ())
+        if (count := len(a_pass.poses_mm) + AROUND) > most
+    ]
 
 
 def _as_run(a_pass, made: Program):
