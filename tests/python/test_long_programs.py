@@ -21,6 +21,7 @@ from brushsvg.machine import cell
 from brushsvg.machine.cell import Workspace
 from brushsvg.machine.cell_file import find_cell, write_cell
 from brushsvg.machine.posts import ebb
+from brushsvg.machine.posts.urscript import NEXT
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 MOST = {"ur5e": 1000, "kr6-r900": 2500}  # lines, by the sources that docs/machines.md names
@@ -71,7 +72,7 @@ def test_a_long_job_is_several_programs_that_do_what_one_would(job, capsys):
         events, again = (run_stub(text).events for text in (text_of(files), whole))
         assert [event for event in events if event[0] != "textmsg"] == again
         assert [event[1] for event in events if event[0] == "textmsg"] == [
-            f"brushsvg: go on with part {count}" for count in (2, 3)
+            f"{NEXT} {count}" for count in (2, 3)
         ]
     for plan in ([], [str(first.parents[1] / "waves.json")]):
         status, out, told = call(capsys, "check", str(first), *plan)

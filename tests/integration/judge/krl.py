@@ -1,8 +1,8 @@
 """The part of KRL that a program of moves needs, run as KUKA's programming manual says.
 
 Each module is compiled first: one line that is no KRL, or a name that is not declared in it, and nothing runs. A
-routine that is called runs with what was set before. Then BAS(#INITMOV, 0) sets what holds before a program sets anything: the fastest that the robot can, no tool, no base; how
-far a blend reaches, a program must say itself.
+routine that is called runs with what was set before. Then BAS(#INITMOV, 0) sets what holds before a program sets
+anything: the fastest that the robot can, no tool, no base; how far a blend reaches, a program must say itself.
 """
 
 from __future__ import annotations
