@@ -295,15 +295,15 @@ class Station:
     surface_mm: float = _number("height of the paint's surface", -1e3, 1e3, default=0.0)
     depth_mm: float = _number("how deep the tip goes below the paint's surface", 0, 100, default=0.0)
     rim_mm: float = _number("height of the vessel's rim", -1e3, 1e3, default=0.0)
-    stir_mm: float = _number(
-        "radius of circles in the paint before it is taken, or in the water; 0: none", 0, 100, default=0.0
-    )
-    stir_turns: int = _key("how many circles", "whole", 1, 20, default=2)
     hold_s: float = _number("wait in the paint", 0, 600, default=0.0)
     drip_s: float = _number("wait above it", 0, 600, default=0.0)
     wipe_mm: tuple = _key(
         "points x, y, z that the tip passes afterwards, at press_mm_s", (None, 3), default=()
     )
+    stir_mm: float = _number(
+        "radius of circles in the paint before it is taken, or in the water; 0: none", 0, 100, default=0.0
+    )
+    stir_turns: int = _key("how many circles", "whole", 1, 20, default=2)
 
 
 def briefly(station: Station) -> Station:
@@ -319,15 +319,15 @@ class Reload:
     every_mm: float = _number("for length: paint lasts so far", 1, 1e6, default=300.0)
     backtrack_mm: float = _number("a stroke goes on so far back in its own mark", 0, 100, default=5.0)
     wash: str = _key("station to visit before the colour changes", "text", default="")
-    rinse: bool = _key(
-        "a short visit to that station before more paint of the same colour, too", "yes", default=False
-    )
     narrower_percent: float = _number(
         "for length, and a brush that says how its marks narrow: paint lasts until they are so much narrower; 0: not "
         "looked at",
         0,
         90,
         default=0.0,
+    )
+    rinse: bool = _key(
+        "a short visit to the wash station before more paint of the same colour, too", "yes", default=False
     )
 
 
