@@ -58,12 +58,14 @@ GROUPS = {
     ],
     "five stories": ["tests/journeys/test_stories.py"],
     "drawings of tablets, design tools and other programs": ["tests/python/test_drawings_in_the_wild.py"],
-    "forty clip paths against Chromium": ["tests/integration/test_clips_shown.py"],
+    "forty clip paths and ten masks against Chromium": ["tests/integration/test_clips_shown.py"],
     "single-line fonts": ["tests/python/test_text_fonts_of_lines.py"],
     "sixty plotter programs in fifteen styles": ["tests/python/test_plotter_programs.py"],
     "a program for each colour": ["tests/python/test_per_colour.py"],
     "vpype writes the programs of convert": ["tests/integration/test_vpype.py", "-k", "byte"],
     "no option is shown in Inkscape": ["tests/integration/test_inkscape_tell.py"],
+    "no dialog in Inkscape is wider than 1,000 pixels": ["tests/integration/test_inkscape_dialogs.py"],
+    "the preview says when saving will be refused": ["tests/integration/test_inkscape_preview.py"],
 }
 
 

@@ -2,7 +2,8 @@
 
     pip install tree-sitter tree-sitter-cpp     # in the Python that runs this
     python benchmarks/faults plant              # a copy of the tree with 100 faults, each switched off; built
-    python benchmarks/faults map [PATH ...]     # all tests once: who comes by which fault, and how long each takes
+    python benchmarks/faults map [PATH ...]     # all tests once: who comes by which fault, and how long each takes;
+                                                # --tier ci first, and the others where faults survive
     python benchmarks/faults try                # each fault switched on, for the tests that come by
     python benchmarks/faults report             # a table, totals, and the survivors
 
@@ -44,6 +45,12 @@ def main() -> None:
         "--work", type=Path, default=ROOT / "build" / "faults", help="folder (default: %(default)s)"
     )
     parser.add_argument("--root", type=Path, default=ROOT, help="tree to plant in (default: this one)")
+    parser.add_argument(
+        "--tier",
+        choices=["ci", "all"],
+        default="all",
+        help="of tests to map; ci: those of .ci/run (default: all)",
+    )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--python", type=int, default=65, help="faults in Python (default: %(default)s)")
     parser.add_argument("--cpp", type=int, default=35, help="faults in C++ (default: %(default)s)")
@@ -63,7 +70,7 @@ def main() -> None:
         return
     faults = read_faults(work)
     if args.step == "map":
-        tree.map_tests(args.paths, args.jobs)
+        tree.map_tests(args.paths, args.jobs, args.tier)
     elif args.step == "try":
         if not tree.tiers.exists():
             tree.collect_tiers()

@@ -106,7 +106,7 @@ class Tree:
 
     # the map
 
-    def map_tests(self, paths: list[str], processes: int) -> None:
+    def map_tests(self, paths: list[str], processes: int, tier: str) -> None:
         """Run tests without a fault, and write down who comes by which; those that ran before are left out.
 
         paths: files and folders, cpp for the tests of C++; none for all suites.
@@ -122,7 +122,10 @@ class Tree:
         runs = (
             apart([path for path in paths if path != "cpp"])
             if paths
-            else [("-m", *suite) for suite in SUITES]
+            else [
+                ("-m", markers + (" and not thorough" if tier == "ci" else ""), *at)
+                for markers, *at in SUITES
+            ]
         )
         for words in runs:
             self.pytest("-n", processes, "--dist", "loadfile", *words, show=True, **settings)

@@ -14,7 +14,8 @@ from xml.etree import ElementTree
 
 from brushsvg_program import DRAWING, Run, arguments, choices, guarded, selection
 
-PAINTED, MISSED = "#1c8fd4", "#d4351c"  # not the drawing's own colours: both can be seen through each other
+PAINTED, MISSED = "#1c8fd4", "#d4351c"  # the drawing shows through both
+FILL_OPACITY, EDGE, EDGE_MM = 0.6, "#ffffff", 0.15  # the edge shows a mark on ink of its own colour
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 SODIPODI = "{http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd}"
@@ -36,7 +37,7 @@ def main() -> None:
         marks = ElementTree.fromstring(run.made("marks.svg"))
     root = document.getroot()
     remove_layer(root, LAYER_ID)
-    root.append(_layer(etree, marks, root, warnings))
+    root.append(_layer(etree, marks, root, warnings, run.save_refuses))
     document.write(sys.stdout.buffer)
 
 
@@ -67,12 +68,13 @@ def remove_layer(root, name: str) -> None:
             node.getparent().remove(node)
 
 
-def _layer(etree, marks, root, warnings: list[str]):
+def _layer(etree, marks, root, warnings: list[str], save_refuses: list[str]):
     paths = marks.findall(f"{SVG}path")
     missed = {path for path in paths if path.get("data-missed") == "yes"}
     if root.get("transform"):
         warnings = [*warnings, MOVED]
-    layer = locked_layer(etree, LAYER_ID, _label(paths, len(missed), marks, len(warnings)))
+    label = _label(paths, len(missed), marks, len(warnings), save_refuses)
+    layer = locked_layer(etree, LAYER_ID, label)
     in_user = user_from_mm(root, _mm(marks.get("width")), _mm(marks.get("height")))
     layer.set("transform", f"{own_undone(root)} {in_user}".strip())
     if warnings:
@@ -81,7 +83,8 @@ def _layer(etree, marks, root, warnings: list[str]):
         colour = MISSED if path in missed else PAINTED
         mark = etree.SubElement(layer, f"{SVG}path")
         mark.set("d", path.get("d").strip())
-        mark.set("style", f"fill:{colour};fill-opacity:0.6;fill-rule:nonzero;stroke:none")
+        filled = f"fill:{colour};fill-opacity:{FILL_OPACITY};fill-rule:nonzero"
+        mark.set("style", f"{filled};stroke:{EDGE};stroke-width:{EDGE_MM}")
         mark.set(f"{INKSCAPE}label", path.get("data-stroke"))
     return layer
 
@@ -97,7 +100,10 @@ def locked_layer(etree, name: str, label: str):
     return layer
 
 
-def _label(paths, missed: int, marks, warnings: int) -> str:
+def _label(paths, missed: int, marks, warnings: int, save_refuses: list[str]) -> str:
+    if save_refuses:
+        more = f" (and {len(save_refuses) - 1} more)" if save_refuses[1:] else ""
+        return f"Brush preview: saving a program will be refused: {save_refuses[0]}{more}"
     count = len(paths)
     parts = [f"{count} stroke{'s' * (count != 1)}"]
     misses_mm = [float(path.get("data-miss-mm")) for path in paths if path.get("data-miss-mm")]

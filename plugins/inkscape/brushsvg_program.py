@@ -127,9 +127,17 @@ class Run:
         self.folder.cleanup()
 
     def finish(self, may_refuse: bool = False) -> tuple[str, list[str]]:
-        """What it printed, and its lines of warning. StopError where it refused: may_refuse and printed is fine."""
+        """What it printed, and its lines of warning. StopError where it refused: may_refuse and printed is fine.
+
+        `save_refuses` holds the warnings for which it would write no program.
+        """
         out, err = self.process.communicate()
         notices = [(line, _notice(line)) for line in err.splitlines()]
+        self.save_refuses = [
+            self._in_words(notice)
+            for _, notice in notices
+            if notice and (notice["damaged"] or notice["refused"])
+        ]
         told = [self._in_words(notice) if notice else line for line, notice in notices]
         status = self.process.returncode
         if status == 0 or (may_refuse and status == 1 and out):
@@ -201,7 +209,11 @@ def _notice(line: str) -> dict | None:
     """A warning or refusal of brushsvg, None for any other line."""
     try:
         notice = json.loads(line)
-        return notice if {"file", "where", "sentence", "code", "advice", "damaged"} <= notice.keys() else None
+        return (
+            notice
+            if {"file", "where", "sentence", "code", "advice", "damaged", "refused"} <= notice.keys()
+            else None
+        )
     except (ValueError, AttributeError):
         return None
 

@@ -19,9 +19,7 @@ OWN = {  # what brushsvg does where the document says nothing
     "compensation": "closed",
     "start": "auto",
     "end": "auto",
-    "cell": "linuxcnc-3axis, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120, "
-    "for Python xarm6, for KRL kr6-r900, for Lua cr5, for TP lrmate200id, for DRL m0609, for ROS 2 fr3, "
-    "for EBB axidraw-ebb, for HP-GL hpgl-plotter",
+    "cell": "the usual machine of the format that you save",
     "wide": "auto",
     "tolerance": "0.05mm",
 }

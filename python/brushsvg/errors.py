@@ -61,7 +61,8 @@ class Notice:
     where: the element, stroke or key, "" if none. damaged: the geometry itself is broken and was read up to the error;
     convert refuses it unless lenient. layer: where the element lies, None for what concerns the whole drawing.
     code: of what kind it is. about: what of that kind, where alike
-    are only those of the same: a CSS property, a kind of element. advice: what to type, see Error.
+    are only those of the same: a CSS property, a kind of element. advice: what to type, see Error. refused: `convert`
+    writes no program because of it.
     """
 
     where: str
@@ -71,6 +72,7 @@ class Notice:
     code: str = ""
     about: str = ""
     advice: str = ""
+    refused: bool = False
 
     def __iter__(self):
         """For `where, sentence = notice`."""
@@ -84,7 +86,7 @@ class Notice:
     def as_json(self) -> dict[str, str | bool]:
         """For programs that read us: the sentence ends in the advice."""
         told = {"where": self.where, "sentence": self.told, "code": self.code}
-        return told | {"advice": self.advice, "damaged": self.damaged}
+        return told | {"advice": self.advice, "damaged": self.damaged, "refused": self.refused}
 
     @property
     def kind(self) -> tuple[str, str, bool]:

@@ -49,11 +49,41 @@ def drawing(name: str, around: str, chance: random.Random) -> str:
     elif around == "two groups":
         body = f'<g clip-path="url(#d)"><g transform="translate(4 2)"{attribute}>{body.format("")}</g></g>'
     else:
-        body = f'<defs><g id="all">{body.format("")}</g></defs><use href="#all"{attribute}/>'
+        body = f'<defs><g id="all">{body.format("")}</g></defs><use href="#all" x="12"{attribute}/>'
     return (
         '<svg xmlns="http://www.w3.org/2000/svg" width="200" height="200" viewBox="0 0 200 200">'
         f"<defs>{definitions}</defs>{body}</svg>"
     )
+
+
+MASK_UNITS = (
+    "",
+    'maskUnits="userSpaceOnUse" x="20" y="10" width="150" height="160"',
+    'x="0" y="5%" width="0.9" height="80%"',
+)
+MASKED = {
+    "on the shape": '<path d="{0}" mask="url(#m)"/>',
+    "on a group": '<g transform="rotate(9)" mask="url(#m)"><path d="{0}"/></g>',
+    "on a use": '<defs><path id="s" d="{0}"/></defs><use href="#s" x="10" mask="url(#m)"/>',
+}
+
+
+def test_masks_of_white_and_black_shapes_are_what_chromium_shows(tmp_path):
+    chance, drawings = random.Random(7), {}
+    for name, shape in CLIPS.items():
+        around = chance.choice([*MASKED])
+        units = chance.choice(MASK_UNITS if around == "on the shape" else MASK_UNITS[:2])
+        shape = shape.replace("clip-rule", "fill-rule")
+        hole = f'<g fill="black" transform="translate(30 {chance.uniform(0, 40):.1f}) scale(.5)">{CLIPS["star"]}</g>'
+        mask = f'<mask id="m" {units}><g fill="white">{shape}</g>{hole}</mask>'
+        drawings[name, around, units] = (
+            '<svg xmlns="http://www.w3.org/2000/svg" width="200" height="200" viewBox="0 0 200 200">'
+            f'<defs><circle id="dot" cx="70" cy="80" r="55"/></defs>{mask}{MASKED[around].format(RING)}</svg>'
+        )
+    seen = shown(list(drawings.values()), tmp_path)
+    for (name, text), dark in zip(drawings.items(), seen, strict=True):
+        ours, told = painted(text)
+        assert not told and difference(dark, ours) <= 0.01, (name, told)
 
 
 @pytest.fixture(scope="module")

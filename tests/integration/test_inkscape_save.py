@@ -51,6 +51,7 @@ def test_the_same_bytes_as_the_command_line(plugin, tmp_path, name, entry):
 @pytest.mark.parametrize("cell", [name for name in cell_names() if name != "xarm7"])
 def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
     extension = POSTS[find_cell(cell).language].extensions[0]
+    extension = ".plt" if extension == ".hpgl" else extension  # Inkscape's own exporter takes .hpgl
     drawing, saved = tmp_path / "drawing.svg", tmp_path / f"saved{extension}"
     drawing.write_text(SOUND)
     entry = {
@@ -64,13 +65,12 @@ def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
         ".drl": "doosan",
         ".csv": "ros2",
         ".ebb": "ebb",
-        ".hpgl": "hpgl",
+        ".plt": "hpgl",
     }.get(extension, "gcode")
     pen = {f"save.{entry}__brush": "rigid"} if find_cell(cell).pen else {}  # which has one depth
-    chosen = entry if entry == "hpgl" else ""  # Inkscape has an entry of its own for it
     plugin.set(**{f"save.{entry}__cell": cell}, **pen)
     try:
-        plugin.save(drawing, saved, chosen)
+        plugin.save(drawing, saved)
     finally:
         plugin.set()
     brushsvg(

@@ -7,14 +7,9 @@ from command import SOUND, brushsvg
 from diagnostics import gives
 from plugin import SOURCE, sentence
 
-from brushsvg.machine.cell_file import DEFAULT_CELL
 from brushsvg.pipeline.options import DEFAULT_BRUSH, Options
 
-MACHINES = (
-    f"{DEFAULT_CELL}, for URScript ur5e, for JAKA script jaka-zu3, for RAPID irb120, for Python xarm6, "
-    "for KRL kr6-r900, for Lua cr5, for TP lrmate200id, for DRL m0609, for ROS 2 fr3, "
-    "for EBB axidraw-ebb, for HP-GL hpgl-plotter"
-)
+MACHINES = "the usual machine of the format that you save"
 STORED = {"brush": "mine", "cell": "grbl-servo", "tolerance": "0.1mm", "speed": "7"}
 
 

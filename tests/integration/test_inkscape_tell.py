@@ -107,7 +107,7 @@ def test_no_flag_is_shown_in_a_dialog(monkeypatch, sentence, advice, shown):
     monkeypatch.syspath_prepend(SOURCE)
     from brushsvg_tell import in_dialogs
 
-    notice = {"sentence": sentence, "advice": advice, "code": "any", "damaged": False}
+    notice = {"sentence": sentence, "advice": advice, "code": "any", "damaged": False, "refused": False}
     assert in_dialogs(notice) == shown
 
 

@@ -168,8 +168,9 @@ def test_outlines_and_widths_come_back(name, tmp_path, capsys):
         # the top is flat: what can be told is a place that is as wide
         assert np.ptp(contour[:, 1]) - wide_at(contour, found.tip_to_widest(depth)) < 0.05, depth
         assert abs(found.tip_gap(depth) - GAP[1] * depth) < 0.25, depth
-    # the fronts of both others lie behind those of depth 6.7, on the way
-    assert gives(report, "8 mm") == (name != "egg")
+    # the front is behind that of depth 6.7 on the way; of the egg by too little to see
+    if name != "egg":
+        assert gives(report, "8 mm")
     about = json.loads(path.read_text())["footprints"]
     assert about["assumed"] is False and 0.001 < about["standard_error_mm"] < 0.1
 

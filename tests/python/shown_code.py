@@ -59,10 +59,6 @@ def cells(notebook: Path) -> list[str]:
 # Commands that no test types as they stand: (page, what the line begins with), and why.
 NOT_RUN = {
     ("README.md", "brushsvg calibrate photo.jpg --chart"): "as in docs/photograph.md, where it runs",
-    ("README.md", "brushsvg compare photo.jpg"): "as in docs/compare.md, where it runs",
-    ("README.md", "brushsvg calibrate photo.jpg --plan"): "as in docs/compare.md, where it runs",
-    ("README.md", "brushsvg article"): "test_article.py holds docs/article.md against what it writes",
-    ("README.md", "brushsvg install-plugin"): "as in docs/plugins.md, where it runs",
     ("article.md", "brushsvg article"): "test_article.py holds the page itself against what it writes",
     (
         "batch.md",

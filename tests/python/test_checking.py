@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnostics import agrees, in_json, is_told, refused
+from diagnostics import agrees, gives, in_json, is_told, refused
 from programs import LANGUAGES, RUNNABLE, SERVOS, call
 from sampling import sample
 
@@ -291,7 +291,10 @@ def test_a_plan_is_a_drawing_too(desk, capsys):
         status, out, err = call(capsys, "check", f"two{suffix}", "plan.json")
         assert (status, err) == (0, [])
         assert out.endswith(f"two{suffix}: {RUNNABLE}\n")
-    assert call(capsys, "check", "two.ngc", "two.svg")[0] == 1, "it was made without compensation"
+    status, _, told = in_json(capsys, "check", "two.ngc", "two.svg")
+    assert status == 1, "it was made without compensation"
+    ((_, told),) = told
+    assert told.code == "plan-unlike-drawing" and gives(told.advice, "plan.json")
     plan = json.loads((desk / "plan.json").read_text())
     plan["passes"][1]["poses_mm"][2][0] += 0.5
     (desk / "plan.json").write_text(json.dumps(plan))

@@ -613,7 +613,8 @@ def test_the_package_runs_as_a_module(desk):
     assert (
         done.stderr
         == b"brushsvg: b.svg does not end in .json or .ngc or .gcode or .nc or .script or .jks or .mod or .py or .src "
-        b"or .lua or .ls or .drl or .csv or .traj or .cdr or .ebb or .hpgl or .robodk (see brushsvg convert --help)\n"
+        b"or .lua or .ls or .drl or .csv or .traj or .cdr or .ebb or .hpgl or .plt or .robodk "
+        b"(see brushsvg convert --help)\n"
     )
     done = spawn("--version", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert (done.returncode, done.stderr) == (0, b"")

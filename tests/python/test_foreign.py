@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnostics import gives, in_json, is_told, refused
+from diagnostics import agrees, gives, in_json, is_told, refused
 from programs import RUNNABLE, call
 
 from brushsvg.drawing import ReadOptions
@@ -137,6 +137,74 @@ def test_check_predicts_what_a_brush_paints(desk, capsys):
     assert status == 0 and gives(out.splitlines()[0], "2")
     status, _, said = in_json(capsys, "check", "servo.nc")
     assert status == 1 and is_told(said, "servo-unknown 7 M3")
+
+
+ANGLES = """G21 G90
+M280 P0 S90
+G0 X30 Y30
+M280 P0 S30
+G1 X50 Y30 F1200
+M280 P0 S90
+G0 X60 Y50
+M280 P0 S30
+G1 X80 Y60
+M280 P0 S90
+"""
+SPINDLE = """G21 G90
+M3 S1000
+G0 Z5
+G0 X30 Y30
+G1 Z-1 F300
+G1 X50 Y30 F1200
+G0 Z5
+M5
+"""
+
+
+@pytest.mark.parametrize(
+    ("program", "typed", "told"),
+    [
+        (ANGLES, "", "servo-unknown 3 M280 linuxcnc-3axis"),
+        (ANGLES, "--cell grbl-servo", "servo-unknown 3 M280 grbl-servo"),
+        (SERVO, "", "servo-unknown 7 M3 linuxcnc-3axis"),
+        (SERVO, "--cell marlin-servo", "servo-unknown 7 M3 marlin-servo"),
+        (SPINDLE, "--cell grbl-servo", "servo-unknown Z grbl-servo"),
+        (SPINDLE, "--cell marlin-servo", "servo-unknown Z marlin-servo"),
+        (SPINDLE.replace("Z-1", "Z0"), "", "nothing-painted 0"),
+    ],
+)
+def test_what_check_advises_works_when_it_is_typed(desk, capsys, program, typed, told):
+    """Of M280, M3 and grbl-servo were advised; of a servo, --paper-z."""
+    (desk / "f.gcode").write_text(program)
+    status, _, ((_, said),) = in_json(capsys, "check", "f.gcode", *typed.split())
+    assert status == 1 and agrees(said, told), said
+    advised = re.search(r"--(cell|paper-z) [\w.-]+", said.advice)[0].split()
+    status, out, _ = call(capsys, "check", "f.gcode", *advised)
+    strokes = "1" if "Z5" in program else "2"
+    assert status == 0 and gives(out.splitlines()[0], strokes)
+
+
+def test_values_that_no_table_has_ask_for_a_table(desk, capsys):
+    """A servo of 0 to 90: all of it was deeper than the deepest row of the table."""
+    (desk / "f.gcode").write_text(SERVO.replace("S500", "S30"))
+    for cell in ("linuxcnc-3axis", "grbl-servo"):
+        status, _, ((_, said),) = in_json(capsys, "check", "f.gcode", "--cell", cell)
+        assert status == 1 and agrees(said, "servo-unknown 7 S30 cell grbl-servo [servo]"), said
+    command = re.search(r"brushsvg (cell new .*?)  ", said.advice)[1]
+    assert call(capsys, *command.split())[0] == 0
+    table = "table = [[-8.0, 0.0], [-1.0, 30.0], [10.0, 90.0]]"
+    mine = re.sub(r"(?m)^table = .*", table, (desk / "mine.toml").read_text())
+    (desk / "mine.toml").write_text(mine)
+    assert call(capsys, "check", "f.gcode", "--cell", "mine.toml")[0] == 0
+    status, _, said = in_json(capsys, "check", "f.gcode", "--cell", "mine.toml", "--paper-z", "1")
+    assert status == 1 and is_told(said, "flag-without-effect --paper-z")
+
+
+def test_without_a_height_nothing_is_advised_for_one(desk, capsys):
+    (desk / "f.gcode").write_text("G21\nG0 X1 Y1\nG1 X40 Y5 F100\n")
+    for command in (("check", "f.gcode"), ("convert", "f.gcode", "f.ngc")):
+        status, _, ((_, said),) = in_json(capsys, *command)
+        assert status == 1 and "--paper-z" not in said.advice, said
 
 
 @pytest.mark.parametrize(

@@ -75,3 +75,10 @@ def test_what_cannot_be_fitted():
         box(Layout(fit_mm=(10, 10), width_mm=12.0))
     with refused("drawing-does-not-fit"):
         box(Layout(fit_mm=(10, 10), width_mm=2.0), '<path d="M5 5z"/>')
+
+
+def test_with_a_width_nothing_is_told_of_those_of_the_drawing():
+    design = read('<path id="a" transform="scale(1 2)" d="M10 10H50"/><text id="t">A</text>')
+    assert [each.code for each in design.notices] == ["stretched-unevenly", "text-unread"]
+    arranged = arrange(design, Layout(width_mm=3.0))
+    assert [each.code for each in arranged.notices] == ["text-unread"]

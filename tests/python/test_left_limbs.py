@@ -51,7 +51,11 @@ def test_no_limb_of_a_thick_stem_is_lost(tmp_path, corners, compensation):
     work = prepared(tmp_path, corners, compensation=compensation)
     share, fits = blank(corners, predict(work))
     assert share < 0.03 or not fits
-    assert not work.unreached and not work.missed and not work.notices
+    assert not work.unreached and not work.missed
+    # a plan that is as good already is not refined, and then a notice says so: a matter of the last digits
+    assert {notice.code for notice in work.notices} <= (
+        {"flag-without-effect"} if compensation == "refined" else set()
+    )
 
 
 TAIL = [(20, 5), (28, 5), (28, 36), (29, 40), (32, 44.5), (25, 45), (21, 44), (20, 41)]

@@ -11,10 +11,12 @@ from shapely.geometry import Polygon, box
 
 import brushsvg
 from brushsvg import _core
+from brushsvg.brush.confidence import LAWS
 from brushsvg.brush.library import save_brush
 from brushsvg.cli import main
 from brushsvg.painted.job_page import job_page
 from brushsvg.pipeline.json_files import read_plan
+from brushsvg.pipeline.margin_strokes import is_calibrated
 
 SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="{0}mm" height="60mm" viewBox="0 0 {0} 60">
 <g fill="none" stroke="#000"><path id="bow" d="M14 40 C24 16 34 16 {1} 38" stroke-width="3"/>
@@ -106,6 +108,7 @@ def test_convert_says_beforehand_what_they_teach(desk, capsys):
     words = "convert word.svg plan.json --brush mine.json --page page.svg".split()
     status, out, _ = in_json(capsys, *words)
     assert status == 0 and "margin strokes" in out and out.count("lag +-") == 3
+    assert "--plan PLAN --prior" in out
     assert "margin" not in in_json(capsys, *words, "--margin-strokes", "off", "--force")[1]
 
 
@@ -146,6 +149,18 @@ def test_a_calibrated_brush_needs_none(desk):
         assert not added(read_plan("plan.json"))
 
 
+def test_depths_that_were_only_typed_are_not_calibrated(desk):
+    """It learned down to 4 mm and was typed to 8: its range is both, and a job of 6 mm got no strokes."""
+    brush = brushsvg.find_brush("mine.json")
+    size = sum(len(getattr(brush, law).coefficients) for law in LAWS)
+    brush.covariance = (1e-6 * np.eye(size)).tolist()
+    brush.extra = json.dumps({"learned": {"deepest_mm": {law: 4.0 for law in LAWS}}})
+    save_brush(brush, "mine-2.json")
+    brush = brushsvg.find_brush("mine-2.json")
+    assert brush.lag.calibrated_mm[1] == 8
+    assert is_calibrated(brush, 3.9) and not is_calibrated(brush, 6.0)
+
+
 def test_figures_of_a_photograph_are_of_the_drawing(desk):
     """The same with and without strokes in the margin, but for the camera's noise; and compare finds out which page."""
     (desk / "studio.toml").write_text('format = "brushsvg/studio"\nversion = 1\n[brush]\nlag = 1.15\n')
@@ -173,4 +188,10 @@ def test_a_sheet_with_them_teaches_more(desk):
         run(f"calibrate {margin}.jpg --plan {margin}-plan.json --prior mine.json -o {margin}-brush.json")
         found, was = (brushsvg.find_brush(name) for name in (f"{margin}-brush.json", "mine.json"))
         off[margin] = max(abs(found.lag(d) / (1.2 * was.lag(d)) - 1) for d in (2.0, 3.0, 4.0))
+    learned = json.loads((desk / "auto-brush.json").read_text())["learned"]
+    brush, plan = brushsvg.find_brush("auto-brush.json"), read_plan("auto-plan.json")
+    deepest = max(-np.min(each.poses_mm[:, 2]) for each in plan.passes)
+    assert learned["deepest_mm"]["lag"] == pytest.approx(deepest, abs=0.01)
+    assert brush.lag.calibrated_mm[1] == 8.0
+    assert is_calibrated(brush, 0.99 * deepest) and not is_calibrated(brush, 8.0)
     assert off["auto"] < 0.03 and off["auto"] < off["off"], off

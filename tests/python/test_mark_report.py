@@ -1,14 +1,19 @@
 """What the report on painted marks says of how well they are predicted."""
 
+import re
+import tomllib
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from brushsvg import _core
+from brushsvg.calibration import machine_found
 from brushsvg.calibration.from_marks import brush_of
 from brushsvg.calibration.mark_input import Painted
 from brushsvg.calibration.mark_report import overlaps
+from brushsvg.machine.cell import not_undone, why_no_backlash
+from brushsvg.machine.cell_file import cell_names, find_cell
 
 
 def test_overlaps_count_marks_where_they_lie_and_without_their_displacement():
@@ -49,3 +54,27 @@ def test_a_law_keeps_its_own_rows_of_the_covariance_where_a_power_of_another_is_
     wanted = _core.deviations_of_95() * np.sqrt([0.0, 4e-4, 5e-4])
     assert brush.half_width.half_interval_95 == pytest.approx(wanted)
     assert len(brush.tip_to_widest.coefficients) == len(brush.tip_to_widest.half_interval_95) == 6
+
+
+@pytest.mark.parametrize("name", sorted(cell_names()))
+def test_the_table_for_a_cell_says_for_which_machines_its_lines_have_no_use(name):
+    """Without --cell nobody knows the machine: backlash was printed for arms as well, whose cell refuses it."""
+    cell = find_cell(name)
+    parts = ("lean", "axes", "tilt", "backlash")
+    options = _core.MarkOptions()
+    machine_found.ask_for(options, parts)
+    machine = SimpleNamespace(
+        lean_mm_per_mm=(0.1, 0.0), scale=(1.01, 1.0), skew=0.0, tilt_mm_per_mm=(0.001, 0.0)
+    )
+    fit = SimpleNamespace(machine=machine, height_mm=0.2, centre_mm=(0.0, 0.0))
+    found = [machine_found.Number("backlash", f"backlash in {axis}", 0.3, 0.1, "mm") for axis in "xy"]
+    head, *lines = machine_found.cell_table(fit, options, found)
+    remarks = {line.partition(" = ")[0]: line.partition("  # ")[2] for line in lines}
+    assert head == "[machine]" and {"backlash_mm", "scale"} <= tomllib.loads("\n".join(lines)).keys()
+    kinds = {"arm": why_no_backlash(cell) != "", "servo": bool(cell.servo or cell.pen), "pen": bool(cell.pen)}
+    of_no_use = {
+        key
+        for key, remark in remarks.items()
+        if any(of and re.search(rf"\b{kind}\b", remark) for kind, of in kinds.items())
+    }
+    assert of_no_use == not_undone(cell).keys() & remarks.keys()

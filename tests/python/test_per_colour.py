@@ -91,3 +91,39 @@ def test_none_is_written_where_one_is_there_already(desk, capsys):
     status, _, told = in_json(capsys, "convert", "word.svg", "out.ngc", "--per-colour")
     assert status == 1 and is_told(told, "file-exists")
     assert [path.read_text() for path in desk.glob("out*")] == ["mine"]
+
+
+SHAPES = (
+    '<path id="fine" d="M10 10h6v40h-6z" fill="#d32f2f" stroke="#1a237e" stroke-width="0.3"/>'
+    '<path id="broad" d="M30 10h6v40h-6z" fill="#d32f2f" stroke="#1a237e"/>'
+    '<path id="one" d="M50 10h6v40h-6z" fill="#d32f2f" stroke="#d32f2f" stroke-width="0.3"/>'
+    '<path id="line" d="M70 10L71 50" fill="#d32f2f" stroke="#1a237e"/>'
+)
+
+
+def test_a_shape_has_the_colour_of_its_fill_and_an_outline_its_own(tmp_path, monkeypatch, capsys):
+    """All of fine and broad was painted in the colour of the outline."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "word.svg").write_text(DRAWING.format(SHAPES))
+    status, _, told = in_json(capsys, "convert", "word.svg", "out.json")
+    assert status == 0 and len(told) == 1
+    assert is_told(told, "outline-too-fine #1a237e 0.3 0.84 #d32f2f", "fine")
+    found = {each.stroke: each.colour for each in brushsvg.read_plan("out.json").passes}
+    inks = {"fine": "#d32f2f", "broad": "#d32f2f", "broad-stroke": "#1a237e", "one": "#d32f2f"}
+    assert found == inks | {"line": "#1a237e"}, "nothing of the last one's fill can be seen"
+    for paths_as, ink in (("stroke", "#1a237e"), ("outline", "#d32f2f")):
+        strokes = brushsvg.convert("word.svg", paths_as=paths_as, lenient=True).plan.passes
+        assert {each.colour for each in strokes if each.stroke in ("fine", "broad")} == {ink}
+
+
+def test_a_frame_around_a_white_page_is_painted(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    page = '<rect id="page" width="100" height="60" fill="#fff" stroke="#1a237e"/>'
+    page += '<path id="l" d="M20 20H50" stroke="red"/>'
+    (tmp_path / "word.svg").write_text(DRAWING.format(page))
+    design = brushsvg.read_drawing("word.svg")
+    assert is_told(design.notices, "background page")
+    assert [(each.id, each.colour, each.fill_rule) for each in design.elements] == [
+        ("page-stroke", "#1a237e", ""),
+        ("l", "#ff0000", ""),
+    ]

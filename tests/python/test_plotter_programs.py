@@ -1,4 +1,4 @@
-"""G-code as owners of plotters write it: twelve styles, five drawings each, read as the lines that were meant."""
+"""G-code as owners of plotters write it: many styles, four drawings each, read as the lines that were meant."""
 
 import math
 import random
@@ -40,11 +40,10 @@ def by_z(lines, up, down, travel="G0", draw="G1", head=("G21", "G90"), hop=None,
     for k, line in enumerate(lines):
         if dip:
             yield from dip(k)
-        high = hop if hop is not None and k else up
         yield at(line[0], travel)
         yield f"{draw} Z{down:g} F800"
         yield from (at(point, draw, " F1500" if n == 0 else "") for n, point in enumerate(line[1:]))
-        yield f"{travel} Z{(hop if hop is not None and k + 1 < len(lines) else up):g}" if high else ""
+        yield f"{travel} Z{(hop if hop is not None and k + 1 < len(lines) else up):g}"
     yield f"G0 Z{up:g}"
     yield "M2"
 
@@ -58,6 +57,20 @@ def by_servo(lines, up, down, travel="G0", off=False):
         yield from (at(point, "G1", " F1500") for point in line[1:])
         yield "M5" if off else f"M3 S{up:g}"
     yield from ("M5", "M2")
+
+
+def inverted(lines, travel="G0"):
+    """The pen is up at Z0 and down at Z5."""
+    return by_z(lines, 0, 5, travel=travel)
+
+
+def parked(lines, up, down):
+    """It begins and ends at z 0, wherever the pen is up."""
+    yield from ("G21", "G90", "G1 X0 Y0 Z0 F3000")
+    for line in lines:
+        yield from (f"G1 Z{up:g}", at(line[0]), f"G1 Z{down:g} F800")
+        yield from (at(point) for point in line[1:])
+    yield from (f"G1 Z{up:g}", "G1 X0 Y0", "G1 Z0", "M2")
 
 
 def pot(comment):
@@ -117,6 +130,11 @@ STYLES = {
     "dips without comments": lambda lines, chance: by_z(lines, 10, 0, dip=pot(False)),
     "backlash hops": lambda lines, chance: with_backlash_hops(lines),
     "pressure": pressed,
+    "z falls to lift": lambda lines, chance: inverted(lines),
+    "z falls to lift, travel by G1": lambda lines, chance: inverted(lines, "G1"),
+    "below 0 is up": lambda lines, chance: by_z(lines, -4, 0.5),
+    "parked on the paper": lambda lines, chance: parked(lines, 5, 0),
+    "parked up, z falls to lift": lambda lines, chance: parked(lines, 0, 5),
     "machine's own lines": lambda lines, chance: by_z(lines, 5, 0, head=HEADER.split("|")),
 }
 CORPUS = [(style, seed) for style in STYLES for seed in range(4)]
@@ -144,8 +162,8 @@ def test_programs_are_read_as_they_were_meant(style, seed):
     )
 
 
-def test_the_corpus_has_sixty_programs():
-    assert len(CORPUS) == 60
+def test_the_corpus_has_eighty_programs():
+    assert len(CORPUS) == 80
 
 
 SKETCH = "\n".join(by_z([np.array([(40, 40), (80, 40)]), np.array([(40, 60), (80, 60)])], 5, 0)).encode()
@@ -203,6 +221,36 @@ def test_a_reading_that_loses_most_is_refused():
     assert lines_of("\n".join(text).encode(), paper_z_mm=4.0) >= 1
 
 
+def test_to_begin_and_end_at_z_0_turns_no_z():
+    """Single lines, all by G1: nothing else shows which of both heights draws, and z 0 is usually paper."""
+    hatch = [np.array([(40, y), (80, y)]) for y in (40, 50, 60)]
+    design = read_gcode("\n".join(parked(hatch, 5, 0)).encode(), ReadOptions(sheet_mm=(200, 150)))
+    assert is_told(design.notices, "pen-reading 0 5")
+    inner = [each for each in design.elements if each.subpaths[0].cubics[0, 0, 0] == 40]
+    assert [np.ptp(each.subpaths[0].cubics.reshape(-1, 2), axis=0).tolist() for each in inner] == [
+        [40, 0]
+    ] * 3
+
+
+def test_the_paper_of_a_z_that_falls_to_lift():
+    lines = [np.array([(40, 40), (80, 40), (80, 50)]), np.array([(40, 60), (80, 60)])]
+    text = "\n".join(inverted(lines)).encode()
+    assert lines_of(text) == lines_of(text, paper_z_mm=5.0) == 2
+    with refused("nothing-to-paint"):
+        lines_of(text, paper_z_mm=9.0)
+
+
+def test_check_refuses_a_z_that_falls_to_lift(tmp_path, monkeypatch, capsys):
+    """Drawn at z 0.5, travel at -4: it predicted the travel."""
+    monkeypatch.chdir(tmp_path)
+    lines = [np.array([(40, 40), (80, 40)]), np.array([(40, 60), (80, 60)])]
+    (tmp_path / "falls.gcode").write_text("\n".join(by_z(lines, -4, 0.5)))
+    status, _, told = in_json(capsys, "check", "falls.gcode")
+    assert status == 1 and is_told(told, "z-inverted 0.5 -4")
+    status, _, told = in_json(capsys, "convert", "falls.gcode", "out.ngc", "--width", "3")
+    assert status == 0 and is_told(told, "pen-reading 0.5 -4")
+
+
 def test_check_takes_the_height_of_the_paper(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "touches.gcode").write_bytes(SKETCH)
@@ -216,5 +264,7 @@ def test_the_flags_reach_the_reader(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "sketch.gcode").write_bytes(SKETCH)
     words = "--width 3 --paper-z 0 --pen z --skip-region 30,30,100,50 --skip-comment nothing".split()
+    assert is_told(in_json(capsys, "convert", "sketch.gcode", "out.ngc")[2], "gcode-no-width 1 --width")
     status, _, told = in_json(capsys, "convert", "sketch.gcode", "out.ngc", *words)
+    assert not is_told(told, "gcode-no-width"), "they have one"
     assert status == 0 and is_told(told, "strokes-skipped 1 2"), told

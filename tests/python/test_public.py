@@ -137,9 +137,9 @@ def test_the_demo_leaves_everything(tmp_path):
         re.M,
     )
     shown, printed = (np.array(figures, float) for figures in ([row[1:] for row in rows], told))
-    # refined: where an optimiser stops differs between processors by some thousandths
-    assert np.allclose(shown, printed, rtol=0, atol=0.005), "README.md tells other figures"
-    assert np.array_equal(shown[:-1], printed[:-1]), "README.md tells other figures"
+    # processors differ: where an optimizer stops (refined) by some thousandths, all others by one of the last digit
+    assert np.allclose(shown, printed, rtol=0, atol=0.005), "README.md has other figures"
+    assert np.allclose(shown[:-1], printed[:-1], rtol=0, atol=0.0011), "README.md has other figures"
     overlap = {row[0].split(",")[0]: float(row[1]) for row in reversed(rows)}
     assert len(rows) == 5
     assert overlap["none"] + 0.3 < overlap["constant"] < overlap["closed"] - 0.1

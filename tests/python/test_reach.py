@@ -1,5 +1,7 @@
 """Outlines wider than the brush: the nearest width, several passes, or a refusal."""
 
+import re
+
 import numpy as np
 import pytest
 from diagnostics import agrees, refused
@@ -57,7 +59,9 @@ def test_the_nearest_width_is_painted_and_the_outline_stays_wanted(brush):
     assert halves[:, 1].max() == pytest.approx(4.2)
     assert np.interp(0.2, *halves.T) == pytest.approx(np.interp(0.2, *np.array(made[0].half_width).T))
     assert [r.tolist() for r in narrower.wanted_mm] == [r.tolist() for r in made[0].wanted_mm]
-    assert agrees(notice, "width-out-of-reach '[0, 8.4] mm' round-6", "p")
+    widest = 2 * max(half for _, half in made[0].half_width)
+    assert agrees(notice, f"width-out-of-reach '{widest:.3g} mm wide' '[0, 8.4] mm' round-6", "p")
+    assert re.findall(r"[\d.]+", notice.sentence) == [f"{widest:.3g}", "0", "8.4", "6"], "no count of widths"
 
 
 def test_passes_cover_the_shape_and_stay_in_it(brush):

@@ -77,7 +77,14 @@ def test_json_is_complete_and_without_nan():
     assert read["format"] == "brushsvg/report"
     assert read["strokes"][0]["overlap"] == 0.951235
     assert read["total"]["poses"] == 42
-    told = {"where": "s/1", "sentence": "odd; mend", "code": "strange", "advice": "mend", "damaged": False}
+    told = {
+        "where": "s/1",
+        "sentence": "odd; mend",
+        "code": "strange",
+        "advice": "mend",
+        "damaged": False,
+        "refused": False,
+    }
     assert read["warnings"] == [told]
 
 

@@ -49,12 +49,12 @@ def strays_mm(painted, width_mm: float) -> float:
 @pytest.mark.parametrize("drawn", [line, capsule])
 @pytest.mark.parametrize("width_mm", [5.75, 6, 7, 8, 8.4])
 def test_both_ends_are_round(drawn, width_mm):
-    """Of 6 mm they were hexagons, as the front of a footprint is."""
+    """Of 6 mm they were hexagons, as the front of a footprint is: 0.4 mm off. 0.1 mm is seen by nobody."""
     painted, plan = mark(drawn(width_mm))
-    assert strays_mm(painted, width_mm) < 0.06
+    assert strays_mm(painted, width_mm) < 0.1
     assert len(plan.passes[0].poses_mm) < 60
     blunt, _ = mark(drawn(width_mm), "exposed", "lifted")
-    assert strays_mm(blunt, width_mm) > 0.07
+    assert strays_mm(blunt, width_mm) > 1.0
 
 
 def test_a_hidden_beginning_is_round_as_well():

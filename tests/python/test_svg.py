@@ -584,7 +584,11 @@ GRADIENT = '<linearGradient id="g"><stop/><stop stop-color="red"/></linearGradie
         ('<path id="p" d="M0 0H5" style="marker:url(#a)"/>', "p", "markers-unread"),
         ('<path id="p" d="M0 0H5" stroke-opacity=".5"/>', "p", "opacity-unread stroke-opacity"),
         ('<g id="g" clip-path="inset(2px)"><path d="M0 0H5"/></g>', "g", "clipping-unread"),
-        ('<g id="g" style="mask:url(#a)"><path d="M0 0H5"/></g>', "g", "css-unread mask"),
+        (
+            '<mask id="a"><circle r="9" fill="#888"/></mask><g id="g" style="mask:url(#a)"><path d="M0 0H5"/></g>',
+            "g",
+            "clipping-unread mask",
+        ),
         ('<g id="g" opacity=".5"><path d="M0 0H5"/></g>', "g", "css-unread opacity"),
         ('<g id="g" opacity="0"><path d="M0 0H5"/></g>', "g", "transparent"),
         (

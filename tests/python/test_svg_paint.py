@@ -31,8 +31,7 @@ def painted(fill, stroke, more="", before=""):
 
 
 def told(design):
-    """But for the two colours, which most of these shapes have."""
-    return [notice for notice in design.notices if notice.code != "colours-joined"]
+    return list(design.notices)
 
 
 @pytest.mark.parametrize("server", SERVERS.values(), ids=SERVERS)
@@ -124,8 +123,31 @@ def test_white_is_told():
     assert told(painted("#fefefe", "none")) == []
 
 
-def test_a_fill_of_another_colour_than_the_stroke_is_told():
-    assert are_told(painted("#f00", "#000").notices, "colours-joined p #ff0000 #000000")
-    assert painted("#f00", "red").notices == painted("none", "#f00").notices == ()
-    assert painted("#f00", "none").notices == ()
-    assert read('<path d="M0 0H5V5Z" stroke="red"/>').notices == (), "the default fill, which nobody chose"
+def test_a_fill_of_another_colour_than_the_stroke_keeps_it():
+    for fill, stroke, colours in (
+        ("#f00", "#000", [("#ff0000", "nonzero"), ("#000000", "")]),
+        ("#f00", "red", [("#ff0000", "nonzero")]),
+        ("#f00", "none", [("#ff0000", "nonzero")]),
+        ("none", "#f00", [("#ff0000", "")]),
+    ):
+        design = painted(fill, stroke)
+        (_, shape) = design.elements
+        assert [(part.colour, part.fill_rule) for part in shape.by_colour()] == colours
+        assert design.notices == ()
+    design = read('<path d="M0 0H5V5Z" stroke="red"/>')
+    assert design.notices == (), "the default fill, which nobody chose"
+    assert [part.colour for part in design.elements[0].by_colour()] == ["#ff0000"]
+
+
+@pytest.mark.parametrize("clip", ["", 'clip-path="url(#c)"'])
+def test_dashes_around_a_shape_leave_it_whole(clip):
+    """The shape was that of each dash."""
+    before = '<clipPath id="c"><rect width="90" height="90"/></clipPath>'
+    dashed = 'stroke-width="0.5" stroke-dasharray="1 1" ' + clip
+    shape, line = painted("#f00", "#00f", dashed, before).elements[1:]
+    assert (shape.id, shape.colour, len(shape.subpaths), shape.stroke_width_mm) == ("p", "#ff0000", 1, 0.0)
+    assert (line.id, line.colour, line.fill_rule) == ("p-stroke", "#0000ff", "") and len(line.subpaths) > 5
+    straight = read(
+        '<path id="l" d="M0 0H50" stroke="#000" stroke-width="1" stroke-dasharray="5 5" fill="red"/>'
+    )
+    assert [each.id for each in straight.elements] == ["l"], "it encloses nothing"

@@ -265,7 +265,7 @@ def test_a_transform_of_the_drawing_itself_is_told():
 
 @pytest.mark.parametrize(
     "name",
-    "mix-blend-mode:darken offset-path:none animation:a mask-image:none -webkit-mask:url(#a) -webkit-filter:blur(5px)"
+    "mix-blend-mode:darken offset-path:none animation:a mask-image:none -webkit-filter:blur(5px)"
     " content-visibility:hidden all:unset".split(),
 )
 def test_what_css_alone_says_is_told(name):

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import itertools
+import json
 
 import numpy as np
 
 from .. import _core
 
+LEARNED = "learned"  # in a brush file: the brushes before, of what photographs, and how deep their marks were
 LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
 
 
@@ -41,6 +43,25 @@ def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | N
     if law.rmse_mm is not None:
         return np.full_like(depths, law.rmse_mm), "RMSE of the data, not of the law"
     return None
+
+
+def learned_of(brush) -> dict:
+    """What a brush file says of what it was made from; {} where it says nothing."""
+    said = json.loads(brush.extra or "{}").get(LEARNED)
+    return said if isinstance(said, dict) else {}
+
+
+def fitted_down_to_mm(brush, law: str) -> float:
+    """The depth down to which a law was fitted to marks or measurements; 0 for one that was typed or assumed. Fits
+    leave a covariance. A brush that learned from marks keeps the depths that were typed before as its range, and
+    says itself how deep the marks were."""
+    place = places(brush)[law]
+    if not len(brush.covariance) or not np.any(np.array(brush.covariance)[place, place]):
+        return 0.0
+    of_laws = learned_of(brush).get("deepest_mm")
+    if isinstance(of_laws, dict) and isinstance(deepest_mm := of_laws.get(law), int | float):
+        return float(deepest_mm)
+    return (getattr(brush, law).calibrated_mm or (0.0, np.inf))[1]
 
 
 def paint_interval_per_m(paint) -> float:

@@ -11,11 +11,12 @@ from .mark_report import report as of_edges
 from .mark_report import report_picture as picture_of_edges
 
 
-def report(made) -> str:
-    """The text that `brushsvg calibrate --aim overlap` prints. made: by_overlap.OverlapCalibration."""
+def report(made, of_photo: bool = False) -> str:
+    """The text that `brushsvg calibrate --aim overlap` prints. made: by_overlap.OverlapCalibration; of_photo: see
+    mark_report.report."""
     brush, edges, found = made.brush, made.by_edges, made.found
     if found.kind == "edges":
-        return of_edges(edges) + chosen_in_words(found) + "\n"
+        return of_edges(edges, of_photo) + chosen_in_words(found) + "\n"
     lines = [
         f"brush {brush.name}, depth {brush.depth_range_mm[0]:g} to {brush.depth_range_mm[1]:g} mm, from "
         f"{len(edges.painted.marks)} painted marks, to the largest overlap",

@@ -15,7 +15,7 @@ from ..errors import Error, Notice
 from ..laws.fitted import need_fits
 from . import plausibility
 from .angle_series import read_series, scatter_of_series
-from .centre_lines import Turn, read_turn
+from .centre_lines import Turn, read_turn, read_turn_near
 from .from_widths import GAP_PER_HALF, WIDEST_PER_HALF, outlines_assumed
 from .joint_fit import EXACT_MM, LEAST_MM, Reading, Together, fit_together
 from .measurements import Measurements, Row
@@ -34,7 +34,9 @@ FLOOR_PER_HALF = 0.3  # nearer to the tip the widest section is not drawn: the f
 SUMS = ("angular", "straight", "side_view", "video")  # these say how long r + b is, and nothing of either
 FROM_TOUCH = ("side_view", "video")  # counted from first touch
 OUTLINES = 10
+TURN = ({"lag": 1}, {"lag": 1, "tip_gap": 1, "tip_to_widest": -1})  # the lengths of Turn: r, and r - e
 MOST_CHANGES = 5  # of the signs that centre lines are read with
+MOST_STEPS = 20  # of Gauss and Newton
 READ_TO_MM = 0.01  # nobody reads points finer: lines that fit better than this are equally certain
 OPEN_SHARE = 0.025  # a reading less likely than this is left out of 95 % intervals
 
@@ -232,11 +234,31 @@ class _Maker:
 
         likely = self._choose_turns(fit) if widest else {}
         self.joint = fit()
+        if widest and lines:
+            self._read_turns_near(lines, fit)
         for where, share in likely.items():
             if share > OPEN_SHARE:
                 self._allow_other_sign(where, share, fit)
         readings = self._readings(laws, points, rows)
         self._take(readings, shown="tip_gap" if points["lag"] else "lag")
+
+    def _read_turns_near(self, lines: list[Row], fit) -> None:
+        """Read all centre lines from where the laws of all measurements are, until these stay."""
+        for _ in range(MOST_STEPS):
+            moved = 0.0
+            for row in lines:
+                (lag, turning), _ = self.joint.predict(row.depth_mm, TURN)
+                if min(lag, turning) < LEAST_MM:
+                    continue
+                before = self.turns[row.where]
+                after = read_turn_near(row.numbers["points_mm"], lag, turning)
+                self.turns[row.where] = replace(after, other=before.other)
+                moved = max(
+                    moved, abs(after.lag_mm - before.lag_mm), abs(after.turning_mm - before.turning_mm)
+                )
+            self.joint = fit()
+            if moved < READ_TO_MM / 10:
+                break
 
     def _choose_turns(self, fit) -> dict[str, float]:
         """Read each centre line that allows both signs of e with the one that all other measurements agree with.
@@ -276,13 +298,11 @@ class _Maker:
 
     def _misfit(self, row: Row, turn: Turn, others: Together) -> float:
         """-2 ln of the likelihood of a reading of a centre line, by its own points and by the laws of all others."""
-        predicted, covariance = others.predict(
-            row.depth_mm, ({"lag": 1}, {"lag": 1, "tip_gap": 1, "tip_to_widest": -1})
-        )
+        predicted, covariance = others.predict(row.depth_mm, TURN)
         own = np.array(turn.covariance_mm2)
         for kind in others.kinds:  # lines scatter by more than their points do
             if kind.name == row.kind:
-                more = np.maximum(np.array(kind.weighed_by_mm) / np.sqrt(np.diag(own) + EXACT_MM**2), 1.0)
+                more = np.maximum(kind.weight_scatter, 1.0)
                 own = own * np.outer(more, more)
         covariance = covariance + own + EXACT_MM**2 * np.eye(2)
         off = np.array([turn.lag_mm, turn.turning_mm]) - predicted
@@ -367,32 +387,27 @@ class _Maker:
         for row in rows:
             touch = row.kind in FROM_TOUCH
             values, sums = (self._reading(row),), (both if touch else both | {"tip_to_widest": -1},)
-            own, scatter = None, 1.0
+            own = None
             if row.kind == "centre_line":
                 turn = self.turns[row.where]
                 values, sums = (turn.lag_mm, *values), ({"lag": 1}, *sums)
-                own, scatter = turn.covariance_mm2, self._scatter_of(turn)
-            out.append(Reading(row.kind, row.where, row.depth_mm, values, sums, touch, scatter, own))
+                own = turn.covariance_mm2 + READ_TO_MM**2 * np.eye(2)
+            out.append(
+                Reading(row.kind, row.where, row.depth_mm, values, sums, touch, own_covariance_mm2=own)
+            )
         return out
-
-    def _scatter_of(self, turn: Turn) -> float:
-        """How much less certain the lengths of a line are than those of all lines, by their points (geometric mean)."""
-        of_reading = READ_TO_MM**2 * np.eye(2)
-        covariances = [each.covariance_mm2 + of_reading for each in (turn, *self.turns.values())]
-        found = np.linalg.slogdet(np.array(covariances))[1] / 4
-        return float(np.exp(found[0] - found[1:].mean()))
 
     def _take(self, readings: list[Reading], shown: str) -> None:
         """What was found together: each value is shown at the law that it is of, sums at this one, less the others."""
         found, at = self.joint, 0
         shown_at: dict[str, list] = {law: [] for law in found.laws}
-        freedom = {kind.name: (kind.freedom, kind.weighed_by_mm) for kind in found.kinds}
+        freedom = {kind.name: kind.freedom for kind in found.kinds}
         for reading in readings:
-            for k, of in enumerate(reading.sums):
+            for of in reading.sums:
                 law = next(iter(of)) if len(of) == 1 else shown
                 left, spare = float(found.residual_mm[at]), float(found.spare[at])
                 point = Point(reading.where, reading.depth_mm, found.laws[law](reading.depth_mm) + left)
-                spread = (freedom[reading.kind][0], reading.scatter * freedom[reading.kind][1][k])
+                spread = (freedom[reading.kind], float(found.scatter_mm[at]))
                 shown_at[law].append((point, left, spare, *spread))
                 at += 1
         for law, rows in shown_at.items():

@@ -10,7 +10,15 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from .. import _core
-from ..brush.confidence import LAWS, half_interval_mm, law_band, places
+from ..brush.confidence import (
+    LAWS,
+    LEARNED,
+    fitted_down_to_mm,
+    half_interval_mm,
+    law_band,
+    learned_of,
+    places,
+)
 from ..errors import Error, Notice
 from ..laws.fitted import need_fits
 from .from_marks import (
@@ -37,7 +45,6 @@ LIKELY = 1.645  # normal deviate: a brush as far from its prior is met once in t
 # Of a law, standard deviation: what a polynomial of low degree leaves of it at the depths that were painted. With 0 the
 # marks of shallow strokes would be sure of the depths below: what follows round-6 to 7 mm is 12 % off at 10 mm.
 FOLLOWED = 0.01
-LEARNED = "learned"  # in a brush file: the brush before, and of what photographs
 
 
 @dataclass(frozen=True)
@@ -242,6 +249,11 @@ def _brush_of(brush, known: KnownLaws, laws, covariance, told: set[str], name: s
     )
     made.covariance = _joined(brush, made, told, whole, fitted).tolist()
     made.extra, made.footprints, made.paint = brush.extra, brush.footprints, brush.paint
+    known_mm = {law: max(painted.deepest_mm, fitted_down_to_mm(brush, law)) for law in LAWS if law in told}
+    before_mm = learned_of(brush).get("deepest_mm")
+    before_mm = before_mm if isinstance(before_mm, dict) else {}
+    new_mm = {law: round(depth, 3) for law, depth in known_mm.items() if np.isfinite(depth)}
+    _say_learned(made, learned_of(brush) | {"deepest_mm": before_mm | new_mm})
     if told & {"half_width", "tip_to_widest"}:
         made.footprints = _reshaped(brush, made, laws.front_per_half / known.laws.front_per_half)
     return made
@@ -321,12 +333,15 @@ def with_lineage(made: _core.Brush, brush: _core.Brush, photos: list[str]) -> No
     """Writes into a brush what it was made from."""
     before = _learned(brush)
     said = {"brushes": [*before["brushes"], brush.sha256], "photos": [*before["photos"], *photos]}
-    made.extra = json.dumps(json.loads(brush.extra or "{}") | {LEARNED: said})
+    _say_learned(made, learned_of(made) | said)
+
+
+def _say_learned(made: _core.Brush, said: dict) -> None:
+    made.extra = json.dumps(json.loads(made.extra or "{}") | {LEARNED: said})
 
 
 def _learned(brush) -> dict:
-    said = json.loads(brush.extra or "{}").get(LEARNED)
-    said = said if isinstance(said, dict) else {}
+    said = learned_of(brush)
     return {
         key: [each for each in values if isinstance(each, str)]
         if isinstance(values := said.get(key), list)

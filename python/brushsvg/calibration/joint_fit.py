@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from math import comb
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from .. import _core
 
@@ -25,7 +26,7 @@ class Reading:
     """One measurement: lengths [mm] at a depth [mm], and of which laws each is the sum, with +1 or -1.
 
     from_touch: counted from first touch, so less the lag there. scatter: of its values, by what others of its kind do.
-    own_covariance_mm2: covariance (k, k) of its k values as predicted by the points they were read from.
+    own_covariance_mm2: covariance (k, k) of its k values as predicted by the points they were read from, or None.
     """
 
     kind: str
@@ -37,16 +38,26 @@ class Reading:
     scatter: float = 1.0
     own_covariance_mm2: np.ndarray | None = None
 
+    def spread_mm(self) -> np.ndarray:
+        """(k, k): its values are this times numbers that scatter alike for all of its kind."""
+        if self.own_covariance_mm2 is None:
+            return self.scatter * np.eye(len(self.values_mm))
+        return np.linalg.cholesky(self.own_covariance_mm2 + EXACT_MM**2 * np.eye(len(self.values_mm)))
+
 
 @dataclass(frozen=True)
 class Kind:
     """What measurements of one kind say: how many, their scatter about the laws [mm], one for each length of a
-    measurement, the one that they were weighed by, and on how many values to spare that rests."""
+    measurement, and on how many values to spare that rests.
+
+    weight_scatter: the scatter that they were weighted by, over that of Reading.spread_mm (so 1 where each scatters as
+    its own points predict).
+    """
 
     name: str
     count: int
     scatter_mm: tuple[float, ...]
-    weighed_by_mm: tuple[float, ...]
+    weight_scatter: tuple[float, ...]
     freedom: float
 
 
@@ -54,8 +65,9 @@ class Kind:
 class Together:
     """Laws by name with the covariance of all their coefficients, those of the laws one after the other.
 
-    residual_mm and spare (n,): measured less law, and the share of each value that is left to spare, in the order of
-    the readings and their lengths. held: without a constraint the lag or the tip gap would be negative somewhere.
+    residual_mm, spare and scatter_mm (n,): measured less law, the share of each value that is left to spare, and the
+    standard deviation it was weighted by, in the order of the readings and their lengths. held: without a constraint
+    the lag or the tip gap would be negative somewhere.
     """
 
     laws: dict[str, _core.Profile]
@@ -63,6 +75,7 @@ class Together:
     places: dict[str, slice]
     residual_mm: np.ndarray
     spare: np.ndarray
+    scatter_mm: np.ndarray
     kinds: tuple[Kind, ...]
     held: bool
 
@@ -161,7 +174,11 @@ def fit_together(
             degrees_of_freedom=freedom,
         )
     whole, places = _with_zeros(covariance * np.outer(scale, scale), unknowns)
-    return Together(laws, whole, places, left * unknowns.unit, spare, kinds, held)
+    scatter = np.empty_like(left)
+    for group, white in zip(groups, whites, strict=True):
+        spread = unknowns.spread_mm[group.at[:, :, None], group.at[:, None, :]] @ np.linalg.inv(white)
+        scatter[group.at] = np.sqrt((spread**2).sum(axis=2))
+    return Together(laws, whole, places, unknowns.spread_mm @ left, spare, scatter, kinds, held)
 
 
 class _Unknowns:
@@ -179,10 +196,10 @@ class _Unknowns:
         self.start = (
             np.concatenate([law.coefficients[self.first[n] :] for n, law in start.items()]) / self.scale
         )
-        # values, and rows, are counted in their scatter, so that those of one kind scatter alike
-        self.unit = np.array([reading.scatter for reading in readings for _ in reading.values_mm])
+        # values, and rows, are counted in their spread, so that those of one kind scatter alike
+        self.spread_mm = block_diag(*[reading.spread_mm() for reading in readings])
         values = [value for reading in readings for value in reading.values_mm]
-        self.values = np.array(values) / self.unit
+        self.values = np.linalg.solve(self.spread_mm, values)
 
     def powers(self, name: str, depth_mm) -> np.ndarray:
         size = self.first[name] + self.sizes[name]
@@ -190,7 +207,7 @@ class _Unknowns:
         return np.vander(depth, size, increasing=True)[:, self.first[name] :]
 
     def rows(self, x: np.ndarray) -> np.ndarray:
-        """d value / d unknown, over the scatter. Where a polynomial lies below its floor it says nothing."""
+        """d value / d unknown, over the spread. Where a polynomial lies below its floor it says nothing."""
         out = []
         for reading in self.readings:
             for each in reading.sums:
@@ -202,7 +219,7 @@ class _Unknowns:
                 if reading.from_touch:
                     row[self.places["lag"]] -= self.powers("lag", 0.0)[0]
                 out.append(row)
-        return np.array(out) / self.unit[:, None]
+        return np.linalg.solve(self.spread_mm, out)
 
     def _shallow_to_deep(self) -> np.ndarray:
         return np.linspace(*self.range_mm, 201)
@@ -244,12 +261,13 @@ class _Unknowns:
 
 @dataclass(frozen=True)
 class _Group:
-    """Measurements of one kind: the places of their values among all, (n, lengths of one); own_covariance_mm2: the mean
-    covariance of one measurement as predicted by its own points, or None."""
+    """Measurements of one kind: the places of their values among all, (n, lengths of one); unit_mm: root mean square of
+    the spread of each length; of_points: the points of each measurement predict it."""
 
     name: str
     at: np.ndarray
-    own_covariance_mm2: np.ndarray | None
+    unit_mm: np.ndarray
+    of_points: bool
 
     @property
     def rows(self) -> np.ndarray:
@@ -258,16 +276,22 @@ class _Group:
 
 def _groups(readings: list[Reading]) -> list[_Group]:
     places: dict[str, list] = {}
-    own: dict[str, list] = {}
+    kinds: dict[str, list[Reading]] = {}
     at = 0
     for reading in readings:
         count = len(reading.values_mm)
         places.setdefault(reading.kind, []).append(range(at, at + count))
-        if reading.own_covariance_mm2 is not None:
-            own.setdefault(reading.kind, []).append(reading.own_covariance_mm2 / reading.scatter**2)
+        kinds.setdefault(reading.kind, []).append(reading)
         at += count
-    means = {kind: np.mean(each, axis=0) for kind, each in own.items()}
-    return [_Group(kind, np.array(each), means.get(kind)) for kind, each in places.items()]
+    return [
+        _Group(
+            kind,
+            np.array(places[kind]),
+            np.sqrt(np.mean([(each.spread_mm() ** 2).sum(axis=1) for each in of], axis=0)),
+            of[0].own_covariance_mm2 is not None,
+        )
+        for kind, of in kinds.items()
+    ]
 
 
 def _spare(rows: np.ndarray) -> np.ndarray:
@@ -295,19 +319,23 @@ def _scatters(groups, left: np.ndarray, spare: np.ndarray, absolute: bool) -> tu
 
     sums = [scatter(left[group.at]) for group in groups]
     freedoms = [spare[group.at].sum(axis=0) for group in groups]  # of each length
-    mean = sum(np.trace(each) for each in sums) / max(sum(each.sum() for each in freedoms), 1.0)
+    of_lengths = [k for k, group in enumerate(groups) if not group.of_points]
+    mean = sum(np.trace(sums[k]) for k in of_lengths) / max(sum(freedoms[k].sum() for k in of_lengths), 1.0)
     whites, kinds = [], []
     for group, squares, freedom in zip(groups, sums, freedoms, strict=True):
         known = np.sqrt(freedom + BORROWED)
-        own = group.own_covariance_mm2
-        predicted = mean * np.eye(len(known)) if own is None else own
-        borrowed = (squares + BORROWED * predicted) / np.outer(known, known)
+        predicted = 1.0 if group.of_points else mean
+        borrowed = (squares + BORROWED * predicted * np.eye(len(known))) / np.outer(known, known)
         borrowed += EXACT_MM**2 * np.eye(len(known))
+        if group.of_points:  # never better than its points: nothing makes a line scatter less
+            squared, axes = np.linalg.eigh(borrowed)
+            borrowed = (axes * np.maximum(squared, 1.0)) @ axes.T
         whites.append(np.linalg.inv(np.linalg.cholesky(borrowed)))
         seen = np.sqrt(np.diag(squares) / np.maximum(freedom, 1e-9)) * (freedom > 1e-6)
-        weighed = np.sqrt(np.diag(borrowed))
+        weighted = np.sqrt(np.diag(borrowed))
         few = float(freedom.min()) + BORROWED
-        kinds.append(Kind(group.name, len(group.at), tuple(seen.tolist()), tuple(weighed.tolist()), few))
+        seen_mm = seen * group.unit_mm
+        kinds.append(Kind(group.name, len(group.at), tuple(seen_mm.tolist()), tuple(weighted.tolist()), few))
     return whites, tuple(kinds)
 
 

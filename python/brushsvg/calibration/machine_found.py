@@ -22,6 +22,10 @@ PARTS = {
     "field": ("field_mm", 0.5),
 }
 TERMS = ("u u", "u v", "v v")
+# Remarks in the table on numbers that not every machine can undo, see cell.not_undone.
+NO_SERVO = "# leave this line out for a brush on a servo or a pen lift"
+NO_PEN = "# leave this line out for a pen lift"
+NO_ARM = "# only for a machine whose motors drive x and y each: leave this line out for an arm or an EBB"
 LEAST_MM = 0.01  # of backlash that a cell undoes
 CERTAIN = (
     1.6  # half 95 % intervals: none of a field's six numbers is farther from 0 by chance in 99 of 100 fits
@@ -123,7 +127,8 @@ def has_field(found: list[Number]) -> bool:
 
 def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str]:
     """The lines of a cell's table [machine]; none where nothing is asked for that a cell can undo. Backlash and a field
-    that may as well be none are left out."""
+    that may as well be none are left out. Which machine it is may not be known: a remark says where a line has no use.
+    """
     parts, machine = asked(options), fit.machine
     backlash = [
         one.value if one.value > max(one.half, LEAST_MM) else 0.0 for one in found if one.part == "backlash"
@@ -131,14 +136,17 @@ def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str
     is_bent = has_field(found)
     lines = ["[machine]"] if set(parts) - {"backlash", "field"} or any(backlash) or is_bent else []
     if "lean" in parts:
-        lines.append(f"lean_mm_per_mm = {_pair(machine.lean_mm_per_mm)}")
+        lines.append(f"lean_mm_per_mm = {_pair(machine.lean_mm_per_mm)}  {NO_SERVO}")
     if "axes" in parts:
         lines += [f"scale = {_pair(machine.scale)}", f"skew = {machine.skew:.5f}"]
     if "tilt" in parts:
         height = fit.height_mm - float(np.dot(machine.tilt_mm_per_mm, fit.centre_mm))
-        lines += [f"height_mm = {height:.3f}", f"tilt_mm_per_mm = {_pair(machine.tilt_mm_per_mm)}"]
+        lines += [
+            f"height_mm = {height:.3f}  {NO_PEN}",
+            f"tilt_mm_per_mm = {_pair(machine.tilt_mm_per_mm)}  {NO_SERVO}",
+        ]
     if any(backlash):
-        lines.append("backlash_mm = [{:.3f}, {:.3f}]".format(*backlash))
+        lines.append("backlash_mm = [{:.3f}, {:.3f}]  ".format(*backlash) + NO_ARM)
     return [*lines, *(field_lines(machine) if is_bent else [])]
 
 

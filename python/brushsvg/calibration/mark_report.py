@@ -32,8 +32,9 @@ UNLIKELY, UNLIKELY_RMS = 3.0, 1.5  # times what was expected, of one number and 
 PAINT, PREDICTED, WAY = "#c9ced8", "#c0392b", "#3f8fd9"
 
 
-def report(made) -> str:
-    """The text that `brushsvg calibrate` prints. made: a mark_calibrate.MarkCalibration."""
+def report(made, of_photo: bool = False) -> str:
+    """The text that `brushsvg calibrate` prints. made: a mark_calibrate.MarkCalibration; of_photo: of a photograph,
+    which has flags and no measurement file."""
     brush, fit, painted = made.brush, made.fit, made.painted
     lines = [
         f"brush {brush.name}, depth {brush.depth_range_mm[0]:g} to {brush.depth_range_mm[1]:g} mm, from "
@@ -57,7 +58,7 @@ def report(made) -> str:
             *_few_depths(made),
             *_departing(made),
             *_astray(made),
-            *_unexpected(made),
+            *_unexpected(made, of_photo),
             *_unlike(fit, overlap[1]),
             *fit.remarks,
         ]
@@ -130,7 +131,7 @@ def _departing(made) -> list[str]:
     ]
 
 
-def _unexpected(made) -> list[str]:
+def _unexpected(made, of_photo: bool = False) -> list[str]:
     """What lies so far off that the sigmas the fit was given are not those of this sheet: they pull at the laws."""
     fit, expected = made.fit, made.expected
     astray = {stray.mark.stroke for stray in made.strays}
@@ -139,18 +140,45 @@ def _unexpected(made) -> list[str]:
         for mark, miss in zip(made.painted.marks, fit.marks, strict=True)
         if mark.stroke not in astray
     ]
+    turn_deg, turn_sigma_deg = math.degrees(abs(fit.turn_rad)), math.degrees(expected.turn_rad)
     found = (
-        ("displacement_mm", "in x and in y (rms)", _rms(aside), expected.displacement_mm, UNLIKELY_RMS),
-        ("placement_mm", "", max(map(abs, fit.shift_mm)), expected.placement_mm, UNLIKELY),
-        ("height_mm", "", abs(fit.height_mm), expected.height_mm.sigma, UNLIKELY),
-        ("turn_deg", "", math.degrees(abs(fit.turn_rad)), math.degrees(expected.turn_rad), UNLIKELY),
+        (
+            "displacement_mm",
+            "marks are displaced (rms) by",
+            _rms(aside),
+            expected.displacement_mm,
+            UNLIKELY_RMS,
+        ),
+        (
+            "placement_mm",
+            "the sheet is shifted by",
+            max(map(abs, fit.shift_mm)),
+            expected.placement_mm,
+            UNLIKELY,
+        ),
+        ("height_mm", "the paper's height is off by", abs(fit.height_mm), expected.height_mm.sigma, UNLIKELY),
+        ("turn_deg", "the sheet is turned by", turn_deg, turn_sigma_deg, UNLIKELY),
     )
     return [
-        f"{key} is {size:.2g}{which and ' ' + which}, expected was a standard deviation of {sigma:.2g}, which "
-        f'biases the laws: give "expected": {{"{key}": {_rounded_up(size):g}}} if that is how exact the sheet is'
-        for key, which, size, sigma, times in found
+        f"{what} {size:.2g} {_unit(key)}, but the fit expects {sigma:.2g} {_unit(key)} (standard deviation). This "
+        f"biases the laws{_remedy(key, _rounded_up(size), of_photo)}"
+        for key, what, size, sigma, times in found
         if size > times * sigma > 0
     ]
+
+
+def _unit(key: str) -> str:
+    return "degrees" if key.endswith("_deg") else "mm"
+
+
+def _remedy(key: str, sigma: float, of_photo: bool) -> str:
+    if not of_photo:
+        return f': give "expected": {{"{key}": {sigma:g}}} if that is how exact the sheet is'
+    of_flags = {
+        "height_mm": f": add --height {sigma:g} if you know the height no better",
+        "displacement_mm": ": add --spread FILE, which brushsvg compare --sheets writes",
+    }
+    return of_flags.get(key, ": compare the picture (--picture) with the page that you painted")
 
 
 def _astray(made) -> list[str]:

@@ -54,6 +54,8 @@ def clipped(element: Element, region: shapely.Geometry) -> list[Element]:
     low, high = points.min(axis=0) - half, points.max(axis=0) + half
     if region.contains(shapely.box(*low, *high)):
         return [element]
+    if element.fill_colour:
+        return [piece for part in element.by_colour() for piece in clipped(part, region)]
     out = []
     if element.fill_rule:
         shape = region_of(outlines_of(element.subpaths), element.fill_rule)

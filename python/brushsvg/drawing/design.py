@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -29,7 +29,8 @@ class Element:
 
     id: as in the drawing, strokeN for the N-th without one; stroke_width_mm: 0 without a stroke; colour: "#rrggbb"
     of the stroke, of the fill where there is none; layer: "" outside of any layer; settings: what the drawing says
-    to brushsvg itself; fill_rule: "nonzero" or "evenodd" of a filled shape, "" without a fill.
+    to brushsvg itself; fill_rule: "nonzero" or "evenodd" of a filled shape, "" without a fill. fill_colour: of the fill
+    of a shape whose stroke has another colour, "" of any other element.
     """
 
     id: str
@@ -39,11 +40,21 @@ class Element:
     layer: str = ""
     settings: dict = field(default_factory=dict)
     fill_rule: str = ""
+    fill_colour: str = ""
 
     @property
     def is_stroked(self) -> bool:
         """Whether it is a line with a width, rather than a shape alone."""
         return self.stroke_width_mm > 0 or any(subpath.widths is not None for subpath in self.subpaths)
+
+    def by_colour(self) -> tuple[Element, ...]:
+        """The shape in the colour of its fill, and the line around it in its own, on top; itself in one colour."""
+        if not self.fill_colour:
+            return (self,)
+        plain = tuple(replace(subpath, widths=None) for subpath in self.subpaths)
+        shape = replace(self, subpaths=plain, stroke_width_mm=0.0, colour=self.fill_colour, fill_colour="")
+        name = f"{self.id}-stroke" if self.id else ""
+        return shape, replace(self, id=name, fill_rule="", fill_colour="")
 
     def __repr__(self) -> str:
         painted = [f"stroked {self.stroke_width_mm:g} mm wide"] * self.is_stroked + ["filled"] * bool(

@@ -40,6 +40,7 @@ def _key(element: Element) -> tuple:
         element.colour,
         element.layer,
         element.fill_rule,
+        element.fill_colour,
         repr(sorted(element.settings.items())),
     )
 

@@ -30,6 +30,7 @@ class Layout:
 
 
 AS_DRAWN = Layout()
+OF_WIDTHS = ("gcode-no-width", "stretched-unevenly")  # notices on widths that are not asked for any more
 _NAMED = 20  # layers in a sentence
 
 
@@ -42,7 +43,9 @@ def arrange(design: Design, layout: Layout) -> Design:
     if layout.layers:
         design = _of_layers(design, layout.layers)
     if layout.width_mm is not None:
-        design = replace(design, elements=tuple(_with_width(e, layout.width_mm) for e in design.elements))
+        elements = tuple(_with_width(e, layout.width_mm) for e in design.elements)
+        notices = tuple(notice for notice in design.notices if notice.code not in OF_WIDTHS)
+        design = replace(design, elements=elements, notices=notices)
     if layout.fit_mm is None and layout.scale is None and layout.origin_mm is None:
         return design
     keeps_width = layout.width_mm is not None

@@ -213,6 +213,8 @@ def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:
         if work:
             loads = in_loads(work.plan, brush, cell)
             which, unlike = against_plan.with_plan(ran, loads, cell, made.first_stroke)
+            if made.is_of_plan and work.strokes is not None:
+                unlike = _unlike_drawing(unlike)
             problems = problems + unlike
             speeds = None if None in which else [loads.loads[k].speed_mm_s for k in which]
             if work.strokes is not None:
@@ -238,6 +240,23 @@ def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:
         marks=ran.marks,
         figures=figures,
     )
+
+
+def _unlike_drawing(unlike: list[Notice]) -> list[Notice]:
+    """The same, with one notice for all strokes that are painted in another way: neither the program nor its plan.json
+    says how it was planned, so they may be what was asked for."""
+    otherwise = [
+        each for each in unlike if each.code in ("path-elsewhere", "held-otherwise", "stroke-too-fast")
+    ]
+    if not otherwise:
+        return unlike
+    sentence = (
+        f"stroke {otherwise[0].where!r} differs from the drawing's, and the plan.json that the program was made from "
+        "does not say how it was planned"
+    )
+    advice = "check the program against that plan.json"
+    rest = [each for each in unlike if each not in otherwise]
+    return [*rest, Notice("", sentence, code="plan-unlike-drawing", advice=advice)]
 
 
 def _written_again(
@@ -285,7 +304,7 @@ def _foreign(path: str, text: str, chosen: Choices, told: Told) -> Check:
             sentence = f"brushsvg did not write it: --{flag} would change nothing"
             raise Error(sentence, code="flag-without-effect")
     cell, brush = cell_of(chosen.cell), brush_of(chosen.brush) or find_brush(DEFAULT_BRUSH)
-    found = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z or 0.0)
+    found = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z)
     told(path, found.warnings)
     shown = Work("", brush, found.plan, None, (), Options(cell=cell), ())
     figures = outputs.reported(shown, found.marks, cell)

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .. import _core
+from ..drawing.gcode.pen import pen_kind, read_pen
 from ..drawing.gcode.toolpaths import CHORD_MM, Way, ways_and_end
 from ..errors import Error, Notice
 from ..machine.cell import Cell, robot_from_paper
+from ..machine.cell_file import find_cell
 from ..machine.move_extents import ways as straight
 from ..machine.posts.gcode_servo import height_at
 from ..machine.preflight import off_sheet
 from ..machine.workspace_limits import ROUNDING_MM, astray, broken_limits
 
 MARGIN_MM = 20.0
+BY_Z, BY_VALUE, BY_ANGLE = "linuxcnc-3axis", "grbl-servo", "marlin-servo"  # cells that come along
+Lift = Callable[[float | None], float]
 _ROOM = dict.fromkeys(
     ("left", "lower"), "its zero is the sheet's lower left corner: move the program's lines"
 )
@@ -33,21 +38,27 @@ class Foreign:
     warnings: tuple[Notice, ...] = ()
 
 
-def foreign_program(text: str, brush, cell: Cell, sheet_mm=None, paper_z_mm: float = 0.0) -> Foreign:
-    """The program's ways on the cell, its zero the sheet's lower left corner, paper_z_mm where the brush just touches.
-    By default the sheet ends 20 mm beyond what is painted. A pen that goes by M3 and M5 goes as the cell's servo does;
-    M5 lifts it.
+def foreign_program(text: str, brush, cell: Cell, sheet_mm=None, paper_z_mm: float | None = None) -> Foreign:
+    """The program's ways on the cell, its zero the sheet's lower left corner, paper_z_mm where the brush just touches,
+    None: 0. By default the sheet ends 20 mm beyond what is painted. A pen that goes by M3 and M5, or by M280, goes as
+    the cell's servo does; M5 lifts it.
 
-    Error for lines not read, places never named, a pen without a servo in the cell, and where nothing touches.
+    Error for lines not read, places never named, a pen that the cell lifts in another way, and where nothing touches.
     """
     some, power = ways_and_end(text)
-    some = [replace(way, points_mm=way.points_mm - (0.0, 0.0, paper_z_mm)) for way in some]
+    lift = _servo_lift(some, cell)
+    if lift and paper_z_mm is not None:
+        sentence = (
+            f"its pen goes by a servo, whose heights cell {cell.name} gives: --paper-z would change nothing"
+        )
+        raise Error(sentence, code="flag-without-effect")
+    if not lift and paper_z_mm is None:
+        _refuse_inverted(some)
+    some = [replace(way, points_mm=_at_heights(way, lift, paper_z_mm or 0.0)) for way in some]
     passes, careless = _touches(some, cell)
     outside = _outside(some, cell, sheet_mm)
     if not passes:
-        advice = "--paper-z MM says at which height its pen just touches the paper"
-        sentence = f"the brush never touches the paper: nothing is below z {paper_z_mm:g}"
-        raise Error(sentence, code="nothing-painted", advice=advice)
+        raise _never_touches(some, cell, lift, paper_z_mm or 0.0)
     if sheet_mm is None:
         highest = np.max([np.asarray(a_pass.poses_mm)[:, :2].max(axis=0) for a_pass in passes], axis=0)
         sheet_mm = tuple(np.maximum(highest + MARGIN_MM, MARGIN_MM).tolist())
@@ -55,7 +66,7 @@ def foreign_program(text: str, brush, cell: Cell, sheet_mm=None, paper_z_mm: flo
     marks = _core.simulate(plan, brush)
     problems = [
         *careless,
-        *_left_down(some, power, cell),
+        *_left_down(some, lift(power) if lift else float(some[-1].points_mm[-1, 2])),
         *outside,
         *broken_limits(passes, sheet_mm, brush, cell),
         *(replace(notice, advice=_ROOM[notice.about]) for notice in off_sheet(marks, brush, sheet_mm)),
@@ -75,7 +86,7 @@ def _outside(some: list[Way], cell: Cell, sheet_mm) -> list[Notice]:
     where it is known."""
     lines, paths = [], []
     for way in some:
-        points = _at_heights(way, cell)
+        points = way.points_mm
         points = points[~np.isnan(points).any(axis=1)]
         if len(points):
             lines.append(way.line)
@@ -90,9 +101,8 @@ def _outside(some: list[Way], cell: Cell, sheet_mm) -> list[Notice]:
     ]
 
 
-def _left_down(some: list[Way], power: float | None, cell: Cell) -> list[Notice]:
-    """A notice where the program leaves the brush on the paper; power: what a servo holds behind its last line."""
-    height_mm = _servo_mm(power, cell) if cell.servo else float(some[-1].points_mm[-1, 2])
+def _left_down(some: list[Way], height_mm: float) -> list[Notice]:
+    """A notice where the program leaves the brush on the paper; height_mm: of the brush behind its last line."""
     if not height_mm < 0:
         return []
     sentence = (
@@ -117,7 +127,7 @@ def _touches(some: list[Way], cell: Cell) -> tuple[list, list[Notice]]:
         speeds.clear()
 
     for way in some:
-        points = _at_heights(way, cell)
+        points = way.points_mm
         if points[-1, 2] < 0 and np.isnan(points[[0, -1], :2]).any():
             sentence = f"line {way.line}: the brush is down where no line has named both X and Y"
             raise Error(sentence, code="line-incomplete")
@@ -164,22 +174,96 @@ def _below(start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:
     return [at_paper() if start[2] > 0 else start, at_paper() if end[2] > 0 else end]
 
 
-def _at_heights(way, cell: Cell) -> np.ndarray:
-    """(n, 3) points of a way; of a pen on a servo, at the height that its value gives."""
-    points = np.array(way.points_mm)
-    if way.power is not None and cell.servo is None:
-        raise Error(
-            f"line {way.line}: its pen goes by M3 and M5: give a cell with a servo, whose table says how deep",
-            code="servo-unknown",
-            advice="--cell grbl-servo, or one of your own",
-        )
-    if cell.servo is not None:
-        points[:, 2] = _servo_mm(way.power, cell)
+def _refuse_inverted(some: list[Way]) -> None:
+    """Error where Z counts downwards, as no cell's does: what is drawn would be travel, and travel would be drawn."""
+    try:
+        pen = read_pen(some, "z") if some else None
+    except Error:  # nothing shows it
+        return
+    if pen and pen.is_inverted:
+        advice = "convert it for your machine, or give --paper-z MM where Z counts upwards"
+        raise Error(f"{pen.how}: no cell's does", code="z-inverted", advice=advice)
+
+
+def _at_heights(way: Way, lift: Lift | None, paper_z_mm: float) -> np.ndarray:
+    """(n, 3) points of a way over the paper; of a pen on a servo, at the height that its value gives."""
+    points = way.points_mm - (0.0, 0.0, paper_z_mm)
+    if lift:
+        points[:, 2] = lift(way.power)
     return points
 
 
-def _servo_mm(power: float | None, cell: Cell) -> float:
-    """The height that a value of the servo gives; without one it is up."""
-    if power is None:
-        return max(height for height, _ in cell.servo.table)
-    return height_at(cell.servo, power)
+def _servo_lift(some: list[Way], cell: Cell) -> Lift | None:
+    """The height over the paper [mm] of each value of the program's servo, up where it has none; None for a pen that
+    goes by Z. Error where the cell does not say it."""
+    up_and_down = cell.pen.servo_values if cell.pen else ()
+    if pen_kind(some) == "z":
+        if (cell.servo or up_and_down) and any(np.isfinite(way.points_mm[:, 2]).any() for way in some):
+            sentence = f"its pen goes by Z, and cell {cell.name} lifts its brush by a servo"
+            raise Error(sentence, code="servo-unknown", advice=f"give a cell without a servo, --cell {BY_Z}")
+        return None
+    values = sorted({way.power for way in some if way.power is not None})
+    line = next(way.line for way in some if way.power is not None)
+    if any(way.by_angle for way in some):
+        if not up_and_down:
+            sentence = f"line {line}: its pen goes by M280, and cell {cell.name} has no such servo"
+            raise Error(
+                sentence, code="servo-unknown", advice=f"--cell {BY_ANGLE}, or one of your own like it"
+            )
+        return _up_or_down(some, cell)
+    if not cell.servo:
+        sentence = f"line {line}: its pen goes by M3 and M5, and cell {cell.name} has no servo"
+        fits = _in_table(values, find_cell(BY_VALUE))
+        advice = f"--cell {BY_VALUE}, or one of your own like it" if fits else _own_table(values)
+        raise Error(sentence, code="servo-unknown", advice=advice)
+    if not _in_table(values, cell):
+        least, most = _table_range(cell)
+        sentence = (
+            f"line {line}: its pen goes by M3 from S{values[0]:g} to S{values[-1]:g}, and the servo's table of cell "
+            f"{cell.name} has values from {least:g} to {most:g}"
+        )
+        raise Error(sentence, code="servo-unknown", advice=_own_table(values))
+    highest_mm = max(height for height, _ in cell.servo.table)
+    return lambda power: highest_mm if power is None else height_at(cell.servo, power)
+
+
+def _up_or_down(some: list[Way], cell: Cell) -> Lift:
+    """Of a lift that knows up and down alone: at which values the pen is down the program's moves show."""
+    down = {way.power for way, is_down in zip(some, read_pen(some, "servo").down, strict=True) if is_down}
+    return lambda power: cell.pen.down_mm if power in down else cell.heights.safe_mm
+
+
+def _in_table(values: list[float], cell: Cell) -> bool:
+    least, most = _table_range(cell)
+    return least <= values[0] and values[-1] <= most
+
+
+def _table_range(cell: Cell) -> tuple[float, float]:
+    values = [value for _, value in cell.servo.table]
+    return min(values), max(values)
+
+
+def _own_table(values: list[float]) -> str:
+    said = " and ".join(f"S{value:g}" for value in dict.fromkeys((values[0], values[-1])))
+    return (
+        f"write a cell of your own with  brushsvg cell new mine.toml --like {BY_VALUE}  and put the heights of {said} "
+        "into its [servo] table, then give --cell mine.toml"
+    )
+
+
+def _never_touches(some: list[Way], cell: Cell, lift: Lift | None, paper_z_mm: float) -> Error:
+    sentence = f"the brush never touches the paper: nothing is below z {paper_z_mm:g}"
+    heights = np.concatenate([way.points_mm[:, 2] for way in some]) if some else np.array([])
+    heights = heights[np.isfinite(heights)]
+    if lift:
+        sentence = (
+            f"the brush never touches the paper: by cell {cell.name} all values of the servo are above it"
+        )
+        advice = "" if cell.pen else _own_table(sorted({way.power for way in some if way.power is not None}))
+    elif not len(heights):
+        sentence = "the brush never touches the paper: no line names a height (Z) or moves a servo (M3, M280)"
+        advice = ""
+    else:
+        lowest_mm = float(heights.min()) + paper_z_mm
+        advice = f"--paper-z {lowest_mm + 1:.6g} presses it 1 mm deep where it is lowest"
+    return Error(sentence, code="nothing-painted", advice=advice)

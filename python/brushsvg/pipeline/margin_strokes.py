@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from .. import _core
-from ..brush.confidence import law_band, places
+from ..brush.confidence import fitted_down_to_mm, law_band
 from ..brush.describe import LAWS
 from ..calibration.chart.layout import GAP_MM, angular, chart_depths, room_for, straight
 from ..errors import Notice
@@ -37,14 +37,7 @@ def is_calibrated(brush, deepest_mm: float) -> bool:
     """Whether lag and width were fitted to marks or measurements, down to this depth."""
     if brush.is_rigid() or not brush.width_follows_depth():
         return True  # there is no law to learn
-    return all(_is_fitted(brush, law, deepest_mm) for law in ("lag", "half_width"))
-
-
-def _is_fitted(brush, law: str, deepest_mm: float) -> bool:
-    """Fits to marks and to tables of measurements leave a covariance; typed values and shipped brushes have none."""
-    profile, place = getattr(brush, law), places(brush)[law]
-    has_covariance = len(brush.covariance) and np.any(np.array(brush.covariance)[place, place])
-    return bool(has_covariance) and deepest_mm <= (profile.calibrated_mm or (0.0, np.inf))[1]
+    return all(deepest_mm <= fitted_down_to_mm(brush, law) for law in ("lag", "half_width"))
 
 
 def with_margin_strokes(work: Work) -> Work:
@@ -104,13 +97,14 @@ def expected_in_words(work: Work) -> str:
         np.hypot(*np.diff(each.poses_mm[:, :2], axis=0).T).sum() / each.speed_mm_s for each in passes
     )
     bands = {name: law_band(brush, name, depths)[0] for name, _ in LAWS}
-    at = "; ".join(
-        f"{depth:.1f} mm deep lag +- {lag:.2f}, width +- {2 * half:.2f} mm"
+    known = "; ".join(
+        f"at {depth:.1f} mm depth lag +- {lag:.2f} mm and width +- {2 * half:.2f} mm"
         for depth, lag, half in zip(depths, bands["lag"], bands["half_width"], strict=True)
     )
     return (
-        f"{len(passes)} margin strokes above the drawing ({seconds:.0f} s of painting) teach brush {work.brush.name}: "
-        f"after learning you will know it to, {at} (95 %)"
+        f"{len(passes)} margin strokes above the drawing take {seconds:.0f} s and teach brush {work.brush.name}. "
+        "Paint the page, photograph it, and run brushsvg calibrate PHOTO --plan PLAN --prior BRUSH -o NEW.json. "
+        f"Then you will know (95 %): {known}"
     )
 
 

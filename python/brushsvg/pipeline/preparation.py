@@ -35,6 +35,7 @@ from .json_files import read_plan
 from .margin_strokes import with_margin_strokes
 from .options import DEFAULT_BRUSH, DEFAULTS, Options
 from .paint_astray import off_middle_line, outside
+from .thin_outlines import without_thin_outlines
 from .width_advice import warnings_with_advice
 from .work import Known, Work, of_colour
 
@@ -151,7 +152,11 @@ class _Way:
 
 def _found(design: Design, brush, options: Options) -> tuple[list, list[Notice]]:
     """A design's strokes, joined, lifted and cut at their corners as is asked for."""
+    thin: list[Notice] = []
+    if options.paths_as is None:
+        design, thin = without_thin_outlines(design, brush)
     strokes, notices = strokes_of(design, options.paths_as)
+    notices += thin
     if options.join:
         strokes, joints = joined(strokes)
         notices += joints

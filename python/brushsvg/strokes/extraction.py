@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..drawing.design import Design, Element, Notice, SubPath
@@ -34,7 +34,8 @@ def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], 
 
     A path with a stroke alone is the line drawn, in its direction. A filled path is a shape, with a stroke around it
     a shape grown by half of that: its strokes are found, in the direction and order of writing, and carry their part of
-    the shape. paths_as: "stroke", fills count as none; "outline", strokes count as none and every path is the outline
+    the shape. Where the stroke has a colour of its own, the shape is painted as far as it is filled, and then the line.
+    paths_as: "stroke", fills count as none; "outline", strokes count as none and every path is the outline
     of a shape; None: as drawn.
 
     A stroke is called by its element's id, id/1, id/2 ... if there are several, strokeN if there is no id, N counting
@@ -46,7 +47,7 @@ def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], 
     need(design, Design, "a drawing, as read_drawing returns it")
     need_one_of(paths_as, ("stroke", "outline", None), "what paths are painted as")
     found, empty, notices = [], [], []
-    for element in design.elements:
+    for element in (part for each in design.elements for part in _in_colours(each, paths_as)):
         try:
             lines = _lines(element, paths_as)
         except Error as beyond:
@@ -87,6 +88,16 @@ def _left_out(elements: list[Element], paths_as: str | None) -> list[Notice]:
     return [Notice(first, f"its outline {what}{others}: left out", code="outline-empty", advice=advice)]
 
 
+def _in_colours(element: Element, paths_as: str | None) -> tuple[Element, ...]:
+    """What of an element is painted, each part in its colour."""
+    if not element.fill_colour or paths_as == "stroke":
+        return (element,)
+    if paths_as == "outline":
+        return (replace(element, colour=element.fill_colour),)
+    shape, line = element.by_colour()
+    return (replace(line, id=element.id),) if _grown(element) is None else (shape, line)
+
+
 def _lines(element: Element, paths_as: str | None) -> list[_Line]:
     """What becomes of an element; nothing if it leaves no mark."""
     if paths_as == "stroke" and not element.is_stroked:
@@ -99,27 +110,33 @@ def _lines(element: Element, paths_as: str | None) -> list[_Line]:
 
 def _of_shape(element: Element, grown: bool) -> list[_Line] | None:
     """Lines of a filled shape; None where its stroke alone shows."""
-    from .. import _core
     from .skeleton import filled, outline_strokes
 
-    rings = filled(element)
-    if grown and element.is_stroked:
-        drawn = [_drawn(element, subpath) for subpath in element.subpaths]
-        marks = [
-            _core.wanted_outline(
-                _core.Stroke(middle_mm=line.cubics.reshape(-1, 8), half_width=line.half_width), 0.02
-            )
-            for line in drawn
-        ]
-        own = _core.unite([ring for mark in marks for ring in mark])
-        both = _core.unite([*own, *rings])
-        if _core.area(both) - _core.area(own) <= _SHOWS * _core.area(own):
-            return None
-        rings = both
+    rings = _grown(element) if grown and element.is_stroked else filled(element)
+    if rings is None:
+        return None
     return [
         _Line(each.middle_mm, each.half_width, each.closed, each.wanted_mm, each.covered)
         for each in outline_strokes(rings)
     ]
+
+
+def _grown(element: Element) -> list | None:
+    """Rings of a filled shape with the stroke around it; None where the stroke alone shows."""
+    from .. import _core
+    from .skeleton import filled
+
+    drawn = [_drawn(element, subpath) for subpath in element.subpaths]
+    marks = [
+        _core.wanted_outline(
+            _core.Stroke(middle_mm=line.cubics.reshape(-1, 8), half_width=line.half_width), 0.02
+        )
+        for line in drawn
+    ]
+    own = _core.unite([ring for mark in marks for ring in mark])
+    both = _core.unite([*own, *filled(element)])
+    shows = _core.area(both) - _core.area(own) > _SHOWS * _core.area(own)
+    return both if shows else None
 
 
 def _drawn(element: Element, subpath: SubPath) -> _Line:

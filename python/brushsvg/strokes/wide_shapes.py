@@ -70,11 +70,11 @@ def within_reach(
         if beyond[k] and k not in filled:
             made, how = [_clamped(stroke, least, greatest)], "painted at the nearest width"
         if beyond[k] and (k in filled or _shows(beyond[k][1], least, greatest)):
-            count, worst = beyond[k]
+            what, worst = beyond[k]
             notices.append(
                 Notice(
                     stroke.id,
-                    f"{count} {2 * worst:.3g} mm, outside the range {reach}: {how}",
+                    f"{what} {2 * worst:.3g} mm wide, outside the range {reach}: {how}",
                     code="width-out-of-reach",
                     about="in passes" if k in filled else "wider" if worst > greatest else "narrower",
                     advice="--wide passes paints more of it" if k in fillable else "",
@@ -118,18 +118,18 @@ def is_within_reach(half: float, greatest: float) -> bool:
 
 
 def _beyond(stroke, least: float, greatest: float) -> tuple[str, float] | None:
-    """How many widths are out of reach, in words, and half the worst; None for a line that was drawn visibly too wide,
-    which is refused."""
+    """What is out of reach, in words, and half the worst width; None for a line that was drawn visibly too wide, which
+    is refused."""
     halves = np.array([half for _, half in stroke.half_width])
     is_narrow, is_wide = halves < least - 1e-9, halves > greatest + 1e-9
     off = is_narrow | is_wide
     if not off.any() or (not stroke.wanted_mm and not is_within_reach(halves.max(), greatest)):
         return None
     worst = halves.max() if is_wide.any() else halves.min()
-    whose = "of its outline" if stroke.wanted_mm else "of its line"
-    if len(off) == 1:
-        return f"the width {whose},", worst
-    return f"{off.sum()} of {len(off)} widths {whose}, {'up' if is_wide.any() else 'down'} to", worst
+    what = "its shape is" if stroke.wanted_mm else "its line is"
+    if len(halves) > 1:
+        what += " up to" if is_wide.any() else " down to"
+    return what, worst
 
 
 def _wide(strokes: list, beyond: dict, greatest: float) -> list[int]:

@@ -11,7 +11,7 @@ from .usage_checks import PHOTOS, PICTURES, PROGRAMS, check_files, check_job, su
 
 
 def add_chart(commands) -> None:
-    chart = commands.add_parser("chart", help="make the strokes that a brush is calibrated from")
+    chart = commands.add_parser("chart", help="write a chart: the strokes to calibrate a brush with")
     chart.add_argument("output", metavar="OUT", help=plans_and_programs())
     chart.add_argument(
         "--brush", metavar="NAME|FILE", help="the known brush most like yours; default: round-6"
@@ -72,9 +72,7 @@ def _check_chart(args) -> None:
 
 
 def add_calibrate(commands) -> None:
-    fit = commands.add_parser(
-        "calibrate", help="make a brush of what was measured, or of a painted chart or job"
-    )
+    fit = commands.add_parser("calibrate", help="turn measurements or photographs into a brush")
     fit.add_argument(
         "inputs",
         metavar="IN",
@@ -227,7 +225,7 @@ def _check_update(args) -> None:
 
 
 def add_scan(commands) -> None:
-    scan = commands.add_parser("scan", help="read the strokes from a photograph of a painted chart")
+    scan = commands.add_parser("scan", help="read a painted chart from photographs, without calibrating")
     scan.add_argument("input", metavar="IN", help=f"a photograph of a painted chart ({' '.join(PHOTOS)})")
     scan.add_argument("more", nargs="*", help=argparse.SUPPRESS)
     scan.add_argument(
@@ -266,8 +264,12 @@ def _check_photos(args, photos: list[str], written) -> None:
 
 
 def add_brush(commands) -> None:
-    whats = add_looks(commands, "brush", "look at brushes", "laws and ranges", "brush.json")
-    new = whats.add_parser("new", help="write a brush file from a few numbers, asked for if none is given")
+    whats = add_looks(
+        commands, "brush", "list, show, check, draw and create brushes", "laws and ranges", "brush.json"
+    )
+    new = whats.add_parser(
+        "new", help="write a brush file from a few numbers; asks for them if you give none"
+    )
     new.add_argument("name", metavar="NAME", help="of the brush; writes NAME.json, or the path given")
     new.add_argument(
         "--lag",
@@ -303,7 +305,7 @@ def add_brush(commands) -> None:
     )
     add_writes(new)
     new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
-    plot = whats.add_parser("plot", help="draw the laws with confidence bands, and the footprints")
+    plot = whats.add_parser("plot", help="draw the brush laws with confidence bands, and the footprints")
     plot.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
     plot.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
     add_writes(plot)
@@ -311,7 +313,7 @@ def add_brush(commands) -> None:
 
 
 def add_article(commands) -> None:
-    article = commands.add_parser("article", help="draw the article's figures and tables anew, as a page")
+    article = commands.add_parser("article", help="compute the article's figures and tables again, as a page")
     article.add_argument("output", metavar="OUTDIR", help="a folder; gets article.md and article/*.png")
     add_writes(article)
     article.set_defaults(run="article_files", parser=article)

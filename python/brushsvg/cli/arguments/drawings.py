@@ -32,7 +32,7 @@ from .usage_checks import (
 
 
 def add_convert(commands) -> None:
-    convert = commands.add_parser("convert", help="make a plan or robot program of a drawing or plan")
+    convert = commands.add_parser("convert", help="turn a drawing into a robot program")
     add_input(convert)
     convert.add_argument("output", metavar="OUT", help=plans_and_programs())
     add_choices(convert)
@@ -74,7 +74,7 @@ def _check_convert(args) -> None:
 
 
 def add_batch(commands) -> None:
-    batch = commands.add_parser("batch", help="convert many drawings, and go on where the last run ended")
+    batch = commands.add_parser("batch", help="convert many drawings; continue where the last run ended")
     batch.add_argument(
         "inputs",
         metavar="IN",
@@ -130,7 +130,7 @@ def _check_batch(args) -> None:
 
 def add_compare(commands) -> None:
     compare = commands.add_parser(
-        "compare", help="hold photographs of a painted job against what was wanted and predicted"
+        "compare", help="compare photographs of a painted job with the drawing, and correct the next one"
     )
     compare.add_argument(
         "photos",
@@ -189,7 +189,7 @@ def _check_compare(args) -> None:
 
 def add_simulate_photo(commands) -> None:
     simulate = commands.add_parser(
-        "simulate-photo", help="try compare without a robot: the photograph of a job that nobody painted"
+        "simulate-photo", help="render a photograph of the painted job, to try `compare` without a robot"
     )
     add_input(simulate)
     simulate.add_argument("output", metavar="OUT", help="a photograph (.jpg)")
@@ -221,7 +221,7 @@ def _check_simulate_photo(args) -> None:
 
 
 def add_predict(commands) -> None:
-    predict = commands.add_parser("predict", help="show what the brush will paint")
+    predict = commands.add_parser("predict", help="draw what the brush will paint")
     add_input(predict)
     predict.add_argument("output", metavar="OUT", help="a picture (.png .svg) or marks (.json)")
     add_choices(predict)
@@ -242,7 +242,7 @@ def _check_predict(args) -> None:
 
 
 def add_report(commands) -> None:
-    report = commands.add_parser("report", help="say in figures how near the paint comes to the drawing")
+    report = commands.add_parser("report", help="measure how close the predicted paint is to the drawing")
     add_input(report)
     add_choices(report, several_brushes=True)
     add_speed(report)
@@ -270,7 +270,9 @@ def _check_report(args) -> None:
 
 
 def add_animate(commands) -> None:
-    animate = commands.add_parser("animate", help="make a page that plays tool and paint over time")
+    animate = commands.add_parser(
+        "animate", help="write a page that plays the motion of the tool and the paint"
+    )
     add_input(animate)
     animate.add_argument("output", metavar="OUT", help="a page for any browser, without network (.html)")
     add_choices(animate)
@@ -291,7 +293,7 @@ def _check_animate(args) -> None:
 
 
 def add_import(commands) -> None:
-    look = commands.add_parser("import", help="show what was understood of a drawing")
+    look = commands.add_parser("import", help="draw the strokes that brushsvg reads from a drawing")
     look.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)})")
     look.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
     add_layout(look)
@@ -312,7 +314,7 @@ def _check_import(args) -> None:
 
 
 def add_text(commands) -> None:
-    text = commands.add_parser("text", help="set a text in a font, as a drawing")
+    text = commands.add_parser("text", help="write a text in a font as a drawing")
     text.add_argument("input", metavar="TEXT", help="what to write; \\n starts a line")
     text.add_argument("output", metavar="OUT", help="a drawing (.svg)")
     text.add_argument(

@@ -26,11 +26,11 @@ def plans_and_programs() -> str:
 def add_looks(commands, kind: str, about: str, told: str, file: str):
     """`brush` or `cell` with list, show and check; what else it does is added to the parsers returned."""
     whats = commands.add_parser(kind, help=about).add_subparsers(metavar="WHAT", required=True)
-    whats.add_parser("list", help="name those that come along").set_defaults(run=f"{kind}_list")
-    show = whats.add_parser("show", help=f"{told} of one")
-    show.add_argument("input", metavar="NAME", help=f"a {kind} that comes along, or a {file}")
+    whats.add_parser("list", help="list the shipped ones").set_defaults(run=f"{kind}_list")
+    show = whats.add_parser("show", help=f"show {told} of one")
+    show.add_argument("input", metavar="NAME", help=f"a shipped {kind}, or a {file}")
     show.set_defaults(run=f"{kind}_show")
-    check = whats.add_parser("check", help=f"say whether a {kind} file can be used")
+    check = whats.add_parser("check", help=f"check whether a {kind} file is usable")
     check.add_argument("input", metavar="FILE", help=f"a {file}")
     check.set_defaults(run=f"{kind}_check")
     return whats
@@ -213,7 +213,9 @@ def add_layout(command: argparse.ArgumentParser) -> None:
         help="keep: paint a white shape that covers the page; default: auto, leave it out (SVG)",
     )
     add("--pen", choices=PENS, help="what lifts the pen of G-code: Z, or a servo (M3); default: found out")
-    add("--paper-z", metavar="MM", type=values.paper_z, help="the height at which G-code draws, and below it")
+    add(
+        "--paper-z", metavar="MM", type=values.paper_z, help="the height at which G-code draws, and beyond it"
+    )
     add(
         "--skip-region",
         metavar="X0,Y0,X1,Y1",

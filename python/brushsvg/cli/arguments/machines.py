@@ -23,7 +23,7 @@ from .usage_checks import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_ext
 
 
 def add_first_run(commands) -> None:
-    first = commands.add_parser("first-run", help="make what a careful person runs before the first job")
+    first = commands.add_parser("first-run", help="write a safe first program for a new machine")
     first.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml")
     first.add_argument("-o", "--output", metavar="OUT", required=True, help=programs())
     first.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
@@ -39,7 +39,7 @@ def _check_first_run(args) -> None:
 
 
 def add_border(commands) -> None:
-    border = commands.add_parser("border", help="make an air run round what will be painted, at safe height")
+    border = commands.add_parser("border", help="write a run around the job in the air, at safe height")
     add_input(border)
     border.add_argument("output", metavar="OUT", help=programs())
     add_choices(border)
@@ -55,7 +55,7 @@ def _check_border(args) -> None:
 
 
 def add_height(commands) -> None:
-    height = commands.add_parser("height", help="make strokes that tell how high the paper lies")
+    height = commands.add_parser("height", help="write strokes that show how high the paper is")
     height.add_argument("output", metavar="OUT", help=programs())
     height.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     height.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
@@ -91,7 +91,7 @@ def _check_height(args) -> None:
 
 def add_check(commands) -> None:
     check = commands.add_parser(
-        "check", help="read a program back, simulate it and compare it with a drawing"
+        "check", help="read a program back, simulate it, and compare it with its drawing"
     )
     check.add_argument("program", metavar="PROGRAM", help=programs())
     check.add_argument(
@@ -140,9 +140,9 @@ def _check_check(args) -> None:
 
 
 def add_cell(commands) -> None:
-    about, told = "look at cells: machines and their limits", "heights, speeds and limits"
-    whats = add_looks(commands, "cell", about, told, "cell.toml")
-    new = whats.add_parser("new", help="write a cell file of your own, to be edited")
+    about = "list, show, check and create cells: machines with their limits"
+    whats = add_looks(commands, "cell", about, "heights, speeds and limits", "cell.toml")
+    new = whats.add_parser("new", help="write a cell file for you to edit")
     new.add_argument("output", metavar="FILE", help="a cell.toml")
     new.add_argument("--like", metavar="NAME|FILE", help="the cell to start from; default: linuxcnc-3axis")
     new.add_argument(
@@ -159,7 +159,7 @@ def add_cell(commands) -> None:
 
 
 def _add_cell_place(whats) -> None:
-    place = whats.add_parser("place", help="say where paper may lie for the arm of a cell")
+    place = whats.add_parser("place", help="find where the paper can be for an arm to reach the drawing")
     place.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml, with an arm")
     place.add_argument("drawing", metavar="IN", nargs="?", help="what is painted; default: the whole sheet")
     place.add_argument("-o", "--output", metavar="FILE", help="a picture of the table (.png .svg)")

@@ -49,7 +49,9 @@ class _Version(argparse.Action):
 
 @functools.cache  # the flags of all commands take longer than what a short one does
 def command_parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="brushsvg", description="Vector lettering to brush strokes that a robot can paint.")
+    parser = _Parser(
+        prog="brushsvg", description="Turn vector lettering into brush strokes that a robot can paint."
+    )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
     parser.add_argument(
         "--messages",

@@ -81,7 +81,7 @@ def calibrate_file(args) -> None:
                 files[args.picture] = read_picture(read, made.made if args.aim == "overlap" else made)
     warn(args.output, remarks(made.brush))
     write(args, files, more=more, sources=[args.output])
-    tell(report(made))
+    tell(report(made, of_photo=True) if read else report(made))
 
 
 def _is_of_dabs(args, read) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ...errors import Error, Notice
 from ...machine import preflight
@@ -65,7 +65,10 @@ def look(
         except Error as refusal:
             if not tilted or refusal.code != "tilt-unsupported":
                 raise
-            held_upright, loads = [refusal.notice()], PlanInLoads(tuple(work.plan.sheet_mm), ())
+            held_upright, loads = (
+                [replace(refusal.notice(), refused=True)],
+                PlanInLoads(tuple(work.plan.sheet_mm), ()),
+            )
         if at_loads:
             marks = prediction.marks_of(loads.as_plan(), brush, outlines, stage, whole, cell)
         else:
@@ -75,7 +78,7 @@ def look(
             known = None if at_loads else work.walk(cell)
             tolerance_mm = work.options.tolerance_mm
             walk = preflight.look(loads, brush, marks, cell, tolerance_mm, walk=known, of_drawing=of_drawing)
-        forbidden = walk.problems if walk else []
+        forbidden = [replace(problem, refused=True) for problem in walk.problems] if walk else []
         sheet_mm = work.plan.sheet_mm
         astray = preflight.off_sheet(marks, brush, sheet_mm, of_drawing) if held_upright else []
         warnings = [*work.notices, *forbidden, *astray, *held_upright]

@@ -36,8 +36,7 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     pen = read_pen(some, options.pen, options.paper_z_mm) if some else None
     if pen and pen.share < LEAST_SHARE and options.pen is None and options.paper_z_mm is None:
         sentence = f"only {100 * pen.share:.0f} % of what it seems to draw is read: {pen.how}"
-        advice = "--pen z or --pen servo chooses the other reading, --paper-z MM the height at which it draws"
-        raise Error(sentence, code="pen-unclear", advice=advice)
+        raise Error(sentence, code="pen-unclear", advice=_other_readings(some, pen.kind))
     chains = _chains(some, pen.down if pen else ())
     notices = []
     if pen:
@@ -53,8 +52,8 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     if not elements:
         raise nothing_to_paint(notices)
     ends = np.concatenate([sub.cubics[:, ::3].reshape(-1, 2) for each in elements for sub in each.subpaths])
-    sentence = f"a program has no widths: its lines count as {WIDTH_MM:g} mm wide where --width tells none"
-    notices.append(Notice("", sentence, code="gcode-no-width"))
+    sentence = f"G-code has no widths: its lines count as {WIDTH_MM:g} mm wide"
+    notices.append(Notice("", sentence, code="gcode-no-width", advice="--width MM sets their width"))
     down = np.concatenate([way.points_mm[:, 2] for chain in chains for way in chain])
     if np.isfinite(down).all() and np.ptp(down) > 1e-3:
         sentence = f"its pen goes at heights from {down.min():.6g} to {down.max():.6g} mm: they are left out"
@@ -64,6 +63,15 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     shift = MARGIN_MM - ends.min(axis=0)
     width, height = (ends.max(axis=0) + shift + MARGIN_MM).tolist()
     return Design((width, height), tuple(_moved(each, shift) for each in elements), tuple(notices))
+
+
+def _other_readings(some: list[Way], kind: str) -> str:
+    """What to type for those that a program has."""
+    has_height = any(np.isfinite(way.points_mm[:, 2]).any() for way in some)
+    other = "servo" if kind == "z" else "z"
+    has_other = any(way.power is not None for way in some) if kind == "z" else has_height
+    readings = [f"--pen {other} chooses the other reading"] if has_other else []
+    return ", ".join(readings + (["--paper-z MM gives the height at which it draws"] if has_height else []))
 
 
 def _chains(some: list[Way], down: Sequence[bool]) -> list[list[Way]]:

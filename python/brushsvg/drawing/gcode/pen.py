@@ -4,8 +4,8 @@ strokes."""
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
+from itertools import groupby, pairwise
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from .toolpaths import Way
 
 SAME_MM = 1e-3  # heights that differ by less are one
 HOP_MM = 0.5  # a pen that comes down again as near as this goes on with its stroke
+CLEARLY = 1.0  # what beginning and ending at z 0 says, where many park: alone it does not turn Z
 MOST_OF_TRAVEL = 3  # ways from one stroke to the next; more of them are drawn, or a detour that nobody writes
 MOST_LEVELS = 200  # distinct heights that are tried as the lowest one of travel
 
@@ -22,46 +23,57 @@ MOST_LEVELS = 200  # distinct heights that are tried as the lowest one of travel
 @dataclass(frozen=True)
 class Pen:
     """down: for each way whether the pen is on the paper all along it. kind: "z" or "servo". how: in words, for people.
-    share: length of what is drawn, of all that may be meant to be. notices: what to look at."""
+    share: length of what is drawn, of all that may be meant to be. notices: what to look at. is_inverted: by a Z that
+    counts downwards."""
 
     down: tuple[bool, ...]
     kind: str
     how: str
     share: float
     notices: tuple[Notice, ...] = ()
+    is_inverted: bool = False
 
 
 def read_pen(some: list[Way], kind: str | None = None, paper_z_mm: float | None = None) -> Pen:
-    """kind: "z" or "servo", None to find out; paper_z_mm: the pen is down at this height and below it.
+    """kind: "z" or "servo", None to find out; paper_z_mm: the pen is down at this height and beyond it.
 
     Z decides where it changes between ways to the side at least as often as the servo does. The least height of travel
-    is the one that agrees best with rapid ways, with lifts straight up and down, and with the paper at z 0. A servo is
-    up at the value of rapid ways, behind M5, and at the value that is set first.
+    is the one that agrees best with rapid ways, with lifts straight up and down, and with the paper at z 0. Z counts
+    downwards where that is clearly shown, see _as_travel. A servo is up at the value of rapid ways, behind M5, and at
+    the value that is set first.
 
     Error where nothing tells, or where what was asked for does not move.
     """
     across = [bool(np.ptp(way.points_mm[:, :2], axis=0).any()) for way in some]
     by_z, by_servo = _levels(some, across), _values(some, across)
     if kind is None:
-        has_servo = any(way.power is not None for way in some)
-        by_height = not has_servo or _changes(by_z) >= max(_changes(by_servo), 1)
-        kind = "z" if paper_z_mm is not None or by_height else "servo"
+        kind = "z" if paper_z_mm is not None else pen_kind(some)
     if kind == "z":
-        down, how = _by_height(some, across, by_z, paper_z_mm)
+        down, how, is_inverted = _by_height(some, across, by_z, paper_z_mm)
     else:
-        down, how = _by_servo(some, across)
+        (down, how), is_inverted = _by_servo(some, across), False
     if not any(down) and paper_z_mm is None and len(set(filter(None, by_z))) < 2 and _changes(by_servo) == 0:
-        raise _unknown()
-    return Pen(
-        tuple(down), kind, how, _share(some, across, down), tuple(_rapids_that_paint(some, across, down))
-    )
+        raise _unknown(by_z)
+    said = tuple(_rapids_that_paint(some, across, down))
+    return Pen(tuple(down), kind, how, _share(some, across, down), said, is_inverted)
 
 
-def _unknown() -> Error:
+def pen_kind(some: list[Way]) -> str:
+    """ "z" or "servo": whichever the program moves between strokes, Z where both do equally often."""
+    if all(way.power is None for way in some):
+        return "z"
+    across = [bool(np.ptp(way.points_mm[:, :2], axis=0).any()) for way in some]
+    changes_z, changes_servo = _changes(_levels(some, across)), _changes(_values(some, across))
+    return "z" if changes_z >= max(changes_servo, 1) else "servo"
+
+
+def _unknown(levels: list[float | None]) -> Error:
     sentence = (
-        "nothing shows when its pen is down: no height that changes between strokes, and neither M3 nor M5"
+        "nothing shows when its pen is down: no height changes between strokes, and no M3, M5 or M280 stands"
     )
-    return Error(sentence, code="pen-unknown", advice="--paper-z MM gives the height at which it draws")
+    known = [level for level in levels if level is not None]
+    advice = f"--paper-z {known[0]:g} reads all lines at this height" if known else ""
+    return Error(sentence, code="pen-unknown", advice=advice)
 
 
 def _levels(some: list[Way], across: list[bool]) -> list[float | None]:
@@ -89,20 +101,55 @@ def _changes(levels: list[float | None]) -> int:
 
 def _by_height(
     some: list[Way], across: list[bool], levels: list[float | None], paper_z_mm: float | None
-) -> tuple[list[bool], str]:
-    dots = [float(way.points_mm[-1, 2]) for way in some if not np.ptp(way.points_mm, axis=0).any()]
-    known = sorted({level for level in levels if level is not None} | {d for d in dots if math.isfinite(d)})
-    if paper_z_mm is not None:
-        least_up = paper_z_mm + 2 * SAME_MM
-    elif len(known) < 2:
-        raise _unknown()
+) -> tuple[list[bool], str, bool]:
+    """For each way whether it is drawn, how that was found, and whether Z counts downwards."""
+    if paper_z_mm is None and len(_heights(some, levels)) < 2:
+        raise _unknown(levels)
+    turned = [replace(way, points_mm=way.points_mm * (1.0, 1.0, -1.0)) for way in some]
+    turned_levels = _levels(turned, across)
+    if paper_z_mm is None:
+        least_up = _least_of_travel(some, across, _heights(some, levels))
+        turned_least = _least_of_travel(turned, across, _heights(turned, turned_levels), has_zero=False)
     else:
-        least_up = _least_of_travel(some, across, known)
+        least_up, turned_least = (sign * paper_z_mm + 2 * SAME_MM for sign in (1, -1))
+    shown = _as_travel(some, across, least_up - SAME_MM)
+    is_inverted = _as_travel(turned, across, turned_least - SAME_MM) > shown + CLEARLY
+    if is_inverted:
+        some, levels, least_up = turned, turned_levels, turned_least
     down = [not _is_vertical(way) and float(way.points_mm[:, 2].max()) < least_up - SAME_MM for way in some]
     drawn = [level for level, is_down in zip(levels, down, strict=True) if is_down and level is not None]
     travel = [level for level, is_down in zip(levels, down, strict=True) if not is_down and level is not None]
-    how = f"its pen goes by Z: down to z {max(drawn):g}" if drawn else "its pen goes by Z, and is never down"
-    return down, how + (f", up from z {min(travel):g} mm" if travel else " mm")
+    sign = -1.0 if is_inverted else 1.0
+    how = "its pen goes by Z" + (", which counts downwards" if is_inverted else "")
+    how += f": down to z {sign * max(drawn) + 0.0:g}" if drawn else ", and is never down"
+    how += f", up from z {sign * min(travel) + 0.0:g} mm" if travel else " mm"
+    return down, how, is_inverted
+
+
+def _heights(some: list[Way], levels: list[float | None]) -> list[float]:
+    """Distinct heights of ways to the side and of dots, the least first."""
+    dots = (float(way.points_mm[-1, 2]) for way in some if not np.ptp(way.points_mm, axis=0).any())
+    return sorted({level for level in levels if level is not None} | {d for d in dots if math.isfinite(d)})
+
+
+def _as_travel(some: list[Way], across: list[bool], middle: float) -> float:
+    """How much the ways above a height look like travel, from 0 to 3: rapid ways end there, where others do not; the
+    program begins and ends there; and the pen goes fewer ways in a row there than below it."""
+    ends = [(way.rapid, float(way.points_mm[-1, 2])) for way in some if math.isfinite(way.points_mm[-1, 2])]
+    rapid = [height >= middle for is_rapid, height in ends if is_rapid]
+    by_rapid = float(np.mean(rapid)) if 0 < len(rapid) < len(ends) else 0.5
+    sides = [
+        float(way.points_mm[:, 2].max()) >= middle
+        for way, is_across in zip(some, across, strict=True)
+        if is_across and np.isfinite(way.points_mm[:, 2]).all()
+    ]
+    outer = ([sides[0]] if sides else []) + ([ends[-1][1] >= middle] if ends else [])
+    runs: dict[bool, list[int]] = {True: [], False: []}
+    for is_above, run in groupby(sides):
+        runs[is_above].append(len(list(run)))
+    above, below = (float(np.mean(runs[each])) if runs[each] else 0.0 for each in (True, False))
+    by_runs = below / (above + below) if above and below else 0.5
+    return by_rapid + (float(np.mean(outer)) if outer else 0.5) + by_runs
 
 
 def _is_vertical(way: Way) -> bool:
@@ -110,9 +157,9 @@ def _is_vertical(way: Way) -> bool:
     return bool(x == u and y == v and not way.turn and from_z != to_z)
 
 
-def _least_of_travel(some: list[Way], across: list[bool], known: list[float]) -> float:
+def _least_of_travel(some: list[Way], across: list[bool], known: list[float], has_zero: bool = True) -> float:
     """The height that separates drawing from travel best: most ways straight up and down cross it, rapid ways are above
-    it, and z 0 and below is below it."""
+    it, and, where has_zero, z 0 and below is below it."""
     lifts = np.array(
         [
             (way.points_mm[0, 2], way.points_mm[-1, 2])
@@ -137,7 +184,7 @@ def _least_of_travel(some: list[Way], across: list[bool], known: list[float]) ->
         middle = (below + level) / 2
         crossed = float(((lifts < middle).sum(axis=1) == 1).mean()) if len(lifts) else 0.0
         above = float((rapid >= middle).mean()) if has_both else 1.0
-        at_zero = below <= SAME_MM < level
+        at_zero = has_zero and below <= SAME_MM < level
         score = crossed + above + 0.5 * at_zero
         if score > best + 1e-9:
             best, least_up = score, level

@@ -29,8 +29,8 @@ LARGEST_MM = 1e6
 @dataclass(frozen=True)
 class Way:
     """One move, as points (n, 3) [mm] from where the tool is; rapid: by G0; turn: 1 or -1 of a circle about a centre,
-    counter-clockwise or not; power: what M3 or M4 holds while it goes, None behind M5 or S0 and before either;
-    unit_told: whether G20 or G21 stands before it, without which its numbers count as millimetres."""
+    counter-clockwise or not; power: what M3, M4 or M280 holds while it goes, None behind M5 or S0 and before either;
+    by_angle: by M280; unit_told: whether G20 or G21 stands before it, without which its numbers count as mm."""
 
     line: int
     points_mm: np.ndarray
@@ -40,6 +40,7 @@ class Way:
     unit_told: bool
     centre_mm: tuple[float, float] | None = None
     turn: int = 0
+    by_angle: bool = False
 
 
 def ways(text: str) -> list[Way]:
@@ -140,7 +141,8 @@ class _Reader:
         """Where a pen goes down and up again without a move."""
         if power is not None and len(self.ways) == self.ways_before and np.isfinite(self.at[:2]).all():
             here = np.array([self.at, self.at])
-            self.ways.append(Way(number, here, False, self.feed_mm_s, power, self.unit_told))
+            dot = Way(number, here, False, self.feed_mm_s, power, self.unit_told, by_angle=self.by_angle)
+            self.ways.append(dot)
         self.ways_before = len(self.ways)
 
     def _mode(self, number: int, line: str, letter: str, code: float, values: dict) -> None:
@@ -186,7 +188,8 @@ class _Reader:
         if np.abs(np.nan_to_num(end)).max() > LARGEST_MM:
             raise _too_far(number, line)
         straight = np.array([start, end])
-        way = Way(number, straight, self.motion == 0, self.feed_mm_s, self.pen(), self.unit_told)
+        rapid, by_angle = self.motion == 0, self.by_angle
+        way = Way(number, straight, rapid, self.feed_mm_s, self.pen(), self.unit_told, by_angle=by_angle)
         if self.motion in (2, 3):
             way = self._circle(number, line, way, values)
         if way.turn or not np.array_equal(start, end, equal_nan=True):

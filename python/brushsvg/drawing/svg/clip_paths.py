@@ -1,4 +1,4 @@
-"""Clip paths of SVG: the region, on paper, that a clip-path leaves of an element (CSS Masking 1, chapter 7)."""
+"""Clip paths and masks of SVG: the region, on paper, that they leave of an element (CSS Masking 1)."""
 
 from __future__ import annotations
 
@@ -7,20 +7,24 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from ...errors import Error
+from ...units import length_px
 from . import shapes
 from .context import Context, local
-from .css_cascade import Style, cascade
+from .css_cascade import INITIAL, Style, cascade
 from .paint_servers import URL
 from .path_to_cubics import trace
 from .references import href, referred
 from .style_sheets import Rules
 from .transform import Matrix, multiply, parse_transform, scales
+from .viewport import corners_of
 
 if TYPE_CHECKING:
     import shapely
 
 _CSS_TRANSFORMS = frozenset(("transform", "translate", "rotate", "scale"))
+MASK_PAGE = {"x": "-10%", "y": "-10%", "width": "120%", "height": "120%"}  # where a mask does not give it
 _DEEPEST = 20  # clip paths and uses in each other
+_MASK_UNREAD = "its mask is not made of filled white and black shapes alone, which is not read: painted whole"
 
 
 class ClipPathError(Error):
@@ -63,16 +67,56 @@ class ClipPaths:
         if node.get("transform"):
             matrix = multiply(matrix, parse_transform(node.get("transform", "")))
         if node.get("clipPathUnits") == "objectBoundingBox":
-            box = bounds()
-            if box is None:
-                sentence = "its clip path counts in the size of a group, which is not read: painted whole"
-                raise ClipPathError(sentence, code="clipping-unread")
-            matrix = multiply(matrix, (box[2], 0.0, 0.0, box[3], box[0], box[1]))
+            matrix = multiply(matrix, _in_bounds(bounds()))
         style, _ = cascade(context.style, node.attrib, self._rules.of(node), context.diagonal)
         _refuse_css_transform(style)
-        parts = [*self._shapes(node, context._replace(matrix=matrix), context.style, depth)]
-        region = shapely.union_all(parts)
+        parts = self._shapes(node, context._replace(matrix=matrix), context.style, depth, "clip-rule")
+        region = shapely.union_all([region for _, region in parts])
         return self._own(style, context, region, depth)
+
+    def mask_region(
+        self, value: str, context: Context, bounds: Callable[[], tuple[float, float, float, float] | None]
+    ) -> shapely.Geometry | None:
+        """The region that a mask of white and black shapes leaves; otherwise as `region`."""
+        import shapely
+
+        found = URL.match(value)
+        target = referred(found[1].strip().strip("\"'"), self._by_id) if found else None
+        if found and (target is None or local(target) != "mask"):
+            return None
+        style, _ = cascade(INITIAL, target.attrib if found else {}, [], context.diagonal)
+        if not found or "mask-type" in target.attrib or "mask-type" in target.get("style", ""):
+            raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
+        matrix = context.matrix
+        if target.get("maskContentUnits") == "objectBoundingBox":
+            matrix = multiply(matrix, _in_bounds(bounds()))
+        page = self._mask_page(target, context, bounds)
+        left = shapely.Polygon()
+        inner = context._replace(matrix=matrix)
+        for shown, region in self._shapes(target, inner, style, 0, "fill-rule"):
+            left = left.union(region) if _is_white(shown) else left.difference(region)
+        if page is not None:
+            left = left.intersection(page)
+        return self._own(style, context, left, 0)
+
+    def _mask_page(self, mask: ET.Element, context: Context, bounds) -> shapely.Geometry | None:
+        """The rectangle outside of which a mask hides everything; None for the default one of a group, which is
+        larger than what is masked."""
+        import shapely
+
+        given = {name: mask.get(name, default).strip() for name, default in MASK_PAGE.items()}
+        if mask.get("maskUnits") == "userSpaceOnUse":
+            matrix = context.matrix
+            rectangle = [
+                context.length(text, context.viewport[name in ("y", "height")])
+                for name, text in given.items()
+            ]
+        else:
+            if (box := bounds()) is None and given == MASK_PAGE:
+                return None
+            matrix = multiply(context.matrix, _in_bounds(box))
+            rectangle = [length_px(text, 1.0, context.em_px) for text in given.values()]
+        return shapely.Polygon(corners_of(matrix, tuple(rectangle)))
 
     def _own(self, style: Style, context: Context, region, depth: int) -> shapely.Geometry:
         """The region as far as the clip path of its own leaves it."""
@@ -84,8 +128,9 @@ class ClipPaths:
         return region.intersection(self._region(target, context, lambda: None, depth + 1))
 
     def _shapes(
-        self, node: ET.Element, context: Context, parent: Style, depth: int
-    ) -> Iterator[shapely.Geometry]:
+        self, node: ET.Element, context: Context, parent: Style, depth: int, rule: str
+    ) -> Iterator[tuple[Style, shapely.Geometry]]:
+        """The shapes in a clip path ("clip-rule") or, with those of its groups, in a mask ("fill-rule")."""
         from ..clipping import outlines_of, region_of
 
         for child in node:
@@ -99,7 +144,9 @@ class ClipPaths:
                 matrix = multiply(matrix, parse_transform(child.get("transform", "")))
             here = context._replace(matrix=matrix)
             if tag == "use":
-                yield from self._used(child, here, style, depth)
+                yield from self._used(child, here, style, depth, rule)
+            elif tag == "g" and rule == "fill-rule" and depth < _DEEPEST:
+                yield from self._shapes(child, here, style, depth + 1, rule)
             elif tag == "text":
                 raise ClipPathError(
                     "its clip path is text, which is not read: painted whole", code="clipping-unread"
@@ -111,12 +158,14 @@ class ClipPaths:
                 except shapes.DamageError as damage:
                     commands = damage.commands
                 line = trace(commands, matrix, scales(matrix)[0])
-                region = region_of(outlines_of(line.subpaths), style.inherited["clip-rule"])
-                yield self._own(style, here, region, depth)
+                region = region_of(outlines_of(line.subpaths), style.inherited[rule])
+                yield style, self._own(style, here, region, depth)
+            elif tag in ("image", "svg", "switch", "foreignObject") and rule == "fill-rule":
+                raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
 
     def _used(
-        self, use: ET.Element, context: Context, style: Style, depth: int
-    ) -> Iterator[shapely.Geometry]:
+        self, use: ET.Element, context: Context, style: Style, depth: int, rule: str
+    ) -> Iterator[tuple[Style, shapely.Geometry]]:
         target = referred(href(use), self._by_id)
         if target is None:
             return
@@ -129,4 +178,23 @@ class ClipPaths:
         moved = context._replace(matrix=multiply(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)))
         alone = ET.Element("clipPath")
         alone.append(target)
-        yield from self._shapes(alone, moved, style, depth + 1)
+        yield from self._shapes(alone, moved, style, depth + 1, rule)
+
+
+def _in_bounds(box: tuple[float, float, float, float] | None) -> Matrix:
+    """From fractions of an element's bounds (x, y, width, height) to its user units."""
+    if box is None:
+        sentence = "its clip path or mask counts in the size of a group, which is not read: painted whole"
+        raise ClipPathError(sentence, code="clipping-unread")
+    return (box[2], 0.0, 0.0, box[3], box[0], box[1])
+
+
+def _is_white(style: Style) -> bool:
+    """Whether a shape of a mask shows what is under it. ClipPathError for one that is neither white nor black."""
+    fill, own = style.inherited["fill"] or "#000000", style.own
+    is_opaque = own["opacity"] == "1" and style.inherited["fill-opacity"] == "1" and own["mask"] == "none"
+    if fill == "currentcolor":
+        fill = style.inherited["color"]
+    if not is_opaque or fill not in ("#ffffff", "#000000") or style.inherited["stroke"] != "none":
+        raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
+    return fill == "#ffffff"

@@ -49,7 +49,7 @@ _CSS_ALONE = {
     "content-visibility": "visible",
     "all": "",
 }
-_UNREAD = ("mask", "filter", *_CSS_ALONE)
+_UNREAD = ("filter", *_CSS_ALONE)
 OWN |= _CSS_ALONE
 # Attributes that CSS may set as well; CSS wins.
 _GEOMETRY = frozenset(

@@ -10,7 +10,9 @@ import numpy as np
 
 from ...errors import Error
 from ...geometry.arc_length import knots
-from ...geometry.cubics import extremes
+from ...geometry.cubics import extremes, flattened
+from ...geometry.polylines import length
+from ...geometry.rings import signed_area
 from ...units import MM_PER, number
 from ..design import Element, SubPath
 from . import shapes
@@ -25,6 +27,7 @@ _WITH_MARKERS = frozenset(("path", "line", "polyline", "polygon"))
 _WHITE = "#ffffff"
 _UNEVEN = 1.05  # below it, the width along and across differs by less than a brush's own scatter
 # A page of text has a hundredth of each.
+_FLAT_MM = 0.05
 _MOST_DASHES = 100_000
 _MOST_DATA = 10_000_000  # characters of path data
 
@@ -77,7 +80,8 @@ class Painted:
             self.notes.add(node, context, sentence, damaged=True, code="geometry-out-of-range")
             return
         before = len(self.notes.notices)
-        subpaths = self._drawn(node, tag, attributes, context, power, stroke != "none")
+        outline = self._outline(node, tag, attributes, context, power)
+        subpaths = self._with_dashes(node, context, outline) if stroke != "none" else outline
         if not subpaths:
             return
         is_even = "width_mm" in context.settings or (context.is_of_screen and power is None)
@@ -92,11 +96,8 @@ class Painted:
                 'data-brushsvg-skip="yes" on it leaves it out'
             )
             self.notes.add(node, context, sentence, code="white-paint")
-        if properties["fill"] and "none" not in (fill, stroke) and fill != stroke:
-            sentence = (
-                f"its fill is {fill} and its stroke {stroke}: both are painted in the colour of the stroke"
-            )
-            self.notes.add(node, context, sentence, code="colours-joined")
+        # a fill that nobody chose is black, and hardly ever meant beside a stroke of another colour
+        is_two = properties["fill"] and "none" not in (fill, stroke) and fill != stroke
         if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
             self.notes.add(node, context, "markers are not read: left out", code="markers-unread")
         element = Element(
@@ -107,15 +108,24 @@ class Painted:
             layer=context.layer,
             settings=context.settings,
             fill_rule="" if fill == "none" else properties["fill-rule"],
+            fill_colour=fill if is_two else "",
         )
-        self.elements += [element] if context.clip is None else self._clipped(node, context, element)
+        elements = [element]
+        if (
+            element.fill_rule and subpaths is not outline and _encloses(outline, width_mm)
+        ):  # its dashes do not
+            shape, line = replace(element, fill_colour=element.fill_colour or element.colour).by_colour()
+            elements = [replace(shape, subpaths=outline), line]
+        if context.clip is not None:
+            elements = [piece for each in elements for piece in self._clipped(node, context, each)]
+        self.elements += elements
 
     def _clipped(self, node: ET.Element, context: Context, element: Element) -> list[Element]:
         from ..clipping import clipped
 
         found = clipped(element, context.clip)
         if not found:
-            sentence = "it lies outside of the clip path or viewport that would show it: left out"
+            sentence = "it is outside the clip path, mask or viewport that would show it: left out"
             self.notes.add(node, context, sentence, code="clipped-away")
         return found
 
@@ -160,19 +170,18 @@ class Painted:
             notices[told:] = [replace(notice, where=label) for notice in notices[told:]]
         return name
 
-    def _drawn(
-        self, node, tag: str, attributes, context: Context, power: PowerStroke | None, is_line: bool
+    def _outline(
+        self, node, tag: str, attributes, context: Context, power: PowerStroke | None
     ) -> tuple[SubPath, ...]:
-        """What is painted of an element's geometry, on paper."""
+        """An element's geometry on paper, without dashes."""
         greatest, least = scales(context.matrix)
-        mm_per_user = math.sqrt(greatest * least)
         subpaths = self._sound(node, tag, attributes, context, greatest)
-        if power:
-            subpaths = with_widths(power, subpaths, mm_per_user)
-        if is_line:
-            mm_per_unit = MM_PER["px"] if context.is_of_screen else mm_per_user
-            subpaths = self._dashed(node, context, subpaths, mm_per_unit)
-        return subpaths
+        return with_widths(power, subpaths, math.sqrt(greatest * least)) if power else subpaths
+
+    def _with_dashes(self, node, context: Context, subpaths: tuple[SubPath, ...]) -> tuple[SubPath, ...]:
+        greatest, least = scales(context.matrix)
+        mm_per_unit = MM_PER["px"] if context.is_of_screen else math.sqrt(greatest * least)
+        return self._dashed(node, context, subpaths, mm_per_unit)
 
     def _sound(self, node, tag: str, attributes, context: Context, greatest: float) -> tuple[SubPath, ...]:
         self.data += len(attributes.get("d", "")) + len(attributes.get("points", ""))
@@ -258,6 +267,12 @@ class Painted:
             return 1.0
         length_mm = sum(float(knots(subpath.cubics)[:, -1].sum()) for subpath in subpaths)
         return length_mm / mm_per_unit / said if said else math.inf
+
+
+def _encloses(subpaths: tuple[SubPath, ...], width_mm: float) -> bool:
+    """Whether there is more inside of an outline than a line of this width along it hides."""
+    rings = [flattened(subpath.cubics, _FLAT_MM) for subpath in subpaths]
+    return sum(abs(signed_area(ring)) for ring in rings) > sum(map(length, rings)) * width_mm / 2
 
 
 def _beyond(attributes, tag: str, place: int) -> str:

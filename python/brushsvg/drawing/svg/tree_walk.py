@@ -189,7 +189,9 @@ class Walk:
         if matrix := self._transform(node, context):
             context = context._replace(matrix=multiply(context.matrix, matrix))
         if (value := style.own["clip-path"]) != "none":
-            context = self._clip(node, context, value)
+            context = self._clip(node, context, self.clip_paths.region, value)
+        if (value := style.own["mask"]) != "none":
+            context = self._clip(node, context, self.clip_paths.mask_region, value)
         if not all(map(math.isfinite, context.matrix)):
             self.notes.add(
                 node,
@@ -201,15 +203,17 @@ class Walk:
             return None
         return context
 
-    def _clip(self, node: ET.Element, context: Context, value: str) -> Context:
-        """The context with the region that a clip path of the node leaves."""
+    def _clip(self, node: ET.Element, context: Context, region_of: Callable, value: str) -> Context:
+        """The context with the region that a clip path or mask of the node leaves."""
         is_shape = local(node) in shapes.TAGS
         try:
-            region = self.clip_paths.region(
-                value, context, lambda: self.painted.bounds(node, context) if is_shape else None
-            )
+            inner = context
+            if local(node) == "use":
+                attributes = {**node.attrib, **context.style.geometry}
+                inner = context._replace(matrix=_matrix_of_use(attributes, context))
+            region = region_of(value, inner, lambda: self.painted.bounds(node, context) if is_shape else None)
         except Error as unread:
-            self.notes.add(node, context, str(unread), code="clipping-unread", about="clip-path")
+            self.notes.add(node, context, str(unread), code="clipping-unread", about=region_of.__name__)
             return context
         if region is None:
             return context
@@ -313,20 +317,26 @@ class Walk:
             return
         attributes = {**node.attrib, **context.style.geometry}
         try:
-            x, y = (
-                context.length(attributes.get(name, "").strip() or "0", context.viewport[axis])
-                for axis, name in enumerate(("x", "y"))
-            )
+            matrix = _matrix_of_use(attributes, context)
         except Error as error:
             self.notes.add(node, context, f"{error}: left out", damaged=True, code=error.code)
             return
         inner = context._replace(
-            matrix=multiply(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)),
+            matrix=matrix,
             prefix=context.name(node),
             copied=target,
             size=(attributes.get("width"), attributes.get("height")),
         )
         self._enter(node, iter((target,)), inner)
+
+
+def _matrix_of_use(attributes: dict[str, str], context: Context) -> Matrix:
+    """The context's matrix, moved by x and y of a use. What clips the use moves along."""
+    x, y = (
+        context.length(attributes.get(name, "").strip() or "0", context.viewport[axis])
+        for axis, name in enumerate(("x", "y"))
+    )
+    return multiply(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y))
 
 
 def _within(clip, corners: list[tuple[float, float]]):

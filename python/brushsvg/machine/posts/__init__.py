@@ -214,6 +214,6 @@ POSTS = {  # by the language a cell names
         others={".traj": _ros2_json, ".cdr": _ros2_message},
     ),
     "ebb": Post("commands for EBB boards (AxiDraw, NextDraw)", (".ebb",), _ebb, circles_by=""),
-    "hpgl": Post("HP-GL for pen plotters", (".hpgl",), _hpgl, circles_by=""),
+    "hpgl": Post("HP-GL for pen plotters", (".hpgl", ".plt"), _hpgl, circles_by=""),
     "robodk": Post("what a post of RoboDK's kind writes", (".robodk",), _robodk, False, "pose"),
 }

@@ -36,6 +36,7 @@ class Made:
     heights_mm: tuple[float, ...] | None = None
     first_mm: tuple[float, ...] | None = None
     has_margin: bool = False  # margin strokes were asked for, whether there was room or not
+    is_of_plan: bool = False  # made from a plan.json, which does not say how it was planned
 
 
 def made(text: str) -> Made:
@@ -93,6 +94,7 @@ def made(text: str) -> Made:
         heights_mm=tuple(heights) if heights else None,
         first_mm=tuple(first) if first else None,
         has_margin="margin" in header,
+        is_of_plan="compensation" not in header,
     )
 
 
