@@ -316,7 +316,9 @@ def test_a_foreign_ring_does_not_make_the_rest_surer(seed):
     assert framed.fit.left_aside > 0.1
     assert "[0, 10] %" in report(framed)
     assert "[0, 10] %" not in report(alone)
-    if seed == 3:  # how far brush 5 departs from the usual laws is found in one of two sizes, by the last bits
+    if (
+        seed == 3
+    ):  # how far brush 5 departs from the usual laws is found in one of two sizes, by the last bits
         for law in ("lag", "tip_gap", "half_width"):
             np.testing.assert_allclose(intervals(framed, law)[1:], intervals(alone, law)[1:], rtol=0.05)
     np.testing.assert_allclose(framed.fit.laws.lag, alone.fit.laws.lag, atol=0.05)

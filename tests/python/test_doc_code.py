@@ -61,7 +61,10 @@ KINDS_OF_PAGES = {
 MADE = "article.md"
 LAWS = {"lag": 1.2, "width": 0.8}  # of a brush that was measured, per mm of depth
 BLOCKS = [block for page in PAGES for block in blocks(page)]
-NEEDS_PARTS = {"import sys, serial": "a port to a machine"}  # begins of blocks that are compiled alone
+NEEDS_PARTS = {
+    "import sys, serial": "a port to a machine",
+    "import pathlib, re, socket": "a robot",
+}  # begins of blocks that are compiled alone
 OF_PYTHON = {
     page.name: [block.code for block in BLOCKS if (block.page, block.kind) == (page.name, "python")]
     for page in PAGES

@@ -18,7 +18,7 @@ from test_urscript import BRUSH, STROKES, text_for
 from brushsvg import _core
 from brushsvg.machine.cell import Motors, Paper, robot_from_paper
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.posts import POSTS
+from brushsvg.machine.posts import POSTS, ebb
 from brushsvg.machine.posts.ebb import HOME
 from brushsvg.machine.writer import text_of
 
@@ -105,6 +105,36 @@ def test_speeds_change_by_the_cells_acceleration_in_slices():
         changes = np.abs(np.diff(np.r_[0.0, speeds, 0.0]))
         between = (np.r_[0.0, times] + np.r_[times, 0.0]) / 2
         assert (changes <= 1.1 * most * between + slack + 1.5).all()
+
+
+def test_no_slice_is_too_short_for_the_board_and_way_and_heights_are_unchanged(monkeypatch):
+    """Without that rule 7 of 10 slices of a wave take less than 16 ms."""
+    t = np.linspace(0, 1, 900)
+    straight = [(10, 50, 0), (10, 50, -1), (11.3, 50, -1), (12.2, 50.4, -1), (12.2, 50.4, 0)]
+    paths = [
+        wave(),
+        np.column_stack([10 + 20 * t, 10 + 0.3 * np.sin(300 * t), -1 - np.sin(9 * t) ** 2]),
+        straight,
+    ]
+    texts = [made(*paths)]
+    monkeypatch.setattr(ebb, "LEAST_MS", 1)
+    texts.append(made(*paths))
+    times = [[int(each) for each in re.findall(r"(?m)^SM,(\d+),(?!0,0$)", text)] for text in texts]
+    assert min(times[0]) >= 16 and np.mean(np.array(times[1]) < 16) > 0.5
+    assert len(times[0]) < len(times[1])
+    new, old = ([(leg.start, leg.end) for leg in run(text).legs if leg.kind != "wait"] for text in texts)
+    assert [leg for leg in new if leg[0][:2] == leg[1][:2]] == [
+        leg for leg in old if leg[0][:2] == leg[1][:2]
+    ]
+    places, k = np.array([end for _, end in old]), 0
+    for start, end in new:  # each slice is one or some of the others, on its straight line
+        first, k = k, k + 1 + int((np.abs(places[k:] - end).max(axis=1) < 1e-9).argmax())
+        assert np.allclose(places[k - 1], end)
+        along = np.subtract(end, start)[:2]
+        off = places[first:k, :2] - start[:2]
+        across = np.abs(off @ (-along[1], along[0])) / max(np.hypot(*along), 1e-9)
+        assert across.max() < 0.0125 and np.ptp(places[first:k, 2]) < 1e-9
+    assert k == len(places)
 
 
 def test_no_speed_stops_a_motor_or_is_too_fast_for_one():

@@ -8,14 +8,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from diagnostics import agrees, are_told, gives, is_told, refused
-from programs import call, forbidden, whole
+from judge.gcode import run_gcode
+from programs import RUNNABLE, call, forbidden, whole
 
 from brushsvg import _core
 from brushsvg.brush.library import find_brush
 from brushsvg.evaluation.report import measure
 from brushsvg.machine import writer
 from brushsvg.machine.cell import Reload, Station
-from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.motion import Wait
 from brushsvg.machine.paint_reload import (
     dips_mm,
@@ -35,6 +36,7 @@ BLACK = Station(
 )
 ANY = Station("any", (-20.0, 40.0), depth_mm=5.0, wipe_mm=((-14.0, 40.0, 3.0), (-10.0, 40.0, 3.0)))
 WATER = Station("water", (-20.0, 70.0), depth_mm=12.0)
+STRIPE = [(20, 0, 0), (25, 0, -3), (60, 0, -3), (58, 0, 0)]
 BRUSH = SimpleNamespace(name="b", max_speed_mm_s=25.0)
 
 
@@ -131,6 +133,71 @@ def test_a_visit_goes_down_into_the_paint_and_drips_off():
     wiped = visit(ANY, BRUSH, find_cell()).moves
     assert wiped[-2].points_mm.tolist() == [[-14, 40, 3], [-10, 40, 3]]
     assert wiped[-1].points_mm.tolist() == [[-10, 40, 10]]
+
+
+def test_paint_is_stirred_first_and_then_only_dipped_into_and_the_brush_washed_hard_or_rinsed(
+    tmp_path, capsys
+):
+    """By the tests' own interpreter: full, short, hard wash and full, rinse and short."""
+    stirred = (
+        replace(BLACK, stir_mm=4.0, stir_turns=3),
+        replace(ANY, stir_mm=3.0),
+        replace(WATER, stir_mm=5.0),
+    )
+    cell = replace(cell_with(Reload("stroke", wash="water"), *stirred), name="stirred")
+    (tmp_path / "plan.json").write_text(
+        _core.write_plan(
+            _core.Plan(
+                "round-6",
+                "",
+                (100.0, 60.0),
+                [
+                    _core.Pass(f"s{k}", np.array(STRIPE) + np.array([0, 10 * k, 0]), 20.0, "", colour)
+                    for k, colour in enumerate(("#000000", "#000000", "#ff0000", "#ff0000"), 1)
+                ],
+            )
+        )
+    )
+    program = str(tmp_path / "plan.ngc")
+    full = {(-20.0, 10.0): 3, (-20.0, 40.0): 2, (-20.0, 70.0): 2}
+    for rinse in (False, True):
+        cell = replace(cell, reload=replace(cell.reload, rinse=rinse))
+        (tmp_path / "cell.toml").write_text(write_cell(cell))
+        words = str(tmp_path / "plan.json"), "--cell", str(tmp_path / "cell.toml")
+        assert call(capsys, "convert", words[0], program, *words[1:], "--force")[0] == 0
+        for given in (words, words[1:]):
+            status, out, told = call(capsys, "check", program, *given)
+            assert status == 0 and RUNNABLE in out, told
+        text = (tmp_path / "plan.ngc").read_text()
+        ran = run_gcode(text, "linuxcnc", (0.0, 0.0, 20.0), None, 50.0)
+        assert not ran.refused and not ran.acts
+        found = []
+        starts = [at for words_, at in ran.titles if words_.startswith("paint: ")]
+        for first in starts:
+            last = min([at for _, at in ran.titles if at > first], default=len(ran.legs))
+            legs = [leg for leg in ran.legs[first:last] if leg.end[2] < -4.0]
+            place = tuple(np.round(legs[0].end[:2], 6).tolist())
+            way = np.array([leg.end[:2] for leg in legs]) - place
+            radius = np.hypot(*way.T)
+            turned = np.unwrap(np.arctan2(*way[radius > 1].T[::-1]))
+            found.append((place, round(np.ptp(turned) / 2 / np.pi) if len(turned) else 0))
+            assert max(leg.speed_mm_s for leg in legs if leg.kind != "wait") <= cell.speeds.press_mm_s
+        black, red, water = full
+        rinsed = [(water, 0)] if rinse else []
+        assert found == [
+            (black, full[black]),
+            *rinsed,
+            (black, 0),
+            (water, full[water]),
+            (red, full[red]),
+            *rinsed,
+            (red, 0),
+        ]
+    with refused("cell-reload", "reload.rinse"):
+        parse_cell(write_cell(replace(cell, reload=Reload("stroke", rinse=True))))
+    near = replace(stirred[0], place_mm=(-3.0, 10.0))
+    broken = forbidden(plan_of((9, "#000000", "")), BRUSH, cell_with(Reload("stroke"), near))
+    assert is_told(broken, "station-on-sheet", "black")
 
 
 def test_a_person_dips_at_safe_height():

@@ -123,8 +123,16 @@ def _in_python(line):
 
 
 def run(text, **settings):
-    """What a program does. AssertionError or a Python error for what the language does not have."""
+    """What programs do that run one after the other. AssertionError or a Python error for what the language does not
+    have."""
     robot = Robot(**settings)
+    for program in re.split(r"(?m)^(?=def )", text):
+        robot.tcp = robot.thread = None
+        _run(program, robot)
+    return robot
+
+
+def _run(text, robot):
     assert text.isascii()
     lines = [line for line in text.splitlines() if line.strip() != "end"]
     lines = [_in_python(line) for line in lines]
@@ -143,4 +151,3 @@ def run(text, **settings):
     }
     with contextlib.suppress(HaltedError):
         exec("\n".join(lines), names)
-    return robot

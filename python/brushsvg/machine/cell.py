@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -300,6 +300,15 @@ class Station:
     wipe_mm: tuple = _key(
         "points x, y, z that the tip passes afterwards, at press_mm_s", (None, 3), default=()
     )
+    stir_mm: float = _number(
+        "radius of circles in the paint before it is taken, or in the water; 0: none", 0, 100, default=0.0
+    )
+    stir_turns: int = _key("how many circles", "whole", 1, 20, default=2)
+
+
+def briefly(station: Station) -> Station:
+    """A short visit: without stirring. The same station where nothing is stirred."""
+    return replace(station, name=f"{station.name}, short", stir_mm=0.0) if station.stir_mm else station
 
 
 @dataclass(frozen=True)
@@ -316,6 +325,9 @@ class Reload:
         0,
         90,
         default=0.0,
+    )
+    rinse: bool = _key(
+        "a short visit to the wash station before more paint of the same colour, too", "yes", default=False
     )
 
 
@@ -405,6 +417,7 @@ UNITS_MM = {"hpgl": 0.025}  # of places in languages that know no fractions
 ARCS_IN_SEGMENTS = ("marlin", "klipper")  # whose firmware makes lines of circles, where it knows any
 RADII_MM = {"fluidnc": 0.005}  # a circle's ends may be so much farther from its centre than each other
 MOST_POINTS = {"fanuc": 1000}  # of one program: longer jobs are parted between strokes
+MOST_LINES = {"urscript": 1000, "krl": 2500}  # the same; a stroke that has more is a program by itself
 RELOADS = ("length", "stroke", "layer")
 
 

@@ -475,9 +475,9 @@ def _check_paint(cell: Cell) -> None:
                 raise Error(
                     f"colour {colour[:24]!r} is not written as #rrggbb", where=where, code="colour-invalid"
                 )
-        if station.by_hand and (station.depth_mm or station.wipe_mm):
+        if station.by_hand and (station.depth_mm or station.wipe_mm or station.stir_mm):
             raise Error(
-                "with by_hand a person loads the brush: depth_mm and wipe_mm must go",
+                "with by_hand a person loads the brush: depth_mm, wipe_mm and stir_mm must go",
                 where=where,
                 code="cell-station",
             )
@@ -507,6 +507,8 @@ def _check_paint(cell: Cell) -> None:
         )
     if cell.reload.wash and cell.reload.wash not in names:
         raise Error(f"there is no station {cell.reload.wash!r}", where="reload.wash", code="cell-reload")
+    if cell.reload.rinse and not cell.reload.wash:
+        raise Error("rinse needs wash, the station of the water", where="reload.rinse", code="cell-reload")
 
 
 def _check_heights_of(station: Station, cell: Cell, where: str) -> None:

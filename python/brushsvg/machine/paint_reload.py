@@ -13,7 +13,7 @@ from .. import _core
 from ..errors import Error, Notice
 from ..geometry.polylines import length, lengths
 from .arc_chords import chords, cut_at_extremes, with_chords
-from .cell import Cell, Station, robot_from_paper, why_no_waiting
+from .cell import Cell, Station, briefly, robot_from_paper, why_no_waiting
 from .distortion import goes_straight, in_lines_mm, is_similar
 from .frames import is_upright
 from .pass_way import on_way
@@ -177,8 +177,8 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
     and for strokes of one colour, or where nobody can be waited for.
 
     Paint is fetched before the first stroke, before every change of colour, before every stroke or layer where the
-    cell says so, and where what is on the brush would not last. A stroke's setting reload asks for paint or goes
-    without. Error for a colour that no station serves.
+    cell says so, and where what is on the brush would not last. More paint of the same colour is a short visit. A
+    stroke's setting reload asks for paint or goes without. Error for a colour that no station serves.
     """
     if not cell.reload:
         return _pens(loads, cell, first_stroke) if may_pause(cell) else ()
@@ -190,13 +190,17 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
         station = _station_for(a_pass, cell)
         length_mm = painted_mm(a_pass)
         changed = last is not None and _station_for(last, cell) != station
-        wash = [each for each in cell.stations if changed and each.name == cell.reload.wash]
+        wash = [each for each in cell.stations if each.name == cell.reload.wash]
         fetch = (
             last is None
             or changed
             or number == first_stroke
             or _is_due(a_pass, last, used_mm + length_mm, cell.reload, loads.lasts_mm)
         )
+        if last is not None and not changed and number != first_stroke:
+            wash, station = [briefly(each) for each in wash if cell.reload.rinse], briefly(station)
+        elif not changed:
+            wash = []
         found.append((*wash, station) if fetch else ())
         used_mm = length_mm + (0.0 if fetch else used_mm)
         last = a_pass

@@ -12,7 +12,7 @@ from .. import _core
 from ..errors import Error, Notice
 from .arm.joints import is_installed
 from .arm.place import unreachable
-from .cell import MOST_POINTS, Cell, Station, robot_from_paper, value_mm
+from .cell import MOST_LINES, MOST_POINTS, Cell, Station, briefly, robot_from_paper, value_mm
 from .corner_blending import SHARP_RAD, blends, on_the_spot
 from .distortion import told_high_mm, told_mm, true_mm
 from .frames import moved
@@ -110,6 +110,21 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         drawn = dict(zip((a_pass.stroke for a_pass in loads.loads), loads.strokes(), strict=True))
         problems = [replace(each, where=drawn.get(each.where, each.where)) for each in problems]
     return Walked(loads, job, made, written, list(dict.fromkeys(problems)))
+
+
+def beyond_part(loads: PlanInLoads, cell: Cell) -> list[Notice]:
+    """A notice of each stroke that alone has more lines than a program of the language should."""
+    most = MOST_LINES.get(cell.language)
+    return [
+        Notice(
+            a_pass.stroke,
+            f"{count} poses are outside the range [1, {most}] of one program, which the controller may not load",
+            code="poses-too-many",
+            advice="--tolerance makes them fewer",
+        )
+        for a_pass in (loads.loads if most else ())
+        if (count := len(a_pass.poses_mm) + AROUND) > most
+    ]
 
 
 def _as_run(a_pass, made: Program):
@@ -219,9 +234,10 @@ def approach_mm_s(brush, cell: Cell) -> float:
 
 
 def names_of_stations(cell: Cell) -> dict[Station, str]:
-    """What a program calls each: no two alike."""
-    names = told_apart([station.name for station in cell.stations])
-    return dict(zip(cell.stations, names, strict=True))
+    """What a program calls each, short visits by a name of their own: no two alike."""
+    stations = list(dict.fromkeys(each for one in cell.stations for each in (one, briefly(one))))
+    names = told_apart([station.name for station in stations])
+    return dict(zip(stations, names, strict=True))
 
 
 def visit(station: Station, brush, cell: Cell) -> Section:
@@ -240,6 +256,8 @@ def visit(station: Station, brush, cell: Cell) -> Section:
         Move("approach", over(station.place_mm, rim), approach_mm_s(brush, cell)),
         Move("dip", over(station.place_mm, station.surface_mm - station.depth_mm), press_mm_s),
     ]
+    if station.stir_mm:
+        steps.append(Move("dip", _circles(station), press_mm_s))
     steps += [Wait(station.hold_s)] if station.hold_s else []
     steps.append(Move("dip", over(station.place_mm, rim), press_mm_s))
     steps += [Wait(station.drip_s)] if station.drip_s else []
@@ -251,6 +269,18 @@ def visit(station: Station, brush, cell: Cell) -> Section:
             steps.append(Move("dip", over(last, rim), press_mm_s))
     steps.append(Move("retract", safely_over(last, cell), speeds.travel_mm_s))
     return Section(f"paint: {name}", tuple(steps))
+
+
+STIR_POINTS = 24  # of each circle
+
+
+def _circles(station: Station) -> np.ndarray:
+    """(n, 3) circles in the paint, from the middle out and back to it."""
+    turn = np.linspace(0, 2 * np.pi * station.stir_turns, STIR_POINTS * station.stir_turns + 1)
+    x, y = station.place_mm
+    circles = np.column_stack([x + station.stir_mm * np.cos(turn), y + station.stir_mm * np.sin(turn)])
+    places = np.vstack([circles, [x, y]])
+    return np.column_stack([places, np.full(len(places), station.surface_mm - station.depth_mm)])
 
 
 def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:

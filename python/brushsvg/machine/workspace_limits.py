@@ -62,7 +62,9 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
         width, height = sheet_mm
         on_sheet = (0.0, 0.0, -1.0), (width, height, 1.0)
         path = [(*point[:2], 0.0) for point in (station.place_mm, *station.wipe_mm)]
-        if any(place_inside(ways([[point]]), *on_sheet) is not None for point in path):
+        (x, y), r = station.place_mm, station.stir_mm
+        stirs = [(x - r, y, 0.0), (x + r, y, 0.0), (x, y - r, 0.0), (x, y + r, 0.0)]
+        if any(place_inside(ways([[point]]), *on_sheet) is not None for point in (*path, *stirs)):
             sentence = f"its place lies on the sheet of {width:g} x {height:g} mm"
             problems.append(Notice(station.name, sentence, code="station-on-sheet"))
         elif place_inside(ways([path]), *on_sheet) is not None:

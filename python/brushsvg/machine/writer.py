@@ -85,16 +85,22 @@ def encoded(
 
 def in_files(path: str | os.PathLike[str], pieces: bytes | Iterator[str]) -> dict:
     """The same by the files that it belongs in: what one program of a language cannot hold lies beside it."""
-    post = next((post for post in POSTS.values() if Path(path).suffix.lower() in post.extensions), None)
-    if post is None or post.parted is None:
+    post = parted_post(Path(path).suffix.lower())
+    if post is None:
         return {path: pieces}
-    texts = post.parted("".join(pieces))
+    texts = post.programs("".join(pieces))
     return {path: texts.pop("")} | {beside(path, name): text for name, text in texts.items()}
 
 
+def parted_post(suffix: str) -> Post | None:
+    """The language of an extension, where long jobs of it are several files."""
+    return next((post for post in POSTS.values() if post.parted and suffix in post.extensions), None)
+
+
 def beside(path: str | os.PathLike[str], name: str) -> str:
-    """Where the file of another program lies that one calls."""
-    return str(Path(path).with_name(name + Path(path).suffix))
+    """Where the file of another program lies that one goes on in."""
+    path = Path(path)
+    return str(path.with_name((path.stem if name.startswith("-") else "") + name + path.suffix))
 
 
 def painting_cell(suffix: str, cell: Cell) -> Cell:

@@ -23,11 +23,10 @@ from ..machine.paint_reload import in_loads
 from ..machine.posts import GCODE
 from ..machine.program import out_of_arm
 from ..machine.setup_programs import around
-from ..machine.writer import beside
+from ..machine.writer import beside, parted_post
 from ..painted.corrections import is_corrected
 from ..verification import against_plan, against_regenerated, pace, setup_programs, simulate_program
 from ..verification.readback import read_program, text_of_file
-from ..verification.readback.fanuc import called
 from ..verification.readback.header import made as made_of
 from ..verification.readback.ros2 import as_table
 from ..verification.time_as_run import time_as_run_s
@@ -189,8 +188,12 @@ def _whole_text(path: str, suffix: str, text: str) -> str:
         )
     if suffix == ".traj":
         text = as_table(text)
-    others = called(text) if suffix == ".ls" else []
-    return text + "".join(text_of_file(read_bytes(beside(path, name))) for name in others)
+    post, texts, names = parted_post(suffix), [text], []
+    for one in texts if post else []:
+        new = [name for name in post.called(one) if name not in names]
+        names += new
+        texts += [text_of_file(read_bytes(beside(path, name))) for name in new]
+    return "".join(texts)
 
 
 def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:

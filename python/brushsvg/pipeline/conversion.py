@@ -21,7 +21,7 @@ from ..machine.cell_check import OF_EXAMPLE
 from ..machine.motion import duration_s
 from ..machine.paint_reload import PlanInLoads, fetched_mm, in_loads, too_long, with_one_pen, without_paint
 from ..machine.posts import POSTS
-from ..machine.program import WHOLE_JOB, Job, Walked
+from ..machine.program import WHOLE_JOB, Job, Walked, beyond_part
 from ..machine.smooth_field import beyond_field
 from ..text_summary import summarized
 from . import cancelling, outputs, prediction, preparation
@@ -259,6 +259,7 @@ class Tried:
         brush, cell = self.work.brush, self.cell
         out_of_turn = _out_of_turn(self.work, self.order, first)
         beyond = beyond_field(self.loads.loads, cell) if self.is_program else []
+        long = beyond_part(self.loads, self.cell) if self.is_program else []
         low = _lowered(self.walk.job.z_offset_mm) if self.is_program else []
         return [
             *without_paint(brush, cell),
@@ -266,6 +267,7 @@ class Tried:
             *too_long(self.loads, brush, cell),
             *pens,
             *beyond,
+            *long,
             *low,
         ]
 

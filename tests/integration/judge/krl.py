@@ -1,8 +1,8 @@
 """The part of KRL that a program of moves needs, run as KUKA's programming manual says.
 
-The module is compiled first: one line that is no KRL, or a name that is not declared, and nothing runs. Then
-BAS(#INITMOV, 0) sets what holds before a program sets anything: the fastest that the robot can, no tool, no base; how
-far a blend reaches, a program must say itself.
+Each module is compiled first: one line that is no KRL, or a name that is not declared in it, and nothing runs. A
+routine that is called runs with what was set before. Then BAS(#INITMOV, 0) sets what holds before a program sets
+anything: the fastest that the robot can, no tool, no base; how far a blend reaches, a program must say itself.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ PATTERNS = {
     "part": re.compile(rf"(\w+)\.([xyzabc]) *= *({N})"),
     "line": re.compile(rf"lin +({POSE}|\w+)( +c_dis)?"),
     "circle": re.compile(rf"circ +({POSE}) *, *({POSE})( +c_dis)?"),
+    "call": re.compile(r"(\w+) *\( *\)"),
     "wait": re.compile(rf"wait +sec +({N})"),
     "halt": re.compile(r"halt"),
     "acts": re.compile(
@@ -44,7 +45,7 @@ def run_krl(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndar
     """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them."""
     robot = _Robot(start, paper, down, tool)
     try:
-        robot.block(robot.compiled(text))
+        robot.load(text)
     except RefusedError as refusal:
         robot.run.refused = str(refusal)
     return robot.run
@@ -55,24 +56,56 @@ class _Robot(Arm):
         super().__init__(start, paper, down, tool, by_radius=True)
         self.base = np.eye(4)
         self.names: dict[str, dict | None] = {}
+        self.modules: dict[str, tuple[list, dict]] = {}
+        self.done: set[str] = set()
         self.is_set = self.has_begun = False  # by BAS, by a PTP
         self.speed_mm_s, self.acceleration = 0.0, 0.0
         self.apart_mm: float | None = None
         self.last: dict[str, float] = {}
 
-    def compiled(self, text: str) -> list:
-        """(line, what, found) of each statement of the routine, an if as (line, "if", (found, block))."""
+    def load(self, text: str) -> None:
+        """All modules, of which the first one is run."""
+        lines = text.split("\n")
+        begins = [k for k, line in enumerate(lines) if PATTERNS["def"].fullmatch(line.strip().lower())]
+        for first, last in zip([0, *begins[1:]], [*begins[1:], len(lines)], strict=True):
+            name = f"module {first}" if first else "main"
+            if found := PATTERNS["def"].fullmatch(lines[first].strip().lower()):
+                name = found[1]
+            if name in self.modules:
+                raise RefusedError(f"line {first + 1}: a second {name}")
+            self.names, is_main = {}, not self.modules
+            block = self.compiled("\n".join(lines[first:last]), first, is_main)
+            self.modules[name] = block, self.names
+        self.routine(next(iter(self.modules)))
+        if left := self.modules.keys() - self.done:
+            self.run.acts.append(f"never called: {sorted(left)}")
+
+    def routine(self, name: str) -> None:
+        before = self.names
+        block, self.names = self.modules[name]
+        self.done.add(name)
+        self.block(block)
+        self.names = before
+
+    def _call(self, number: int, found) -> None:
+        if found[1] not in self.modules or found[1] in self.done:
+            raise RefusedError(f"line {number}: {found[1]} is missing, or runs a second time")
+        self.routine(found[1])
+
+    def compiled(self, text: str, before: int, is_main: bool) -> list:
+        """(line, what, found) of each statement of the routine, an if as (line, "if", (found, block)); before: lines
+        of other modules."""
         blocks: list[list] = [[]]
         opened: list = []
         state, has_code = "before", False
-        for number, raw in enumerate(text.split("\n"), 1):
+        for number, raw in enumerate(text.split("\n"), before + 1):
             line = raw.rstrip("\r")
             if "\r" in line:
                 self.run.acts.append(f"line {number}: a return within a line")
             code, _, words = line.partition(";")
             code = code.strip().lower()
             if words and not code:
-                if has_code:
+                if has_code or not is_main:
                     blocks[-1].append((number, "comment", words.strip()))
                 else:
                     self.run.header.append(words.strip())
@@ -85,7 +118,8 @@ class _Robot(Arm):
             if (what == "def") != (state == "before") or state == "after":
                 raise RefusedError(f"line {number}: {code[:30]!r} in no routine")
             if what == "def":
-                self.run.frame.append(code)
+                if is_main:
+                    self.run.frame.append(code)
                 state = "within"
                 continue
             if what == "declare":

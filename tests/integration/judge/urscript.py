@@ -1,6 +1,7 @@
 """The part of URScript that a program of moves needs, run as the script manual says.
 
-The whole file is compiled first: one line that is no statement, and nothing runs. Poses are metres and rotation
+The whole file is compiled first: one line that is no statement, and nothing runs. Of a job in several files each runs
+with nothing set, behind the one that says so. Poses are metres and rotation
 vectors; movel stops at its end unless it has a blend radius; movep keeps its speed; movec passes a point.
 """
 
@@ -43,8 +44,12 @@ PATTERNS = {
     "run": re.compile(r"(\w+) = run (\w+)\(\)"),
     "kill": re.compile(r"kill (\w+)"),
     "call": re.compile(r"(\w+)\(\)"),
+    "next": re.compile(r'textmsg\("brushsvg: go on with part (\d+)"\)'),
     "acts": re.compile(r"(?:textmsg|set_\w+|write_output_\w+|socket_\w+|powerdown|halt)\(.*\)|halt"),
 }
+
+
+MAIN = "brushsvg"
 
 
 def run_urscript(
@@ -53,12 +58,23 @@ def run_urscript(
     """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them; force_n: at
     which the program has to end by itself, 0 where nothing is asked for."""
     robot = _Robot(start, paper, down, tool, force_n)
+    run = robot.run
     try:
-        lines = _compiled(text, robot.run)
-        robot.execute(lines)
+        lines = _compiled(text, run)
+        begins = [k for k, (_, what, found) in enumerate(lines) if what == "def" and found[1] == MAIN]
+        for count, (first, last) in enumerate(zip([0, *begins[1:]], [*begins[1:], None], strict=True), 1):
+            if count > 1:
+                robot = _Robot(robot.at, paper, down, tool, force_n)
+                robot.run, header = run, run.header[:]
+            robot.execute(lines[first:last])
+            if count > 1 and run.header[len(header) :] != [f"part: {count}", *header]:
+                raise RefusedError(f"part {count} is of another job")
+            run.header[:] = run.header if count == 1 else header
+            if robot.following != (0 if last is None else count + 1):
+                raise RefusedError(f"part {count} is followed by {robot.following}")
     except RefusedError as refusal:
-        robot.run.refused = str(refusal)
-    return robot.run
+        run.refused = str(refusal)
+    return run
 
 
 def _compiled(text: str, run: Run) -> list:
@@ -105,6 +121,7 @@ class _Robot(Arm):
         self.here: np.ndarray | None = None
         self.here_tip = self.at
         self.had_code = False
+        self.following = 0  # the part that is run next
 
     # Blocks ------------------------------------------------------------------------------------------
 
@@ -212,6 +229,8 @@ class _Robot(Arm):
             if self.watches is None or self.watches[0] != found[1]:
                 raise RefusedError(f"line {number}: {found[1]} does not run")
             self.watches = None
+        elif what == "next":
+            self.following = int(found[1])
         elif what == "acts":
             self.run.acts.append(f"line {number}: {found[0][:30]}")
         else:

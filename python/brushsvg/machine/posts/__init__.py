@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from types import MappingProxyType
+from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ class Post(NamedTuple):
     circles_by: what tells a circle, its "centre" or a "pose" on its way; "": it is run as lines. Where a firmware makes
     lines of circles, its cell says how long these are, 0 of one that is told no circles: see circles_by.
     line_end: as the controller's own files have it; has_tabs: so have they, too.
-    parted: the texts of several files, by name, "" that of the one which is asked for; None: there is but that one.
+    parted: the module that knows the several files of a long job; None: there is but one.
     others: what writes files of other extensions in another way.
     """
 
@@ -29,8 +29,17 @@ class Post(NamedTuple):
     circles_by: str = "centre"
     line_end: str = "\n"
     has_tabs: bool = False
-    parted: Callable[[str], dict[str, str]] | None = None
+    parted: Callable[[], ModuleType] | None = None
     others: Mapping[str, Callable[[Program], Iterator[str | bytes]]] = MappingProxyType({})
+
+    def programs(self, text: str) -> dict[str, str]:
+        """The texts of the files of a job by name, "" that of the one which is asked for. A name that begins with "-"
+        goes on with that file's."""
+        return self.parted().programs(text) if self.parted else {"": text}
+
+    def called(self, text: str) -> list[str]:
+        """Names of the files that a program goes on in."""
+        return self.parted().called(text) if self.parted else []
 
 
 def _linuxcnc(program: Program) -> Iterator[str]:
@@ -63,6 +72,12 @@ def _urscript(program: Program) -> Iterator[str]:
     return urscript(program)
 
 
+def _urscript_parts() -> ModuleType:
+    from . import urscript
+
+    return urscript
+
+
 def _jaka(program: Program) -> Iterator[str]:
     from .jaka import jaka
 
@@ -87,6 +102,12 @@ def _krl(program: Program) -> Iterator[str]:
     return krl(program)
 
 
+def _krl_parts() -> ModuleType:
+    from . import krl
+
+    return krl
+
+
 def _dobot(program: Program) -> Iterator[str]:
     from .dobot import dobot
 
@@ -99,10 +120,10 @@ def _fanuc(program: Program) -> Iterator[str]:
     return fanuc(program)
 
 
-def _fanuc_programs(text: str) -> dict[str, str]:
-    from .fanuc import programs
+def _fanuc_parts() -> ModuleType:
+    from . import fanuc
 
-    return programs(text)
+    return fanuc
 
 
 def _doosan(program: Program) -> Iterator[str]:
@@ -175,13 +196,15 @@ POSTS = {  # by the language a cell names
     "klipper": Post("G-code for Klipper", GCODE, _dialect),
     "grbl-servo": Post("G-code for grbl, the brush on a servo", GCODE, _grbl_servo, circles_by=""),
     "marlin-servo": Post("G-code for Marlin, a pen on a servo", GCODE, _marlin_servo, circles_by=""),
-    "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, "pose"),
+    "urscript": Post(
+        "URScript for Universal Robots", (".script",), _urscript, False, "pose", parted=_urscript_parts
+    ),
     "jaka": Post("JAKA script", (".jks",), _jaka, circles_by="pose"),
     "rapid": Post("RAPID for ABB", (".mod",), _rapid, False, "pose", "\r\n"),
     "xarm": Post("Python for UFACTORY xArm", (".py",), _xarm, circles_by=""),
-    "krl": Post("KRL for KUKA", (".src",), _krl, False, "pose", "\r\n"),
+    "krl": Post("KRL for KUKA", (".src",), _krl, False, "pose", "\r\n", parted=_krl_parts),
     "dobot": Post("Lua for Dobot CR and Nova", (".lua",), _dobot, False, "pose"),
-    "fanuc": Post("TP for FANUC", (".ls",), _fanuc, False, "pose", "\r\n", True, _fanuc_programs),
+    "fanuc": Post("TP for FANUC", (".ls",), _fanuc, False, "pose", "\r\n", True, _fanuc_parts),
     "doosan": Post("DRL for Doosan", (".drl",), _doosan, False, "pose"),
     "ros2": Post(
         "poses with times for ROS 2",

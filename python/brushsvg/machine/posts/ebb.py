@@ -15,6 +15,7 @@ from .gcode_servo import TOUCHING, feeds_mm_min, lifted, value_at
 from .text import feed_mm_min, plain
 
 LINE_LIMIT = 100
+LEAST_MS = 16  # no slice is shorter: firmware 2.4 left gaps between such (evil-mad/EggBot, issues 71 and 72)
 SLOWEST_S = 0.5  # no slice takes longer: below 1.31 steps in a second a motor is told, the board refuses
 STEPS_MS = 25  # no motor makes more in a millisecond
 HOME = "end: back to where it began"
@@ -23,9 +24,11 @@ EBB_END = "end: the brush is held up, over where it began"
 
 def ebb(program: Program) -> Iterator[str]:
     """The board knows no speed that changes: each move is cut into slices of an even one, with the cell's acceleration
-    between them. Places are rounded to whole steps first, so that no differences add up. A servo's height is held along
-    each slice, as in grbl_servo. The board counts from where its motors were switched on: there the program begins,
-    the brush over the origin, and there it ends."""
+    between them. A slice that would be too short for the board is one with its neighbour where both are on the same
+    straight line at the same height, and else takes longer: no place and no height is left out. Places are rounded to
+    whole steps first, so that no differences add up. A servo's height is held along each slice, as in grbl_servo. The
+    board counts from where its motors were switched on: there the program begins, the brush over the origin, and there
+    it ends."""
     cell = program.cell
     writer = _Writer(program)
     yield "".join(map(comment, program.header))
@@ -161,6 +164,9 @@ class _Writer:
         # never faster than it may be, whatever rounding makes of ways and times
         least_s = np.maximum(_steps(when_s, 0.0), 60 * ways_mm / feeds[part])
         times_ms = np.ceil(np.maximum(1e3 * least_s, np.abs(moves).max(axis=1) / STEPS_MS) - 1e-6)
+        first = _none_short(part, times_ms)
+        part, moves = part[first], np.add.reduceat(moves, first)
+        times_ms = np.maximum(np.add.reduceat(times_ms, first), LEAST_MS)
         values, feeds = values[part], feeds[part]
         new_value, new_feed = _steps(values, self.value) != 0, _steps(feeds, self.feed) != 0
         told = zip(times_ms.astype(int).tolist(), *moves.T.tolist(), strict=True)
@@ -178,6 +184,24 @@ def _steps(values: np.ndarray, before: float) -> np.ndarray:
     steps = values - before
     steps[1:] = values[1:] - values[:-1]
     return steps
+
+
+def _none_short(part: np.ndarray, times_ms: np.ndarray) -> np.ndarray:
+    """(n,) the first row of each slice: rows of one part are together where one alone, or the rest, would be too
+    short."""
+    done_ms = np.cumsum(times_ms)
+    left_ms = done_ms[np.searchsorted(part, part, "right") - 1] - done_ms + times_ms  # of the part
+    first: list[int] = []
+    slice_ms, before = 0.0, -1
+    for k, (here, time_ms, rest_ms) in enumerate(
+        zip(part.tolist(), times_ms.tolist(), left_ms.tolist(), strict=True)
+    ):
+        if here == before and min(slice_ms, rest_ms) < LEAST_MS:
+            slice_ms += time_ms
+            continue
+        first.append(k)
+        slice_ms, before = time_ms, here
+    return np.array(first, dtype=int)
 
 
 def _none_long(

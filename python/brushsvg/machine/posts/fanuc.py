@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import itertools
 import re
 from collections.abc import Iterator
@@ -14,7 +13,7 @@ from ..cell import MOST_POINTS, Cell
 from ..frames import rotation_deg
 from ..motion import Move, Program, Section, Wait, via
 from .dobot import whole_mm_s
-from .script import Words, blends_mm, down, told, turned_at
+from .script import Words, blends_mm, down, part_name, told, turned_at
 from .text import ENDS, number, plain, rows
 
 LINE_LIMIT = 100  # of what a remark says, in as many lines as it takes
@@ -33,12 +32,11 @@ def fanuc(program: Program) -> Iterator[str]:
     cell = program.cell
     setup = "".join(map(comment, program.header)) + _setup(program)
     end = comment(FANUC_END)
-    name = "B" + hashlib.sha256(setup.encode()).hexdigest()[:4].upper()
     points, lines, calls, risen = _Points(cell), "", [], False
     with SpooledTemporaryFile(HELD_BYTES, "w+", encoding="ascii") as held:
         for section in program.sections():
             if points.count and points.count + _count(section) > MOST_POINTS["fanuc"]:
-                calls.append(f"{name}{len(calls) + 1:03d}")
+                calls.append(part_name(setup, len(calls) + 1))
                 held.write(_program(calls[-1], lines, points))
                 points, lines = _Points(cell), ""
             lines += "".join(told(section, _words(program, points), risen))
@@ -46,7 +44,7 @@ def fanuc(program: Program) -> Iterator[str]:
         if not calls:
             yield _program(MAIN, setup + lines + end, points)
             return
-        calls.append(f"{name}{len(calls) + 1:03d}")
+        calls.append(part_name(setup, len(calls) + 1))
         held.write(_program(calls[-1], lines, points))
         called = "".join(f" : CALL {call} ;\n" for call in calls)
         yield _program(MAIN, setup + called + end, _Points(cell))
@@ -60,6 +58,12 @@ def programs(text: str) -> dict[str, str]:
     found = re.split(r"^(?=/PROG)", text, flags=re.MULTILINE)[1:]
     named = {re.match(r"/PROG +(\S*)", each)[1]: each for each in found}
     return {"" if name == MAIN else name: each for name, each in named.items()}
+
+
+def called(text: str) -> list[str]:
+    """Names of the programs that one calls, in order, each once."""
+    found = re.finditer(r"^ *\d*: *CALL +(\w+) *;", text, re.MULTILINE)
+    return list(dict.fromkeys(each[1] for each in found))
 
 
 def comment(text: str) -> str:

@@ -2,34 +2,41 @@
 
 from __future__ import annotations
 
+import itertools
+import re
 from collections.abc import Iterator
+from tempfile import SpooledTemporaryFile
 
 import numpy as np
 
 from ..frames import frame_of_pose, rotation_deg
 from ..motion import Move, Program, Wait, via
-from .script import Words, blends_mm, body, down, numbers, rounded_down, turned_at
+from .script import Words, blends_mm, down, numbers, part_name, parts, rounded_down, turned_at
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 5
 SPEED_DECIMALS = 6  # of m/s
+HELD_BYTES = 20_000_000  # of text, before it goes to a file
+MAIN = "brushsvg"
+RISES = "DECL E6POS here\n"
+AROUND = 3  # lines of a program that is called, beside its moves
 KRL_END = "end: the brush is held up"
 
 
 def krl(program: Program) -> Iterator[str]:
-    """One .src without a .dat: all points stand in it. They are those of the BASE: to teach the paper anew, only its
-    line has to change. The first move goes to where the robot is, as a first one must be PTP."""
+    """One .src without a .dat: all points stand in it; of a long job a main one that calls others, each with whole
+    strokes. They are those of the BASE: to teach the paper anew, only its line has to change. The first move goes to
+    where the robot is, as a first one must be PTP."""
     cell, decimals = program.cell, program.cell.decimals
     acceleration = rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, 3)
     tool = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)
-    yield "DEF brushsvg()\n"
-    yield "".join(map(comment, program.header))
-    yield "DECL E6POS here\nBAS(#INITMOV, 0)\n"
-    yield f"$TOOL = {_frame(tool, decimals)}\n$BASE = {_frame(program.robot_from_frame, decimals)}\n"
+    header = "".join(map(comment, program.header))
+    setup = "BAS(#INITMOV, 0)\n"
+    setup += f"$TOOL = {_frame(tool, decimals)}\n$BASE = {_frame(program.robot_from_frame, decimals)}\n"
     if program.tilts:
-        yield "$ORI_TYPE = #VAR\n"  # #CONSTANT, of a program before, would hold the tool as it was
-    yield f"PTP $AXIS_ACT\n$ACC.CP = {acceleration}\n"
+        setup += "$ORI_TYPE = #VAR\n"  # #CONSTANT, of a program before, would hold the tool as it was
+    setup += f"PTP $AXIS_ACT\n$ACC.CP = {acceleration}\n"
     upright = down(cell.tool.spin_deg)
     turned = _angles(rotation_deg(upright))
     words = Words(
@@ -40,8 +47,35 @@ def krl(program: Program) -> Iterator[str]:
             _lines(move, turned, decimals) if move.axes is None else _tilted(move, upright, decimals)
         ),
     )
-    yield from body(program, words)
-    yield "\n" + comment(KRL_END) + "END\n"
+    made = parts(program, words, AROUND, rises_again=False)
+    end = comment(KRL_END) + "END\n"
+    first, second = next(made), next(made, None)
+    if second is None:
+        yield f"DEF {MAIN}()\n{header}{RISES}{setup}{first}\n{end}"
+        return
+    calls, setup = "", header + setup
+    with SpooledTemporaryFile(HELD_BYTES, "w+", encoding="ascii") as held:
+        for count, moves in enumerate(itertools.chain((first, second), made), 1):
+            name = part_name(setup, count)
+            calls += f"{name}()\n"
+            held.write(f"DEF {name}()\n{RISES if count == 1 else ''}{moves}END\n")
+        yield f"DEF {MAIN}()\n{setup}{calls}{end}"
+        held.seek(0)
+        while piece := held.read(1_000_000):
+            yield piece
+
+
+def programs(text: str) -> dict[str, str]:
+    """The texts of a stream of programs by name, the main one's as ""."""
+    found = re.split(r"^(?=DEF )", text, flags=re.MULTILINE)[1:]
+    named = {re.match(r"DEF (\w+)", each)[1]: each for each in found}
+    return {"" if name == MAIN else name: each for name, each in named.items()}
+
+
+def called(text: str) -> list[str]:
+    """Names of the programs that one calls, in order, each once."""
+    found = re.finditer(r"^ *(B[0-9A-F]{4}\d{3,})\(\) *\r?$", text, re.MULTILINE | re.IGNORECASE)
+    return list(dict.fromkeys(each[1].upper() for each in found))
 
 
 def comment(text: str) -> str:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
 
-from ..cell import Cell, robot_from_paper
+from ..cell import MOST_LINES, Cell, robot_from_paper
 from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Section, Wait
 from ..tool_axes import is_upright_on, turned_to
@@ -36,6 +37,31 @@ def body(program: Program, words: Words) -> Iterator[str]:
         yield "\n"
         yield from told(section, words, risen)
         risen = risen or bool(section.moves)
+
+
+def parts(program: Program, words: Words, around: int, rises_again: bool) -> Iterator[str]:
+    """The same in parts of whole sections, none with more lines than one program of the language may have, but where
+    a section has more. around: how many lines a program has beside these; rises_again: whether the tool goes straight
+    up in each part, else in the first alone."""
+    most = MOST_LINES[program.cell.language] - around
+    text, lines, risen = "", 0, False
+    for section in program.sections():
+        more = "\n" + "".join(told(section, words, risen))
+        if text and lines + more.count("\n") > most:
+            yield text
+            text, lines = "", 0
+            if rises_again:
+                risen = False
+                more = "\n" + "".join(told(section, words, risen))
+        text += more
+        lines += more.count("\n")
+        risen = risen or bool(section.moves)
+    yield text
+
+
+def part_name(setup: str, number: int) -> str:
+    """What a program is called that another one calls: by the text of that one, so that jobs are told apart."""
+    return f"B{hashlib.sha256(setup.encode()).hexdigest()[:4].upper()}{number:03d}"
 
 
 def told(section: Section, words: Words, risen: bool) -> Iterator[str]:

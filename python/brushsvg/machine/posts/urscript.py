@@ -2,43 +2,43 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import numpy as np
 
 from ..frames import frame_of_pose, rotation_vector
 from ..motion import Move, Program, Wait, via
-from .script import QUIET, Words, body, down, turned_at
+from .script import QUIET, Words, down, parts, turned_at
 from .text import number, plain, rows
 
 LINE_LIMIT = 100
 LEAST_BLEND_M = 5e-6  # what would be written as less is no blend
 M = 1e-3
 WATCHED = "  watching = run watch()\n"
+BEGIN, END = "def brushsvg():\n", "end\nbrushsvg()\n"
+NEXT = "brushsvg: go on with part"
 
 
 def urscript(program: Program) -> Iterator[str]:
-    """A program that can be run from the pendant or sent to the robot. The points are those of the paper's plane:
-    to teach the paper anew, only the line that sets it has to change."""
+    """A program that can be run from the pendant or sent to the robot; a long job is several, each of them whole, that
+    run one after the other. The points are those of the paper's plane: to teach the paper anew, only the line that sets
+    it has to change."""
     decimals = program.cell.decimals + 3
     tool = program.cell.tool
     tcp = frame_of_pose(np.array(tool.tcp_mm), tool.rotation_deg)
     acceleration = number(program.cell.speeds.acceleration_mm_s2 * M, 4)
-    yield "def brushsvg():\n"
-    yield "".join(f"  # {plain(line, LINE_LIMIT - 4)}\n" for line in program.header)
-    yield f"  set_tcp({_pose(tcp, decimals)})\n"
-    yield f"  paper = {_pose(program.robot_from_frame, decimals)}\n"
+    header = "".join(f"  # {plain(line, LINE_LIMIT - 4)}\n" for line in program.header)
+    setup = f"  set_tcp({_pose(tcp, decimals)})\n  paper = {_pose(program.robot_from_frame, decimals)}\n"
     upright = down(tool.spin_deg)
-    yield "  def on_paper(x, y, z):\n"
-    yield f"    return pose_trans(paper, p[x, y, z, {_vector(upright, decimals)}])\n"
-    yield "  end\n"
+    setup += "  def on_paper(x, y, z):\n"
+    setup += f"    return pose_trans(paper, p[x, y, z, {_vector(upright, decimals)}])\n  end\n"
     if program.tilts:
-        yield "  def tilted(x, y, z, rx, ry, rz):\n"
-        yield "    return pose_trans(paper, p[x, y, z, rx, ry, rz])\n"
-        yield "  end\n"
+        setup += "  def tilted(x, y, z, rx, ry, rz):\n"
+        setup += "    return pose_trans(paper, p[x, y, z, rx, ry, rz])\n  end\n"
     contact = program.cell.contact
     if contact:
-        yield _watch(contact.force_n)
+        setup += _watch(contact.force_n)
     begin = f"  zero_ftsensor()\n{WATCHED}" if contact else ""  # held high, where nothing presses
     words = Words(
         lambda title: f"  # {plain(title, LINE_LIMIT - 4)}\n",
@@ -46,9 +46,30 @@ def urscript(program: Program) -> Iterator[str]:
         lambda step: _wait(step, contact is not None),
         lambda move: _lines(move, upright, acceleration, decimals),
     )
-    yield from body(program, words)
-    yield "end\n"
-    yield "brushsvg()\n"
+    around = (BEGIN + header + setup + END).count("\n") + 2  # its number, and the next one's
+    for count, moves in enumerate(parts(program, words, around, rises_again=True), 1):
+        if count > 1:
+            yield f'  textmsg("{NEXT} {count}")\n{END}'
+        part = f"  # part: {count}\n" if count > 1 else ""
+        yield f"{BEGIN}{part}{header}{setup}"
+        yield moves
+    yield END
+
+
+def programs(text: str) -> dict[str, str]:
+    """The texts of a stream of programs by what their files' names end in, the first one's as ""."""
+    found = re.split(rf"^(?={re.escape(BEGIN)})", text, flags=re.MULTILINE)[1:]
+    return {part_file(count) if count > 1 else "": each for count, each in enumerate(found, 1)}
+
+
+def part_file(count: int) -> str:
+    return f"-part{count}"
+
+
+def called(text: str) -> list[str]:
+    """What the name of the file ends in that is run next, if any."""
+    found = re.findall(rf'^ *textmsg\("{NEXT} (\d{{1,6}})"\) *$', text, re.MULTILINE)
+    return [part_file(int(count)) for count in found]
 
 
 def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> str:

@@ -13,7 +13,7 @@ from ...machine.frames import rotation, rotation_deg
 from ...machine.posts.fanuc import FANUC_END, INDEX, MAIN, POINT_DECIMALS, cnt_mm
 from ...machine.posts.script import down
 from . import Readback
-from .script import N, Script, place, read_script
+from .script import N, Numbered, Script, place, read_script
 
 _C = rf"(?:{N}|\({N}\))"
 _ATTRIBUTES = re.compile(
@@ -50,13 +50,6 @@ _LINES = tuple(
         ("text", r"PR\[2\]=LPOS|R\[1\]=PR\[2,3\]|U(?:FRAME|TOOL)(?:_NUM=1|\[1\] \{.*\})"),
     )
 )
-Numbered = list[tuple[int, str]]
-
-
-def called(text: str) -> list[str]:
-    """Names of the programs that one calls, in order, each once."""
-    found = re.finditer(r"^ *\d*: *CALL +(\w+) *;", text, re.MULTILINE)
-    return list(dict.fromkeys(each[1] for each in found))
 
 
 def read_fanuc(text: str, cell: Cell) -> Readback:

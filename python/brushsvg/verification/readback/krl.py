@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 
+from ...errors import Error
 from ...machine.cell import Cell
 from ...machine.frames import rotation, rotation_deg
-from ...machine.posts.krl import KRL_END
+from ...machine.posts.krl import KRL_END, MAIN, RISES
 from ...machine.posts.script import down
 from . import Readback
-from .script import N, Script, read_script
+from .script import N, Numbered, Script, read_script
 
 
 def _point(names: str, turned: str) -> str:
@@ -40,11 +41,15 @@ _LINES = tuple(  # in small letters
         ("text", r"bas\(#initmov, 0\)|ptp \$axis_act|\$ori_type = #var"),
     )
 )
+_DEF = re.compile(r"def (\w+)\(\)")
+_CALL = re.compile(r"(b[0-9a-f]{4}\d{3,})\(\)")
+_RISES = RISES.strip().lower()
 _READY = "bas(#initmov, 0)"  # which sets all of them
 
 
 def read_krl(text: str, cell: Cell) -> Readback:
-    """The program as steps in the paper's frame. Error with the line for what brushsvg does not write."""
+    """The program, with those that it calls, as steps in the paper's frame. Error with the line for what brushsvg does
+    not write; lines are counted on through the programs."""
     script = Script(
         remark="; ",
         lines=_LINES,
@@ -56,4 +61,51 @@ def read_krl(text: str, cell: Cell) -> Readback:
         any_case=True,
         rotation=lambda abc: rotation(abc[::-1]),
     )
-    return read_script(text, script, Readback(in_paper_frame=True, blends_by_radius=True))
+    return read_script("", script, Readback(in_paper_frame=True, blends_by_radius=True), _in_order(text))
+
+
+def _in_order(text: str) -> Numbered:
+    """The lines as they run, of programs that are called without their first and last ones; what the first of them
+    declares is declared in the main one, as where that is the only one."""
+    main, others = _programs(text)
+    if not others:
+        return main
+    lines: Numbered = []
+    left = dict(others)
+    for number, line in main:
+        call = _CALL.fullmatch(line.strip(" ").lower())
+        if not call:
+            lines.append((number, line))
+            continue
+        if call[1] not in left:
+            raise Error(
+                f"line {number}: it calls {call[1]!r}, which is missing or was called before",
+                code="line-unread",
+            )
+        part = left.pop(call[1])
+        if len(left) + 1 == len(others) and part[1:2] and part[1][1].strip(" ").lower() == _RISES:
+            lines.insert(
+                next(k for k, (_, line) in enumerate(lines) if not line.startswith(";")) + 1, part.pop(1)
+            )
+        if part[-1][1].strip(" ").lower() != "end":
+            raise Error(f"program {call[1]!r} has no END", code="program-cut-short")
+        lines += part[1:-1]
+    if left:
+        raise Error(f"program {next(iter(left))!r} is not called", code="line-unread")
+    return lines
+
+
+def _programs(text: str) -> tuple[Numbered, dict[str, Numbered]]:
+    """The lines of the main program, and of others by name."""
+    main: Numbered = []
+    others: dict[str, Numbered] = {}
+    lines = main
+    for number, line in enumerate(text.splitlines(), 1):
+        if found := _DEF.fullmatch(line.strip(" ").lower()):
+            if main and found[1] in (MAIN, *others):
+                raise Error(f"line {number}: {found[1]!r} stands there twice", code="line-unread")
+            if main:
+                lines = others[found[1]] = []
+        if line.strip(" "):
+            lines.append((number, line.rstrip(" ")))
+    return main, others

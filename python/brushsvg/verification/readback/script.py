@@ -11,6 +11,7 @@ import numpy as np
 from ...errors import Error
 from . import Act, Readback, Step, circle
 
+Numbered = list[tuple[int, str]]  # lines of a program with their numbers
 N = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 LEANS_DEG = 0.5  # what no brush shows
 ROUNDED_RAD = 3e-6  # what four decimals of degrees make of a rotation

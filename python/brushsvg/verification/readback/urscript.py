@@ -8,7 +8,9 @@ import numpy as np
 
 from ...errors import Error
 from ...machine.frames import of_rotation_vector
+from ...machine.posts.urscript import BEGIN, END, NEXT
 from . import Act, Readback, Step, circle
+from .script import Numbered
 
 _N = r"-?(?:\d+\.?\d*|\.\d+)"
 _POINT = rf"on_paper\(({_N}), ({_N}), ({_N})\)"
@@ -23,6 +25,7 @@ _RISE = re.compile(
     rf"(movel\(pose_trans\(paper, p\[here\[0\], here\[1\], ({_N}), here\[3\], here\[4\], here\[5\]\]\)), "
     rf"a=({_N}), v=({_N})\)"
 )
+TITLES = ("# stroke ", "# paint: ")
 _OTHER = re.compile(  # the frame around the moves
     rf"def brushsvg\(\):|end|brushsvg\(\)|set_tcp\(p\[{_N}(?:, {_N}){{5}}\]\)|def on_paper\(x, y, z\):"
     rf"|return pose_trans\(paper, p\[x, y, z(?:, {_N}){{3}}\]\)"
@@ -36,10 +39,11 @@ _OTHER = re.compile(  # the frame around the moves
 
 
 def read_urscript(text: str) -> Readback:
-    """The program as steps in the paper's frame. Error with the line for what brushsvg does not write."""
+    """The programs, one after the other, as steps in the paper's frame. Error with the line for what brushsvg does not
+    write; lines are counted on through the programs."""
     out = Readback(in_paper_frame=True, blends_by_radius=True)
     has_paper = False
-    lines = [(number, line.strip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")]
+    lines = _in_order(text)
     for number, line in lines:
         if line.startswith("# "):
             before = len(out.acts)
@@ -100,3 +104,54 @@ def read_urscript(text: str) -> Readback:
 def _is_run(number: int, line: str, acceleration: float, speed: float) -> None:
     if not (acceleration > 0 and speed > 0):
         raise Error(f"line {number}: {line[:60]!r} has no speed or acceleration", code="line-incomplete")
+
+
+def _in_order(text: str) -> Numbered:
+    """The lines as they run, as those of one program: what each one sets anew is the same in all of them."""
+    lines = [(number, line.strip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")]
+    begins = [k for k, (_, line) in enumerate(lines) if line == BEGIN.strip()][1:]
+    parts = [lines[first:last] for first, last in zip([0, *begins], [*begins, None], strict=True)]
+    ran: Numbered = []
+    setup, rise = _setup(parts[0]), _rise(parts[0])
+    if later := next((line for line in setup if line.startswith("# part: ")), None):
+        raise Error(
+            f"this is {later[2:].replace(':', '')} of a job in several files: check the first file, which finds the "
+            "others next to it",
+            code="program-cut-short",
+        )
+    for count, part in enumerate(parts, 1):
+        if count > 1:
+            _is_the_same(part, [setup[0], f"# part: {count}", *setup[1:]], _setup(part))
+            _is_the_same(part, rise, _rise(part))
+            part = part[len(setup) + 1 :]
+            at = next((k for k, (_, line) in enumerate(part) if line in rise[:1]), 0)
+            part = part[:at] + part[at + len(rise) :]
+        if count < len(parts):
+            end = [f'textmsg("{NEXT} {count + 1}")', *END.split()]
+            _is_the_same(part, end, [line for _, line in part[-len(end) :]])
+            part = part[: -len(end)]
+        ran += part
+    return ran
+
+
+def _setup(part: Numbered) -> list[str]:
+    """The lines before the first title."""
+    lines = [line for _, line in part]
+    return lines[: next((k for k, line in enumerate(lines) if line.startswith(TITLES)), len(lines))]
+
+
+def _rise(part: Numbered) -> list[str]:
+    """The lines that go straight up before the first move, and what is set there."""
+    lines = [line for _, line in part]
+    first = next((k for k, line in enumerate(lines) if line.startswith("here = ")), len(lines))
+    last = first + 4
+    return lines[first : last + 2 * (lines[last : last + 1] == ["zero_ftsensor()"])]
+
+
+def _is_the_same(part: Numbered, wanted: list[str], found: list[str]) -> None:
+    if found != wanted:
+        raise Error(
+            f"line {part[0][0]}: this part begins or ends otherwise than the one before it: a part is missing, "
+            "is another job's, or was changed",
+            code="program-cut-short",
+        )

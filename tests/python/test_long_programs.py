@@ -1,0 +1,172 @@
+"""Jobs of more lines than one program should have are several: URScript's run one after the other, KRL's are called.
+What they do is judged by the tests' own interpreters, next to the same job in one program."""
+
+import re
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from diagnostics import in_json, is_told
+from judge.ebb import run_ebb
+from programs import LANGUAGES, RUNNABLE, call
+from test_fanuc import waves
+from test_robot_scripts import sound
+from urscript_stub import run as run_stub
+
+from brushsvg import _core
+from brushsvg.brush.library import find_brush
+from brushsvg.machine import cell
+from brushsvg.machine.cell import Workspace
+from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.posts import ebb
+from brushsvg.machine.posts.urscript import NEXT
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+MOST = {"ur5e": 1000, "kr6-r900": 2500}  # lines, by the sources that docs/machines.md names
+NO_LIMIT = 10**9
+
+
+def files_of(path: Path) -> list[Path]:
+    """A job's files in the order in which they run, the one that was asked for first."""
+    others = [other for other in path.parent.glob(f"*{path.suffix}") if other != path]
+    return [path, *sorted(others, key=lambda other: int(re.search(r"\d+$", other.stem)[0][-3:]))]
+
+
+def text_of(files: list[Path]) -> str:
+    return "".join(each.read_bytes().decode("ascii") for each in files)
+
+
+def way(ran) -> list:
+    """What a run does, whichever line says it."""
+    return [leg._replace(line=0) for leg in ran.legs]
+
+
+@pytest.fixture(params=MOST)
+def job(request, tmp_path, capsys, monkeypatch):
+    """(name of the cell, the job's first file, the text of the same job in one program), with the plan next to it."""
+    name = request.param
+    plan = waves(30, 90)
+    (tmp_path / "waves.json").write_text(_core.write_plan(plan))
+    paths = [tmp_path / folder / f"waves{LANGUAGES[name]}" for folder in ("whole", "parts")]
+    for path in paths:
+        path.parent.mkdir()
+        with monkeypatch.context() as patch:
+            if path.parent.name == "whole":
+                patch.setitem(cell.MOST_LINES, find_cell(name).language, NO_LIMIT)
+            status, _, told = call(capsys, "convert", str(tmp_path / "waves.json"), str(path), "--cell", name)
+            assert status == 0, told
+    assert files_of(paths[0]) == paths[:1]
+    return name, paths[1], text_of(paths[:1])
+
+
+def test_a_long_job_is_several_programs_that_do_what_one_would(job, capsys):
+    name, first, whole = job
+    files = files_of(first)
+    assert len(files) == (4 if name == "kr6-r900" else 3)
+    assert all(path.read_bytes().count(b"\n") <= MOST[name] for path in files)
+    parts, one = (sound(text, find_cell(name)) for text in (text_of(files), whole))
+    assert way(parts) == way(one) and parts.titles == one.titles and parts.header == one.header
+    if name == "ur5e":
+        events, again = (run_stub(text).events for text in (text_of(files), whole))
+        assert [event for event in events if event[0] != "textmsg"] == again
+        assert [event[1] for event in events if event[0] == "textmsg"] == [
+            f"{NEXT} {count}" for count in (2, 3)
+        ]
+    for plan in ([], [str(first.parents[1] / "waves.json")]):
+        status, out, told = call(capsys, "check", str(first), *plan)
+        assert status == 0 and RUNNABLE in out, told
+
+
+def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
+    name, first, _ = job
+    files = files_of(first)
+    before = [path.read_bytes() for path in files]
+
+    def refused_with(*codes: str) -> bool:
+        status, _, told = in_json(capsys, "check", first, first.parents[1] / "waves.json")
+        for path, data in zip(files, before, strict=True):
+            path.write_bytes(data)
+        return status == 1 and any(is_told(told, code) for code in codes)
+
+    assert not refused_with("")
+    files[1].unlink()
+    assert refused_with("file-missing", "file-unreadable")
+    files[1].write_bytes(before[2])
+    assert refused_with("program-cut-short", "line-unread")
+    files[2].write_bytes(before[2].replace(b"v=0.02000", b"v=0.09000").replace(b"= 0.020000", b"= 0.090000"))
+    assert refused_with("speed-out-of-range")
+    middle = before[1].splitlines(keepends=True)
+    files[1].write_bytes(b"".join(middle[:-2]))
+    assert refused_with("program-cut-short", "line-unread")
+    if name == "ur5e":
+        changed = before[1].replace(b"set_tcp(p[0.", b"set_tcp(p[0.1")
+        assert changed != before[1]
+        files[1].write_bytes(changed)
+        assert refused_with("program-cut-short")
+        files[1].write_bytes(before[1].replace(b"go on with part 3", b"go on with part 2"))
+        assert refused_with("line-unread")
+        status, _, told = in_json(capsys, "check", files[2])
+        assert status == 1 and is_told(told, "program-cut-short")
+    else:
+        calls = [f"{path.stem}()\r\n".encode() for path in files[1:]]
+        first.write_bytes(before[0].replace(calls[0] + calls[1], calls[1] + calls[0]))
+        assert refused_with("stroke-order", "program-changed", "line-incomplete", "line-unread")
+        first.write_bytes(before[0].replace(calls[1], calls[0]))
+        assert refused_with("line-unread")
+
+
+def test_a_stroke_of_more_lines_is_one_program_and_a_warning(tmp_path, capsys):
+    (tmp_path / "a.json").write_text(_core.write_plan(waves(3, 1200)))
+    words = "convert", tmp_path / "a.json", tmp_path / "a.script", "--cell", "ur5e"
+    status, _, told = in_json(capsys, *words)
+    assert status == 0 and is_told(told, "poses-too-many 1204 1000")
+    assert len(files_of(tmp_path / "a.script")) == 3
+    assert RUNNABLE in call(capsys, "check", str(tmp_path / "a.script"), str(tmp_path / "a.json"))[1]
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("name", [*MOST, "axidraw-ebb"])
+def test_a_page_of_a_thousand_strokes(name, tmp_path, capsys, monkeypatch):
+    from page import STROKES, page
+
+    from brushsvg.drawing import read_drawing
+    from brushsvg.strokes.extraction import strokes
+
+    (tmp_path / "page.svg").write_text(page())
+    design = read_drawing(tmp_path / "page.svg")
+    plan = _core.compensate(strokes(design)[0], find_brush("round-6"), design.sheet_mm).plan
+    assert len(plan.passes) >= STROKES
+    (tmp_path / "page.json").write_text(_core.write_plan(plan))
+    wide = replace(find_cell(name), name="wide", arm=None)
+    wide = replace(wide, workspace=Workspace(wide.workspace.margin_mm, wide.workspace.tilt_limit_deg))
+    (tmp_path / "wide.toml").write_text(write_cell(wide))
+    words = str(tmp_path / "page.json"), "--cell", str(tmp_path / "wide.toml")
+    texts = []
+    for folder in ("parts", "whole"):
+        path = tmp_path / folder / f"page{LANGUAGES[name]}"
+        path.parent.mkdir()
+        with monkeypatch.context() as patch:
+            if folder == "whole":
+                patch.setattr(ebb, "LEAST_MS", 1)
+                for language in cell.MOST_LINES:
+                    patch.setitem(cell.MOST_LINES, language, NO_LIMIT)
+            status, _, told = call(capsys, "convert", words[0], str(path), *words[1:])
+            assert status == 0, told
+        texts.append(text_of(files_of(path)))
+        if folder == "parts":
+            lines = [each.read_bytes().count(b"\n") for each in files_of(path)]
+            assert RUNNABLE in call(capsys, "check", str(path), *words)[1]
+    if name in MOST:
+        assert len(lines) > 10 and max(lines) <= MOST[name]
+        parts, whole = (sound(text, wide) for text in texts)
+        assert way(parts) == way(whole) and parts.titles == whole.titles
+        return
+    motors = {"steps_per_mm": wide.motors.steps_per_mm, "servo_pin": wide.motors.servo_pin}
+    runs = [run_ebb(text, (0.0, 0.0, 1.0), motors, wide.servo.table) for text in texts]
+    assert not any(ran.refused or ran.acts for ran in runs)
+    assert min(int(each) for each in re.findall(r"(?m)^SM,(\d+),(?!0,0$)", texts[0])) >= 16
+    ends = [{tuple(np.round(leg.end, 6)) for leg in ran.legs} for ran in runs]
+    jumps = [[leg._replace(line=0) for leg in ran.legs if leg.kind == "jump"] for ran in runs]
+    assert ends[0] <= ends[1] and jumps[0] == jumps[1]
