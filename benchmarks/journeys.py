@@ -62,6 +62,8 @@ GROUPS = {
     "single-line fonts": ["tests/python/test_text_fonts_of_lines.py"],
     "sixty plotter programs in fifteen styles": ["tests/python/test_plotter_programs.py"],
     "a program for each colour": ["tests/python/test_per_colour.py"],
+    "long programs of UR, KUKA and EBB within their limits": ["tests/python/test_long_programs.py"],
+    "paint stations: stir, wash, rinse, full and short reload": ["tests/python/test_paint.py"],
     "vpype writes the programs of convert": ["tests/integration/test_vpype.py", "-k", "byte"],
     "no option is shown in Inkscape": ["tests/integration/test_inkscape_tell.py"],
     "no dialog in Inkscape is wider than 1,000 pixels": ["tests/integration/test_inkscape_dialogs.py"],
