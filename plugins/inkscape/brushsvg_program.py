@@ -162,13 +162,10 @@ class Run:
             self._stop_if_too_old()
             raise StopError(f"{self.program} has written nothing.")
         suffix = os.path.splitext(path)[1]
-        if (
-            len([each for each in os.listdir(self.folder.name) if each.endswith(suffix)]) > 1
-            and suffix == ".ls"
-        ):
+        if {each for each in os.listdir(self.folder.name) if each.endswith(suffix)} - {DRAWING, *self.words}:
             raise StopError(
                 "This job is several programs, and Inkscape saves one file: save the drawing, then type  "
-                "brushsvg convert DRAWING.svg OUT.ls"
+                f"brushsvg convert DRAWING.svg OUT{suffix}"
             )
         with open(path, "rb") as file:
             return file.read()

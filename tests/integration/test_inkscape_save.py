@@ -135,6 +135,20 @@ for file in sys.argv[2:]:
 """
 
 
+def test_a_job_of_several_programs_is_not_saved_as_its_first(plugin, tmp_path):
+    lines = "".join(
+        f'<path d="M20 {y}Q40 {y - 9} 60 {y}T100 {y}T140 {y}T180 {y}" fill="none" stroke="#000" stroke-width="3"/>'
+        for y in range(15, 290, 3)
+    )
+    head = '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="300mm" viewBox="0 0 200 300">'
+    (tmp_path / "drawing.svg").write_text(f"{head}{lines}</svg>")
+    wide = brushsvg("cell", "new", "wide.toml", "--like", "ur5e", cwd=tmp_path, status=0)
+    assert wide is not None
+    words = ["--format=script", f"--cell_file={tmp_path / 'wide.toml'}"]
+    told = sentence(plugin.script("save", tmp_path / "drawing.svg", *words))
+    assert gives(told, "several", "OUT.script")
+
+
 def test_the_descriptions_are_valid_by_inkscapes_own_schema(tmp_path):
     files = sorted(map(str, SOURCE.glob("*.inx")))
     assert len(files) >= 9
