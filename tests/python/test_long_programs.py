@@ -126,6 +126,15 @@ def test_a_stroke_of_more_lines_is_one_program_and_a_warning(tmp_path, capsys):
     assert RUNNABLE in call(capsys, "check", str(tmp_path / "a.script"), str(tmp_path / "a.json"))[1]
 
 
+def test_parts_of_an_earlier_job_are_named(tmp_path, capsys):
+    for strokes in (3, 1):
+        (tmp_path / "a.json").write_text(_core.write_plan(waves(strokes, 1200)))
+        words = "convert", tmp_path / "a.json", tmp_path / "a.script", "--cell", "ur5e"
+        status, _, told = in_json(capsys, *words)
+        assert status == 0
+        assert is_told(told, "programs-of-before a-part2.script a-part3.script") == (strokes == 1)
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", [*MOST, "axidraw-ebb"])
 def test_a_page_of_a_thousand_strokes(name, tmp_path, capsys, monkeypatch):

@@ -73,7 +73,7 @@ def test_programs_of_colours_that_are_gone_are_named(desk, capsys):
     (desk / "word.svg").write_text(text)
     status, _, told = in_json(capsys, "convert", "word.svg", "out.ngc", "--per-colour")
     assert status == 0 and is_told(
-        told, "colours-of-before out-1-ffd700.ngc out-2-d32f2f.ngc out-3-1a237e.ngc"
+        told, "programs-of-before out-1-ffd700.ngc out-2-d32f2f.ngc out-3-1a237e.ngc"
     ), told
 
 

@@ -50,8 +50,7 @@ def convert_file(args) -> None:
             overlap = figures.total.overlap
     warn(args.input, dict.fromkeys(notice for one in tries for notice in one.remarks()))
     warn_of_cell(args, tries[0].cell)
-    if args.per_colour:
-        warn(args.output, _left_from_before(args.output, files))
+    warn(args.output, _left_from_before(args.output, files))
     strokes = sum(len(one.loads.loads) for one in tries) - args.from_stroke + 1
     times_s = [one.time_s() for one in tries]
     seconds = None if None in times_s else sum(times_s)
@@ -72,15 +71,16 @@ def _per_colour(output: str, work: Work) -> list[tuple[str, Work]]:
 
 
 def _left_from_before(output: str, files: Collection[str]) -> list[Notice]:
-    """A notice of programs of colours that an earlier run wrote and this one does not: nobody should run them."""
+    """A notice of programs for a colour, or of parts, that an earlier run wrote and this one does not: nobody should
+    run them."""
     path = Path(output)
-    name = re.compile(rf"{re.escape(path.stem)}-\d+-[0-9a-f]{{6}}{re.escape(path.suffix)}")
+    name = re.compile(rf"{re.escape(path.stem)}(-\d+-[0-9a-f]{{6}})?(-part\d+)?{re.escape(path.suffix)}")
     left = sorted(each.name for each in path.parent.glob("*") if name.fullmatch(each.name))
     left = [each for each in left if str(path.with_name(each)) not in files]
     if not left:
         return []
     sentence = f"programs of an earlier run are still here and belong to another version: {', '.join(left)}"
-    return [Notice("", sentence, code="colours-of-before", advice="delete them")]
+    return [Notice("", sentence, code="programs-of-before", advice="delete them")]
 
 
 def _tried(args, path: str, work: Work) -> conversion.Tried:
