@@ -26,7 +26,7 @@ from brushsvg.batch import executors, one, run
 from brushsvg.batch.items import words
 from brushsvg.batch.manifest import FORMAT, as_line
 from brushsvg.cli import main
-from brushsvg.machine.cell import MOST_POINTS, RoboDK
+from brushsvg.machine.cell import MOST_LINES, MOST_POINTS, RoboDK
 from brushsvg.machine.cell_file import find_cell, write_cell
 from brushsvg.pictures.contact_sheet import (
     ACROSS,
@@ -452,6 +452,22 @@ def test_a_program_in_several_files_does_not_replace_that_of_another_drawing(des
         ).refused
         again = brushsvg.batch([("a/a", drawing(0))], "own", executor=executor, cell="lrmate200id", width=3)
     assert [each.code for each in again.refused] == ["name-taken"]
+
+
+@pytest.mark.parametrize("cell", ["ur5e", "kr6-r900"])
+def test_parts_of_a_long_job_go_on_and_go_when_it_gets_shorter(desk, monkeypatch, cell, capsys):
+    many = "".join(LINE.format(f"s{k}", 20 + 5 * k, 90, "#203060", 3) for k in range(6))
+    Path("word.svg").write_text(PAGE.format("", many))
+    monkeypatch.setitem(MOST_LINES, find_cell(cell).language, 60)
+    with threads() as executor:
+        first = brushsvg.batch(["word.svg"], "out", executor=executor, cell=cell, width=3)
+        (main,) = Path("out/programs/word").glob("word.s*[!0-9]")
+        assert not first.refused and len(list(main.parent.iterdir())) > 2
+        assert not brushsvg.check(main, "word.svg", width=3).problems
+        Path("word.svg").write_text(PAGE.format("", LINE.format("s", 20, 90, "#203060", 3)))
+        second = brushsvg.batch(["word.svg"], "out", executor=executor, cell=cell, width=3)
+    assert list(Path("out/programs").rglob("*.s*")) == [Path("out/programs") / main.name]
+    assert len(second.removed) > 2
 
 
 def test_a_program_is_not_written_where_another_drawing_needs_a_folder(desk):

@@ -126,13 +126,19 @@ def test_a_stroke_of_more_lines_is_one_program_and_a_warning(tmp_path, capsys):
     assert RUNNABLE in call(capsys, "check", str(tmp_path / "a.script"), str(tmp_path / "a.json"))[1]
 
 
-def test_parts_of_an_earlier_job_are_named(tmp_path, capsys):
+@pytest.mark.parametrize(
+    ("name", "parts"), [("ur5e", "a-part2.script a-part3.script"), ("kr6-r900", "B.*.src")]
+)
+def test_parts_of_an_earlier_job_are_named(tmp_path, capsys, name, parts):
+    output = tmp_path / f"a{LANGUAGES[name]}"
     for strokes in (3, 1):
-        (tmp_path / "a.json").write_text(_core.write_plan(waves(strokes, 1200)))
-        words = "convert", tmp_path / "a.json", tmp_path / "a.script", "--cell", "ur5e"
-        status, _, told = in_json(capsys, *words)
+        (tmp_path / "a.json").write_text(_core.write_plan(waves(strokes, 1200 if name == "ur5e" else 700)))
+        status, _, told = in_json(capsys, "convert", tmp_path / "a.json", output, "--cell", name)
         assert status == 0
-        assert is_told(told, "programs-of-before a-part2.script a-part3.script") == (strokes == 1)
+        named = [each for _, each in told if each.code == "programs-of-before"]
+        assert len(named) == (strokes == 1) and all(
+            re.search(parts.replace(" ", ", "), each.sentence) for each in named
+        )
 
 
 @pytest.mark.thorough

@@ -268,3 +268,22 @@ def test_the_flags_reach_the_reader(tmp_path, monkeypatch, capsys):
     status, _, told = in_json(capsys, "convert", "sketch.gcode", "out.ngc", *words)
     assert not is_told(told, "gcode-no-width"), "they have one"
     assert status == 0 and is_told(told, "strokes-skipped 1 2"), told
+
+
+def test_words_that_are_about_the_drawing_make_no_dips():
+    """A header, a text and remarks name dips; one stroke is one, outside of the drawing."""
+    lines = [
+        [(20, 20), (40, 20)],
+        [(20, 30), (60, 60)],
+        [(-20, 5), (-18, 5)],
+        [(10, 10), (60, 10)],
+        [(70, 10), (80, 30)],
+    ]
+    said = {0: "(this stroke dips below the baseline)", 2: "(dip)"}
+    words = ["G21", "G90", "; file: washington_diploma.svg", '; Text: "brush dip pen"', "G0 Z5"]
+    for k, ((x, y), (u, v)) in enumerate(lines):
+        words += [said.get(k, ""), f"G0 X{x} Y{y}", "G1 Z0 F500", f"G1 X{u} Y{v}", "G0 Z5"]
+    text = "\n".join([*words, "M2"])
+    design = read_gcode(text.encode())
+    assert len(design.elements) == 4 and is_told(design.notices, "dips-left-out 1 19")
+    assert len(read_gcode(text.encode(), ReadOptions(skip_comments=("none",))).elements) == 5

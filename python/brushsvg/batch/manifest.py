@@ -168,14 +168,18 @@ class Manifest:
         return ""
 
     def remove_outdated(self, row: Row) -> list[str]:
-        """Files that were made under the name of what is refused, as they were written, are removed: their paths."""
+        """Files of an earlier program of this drawing, as they were written, are removed: their paths.
+
+        All that were made under the name of what is refused. Of what is done those of the same language that are not
+        written now, such as parts of a longer job.
+        """
         removed: list[str] = []
-        if row.figures:
-            return removed
+        endings = {Path(name).suffix for name in row.files}
         for file in dict.fromkeys(
             file for each in self._by_name.get(row.name, []) for file in each.files.items()
         ):
-            if self._lies_there(file):
+            is_outdated = file[0] not in row.files and (not row.figures or Path(file[0]).suffix in endings)
+            if is_outdated and self._lies_there(file):
                 try:
                     (self.folder / file[0]).unlink()
                 except OSError as problem:

@@ -272,7 +272,9 @@ def _kept(folder: Path, item: Item, key: str, done: Made, places: _Places) -> Ro
     place = Path(PROGRAMS, item.name) if len(done.texts) > 1 else Path(PROGRAMS, item.name).parent
     stem = Path(item.name).name
     data = {
-        (place / (f"{stem}{name}" if name == main else name)).as_posix(): text
+        (
+            place / (f"{stem}{name.removeprefix('_')}" if name == main or name.startswith("_-") else name)
+        ).as_posix(): text
         for name, text in done.texts.items()
     }
     data[f"{PICTURES}/{item.name}.png"] = done.picture

@@ -39,7 +39,7 @@ def batch_files(args) -> None:
         )
     clear_stage()
     told = [replace(each, where=_where(row, each.where)) for row in done.rows for each in row.notices]
-    outdated = "it was made of a drawing that is refused now, and is removed"
+    outdated = "removed: it was made from an earlier version of the drawing"
     told += [Notice(path, outdated, code="outdated-removed") for path in done.removed]
     warn(args.output, told)
     if not args.quiet:

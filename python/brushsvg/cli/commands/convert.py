@@ -10,6 +10,7 @@ from ...errors import Notice
 from ...evaluation import report
 from ...machine.paint_reload import has_pens, may_pause, pens_changed
 from ...machine.program import Job
+from ...machine.writer import beside, parted_post
 from ...pipeline import conversion, outputs, prediction
 from ...pipeline.choices import on_a_page
 from ...pipeline.margin_strokes import expected_in_words
@@ -50,7 +51,7 @@ def convert_file(args) -> None:
             overlap = figures.total.overlap
     warn(args.input, dict.fromkeys(notice for one in tries for notice in one.remarks()))
     warn_of_cell(args, tries[0].cell)
-    warn(args.output, _left_from_before(args.output, files))
+    warn(args.output, _left_from_before(args.output, files, _called_before(args.output)))
     strokes = sum(len(one.loads.loads) for one in tries) - args.from_stroke + 1
     times_s = [one.time_s() for one in tries]
     seconds = None if None in times_s else sum(times_s)
@@ -70,13 +71,29 @@ def _per_colour(output: str, work: Work) -> list[tuple[str, Work]]:
     ]
 
 
-def _left_from_before(output: str, files: Collection[str]) -> list[Notice]:
+def _by_number(name: str) -> list:
+    """A key that sorts part2 before part10."""
+    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
+
+
+def _called_before(output: str) -> list[str]:
+    """Names of the files that the program calls which is now at the output, if it is one of several files."""
+    path, post = Path(output), parted_post(suffix_of(output))
+    try:
+        text = path.read_bytes().decode("ascii", "replace") if post and path.is_file() else ""
+    except OSError:
+        text = ""
+    return [Path(beside(path, name)).name for name in post.called(text)] if text else []
+
+
+def _left_from_before(output: str, files: Collection[str], called_before: list[str]) -> list[Notice]:
     """A notice of programs for a colour, or of parts, that an earlier run wrote and this one does not: nobody should
     run them."""
     path = Path(output)
     name = re.compile(rf"{re.escape(path.stem)}(-\d+-[0-9a-f]{{6}})?(-part\d+)?{re.escape(path.suffix)}")
-    left = sorted(each.name for each in path.parent.glob("*") if name.fullmatch(each.name))
-    left = [each for each in left if str(path.with_name(each)) not in files]
+    there = [each.name for each in path.parent.glob("*") if name.fullmatch(each.name)]
+    there += [each for each in called_before if path.with_name(each).exists()]
+    left = sorted({each for each in there if str(path.with_name(each)) not in files}, key=_by_number)
     if not left:
         return []
     sentence = f"programs of an earlier run are still here and belong to another version: {', '.join(left)}"

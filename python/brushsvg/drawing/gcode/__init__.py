@@ -100,14 +100,18 @@ def _without_dips(chains: list, said: dict[int, str], options: ReadOptions) -> t
     asked = [_is_skipped(line, points, said, options) for line, points in strokes]
     notices = []
     if any(asked):
-        sentence = f"{sum(asked)} of {len(asked)} strokes are left out, by region or comment"
+        sentence = f"left out by region or comment: {sum(asked)} of {len(asked)} strokes"
         notices.append(Notice("skip", sentence, code="strokes-skipped"))
     left = [(chain, stroke) for chain, stroke, gone in zip(chains, strokes, asked, strict=True) if not gone]
+    if options.skip_comments or options.skip_regions_mm:  # who chooses what is left out chooses the rest, too
+        return [chain for chain, _ in left], notices
     are_dips, how = dips([stroke for _, stroke in left], said)
     if any(are_dips):
         lines = [stroke[0] for (_, stroke), dip in zip(left, are_dips, strict=True) if dip]
-        sentence = f"{len(lines)} dips are left out, recognised {how}; the first is in line {lines[0]}"
-        notices.append(Notice("dips", sentence, code="dips-left-out"))
+        count = f"{len(lines)} dips are" if len(lines) > 1 else "1 dip is"
+        sentence = f"{count} left out, recognised {how}; the first is in line {lines[0]}"
+        advice = "--skip-comment TEXT or --skip-region X0,Y0,X1,Y1 leaves out other strokes instead"
+        notices.append(Notice("dips", sentence, code="dips-left-out", advice=advice))
     return [chain for (chain, _), dip in zip(left, are_dips, strict=True) if not dip], notices
 
 

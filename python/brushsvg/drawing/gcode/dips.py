@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
+from collections import Counter
+from itertools import pairwise
 
 import numpy as np
 
@@ -10,7 +13,9 @@ PLACE_MM = 1.0  # strokes that begin as near to each other are at the same place
 LEAST_VISITS = 3  # to one place, for it to be a pot
 _COMMENT = re.compile(r"\(([^()]*)\)|;(.*)")
 _DIP = re.compile(
-    r"\b(?:dip\w*|re-?load\w*|refill\w*|rinse\w*|wash\w*|(?:get|load|fetch)\s+(?:paint|ink|brush))\b", re.I
+    r"\b(?:dip(?:s|ped|ping)?|re-?load(?:s|ed|ing)?|refill(?:s|ed|ing)?|rins(?:e|es|ed|ing)|wash(?:es|ed|ing)?"
+    r"|(?:get|load|fetch)\s+(?:paint|ink|brush))\b",
+    re.I,
 )
 _END = re.compile(r"\b(?:end|done|finished)\b", re.I)
 
@@ -27,19 +32,45 @@ def comments(text: str) -> dict[int, str]:
 def dips(strokes: list[tuple[int, np.ndarray]], said: dict[int, str]) -> tuple[list[bool], str]:
     """Which strokes, (line, points (n, 2)) each, are dips, and how they were recognised, in words.
 
-    By comments: those between a comment that names a dip and the next comment. Else by place: those that begin at one
-    place again and again, with other strokes between them, outside of all that is drawn elsewhere.
+    By comments: the stroke behind one that names a dip, with those that follow at the same place. A comment that comes
+    once may be about a stroke of the drawing, so then the place must be outside of what is drawn. Else by place:
+    strokes that begin at one place again and again, with other strokes between them, outside of what is drawn.
     """
-    by_comment = [_named(line, said) for line, _ in strokes]
+    by_comment = _named(strokes, said)
     if any(by_comment):
         return by_comment, "by their comments"
     return _at_pots([points for _, points in strokes]), "by their place, to which the program comes back"
 
 
-def _named(line: int, said: dict[int, str]) -> bool:
-    """Whether the last comment before a line is of a dip, and not of its end."""
-    last = said[max(before)] if (before := [number for number in said if number <= line]) else ""
-    return bool(_DIP.search(last)) and not _END.search(last)
+def _named(strokes: list[tuple[int, np.ndarray]], said: dict[int, str]) -> list[bool]:
+    lines, kinds = sorted(said), []  # of each stroke what is said of it, without numbers; "" if it is no dip
+    last, box = -1, None
+    for line, points in strokes:
+        at = bisect_right(lines, line) - 1
+        words = said[lines[at]] if at >= 0 else ""
+        low, high = points.min(axis=0) - PLACE_MM, points.max(axis=0) + PLACE_MM
+        if at != last:
+            box = (low, high) if _DIP.search(words) and not _END.search(words) else None
+        elif box is not None:
+            is_there = bool((low <= box[1]).all() and (high >= box[0]).all())
+            box = (np.minimum(low, box[0]), np.maximum(high, box[1])) if is_there else None
+        last = at
+        kinds.append(re.sub(r"\d+", "", words) if box is not None else "")
+    visits = Counter(kind for before, kind in pairwise(["", *kinds]) if kind and not before)
+    outside = _outside([points for _, points in strokes], [bool(kind) for kind in kinds])
+    return [bool(kind) and (is_out or visits[kind] > 1) for kind, is_out in zip(kinds, outside, strict=True)]
+
+
+def _outside(strokes: list[np.ndarray], chosen: list[bool]) -> list[bool]:
+    """Which of the chosen strokes have no point in the box of the others; none where there are no others."""
+    others = [points for points, is_chosen in zip(strokes, chosen, strict=True) if not is_chosen]
+    if not others:
+        return [False] * len(strokes)
+    low, high = np.vstack(others).min(axis=0), np.vstack(others).max(axis=0)
+    return [
+        is_chosen and not ((points >= low) & (points <= high)).all(axis=1).any()
+        for points, is_chosen in zip(strokes, chosen, strict=True)
+    ]
 
 
 def _at_pots(strokes: list[np.ndarray]) -> list[bool]:
@@ -51,11 +82,4 @@ def _at_pots(strokes: list[np.ndarray]) -> list[bool]:
     # one after the other at one place are coats of paint
     follows = np.array([False, *(near[k, k + 1] for k in range(len(strokes) - 1))])
     is_pot = (visits >= LEAST_VISITS) & ~(near & follows[None]).any(axis=1)
-    if not is_pot.any() or is_pot.all():
-        return [False] * len(strokes)
-    drawn = np.vstack([points for points, pot in zip(strokes, is_pot, strict=True) if not pot])
-    low, high = drawn.min(axis=0), drawn.max(axis=0)
-    return [
-        bool(pot) and not ((points >= low) & (points <= high)).all(axis=1).any()
-        for points, pot in zip(strokes, is_pot, strict=True)
-    ]
+    return _outside(strokes, is_pot.tolist())

@@ -121,8 +121,8 @@ def _by_height(
     travel = [level for level, is_down in zip(levels, down, strict=True) if not is_down and level is not None]
     sign = -1.0 if is_inverted else 1.0
     how = "its pen goes by Z" + (", which counts downwards" if is_inverted else "")
-    how += f": down to z {sign * max(drawn) + 0.0:g}" if drawn else ", and is never down"
-    how += f", up from z {sign * min(travel) + 0.0:g} mm" if travel else " mm"
+    how += f": down to z {sign * max(drawn) + 0.0:g} mm" if drawn else ", and is never down"
+    how += f", up from z {sign * min(travel) + 0.0:g} mm" if travel else ""
     return down, how, is_inverted
 
 
