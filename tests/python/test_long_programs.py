@@ -107,8 +107,11 @@ def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
         assert refused_with("program-cut-short")
         files[1].write_bytes(before[1].replace(b"go on with part 3", b"go on with part 2"))
         assert refused_with("line-unread")
-        status, _, told = in_json(capsys, "check", files[2])
-        assert status == 1 and is_told(told, "program-cut-short")
+        for part in files[1:]:
+            status, _, told = in_json(capsys, "check", part)
+            assert status == 1 and is_told(told, "program-cut-short")
+        status, _, told = in_json(capsys, "check", files[1])
+        assert is_told(told, f"program-cut-short {first.name}")
     else:
         calls = [f"{path.stem}()\r\n".encode() for path in files[1:]]
         first.write_bytes(before[0].replace(calls[0] + calls[1], calls[1] + calls[0]))

@@ -4,8 +4,10 @@ check` does, from Python."""
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from .. import _core
@@ -189,6 +191,14 @@ def _whole_text(path: str, suffix: str, text: str) -> str:
     if suffix == ".traj":
         text = as_table(text)
     post, texts, names = parted_post(suffix), [text], []
+    part = re.fullmatch(r"(.+)-part\d+", Path(path).stem)
+    if post and part and any(name.startswith("-part") for name in post.called(text)):
+        first = Path(path).with_name(part[1] + suffix).name
+        raise Error(
+            "this is one part of a job in several files",
+            code="program-cut-short",
+            advice=f"check {first}, which reads all of them",
+        )
     for one in texts if post else []:
         new = [name for name in post.called(one) if name not in names]
         names += new
