@@ -425,7 +425,7 @@ def test_a_dot_is_a_dab_and_a_ring_is_closed_and_turns_left_from_the_top():
 
 
 def test_fill_and_stroke_is_the_shape_grown_by_half_the_stroke():
-    body = path(BAR, 'stroke="red" stroke-width="2"')
+    body = path(BAR, 'fill="red" stroke="red" stroke-width="2"')
     (grown,) = painted(body)
     assert {round(half, 2) for _, half in grown.half_width} == {4}
     assert _core.area(grown.wanted_mm) == pytest.approx(300 + 2 * 56 + np.pi, abs=0.1)
