@@ -129,6 +129,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             ".cdr": ("--cell", "fr3"),
             ".ebb": ("--cell", "axidraw-ebb"),
             ".hpgl": ("--cell", "hpgl-plotter", "--brush", "rigid"),
+            ".plt": ("--cell", "hpgl-plotter", "--brush", "rigid"),
         }.get(suffix, ())
         brushsvg("convert", values["IN"], f"made{suffix}", *cell, cwd=desk, status=0)
     for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("predict",)])[0]):
@@ -157,6 +158,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             "made.cdr",
             "made.ebb",
             "made.hpgl",
+            "made.plt",
             "page.pdf",
             "page.svg",
             "seen.png",

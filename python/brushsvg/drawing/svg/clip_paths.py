@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from ...errors import Error
@@ -39,11 +40,22 @@ def _refuse_css_transform(style: Style) -> None:
 
 
 class ClipPaths:
-    """The clip paths of a drawing. by_id: its elements; rules: its style sheets."""
+    """The clip paths and masks of a drawing. by_id: its elements; rules: its style sheets."""
 
-    def __init__(self, by_id: dict[str, ET.Element], rules: Rules):
+    def __init__(self, root: ET.Element, by_id: dict[str, ET.Element], rules: Rules):
+        self._root = root
         self._by_id = by_id
         self._rules = rules
+
+    @cached_property
+    def _parents(self) -> dict[ET.Element, ET.Element]:
+        return {child: parent for parent in self._root.iter() for child in parent}
+
+    def _style_of(self, node: ET.Element, diagonal: float) -> Style:
+        """The style of an element by all elements that it is in."""
+        parent = self._parents.get(node)
+        above = INITIAL if parent is None else self._style_of(parent, diagonal)
+        return cascade(above, node.attrib, self._rules.of(node), diagonal)[0]
 
     def region(
         self, value: str, context: Context, bounds: Callable[[], tuple[float, float, float, float] | None]
@@ -68,9 +80,9 @@ class ClipPaths:
             matrix = multiply(matrix, parse_transform(node.get("transform", "")))
         if node.get("clipPathUnits") == "objectBoundingBox":
             matrix = multiply(matrix, _in_bounds(bounds()))
-        style, _ = cascade(context.style, node.attrib, self._rules.of(node), context.diagonal)
+        style = self._style_of(node, context.diagonal)
         _refuse_css_transform(style)
-        parts = self._shapes(node, context._replace(matrix=matrix), context.style, depth, "clip-rule")
+        parts = self._shapes(node, context._replace(matrix=matrix), style, depth, "clip-rule")
         region = shapely.union_all([region for _, region in parts])
         return self._own(style, context, region, depth)
 
@@ -84,7 +96,6 @@ class ClipPaths:
         target = referred(found[1].strip().strip("\"'"), self._by_id) if found else None
         if found and (target is None or local(target) != "mask"):
             return None
-        style, _ = cascade(INITIAL, target.attrib if found else {}, [], context.diagonal)
         if not found or "mask-type" in target.attrib or "mask-type" in target.get("style", ""):
             raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
         matrix = context.matrix
@@ -93,6 +104,7 @@ class ClipPaths:
         page = self._mask_page(target, context, bounds)
         left = shapely.Polygon()
         inner = context._replace(matrix=matrix)
+        style = self._style_of(target, context.diagonal)
         for shown, region in self._shapes(target, inner, style, 0, "fill-rule"):
             left = left.union(region) if _is_white(shown) else left.difference(region)
         if page is not None:

@@ -61,7 +61,7 @@ class Walk:
             notices = [*notices, Notice("svg", sentence, code="animations-unread")]
         self.notes = Notes(root, [*page.notices, *self.rules.notices, *notices])
         paints = Paints(self.by_id, self.rules.of)
-        self.clip_paths = ClipPaths(self.by_id, self.rules)
+        self.clip_paths = ClipPaths(root, self.by_id, self.rules)
         self.painted = Painted(self.by_id, self.notes, paints, in_effects_of_groups(root))
         self.layer_names = layer_names(root)
         self.layers = dict.fromkeys(self.layer_names.values(), "it is hidden in the drawing")
