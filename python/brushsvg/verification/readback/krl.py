@@ -7,7 +7,7 @@ import re
 from ...errors import Error
 from ...machine.cell import Cell
 from ...machine.frames import rotation, rotation_deg
-from ...machine.posts.krl import KRL_END, MAIN, RISES
+from ...machine.posts.krl import KRL_END, RISES
 from ...machine.posts.script import down
 from . import Readback
 from .script import N, Numbered, Script, read_script
@@ -96,16 +96,17 @@ def _in_order(text: str) -> Numbered:
 
 
 def _programs(text: str) -> tuple[Numbered, dict[str, Numbered]]:
-    """The lines of the main program, and of others by name."""
+    """The lines of the main program, remarks above it among them, and of others by name."""
     main: Numbered = []
     others: dict[str, Numbered] = {}
-    lines = main
+    lines, names = main, set()
     for number, line in enumerate(text.splitlines(), 1):
         if found := _DEF.fullmatch(line.strip(" ").lower()):
-            if main and found[1] in (MAIN, *others):
+            if found[1] in names:
                 raise Error(f"line {number}: {found[1]!r} stands there twice", code="line-unread")
-            if main:
+            if names:
                 lines = others[found[1]] = []
+            names.add(found[1])
         if line.strip(" "):
             lines.append((number, line.rstrip(" ")))
     return main, others
