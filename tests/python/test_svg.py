@@ -590,6 +590,20 @@ GRADIENT = '<linearGradient id="g"><stop/><stop stop-color="red"/></linearGradie
             "clipping-unread mask",
         ),
         ('<g id="g" opacity=".5"><path d="M0 0H5"/></g>', "g", "css-unread opacity"),
+        *(
+            (
+                f'<symbol id="y"><path d="M0 0H9V9"/></symbol><mask id="a">{inside}</mask>'
+                '<path id="p" d="M0 0H5" mask="url(#a)"/>',
+                "p",
+                "clipping-unread mask",
+            )
+            for inside in (
+                '<g opacity=".5"><path fill="#fff" d="M0 0H9V9"/></g>',
+                '<g filter="url(#f)"><path fill="#fff" d="M0 0H9V9"/></g>',
+                '<path id="u" fill="#fff" d="M0 0H9V9"/><use href="#u" opacity=".5"/>',
+                '<use href="#y" fill="#fff"/>',
+            )
+        ),
         ('<g id="g" opacity="0"><path d="M0 0H5"/></g>', "g", "transparent"),
         (
             GRADIENT + '<path id="p" d="M0 0H5" stroke="url(#g)"/>',

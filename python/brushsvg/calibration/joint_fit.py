@@ -199,7 +199,8 @@ class _Unknowns:
         # values, and rows, are counted in their spread, so that those of one kind scatter alike
         self.spread_mm = block_diag(*[reading.spread_mm() for reading in readings])
         values = [value for reading in readings for value in reading.values_mm]
-        self.values = np.linalg.solve(self.spread_mm, values)
+        self.per_spread = np.linalg.inv(self.spread_mm)
+        self.values = self.per_spread @ np.array(values)
 
     def powers(self, name: str, depth_mm) -> np.ndarray:
         size = self.first[name] + self.sizes[name]
@@ -219,7 +220,7 @@ class _Unknowns:
                 if reading.from_touch:
                     row[self.places["lag"]] -= self.powers("lag", 0.0)[0]
                 out.append(row)
-        return np.linalg.solve(self.spread_mm, out)
+        return self.per_spread @ np.array(out)
 
     def _shallow_to_deep(self) -> np.ndarray:
         return np.linspace(*self.range_mm, 201)

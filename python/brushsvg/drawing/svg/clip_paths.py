@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 _CSS_TRANSFORMS = frozenset(("transform", "translate", "rotate", "scale"))
 MASK_PAGE = {"x": "-10%", "y": "-10%", "width": "120%", "height": "120%"}  # where a mask does not give it
 _DEEPEST = 20  # clip paths and uses in each other
+_TOO_DEEP = "its clip paths or masks refer to each other, or are nested too deep: painted whole"
 _MASK_UNREAD = "its mask is not made of filled white and black shapes alone, which is not read: painted whole"
 
 
@@ -74,7 +75,7 @@ class ClipPaths:
         import shapely
 
         if depth > _DEEPEST:
-            raise ClipPathError("its clip paths refer to each other: painted whole", code="clipping-unread")
+            raise ClipPathError(_TOO_DEEP, code="clipping-unread")
         matrix = context.matrix
         if node.get("transform"):
             matrix = multiply(matrix, parse_transform(node.get("transform", "")))
@@ -155,10 +156,15 @@ class ClipPaths:
             if child.get("transform"):
                 matrix = multiply(matrix, parse_transform(child.get("transform", "")))
             here = context._replace(matrix=matrix)
-            if tag == "use":
-                yield from self._used(child, here, style, depth, rule)
-            elif tag == "g" and rule == "fill-rule" and depth < _DEEPEST:
-                yield from self._shapes(child, here, style, depth + 1, rule)
+            is_group = tag in ("g", "a") and rule == "fill-rule"
+            if tag == "use" or is_group:
+                if rule == "fill-rule":
+                    _refuse_effects(style)
+                if depth > _DEEPEST:
+                    raise ClipPathError(_TOO_DEEP, code="clipping-unread")
+                inside = self._shapes(child, here, style, depth + 1, rule)
+                for shown, region in inside if is_group else self._used(child, here, style, depth, rule):
+                    yield shown, self._own(style, here, region, depth)
             elif tag == "text":
                 raise ClipPathError(
                     "its clip path is text, which is not read: painted whole", code="clipping-unread"
@@ -172,7 +178,7 @@ class ClipPaths:
                 line = trace(commands, matrix, scales(matrix)[0])
                 region = region_of(outlines_of(line.subpaths), style.inherited[rule])
                 yield style, self._own(style, here, region, depth)
-            elif tag in ("image", "svg", "switch", "foreignObject") and rule == "fill-rule":
+            elif tag in ("image", "svg", "symbol", "switch", "foreignObject") and rule == "fill-rule":
                 raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
 
     def _used(
@@ -182,7 +188,7 @@ class ClipPaths:
         if target is None:
             return
         if depth > _DEEPEST:
-            raise ClipPathError("its clip paths refer to each other: painted whole", code="clipping-unread")
+            raise ClipPathError(_TOO_DEEP, code="clipping-unread")
         x, y = (
             context.length(use.get(name, "").strip() or "0", context.viewport[k])
             for k, name in enumerate("xy")
@@ -201,10 +207,17 @@ def _in_bounds(box: tuple[float, float, float, float] | None) -> Matrix:
     return (box[2], 0.0, 0.0, box[3], box[0], box[1])
 
 
+def _refuse_effects(style: Style) -> None:
+    """In a mask what is half transparent is grey, and so may be what has a filter or a mask of its own."""
+    own = style.own
+    if own["opacity"] != "1" or own["mask"] != "none" or own["filter"] != "none":
+        raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
+
+
 def _is_white(style: Style) -> bool:
     """Whether a shape of a mask shows what is under it. ClipPathError for one that is neither white nor black."""
-    fill, own = style.inherited["fill"] or "#000000", style.own
-    is_opaque = own["opacity"] == "1" and style.inherited["fill-opacity"] == "1" and own["mask"] == "none"
+    _refuse_effects(style)
+    fill, is_opaque = style.inherited["fill"] or "#000000", style.inherited["fill-opacity"] == "1"
     if fill == "currentcolor":
         fill = style.inherited["color"]
     if not is_opaque or fill not in ("#ffffff", "#000000") or style.inherited["stroke"] != "none":
