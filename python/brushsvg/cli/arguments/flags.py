@@ -23,11 +23,11 @@ def plans_and_programs() -> str:
     return f"a plan (.json) or {programs()}"
 
 
-def add_looks(commands, kind: str, about: str, told: str, file: str):
+def add_looks(commands, kind: str, about: str, shown: str, file: str):
     """`brush` or `cell` with list, show and check; what else it does is added to the parsers returned."""
     whats = commands.add_parser(kind, help=about).add_subparsers(metavar="WHAT", required=True)
     whats.add_parser("list", help="list the shipped ones").set_defaults(run=f"{kind}_list")
-    show = whats.add_parser("show", help=f"show {told} of one")
+    show = whats.add_parser("show", help=f"show {shown} of one")
     show.add_argument("input", metavar="NAME", help=f"a shipped {kind}, or a {file}")
     show.set_defaults(run=f"{kind}_show")
     check = whats.add_parser("check", help=f"check whether a {kind} file is usable")

@@ -96,7 +96,7 @@ class Painted:
                 'data-brushsvg-skip="yes" on it leaves it out'
             )
             self.notes.add(node, context, sentence, code="white-paint")
-        # a fill that nobody chose is black, and hardly ever meant beside a stroke of another colour
+        # a fill that nobody chose is black, and hardly ever meant next to a stroke of another colour
         is_two = properties["fill"] and "none" not in (fill, stroke) and fill != stroke
         if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
             self.notes.add(node, context, "markers are not read: left out", code="markers-unread")

@@ -13,7 +13,7 @@ from ..cell import MOST_POINTS, Cell
 from ..frames import rotation_deg
 from ..motion import Move, Program, Section, Wait, via
 from .dobot import whole_mm_s
-from .script import Words, blends_mm, down, part_name, told, turned_at
+from .script import Words, blends_mm, down, part_name, section_lines, turned_at
 from .text import ENDS, number, plain, rows
 
 LINE_LIMIT = 100  # of what a remark says, in as many lines as it takes
@@ -39,7 +39,7 @@ def fanuc(program: Program) -> Iterator[str]:
                 calls.append(part_name(setup, len(calls) + 1))
                 held.write(_program(calls[-1], lines, points))
                 points, lines = _Points(cell), ""
-            lines += "".join(told(section, _words(program, points), risen))
+            lines += "".join(section_lines(section, _words(program, points), risen))
             risen = risen or bool(section.moves)
         if not calls:
             yield _program(MAIN, setup + lines + end, points)

@@ -20,7 +20,7 @@ SPEED_DECIMALS = 6  # of m/s
 HELD_BYTES = 20_000_000  # of text, before it goes to a file
 MAIN = "brushsvg"
 RISES = "DECL E6POS here\n"
-AROUND = 3  # lines of a program that is called, beside its moves
+AROUND = 3  # lines of a program that is called, next to its moves
 KRL_END = "end: the brush is held up"
 
 

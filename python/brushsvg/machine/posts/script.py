@@ -35,24 +35,26 @@ def body(program: Program, words: Words) -> Iterator[str]:
     risen = False
     for section in program.sections():
         yield "\n"
-        yield from told(section, words, risen)
+        yield from section_lines(section, words, risen)
         risen = risen or bool(section.moves)
 
 
 def parts(program: Program, words: Words, around: int, rises_again: bool) -> Iterator[str]:
-    """The same in parts of whole sections, none with more lines than one program of the language may have, but where
-    a section has more. around: how many lines a program has beside these; rises_again: whether the tool goes straight
-    up in each part, else in the first alone."""
+    """Split the sections into parts, none with more lines than one program of the language may have.
+
+    A section with more lines is a part by itself. around: lines that each program has in addition to these;
+    rises_again: whether the tool goes straight up in each part, else in the first alone.
+    """
     most = MOST_LINES[program.cell.language] - around
     text, lines, risen = "", 0, False
     for section in program.sections():
-        more = "\n" + "".join(told(section, words, risen))
+        more = "\n" + "".join(section_lines(section, words, risen))
         if text and lines + more.count("\n") > most:
             yield text
             text, lines = "", 0
             if rises_again:
                 risen = False
-                more = "\n" + "".join(told(section, words, risen))
+                more = "\n" + "".join(section_lines(section, words, risen))
         text += more
         lines += more.count("\n")
         risen = risen or bool(section.moves)
@@ -60,11 +62,11 @@ def parts(program: Program, words: Words, around: int, rises_again: bool) -> Ite
 
 
 def part_name(setup: str, number: int) -> str:
-    """What a program is called that another one calls: by the text of that one, so that jobs are told apart."""
+    """Name a program that another one calls, by the text of that one: the names of two jobs differ."""
     return f"B{hashlib.sha256(setup.encode()).hexdigest()[:4].upper()}{number:03d}"
 
 
-def told(section: Section, words: Words, risen: bool) -> Iterator[str]:
+def section_lines(section: Section, words: Words, risen: bool) -> Iterator[str]:
     """One section; risen: whether the tool has gone straight up before."""
     yield words.title(section.title)
     for step in section.steps:
