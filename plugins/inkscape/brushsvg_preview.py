@@ -15,7 +15,6 @@ from xml.etree import ElementTree
 from brushsvg_program import DRAWING, Run, arguments, choices, guarded, selection
 
 PAINTED, MISSED = "#1c8fd4", "#d4351c"  # the drawing shows through both
-FILL_OPACITY, EDGE, EDGE_MM = 0.6, "#ffffff", 0.15  # the edge shows a mark on ink of its own colour
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 SODIPODI = "{http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd}"
@@ -83,8 +82,7 @@ def _layer(etree, marks, root, warnings: list[str], save_refuses: list[str]):
         colour = MISSED if path in missed else PAINTED
         mark = etree.SubElement(layer, f"{SVG}path")
         mark.set("d", path.get("d").strip())
-        filled = f"fill:{colour};fill-opacity:{FILL_OPACITY};fill-rule:nonzero"
-        mark.set("style", f"{filled};stroke:{EDGE};stroke-width:{EDGE_MM}")
+        mark.set("style", f"fill:{colour};fill-opacity:0.6;fill-rule:nonzero;stroke:none")
         mark.set(f"{INKSCAPE}label", path.get("data-stroke"))
     return layer
 
