@@ -8,13 +8,16 @@ inkex nothing is: lxml, which it stands on, is enough.
 
 from __future__ import annotations
 
+import math
 import re
 import sys
 from xml.etree import ElementTree
 
 from brushsvg_program import DRAWING, Run, arguments, choices, guarded, selection
 
-PAINTED, MISSED = "#1c8fd4", "#d4351c"  # the drawing shows through both
+# Two colours each, far apart: whatever the ink, one of the two is seen on it. The drawing shows through.
+PAINTED, MISSED = ("#1c8fd4", "#d98200"), ("#d4351c", "#a000c8")
+OPACITY = 0.6
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 SODIPODI = "{http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd}"
@@ -79,12 +82,21 @@ def _layer(etree, marks, root, warnings: list[str], save_refuses: list[str]):
     if warnings:
         etree.SubElement(layer, f"{SVG}desc").text = "\n".join(warnings)
     for path in paths:
-        colour = MISSED if path in missed else PAINTED
+        colour = seen_on(path.get("fill"), MISSED if path in missed else PAINTED)
         mark = etree.SubElement(layer, f"{SVG}path")
         mark.set("d", path.get("d").strip())
-        mark.set("style", f"fill:{colour};fill-opacity:0.6;fill-rule:nonzero;stroke:none")
+        mark.set("style", f"fill:{colour};fill-opacity:{OPACITY};fill-rule:nonzero;stroke:none")
         mark.set(f"{INKSCAPE}label", path.get("data-stroke"))
     return layer
+
+
+def seen_on(ink: str, colours: tuple[str, str]) -> str:
+    """The colour that differs most from the ink; both #rrggbb."""
+    return max(colours, key=lambda colour: math.dist(rgb(colour), rgb(ink)))
+
+
+def rgb(colour: str) -> tuple[int, ...]:
+    return tuple(bytes.fromhex(colour[1:]))
 
 
 def locked_layer(etree, name: str, label: str):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from command import SOUND, brushsvg
 from diagnostics import gives
-from plugin import sentence
+from plugin import SOURCE, sentence
 
 from brushsvg import read_drawing
 from brushsvg.drawing import ReadOptions
@@ -235,3 +235,31 @@ def test_the_label_says_that_saving_will_be_refused(plugin, tmp_path, path):
     assert gives(label, "refused", "edge") and "--" not in label
     plugin.save(source, saved)
     assert not saved.exists()
+
+
+@pytest.mark.parametrize("kind", ["PAINTED", "MISSED"])
+def test_marks_are_seen_on_ink_of_any_colour(kind, monkeypatch):
+    """A mark differs from the ink and the paper below it by at least a fifth of a channel's range."""
+    monkeypatch.syspath_prepend(SOURCE)
+    import brushsvg_preview as shown
+
+    white = np.array([255.0, 255.0, 255.0])
+    for ink in np.stack(np.meshgrid(*3 * [np.arange(0, 256, 15)]), axis=-1).reshape(-1, 3):
+        colour = np.array(shown.rgb(shown.seen_on(f"#{bytes(ink.tolist()).hex()}", getattr(shown, kind))))
+        for under in (ink, white):
+            assert np.linalg.norm(shown.OPACITY * (colour - under)) >= 0.2 * 255, (ink, under)
+
+
+def test_black_ink_is_seen_below_blue_and_blue_ink_below_orange(plugin, tmp_path):
+    source = tmp_path / "drawing.svg"
+    strokes = "".join(
+        f'<path d="M10,{y} H90" style="fill:none;stroke:{ink};stroke-width:4"/>'
+        for y, ink in ((20, "#000000"), (40, "#1c8fd4"))
+    )
+    source.write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">{strokes}</svg>'
+    )
+    out = plugin.effect("preview", source, tmp_path / "out.svg")
+    layer = preview(out.read_text())
+    fills = [node.get("style").split(";")[0] for node in layer if node.tag == f"{SVG}path"]
+    assert fills == ["fill:#1c8fd4", "fill:#d98200"]

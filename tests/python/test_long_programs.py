@@ -15,7 +15,7 @@ from test_fanuc import waves
 from test_robot_scripts import sound
 from urscript_stub import run as run_stub
 
-from brushsvg import _core
+from brushsvg import _core, convert
 from brushsvg.brush.library import find_brush
 from brushsvg.machine import cell
 from brushsvg.machine.cell import Workspace
@@ -77,6 +77,19 @@ def test_a_long_job_is_several_programs_that_do_what_one_would(job, capsys):
     for plan in ([], [str(first.parents[1] / "waves.json")]):
         status, out, told = call(capsys, "check", str(first), *plan)
         assert status == 0 and RUNNABLE in out, told
+
+
+def test_python_has_the_same_texts_by_the_same_names(job):
+    name, first, _ = job
+    texts = convert(first.parents[1] / "waves.json", cell=name).texts
+    files = {
+        (each.name.removeprefix(first.stem) if name == "ur5e" or each == first else each.name): each
+        for each in files_of(first)
+    }
+    assert {key: text.encode("ascii") for key, text in texts.items()} == {
+        key: path.read_bytes() for key, path in files.items()
+    }
+    assert next(iter(texts)) == first.suffix
 
 
 def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):

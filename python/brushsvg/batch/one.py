@@ -64,8 +64,8 @@ class Figures:
 
 @dataclass(frozen=True)
 class Made:
-    """figures: None for what was refused; texts: of the program, by extension, those of others by name; sentence, code:
-    of a refusal."""
+    """figures: None for what was refused; texts: of the program, by what they add to its name (see writer.in_parts);
+    suffix: of all of them; sentence, code: of a refusal."""
 
     figures: Figures | None
     texts: dict[str, bytes]
@@ -75,6 +75,7 @@ class Made:
     code: str = ""
     notices: tuple[Notice, ...] = ()
     version: str = ""
+    suffix: str = ""
 
 
 def version() -> str:
@@ -108,10 +109,10 @@ def _made(task: Task) -> Made:
         first, *others = one.problems
         more = f", and {len(others)} more of other kinds" if others else ""
         raise Error(f"{first.sentence}{more}", first.where, code=first.code)
-    texts = {}
-    for path, pieces in one.encoded(f"_{suffix}").items():
-        data = pieces if isinstance(pieces, bytes) else "".join(pieces).encode()
-        texts[suffix if path == f"_{suffix}" else path] = data
+    texts = {
+        name: pieces if isinstance(pieces, bytes) else "".join(pieces).encode()
+        for name, pieces in one.encoded().items()
+    }
     _, total = report.measure(
         one.work.plan,
         one.marks,
@@ -138,7 +139,7 @@ def _made(task: Task) -> Made:
         len(notices),
     )
     picture = outputs.overlap_picture(".png", one.work, one.marks, PICTURE_PX)
-    return Made(figures, texts, picture, notices=notices)
+    return Made(figures, texts, picture, notices=notices, suffix=suffix)
 
 
 def sha256(data: bytes) -> str:

@@ -20,6 +20,7 @@ from ..files import find_file, read_bytes, write_files
 from ..machine import cell_file
 from ..machine.cell_file import write_cell
 from ..machine.posts import POSTS, sources_of_post
+from ..machine.writer import beside
 from ..pictures.contact_sheet import Card, contact_sheets
 from ..pipeline.cancelling import Cancel
 from ..pipeline.choices import Choices, Given, cell_of
@@ -268,15 +269,9 @@ def _kept(folder: Path, item: Item, key: str, done: Made, places: _Places) -> Ro
     """Its row, once its files are written, all or none."""
     if done.figures is None:
         return Row(item.name, item.source, key, None, done.code, done.where, done.sentence, done.notices)
-    main = next(iter(done.texts))
     place = Path(PROGRAMS, item.name) if len(done.texts) > 1 else Path(PROGRAMS, item.name).parent
-    stem = Path(item.name).name
-    data = {
-        (
-            place / (f"{stem}{name.removeprefix('_')}" if name == main or name.startswith("_-") else name)
-        ).as_posix(): text
-        for name, text in done.texts.items()
-    }
+    first = place / f"{Path(item.name).name}{done.suffix}"
+    data = {Path(beside(first, name)).as_posix(): text for name, text in done.texts.items()}
     data[f"{PICTURES}/{item.name}.png"] = done.picture
     try:
         places.refuse_taken(item, data)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -83,13 +83,22 @@ def encoded(
     return text_of(post_for(suffix, made.cell), replace(made, header=header), suffix)
 
 
-def in_files(path: str | os.PathLike[str], pieces: bytes | Iterator[str]) -> dict:
-    """The same by the files that it belongs in: what one program of a language cannot hold lies beside it."""
-    post = parted_post(Path(path).suffix.lower())
+def in_parts(suffix: str, pieces: bytes | Iterator[str]) -> dict[str, bytes | str | Iterator[str]]:
+    """The same in the files of a language where one program cannot hold a long job: {"": the first, name: another}.
+
+    A name that begins with "-" is appended to the first file's, as `beside` does.
+    """
+    post = parted_post(suffix)
     if post is None:
-        return {path: pieces}
+        return {"": pieces}
     texts = post.programs("".join(pieces))
-    return {path: texts.pop("")} | {beside(path, name): text for name, text in texts.items()}
+    return {"": texts.pop("")} | texts
+
+
+def in_files(path: str | os.PathLike[str], pieces: bytes | Iterator[str]) -> dict:
+    """The same by the paths of those files."""
+    parts = in_parts(Path(path).suffix.lower(), pieces)
+    return {beside(path, name): text for name, text in parts.items()}
 
 
 def parted_post(suffix: str) -> Post | None:
@@ -98,9 +107,25 @@ def parted_post(suffix: str) -> Post | None:
 
 
 def beside(path: str | os.PathLike[str], name: str) -> str:
-    """Where the file of another program lies that one goes on in."""
+    """Where the file of another program lies that one goes on in. name: "" for the one at the path."""
+    if not name:
+        return os.fspath(path)
     path = Path(path)
     return str(path.with_name((path.stem if name.startswith("-") else "") + name + path.suffix))
+
+
+def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str], str]) -> dict[str, str]:
+    """The files that a program's text calls, and those that they call, with their texts: in the order of the calls.
+
+    path: where the program lies or will lie; read: the text of a file.
+    """
+    post, texts, found = parted_post(Path(path).suffix.lower()), [text], {}
+    for one in texts if post else []:
+        for file in (beside(path, name) for name in post.called(one)):
+            if file not in found:
+                found[file] = read(file)
+                texts.append(found[file])
+    return found
 
 
 def painting_cell(suffix: str, cell: Cell) -> Cell:

@@ -25,7 +25,7 @@ from ..machine.paint_reload import in_loads
 from ..machine.posts import GCODE
 from ..machine.program import out_of_arm
 from ..machine.setup_programs import around
-from ..machine.writer import beside, parted_post
+from ..machine.writer import called_programs, parted_post
 from ..painted.corrections import is_corrected
 from ..verification import against_plan, against_regenerated, pace, setup_programs, simulate_program
 from ..verification.readback import read_program, text_of_file
@@ -190,7 +190,7 @@ def _whole_text(path: str, suffix: str, text: str) -> str:
         )
     if suffix == ".traj":
         text = as_table(text)
-    post, texts, names = parted_post(suffix), [text], []
+    post = parted_post(suffix)
     part = re.fullmatch(r"(.+)-part\d+", Path(path).stem)
     if post and part and any(name.startswith("-part") for name in post.called(text)):
         first = Path(path).with_name(part[1] + suffix).name
@@ -199,11 +199,8 @@ def _whole_text(path: str, suffix: str, text: str) -> str:
             code="program-cut-short",
             advice=f"check {first}, which reads all of them",
         )
-    for one in texts if post else []:
-        new = [name for name in post.called(one) if name not in names]
-        names += new
-        texts += [text_of_file(read_bytes(beside(path, name))) for name in new]
-    return "".join(texts)
+    called = called_programs(path, text, lambda file: text_of_file(read_bytes(file)))
+    return "".join([text, *called.values()])
 
 
 def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:

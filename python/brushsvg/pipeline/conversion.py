@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from numbers import Integral
-from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from .. import _core
@@ -57,9 +56,9 @@ class Conversion:
     """A drawing that became a plan, and what a machine runs.
 
     plan: TCP poses [mm] of each stroke; notices: warnings, none of which forbids to run it; time_s: how long a machine
-    takes, None where it cannot paint a plan that was asked for alone; texts: by extension (".ngc", ".json"), of a
-    program in several files the others by their names; figures: how near the paint comes, a report with strokes and
-    total, None where nobody asked; files: the paths that were written.
+    takes, None where it cannot paint a plan that was asked for alone; texts: by extension (".ngc", ".json"); the
+    others of a program in several files by what they add to its name ("-part2.script") or by their own; figures: how
+    near the paint comes, a report with strokes and total, None where nobody asked; files: the paths that were written.
     """
 
     title: str
@@ -190,11 +189,11 @@ def _converted(
         stage("writing the program")
         texts: dict[str, str] = {}
         for suffix, each in tries.items():
-            for path, pieces in each.encoded(f"_{suffix}").items():
+            for name, pieces in each.encoded().items():
                 text = pieces.decode() if isinstance(pieces, bytes) else "".join(pieces)
-                texts[suffix if path == f"_{suffix}" else path] = text
+                texts[name + suffix] = text
                 if out is not None and suffix == suffix_of(out):
-                    files[out if path == f"_{suffix}" else str(Path(out).with_name(path))] = text
+                    files[writer.beside(out, name)] = text
         if "preview" in paths:
             stage("drawing")
             files[paths["preview"]] = outputs.picture(suffix_of(paths["preview"]), one.work, one.marks)
@@ -246,11 +245,11 @@ class Tried:
     def is_program(self) -> bool:
         return self.suffix != ".json"
 
-    def encoded(self, path: str) -> dict:
-        """What is written, by path. Error where something forbids it."""
+    def encoded(self) -> dict[str, bytes | str | Iterator[str]]:
+        """What is written, see writer.in_parts. Error where something forbids it."""
         work = self.work
         made = writer.encoded(self.suffix, work.plan, self.walk, work.brush, work.title, self.notes)
-        return writer.in_files(path, made)
+        return writer.in_parts(self.suffix, made)
 
     def remarks(self) -> list[Notice]:
         """What is told of a job that may be run."""

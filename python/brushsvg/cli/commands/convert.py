@@ -10,7 +10,7 @@ from ...errors import Notice
 from ...evaluation import report
 from ...machine.paint_reload import has_pens, may_pause, pens_changed
 from ...machine.program import Job
-from ...machine.writer import beside, parted_post
+from ...machine.writer import beside, called_programs
 from ...pipeline import conversion, outputs, prediction
 from ...pipeline.choices import on_a_page
 from ...pipeline.margin_strokes import expected_in_words
@@ -36,7 +36,7 @@ def convert_file(args) -> None:
     with about(args.input):
         tries = [_tried(args, path, part) for path, part in parts]
         for (path, _), one in reversed([*zip(parts, tries, strict=True)]):
-            files = one.encoded(path) | files
+            files = {beside(path, name): text for name, text in one.encoded().items()} | files
         shown = tries[0] if len(tries) == 1 else None
         if args.preview or args.report:
             marks = (
@@ -78,12 +78,15 @@ def _by_number(name: str) -> list:
 
 def _called_before(output: str) -> list[str]:
     """Names of the files that the program calls which is now at the output, if it is one of several files."""
-    path, post = Path(output), parted_post(suffix_of(output))
+    return [Path(file).name for file in called_programs(output, _text_of_before(output), _text_of_before)]
+
+
+def _text_of_before(path: str) -> str:
+    """A program of an earlier run, as far as it can be read; names in it are ASCII."""
     try:
-        text = path.read_bytes().decode("ascii", "replace") if post and path.is_file() else ""
+        return Path(path).read_bytes().decode("ascii", "replace")
     except OSError:
-        text = ""
-    return [Path(beside(path, name)).name for name in post.called(text)] if text else []
+        return ""
 
 
 def _left_from_before(output: str, files: Collection[str], called_before: list[str]) -> list[Notice]:
