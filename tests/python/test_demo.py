@@ -140,15 +140,15 @@ def test_doctor_says_whether_the_extension_finds_its_program(tmp_path, monkeypat
 @pytest.mark.parametrize(
     "file, command",
     [
-        ("pipx_metadata.json", "pipx inject brushsvg a b"),
-        ("uv-receipt.toml", "uv tool install brushsvg --with a --with b"),
-        ("pyvenv.cfg", f"{sys.executable} -m pip install a b"),
+        ("pipx_metadata.json", ("pipx", "inject", "brushsvg", "a", "b")),
+        ("uv-receipt.toml", ("uv", "tool", "install", "brushsvg", "--with", "a", "--with", "b")),
+        ("pyvenv.cfg", (sys.executable, "-m", "pip", "install", "a", "b")),
     ],
 )
 def test_packages_are_added_by_what_installed_brushsvg(tmp_path, monkeypatch, file, command):
     (tmp_path / file).write_text("")
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
-    assert command_to_add("a", "b") == command
+    assert command_to_add("a", "b").split() == list(command)
     with refused("package-missing"):
         raise lacking("this needs", "a", "b")
 
