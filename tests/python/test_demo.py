@@ -13,6 +13,7 @@ from diagnostics import in_json, refused
 
 from brushsvg.cli import main
 from brushsvg.cli.commands import demo, doctor
+from brushsvg.cli.install_plugin import install_inkscape
 from brushsvg.errors import command_to_add, lacking
 
 ROOT = Path(__file__).parents[2]
@@ -122,11 +123,18 @@ def test_doctor_knows_a_snap_and_a_flatpak(tmp_path):
     assert doctor.sandbox("/usr/bin/inkscape") == ""
 
 
+def test_doctor_asks_for_the_zip_where_there_is_no_source(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("INKSCAPE_PROFILE_DIR", str(tmp_path))
+    monkeypatch.setattr(doctor, "SOURCE", tmp_path / "none")
+    assert main(["doctor"]) == 0
+    assert rows(capsys.readouterr().out)["extension"].endswith(" inkscape brushsvg-inkscape.zip")
+
+
 def test_doctor_says_whether_the_extension_finds_its_program(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("INKSCAPE_PROFILE_DIR", str(tmp_path))
     assert main(["doctor"]) == 0
     assert "brushsvg install-plugin inkscape" in rows(capsys.readouterr().out)["extension"]
-    assert main(["install-plugin", "inkscape"]) == 0
+    install_inkscape(source=ROOT / "plugins" / "inkscape")  # an installed package does not hold it
     note = tmp_path / "extensions" / "brushsvg" / "brushsvg-executable.txt"
     for program, problem in ((sys.executable, False), (str(tmp_path / "gone"), True)):
         note.write_text(f"{program}\n")

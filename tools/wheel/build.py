@@ -1,7 +1,7 @@
 """Build the wheels for x86-64 Linux: build.py --python PROGRAM [--python PROGRAM ...] [--out FOLDER]
 
 Needs the packages of `make system`. zig compiles everything against the C library of manylinux_2_28. Ceres and Highway
-come from Debian's source packages (libraries.sh). Two runs at one revision give the same bytes.
+come from Debian's source packages (libraries.sh). Times, paths and order of files do not depend on the machine.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from ...errors import Notice, command_to_add
 from ..console import RefusedError, tell
-from ..install_plugin import FOLDER, NOTE, extensions_folder, own_program
+from ..install_plugin import FOLDER, NOTE, SOURCE, extensions_folder, own_program
 from .text import SINGLE_LINE_FONTS
 
 PURPOSE = {  # of each extra that a user may want
@@ -109,7 +109,8 @@ def _inkscape() -> Iterator[tuple[str, str]]:
             yield "sandbox", f"{kind} Inkscape cannot start programs outside: see docs/plugins.md"
     folder = extensions_folder() / FOLDER
     if not (folder / "brushsvg_program.py").is_file():
-        yield "extension", "not installed. Add it with  brushsvg install-plugin inkscape"
+        zipped = "" if SOURCE.is_dir() else " brushsvg-inkscape.zip"  # a wheel does not hold it
+        yield "extension", f"not installed. Add it with  brushsvg install-plugin inkscape{zipped}"
         return
     note = folder / NOTE
     runs = os.fsdecode(note.read_bytes()).strip() if note.is_file() else ""
