@@ -21,7 +21,7 @@ if [ ! -e bare/usr/bin/python3 ]; then
   rm -rf bare
   sources=()
   for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.{list,sources}; do [ ! -f "$list" ] || sources+=("$list"); done
-  mmdebstrap --quiet --variant=minbase --include=python3,python3-venv "$suite" bare "${sources[@]}"
+  mmdebstrap --quiet --variant=minbase --include=python3,python3-venv,fonts-dejavu-core "$suite" bare "${sources[@]}"
 fi
 if chroot bare sh -c 'command -v cc || command -v g++ || ls -d /usr/include/eigen3' 2>/dev/null; then
   echo "the bare system has a compiler or Eigen" >&2
@@ -36,7 +36,7 @@ git -C "$tree" ls-files -z --cached --others --exclude-standard -- ':!python' | 
 mkdir -p bare/proc bare/dev
 [ -e bare/dev/null ] || mknod -m 666 bare/dev/null c 1 3
 
-run() { chroot bare env -i PATH=/usr/bin:/bin HOME=/tmp/run LC_ALL=C.UTF-8 PYTHONDONTWRITEBYTECODE=1 "$@"; }
+run() { unshare --pid --fork --mount-proc="$PWD/bare/proc" chroot bare env -i PATH=/usr/bin:/bin HOME=/tmp/run LC_ALL=C.UTF-8 PYTHONDONTWRITEBYTECODE=1 "$@"; }
 install() { # ENVIRONMENT EXTRAS: a new environment with the wheel, from the folder of wheels alone
   rm -rf "bare/$1"
   run python3 -m venv "/$1"
