@@ -12,6 +12,7 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 
 from .errors import Error, need
+from .suggestions import did_you_mean
 
 try:
     import fcntl
@@ -72,7 +73,8 @@ def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.Path
         return Path(name_or_path)
     known, own = ", ".join(names), f"{name_or_path}{suffix}"
     raise Error(
-        f"{kind} {name_or_path!r} is not known; known are {known}, and any file that ends in {suffix}",
+        f"{kind} {name_or_path!r} is not known{did_you_mean(name_or_path, names)} Known are {known}, and any file "
+        f"that ends in {suffix}",
         code=f"{kind}-unknown",
         advice=f"{own} lies here: give its name with the ending" if _is_file(own) else "",
     )

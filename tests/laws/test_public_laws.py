@@ -3,11 +3,13 @@
 import numpy as np
 import oracle
 import pytest
+from diagnostics import refused
 from made_up_brushes import LAGS, law, profile, random_poses
 from scipy.integrate import quad, solve_bvp, solve_ivp
 
 import brushsvg
 from brushsvg import laws
+from brushsvg.laws.numbers import FARTHEST_MM
 
 FIGURE_3 = np.array(  # s, alpha, p, tip, beta; r = 3, b = 1, from 90 degrees
     [
@@ -76,6 +78,19 @@ def test_the_loose_rule_against_an_integration_with_events():
         assert np.exp(1j * (found + turn)) == pytest.approx(np.exp(1j * heading), abs=1e-8)
         followed = laws.follow(poses[:, :2], -poses[:, 2], lag)
         assert followed.heading_rad[2:] == pytest.approx(heading, abs=1e-8)
+
+
+def test_before_the_first_motion_the_heading_is_the_first_there_is():
+    found = laws.follow([(0, 0), (0, 0), (0, 5)], 2.0, 4.0)
+    assert found.heading_rad == pytest.approx([np.pi / 2] * 3)
+
+
+def test_lag_and_tip_gap_together_reach_no_farther_than_a_contact():
+    """Each may be half of what contact_offset takes, so that their sum is one."""
+    laws.tip_offset(0.5, FARTHEST_MM / 2, FARTHEST_MM / 2)
+    for lengths in ((0.6 * FARTHEST_MM, 1.0), (1.0, 0.6 * FARTHEST_MM)):
+        with refused(f"out-of-range {FARTHEST_MM / 2:g}"):
+            laws.tip_offset(0.5, *lengths)
 
 
 @pytest.mark.parametrize("name", LAGS)

@@ -806,3 +806,28 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
         status, _, ((_, told),) = in_json(capsys, "convert", "a.svg", "x.ngc", "--cell", cell)
         assert status == 1 and agrees(told, said), told
     assert not (desk / "x.ngc").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        ("convrt a.svg b.ngc", "convert"),
+        ("brush shw round-6", "show"),
+        ("convert a.svg b.ngc --brsh round-6", "--brush"),
+        ("convert a.svg b.ngc --compensation closd", "closed"),
+        ("brush show roun-6", "round-6"),
+        ("cell show grbl-3axs", "grbl-3axis"),
+    ],
+)
+def test_a_mistyped_name_is_answered_with_the_nearest(capsys, words, meant):
+    try:
+        status = main(words.split())
+    except SystemExit as ended:
+        status = ended.code
+    assert status == (1 if "show" in words else 2)
+    assert f" {meant}?" in capsys.readouterr().err
+
+
+def test_nothing_is_suggested_where_nothing_is_alike(capsys):
+    assert main(["brush", "show", "xyz"]) == 1
+    assert "?" not in capsys.readouterr().err

@@ -129,6 +129,18 @@ def test_flags_have_no_effect_on_a_plan(desk, capsys):
         assert is_told(told, f"flag-without-effect {flag}"), told
 
 
+@pytest.mark.parametrize("command", ["convert", "import"])
+def test_flags_for_gcode_have_no_effect_on_an_svg(desk, capsys, command):
+    out = "d.ngc" if command == "convert" else "seen.png"
+    flags = {"--pen": "servo", "--paper-z": "0", "--skip-region": "0,0,1,1", "--skip-comment": "dip"}
+    words = [word for pair in flags.items() for word in pair]
+    status, _, told = in_json(capsys, command, "d.svg", out, *words)
+    assert status == 0
+    for flag in flags:
+        assert is_told(told, f"flag-without-effect {flag}"), told
+    assert not is_told(in_json(capsys, command, "d.svg", out)[2], "flag-without-effect")
+
+
 def test_settings_steer_the_plan(desk, capsys):
     text = DRAWING.replace(
         'id="b"', 'id="b" data-brushsvg-order="-1" data-brushsvg-passes="2" data-brushsvg-speed="7"'

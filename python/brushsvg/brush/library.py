@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import difflib
 import hashlib
 import json
 import os
@@ -12,6 +11,7 @@ from pathlib import Path
 from .. import _core
 from ..errors import Error, Notice, need
 from ..files import find_file, names_in, read_bytes, write_files
+from ..suggestions import nearest_name
 
 SHIPPED = Path(__file__).parents[1] / "data" / "brushes"
 _LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
@@ -96,17 +96,14 @@ def _object(text: str) -> dict:
 
 
 def _unknown(path: str, where: str, key: str, known: tuple[str, ...]) -> Notice:
-    near = difflib.get_close_matches(key, known, 1, NEAR)
-    meant = f": is {where}{near[0]} meant?" if near else ""
+    near = nearest_name(key, known)
+    meant = f"; did you mean {where}{near}?" if near else ""
     return Notice(
         path,
         f"this key is not known and has no effect{meant}",
         code="key-unknown",
-        about=near[0] if near else "",
+        about=near,
     )
-
-
-NEAR = 0.7  # how like a mistyped key is to a known one: rmse by 0.73; author is like about by 0.55, and is a note
 
 
 def mistyped_keys(brush: _core.Brush) -> list[Notice]:

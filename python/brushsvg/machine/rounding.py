@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import _core
 from .arc_chords import OFF_MM, with_chords, with_chords_on
-from .cell import RADII_MM, Cell, least_move_mm, rounded, servo_is_outrun, unit_mm
+from .cell import RADII_MM, Cell, Servo, least_move_mm, rounded, servo_is_outrun, unit_mm
 from .corner_blending import ON_THE_SPOT_MM
 from .distortion import leans, told_pass
 from .frames import is_upright, moved
@@ -65,7 +65,8 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
         dense, arcs = with_chords_on(meant, others, arcs)
         if len(dense) > len(meant):
             meant, poses = dense, on_grid(dense)
-    kept = _kept(poses, {row for arc in arcs for row in (arc.first, arc.last)}, least_mm)
+    run = _at_values(poses, cell.servo) if cell.servo else poses
+    kept = _kept(run, {row for arc in arcs for row in (arc.first, arc.last)}, least_mm)
     if len(kept) < len(poses):
         arcs = [
             _core.Arc(*np.searchsorted(kept, (arc.first, arc.last)).tolist(), arc.centre_mm, arc.direction)
@@ -78,6 +79,14 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
         poses[:, :2], told_mm[:, :2] = poses[held, :2], told_mm[held, :2]
     axes = axes_of(a_pass)  # without arcs
     return Written(told_mm, poses, arcs, sideways_mm, axes if axes is None else axes[kept])
+
+
+def _at_values(poses: np.ndarray, servo: Servo) -> np.ndarray:
+    """The poses at the heights of the servo's whole values, which are all that a reader of the program knows."""
+    heights, values = np.array(sorted(servo.table), dtype=float).T
+    found = np.rint(np.interp(poses[:, 2], heights, values))
+    rising = np.argsort(values)
+    return np.column_stack([poses[:, :2], np.interp(found, values[rising], heights[rising])])
 
 
 def steep_ways_lifted(a_pass, cell: Cell):

@@ -15,19 +15,18 @@ from ..drawing.layout import Layout
 from ..errors import Error, Notice, as_listed, need, need_number, need_one_of, need_truth
 from ..machine.cell import Cell
 from ..machine.cell_file import cell_names, find_cell, parse_cell, write_cell
+from ..machine.posts import GCODE
 from ..painted.corrections import SheetBefore, read_sheet_before
 from .options import Options
 
+GCODE_FLAGS = ("pen", "paper-z", "skip-region", "skip-comment")
 LAYOUT_FLAGS = (
     "sheet",
     "units",
     "select",
     "layer",
     "background",
-    "pen",
-    "paper-z",
-    "skip-region",
-    "skip-comment",
+    *GCODE_FLAGS,
     "width",
     "fit",
     "scale",
@@ -246,17 +245,16 @@ def settled(chosen: Choices, drawing, alone: bool = False) -> Choices:
 
 
 def without_effect(chosen: Choices) -> list[Notice]:
-    """What was chosen for a plan, whose poses are fixed."""
-    if suffix_of(chosen.input) != ".json":
-        return []
+    """What was chosen for a plan, whose poses are fixed, and for G-code where the drawing is none."""
+    suffix = suffix_of(chosen.input)
+    flags, on = GCODE_FLAGS, "a drawing that is not G-code"
+    if suffix == ".json":
+        flags, on = (*LAYOUT_FLAGS, *MADE_FLAGS), "a plan, whose poses are fixed"
+    elif suffix in GCODE:
+        flags = ()
     return [
-        Notice(
-            "",
-            f"--{flag} has no effect on a plan, whose poses are fixed",
-            code="flag-without-effect",
-            about=flag,
-        )
-        for flag in (*LAYOUT_FLAGS, *MADE_FLAGS)
+        Notice("", f"--{flag} has no effect on {on}", code="flag-without-effect", about=flag)
+        for flag in flags
         if getattr(chosen, NAMED_OTHERWISE.get(flag, flag)) is not None
     ]
 

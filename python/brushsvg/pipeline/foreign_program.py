@@ -218,8 +218,9 @@ def _servo_lift(some: list[Way], cell: Cell) -> Lift | None:
         raise Error(sentence, code="servo-unknown", advice=advice)
     if not _in_table(values, cell):
         least, most = _table_range(cell)
+        used = " to ".join(f"S{value:g}" for value in dict.fromkeys((values[0], values[-1])))
         sentence = (
-            f"line {line}: its pen goes by M3 from S{values[0]:g} to S{values[-1]:g}, and the servo's table of cell "
+            f"line {line}: its pen is lifted by M3 {used}, and the servo's table of cell "
             f"{cell.name} has values from {least:g} to {most:g}"
         )
         raise Error(sentence, code="servo-unknown", advice=_own_table(values))

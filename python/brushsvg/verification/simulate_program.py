@@ -90,13 +90,13 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
         for on in found if stroke else ():
             poses, radii, speed, arcs = _pass(section, track, on, cell, leans)
             axes = _axes(section, track, on, frame)
-            deepest_mm = brush.depth_range_mm[1]  # rounding goes no deeper than the brush
-            just_over = (poses[:, 2] < -deepest_mm) & (poses[:, 2] >= -deepest_mm - slack)
-            poses[just_over, 2] = -deepest_mm
+            poses = _no_deeper(poses, brush, slack)
             joint = radii if read.blends_by_radius else blend_radii(poses, Blending(read.joint_mm), arcs)
             meant.append(_core.Pass(name, poses, speed, arcs=arcs, tool_axes=axes))
             told = [told_pass(meant[-1], cell)]
-            cut.append(true_pass(as_run(told, lambda *_, joint=joint: joint)[0][0], cell))
+            run = true_pass(as_run(told, lambda *_, joint=joint: joint)[0][0], cell)
+            run_mm = _no_deeper(run.poses_mm, brush, slack)  # the way to the machine and back is rounded, too
+            cut.append(_core.Pass(name, run_mm, run.speed_mm_s, arcs=run.arcs, tool_axes=run.tool_axes))
             lines.append(np.array([section.steps[number].line for number in track.step[on]]))
             rests.append(np.array([_rests(section.steps[number], cell) for number in track.step[on]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
@@ -111,6 +111,14 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
     problems += broken_limits(meant, sheet_mm, brush, _rounded(cell))
     problems += off_sheet(marks, brush, sheet_mm, rounded_mm=slack)
     return Ran(plan, ran, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests))
+
+
+def _no_deeper(poses_mm, brush, slack: float) -> np.ndarray:
+    """Poses (n, 3) that rounding has put below the brush's deepest, at its deepest."""
+    poses, deepest_mm = np.array(poses_mm), brush.depth_range_mm[1]
+    just_over = (poses[:, 2] < -deepest_mm) & (poses[:, 2] >= -deepest_mm - slack)
+    poses[just_over, 2] = -deepest_mm
+    return poses
 
 
 def _rests(step: Step, cell: Cell) -> bool:

@@ -6,6 +6,7 @@ import argparse
 import functools
 import re
 
+from ...suggestions import did_you_mean
 from ..console import say, tell
 from . import brushes, drawings, machines
 
@@ -30,6 +31,22 @@ class _Parser(argparse.ArgumentParser):
         if action.option_strings and "--" in arg_strings:
             raise argparse.ArgumentError(action, "'--' is no value")
         return super()._get_values(action, arg_strings)
+
+    def _check_value(self, action, value):
+        if action.choices is not None and value not in action.choices:
+            known = [str(choice) for choice in action.choices]
+            sentence = f"{value!r} is not known{did_you_mean(str(value), known)} Known are {', '.join(known)}"
+            raise argparse.ArgumentError(action, sentence)
+
+    def parse_known_args(self, args=None, namespace=None):
+        """Of a command's own parser, too, nothing is left over: only it knows the flags that may have been meant."""
+        found, others = super().parse_known_args(args, namespace)
+        if others:
+            flag = others[0].partition("=")[0]
+            flags = [name for action in self._actions for name in action.option_strings]
+            meant = did_you_mean(flag, flags) if flag.startswith("-") else "."
+            self.error(f"unrecognized arguments: {' '.join(others)}{meant.removesuffix('.')}")
+        return found, others
 
     def print_help(self, file=None) -> None:
         tell(self.format_help())

@@ -82,9 +82,9 @@ def _called_before(output: str) -> list[str]:
 
 
 def _text_of_before(path: str) -> str:
-    """A program of an earlier run, as far as it can be read; names in it are ASCII."""
+    """A program of an earlier run, as far as it can be read; names in it are ASCII. Devices and pipes hold none."""
     try:
-        return Path(path).read_bytes().decode("ascii", "replace")
+        return Path(path).read_bytes().decode("ascii", "replace") if Path(path).is_file() else ""
     except OSError:
         return ""
 

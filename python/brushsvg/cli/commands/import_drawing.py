@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...drawing import read_drawing
 from ...drawing.layout import arrange
 from ...errors import Error
-from ...pipeline.choices import layout_of, reading_of
+from ...pipeline.choices import layout_of, reading_of, without_effect
 from ...strokes.extraction import strokes as strokes_of
 from ..console import about, stage, warn
 from ..steps.options import typed
@@ -15,6 +15,7 @@ from ..steps.output_places import check_places, suffix_of, write
 def import_file(args) -> None:
     check_places(args, args.output)
     chosen = typed(args)
+    warn(args.input, without_effect(chosen))
     with about(args.input):
         stage("reading")
         design = arrange(read_drawing(args.input, reading_of(chosen)), layout_of(chosen))

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from ...errors import Error
-from ...machine.cell import Cell, mm_from_steps
+from ...machine.cell import Cell, mm_from_steps, unit_mm
 from ...machine.cell_check import MOST_STEPS_S
 from ...machine.posts.ebb import EBB_END, HOME, comment
 from ...machine.posts.gcode_servo import height_at
@@ -40,7 +40,7 @@ def read_ebb(text: str, cell: Cell) -> Readback:
 class _Reader:
     def __init__(self, cell: Cell):
         self.cell, self.out = cell, Readback(blends_by_radius=True)
-        self.mm_from_steps = mm_from_steps(cell.motors)
+        self.mm_from_steps, self.unit_mm = mm_from_steps(cell.motors), unit_mm(cell)
         self.steps = [0, 0]
         self.value: int | None = None
         self.along: int | None = None  # a value that takes effect with the next move
@@ -169,7 +169,7 @@ class _Reader:
             )
         self.steps = [self.steps[0] + one, self.steps[1] + two]
         self._step(number)
-        at_most = (self.feed_mm_s, speed_mm_s)
+        at_most = (self.feed_mm_s, speed_mm_s, 1e3 * self.unit_mm / time_ms)
         self.out.acts.append(Act(number, "way", "", self._place(), at_most, (float(self.value),)))
 
 

@@ -1,0 +1,345 @@
+"""Random drawings x brush files of every kind x cells x options: one case, and what must hold for it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import oracle
+from desk import BRUSHES, brush_file
+
+import brushsvg
+from brushsvg import _core
+from brushsvg.brush.library import find_brush
+from brushsvg.cli.arguments.parser import parse
+from brushsvg.cli.steps.options import options_of, typed
+from brushsvg.errors import Error
+from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.pipeline import preparation
+
+from .checked import CRASHED, converted, put
+from .random_jobs import said_of
+from .random_works import SHEET, random_brush, random_cell, random_flags, random_svg
+from .verdict import broken, unlike, way_of
+from .works import CELLS, PENS, job_for
+
+EDGE_MM = 0.02  # of the sheet: marks are followed in steps
+STEP_MM = 0.1
+MOST_OFF = 0.05, 0.02  # share and mm by which a tracking error may be larger than it is reported
+STEPPED = 8  # one in so many cases is stepped through, one in as many written twice
+
+
+@dataclass(frozen=True)
+class Case:
+    """What was tried, and how it ended. refused: why no program was written; wrong: what does not hold."""
+
+    number: int
+    drawing: str
+    brush: str
+    dialect: str
+    refused: str = ""
+    wrong: tuple[str, ...] = ()
+
+
+# drawings -------------------------------------------------------------------------------------------------------------
+
+
+def sheet_of(body: str) -> str:
+    size = f'width="{SHEET[0]:g}mm" height="{SHEET[1]:g}mm" viewBox="0 0 {SHEET[0]:g} {SHEET[1]:g}"'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {size}><title>random</title>{body}</svg>'
+
+
+def ring(random, middle, reach: tuple[float, float], count: int) -> str:
+    """A star-shaped polygon or a closed curve about a point."""
+    angles = np.sort(random.uniform(0, 2 * np.pi, count))
+    points = middle + (random.uniform(*reach, count) * np.exp(1j * angles)).view(float).reshape(-1, 2)
+    said = [f"{x:.3f} {y:.3f}" for x, y in points]
+    if random.random() < 0.5:
+        return f"M{said[0]} L{' L'.join(said[1:])} Z"
+    return f"M{said[0]} " + " ".join(f"Q{a} {b}" for a, b in zip(said[1::2], said[2::2], strict=False)) + " Z"
+
+
+def outlines(random, at: Path) -> Path:
+    """Bars, stars, blobs with and without a hole: what letters are made of."""
+    body = []
+    for _ in range(int(random.integers(1, 4))):
+        middle, reach = random.uniform((20, 18), (60, 42)), random.uniform(1.0, 14.0)
+        kind = int(random.integers(4))
+        if kind == 0:
+            w, h = random.uniform(0.3, 9), random.uniform(2, 25)
+            x, y = middle - (w / 2, h / 2)
+            turn = f"rotate({random.uniform(0, 180):.1f} {middle[0]:.2f} {middle[1]:.2f})"
+            data = f'transform="{turn}" d="M{x:.3f} {y:.3f}h{w:.3f}v{h:.3f}h{-w:.3f}Z"'
+        elif kind == 1:
+            data = f'd="{ring(random, middle, (0.4 * reach, reach), int(random.integers(3, 12)))}"'
+        elif kind == 2:
+            outer = ring(random, middle, (0.7 * reach, reach), 9)
+            inner = ring(random, middle, (0.2 * reach, 0.5 * reach), 7)
+            data = f'fill-rule="evenodd" d="{outer} {inner}"'
+        else:
+            a, b = middle, middle + random.uniform(-12, 12, 2)
+            thin = random.uniform(0.01, 0.6)
+            data = f'd="M{a[0]:.3f} {a[1]:.3f}L{b[0]:.3f} {b[1]:.3f}L{b[0]:.3f} {b[1] + thin:.3f}Z"'
+        body.append(f'<path fill="{random.choice(("#000", "#c00"))}" {data}/>')
+    return put(at.with_suffix(".svg"), sheet_of("".join(body)))
+
+
+def lines(random, at: Path) -> Path:
+    return put(at.with_suffix(".svg"), random_svg(random))
+
+
+def dots(random, at: Path) -> Path:
+    body = "".join(
+        f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{random.uniform(0.05, 3):.3f}"/>'
+        for x, y in random.uniform((15, 15), (65, 45), (int(random.integers(1, 6)), 2))
+    )
+    return put(at.with_suffix(".svg"), sheet_of(body))
+
+
+def dxf(random, at: Path) -> Path:
+    import ezdxf
+
+    document = ezdxf.new("R2010", units=4)
+    space = document.modelspace()
+    for _ in range(int(random.integers(1, 5))):
+        x, y = random.uniform((15, 15), (50, 35))
+        kind = int(random.integers(4))
+        if kind == 0:
+            points = [
+                (x + dx, y + dy, 0, 0, b) for dx, dy, b in random.uniform(-10, 10, (4, 3)) * (1, 1, 0.1)
+            ]
+            space.add_lwpolyline(points, format="xyseb", close=bool(random.integers(2)))
+        elif kind == 1:
+            space.add_circle((x, y), float(random.uniform(0.5, 10)))
+        elif kind == 2:
+            space.add_arc((x, y), float(random.uniform(1, 10)), *random.uniform(0, 360, 2).tolist())
+        else:
+            space.add_spline([(x + dx, y + dy) for dx, dy in random.uniform(-10, 10, (5, 2))])
+    document.saveas(at.with_suffix(".dxf"))
+    return at.with_suffix(".dxf")
+
+
+def gcode(random, at: Path) -> Path:
+    """A pen plotter's program."""
+    text = ["G21", "G90"]
+    for _ in range(int(random.integers(1, 5))):
+        points = random.uniform((15, 15), (60, 40), (int(random.integers(2, 7)), 2))
+        text += ["G0 Z5", "G0 X{:.3f} Y{:.3f}".format(*points[0]), "G1 Z-1 F300"]
+        text += ["G1 X{:.3f} Y{:.3f} F1200".format(*each) for each in points[1:]]
+    return put(at.with_suffix(".gcode"), "\n".join([*text, "G0 Z5", "M2", ""]))
+
+
+def plan(random, at: Path) -> Path:
+    """What convert makes of lines for the brush that comes along."""
+    source = lines(random, at)
+    return at.with_suffix(".json") if not converted(source, at.with_suffix(".json")) else source
+
+
+DRAWINGS = {"lines": lines, "outlines": outlines, "dots": dots, "dxf": dxf, "gcode": gcode, "plan": plan}
+WEIGHTS = {"lines": 3, "outlines": 4, "dots": 1, "dxf": 1, "gcode": 1, "plan": 1}
+
+
+LAYOUT = ("--wide", "--width", "--fit")  # which check needs again, as --corners
+
+
+def more_flags(random, kind: str) -> tuple[str, ...]:
+    """Options next to those of random_flags."""
+    flags: tuple[str, ...] = ()
+    if kind == "plan":
+        return flags
+    if random.random() < 0.2:
+        flags += ("--wide", str(random.choice(("clamp", "passes", "refuse"))))
+    if random.random() < 0.15:
+        flags += ("--width", f"{random.uniform(0.8, 4):.2f}")
+    if random.random() < 0.15:
+        flags += ("--fit", f"{random.uniform(20, 60):.0f}x{random.uniform(15, 45):.0f}")
+    if random.random() < 0.1:
+        flags += ("--end", str(random.choice(("lifted", "squared"))))
+    return flags
+
+
+# one case -------------------------------------------------------------------------------------------------------------
+
+
+def one(number: int, folder: Path, shelf: Path, check: Callable) -> Case:
+    """check: of `checked.quick_check`; shelf: a folder in which brush files are kept. All depends on the number."""
+    random = np.random.default_rng([number, 53])
+    dialect, kind = str(random.choice(list(CELLS))), _kind(random)
+    cell = random_cell(random, dialect)
+    brush, name = _brush(random, dialect, folder, shelf)
+    if dialect in PENS and kind == "plan":  # it presses a brush
+        kind = "lines"
+    folder.mkdir(parents=True, exist_ok=True)
+    tried = Case(number, kind, name, dialect)
+    try:
+        source = DRAWINGS[kind](random, folder / "drawing")
+        flags = () if kind == "plan" else random_flags(random, dialect)
+        flags = (*flags, *more_flags(random, kind), "--brush", brush)
+        refused, wrong = _judged(number, dialect, cell, source, flags, folder, check)
+    except Exception as mistake:
+        return _ended(tried, "", [f"{CRASHED}: {type(mistake).__name__} {mistake}"])
+    return _ended(tried, refused, wrong)
+
+
+def _kind(random) -> str:
+    weights = np.array([*WEIGHTS.values()]) / sum(WEIGHTS.values())
+    return str(random.choice([*WEIGHTS], p=weights))
+
+
+def _ended(case: Case, refused: str, wrong: list[str]) -> Case:
+    return Case(case.number, case.drawing, case.brush, case.dialect, refused, tuple(wrong))
+
+
+def _brush(random, dialect: str, folder: Path, shelf: Path) -> tuple[str, str]:
+    """(what --brush takes, its kind); a pen has one height."""
+    if dialect in PENS:
+        return "rigid", "rigid"
+    kind = str(random.choice([*BRUSHES, "random"]))
+    if kind != "random":
+        return str(brush_file(shelf, kind)), kind
+    folder.mkdir(parents=True, exist_ok=True)
+    return str(put(folder / "mine.json", _core.write_brush(random_brush(random)))), kind
+
+
+def _judged(number, dialect, cell, source, flags, folder, check) -> tuple[str, list[str]]:
+    suffix = CELLS[dialect][1]
+    toml = put(folder / "mine.toml", write_cell(cell))
+    program, planned = folder / f"program{suffix}", folder / "planned.json"
+    for file in (program, planned):
+        file.unlink(missing_ok=True)
+    try:
+        find_cell(toml)
+    except Error as refusal:
+        return str(refusal), []
+    if said := converted(source, program, "--cell", toml, *flags):
+        wrong = [f"refused and written: {said}"] if program.exists() else []
+        return said[0], wrong
+    text = program.read_text(encoding="latin-1")
+    without = [word for word in flags if word not in said_of(flags, "--z-offset")]
+    if said := converted(source, planned, "--cell", toml, *without):
+        return (said[0], []) if "--z-offset" in flags else ("", [f"a program and no plan: {said}"])
+    job = job_for(toml.read_text(encoding="utf-8"), planned.read_text(), said_of(flags, "--brush")[1], flags)
+    run = job.interpret(text)
+    wrong = [f"the controller stops: {run.refused}"] if run.refused else []
+    wrong += [f"acts: {what}" for what in run.acts]
+    way = way_of(run, job)
+    wrong += broken(way, job)
+    if not (cell.reload and cell.reload.when == "length") and max(job.servo_mm) <= 0.1:
+        wrong += unlike(way, job)
+    brush = find_brush(said_of(flags, "--brush")[1])
+    wrong += too_deep(job.plan, brush)
+    asked = [word for flag in ("--brush", "--corners", *LAYOUT) for word in said_of(flags, flag)]
+    denied = check(program, *([] if source.suffix == ".json" else [source]), "--cell", toml, *asked)
+    wrong += [f"check: {sentence}" for sentence in denied]
+    if number % STEPPED == 0:
+        wrong += stepped(source, job.plan, brush, toml, without)
+        again = folder / f"again{suffix}"
+        again.unlink(missing_ok=True)
+        wrong += [f"second time: {said}" for said in converted(source, again, "--cell", toml, *flags)]
+        if again.exists() and again.read_bytes() != program.read_bytes():
+            wrong.append("the same input gives other bytes")
+    return "", wrong
+
+
+def too_deep(plan: dict, brush) -> list[str]:
+    deepest = -min(z for each in plan["passes"] for _, _, z, *_ in each["poses_mm"])
+    allowed = brush.depth_range_mm[1]
+    return [f"{deepest:.4f} mm deep, the brush allows {allowed}"] if deepest > allowed + 1e-6 else []
+
+
+# the stepping simulator -----------------------------------------------------------------------------------------------
+
+
+class Lag:
+    """A brush's lag as the stepping simulator asks for it."""
+
+    def __init__(self, brush):
+        self.brush = brush
+
+    def __call__(self, depth):
+        return self.brush.lag(np.clip(depth, 0.0, self.brush.depth_range_mm[1]))
+
+    def kinks(self):
+        return []
+
+
+def stepped(source: Path, plan: dict, brush, toml: Path, flags) -> list[str]:
+    """Marks off the sheet, and tracking errors that are reported too small."""
+    wrong = []
+    work = None
+    if source.suffix != ".json" and "--corners" not in flags:
+        work = preparation.prepare(
+            source, options_of(typed(parse(["convert", str(source), "x.json", "--cell", str(toml), *flags])))
+        )
+    laws = [Lag(brush)]
+    for k, a_pass in enumerate(_core.read_plan(json.dumps(plan)).passes):
+        if len(a_pass.tool_axes):
+            continue
+        poses = oracle.subdivide(oracle.chords(a_pass.poses_mm, a_pass.arcs), 1, STEP_MM)
+        (contact,) = oracle.step_all(poses[None], laws, 2)
+        depth = np.clip(-poses[:, 2], 0.0, brush.depth_range_mm[1])
+        lever = poses[:, :2] - contact
+        reach = np.hypot(*lever.T)
+        on = np.isfinite(reach) & (poses[:, 2] <= 0)
+        has_way = on & (reach > 1e-6)
+        u = lever[has_way] / reach[has_way, None]
+        across = u[:, ::-1] * (-1, 1)
+        e = (brush.tip_to_widest(depth) - brush.tip_gap(depth))[has_way, None]
+        widest, half = contact[has_way] + e * u, brush.half_width(depth)[has_way, None]
+        for points in (
+            contact[has_way] - brush.tip_gap(depth)[has_way, None] * u,
+            widest - half * across,
+            widest + half * across,
+        ):
+            off = np.maximum(-points, points - np.array(plan["sheet_mm"])).max(initial=-1.0)
+            if off > EDGE_MM:
+                wrong.append(f"pass {k + 1} paints {off:.3f} mm off the sheet")
+        wrong += _untrue(work, k, has_way, reach, brush.lag(depth), widest)
+    return wrong
+
+
+def _untrue(work, k: int, has_way, reach, lag, widest) -> list[str]:
+    if work is None or work.strokes is None or k >= len(work.tracking_errors):
+        return []
+    reported, stroke = work.tracking_errors[k], work.strokes[k]
+    if reported is None or len(np.asarray(stroke.middle_mm)) == 0:
+        return []
+    # where the brush turns over between two taut parts it hardly touches, which no tracking error counts
+    taut = np.flatnonzero((reach >= lag - 1e-3)[has_way])
+    if len(taut) == 0:
+        return []
+    away, _ = oracle.Middle(_beyond_its_ends(stroke)).nearest(widest[taut])
+    most = reported.largest_mm * (1 + MOST_OFF[0]) + MOST_OFF[1]
+    if away.max() <= most:
+        return []
+    return [f"pass {k + 1} is {away.max():.3f} mm off its line, reported are {reported.largest_mm:.3f}"]
+
+
+def _beyond_its_ends(stroke) -> np.ndarray:
+    """The middle line, and half a width more at both ends: a blunt footprint has to go beyond them."""
+    cubics = np.asarray(stroke.middle_mm)
+    points = cubics.reshape(-1, 2)
+
+    def more(end, others, half_mm) -> np.ndarray:
+        inner = next((p for p in others if (p != end).any()), end)
+        way = half_mm * (end - inner) / max(np.hypot(*(end - inner)), 1e-12)
+        return np.concatenate([end + k / 3 * way for k in range(4)])[None]
+
+    first = more(points[0], points, stroke.half_width[0][1])[:, [6, 7, 4, 5, 2, 3, 0, 1]]
+    return np.vstack([first, cubics, more(points[-1], points[::-1], stroke.half_width[-1][1])])
+
+
+def batches_differ(sources: list[Path], folder: Path) -> list[str]:
+    """What a batch of two processes writes that one process writes differently."""
+    made = {}
+    for jobs in (1, 2):
+        out = folder / f"jobs-{jobs}"
+        brushsvg.batch(sources, out, jobs=jobs)
+        programs = out / "programs"
+        made[jobs] = {p.relative_to(programs): p.read_bytes() for p in programs.rglob("*") if p.is_file()}
+    return [
+        f"{name}: another one from two processes" for name in made[1] if made[1][name] != made[2].get(name)
+    ]

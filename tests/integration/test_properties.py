@@ -1,0 +1,17 @@
+"""Random drawings, brush files of every kind, cells and options: what must hold of each program (see judge.properties).
+
+`benchmarks/properties.py` runs the same cases in larger numbers."""
+
+import pytest
+from judge.checked import quick_check
+from judge.properties import one
+
+CASES, PART = 300, 25
+
+
+@pytest.mark.parametrize("first", range(0, CASES, PART))
+def test_what_is_written_holds_what_it_must(first, tmp_path, capsys):
+    with quick_check() as check:
+        cases = [one(n, tmp_path / str(n), tmp_path, check) for n in range(first, first + PART)]
+    assert [case for case in cases if case.wrong] == []
+    assert sum(not case.refused for case in cases) > PART / 5, "many are written"
