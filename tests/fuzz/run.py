@@ -164,10 +164,11 @@ def _marks() -> list[bytes]:
     a_pass = brushsvg.Pass("a", [(20, 20, 0), (30, 20, -2), (40, 25, -2)])
     plan = brushsvg.Plan("round-6", "", (99, 99), [a_pass])
     marks = brushsvg.simulate(plan, brushsvg.find_brush("round-6"), tolerance_mm=0.3)
-    return [brushsvg.write_marks(marks).encode()] + [
+    return [
+        brushsvg.write_marks(marks).encode(),
         b'{"format": "brushsvg/marks", "version": 1, "outline_mm": [[[0, 0], [9, 0], [0, 9]]], "passes": [{"stroke": '
         b'"a", "pose": [0, 1], "contact_mm": [[0, 0], [9, 0]], "heading_rad": [0, 0.5], "depth_mm": [0, 1], "taut": '
-        b"[false, true]}]}"
+        b"[false, true]}]}",
     ]
 
 
