@@ -149,3 +149,14 @@ def lacking(what: str, *packages: str) -> Error:
         f"{what} {' and '.join(packages)}: install with  {sys.executable} -m pip install {names}",
         code="package-missing",
     )
+
+
+def unexpected(mistake: Exception) -> Error:
+    """What a user is shown of an exception that is no refusal: there was no memory, or the mistake is ours."""
+    text = str(mistake)
+    is_unloaded = isinstance(mistake, ImportError) and "failed to map segment" in text
+    if isinstance(mistake, MemoryError) or is_unloaded or "cannot allocate memory" in text.lower():
+        advice = "close other programs, paint a smaller drawing, or raise the limit of `ulimit -v`"
+        return Error("there is not enough memory", code="memory-exhausted", advice=advice)
+    sentence = f"this should not happen, please report it: {type(mistake).__name__} {text}"
+    return Error(sentence, code="unexpected")

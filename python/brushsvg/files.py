@@ -21,6 +21,7 @@ except ImportError:  # Windows: there what a killed run left stays
 
 MOST_PARTS = 20  # of a TOML key, a.b.c; many of them take minutes to read
 LARGEST_BYTES = 500 * 2**20  # no drawing is; a device may have no end
+READ_AT_ONCE = 4 * 2**20  # memory is asked for as it is needed
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
@@ -28,14 +29,17 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
     path = os.fspath(path)  # a number would be taken for an open file, and closed
     try:
         with open(path, "rb") as file:
-            data = file.read(LARGEST_BYTES + 1)
-        if len(data) > LARGEST_BYTES:
+            size, parts = os.fstat(file.fileno()).st_size, []  # 0 of a pipe or a device
+            while size <= LARGEST_BYTES and (part := file.read(READ_AT_ONCE)):
+                parts.append(part)
+                size = max(size, sum(map(len, parts)))
+        if size > LARGEST_BYTES:
             raise Error(
                 f"the file is larger than {LARGEST_BYTES // 2**20} MB, the range is [0, {LARGEST_BYTES // 2**20}] MB",
                 file=os.fspath(path),
                 code="file-too-large",
             )
-        return data
+        return b"".join(parts)
     except FileNotFoundError:
         sentence = "there is no such file"
     except IsADirectoryError:

@@ -9,7 +9,7 @@ from importlib import metadata
 from .. import _core
 from ..brush.library import parse_brush
 from ..drawing import InMemory
-from ..errors import Error, Notice
+from ..errors import Error, Notice, unexpected
 from ..evaluation import report
 from ..machine.program import Job
 from ..pipeline import conversion, outputs, preparation
@@ -92,8 +92,8 @@ def made(task: Task) -> Made:
     except Error as refusal:
         done = Made(None, {}, b"", refusal.where, str(refusal), refusal.code, refusal.notices)
     except Exception as mistake:  # of ours: the others are painted all the same
-        sentence = f"this should not happen, please report it: {type(mistake).__name__} {mistake}"
-        done = Made(None, {}, b"", sentence=sentence, code="unexpected")
+        said = unexpected(mistake)
+        done = Made(None, {}, b"", sentence=str(said), code=said.code)
     return replace(done, version=here)
 
 

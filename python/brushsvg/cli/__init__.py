@@ -76,8 +76,9 @@ def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
 
 
 def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
+    from ..errors import unexpected
     from .arguments.parser import parse
-    from .console import RefusedError, say, say_notice, tell_in_json
+    from .console import RefusedError, say_notice, tell_in_json
 
     file = ""
     try:
@@ -99,6 +100,6 @@ def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
     except Exception as mistake:
         if interrupts.seen:
             raise
-        say(file, f"this should not happen, please report it: {type(mistake).__name__} {mistake}")
+        say_notice(file, unexpected(mistake).notice())
         return 1
     return 0
