@@ -270,7 +270,10 @@ def stepped(source: Path, plan: dict, brush, toml: Path, flags) -> list[str]:
     """Marks off the sheet, and tracking errors that are reported too small."""
     wrong = []
     work = None
-    if source.suffix != ".json" and "--corners" not in flags:
+    # squared ends, corners that are turned and refined strokes leave their line on purpose: their marks are judged
+    if said_of(flags, "--start")[1:] in (("exposed",), ("hidden",)) and not {"--corners", "refined"} & set(
+        flags
+    ):
         work = preparation.prepare(
             source, options_of(typed(parse(["convert", str(source), "x.json", "--cell", str(toml), *flags])))
         )
