@@ -24,7 +24,7 @@ endif
 WERROR ?= OFF
 PIP_INSTALL := $(BIN)/pip install -q --no-build-isolation -C build-dir=$(BUILD) -C cmake.define.BRUSHSVG_WERROR=$(WERROR) -e
 
-.PHONY: docs plugins help setup system test-system demo test lint format clang-headers clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan fuzz tsan clean quick FORCE
+.PHONY: wheel wheel-test wheel-docs sdist deb docs plugins help setup system test-system demo test lint format clang-headers clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan fuzz tsan clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
@@ -36,6 +36,11 @@ help:
 	@echo "make thorough     run every test, also those that .ci/run leaves out, and the C++ tests under sanitizers"
 	@echo "make test-times   run the tests and show which tests, fixtures and builds take longest (SUITES='python long integration')"
 	@echo "make plugins      the Inkscape extension as a zip for its extension manager, in dist/"
+	@echo "make wheel        wheels for x86-64 Linux in dist/, from a compiler of PyPI and Ceres without GPL code (PYTHONS='python3.11 ...')"
+	@echo "make wheel-test   install the wheel in a bare system, run the demo and the fast tests there (needs root)"
+	@echo "make wheel-docs   write docs/wheels.md anew: licenses, auditwheel's report, bill of materials"
+	@echo "make sdist        the source as an archive in dist/, which builds without a network"
+	@echo "make deb          the C++ library as libbrushsvg-dev, a package for Debian, in dist/"
 	@echo "make docs         the documentation as pages to read in a browser, with a search, in docs/_build"
 	@echo "make clang-headers  the public headers read by clang and g++ with all warnings as errors"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
@@ -255,6 +260,30 @@ docs: setup
 	@$(PIP_INSTALL) ".[docs]"
 	$(BIN)/python -m sphinx -q -W -b html docs docs/_build
 	echo "open docs/_build/index.html"
+
+# Interpreters with headers, a wheel for each; JOBS: at most so many compilers at once.
+PYTHONS ?= $(PYTHON)
+WHEEL = $(firstword $(wildcard dist/brushsvg-*-cp311-*manylinux*.whl))
+
+wheel: system
+	@$(PYTHON) tools/wheel/build.py $(PYTHONS:%=--python %)
+
+wheel-test:
+	@test -n "$(WHEEL)" || { echo "there is no wheel in dist/: run  make wheel" >&2; exit 1; }
+	$(call install,mmdebstrap)
+	PYTHON=$(PYTHON) tools/wheel/bare_root.sh $(WHEEL)
+
+wheel-docs:
+	@test -n "$(WHEEL)" || { echo "there is no wheel in dist/: run  make wheel" >&2; exit 1; }
+	$(PYTHON) tools/wheel/contents.py page $(WHEEL) build/wheel/cp311/auditwheel.txt docs/wheels.md
+
+sdist: $(VENV)/.created
+	@mkdir -p dist
+	$(BIN)/python -c 'from scikit_build_core import build; print("dist/" + build.build_sdist("dist"))'
+
+deb: system
+	@$(call install,dpkg-dev debhelper lintian)
+	tools/build_deb.sh
 
 plugins:
 	@mkdir -p dist

@@ -5,21 +5,15 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
-
-import brushsvg
-from brushsvg.brush.describe import one_line
 from brushsvg.cli.console import RefusedError, about, say_notice, warn
 from brushsvg.evaluation import report
 from brushsvg.files import write_files
 from brushsvg.machine import preflight, writer
-from brushsvg.machine.arc_chords import with_chords
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.paint_reload import in_loads
-from brushsvg.pictures.panels_png import MIDDLE_LINE, Panel, panels_png
 from brushsvg.pipeline import constant_lag, outputs, prediction, preparation
+from brushsvg.pipeline.comparison_picture import comparison_png
 from brushsvg.pipeline.options import Options
-from brushsvg.pipeline.work import Work
 
 
 def main(drawing: Path, directory: Path) -> None:
@@ -52,7 +46,7 @@ def main(drawing: Path, directory: Path) -> None:
         ".marks.svg": outputs.picture(".svg", work, marks["closed"]),
         ".report.txt": report.as_text(".txt", outputs.reported(work, marks["closed"], cell)) + "\n" + table,
         ".html": outputs.played(work, loads, marks["closed"], cell),
-        ".png": three_panels(works, marks, totals),
+        ".png": comparison_png(works, marks, totals),
     }
     directory.mkdir(parents=True, exist_ok=True)
     paths: dict[str | os.PathLike[str], str | bytes | Iterator[str]] = {
@@ -60,27 +54,6 @@ def main(drawing: Path, directory: Path) -> None:
     }
     write_files(paths)
     print(table, *paths, sep="\n")
-
-
-def three_panels(
-    works: dict[str, Work], marks: dict[str, brushsvg.Marks], totals: dict[str, report.Figures]
-) -> bytes:
-    """Three panels: what was drawn, what is painted without and with compensation."""
-    work = works["closed"]
-    strokes = work.strokes or []
-    wanted = report.wanted_rings(strokes)
-    middle = [brushsvg.flatten(stroke, 0.01)[:, :2] for stroke in strokes]
-    width_mm, height_mm = np.ptp(np.vstack(wanted), axis=0)
-    drawn = ("middle lines and their widths,", f"{width_mm:.0f} x {height_mm:.0f} mm")
-    count = (str(len(strokes)), "strokes")
-    panels = [Panel("What was drawn", count, drawn, wanted, [], middle, MIDDLE_LINE)]
-    for how, title in (("none", "Tool follows the drawing"), ("closed", "With compensation")):
-        total = totals[how]
-        score = (f"{total.overlap:.2f}", "overlap with the drawing")
-        off = f"{total.centre_mean_mm:.2f} mm mean, {total.centre_largest_mm:.2f} mm at most"
-        paths = [with_chords(a_pass).poses_mm[:, :2] for a_pass in works[how].plan.passes]
-        panels.append(Panel(title, score, ("centre-line error", off), wanted, marks[how].outline_mm, paths))
-    return panels_png(panels, work.title, f"with brush {work.brush.name}. {one_line(work.brush)}")
 
 
 if __name__ == "__main__":

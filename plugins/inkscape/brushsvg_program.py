@@ -22,8 +22,30 @@ BESIDE = "brushsvg-executable.txt"  # written by `brushsvg install-plugin inksca
 LONGEST = 30_000 if sys.platform == "win32" else 120_000  # bytes: systems allow 32 768 and 131 072 in a word
 # What Inkscape's Python has to have beside its own modules, and the packages of Debian and Ubuntu that bring it.
 PACKAGES = {name: f"python3-{name}" for name in ("lxml", "cssselect", "numpy", "packaging", "tinycss2")}
-# of pipx, pip, Homebrew: a desktop's PATH may lack them
-USUAL = ("~/.local/bin", "/usr/local/bin", "/opt/homebrew/bin")
+# Where pipx, uv, pip and Homebrew put programs, and where pipx and uv keep them: a desktop's PATH may lack all of them.
+# Folders whose variable is not set are left out.
+USUAL = (
+    *(
+        "$PIPX_BIN_DIR",
+        "$UV_TOOL_BIN_DIR",
+        "$XDG_BIN_HOME",
+        "~/.local/bin",
+        "/usr/local/bin",
+        "/opt/homebrew/bin",
+    ),
+    *(
+        "$PIPX_HOME/venvs/brushsvg/bin",
+        "~/.local/share/pipx/venvs/brushsvg/bin",
+        "~/.local/pipx/venvs/brushsvg/bin",
+    ),
+    *(
+        "$UV_TOOL_DIR/brushsvg/bin",
+        "$XDG_DATA_HOME/uv/tools/brushsvg/bin",
+        "~/.local/share/uv/tools/brushsvg/bin",
+    ),
+    *("~/pipx/venvs/brushsvg/Scripts", "$LOCALAPPDATA/pipx/pipx/venvs/brushsvg/Scripts"),  # Windows
+    *("$APPDATA/uv/tools/brushsvg/Scripts", "$APPDATA/uv/data/tools/brushsvg/Scripts"),
+)
 
 
 class StopError(Exception):
@@ -70,20 +92,60 @@ def _lacking(module: str) -> str:
 
 
 def executable(chosen: str) -> str:
-    """Where brushsvg is: as chosen in the dialog, on PATH, as told when the extension was installed, or in the usual
+    """Find brushsvg: as chosen in the dialog, on PATH, as noted when the extension was installed, or in the usual
     places."""
     if chosen and not os.path.isdir(chosen):  # Inkscape makes a folder of an empty choice of a file
         if shutil.which(chosen):
             return chosen
         raise StopError(f"{chosen} is not a program that can be run: choose another one under Program.")
-    usual = os.pathsep.join(map(os.path.expanduser, USUAL))
+    expanded = (os.path.expanduser(os.path.expandvars(folder)) for folder in USUAL)
+    usual = os.pathsep.join(folder for folder in expanded if not folder.startswith("$"))
     found = shutil.which("brushsvg") or shutil.which(_noted()) or shutil.which("brushsvg", path=usual)
+    if found is None and (sandbox := _sandbox()):
+        raise StopError(
+            f"This Inkscape is {sandbox}. It cannot start programs that are installed outside of its sandbox, such as "
+            "brushsvg. Install Inkscape from your distribution or as an AppImage instead. Or save the drawing, and "
+            "type in a terminal:  brushsvg convert DRAWING.svg OUT.ngc"
+        )
     if found is None:
         raise StopError(
             f"The program brushsvg was not found. Install it with:  {INSTALL}\n"
             "If it is installed already, choose its file under Program."
         )
     return found
+
+
+def described() -> str:
+    """The program that is used, with its version, or why there is none."""
+    try:
+        program = executable("")
+    except StopError as stop:
+        return str(stop)
+    return f"{program} ({_version(program) or 'it does not say its version'})"
+
+
+def _sandbox() -> str:
+    """The kind of package that hides other programs from this Inkscape, empty for any other."""
+    if os.environ.get("FLATPAK_ID") or os.path.exists("/.flatpak-info"):
+        return "a Flatpak"
+    return "a Snap" if os.environ.get("SNAP") else ""
+
+
+def _version(program: str) -> str:
+    """What the program says of its version, such as "brushsvg 0.1.0", empty if it is another program."""
+    try:
+        asked = subprocess.run(
+            [program, "--version"],
+            capture_output=True,
+            encoding="utf-8",
+            timeout=20,
+            check=False,
+            env=_environment(),
+        )
+        found = re.match(r"brushsvg \d+\.\d+\.\d+", asked.stdout)
+    except (OSError, ValueError, subprocess.TimeoutExpired):
+        found = None
+    return found[0] if found else ""
 
 
 def _noted() -> str:
@@ -185,19 +247,13 @@ class Run:
 
     def _stop_if_too_old(self) -> None:
         """Asked only when something went wrong: it would cost each preview a tenth of a second."""
-        try:
-            asked = subprocess.run(
-                [self.program, "--version"], capture_output=True, encoding="utf-8", timeout=20, check=False
-            )
-            found = re.match(r"brushsvg (\d+)\.(\d+)\.(\d+)", asked.stdout)
-        except (OSError, ValueError, subprocess.TimeoutExpired):
-            found = None
-        if found is None:
+        found = _version(self.program)
+        if not found:
             raise StopError(f"{self.program} is not the program brushsvg: choose another one under Program.")
-        if tuple(map(int, found.groups())) < NEEDED:
+        if tuple(map(int, re.findall(r"\d+", found))) < NEEDED:
             needed = ".".join(map(str, NEEDED))
             raise StopError(
-                f"brushsvg {found[0].split()[1]} is too old: this extension needs {needed}. "
+                f"{found} is too old: this extension needs {needed}. "
                 f"Install it with:  {INSTALL.replace('install', 'upgrade')}"
             )
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from brushsvg_program import StopError, arguments, guarded
+from brushsvg_program import StopError, arguments, described, guarded
 from brushsvg_tell import tell
 
 PREFIX = "data-brushsvg-"
@@ -49,7 +49,7 @@ def main() -> None:
         elif value not in KEEP:
             root.set(PREFIX + name, value)
     document.write(sys.stdout.buffer)
-    tell("\n".join(_told(before, _said(root))))
+    tell("\n".join([*_told(before, _said(root)), f"The program that is used: {described()}"]))
 
 
 def _tolerance(typed: str) -> str:

@@ -6,7 +6,9 @@ for words of a sentence.
 
 from __future__ import annotations
 
+import importlib.util
 import math
+import os
 import sys
 from dataclasses import dataclass
 from numbers import Real
@@ -144,11 +146,21 @@ def need_one_of(value, choices: tuple, what: str) -> None:
 
 def lacking(what: str, *packages: str) -> Error:
     """A refusal for want of packages of an extra, with what installs them where this runs."""
-    names = " ".join(packages)
     return Error(
-        f"{what} {' and '.join(packages)}: install with  {sys.executable} -m pip install {names}",
-        code="package-missing",
+        f"{what} {' and '.join(packages)}: install with  {command_to_add(*packages)}", code="package-missing"
     )
+
+
+def command_to_add(*packages: str) -> str:
+    """The command that adds packages to the Python that runs this, by the program that installed it."""
+    names = " ".join(packages)
+    if os.path.exists(os.path.join(sys.prefix, "pipx_metadata.json")):
+        return f"pipx inject brushsvg {names}"
+    if os.path.exists(os.path.join(sys.prefix, "uv-receipt.toml")):
+        return f"uv tool install brushsvg {' '.join(f'--with {name}' for name in packages)}"
+    if importlib.util.find_spec("pip") is None:  # as in the environments of uv
+        return f"uv pip install --python {sys.executable} {names}"
+    return f"{sys.executable} -m pip install {names}"
 
 
 def unexpected(mistake: Exception) -> Error:

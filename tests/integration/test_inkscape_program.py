@@ -73,6 +73,43 @@ def test_it_is_found_in_the_usual_places_without_a_path(tmp_path, drawing, path)
     assert alone.script("save", drawing).stdout.endswith(b"M2\n")
 
 
+@pytest.mark.parametrize(
+    ("variable", "folder"),
+    [
+        (None, ".local/share/pipx/venvs/brushsvg/bin"),
+        (None, ".local/pipx/venvs/brushsvg/bin"),
+        (None, ".local/share/uv/tools/brushsvg/bin"),
+        ("PIPX_BIN_DIR", ""),
+        ("PIPX_HOME", "venvs/brushsvg/bin"),
+        ("UV_TOOL_BIN_DIR", ""),
+        ("UV_TOOL_DIR", "brushsvg/bin"),
+    ],
+)
+def test_it_is_found_where_pipx_and_uv_keep_it(tmp_path, drawing, variable, folder):
+    alone = Plugin(tmp_path, command=None)
+    alone.env |= {variable: str(tmp_path / "own")} if variable else {}
+    place = tmp_path / ("own" if variable else "") / folder
+    place.mkdir(parents=True)
+    (place / "brushsvg").symlink_to(COMMAND)
+    assert alone.script("save", drawing).stdout.endswith(b"M2\n")
+
+
+@pytest.mark.parametrize(("variable", "name"), [("FLATPAK_ID", "a Flatpak"), ("SNAP", "a Snap")])
+def test_a_sandbox_is_named_with_a_way_round_it(tmp_path, drawing, variable, name):
+    alone = Plugin(tmp_path, command=None)
+    alone.env[variable] = "org.inkscape.Inkscape"
+    told = sentence(alone.script("save", drawing))
+    assert name in told and "brushsvg convert" in told and "pipx" not in told
+
+
+def test_the_settings_show_which_program_is_used(plugin, tmp_path, drawing):
+    told = plugin.script("settings", drawing).stderr.decode()
+    assert str(plugin.folder / "programs" / "brushsvg") in told and "brushsvg 0." in told
+    (tmp_path / "none").mkdir()
+    told = Plugin(tmp_path / "none", command=None).script("settings", drawing).stderr.decode()
+    assert "pipx install brushsvg" in told
+
+
 @pytest.mark.parametrize("typed", [[COMMAND], [sys.executable, "-m", "brushsvg"]])
 def test_inkscape_without_a_path_saves_with_the_one_that_installed_the_extension(tmp_path, drawing, typed):
     alone = Plugin(tmp_path, command=None)

@@ -10,7 +10,7 @@ from diagnostics import refused
 
 from brushsvg import Error
 from brushsvg.cli import main
-from brushsvg.cli.install_plugin import extensions_folder, install_inkscape
+from brushsvg.cli.install_plugin import extensions_folder, install_inkscape, remove_inkscape
 
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "plugins" / "inkscape"
@@ -57,6 +57,24 @@ def test_the_zip_has_the_same_bytes_each_time(zipped, tmp_path):
     again = tmp_path / "again.zip"
     subprocess.run([sys.executable, ROOT / "tools" / "zip_plugin.py", SOURCE, again], check=True)
     assert again.read_bytes() == zipped.read_bytes()
+
+
+def test_it_is_removed_and_what_is_not_ours_stays(profile, capsys):
+    install_inkscape()
+    (profile / "notes.txt").write_text("mine")
+    assert main(["install-plugin", "inkscape", "--remove"]) == 0
+    assert capsys.readouterr().out.startswith(f"{profile}: ")
+    assert installed(profile) == {"notes.txt": b"mine"}
+    (profile / "notes.txt").unlink()
+    install_inkscape()
+    remove_inkscape()
+    assert not profile.exists()
+    with refused("plugin-missing"):
+        remove_inkscape()
+
+
+def test_removing_needs_no_zip(capsys):
+    assert main(["install-plugin", "inkscape", "some.zip", "--remove"]) == 2
 
 
 def test_where_there_is_no_source_it_says_what_to_do(profile, tmp_path):

@@ -1,4 +1,4 @@
-"""Puts the extension for Inkscape where Inkscape looks.
+"""Puts the extension for Inkscape where Inkscape looks, and removes it.
 
 The extension is a program of its own under the GPL, so the package does not carry it: it is taken from the source tree
 that this package is run from, or from the zip that `make plugins` makes.
@@ -41,6 +41,30 @@ def install_inkscape(zipped: str | None = None, source: Path = SOURCE) -> Path:
     except OSError as problem:
         raise Error(
             f"cannot be written: {(problem.strerror or str(problem)).lower()}",
+            file=str(folder),
+            code="file-unwritable",
+        ) from None
+    return folder
+
+
+def remove_inkscape() -> Path:
+    """Delete the extension, with the note of where brushsvg is; the folder that it was in.
+
+    Error when it is not there, or cannot be deleted. Files of other names stay.
+    """
+    folder = extensions_folder() / FOLDER
+    if not (folder / "brushsvg_program.py").is_file():
+        raise Error("the extension is not there", file=str(folder), code="plugin-missing")
+    try:
+        for path in folder.iterdir():
+            if path.suffix in _SUFFIXES or path.name in ("LICENSE", NOTE):
+                path.unlink()
+        shutil.rmtree(folder / "__pycache__", ignore_errors=True)
+        if not any(folder.iterdir()):
+            folder.rmdir()
+    except OSError as problem:
+        raise Error(
+            f"cannot be deleted: {(problem.strerror or str(problem)).lower()}",
             file=str(folder),
             code="file-unwritable",
         ) from None

@@ -1,4 +1,4 @@
-"""The commands about a machine: border, height, check, cell, and the drawing program to install for."""
+"""The commands about a machine: first-run, border, height, check, cell."""
 
 from __future__ import annotations
 
@@ -179,12 +179,3 @@ def _check_cell_new(args) -> None:
     check_extension(args, args.output, (".toml",))
     if len(args.taught or ()) not in (0, 3, 4):
         args.parser.error(f"--taught is given {len(args.taught)} times, not three or four")
-
-
-def add_install_plugin(commands) -> None:
-    install = commands.add_parser("install-plugin", help="install the extension for Inkscape")
-    install.add_argument("plugin", metavar="inkscape", choices=("inkscape",), help="which one")
-    install.add_argument(
-        "zip", metavar="ZIP", nargs="?", help="brushsvg-inkscape.zip; not needed in a source tree"
-    )
-    install.set_defaults(run="install_plugin", parser=install)

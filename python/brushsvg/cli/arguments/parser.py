@@ -8,7 +8,7 @@ import re
 
 from ...suggestions import did_you_mean
 from ..console import say, tell
-from . import brushes, drawings, machines
+from . import brushes, drawings, installation, machines
 
 
 def parse(argv: list[str] | None = None) -> argparse.Namespace:
@@ -77,6 +77,7 @@ def command_parser() -> argparse.ArgumentParser:
         help="warnings and refusals as lines of text, or of JSON with their codes; default: text",
     )
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    installation.add_demo(commands)
     drawings.add_convert(commands)
     drawings.add_predict(commands)
     drawings.add_report(commands)
@@ -96,5 +97,6 @@ def command_parser() -> argparse.ArgumentParser:
     drawings.add_compare(commands)
     brushes.add_article(commands)
     drawings.add_simulate_photo(commands)
-    machines.add_install_plugin(commands)
+    installation.add_install_plugin(commands)
+    installation.add_doctor(commands)
     return parser

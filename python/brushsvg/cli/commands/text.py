@@ -9,7 +9,7 @@ from ...files import read_bytes
 from ..console import about, stage, warn
 from ..steps.output_places import check_places, write
 
-_INKSCAPES = Path("/usr/share/inkscape/extensions/svg_fonts")
+SINGLE_LINE_FONTS = Path("/usr/share/inkscape/extensions/svg_fonts")
 
 
 def text_file(args) -> None:
@@ -32,12 +32,12 @@ def text_file(args) -> None:
 def font_of(name: str) -> bytes:
     """Of a file, or by the name of a file among Inkscape's fonts of single lines."""
     if not Path(name).exists():
-        for known in (_INKSCAPES / name, _INKSCAPES / f"{name}.svg"):
+        for known in (SINGLE_LINE_FONTS / name, SINGLE_LINE_FONTS / f"{name}.svg"):
             if Path(name).name == name and known.is_file():
                 return read_bytes(known)
         raise Error(
             "there is no such file; fonts of single lines come with Inkscape and are found by name, such as "
-            f"EMSAllure.svg, where they lie in {_INKSCAPES}",
+            f"EMSAllure.svg, where they lie in {SINGLE_LINE_FONTS}",
             file=name,
             code="file-unreadable",
         )

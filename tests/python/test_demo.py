@@ -1,0 +1,174 @@
+"""brushsvg demo and brushsvg doctor: what a person types first, and when something does not work."""
+
+import os
+import sys
+import types
+from importlib import metadata
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from diagnostics import in_json, refused
+
+from brushsvg.cli import main
+from brushsvg.cli.commands import demo, doctor
+from brushsvg.cli.install_plugin import install_inkscape
+from brushsvg.errors import command_to_add, lacking
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def opened(monkeypatch):
+    """The pictures that a viewer is started with."""
+    shown = []
+    monkeypatch.setattr(demo, "_start", lambda program, path: shown.append(path))
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    return shown
+
+
+def test_demo_paints_the_word_and_prints_where_the_picture_is(tmp_path, monkeypatch, capsys, opened):
+    monkeypatch.chdir(tmp_path)
+    assert main(["demo"]) == 0
+    out, err = capsys.readouterr()
+    assert out == f"{tmp_path / 'brushsvg-demo.png'}\n"
+    assert "overlap 0.99" in err
+    picture = cv2.imdecode(np.frombuffer(Path(out.strip()).read_bytes(), np.uint8), cv2.IMREAD_GRAYSCALE)
+    assert (picture < 100).mean() > 0.02  # paint
+    assert opened == []  # there is no display
+
+
+@pytest.mark.parametrize("flags, expected", [([], ["a.png"]), (["--no-open"], [])])
+def test_demo_opens_the_picture_where_there_is_a_display(tmp_path, monkeypatch, opened, flags, expected):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("DISPLAY", ":7")
+    monkeypatch.setattr("brushsvg.pipeline.comparison_picture.comparison_png", lambda *_: b"a picture")
+    assert main(["demo", "a.png", "--quiet", *flags]) == 0
+    assert opened == expected
+
+
+def test_demo_refuses_other_pictures_and_folders(tmp_path, capsys, opened):
+    assert main(["demo", str(tmp_path / "a.jpg")]) == 2
+    status, _, ((_, told),) = in_json(capsys, "demo", tmp_path / "none" / "a.png")
+    assert (status, told.code) == (1, "file-unwritable")
+
+
+def test_the_word_is_that_of_the_examples():
+    assert demo.WORD.read_bytes() == (ROOT / "examples" / "vincent.svg").read_bytes()
+
+
+def rows(text: str) -> dict[str, str]:
+    """The lines of doctor by their names."""
+    split = (line.strip().partition("  ") for line in text.splitlines() if line.startswith("  "))
+    return {name: what.strip() for name, _, what in split}
+
+
+@pytest.fixture
+def without(monkeypatch):
+    """Pretend that packages are missing, or have another version."""
+
+    def change(**versions):
+        real = metadata.version
+
+        def version(name):
+            found = versions.get(name.replace("-", "_"), "")
+            if found is None:
+                raise metadata.PackageNotFoundError(name)
+            return found or real(name)
+
+        monkeypatch.setattr(metadata, "version", version)
+
+    return change
+
+
+def test_doctor_lists_what_is_there(capsys):
+    assert main(["doctor"]) == 0
+    found = rows(capsys.readouterr().out)
+    assert found["numpy"] == metadata.version("numpy")
+    assert found["brushsvg"].startswith(metadata.version("brushsvg"))
+    assert set(doctor.PURPOSE) < set(found)
+
+
+def test_doctor_names_the_command_for_a_missing_extra(capsys, without):
+    without(matplotlib=None, uharfbuzz=None)
+    assert main(["doctor"]) == 0
+    found = rows(capsys.readouterr().out)
+    assert found["plot"].endswith(command_to_add("matplotlib"))
+    assert found["text"].endswith(command_to_add("uharfbuzz"))  # fonttools is there
+
+
+@pytest.mark.parametrize("version", [None, "0.9"])
+def test_doctor_fails_without_what_is_always_needed(capsys, without, version):
+    without(shapely=version)
+    status, _, ((_, told),) = in_json(capsys, "doctor")
+    assert (status, told.code) == (1, "package-missing")
+    assert told.sentence.endswith(command_to_add("shapely"))
+
+
+def test_the_extras_of_users_have_a_purpose():
+    text = (ROOT / "pyproject.toml").read_text()
+    names = set(metadata.metadata("brushsvg").get_all("Provides-Extra"))
+    assert names - {"bench", "docs", "dev"} == set(doctor.PURPOSE)
+    assert all(f"\n{name} = [" in text for name in doctor.PURPOSE)
+
+
+def test_doctor_knows_a_snap_and_a_flatpak(tmp_path):
+    (tmp_path / "snap").write_text("")
+    (tmp_path / "inkscape").symlink_to(tmp_path / "snap")
+    assert doctor.sandbox(str(tmp_path / "inkscape")) == "a Snap's"
+    assert doctor.sandbox("/var/lib/flatpak/exports/bin/org.inkscape.Inkscape") == "a Flatpak's"
+    assert doctor.sandbox("/usr/bin/inkscape") == ""
+
+
+def test_doctor_asks_for_the_zip_where_there_is_no_source(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("INKSCAPE_PROFILE_DIR", str(tmp_path))
+    monkeypatch.setattr(doctor, "SOURCE", tmp_path / "none")
+    assert main(["doctor"]) == 0
+    assert rows(capsys.readouterr().out)["extension"].endswith(" inkscape brushsvg-inkscape.zip")
+
+
+def test_doctor_says_whether_the_extension_finds_its_program(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("INKSCAPE_PROFILE_DIR", str(tmp_path))
+    assert main(["doctor"]) == 0
+    assert "brushsvg install-plugin inkscape" in rows(capsys.readouterr().out)["extension"]
+    install_inkscape(source=ROOT / "plugins" / "inkscape")  # an installed package does not hold it
+    note = tmp_path / "extensions" / "brushsvg" / "brushsvg-executable.txt"
+    for program, problem in ((sys.executable, False), (str(tmp_path / "gone"), True)):
+        note.write_text(f"{program}\n")
+        capsys.readouterr()
+        assert main(["doctor"]) == 0
+        row = rows(capsys.readouterr().out)["extension"]
+        assert program in row
+        assert ("no longer" in row) == problem
+
+
+@pytest.mark.parametrize(
+    "file, command",
+    [
+        ("pipx_metadata.json", ("pipx", "inject", "brushsvg", "a", "b")),
+        ("uv-receipt.toml", ("uv", "tool", "install", "brushsvg", "--with", "a", "--with", "b")),
+        ("pyvenv.cfg", (sys.executable, "-m", "pip", "install", "a", "b")),
+    ],
+)
+def test_packages_are_added_by_what_installed_brushsvg(tmp_path, monkeypatch, file, command):
+    (tmp_path / file).write_text("")
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    assert command_to_add("a", "b").split() == list(command)
+    with refused("package-missing"):
+        raise lacking("this needs", "a", "b")
+
+
+def test_without_pip_uv_adds_packages(monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert command_to_add("a") == f"uv pip install --python {sys.executable} a"
+
+
+def test_a_viewer_that_is_missing_is_no_error(monkeypatch):
+    def fails(*_, **__):
+        raise FileNotFoundError("xdg-open")
+
+    monkeypatch.setattr(demo, "subprocess", types.SimpleNamespace(Popen=fails, DEVNULL=os.devnull))
+    demo._start("xdg-open", "a.png")

@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# Installs a wheel in a bare system, without a compiler or Eigen, and tests the installed package: once without extras,
+# and once with each. Needs root, mmdebstrap and chroot.
+#   bare_root.sh WHEEL [EXTRA ...]     FOLDER: where the system and the wheels of other packages are kept
+set -euo pipefail
+tree=$(cd "$(dirname "$0")/../.." && pwd)
+wheel=$(realpath "$1") && shift
+extras=("$@")
+[ ${#extras[@]} -gt 0 ] || extras=(text plot arm cluster parquet)
+mkdir -p "${FOLDER:-$tree/build/wheel}" && cd "${FOLDER:-$tree/build/wheel}"
+suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
+
+# Other packages, fetched where there is a network. The bare system has none.
+if [ ! -e wheelhouse/complete ]; then
+  mkdir -p wheelhouse
+  "${PYTHON:-python3}" -m pip download -q --only-binary :all: -d wheelhouse "$wheel[$(IFS=,; echo "${extras[*]}")]" pytest hypothesis svgelements
+  rm -f wheelhouse/brushsvg-*.whl
+  touch wheelhouse/complete
+fi
+if [ ! -e bare/usr/bin/python3 ]; then
+  rm -rf bare
+  sources=()
+  for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.{list,sources}; do [ ! -f "$list" ] || sources+=("$list"); done
+  mmdebstrap --quiet --variant=minbase --include=python3,python3-venv "$suite" bare "${sources[@]}"
+fi
+if chroot bare sh -c 'command -v cc || command -v g++ || ls -d /usr/include/eigen3' 2>/dev/null; then
+  echo "the bare system has a compiler or Eigen" >&2
+  exit 1
+fi
+
+# The tests read the tree: all of it except the package, so that only the installed one can be imported.
+rm -rf bare/wheels bare/source bare/tmp/run && mkdir -p bare/wheels bare/source bare/tmp/run
+cp wheelhouse/*.whl "$wheel" bare/wheels/
+git -C "$tree" ls-files -z --cached --others --exclude-standard -- ':!python' | (cd "$tree" && xargs -0 ls -d 2>/dev/null || true) |
+  tar -C "$tree" -cf - -T - | tar -C bare/source -xf -
+mkdir -p bare/proc bare/dev
+[ -e bare/dev/null ] || mknod -m 666 bare/dev/null c 1 3
+
+run() { chroot bare env -i PATH=/usr/bin:/bin HOME=/tmp/run LC_ALL=C.UTF-8 PYTHONDONTWRITEBYTECODE=1 "$@"; }
+install() { # ENVIRONMENT EXTRAS: a new environment with the wheel, from the folder of wheels alone
+  rm -rf "bare/$1"
+  run python3 -m venv "/$1"
+  run "/$1/bin/pip" install -q --disable-pip-version-check --no-index --find-links /wheels "brushsvg$2"
+}
+tests() { # ENVIRONMENT TESTS: the tests against the package that is installed there
+  run "/$1/bin/pip" install -q --disable-pip-version-check --no-index --find-links /wheels pytest hypothesis svgelements
+  run sh -c "cd /source && exec /$1/bin/python -c \"import brushsvg; assert brushsvg.__file__.startswith('/$1/'), brushsvg.__file__\""
+  run sh -c "cd /source && exec /$1/bin/python -m pytest -q -p no:cacheprovider -m 'not slow and not long and not thorough' $2"
+}
+
+start=$EPOCHREALTIME
+install plain ""
+run sh -c 'cd /tmp/run && /plain/bin/brushsvg demo --force'
+echo "from a folder of wheels to the picture of the demo: $(awk "BEGIN {print $EPOCHREALTIME - $start}") s"
+run /plain/bin/brushsvg doctor
+echo "== without extras"
+tests plain "$(printf 'tests/python/test_%s.py ' extras demo convert gcode svg svg_paint strokes brushes plan fit refining calibrate)"
+for extra in "${extras[@]}"; do
+  echo "== with $extra"
+  install "with-$extra" "[$extra]"
+  tests "with-$extra" tests/python/test_extras.py
+  rm -rf "bare/with-$extra"
+done

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Fetches Debian's source archives of Ceres and Highway into FOLDER, from the system's own package sources, and checks them.
+#   fetch_sources.sh FOLDER
+set -euo pipefail
+tools=$(cd "$(dirname "$0")" && pwd)
+mkdir -p "$1" && cd "$1"
+! sha256sum -c "$tools/sources.sha256" >/dev/null 2>&1 || exit 0
+
+# The same sources as the system's, read for source packages, in a list of our own.
+lists=$(mktemp -d)
+trap 'rm -rf "$lists"' EXIT
+mkdir -p "$lists"/parts "$lists"/state/partial
+for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.{list,sources}; do
+  name=$(basename "$list")
+  [ ! -f "$list" ] || sed -E 's/^deb /deb-src /; s/^Types:.*/Types: deb-src/' "$list" >"$lists/parts/${name/#sources.list/main.list}"
+done
+apt() {
+  apt-get -qq -o Dir::Etc::SourceList=/dev/null -o Dir::Etc::SourceParts="$lists/parts" -o Dir::State::Lists="$lists/state" \
+    -o Dir::Cache="$lists" -o APT::Sandbox::User="$(id -un)" "$@"
+}
+apt update
+apt source --download-only ceres-solver=2.1.0+really2.1.0+dfsg-1 highway=1.0.3-3+deb12u1
+sha256sum --quiet -c "$tools/sources.sha256"
