@@ -108,7 +108,7 @@ test: setup test-system
 
 lint: $(VENV)/.dev test-system
 	@$(BIN)/ruff check .
-	$(BIN)/bandit -q -r -c pyproject.toml python
+	$(BIN)/bandit -q -ll -r -c pyproject.toml python
 	$(BIN)/ruff format --check -q .
 	$(BIN)/clang-format --dry-run --Werror $$(git ls-files '*.cpp' '*.hpp')
 	cppcheck -q --std=c++17 --language=c++ --enable=warning,performance,portability --inline-suppr --error-exitcode=1 --suppress=missingIncludeSystem -I cpp/include -I cpp/io -I cpp/posts cpp examples benchmarks
