@@ -85,7 +85,8 @@ def judged(
     wrong += [f"acts: {what}" for what in run.acts]
     way = way_of(run, job)
     wrong += broken(way, job)
-    if not (cell.reload and cell.reload.when == "length") and max(job.servo_mm) <= 0.1:
+    is_counted = bool(cell.reload) and cell.reload.when == "length"
+    if not is_counted and max(job.servo_mm) <= 0.1 and not (cell.servo and has_steep_ways(job)):
         wrong += unlike(way, job)  # a stroke in loads is another plan, and a coarse servo another path
     if any((job.machine or {}).get("backlash_mm", ())):
         exact = put(folder / "exact.toml", write_cell(without_backlash(cell)))
@@ -102,6 +103,14 @@ def judged(
     denied = check(program, *drawing, "--cell", toml, *words)
     assert not any(CRASHED in said for said in denied), denied
     return Judged((), tuple(wrong), tuple(denied), job)
+
+
+def has_steep_ways(job: Job) -> bool:
+    """Whether a way of the plan changes the height by more than twice its length: a servo, whose height goes in steps
+    along a way, presses the brush before it or lifts it after it instead."""
+    ways = np.vstack([np.abs(np.diff(each["poses_mm"], axis=0))[:, :3] for each in job.plan["passes"]])
+    flat_mm = np.hypot(ways[:, 0], ways[:, 1])
+    return bool(((flat_mm > 1e-6) & (ways[:, 2] > 2 * flat_mm)).any())
 
 
 def without_backlash(cell):
