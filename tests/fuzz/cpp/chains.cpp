@@ -36,6 +36,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                       in_pieces - whole);
         const Rings mark = unite(pieces);
         fuzz::require(std::isfinite(excess_turning(mark, unite(chain))), "turning is finite");
-        fuzz::require(thorns(mark, mark) == 0, "a mark has no thorns beside itself");
+        fuzz::require(thorns(mark, mark) == 0, "a mark has no thorns that it has not itself");
     });
 }
