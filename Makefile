@@ -24,7 +24,7 @@ endif
 WERROR ?= OFF
 PIP_INSTALL := $(BIN)/pip install -q --no-build-isolation -C build-dir=$(BUILD) -C cmake.define.BRUSHSVG_WERROR=$(WERROR) -e
 
-.PHONY: wheel wheel-test wheel-docs sdist deb docs plugins help setup system test-system demo test lint format clang-headers clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan clean quick FORCE
+.PHONY: wheel wheel-test wheel-docs sdist deb docs plugins help setup system test-system demo test lint format clang-headers clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan fuzz tsan clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
@@ -48,6 +48,8 @@ help:
 	@echo "make bench-compare REV=main    what became slower than at a revision, both run in turn"
 	@echo "make test-variants  the tests under the arithmetic of other processors: compilers, maths libraries, vector units"
 	@echo "make asan         C++ tests under address and undefined behaviour sanitizers"
+	@echo "make tsan         C++ tests under the thread sanitizer"
+	@echo "make fuzz         each reader and each computation is fed made-up input for 20 s (FUZZ_S=600, ONLY='plan_json dxf')"
 	@echo "make format       format both languages"
 	@echo "make clean        remove what was built"
 
@@ -106,6 +108,7 @@ test: setup test-system
 
 lint: $(VENV)/.dev test-system
 	@$(BIN)/ruff check .
+	$(BIN)/bandit -q -ll -r -c pyproject.toml python
 	$(BIN)/ruff format --check -q .
 	$(BIN)/clang-format --dry-run --Werror $$(git ls-files '*.cpp' '*.hpp')
 	cppcheck -q --std=c++17 --language=c++ --enable=warning,performance,portability --inline-suppr --error-exitcode=1 --suppress=missingIncludeSystem -I cpp/include -I cpp/io -I cpp/posts cpp examples benchmarks
@@ -145,6 +148,29 @@ asan: test-system
 	@cmake --preset asan >/dev/null
 	cmake --build --preset asan --target brushsvg_tests
 	ctest --preset asan -R '^cpp$$'
+
+tsan: test-system
+	@cmake --preset tsan >/dev/null
+	cmake --build --preset tsan --target brushsvg_tests
+	ctest --preset tsan -R '^cpp$$'
+
+# FUZZ_S: seconds for each target. ONLY: names of targets, or how they begin. SLOWEST_S: an input that takes longer is a
+# finding. Inputs that reach new code, and findings, stay in build/fuzz-kept for the next run.
+FUZZ_S ?= 20
+SLOWEST_S ?= 10
+ONLY ?=
+fuzz: setup
+	@$(call install,clang llvm)
+	# the package that holds clang's sanitizers and fuzzer is named after its version
+	runtime=libclang-rt-$$(clang++ -dumpversion | cut -d. -f1)-dev
+	if apt-cache show $$runtime >/dev/null 2>&1; then
+	$(call install,$$runtime)
+	fi
+	$(BIN)/python -c 'import atheris' 2>/dev/null || $(PIP_INSTALL) ".[fuzz]" || \
+	  echo "Atheris cannot be installed: the Python targets change their seeds at random" >&2
+	cmake --preset fuzz >/dev/null
+	cmake --build --preset fuzz --target fuzz_targets
+	$(BIN)/python tests/fuzz/run.py --seconds $(FUZZ_S) --slowest $(SLOWEST_S) $(ONLY)
 
 # One worker per processor; a worker that runs out of tests takes some from another.
 PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal

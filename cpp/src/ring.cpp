@@ -14,6 +14,7 @@ double signed_area(const Ring& ring) {
 }
 
 double length_around(const Ring& ring) {
+    if (ring.rows() == 0) return 0.0;
     double length = (ring.row(0) - ring.row(ring.rows() - 1)).norm();
     for (Eigen::Index i = 1; i < ring.rows(); ++i) length += (ring.row(i) - ring.row(i - 1)).norm();
     return length;

@@ -14,3 +14,11 @@ TEST_CASE("signed area of a triangle, either way round and far from the origin")
     CHECK(signed_area(r) == doctest::Approx(6.0));
     CHECK(signed_area(Ring(0, 2)) == 0.0);
 }
+
+TEST_CASE("the length around a triangle, and none around no point or one") {
+    Ring r(3, 2);
+    r << 0, 0, 4, 0, 0, 3;
+    CHECK(length_around(r) == doctest::Approx(12.0));
+    CHECK(length_around(Ring(0, 2)) == 0.0);
+    CHECK(length_around(r.topRows(1)) == 0.0);
+}

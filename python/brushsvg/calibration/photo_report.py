@@ -42,9 +42,7 @@ def _drawn(read, compared) -> bytes:
     boxes = {stroke.id: stroke.box_mm for stroke in read.chart.strokes}
     for stroke, words in compared(picture, flat).items():
         _write(picture, flat, boxes[stroke], words)
-    done, data = cv2.imencode(".png", picture)
-    assert done
-    return data.tobytes()
+    return cv2.imencode(".png", picture)[1].tobytes()
 
 
 def _enlarged(flat: Flat) -> Flat:

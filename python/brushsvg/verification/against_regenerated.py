@@ -284,7 +284,7 @@ class _Alike:
         return 0.0
 
     def is_slow(self, a: Act, b: Act) -> bool:
-        """No faster than another, which may be rapid. Of motors that are told steps, one step more is rounding."""
+        """No faster than another, which may be rapid. For stepper commands, one step more is rounding."""
         slacks = (FASTER, *(max(0.01 * most, *b.at_most[2:], 0.0) for most in b.at_most[1:2]), math.inf)
         return len(a.at_most) == len(b.at_most) and all(
             found <= most + more for found, most, more in zip(a.at_most, b.at_most, slacks, strict=False)

@@ -16,15 +16,12 @@ from brushsvg import _core
 from brushsvg.brush.library import find_brush
 from brushsvg.cli.arguments.parser import parse
 from brushsvg.cli.steps.options import options_of, typed
-from brushsvg.errors import Error
-from brushsvg.machine.cell_file import find_cell, write_cell
 from brushsvg.pipeline import preparation
 
 from .checked import CRASHED, converted, put
-from .random_jobs import said_of
+from .random_jobs import ASKED, judged, said_of
 from .random_works import SHEET, random_brush, random_cell, random_flags, random_svg
-from .verdict import broken, unlike, way_of
-from .works import CELLS, PENS, job_for
+from .works import CELLS, PENS
 
 EDGE_MM = 0.02  # of the sheet: marks are followed in steps
 STEP_MM = 0.1
@@ -205,38 +202,17 @@ def _brush(random, dialect: str, folder: Path, shelf: Path) -> tuple[str, str]:
 
 
 def _judged(number, dialect, cell, source, flags, folder, check) -> tuple[str, list[str]]:
-    suffix = CELLS[dialect][1]
-    toml = put(folder / "mine.toml", write_cell(cell))
-    program, planned = folder / f"program{suffix}", folder / "planned.json"
-    for file in (program, planned):
-        file.unlink(missing_ok=True)
-    try:
-        find_cell(toml)
-    except Error as refusal:
-        return str(refusal), []
-    if said := converted(source, program, "--cell", toml, *flags):
-        wrong = [f"refused and written: {said}"] if program.exists() else []
-        return said[0], wrong
-    text = program.read_text(encoding="latin-1")
-    without = [word for word in flags if word not in said_of(flags, "--z-offset")]
-    if said := converted(source, planned, "--cell", toml, *without):
-        return (said[0], []) if "--z-offset" in flags else ("", [f"a program and no plan: {said}"])
-    job = job_for(toml.read_text(encoding="utf-8"), planned.read_text(), said_of(flags, "--brush")[1], flags)
-    run = job.interpret(text)
-    wrong = [f"the controller stops: {run.refused}"] if run.refused else []
-    wrong += [f"acts: {what}" for what in run.acts]
-    way = way_of(run, job)
-    wrong += broken(way, job)
-    if not (cell.reload and cell.reload.when == "length") and max(job.servo_mm) <= 0.1:
-        wrong += unlike(way, job)
+    found = judged(dialect, cell, source, flags, folder, check, (*ASKED, *LAYOUT))
+    wrong = [*found.wrong, *(f"check: {sentence}" for sentence in found.denied)]
+    if found.job is None:
+        return next(iter(found.refused), ""), wrong
     brush = find_brush(said_of(flags, "--brush")[1])
-    wrong += too_deep(job.plan, brush)
-    asked = [word for flag in ("--brush", "--corners", *LAYOUT) for word in said_of(flags, flag)]
-    denied = check(program, *([] if source.suffix == ".json" else [source]), "--cell", toml, *asked)
-    wrong += [f"check: {sentence}" for sentence in denied]
+    wrong += too_deep(found.job.plan, brush)
     if number % STEPPED == 0:
-        wrong += stepped(source, job.plan, brush, toml, without)
-        again = folder / f"again{suffix}"
+        toml, program = folder / "mine.toml", folder / f"program{CELLS[dialect][1]}"
+        without = [word for word in flags if word not in said_of(flags, "--z-offset")]
+        wrong += stepped(source, found.job.plan, brush, toml, without)
+        again = folder / f"again{program.suffix}"
         again.unlink(missing_ok=True)
         wrong += [f"second time: {said}" for said in converted(source, again, "--cell", toml, *flags)]
         if again.exists() and again.read_bytes() != program.read_bytes():
@@ -270,7 +246,10 @@ def stepped(source: Path, plan: dict, brush, toml: Path, flags) -> list[str]:
     """Marks off the sheet, and tracking errors that are reported too small."""
     wrong = []
     work = None
-    if source.suffix != ".json" and "--corners" not in flags:
+    # squared ends, corners that are turned and refined strokes leave their line on purpose: their marks are judged
+    if said_of(flags, "--start")[1:] in (("exposed",), ("hidden",)) and not {"--corners", "refined"} & set(
+        flags
+    ):
         work = preparation.prepare(
             source, options_of(typed(parse(["convert", str(source), "x.json", "--cell", str(toml), *flags])))
         )

@@ -15,7 +15,7 @@ from brushsvg.machine.cell_file import find_cell, write_cell
 
 from .checked import CRASHED, converted, put
 from .random_works import random_brush, random_cell, random_flags, random_svg
-from .verdict import Way, broken, unlike, way_of
+from .verdict import Job, Way, broken, unlike, way_of
 from .works import CELLS, PENS, job_for
 
 
@@ -36,34 +36,57 @@ def tried(dialect: str, number: int, folder: Path, check) -> Tried:
     random = np.random.default_rng([number, *dialect.encode()])
     cell, svg, flags = random_cell(random, dialect), random_svg(random), random_flags(random, dialect)
     folder.mkdir(parents=True, exist_ok=True)
-    suffix = CELLS[dialect][1]
-    source, toml = put(folder / "drawing.svg", svg), put(folder / "mine.toml", write_cell(cell))
+    source = put(folder / "drawing.svg", svg)
     brush = put(folder / "mine.json", _core.write_brush(random_brush(random)))
     flags += ("--brush", "rigid" if dialect in PENS else str(brush))  # a pen has one height
+    found = judged(dialect, cell, source, flags, folder, check)
+    return Tried(dialect, number, found.refused, found.wrong, found.denied)
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What became of a drawing on a machine, as in Tried. job: what was asked for, where a program was written."""
+
+    refused: tuple[str, ...] = ()
+    wrong: tuple[str, ...] = ()
+    denied: tuple[str, ...] = ()
+    job: Job | None = None
+
+
+ASKED = ("--brush", "--corners")  # which check needs again
+
+
+def judged(
+    dialect: str, cell, source: Path, flags: tuple[str, ...], folder: Path, check, asked: tuple = ASKED
+) -> Judged:
+    """A drawing converted to mine.toml, a program and plan.json in the folder, run by the judge and by check."""
+    suffix = CELLS[dialect][1]
+    toml = put(folder / "mine.toml", write_cell(cell))
     program, plan = folder / f"program{suffix}", folder / "plan.json"
     program.unlink(missing_ok=True)
+    plan.unlink(missing_ok=True)
     try:
         find_cell(toml)
     except Error as refusal:
-        return Tried(dialect, number, (str(refusal),))
+        return Judged((str(refusal),))
     if said := converted(source, program, "--cell", toml, *flags):
-        return Tried(dialect, number, tuple(said))
+        wrong = (f"refused, and written: {said}",) if program.exists() else ()
+        return Judged(tuple(said), wrong)
     planned = [word for word in flags if word not in said_of(flags, "--z-offset")]
-    wrong: list[str] = []
     text = program.read_text(encoding="latin-1")
     # the plan's own file is written without the machine's limits, which the program has passed
     if said := converted(source, plan, "--cell", toml, *planned):
         if "--z-offset" in flags:  # the plan's paper lies lower, which may be out of reach
-            return Tried(dialect, number, tuple(said))
-        wrong.append(f"no plan: {said}")
-        return Tried(dialect, number, (), tuple(wrong))
+            return Judged(tuple(said))
+        return Judged((), (f"no plan: {said}",))
     job = job_for(toml.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags)
     run = job.interpret(text)
-    wrong += [f"the controller stops: {run.refused}"] if run.refused else []
+    wrong = [f"the controller stops: {run.refused}"] if run.refused else []
     wrong += [f"acts: {what}" for what in run.acts]
     way = way_of(run, job)
     wrong += broken(way, job)
-    if not (cell.reload and cell.reload.when == "length") and max(job.servo_mm) <= 0.1:
+    is_counted = bool(cell.reload) and cell.reload.when == "length"
+    if not is_counted and max(job.servo_mm) <= 0.1 and not (cell.servo and has_steep_ways(job)):
         wrong += unlike(way, job)  # a stroke in loads is another plan, and a coarse servo another path
     if any((job.machine or {}).get("backlash_mm", ())):
         exact = put(folder / "exact.toml", write_cell(without_backlash(cell)))
@@ -75,10 +98,19 @@ def tried(dialect: str, number: int, folder: Path, check) -> Tried:
                 exact.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags
             )
             wrong += apart(way, way_of(of.interpret(twin.read_text(encoding="latin-1")), of), cell)
-    asked = [word for flag in ("--brush", "--corners") for word in said_of(flags, flag)]
-    denied = check(program, source, "--cell", toml, *asked)
+    words = [word for flag in asked for word in said_of(flags, flag)]
+    drawing = () if source.suffix == ".json" else (source,)
+    denied = check(program, *drawing, "--cell", toml, *words)
     assert not any(CRASHED in said for said in denied), denied
-    return Tried(dialect, number, (), tuple(wrong), tuple(denied))
+    return Judged((), tuple(wrong), tuple(denied), job)
+
+
+def has_steep_ways(job: Job) -> bool:
+    """Whether a way of the plan changes the height by more than twice its length: a servo, whose height goes in steps
+    along a way, presses the brush before it or lifts it after it instead."""
+    ways = np.vstack([np.abs(np.diff(each["poses_mm"], axis=0))[:, :3] for each in job.plan["passes"]])
+    flat_mm = np.hypot(ways[:, 0], ways[:, 1])
+    return bool(((flat_mm > 1e-6) & (ways[:, 2] > 2 * flat_mm)).any())
 
 
 def without_backlash(cell):

@@ -1,0 +1,207 @@
+"""Options x options, so that each pair of their values is tried (allpairspy), through the public command line.
+
+Each row ends in all the files that it promises, and the next command takes them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from allpairspy import AllPairs
+from desk import SHEET, STUDIO, photograph
+from diagnostics import in_json
+from sampling import sample
+
+DRAWING = f"""<svg {SHEET} xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape">
+<g inkscape:groupmode="layer" inkscape:label="Ink" id="ink">
+<path id="line" fill="none" stroke="#000000" stroke-width="2.4" d="M20 20C40 10 60 30 80 20"/>
+<path id="more" fill="none" stroke="#000000" stroke-width="2.4" d="M80 20L84 30"/></g>
+<g inkscape:groupmode="layer" inkscape:label="Red" id="red">
+<path id="shape" fill="#c00000" d="M20 35H26V60H20Z"/></g></svg>"""
+
+# of each option: not given (""), then its values
+OPTIONS = {
+    "--brush": ["", "round-6-angles"],
+    "--cell": ["", "ur5e", "grbl-servo"],
+    "--sheet": ["", "120x90"],
+    "--layer": ["", "Ink"],
+    "--select": ["", "#line"],
+    "--background": ["", "keep"],
+    "--width": ["", "2.2"],
+    "--as": ["", "outline"],
+    "--placed": ["", "--fit 60x40", "--scale 120%", "--origin 15,12"],
+    "--colour": ["", "#000000"],
+    "--wide": ["", "clamp", "passes", "refuse"],
+    "--corners": ["", "turn"],
+    "--join": ["", True],
+    "--compensation": ["", "none", "constant", "closed", "refined"],
+    "--tolerance": ["", "0.1"],
+    "--start": ["", "exposed", "hidden", "squared"],
+    "--end": ["", "lifted", "squared"],
+    "--lenient": ["", True],
+    "--speed": ["", "8"],
+    "--z-offset": ["", "-0.2"],
+    "--order": ["", "nearest"],
+}
+OF_CONVERT = {
+    "--margin-strokes": ["", "on", "off"],
+    "--from-stroke": ["", "2"],
+    "--per-colour": ["", True],
+    "--preview": ["", "seen.png", "seen.svg"],
+    "--page": ["", "page.svg"],
+    "--report": ["", "report.txt", "report.json"],
+}
+FILES = ("--preview", "--page", "--report")
+
+
+def words_of(options: dict) -> list[str]:
+    words: list[str] = []
+    for flag, value in options.items():
+        if value is True:
+            words.append(flag)
+        elif value:
+            words += [flag] * (flag != "--placed") + str(value).split()
+    return words
+
+
+# Pairs of values that contradict each other, which `--help` says; both given is wrong usage.
+APART = [
+    ("--per-colour", "--from-stroke"),
+    ("--per-colour", "--colour"),
+    ("--per-colour", "--margin-strokes"),
+    ("--colour", "--margin-strokes"),
+]
+# one stroke is left of these: there is no second
+SINGLE = [("--from-stroke", "--select"), ("--from-stroke", "--layer"), ("--from-stroke", "--colour")]
+
+
+def rows(options: dict) -> list[dict]:
+    names = [*options]
+
+    def is_offered(row: list) -> bool:
+        given = {name for name, value in zip(names, row, strict=False) if value and value != "off"}
+        return not any({a, b} <= given for a, b in APART + SINGLE)
+
+    return [
+        dict(zip(names, row, strict=True)) for row in AllPairs([*options.values()], filter_func=is_offered)
+    ]
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    (tmp_path / "d.svg").write_text(DRAWING)
+    (tmp_path / "studio.toml").write_text(STUDIO)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(capsys, *words) -> None:
+    status, _, told = in_json(capsys, *words)
+    assert status == 0, (words, told)
+
+
+def some_of(options: dict, *names: str) -> list[str]:
+    return [word for name in names for word in words_of({name: options.get(name, "")})]
+
+
+def title(options: dict) -> str:
+    return " ".join(words_of(options))
+
+
+@sample("options", rows(OPTIONS | OF_CONVERT), keep=10, ids=title)
+def test_each_pair_of_options_of_convert_works(desk, capsys, options):
+    suffix = {"ur5e": ".script", "grbl-servo": ".nc"}.get(options["--cell"], ".ngc")
+    run(capsys, "convert", "d.svg", f"out{suffix}", *words_of(options))
+    made = {each.name for each in desk.iterdir()}
+    programs = {name for name in made if name.endswith(suffix)}
+    assert programs and {options[flag] for flag in FILES if options[flag]} <= made
+    for program in programs:
+        colour = ["--colour", f"#{Path(program).stem[-6:]}"] if options["--per-colour"] else []
+        run(capsys, "check", program, "d.svg", *some_of(options, *CHECKED), *colour)
+
+
+CHECKED = (
+    *("--brush", "--cell", "--sheet", "--layer", "--select", "--background", "--width", "--as", "--placed"),
+    *("--colour", "--wide", "--corners", "--join", "--speed", "--lenient"),
+)
+
+
+@sample("options", rows(OPTIONS), keep=4, ids=title)
+def test_batch_writes_what_convert_does_with_each_pair_of_options(desk, capsys, options):
+    suffix = {"ur5e": ".script", "grbl-servo": ".nc"}.get(options["--cell"], ".ngc")
+    run(capsys, "convert", "d.svg", f"one{suffix}", *words_of(options))
+    run(capsys, "batch", "d.svg", "--out", "many", "--jobs", 1, *words_of(options))
+    (made,) = (desk / "many/programs").iterdir()
+    assert made.suffix == suffix or options["--cell"] == "grbl-servo"  # which has several endings
+    assert made.read_bytes() == (desk / f"one{suffix}").read_bytes()
+
+
+MORE = "".join(
+    f'<path id="more-{y}" fill="none" stroke="#000000" stroke-width="2.4" d="M38 {y}C50 {y - 6} 70 {y + 6} 88 {y}"/>'
+    for y in (40, 50, 60)
+)
+OF_COMPARE = {
+    "-o": ["", "fit.json", "fit.txt"],
+    "--picture": ["", "seen.png"],
+    "--mended-cell": ["", "mended.toml"],
+    "--at-least": ["", "0.2"],
+    "--json": ["", True],
+    "--margin-strokes": ["", "on"],
+}
+OF_PAINTED = {  # those that a photograph is planned and compared with; one line is too little to compare
+    name: OPTIONS[name]
+    for name in (
+        *("--brush", "--cell", "--width", "--placed", "--corners", "--join", "--compensation", "--start"),
+        *("--end", "--tolerance", "--lenient"),
+    )
+}
+
+
+@sample("options", rows(OF_PAINTED | OF_COMPARE), keep=4, ids=title)
+def test_each_pair_of_options_of_compare_works(desk, capsys, options):
+    (desk / "d.svg").write_text(DRAWING.replace("</svg>", f"{MORE}</svg>"))
+    planned = some_of(options, *OF_PAINTED, "--margin-strokes")
+    run(capsys, "simulate-photo", "d.svg", "photo.jpg", "--studio", "studio.toml", *planned)
+    run(capsys, "compare", "photo.jpg", "d.svg", *words_of(options))
+    made = {each.name for each in desk.iterdir()}
+    assert {options[flag] for flag in ("-o", "--picture", "--mended-cell") if options[flag]} <= made
+    if options["-o"] == "fit.json":
+        suffix = {"ur5e": ".script", "grbl-servo": ".nc"}.get(options["--cell"], ".ngc")
+        words = "convert", "d.svg", f"next{suffix}", "--corrections", "fit.json", *planned
+        status, _, told = in_json(capsys, *words)
+        # corrected, a stroke may have to be pressed deeper than this servo goes
+        assert status == 0 or (told[-1][1].code == "too-low" and options["--cell"] == "grbl-servo"), told
+
+
+OF_CALIBRATE = {
+    "--picture": ["", "read.png"],
+    "--plot": ["", "laws.png", "laws.svg"],
+    "--aim": [
+        "",
+        "edges",
+        "overlap",
+    ],
+    "--machine": ["", "lean", "axes,tilt --cell linuxcnc-3axis", "lean,axes --cell ur5e"],
+    "--height": ["", "0.05"],
+    "--bar": ["", "110"],
+    "--norm": ["", "squares"],
+}
+
+
+@pytest.fixture(scope="module")
+def chart(tmp_path_factory):
+    """A painted and photographed chart."""
+    folder = tmp_path_factory.mktemp("chart")
+    photograph(folder / "chart", "--sheet", "a5")
+    return folder
+
+
+@sample("options", rows(OF_CALIBRATE), keep=3, ids=title)
+def test_each_pair_of_options_of_calibrate_works(chart, tmp_path, capsys, monkeypatch, options):
+    monkeypatch.chdir(tmp_path)
+    photo, file = chart / "chart.jpg", chart / "chart.chart.json"
+    run(capsys, "calibrate", photo, "--chart", file, "-o", "mine.json", *words_of(options))
+    made = {each.name for each in tmp_path.iterdir()}
+    assert {"mine.json", *(options[flag] for flag in ("--picture", "--plot") if options[flag])} <= made
+    (tmp_path / "d.svg").write_text(DRAWING)
+    run(capsys, "convert", "d.svg", "out.ngc", "--brush", "mine.json")

@@ -1,0 +1,28 @@
+"""A defect that `make fuzz` found (target medial_axis), not fixed yet: kept with its input."""
+
+import numpy as np
+import pytest
+
+from brushsvg import _core
+
+INPUT = (
+    "4e7891759c93024c2f3a5a0c595b1e581a22003972073b71488063534480583b2e1e463b5e767835482834814280392e"
+    "50189f3925334b5c42413e4c180102445b940a2c09026f9d161a53667a6e73027e0a2600"
+)
+WRONG_MM = 1e-3
+
+
+def drawn() -> list[np.ndarray]:
+    """Outlines on a grid of 0.25 mm that cross themselves and each other, as the fuzzer made them."""
+    steps = np.frombuffer(bytes.fromhex(INPUT), np.uint8).astype(float)
+    counts, points = (11, 12, 8, 11), 0.25 * steps.reshape(-1, 2) - 20.0
+    return np.split(points, np.cumsum(counts)[:-1])
+
+
+@pytest.mark.xfail(strict=True, reason="a place of the axis says 4.47 mm where the outline is 0.01 mm away")
+def test_places_of_the_axis_are_as_far_from_the_outline_as_they_say():
+    shape = _core.fill(drawn(), "evenodd")
+    _, branches = _core.medial_axis(shape, 0.7059)
+    for branch in branches:
+        line = np.asarray(branch.line)
+        assert np.abs(np.array(_core.clearance(shape, line[:, :2])) - line[:, 2]).max() < WRONG_MM
