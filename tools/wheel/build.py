@@ -75,8 +75,8 @@ def build(python: str, out: Path) -> Path:
             "--wheel-dir",
             folder / "raw",
         ),
-        *(word for define in _definitions() for word in ("-C", f"cmake.define.{define}")),
-        *("-C", f"build-dir={folder / 'out'}"),
+        *(word for define in _definitions() for word in ("--config-settings", f"cmake.define.{define}")),
+        *("--config-settings", f"build-dir={folder / 'out'}"),
         _clean_copy(folder / "source"),
         env=environment,
     )
