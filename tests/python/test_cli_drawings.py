@@ -211,7 +211,7 @@ def test_fonts_of_inkscape_are_found_by_name(desk, capsys, monkeypatch):
         """<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>
         <glyph unicode="T" d="M 0 700 L 500 700"/></font></svg>"""
     )
-    monkeypatch.setattr("brushsvg.cli.commands.text._INKSCAPES", desk / "fonts")
+    monkeypatch.setattr("brushsvg.cli.commands.text.SINGLE_LINE_FONTS", desk / "fonts")
     for name in ("Lines.svg", "Lines"):
         assert main(["text", "T", f"by-{name}.svg", "--font", name]) == 0
     assert (desk / "by-Lines.svg").read_bytes() == (desk / "by-Lines.svg.svg").read_bytes()

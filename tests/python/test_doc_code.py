@@ -47,7 +47,7 @@ KINDS_OF_PAGES = {
     "diagnostics.md": "json",
     "drawings.md": "flags",
     "index.md": "{toctree}",
-    "install.md": "make",
+    "install.md": "commands make",
     "letters.md": "commands",
     "machines.md": "commands python toml",
     "performance.md": "make",
