@@ -185,6 +185,8 @@ MADE = {
     "my-machine.toml": "brushsvg cell new my-machine.toml",
     "plan.json": "brushsvg convert word.svg plan.json --brush my-brush.json",
     "word.json": "brushsvg convert word.svg word.json --brush mine.json",
+    "mine-2.json": "brushsvg calibrate sheet-1.jpg --plan word.json --prior mine.json -o mine-2.json",
+    "left.json": "brushsvg compare sheet-1.jpg word.json --brush mine-2.json -o left.json",
     "chart.json": "brushsvg chart chart.ngc --page page.pdf --chart chart.json",
     "strokes.jpg": _chart_photo("strokes.jpg"),
     "IMG_2041.jpg": _chart_photo("IMG_2041.jpg"),
