@@ -7,6 +7,7 @@ from command import SOUND, brushsvg
 from diagnostics import gives
 from plugin import SOURCE, sentence
 
+from brushsvg import __version__
 from brushsvg.pipeline.options import DEFAULT_BRUSH, Options
 
 MACHINES = "the usual machine of the format that you save"
@@ -30,7 +31,8 @@ def stored(text) -> dict:
 def test_what_nobody_touches_stays_and_is_told(plugin, drawing):
     done = plugin.script("settings", drawing)
     assert stored(done.stdout) == STORED
-    _, *settings = done.stderr.decode().splitlines()
+    _, *settings, used = done.stderr.decode().splitlines()
+    assert used.endswith(f"(brushsvg {__version__})")
     values = [line.split()[-1] for line in settings]
     assert values == ["mine", "closed", "auto", "auto", "grbl-servo", "auto", "0.1mm", "7"]
 
@@ -59,7 +61,8 @@ def test_one_field_changes_one_setting(plugin, drawing, word, changed, told):
     done = plugin.script("settings", drawing, word)
     expected = {name: value for name, value in {**STORED, **changed}.items() if value is not None}
     assert stored(done.stdout) == expected
-    _, *settings = done.stderr.decode().splitlines()
+    _, *settings, used = done.stderr.decode().splitlines()
+    assert used.endswith(f"(brushsvg {__version__})")
     (line,) = [line for line in settings if line.endswith(")")]
     assert gives(line, *told)
 
