@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 
 from brushsvg_program import DRAWING, Run, arguments, choices, guarded, selection
 
-# Two colours each, far apart: whatever the ink, one of the two is seen on it. The drawing shows through.
+# Two colours each, so far apart that one of them can be seen on any ink. The drawing shows through.
 PAINTED, MISSED = ("#1c8fd4", "#d98200"), ("#d4351c", "#7000b0")
 OPACITY = 0.6
 SVG = "{http://www.w3.org/2000/svg}"

@@ -25,26 +25,22 @@ PACKAGES = {name: f"python3-{name}" for name in ("lxml", "cssselect", "numpy", "
 # Where pipx, uv, pip and Homebrew put programs, and where pipx and uv keep them: a desktop's PATH may lack all of them.
 # Folders whose variable is not set are left out.
 USUAL = (
-    *(
-        "$PIPX_BIN_DIR",
-        "$UV_TOOL_BIN_DIR",
-        "$XDG_BIN_HOME",
-        "~/.local/bin",
-        "/usr/local/bin",
-        "/opt/homebrew/bin",
-    ),
-    *(
-        "$PIPX_HOME/venvs/brushsvg/bin",
-        "~/.local/share/pipx/venvs/brushsvg/bin",
-        "~/.local/pipx/venvs/brushsvg/bin",
-    ),
-    *(
-        "$UV_TOOL_DIR/brushsvg/bin",
-        "$XDG_DATA_HOME/uv/tools/brushsvg/bin",
-        "~/.local/share/uv/tools/brushsvg/bin",
-    ),
-    *("~/pipx/venvs/brushsvg/Scripts", "$LOCALAPPDATA/pipx/pipx/venvs/brushsvg/Scripts"),  # Windows
-    *("$APPDATA/uv/tools/brushsvg/Scripts", "$APPDATA/uv/data/tools/brushsvg/Scripts"),
+    "$PIPX_BIN_DIR",
+    "$UV_TOOL_BIN_DIR",
+    "$XDG_BIN_HOME",
+    "~/.local/bin",
+    "/usr/local/bin",
+    "/opt/homebrew/bin",
+    "$PIPX_HOME/venvs/brushsvg/bin",
+    "~/.local/share/pipx/venvs/brushsvg/bin",
+    "~/.local/pipx/venvs/brushsvg/bin",
+    "$UV_TOOL_DIR/brushsvg/bin",
+    "$XDG_DATA_HOME/uv/tools/brushsvg/bin",
+    "~/.local/share/uv/tools/brushsvg/bin",
+    "~/pipx/venvs/brushsvg/Scripts",  # from here on: Windows
+    "$LOCALAPPDATA/pipx/pipx/venvs/brushsvg/Scripts",
+    "$APPDATA/uv/tools/brushsvg/Scripts",
+    "$APPDATA/uv/data/tools/brushsvg/Scripts",
 )
 
 

@@ -107,7 +107,7 @@ def parted_post(suffix: str) -> Post | None:
 
 
 def beside(path: str | os.PathLike[str], name: str) -> str:
-    """Where the file of another program lies that one goes on in. name: "" for the one at the path."""
+    """The path of another program of the same job. name: "" for the one at the path."""
     if not name:
         return os.fspath(path)
     path = Path(path)
@@ -117,7 +117,7 @@ def beside(path: str | os.PathLike[str], name: str) -> str:
 def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str], str]) -> dict[str, str]:
     """The files that a program's text calls, and those that they call, with their texts: in the order of the calls.
 
-    path: where the program lies or will lie; read: the text of a file.
+    path: of the program, which need not exist yet; read: the text of a file.
     """
     post, texts, found = parted_post(Path(path).suffix.lower()), [text], {}
     for one in texts if post else []:

@@ -1,4 +1,4 @@
-// What the brush does along any pass: finite, the same each time, never farther from the tool than its lag.
+// What the brush does along any pass: finite, the same each time, never further from the tool than its lag.
 #include "brushsvg/simulate.hpp"
 
 #include "brushsvg/coverage.hpp"
@@ -33,7 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             if (!is_sound || marks.depth_mm[k] < 0.0) continue;
             const double lag = std::max(0.0, brush.lag(marks.depth_mm[k]));
             const double away = (marks.tcp_mm.row(i) - marks.contact_mm.row(i)).norm();
-            fuzz::require(away <= lag + 1e-6, "the patch is no farther behind than the lag", away - lag);
+            fuzz::require(away <= lag + 1e-6, "the patch is no further behind than the lag", away - lag);
             if (marks.taut[k]) fuzz::require(away >= lag - 1e-6, "a taut brush is drawn out to its lag", away - lag);
         }
         const PassMarks again = simulate(pass, brush, tolerance);
