@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import agrees, are_told, gives, is_told, refused
+from diagnostics import agrees, are_told, gives, in_json, is_told, refused
 from judge.gcode import run_gcode
 from programs import RUNNABLE, call, forbidden, whole
 
@@ -213,6 +213,21 @@ def test_a_station_out_of_the_box_is_refused():
     )
     broken = forbidden(SimpleNamespace(passes=[], sheet_mm=(1, 1)), BRUSH, boxed)
     assert is_told(broken, "out-of-box 'x -20.0 mm' '[-15, 500] mm' linuxcnc-3axis", "black")
+
+
+@pytest.mark.parametrize(("stir_mm", "can_be_used"), [(1.0, True), (4.0, False)])
+def test_cell_check_refuses_what_convert_would_refuse_of_a_station(capsys, tmp_path, stir_mm, can_be_used):
+    cell = cell_with(Reload("stroke"), replace(BLACK, stir_mm=stir_mm))
+    boxed = replace(
+        cell,
+        name="boxed",
+        workspace=replace(cell.workspace, box_mm=((-22.0, -50.0, -30.0), (500.0, 200.0, 60.0))),
+    )
+    path = tmp_path / "boxed.toml"
+    path.write_text(write_cell(boxed))
+    status, _, told = in_json(capsys, "cell", "check", path)
+    assert is_told(told, "out-of-box 'x -24.0 mm' '[-22, 500] mm' boxed", "black") is not can_be_used
+    assert (status == 0) is can_be_used
 
 
 def test_a_stroke_may_ask_for_paint_or_go_without():

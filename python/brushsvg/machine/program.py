@@ -103,9 +103,7 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     ]
     if all(np.isfinite(a_pass.poses_mm).all() for a_pass in left):
         problems += astray_in(made, loads.sheet_mm)
-        for station in cell.stations:
-            one = [visit(station, brush, cell)]
-            problems += walked_astray(one, made.robot_from_frame, cell, loads.sheet_mm)
+        problems += stations_astray(brush, cell, made.robot_from_frame, loads.sheet_mm)
     if problems and cell.reload:  # told of strokes as they were drawn, of one in parts once
         drawn = dict(zip((a_pass.stroke for a_pass in loads.loads), loads.strokes(), strict=True))
         problems = [replace(each, where=drawn.get(each.where, each.where)) for each in problems]
@@ -238,6 +236,13 @@ def names_of_stations(cell: Cell) -> dict[Station, str]:
     stations = list(dict.fromkeys(each for one in cell.stations for each in (one, briefly(one))))
     names = told_apart([station.name for station in stations])
     return dict(zip(stations, names, strict=True))
+
+
+def stations_astray(brush, cell: Cell, frame: np.ndarray, sheet_mm=None) -> list[Notice]:
+    """A notice for each limit of place that a visit to a station breaks, dips, stirring and wiping included.
+    frame: (4, 4) the paper's in the robot's."""
+    visited = ([visit(station, brush, cell)] for station in cell.stations)
+    return [notice for one in visited for notice in walked_astray(one, frame, cell, sheet_mm)]
 
 
 def visit(station: Station, brush, cell: Cell) -> Section:

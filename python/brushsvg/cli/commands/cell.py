@@ -9,10 +9,12 @@ from dataclasses import replace
 from ...brush.library import find_brush
 from ...errors import Error, Notice
 from ...machine import cell_check as cell_checks
+from ...machine.cell import robot_from_paper
 from ...machine.cell_file import DEFAULT_CELL, cell_names, find_cell, own_name, parse_cell, write_cell
 from ...machine.describe_cell import cell_page
 from ...machine.paint_reload import in_loads
 from ...machine.posts import POSTS
+from ...machine.program import stations_astray
 from ...machine.writer import whole_program
 from ...pipeline.options import DEFAULT_BRUSH
 from ..console import RefusedError, about, stage, tell, warn
@@ -37,7 +39,8 @@ def cell_check(args) -> None:
         known = ", ".join(POSTS)
         sentence = f"no program can be written in {cell.language!r} yet, only plans; known: {known}"
         warn(args.input, [Notice("language", sentence, code="language-unknown")])
-    if problems := cell_checks.out_of_reach(cell):
+    frame = robot_from_paper(cell)
+    if problems := cell_checks.out_of_reach(cell) or stations_astray(find_brush(DEFAULT_BRUSH), cell, frame):
         raise RefusedError(args.input, problems)
     warn(args.input, cell_checks.remarks(cell))
     tell(f"{args.input}: cell {cell.name} can be used\n")
