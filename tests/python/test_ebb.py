@@ -18,6 +18,7 @@ from test_urscript import BRUSH, STROKES, text_for
 from brushsvg import _core
 from brushsvg.machine.cell import Motors, Paper, robot_from_paper
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.motion import duration_s
 from brushsvg.machine.posts import POSTS, ebb
 from brushsvg.machine.posts.ebb import HOME
 from brushsvg.machine.writer import text_of
@@ -78,6 +79,15 @@ def test_every_pose_is_passed_within_half_a_step_of_both_motors(motors, turned_d
         )
         away_steps = max(away_steps, off[at].min())
     assert away_steps > 0.4
+
+
+def test_the_time_is_that_of_the_commands():
+    dashes = [[(10 + 2 * k, 10, 0), (10 + 2 * k, 12, -2), (10 + 2 * k, 30, -2)] for k in range(40)]
+    passes = [_core.Pass(f"s{k}", np.array(poses, float), 20.0) for k, poses in enumerate(dashes, 1)]
+    ran = program(_core.Plan("b", "", SHEET, passes), BRUSH, CELL)
+    text = "".join(text_of(POSTS["ebb"], ran))
+    waits_ms = [int(row[1]) for row in re.finditer(r"^S[M2],(?:\d+,\d+,\d+,)?(\d+)", text, re.MULTILINE)]
+    assert duration_s(ran) == pytest.approx(sum(waits_ms) / 1e3, rel=0.06)
 
 
 def test_a_page_does_not_drift():

@@ -13,6 +13,7 @@ from brushsvg.brush import library
 from brushsvg.machine.cell import Reload, Station
 from brushsvg.machine.cell_file import find_cell
 from brushsvg.machine.motion import Wait, distances, duration_s
+from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.writer import whole_program
 from brushsvg.pictures.timeline import HAND_PAUSE_S, timeline
 from brushsvg.pipeline import prediction, preparation
@@ -124,6 +125,17 @@ def test_a_wait_for_a_person_is_a_short_pause_with_its_message(works):
         assert pause.end_s - pause.start_s == pytest.approx(HAND_PAUSE_S)
         inside = (rows.time_s >= pause.start_s) & (rows.time_s <= pause.end_s)
         assert (rows.tcp_mm[inside][:, :2] == HAND.place_mm).all()
+
+
+@pytest.mark.parametrize("name", ["grbl-servo", "axidraw-ebb"])
+def test_a_servo_is_waited_for(works, name):
+    work, _ = works()
+    cell = find_cell(name)
+    loads = in_loads(work.plan, work.brush, cell)
+    program = whole_program(loads, work.brush, cell)
+    assert timeline(program, simulate(loads.as_plan(), work.brush)).time_s[-1] == pytest.approx(
+        duration_s(program)
+    )
 
 
 def test_a_stroke_may_begin_and_end_pressed(works):

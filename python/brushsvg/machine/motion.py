@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from ..geometry import polylines
-from .cell import LEAST_SPEED_MM_S, Cell
+from .cell import LEAST_SPEED_MM_S, Cell, servo_stands
 from .distortion import told_high_mm
 from .frames import moved
 
@@ -163,10 +163,21 @@ def _duration_s(program: Program) -> float:
             total_s += step.seconds or 0.0
             continue
         total_s += time_of_way_s(length_mm(step, here), step.speed_mm_s, program.cell)
-        if program.cell.pen and program.cell.language == "marlin-servo" and step.meaning in ("land", "lift"):
-            total_s += program.cell.pen.settle_s
+        total_s += settling_s(step, here, program.cell)
         here = step.points_mm[-1]
     return total_s
+
+
+def settling_s(move: Move, here: np.ndarray | None, cell: Cell) -> float:
+    """How long a move stands still until its servo or pen has settled: after each way of the lift alone."""
+    if cell.pen and cell.language == "marlin-servo":
+        return cell.pen.settle_s if move.meaning in ("land", "lift") else 0.0
+    if not cell.servo or not cell.servo.settle_s:
+        return 0.0
+    if here is None:  # it is raised before it goes anywhere
+        return cell.servo.settle_s
+    ways = np.diff(np.vstack([here, move.points_mm]), axis=0)
+    return cell.servo.settle_s * int(np.count_nonzero(servo_stands(ways, cell) & (ways[:, 2] != 0)))
 
 
 def painting_mm(program: Program) -> float:

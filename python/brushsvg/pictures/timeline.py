@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import Error
-from ..machine.motion import Move, Program, Section, Wait, distances, times_s
+from ..machine.motion import Move, Program, Section, Wait, distances, settling_s, times_s
 
 HAND_PAUSE_S = 3.0  # a wait for a person is shown for so long: enough to read what is asked of them
 # Parts of a move in the air at which its time is taken: a straight line between them hides the ramps otherwise.
@@ -77,6 +77,9 @@ def timeline(program: Program, marks) -> Timeline:
                     block = np.vstack([block, _touching(trace, block[-1])])
             if block is None:
                 continue
+            if not isinstance(step, Wait) and (stands_s := settling_s(step, here, program.cell)):
+                block = np.vstack([block, block[-1:]])
+                block[-1, 0] += stands_s
             block[:, 0] += now_s
             blocks.append(block)
             rows += len(block)
