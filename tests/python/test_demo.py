@@ -1,6 +1,7 @@
 """brushsvg demo and brushsvg doctor: what a person types first, and when something does not work."""
 
 import os
+import re
 import sys
 import types
 from importlib import metadata
@@ -35,7 +36,8 @@ def test_demo_paints_the_word_and_prints_where_the_picture_is(tmp_path, monkeypa
     assert main(["demo"]) == 0
     out, err = capsys.readouterr()
     assert out == f"{tmp_path / 'brushsvg-demo.png'}\n"
-    assert "overlap 0.99" in err
+    # 0.9895, which rounds up or down as the processor adds up
+    assert float(re.search(r"overlap (\d\.\d+)", err)[1]) >= 0.985
     picture = cv2.imdecode(np.frombuffer(Path(out.strip()).read_bytes(), np.uint8), cv2.IMREAD_GRAYSCALE)
     assert (picture < 100).mean() > 0.02  # paint
     assert opened == []  # there is no display
