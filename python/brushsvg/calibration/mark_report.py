@@ -175,7 +175,10 @@ def _remedy(key: str, sigma: float, of_photo: bool) -> str:
     if not of_photo:
         return f': give "expected": {{"{key}": {sigma:g}}} if that is how exact the sheet is'
     of_flags = {
-        "height_mm": f": add --height {sigma:g} if you know the height no better",
+        "height_mm": (
+            f": add --height {sigma:g} if you know the height no better. A liner, whose lines are wide where it just "
+            "touches, looks like high paper: measure the height (brushsvg height), add --height 0.05"
+        ),
         "displacement_mm": ": add --spread FILE, which brushsvg compare --sheets writes",
     }
     return of_flags.get(key, ": compare the picture (--picture) with the page that you painted")
