@@ -96,6 +96,8 @@ def _definitions() -> list[str]:
     prefix = WORK / "prefix"
     flags = [
         *("-isystem", prefix / "include", "-DEIGEN_MPL2_ONLY", "-DMAX_LOG_LEVEL=-3"),
+        # Boost 1.74 needs std::unary_function, and values of an enum that it does not name
+        *("-D_LIBCPP_ENABLE_CXX17_REMOVED_UNARY_BINARY_FUNCTION", "-Wno-enum-constexpr-conversion"),
         *(f"-ffile-prefix-map={folder}=." for folder in (WORK, TREE)),
     ]
     return [

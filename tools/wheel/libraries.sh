@@ -28,6 +28,25 @@ cmake -S highway -B highway/out -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INST
   -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DCMAKE_CXX_VISIBILITY_PRESET=hidden -DBUILD_SHARED_LIBS=OFF -DBUILD_TESTING=OFF \
   -DHWY_ENABLE_TESTS=OFF -DHWY_ENABLE_EXAMPLES=OFF -DHWY_ENABLE_CONTRIB=OFF "${compiler[@]}" >/dev/null
 cmake --build highway/out ${JOBS:+-j "$JOBS"} --target install >/dev/null
+mkdir -p prefix/include/hwy/contrib/math
+cp highway/hwy/contrib/math/math-inl.h prefix/include/hwy/contrib/math/  # the rest of contrib takes minutes to compile
+# this release installs no configuration for find_package; Debian adds one to its own package
+mkdir prefix/lib/cmake/hwy
+cat >prefix/lib/cmake/hwy/hwy-config.cmake <<'CONFIG'
+if(TARGET hwy::hwy)
+  return()
+endif()
+add_library(hwy::hwy STATIC IMPORTED)
+get_filename_component(prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
+set_target_properties(hwy::hwy PROPERTIES IMPORTED_LOCATION "${prefix}/lib/libhwy.a"
+  INTERFACE_INCLUDE_DIRECTORIES "${prefix}/include" INTERFACE_COMPILE_DEFINITIONS HWY_STATIC_DEFINE)
+CONFIG
+cat >prefix/lib/cmake/hwy/hwy-config-version.cmake <<CONFIG
+set(PACKAGE_VERSION $(sed -n 's/^Version: //p' prefix/lib/pkgconfig/libhwy.pc))
+if(NOT PACKAGE_VERSION VERSION_LESS PACKAGE_FIND_VERSION)
+  set(PACKAGE_VERSION_COMPATIBLE TRUE)
+endif()
+CONFIG
 "$tools/ceres.sh" sources/ceres-solver_*.orig.tar.xz ceres "$PWD/prefix" "${compiler[@]}" -DEigen3_DIR=/usr/share/eigen3/cmake
 
 cp ceres/LICENSE licences/ceres-solver.txt
