@@ -63,6 +63,14 @@ def test_other_shapes_are_no_background(shape):
     assert len(read(white).elements) == 1, "nothing else is there"
 
 
+def test_a_background_is_known_by_the_page_whatever_sheet_is_asked_for():
+    """The page lies at the sheet's upper left."""
+    design = read('<rect width="100" height="60" fill="#fff" stroke="#000"/>' + LINE, sheet_mm=(130.0, 80.0))
+    assert ids(design)[-1] == "line" and len(design.elements) == 2
+    assert not any(element.fill_rule for element in design.elements)
+    assert sum(notice.code == "background" for notice in design.notices) == 1
+
+
 def test_what_is_off_the_page_is_left_out():
     body = (
         LINE
@@ -102,7 +110,16 @@ OLD_INKSCAPE = f'{INKSCAPE} width="744.09448" height="1052.3622" inkscape:versio
 ILLUSTRATOR = 'data-name="Layer 1" width="595.28" height="841.89" viewBox="0 0 595.28 841.89"'
 
 
-@pytest.mark.parametrize(("root", "per_inch"), [(OLD_INKSCAPE, 90), (ILLUSTRATOR, 72)])
+# as "Save as" writes it, its comment taken away
+ILLUSTRATOR_STYLE = (
+    'width="595.28px" height="841.89px" viewBox="0 0 595.28 841.89" '
+    'style="enable-background:new 0 0 595.28 841.89;"'
+)
+
+
+@pytest.mark.parametrize(
+    ("root", "per_inch"), [(OLD_INKSCAPE, 90), (ILLUSTRATOR, 72), (ILLUSTRATOR_STYLE, 72)]
+)
 def test_programs_with_other_pixels_are_named(root, per_inch):
     design = read(LINE, f'xmlns="http://www.w3.org/2000/svg" {root}')
     (notice,) = design.notices

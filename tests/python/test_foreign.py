@@ -75,6 +75,29 @@ def test_inches_circles_and_relative_places():
     assert again.points_mm == pytest.approx(circle.points_mm)
 
 
+def test_a_laser_is_dark_on_rapid_ways():
+    """By M4, which grbl runs so, and as much or little power as the picture asks for."""
+    laser = "G21G90\nM4S0\nG0X20Y20\nG1X80Y20S1000F900\nG1X80Y60\nG0X100Y30\nG1X140Y60S500\nG0X0Y0\nM5\n"
+    assert drawn(laser) == {4: [80.0, 20.0], 5: [80.0, 60.0], 7: [140.0, 60.0]}
+
+
+def test_a_servo_may_go_by_m300():
+    unicorn = (
+        "G28 X Y\nM300 S50\nG4 P150\nG1 X20 Y20 F3500\nM300 S30.00\nG1 X80 Y20\nM300 S440 P200\nG1 X80 Y60\n"
+        "M300 S50.00\nG1 X100 Y30\nM300 S30\nG1 X140 Y60\nM300 S50\nM18\n"
+    )
+    assert drawn(unicorn) == {6: [80.0, 20.0], 8: [80.0, 60.0], 12: [140.0, 60.0]}
+
+
+def test_a_paint_pot_is_a_dip():
+    pot = "; paint pot 1\nG0 X-30 Y0\nG1 Z-8 F600\nG1 X-25 Y0\nG1 X-30 Y5\nG0 Z10\n; line\n"
+    line = "G0 X20 Y{y}\nG1 Z-1 F600\nG1 X100 Y{y}\nG0 Z10\n"
+    text = "G21\nG90\nG0 Z10\n" + "".join(pot + line.format(y=20 + 10 * k) for k in range(2))
+    design = read_gcode(text.encode(), ReadOptions())
+    assert len(design.elements) == 2
+    assert is_told(design.notices, "dips-left-out 2")
+
+
 def test_a_servos_pen_is_down_between_m3_and_m5():
     assert drawn(SERVO) == {7: [50.0, 10.0], 8: [50.0, 40.0], 12: [30.0, 45.0]}
     by_value = SERVO.replace("M5", "M3 S700")

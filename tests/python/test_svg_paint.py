@@ -118,9 +118,14 @@ def test_a_box_is_measured_once(monkeypatch):
 
 def test_white_is_told():
     """What it hides is painted, too: paint is not cut off by what lies on top."""
-    for fill, stroke in (("white", "blue"), ("white", "none"), ("blue", "#fff")):
+    for fill, stroke in (
+        ("white", "blue"),
+        ("white", "none"),
+        ("blue", "#fff"),
+        ("rgb(250 250 248)", "none"),
+    ):
         assert are_told(told(painted(fill, stroke)), "white-paint p data-brushsvg-skip")
-    assert told(painted("#fefefe", "none")) == []
+    assert told(painted("#e8e8e8", "none")) == []
 
 
 def test_a_fill_of_another_colour_than_the_stroke_keeps_it():

@@ -98,6 +98,7 @@ def _definitions() -> list[str]:
         *("-isystem", prefix / "include", "-DEIGEN_MPL2_ONLY", "-DMAX_LOG_LEVEL=-3"),
         # Boost 1.74 needs std::unary_function, and values of an enum that it does not name
         *("-D_LIBCPP_ENABLE_CXX17_REMOVED_UNARY_BINARY_FUNCTION", "-Wno-enum-constexpr-conversion"),
+        "-mevex512",  # zig switches it off, and Highway does not switch it on where it uses 512 bits
         *(f"-ffile-prefix-map={folder}=." for folder in (WORK, TREE)),
     ]
     return [

@@ -14,7 +14,7 @@ LEAST_VISITS = 3  # to one place, for it to be a pot
 _COMMENT = re.compile(r"\(([^()]*)\)|;(.*)")
 _DIP = re.compile(
     r"\b(?:dip(?:s|ped|ping)?|re-?load(?:s|ed|ing)?|refill(?:s|ed|ing)?|rins(?:e|es|ed|ing)|wash(?:es|ed|ing)?"
-    r"|(?:get|load|fetch)\s+(?:paint|ink|brush))\b",
+    r"|(?:get|load|fetch)\s+(?:paint|ink|brush)|(?:paint|ink|water|colou?r)[- ]?(?:pot|cup|jar|well|tray|station)s?)\b",
     re.I,
 )
 _END = re.compile(r"\b(?:end|done|finished)\b", re.I)

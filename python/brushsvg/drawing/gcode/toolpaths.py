@@ -24,6 +24,7 @@ _LETTERS = set("GMNTXYZIJRFSPELHOQKD")
 _OTHER_S = (("G", 4.0), ("M", 280.0), ("M", 300.0))  # whose S is a time, an angle, a tone
 CHORD_MM = 0.005
 LARGEST_MM = 1e6
+MOST_ANGLE_DEG = 180.0
 
 
 @dataclass(frozen=True)
@@ -81,10 +82,13 @@ class _Reader:
         self.motion, self.feed_mm_s = None, 0.0
         self.power, self.on, self.by_angle, self.ended = 0.0, False, False, False
         self.percents, self.ways_before = 0, 0
+        self.is_laser = False  # M4 of grbl's laser mode, which is dark on rapid ways
 
     def line(self, number: int, line: str) -> None:
         code = re.sub(r"\([^()]*\)", "", line.partition(";")[0]).strip().upper()
         code = re.sub(r"\*\d+$", "", code.lstrip("/"))  # a checksum
+        if re.match(r"(?:N\d+\s*)?G28(?!\d)", code):  # axes without numbers: home these
+            code = re.sub(r"([XYZ])(?!\s*[-+.\d])", r"\g<1>0", code)
         if (
             not code or self.ended or code.startswith("$")
         ):  # a setting of grbl's, or $H: where it goes, nobody knows
@@ -165,8 +169,8 @@ class _Reader:
             for axis in "XYZ":
                 values.pop(axis, None)
         elif letter == "M" and code in (3, 4, 5):
-            self.on, self.by_angle = code != 5, False
-        elif letter == "M" and code == 280 and "S" in values:  # a servo's angle
+            self.on, self.by_angle, self.is_laser = code != 5, False, code == 4
+        elif letter == "M" and "S" in values and (code == 280 or _is_angle(code, values)):  # a servo's angle
             self.on, self.power, self.by_angle = True, values["S"], True
         elif letter == "G" and code == 53:
             pass
@@ -189,7 +193,8 @@ class _Reader:
             raise _too_far(number, line)
         straight = np.array([start, end])
         rapid, by_angle = self.motion == 0, self.by_angle
-        way = Way(number, straight, rapid, self.feed_mm_s, self.pen(), self.unit_told, by_angle=by_angle)
+        power = None if rapid and self.is_laser else self.pen()
+        way = Way(number, straight, rapid, self.feed_mm_s, power, self.unit_told, by_angle=by_angle)
         if self.motion in (2, 3):
             way = self._circle(number, line, way, values)
         if way.turn or not np.array_equal(start, end, equal_nan=True):
@@ -237,6 +242,12 @@ class _Reader:
         )
         points[0], points[-1] = start, end
         return replace(way, points_mm=points, centre_mm=tuple(centre.tolist()), turn=turn)
+
+
+def _is_angle(code: float, values: dict) -> bool:
+    """Whether M300 moves a servo to an angle, as on the MakerBot Unicorn, and plays no tone, which lasts for P ms and
+    is higher than 180 Hz."""
+    return code == 300 and values["S"] <= MOST_ANGLE_DEG and "P" not in values
 
 
 def _too_far(number: int, line: str) -> Error:

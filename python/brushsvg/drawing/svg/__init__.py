@@ -69,7 +69,10 @@ def _read(document: Document, options: ReadOptions) -> Design:
     title = root.find(SVG + "title" if root.tag.startswith("{") else "title")
     name = "" if title is None else one_line("".join(title.itertext()))
     design = Design(page.sheet_mm, elements, (*walk.notices, *off_page), name, walk.layers)
-    return design if options.background == "keep" else without_background(design)
+    if options.background == "keep":
+        return design
+    own = page if root.get("viewBox") is None else read_page(root.attrib)  # whatever sheet is asked for
+    return without_background(design, own.sheet_mm)
 
 
 def _outside_the_tree(document: Document, root: ET.Element, page: Page) -> list[Notice]:
@@ -87,10 +90,17 @@ def _outside_the_tree(document: Document, root: ET.Element, page: Page) -> list[
 def _other_pixels(document: Document, root: ET.Element) -> tuple[str, int] | None:
     """The program that wrote the drawing and its pixels per inch, where these are not 96.
 
-    Illustrator's "Save as" leaves a comment, its "Export as" a data-name on the root. Inkscape counted 90 px until 0.91
-    (wiki.inkscape.org, "Release notes/0.92").
+    Illustrator's "Save as" leaves a comment, its "Export as" a data-name on the root; "enable-background: new" is its
+    own, and stays where tools have taken the comment away. Inkscape counted 90 px until 0.91 (wiki.inkscape.org,
+    "Release notes/0.92").
     """
-    if any("Adobe Illustrator" in comment for comment in document.comments) or root.get("data-name"):
+    said = f"{root.get('style', '')} {root.get('enable-background', '')}"
+    is_its_style = re.search(r"\bnew 0 0 ", said) is not None
+    if (
+        any("Adobe Illustrator" in comment for comment in document.comments)
+        or root.get("data-name")
+        or is_its_style
+    ):
         return "Adobe Illustrator", 72
     version = re.match(r"0\.(\d+)", root.get(_INKSCAPE_VERSION, ""))
     return (f"Inkscape {version[0]}", 90) if version and int(version[1]) < 92 else None

@@ -14,6 +14,7 @@ from ...geometry.cubics import extremes, flattened
 from ...geometry.polylines import length
 from ...geometry.rings import signed_area
 from ...units import MM_PER, number
+from ..background import is_light
 from ..design import Element, SubPath
 from . import shapes
 from .context import Context, Notes, local
@@ -24,7 +25,6 @@ from .power_stroke import PowerStroke, drawn_line, with_widths
 from .transform import IDENTITY, scales
 
 _WITH_MARKERS = frozenset(("path", "line", "polyline", "polygon"))
-_WHITE = "#ffffff"
 _UNEVEN = 1.05  # below it, the width along and across differs by less than a brush's own scatter
 # A page of text has a hundredth of each.
 _FLAT_MM = 0.05
@@ -90,7 +90,7 @@ class Painted:
             self.notes.add(node, context, sentence, code="stretched-unevenly")
         for each in told + of_fill * (fill != "none") + of_stroke * (stroke != "none"):
             self.notes.add(node, context, each.sentence, code=each.code, about=each.about)
-        if _WHITE in (fill, stroke):
+        if any(is_light(colour) for colour in (fill, stroke) if colour.startswith("#")):
             sentence = (
                 "it is white, and painted like any colour: what it hides in the drawing is painted, too; "
                 'data-brushsvg-skip="yes" on it leaves it out'

@@ -98,8 +98,9 @@ def read_page(
     if width is None or height is None:
         if box is None:
             raise Error(
-                "the drawing says neither width and height nor a viewBox, so its size is unknown",
+                "the drawing has neither a width and height in absolute units nor a viewBox, so its size is unknown",
                 code="size-unknown",
+                advice="--sheet WxH gives it in mm",
             )
         if width is None and height is None:
             width, height = box[2] * MM_PER["px"], box[3] * MM_PER["px"]
