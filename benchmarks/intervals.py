@@ -5,7 +5,7 @@
 Made-up measurements of round-6 with normal noise, calibrated --count times for each kind. Printed: how many values of
 each law at depths 1 to 10 mm are within the 95 % band of their calibration, at all depths together and at the worst
 one. 93 to 97 % should be at all depths together. The share itself scatters by the standard error that follows it:
-with --count 200 up to 1.5 %, with 1000 0.7 %.
+with --count 200 up to 1.9 %, with 800 0.8 %.
 
 Marks take seconds each, so there are --marks of them: random brushes, painted by the slow simulator of tests/laws
 (truth_recovery.py).

@@ -71,6 +71,21 @@ def test_a_background_is_known_by_the_page_whatever_sheet_is_asked_for():
     assert sum(notice.code == "background" for notice in design.notices) == 1
 
 
+@pytest.mark.parametrize(
+    ("root", "sheet_mm"),
+    [
+        ('style="width:100mm;height:60mm" viewBox="0 0 100 60"', None),
+        ('style="width:100mm;height:60mm" viewBox="0 0 100 60"', (130.0, 80.0)),
+        ('width="377.953" height="226.772"', (130.0, 80.0)),  # without a viewBox
+        ("", (100.0, 60.0)),
+    ],
+)
+def test_a_background_is_known_however_the_page_gives_its_size(root, sheet_mm):
+    covers = '<rect width="377.953" height="226.772" fill="#fff"/>'
+    body = covers if "viewBox" not in root else '<rect width="100" height="60" fill="#fff"/>'
+    assert ids(read(body + LINE, f'xmlns="http://www.w3.org/2000/svg" {root}', sheet_mm=sheet_mm)) == ["line"]
+
+
 def test_what_is_off_the_page_is_left_out():
     body = (
         LINE

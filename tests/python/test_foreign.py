@@ -89,6 +89,22 @@ def test_a_servo_may_go_by_m300():
     assert drawn(unicorn) == {6: [80.0, 20.0], 8: [80.0, 60.0], 12: [140.0, 60.0]}
 
 
+def test_check_does_not_take_a_tone_for_a_servo(desk, capsys):
+    (desk / "tone.gcode").write_text(
+        "G21\nG90\nM300 S30\nG1 X20 Y20 F900\nG1 X40 Y20\nM300 S50\nG1 X60 Y20\n"
+    )
+    status, _, notices = in_json(
+        capsys, "check", "tone.gcode", "--brush", "round-6", "--cell", "marlin-servo"
+    )
+    assert status == 1 and is_told(notices, "servo-unknown M300")
+
+
+def test_a_servo_stays_down_on_rapid_ways_after_m4():
+    """convert reads a laser's program, and check one for a servo, which M4 sets as M3 does."""
+    down = [way for way in ways("G21G90\nG0X0Y0\nM4S30\nG1X20Y0F900\nG0X40Y0\nM5\n") if way.rapid][-1]
+    assert down.power == 30.0
+
+
 def test_a_paint_pot_is_a_dip():
     pot = "; paint pot 1\nG0 X-30 Y0\nG1 Z-8 F600\nG1 X-25 Y0\nG1 X-30 Y5\nG0 Z10\n; line\n"
     line = "G0 X20 Y{y}\nG1 Z-1 F600\nG1 X100 Y{y}\nG0 Z10\n"

@@ -225,8 +225,8 @@ def test_cell_check_refuses_what_convert_would_refuse_of_a_station(capsys, tmp_p
     )
     path = tmp_path / "boxed.toml"
     path.write_text(write_cell(boxed))
-    status, _, told = in_json(capsys, "cell", "check", path)
-    assert is_told(told, "out-of-box 'x -24.0 mm' '[-22, 500] mm' boxed", "black") is not can_be_used
+    status, _, notices = in_json(capsys, "cell", "check", path)
+    assert is_told(notices, "out-of-box 'x -24.0 mm' '[-22, 500] mm' boxed", "black") is not can_be_used
     assert (status == 0) is can_be_used
 
 

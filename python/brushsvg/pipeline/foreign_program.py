@@ -204,6 +204,9 @@ def _servo_lift(some: list[Way], cell: Cell) -> Lift | None:
         return None
     values = sorted({way.power for way in some if way.power is not None})
     line = next(way.line for way in some if way.power is not None)
+    if any(way.by_angle == 300 for way in some):
+        sentence = f"line {line}: its pen goes by M300, which plays a tone on the machines of all cells"
+        raise Error(sentence, code="servo-unknown", advice="brushsvg convert paints its lines")
     if any(way.by_angle for way in some):
         if not up_and_down:
             sentence = f"line {line}: its pen goes by M280, and cell {cell.name} has no such servo"

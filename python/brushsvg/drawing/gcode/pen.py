@@ -44,6 +44,8 @@ def read_pen(some: list[Way], kind: str | None = None, paper_z_mm: float | None 
 
     Error where nothing tells, or where what was asked for does not move.
     """
+    # grbl's laser is dark on rapid ways
+    some = [replace(way, power=None) if way.rapid and way.by_laser else way for way in some]
     across = [bool(np.ptp(way.points_mm[:, :2], axis=0).any()) for way in some]
     by_z, by_servo = _levels(some, across), _values(some, across)
     if kind is None:

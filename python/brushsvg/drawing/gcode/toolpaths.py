@@ -31,7 +31,8 @@ MOST_ANGLE_DEG = 180.0
 class Way:
     """One move, as points (n, 3) [mm] from where the tool is; rapid: by G0; turn: 1 or -1 of a circle about a centre,
     counter-clockwise or not; power: what M3, M4 or M280 holds while it goes, None behind M5 or S0 and before either;
-    by_angle: by M280; unit_told: whether G20 or G21 stands before it, without which its numbers count as mm."""
+    by_angle: 280 or 300 by that M, 0 by another; by_laser: by M4; unit_told: whether G20 or G21 stands before it,
+    without which its numbers count as mm."""
 
     line: int
     points_mm: np.ndarray
@@ -41,7 +42,8 @@ class Way:
     unit_told: bool
     centre_mm: tuple[float, float] | None = None
     turn: int = 0
-    by_angle: bool = False
+    by_angle: int = 0
+    by_laser: bool = False
 
 
 def ways(text: str) -> list[Way]:
@@ -80,9 +82,9 @@ class _Reader:
         self.mm, self.unit_told = 1.0, False
         self.absolute, self.absolute_centres = True, False
         self.motion, self.feed_mm_s = None, 0.0
-        self.power, self.on, self.by_angle, self.ended = 0.0, False, False, False
+        self.power, self.on, self.by_angle, self.ended = 0.0, False, 0, False
         self.percents, self.ways_before = 0, 0
-        self.is_laser = False  # M4 of grbl's laser mode, which is dark on rapid ways
+        self.by_laser = False
 
     def line(self, number: int, line: str) -> None:
         code = re.sub(r"\([^()]*\)", "", line.partition(";")[0]).strip().upper()
@@ -169,9 +171,10 @@ class _Reader:
             for axis in "XYZ":
                 values.pop(axis, None)
         elif letter == "M" and code in (3, 4, 5):
-            self.on, self.by_angle, self.is_laser = code != 5, False, code == 4
+            self.on, self.by_angle, self.by_laser = code != 5, 0, code == 4
         elif letter == "M" and "S" in values and (code == 280 or _is_angle(code, values)):  # a servo's angle
-            self.on, self.power, self.by_angle = True, values["S"], True
+            self.on, self.power, self.by_angle = True, values["S"], int(code)
+            self.by_laser = False
         elif letter == "G" and code == 53:
             pass
         elif code not in _PASSED_OVER[letter]:
@@ -193,8 +196,8 @@ class _Reader:
             raise _too_far(number, line)
         straight = np.array([start, end])
         rapid, by_angle = self.motion == 0, self.by_angle
-        power = None if rapid and self.is_laser else self.pen()
-        way = Way(number, straight, rapid, self.feed_mm_s, power, self.unit_told, by_angle=by_angle)
+        way = Way(number, straight, rapid, self.feed_mm_s, self.pen(), self.unit_told, by_angle=by_angle)
+        way = replace(way, by_laser=self.by_laser)
         if self.motion in (2, 3):
             way = self._circle(number, line, way, values)
         if way.turn or not np.array_equal(start, end, equal_nan=True):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+from contextlib import suppress
 
 from ...errors import Error
 from ...units import MM_PER
@@ -59,7 +60,8 @@ def _root_of(document: Document) -> ET.Element:
 
 def _read(document: Document, options: ReadOptions) -> Design:
     root = _root_of(document)
-    page = read_page(root.attrib, options.sheet_mm, cascade(INITIAL, root.attrib, [], 0.0)[0].geometry)
+    style = cascade(INITIAL, root.attrib, [], 0.0)[0].geometry
+    page = read_page(root.attrib, options.sheet_mm, style)
     chosen = selected(root, options.select) if options.select else None
     walk = Walk(root, page, chosen, _outside_the_tree(document, root, page))
     walk.run()
@@ -71,8 +73,11 @@ def _read(document: Document, options: ReadOptions) -> Design:
     design = Design(page.sheet_mm, elements, (*walk.notices, *off_page), name, walk.layers)
     if options.background == "keep":
         return design
-    own = page if root.get("viewBox") is None else read_page(root.attrib)  # whatever sheet is asked for
-    return without_background(design, own.sheet_mm)
+    own_mm = page.sheet_mm
+    if options.sheet_mm is not None:
+        with suppress(Error):  # a drawing without a size of its own has the sheet's
+            own_mm = read_page(root.attrib, None, style).sheet_mm
+    return without_background(design, own_mm)
 
 
 def _outside_the_tree(document: Document, root: ET.Element, page: Page) -> list[Notice]:
@@ -94,12 +99,11 @@ def _other_pixels(document: Document, root: ET.Element) -> tuple[str, int] | Non
     own, and stays where tools have taken the comment away. Inkscape counted 90 px until 0.91 (wiki.inkscape.org,
     "Release notes/0.92").
     """
-    said = f"{root.get('style', '')} {root.get('enable-background', '')}"
-    is_its_style = re.search(r"\bnew 0 0 ", said) is not None
+    is_its_style = "enable-background" in root.get("style", "") or "enable-background" in root.attrib
     if (
         any("Adobe Illustrator" in comment for comment in document.comments)
         or root.get("data-name")
-        or is_its_style
+        or (is_its_style and _INKSCAPE_VERSION not in root.attrib)
     ):
         return "Adobe Illustrator", 72
     version = re.match(r"0\.(\d+)", root.get(_INKSCAPE_VERSION, ""))

@@ -92,8 +92,8 @@ class Painted:
             self.notes.add(node, context, each.sentence, code=each.code, about=each.about)
         if any(is_light(colour) for colour in (fill, stroke) if colour.startswith("#")):
             sentence = (
-                "it is white, and painted like any colour: what it hides in the drawing is painted, too; "
-                'data-brushsvg-skip="yes" on it leaves it out'
+                "it is white or nearly white, and painted like any colour: what it hides in the drawing is painted, "
+                'too; data-brushsvg-skip="yes" on it leaves it out'
             )
             self.notes.add(node, context, sentence, code="white-paint")
         # a fill that nobody chose is black, and hardly ever meant next to a stroke of another colour
