@@ -54,6 +54,13 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--python", type=int, default=65, help="faults in Python (default: %(default)s)")
     parser.add_argument("--cpp", type=int, default=35, help="faults in C++ (default: %(default)s)")
+    parser.add_argument(
+        "--safety",
+        type=int,
+        default=0,
+        metavar="N",
+        help="instead: N faults in each language and part of the code that keeps a robot within its bounds (safety.py)",
+    )
     parser.add_argument("--jobs", type=int, default=2, help="processes at a time (default: %(default)s)")
     parser.add_argument("--budget", type=float, default=900.0, help="seconds of tests for a fault and tier")
     parser.add_argument("--again", action="store_true", help="try survivors again, too")
@@ -65,7 +72,7 @@ def main() -> None:
     if args.step == "plant":
         from plant import plant
 
-        for fault in plant(args.root.resolve(), work, args.seed, args.python, args.cpp):
+        for fault in plant(args.root.resolve(), work, args.seed, args.python, args.cpp, args.safety):
             print(f"{fault.number:3} {fault.file}:{fault.line} {fault.kind}: {fault.change}")
         return
     faults = read_faults(work)

@@ -35,11 +35,13 @@ class Fault:
     mutated: str
     variants: list[list[Edit]]  # ways to write the switch; the first that compiles is used
     number: int = 0
+    part: str = ""  # what it is chosen from and counted with, where that is not its folder
     edits: list[Edit] = field(default_factory=list)  # the variant that is used
 
     @property
-    def folder(self) -> str:
-        return str(PurePosixPath(self.file).parent)
+    def place(self) -> str:
+        """Its part, or its folder."""
+        return self.part or str(PurePosixPath(self.file).parent)
 
     @property
     def identity(self) -> tuple[str, str, int, str]:
@@ -119,7 +121,7 @@ class Choice:
     def __init__(self, candidates: list[Fault], seed: int, accept: Callable[[Fault], bool]):
         self._by_folder: dict[str, list[Fault]] = {}
         for fault in candidates:
-            self._by_folder.setdefault(fault.folder, []).append(fault)
+            self._by_folder.setdefault(fault.place, []).append(fault)
         self._seed, self._accept = seed, accept
         self._kinds: Counter[str] = Counter()
         self._offers: dict[str, Iterator[Fault]] = {}

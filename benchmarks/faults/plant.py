@@ -15,20 +15,22 @@ from pathlib import Path
 import cpp_faults
 import python_faults
 from fault import BUILD, Choice, Fault, planted, shares
+from safety import part_of
 
 SWITCHES = Path(__file__).parent / "switches"
 PACKAGE = "python/brushsvg"
 TARGETS = ("_core", "brushsvg_tests", "example_01", "example_02")
 
 
-def plant(root: Path, work: Path, seed: int, python: int, cpp: int) -> list[Fault]:
-    """Copy the tree at root to work/tree, plant that many faults in each language, and build it."""
+def plant(root: Path, work: Path, seed: int, python: int, cpp: int, safety: int = 0) -> list[Fault]:
+    """Copy the tree at root to work/tree, plant that many faults in each language, or in each part of the safety code,
+    and build it."""
     tree = work / "tree"
     copy_tree(root, tree)
     make_venv(root, tree)
     sources = read_sources(tree)
-    faults = choose_python(tree, seed, python)
-    if not cpp:  # nothing to build
+    faults = choose_python(tree, seed, python, safety)
+    if not cpp and not safety:  # nothing to build
         number_all(faults)
         write(tree, sources, faults)
         code = "import brushsvg._core; print(brushsvg._core.__file__)"
@@ -37,7 +39,7 @@ def plant(root: Path, work: Path, seed: int, python: int, cpp: int) -> list[Faul
         )
         shutil.copy(done.stdout.strip(), tree / PACKAGE)
         return save(work, faults)
-    choice = choose_cpp(tree, seed, cpp)
+    choice = choose_cpp(tree, seed, cpp, safety)
     while True:
         number_all([*faults, *choice.chosen])
         write(tree, sources, [*faults, *choice.chosen])
@@ -47,7 +49,7 @@ def plant(root: Path, work: Path, seed: int, python: int, cpp: int) -> list[Faul
         for fault in refused:  # what compiles in one file that includes a header may not in another
             print(f"does not compile: {fault.file}:{fault.line}: {fault.change}")
             choice.give_back(fault)
-            choice.take(fault.folder)
+            choice.take(fault.place)
     return save(work, faults + choice.chosen)
 
 
@@ -111,7 +113,7 @@ def make_venv(root: Path, tree: Path) -> None:
     command.chmod(0o755)
 
 
-def choose_python(tree: Path, seed: int, count: int) -> list[Fault]:
+def choose_python(tree: Path, seed: int, count: int, safety: int) -> list[Fault]:
     sources = {path: path.read_bytes() for path in sorted((tree / PACKAGE).rglob("*.py"))}
     words = {path: python_faults.names_in(source) for path, source in sources.items()}
     candidates = []
@@ -127,13 +129,15 @@ def choose_python(tree: Path, seed: int, count: int) -> list[Fault]:
             return False
         return True
 
-    choice = Choice(candidates, seed, accept)
+    choice = Choice(in_parts(candidates) if safety else candidates, seed, accept)
+    if safety:
+        return take_each(choice, safety)
     return take_all(
         choice, count, {path.relative_to(tree).as_posix(): text for path, text in sources.items()}
     )
 
 
-def choose_cpp(tree: Path, seed: int, count: int) -> Choice:
+def choose_cpp(tree: Path, seed: int, count: int, safety: int) -> Choice:
     configure(tree)
     compiler = Compiler(tree)
     sources = {
@@ -142,9 +146,30 @@ def choose_cpp(tree: Path, seed: int, count: int) -> Choice:
         if compiler.command(path.relative_to(tree).as_posix())
     }
     candidates = [fault for file, source in sources.items() for fault in cpp_faults.candidates(file, source)]
-    choice = Choice(candidates, seed, lambda fault: compiler.accepts(fault, sources[fault.file]))
-    take_all(choice, count, sources)
+    chosen_from = in_parts(candidates) if safety else candidates
+    choice = Choice(chosen_from, seed, lambda fault: compiler.accepts(fault, sources[fault.file]))
+    if safety:
+        take_each(choice, safety)
+    else:
+        take_all(choice, count, sources)
     return choice
+
+
+def in_parts(candidates: list[Fault]) -> list[Fault]:
+    """Those in the safety code."""
+    for fault in candidates:
+        fault.part = part_of(fault) or ""
+    return [fault for fault in candidates if fault.part]
+
+
+def take_each(choice: Choice, count: int) -> list[Fault]:
+    for part in choice.folders:
+        for _ in range(count):
+            if (fault := choice.take(part)) is None:
+                print(f"{part} has no more faults")
+                break
+            print(f"chosen: {fault.file}:{fault.line}: {fault.kind}", flush=True)
+    return sorted(choice.chosen, key=lambda fault: (fault.file, fault.line))
 
 
 def take_all(choice: Choice, count: int, sources: dict[str, bytes]) -> list[Fault]:

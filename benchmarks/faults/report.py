@@ -29,7 +29,7 @@ def report(
     totals: dict[str, Counter] = defaultdict(Counter)
     for fault in faults:
         verdict, by = judged(fault, outcomes.get(fault.number), known, bool(hits.get(fault.number)))
-        totals[fault.folder][verdict] += 1
+        totals[fault.place][verdict] += 1
         cells = [
             str(fault.number),
             f"{fault.file}:{fault.line}",
@@ -92,7 +92,7 @@ def details(
             continue
         direct, near = reaching(tests, hits.get(fault.number, set()))
         lines += [
-            f"# {fault.number} {fault.folder}, {fault.kind}: {len(direct)} tests come by, {len(near)} may",
+            f"# {fault.number} {fault.place}, {fault.kind}: {len(direct)} tests come by, {len(near)} may",
             *(f"#   {test.name}" for test in direct[:5]),
             "[[fault]]",
             f'file = "{fault.file}"  # line {fault.line}',

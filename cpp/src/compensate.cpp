@@ -352,7 +352,10 @@ CompensatedPass compensated(const Stroke& stroke, const Brush& brush, const Comp
         if (finer.pass.poses_mm.rows() >= result.pass.poses_mm.rows() ||
             finer.miss.largest_mm > std::max(options.tolerance_mm, result.miss.largest_mm))
             continue;
-        finer.miss.within_tolerance = finer.miss.largest_mm <= options.tolerance_mm;
+        // looked at as closely as its neighbours, whatever it was made for
+        const bool turns = finer.miss.has_turn_in_place;
+        finer.miss = tracking_error_of(finer.pass, stroke, brush, options.tolerance_mm);
+        finer.miss.has_turn_in_place = turns;
         result = finer;
     }
     return result;

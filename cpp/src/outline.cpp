@@ -1,5 +1,7 @@
 #include "outline.hpp"
 
+#include <boost/geometry.hpp>
+#include <boost/geometry/index/rtree.hpp>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -18,15 +20,61 @@ bool is_behind(const Foot& from, const Foot& to) {
     return to.edge < from.edge || (to.edge == from.edge && to.at < from.at);
 }
 
-/// How far corners at one place are moved apart: beyond what counts as nothing, and far below what is seen.
-constexpr double kApart = 40.0;  // units
+/// How far corners at one place are moved apart: beyond what counts as nothing, and far below what is seen. Less, this
+/// share of the way, where another edge is near: edges that cross have no diagram.
+constexpr double kApart = 40.0, kShareOfWay = 0.4;  // units
 
-/// Where a corner that touches another one goes: into the smaller of its two angles, which nothing else reaches into.
-Vector2i apart(const Vector2d& before, const Vector2d& at, const Vector2d& after) {
+namespace bg = boost::geometry;
+using Point = bg::model::d2::point_xy<double>;
+using Segment = bg::model::segment<Point>;
+using Box = bg::model::box<Point>;
+
+Segment segment(const Vector2d& a, const Vector2d& b) { return {{a.x(), a.y()}, {b.x(), b.y()}}; }
+
+/// Edges in a tree of boxes, to find what lies near one of them.
+class NearbyEdges {
+ public:
+    explicit NearbyEdges(const std::vector<Segment>& edges) : edges_(edges) {
+        std::vector<std::pair<Box, std::size_t>> boxes;
+        for (std::size_t k = 0; k < edges.size(); ++k) boxes.push_back({bg::return_envelope<Box>(edges[k]), k});
+        tree_ = {boxes.begin(), boxes.end()};
+    }
+
+    /// The distance of an edge to those that share no end with it, as far as one is nearer than `most`.
+    double room_beside(std::size_t k, double most) const {
+        const Segment& edge = edges_[k];
+        Box around = bg::return_envelope<Box>(edge);
+        bg::set<bg::min_corner, 0>(around, bg::get<bg::min_corner, 0>(around) - most);
+        bg::set<bg::min_corner, 1>(around, bg::get<bg::min_corner, 1>(around) - most);
+        bg::set<bg::max_corner, 0>(around, bg::get<bg::max_corner, 0>(around) + most);
+        bg::set<bg::max_corner, 1>(around, bg::get<bg::max_corner, 1>(around) + most);
+        double room = most;
+        for (auto found = tree_.qbegin(bg::index::intersects(around)); found != tree_.qend(); ++found) {
+            const Segment& other = edges_[found->second];
+            const bool meets = bg::equals(edge.first, other.first) || bg::equals(edge.first, other.second) ||
+                               bg::equals(edge.second, other.first) || bg::equals(edge.second, other.second);
+            if (!meets) room = std::min(room, bg::distance(edge, other));
+        }
+        return room;
+    }
+
+ private:
+    const std::vector<Segment>& edges_;
+    bg::index::rtree<std::pair<Box, std::size_t>, bg::index::quadratic<16>> tree_;
+};
+
+/// Whether a direction lies in the smaller of the angles between two others.
+bool is_between(const Vector2d& a, const Vector2d& b, const Vector2d& direction) {
+    const double turn = cross(a, b);
+    return cross(a, direction) * turn > 0.0 && cross(direction, b) * turn > 0.0;
+}
+
+/// Where a corner that touches another one goes: into the smaller of its two angles.
+Vector2i apart(const Vector2d& before, const Vector2d& at, const Vector2d& after, double way) {
     const Vector2d in = (before - at).normalized(), out = (after - at).normalized();
     Vector2d into = in + out;
     if (into.norm() < 1e-6) into = Vector2d(-out.y(), out.x());
-    return (at + kApart * into.normalized()).array().round().matrix().cast<int>();
+    return (at + way * into.normalized()).array().round().matrix().cast<int>();
 }
 
 }  // namespace
@@ -62,11 +110,30 @@ void Outline::move_apart() {
     std::sort(order.begin(), order.end(), is_before);
     const std::vector<Vector2i> as_given = starts_;
     const auto place = [&](std::size_t k) -> Vector2d { return as_given[k].cast<double>(); };
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const std::size_t k = order[i];
-        const bool touches = (i > 0 && as_given[order[i - 1]] == as_given[k]) ||
-                             (i + 1 < order.size() && as_given[order[i + 1]] == as_given[k]);
-        if (touches) starts_[k] = apart(place(before(k)), place(k), place(after(k)));
+    // A corner in whose smaller angle another one lies stays where it is: that one moves away from it.
+    const auto has_another_inside = [&](std::size_t k, std::size_t first, std::size_t last) {
+        const Vector2d in = place(before(k)) - place(k), out = place(after(k)) - place(k);
+        return std::any_of(order.begin() + Index(first), order.begin() + Index(last), [&](std::size_t j) {
+            return j != k && (is_between(in, out, place(before(j)) - place(j)) ||
+                              is_between(in, out, place(after(j)) - place(j)));
+        });
+    };
+    std::vector<std::size_t> touching;
+    for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
+        while (last < order.size() && as_given[order[last]] == as_given[order[first]]) ++last;
+        if (last == first + 1) continue;
+        for (std::size_t i = first; i < last; ++i)
+            if (!has_another_inside(order[i], first, last)) touching.push_back(order[i]);
+    }
+    if (touching.empty()) return;
+    std::vector<Segment> as_edges;
+    for (std::size_t k = 0; k < edges(); ++k) as_edges.push_back(segment(place(k), place(after(k))));
+    const NearbyEdges nearby(as_edges);
+    for (const std::size_t k : touching) {
+        checkpoint();
+        const double most = kApart / kShareOfWay;
+        const double room = std::min(nearby.room_beside(before(k), most), nearby.room_beside(k, most));
+        starts_[k] = apart(place(before(k)), place(k), place(after(k)), kShareOfWay * room);
     }
 }
 

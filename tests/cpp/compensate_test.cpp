@@ -347,3 +347,27 @@ TEST_CASE("a hook has a plan of ordinary size") {
     CHECK(found.pass.poses_mm.rows() < 200);
     CHECK(found.miss.largest_mm < 0.1);
 }
+
+TEST_CASE("an error is reported as it is measured, of plans that were made for a finer tolerance too") {
+    Cubics curled(3, 8);
+    curled << 43.75, 41.75, 26.5, 40.5, 45.5, 22.75, 36.75, 50.25,  //
+        36.75, 50.25, 33, 36.75, 26, 50.25, 30.75, 56.25,           //
+        30.75, 56.25, 49, 48.5, 27.25, 64, 29.25, 70.5;
+    Brush pen;  // of one width, whose tip is as far ahead as it is pressed
+    pen.name = "pen", pen.kind = "pen";
+    pen.depth_range_mm = {0.247, 10.588};
+    pen.lag.coefficients = {0.0};
+    pen.half_width.coefficients = {0.369};
+    pen.tip_gap.coefficients = pen.tip_to_widest.coefficients = {0.0, 0.645};
+    pen.paint_depth_mm = 4.31;
+    Ring drop(5, 2);
+    drop << 0.0, 0.0, 6.83, -0.369, 7.286, -0.1845, 7.286, 0.1845, 6.83, 0.369;
+    pen.footprints.dragged.push_back({10.588, drop});
+    Stroke stroke = stroke_of(curled, {{0.0, 0.369}});
+    stroke.start_covered = true;
+    for (const double tolerance_mm : {0.05, 0.15, 0.25, 0.367, 0.6}) {
+        const CompensatedPass made = compensate(stroke, pen, {Compensation::closed, tolerance_mm});
+        const TrackingError seen = tracking_error_of(made.pass, stroke, pen, tolerance_mm);
+        CHECK_MESSAGE(std::abs(seen.largest_mm - made.miss.largest_mm) < 1e-9, "at " << tolerance_mm);
+    }
+}

@@ -29,6 +29,14 @@ TEST_CASE("exact data give the law that made them") {
     }
 }
 
+TEST_CASE("a range of depths too short for its powers is refused") {
+    LawShape shape;
+    shape.degree = 3;
+    shape.rising = true;
+    shape.range_mm = {0.0, 5e-324};
+    CHECK_THROWS_AS(fit_law({1, 2, 3, 4, 5}, {1, 1, 2, 1, 3}, shape), Error);
+}
+
 TEST_CASE("a line through zero, by hand") {
     LawShape shape;
     shape.through_zero = true;

@@ -8,9 +8,11 @@ takes longer than --slowest or more memory than MOST_MB.
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import os
 import random
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -27,7 +29,7 @@ MOST_MB = {"cpp": 2048, "python": 1024}  # the address sanitizer keeps freed mem
 CPP_BYTES = {"plan_json": 4096, "brush_json": 16384, "marks_json": 4096}
 CPP_NUMBERS = 256
 RANDOM_SEEDS = 40
-STATE = re.compile(r"#(\d+)\s+\w+\s+cov: (\d+) ft: \d+ corp: (\d+)")
+STATE = re.compile(r"#(\d+)\s+\w+(?:\s+cov: (\d+) ft: \d+)?\s+(?:corp: (\d+))?")
 
 
 @dataclass
@@ -54,9 +56,12 @@ def main() -> int:
         print(f"no fuzz target is called {' or '.join(given.targets)}", file=sys.stderr)
         return 2
     rows = []
-    for name, language in chosen:
-        rows.append(_run(name, language, given))
-        _show(rows[-1:])
+    with tempfile.TemporaryDirectory() as copy:
+        if any(language == "python" for _, language in chosen):
+            _copy_package(Path(copy))
+        for name, language in chosen:
+            rows.append(_run(name, language, given, copy))
+            _show(rows[-1:])
     print()
     _show(rows, head=True)
     found = [path for row in rows for path in row.findings]
@@ -86,11 +91,21 @@ def _chosen(known: list[tuple[str, str]], wanted: list[str]) -> list[tuple[str, 
     ]
 
 
+def _copy_package(folder: Path) -> None:
+    import brushsvg._core
+
+    package = folder / "brushsvg"
+    shutil.copytree(
+        ROOT / "python" / "brushsvg", package, ignore=shutil.ignore_patterns("__pycache__", "*.so")
+    )
+    shutil.copy(brushsvg._core.__file__, package)
+
+
 def _log(given, name: str, language: str) -> Path:
     return given.kept / "logs" / f"{language}_{name}.txt"
 
 
-def _run(name: str, language: str, given) -> Ran:
+def _run(name: str, language: str, given, copy: str) -> Ran:
     corpus = given.kept / "corpus" / f"{language}_{name}"
     findings = given.kept / "findings" / f"{language}_{name}"
     for folder in (corpus, findings, given.kept / "logs"):
@@ -116,20 +131,22 @@ def _run(name: str, language: str, given) -> Ran:
         else:
             command = [sys.executable, str(HERE / "python" / "fuzz_target.py"), name, *flags]
         with open(_log(given, name, language), "w", encoding="utf-8", errors="replace") as log:
-            ended = _ended(command, log, 2 * given.seconds + 20 * given.slowest)
+            ended = _ended(command, copy, log, 2 * given.seconds + 20 * given.slowest)
     text = _log(given, name, language).read_text(encoding="utf-8", errors="replace")
     ran = Ran(name, language)
     if states := STATE.findall(text):
-        ran.runs, ran.edges, ran.corpus = map(int, states[-1])
+        ran.runs, ran.edges, ran.corpus = (int(number or 0) for number in states[-1])
     ran.findings = tuple(str(findings / file) for file in sorted(set(os.listdir(findings)) - before))
-    ran.broken = ended != 0 and not ran.findings
+    is_blind = language == "python" and ran.runs and not ran.edges and importlib.util.find_spec("atheris")
+    ran.broken = bool(is_blind) or (ended != 0 and not ran.findings)
     return ran
 
 
-def _ended(command: list[str], log, most_s: int) -> int:
+def _ended(command: list[str], copy: str, log, most_s: int) -> int:
     """Its exit status. The target stops by itself; what hangs where no signal reaches it is ended."""
+    env = {**os.environ, "BRUSHSVG_FUZZED": copy}
     try:
-        return subprocess.run(command, stdout=log, stderr=log, timeout=most_s).returncode
+        return subprocess.run(command, stdout=log, stderr=log, timeout=most_s, env=env).returncode
     except subprocess.TimeoutExpired:
         return -1
 

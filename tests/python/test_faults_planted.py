@@ -95,7 +95,7 @@ def test_the_choice_is_seeded_spread_and_without_overlaps():
 
     chosen = taken(1)
     assert chosen == taken(1) != taken(2)
-    assert [each.folder for each in chosen] == ["a"] * 2 + ["b"] * 7
+    assert [each.place for each in chosen] == ["a"] * 2 + ["b"] * 7
     assert not any(a.overlaps(b) for a in chosen for b in chosen if a is not b)
     assert {each.kind for each in chosen} == {"kind 0", "kind 1", "kind 2"}
     assert all(each.line != 7 for each in chosen)

@@ -158,6 +158,7 @@ def test_own_properties_are_inherited_only_when_asked():
     [
         ("path:hover::foo(){stroke:red}", "css-unread path:hover::foo()"),
         ("@import 'x.css';", "css-unread @import"),
+        ("path:nth-child(2n +){stroke:red}", "css-unread 'path:nth-child(2n +)'"),
         ("@layer ink{path{stroke-width:2}}", "css-unread @layer"),
         ("@supports (fill: red){path{stroke-width:2}}", "css-unread @supports"),
         ("path stroke:red", "css-invalid"),

@@ -309,6 +309,8 @@ void refuse_what_cannot_be_fitted(const std::vector<double>& depth, const std::v
         require_within(end, {-kGreatest, kGreatest}, "an end of the depths", "range_mm");
     if (!(shape.range_mm[0] < shape.range_mm[1]))
         throw Error("not-ascending", "the range of depths must rise", "range_mm");
+    require_within(shape.range_mm[1] - shape.range_mm[0], {1.0 / kGreatest, 2.0 * kGreatest},
+                   "the length of the range of depths", "range_mm");
     require_within(shape.smoothing, {0.0, kGreatest}, "the smoothing", "smoothing");
     if (shape.floor != -std::numeric_limits<double>::infinity())
         require_within(shape.floor, {-kGreatest, kGreatest}, "the floor", "floor");

@@ -121,7 +121,9 @@ def apart(way: Way, exact: Way, cell) -> list[str]:
     """What a machine with backlash paints elsewhere than one without that runs its own program. A brush that stands in
     one place while play is taken up is in that place in both."""
     # half of the backlash is rounded, so are centres of circles; a servo's parts are those of a way whose ends are
-    near_mm = unit_mm(cell) * (1.5 if cell.servo else 1.0) * 2**0.5 + CHORDS_MM
+    # and a height that is rounded leans the tool aside
+    leans = np.abs(cell.machine.lean_mm_per_mm)
+    near_mm = unit_mm(cell) * ((1.5 if cell.servo else 1.0) * 2**0.5 + np.hypot(*leans)) + CHORDS_MM
     if len(way.touches) != len(exact.touches):
         return [f"{len(way.touches)} touches, {len(exact.touches)} without backlash"]
     lines = [shapely.LineString(each.samples[:, :2]) for each in (way, exact)]

@@ -77,3 +77,5 @@ class Tree:
             return compile_selector_list(prelude)
         except (SelectorError, SyntaxError, RecursionError, MemoryError):
             return None
+        except (AttributeError, TypeError):  # tinycss2 1.5 meets the end of ":nth-child(2n +)" unprepared
+            return None

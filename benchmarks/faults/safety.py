@@ -1,0 +1,28 @@
+"""The code that keeps a robot within its bounds, in parts: `plant --safety N` plants N faults in each."""
+
+from __future__ import annotations
+
+from pathlib import PurePosixPath
+
+from fault import Fault
+
+PARTS = {
+    "workspace limits": ("machine/workspace_limits.py", "machine/tilt.py", "machine/preflight.py"),
+    "move extents": ("machine/move_extents.py", "machine/corner_blending.py"),
+    "check": ("verification/*.py", "pipeline/checking.py"),
+    "posts": ("machine/posts/*.py", "machine/writer.py", "cpp/posts/*.cpp"),
+    "readback": ("verification/readback/*.py",),
+    "bounds of corrections": ("painted/corrections.py", "painted/next_time.py", "painted/mended_cell.py"),
+    "paint loads": ("machine/paint_reload.py", "cpp/src/paint_loads.cpp"),
+}
+
+
+def part_of(fault: Fault) -> str | None:
+    """The part whose files hold a fault."""
+    path = PurePosixPath(fault.file)
+    for part, patterns in PARTS.items():
+        for pattern in patterns:
+            whole = pattern if pattern.startswith("cpp/") else f"python/brushsvg/{pattern}"
+            if len(path.parts) == whole.count("/") + 1 and path.match(whole):
+                return part
+    return None
