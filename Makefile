@@ -47,8 +47,8 @@ help:
 	@echo "make bench        our figures beside the peers' and the floor"
 	@echo "make bench-compare REV=main    what became slower than at a revision, both run in turn"
 	@echo "make test-variants  the tests under the arithmetic of other processors: compilers, maths libraries, vector units"
-	@echo "make asan         C++ tests under address and undefined behaviour sanitizers"
-	@echo "make tsan         C++ tests under the thread sanitizer"
+	@echo "make asan         C++ tests, and Python tests with threads, under address and undefined behaviour sanitizers"
+	@echo "make tsan         C++ tests, and Python tests with threads, under the thread sanitizer"
 	@echo "make fuzz         each reader and each computation is fed made-up input for 20 s (FUZZ_S=600, ONLY='plan_json dxf')"
 	@echo "make format       format both languages"
 	@echo "make clean        remove what was built"
@@ -144,15 +144,16 @@ cpp-test: setup test-system
 	cmake --build --preset release
 	ctest --preset release
 
-asan: test-system
-	@cmake --preset asan >/dev/null
-	cmake --build --preset asan --target brushsvg_tests
-	ctest --preset asan -R '^cpp$$'
-
-tsan: test-system
-	@cmake --preset tsan >/dev/null
-	cmake --build --preset tsan --target brushsvg_tests
-	ctest --preset tsan -R '^cpp$$'
+# The C++ tests, and the Python tests in which threads meet: several drawings at a time, and what is given up half way.
+THREADED_TESTS := tests/python/test_batch.py tests/python/test_conversion.py tests/python/test_fit_interrupted.py \
+  tests/python/test_refine.py tests/python/test_size_advice.py tests/python/test_threads.py
+asan tsan: setup test-system
+	@$(MAKE) --no-print-directory $(VENV)/.dev
+	cmake --preset $@ -DBRUSHSVG_PYTHON=ON -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
+	  -Dpybind11_DIR=$$($(BIN)/python -m pybind11 --cmakedir) >/dev/null
+	cmake --build --preset $@ --target brushsvg_tests _core
+	ctest --preset $@ -R '^cpp$$'
+	$(BIN)/python tests/sanitized.py $@ -q -m 'not long' $(THREADED_TESTS)
 
 # FUZZ_S: seconds for each target. ONLY: names of targets, or how they begin. SLOWEST_S: an input that takes longer is a
 # finding. Inputs that reach new code, and findings, stay in build/fuzz-kept for the next run.

@@ -1,7 +1,5 @@
 #include "outline.hpp"
 
-#include <boost/geometry.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -24,44 +22,11 @@ bool is_behind(const Foot& from, const Foot& to) {
 /// share of the way, where another edge is near: edges that cross have no diagram.
 constexpr double kApart = 40.0, kShareOfWay = 0.4;  // units
 
-namespace bg = boost::geometry;
-using Point = bg::model::d2::point_xy<double>;
-using Segment = bg::model::segment<Point>;
-using Box = bg::model::box<Point>;
-
-Segment segment(const Vector2d& a, const Vector2d& b) { return {{a.x(), a.y()}, {b.x(), b.y()}}; }
-
-/// Edges in a tree of boxes, to find what lies near one of them.
-class NearbyEdges {
- public:
-    explicit NearbyEdges(const std::vector<Segment>& edges) : edges_(edges) {
-        std::vector<std::pair<Box, std::size_t>> boxes;
-        for (std::size_t k = 0; k < edges.size(); ++k) boxes.push_back({bg::return_envelope<Box>(edges[k]), k});
-        tree_ = {boxes.begin(), boxes.end()};
-    }
-
-    /// The distance of an edge to those that share no end with it, as far as one is nearer than `most`.
-    double room_beside(std::size_t k, double most) const {
-        const Segment& edge = edges_[k];
-        Box around = bg::return_envelope<Box>(edge);
-        bg::set<bg::min_corner, 0>(around, bg::get<bg::min_corner, 0>(around) - most);
-        bg::set<bg::min_corner, 1>(around, bg::get<bg::min_corner, 1>(around) - most);
-        bg::set<bg::max_corner, 0>(around, bg::get<bg::max_corner, 0>(around) + most);
-        bg::set<bg::max_corner, 1>(around, bg::get<bg::max_corner, 1>(around) + most);
-        double room = most;
-        for (auto found = tree_.qbegin(bg::index::intersects(around)); found != tree_.qend(); ++found) {
-            const Segment& other = edges_[found->second];
-            const bool meets = bg::equals(edge.first, other.first) || bg::equals(edge.first, other.second) ||
-                               bg::equals(edge.second, other.first) || bg::equals(edge.second, other.second);
-            if (!meets) room = std::min(room, bg::distance(edge, other));
-        }
-        return room;
-    }
-
- private:
-    const std::vector<Segment>& edges_;
-    bg::index::rtree<std::pair<Box, std::size_t>, bg::index::quadratic<16>> tree_;
-};
+double distance(const Vector2d& point, const Vector2d& a, const Vector2d& b) {
+    const Vector2d along = b - a;
+    const double at = std::clamp((point - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    return (point - a - at * along).norm();
+}
 
 /// Whether a direction lies in the smaller of the angles between two others.
 bool is_between(const Vector2d& a, const Vector2d& b, const Vector2d& direction) {
@@ -126,13 +91,21 @@ void Outline::move_apart() {
             if (!has_another_inside(order[i], first, last)) touching.push_back(order[i]);
     }
     if (touching.empty()) return;
-    std::vector<Segment> as_edges;
-    for (std::size_t k = 0; k < edges(); ++k) as_edges.push_back(segment(place(k), place(after(k))));
-    const NearbyEdges nearby(as_edges);
+    // the distance of an edge to those that share no end with it, as far as one is nearer than `room`
+    const auto room_beside = [&](std::size_t k, double room) {
+        const Vector2d a = place(k), b = place(after(k));
+        const Eigen::Array2d low = a.cwiseMin(b).array() - room, high = a.cwiseMax(b).array() + room;
+        for (std::size_t j = 0; j < edges(); ++j) {
+            const Vector2d c = place(j), d = place(after(j));
+            const bool is_far = (c.cwiseMax(d).array() < low).any() || (c.cwiseMin(d).array() > high).any();
+            if (is_far || c == a || c == b || d == a || d == b) continue;
+            room = std::min({room, distance(c, a, b), distance(d, a, b), distance(a, c, d), distance(b, c, d)});
+        }
+        return room;
+    };
     for (const std::size_t k : touching) {
-        checkpoint();
-        const double most = kApart / kShareOfWay;
-        const double room = std::min(nearby.room_beside(before(k), most), nearby.room_beside(k, most));
+        checkpoint(1 + int(edges() / 100));
+        const double room = room_beside(k, room_beside(before(k), kApart / kShareOfWay));
         starts_[k] = apart(place(before(k)), place(k), place(after(k)), kShareOfWay * room);
     }
 }

@@ -112,13 +112,11 @@ ROWS = [
 IN_CI = 60  # rows on each landing
 
 
-@sample("brush, drawing, cell, command", ROWS, keep=IN_CI)
-def test_each_pair_of_brush_drawing_cell_and_command_works(
-    desk, tmp_path, capsys, record_property, brush, drawing, cell, command
-):
+def tried(desk, folder, capsys, record_property, brush, drawing, cell, command) -> None:
+    """One row: it ends in what the command promises, or in a refusal with a physical reason and in no file."""
     options = ("--brush", brush_file(desk, brush), "--cell", cell)
     [steps] = [each for each in COMMANDS if each.__name__ == command]
-    for words, promised in steps(drawing_file(desk, drawing), options, tmp_path):
+    for words, promised in steps(drawing_file(desk, drawing), options, folder):
         status, _, told = in_json(capsys, *words)
         codes = [notice.code for _, notice in told]
         if status == 0:
@@ -128,6 +126,33 @@ def test_each_pair_of_brush_drawing_cell_and_command_works(
         record_property("refused", codes[-1])
         assert not any(file.is_file() for file in promised)
         return
+
+
+@sample("brush, drawing, cell, command", ROWS, keep=IN_CI)
+def test_each_pair_of_brush_drawing_cell_and_command_works(
+    desk, tmp_path, capsys, record_property, brush, drawing, cell, command
+):
+    tried(desk, tmp_path, capsys, record_property, brush, drawing, cell, command)
+
+
+# Every brush with every drawing and command, on one machine after the other; those of the rows above are left out.
+TRIPLES = sorted(
+    {
+        (row[0], row[1], row[3])
+        for brushes, drawings, cells in MACHINES
+        for brush, drawing, command in itertools.product(brushes, drawings, COMMANDS)
+        for row in as_offered(brush, drawing, cells[0], command)
+    }
+    - {(brush, drawing, command) for brush, drawing, _, command in ROWS}
+)
+BRUSH_CELLS = MACHINES[0][2]
+
+
+@sample("number", range(len(TRIPLES)), keep=10)
+def test_each_triple_of_brush_drawing_and_command_works(desk, tmp_path, capsys, record_property, number):
+    brush, drawing, command = TRIPLES[number]
+    cell = BRUSH_CELLS[number % len(BRUSH_CELLS)]
+    tried(desk, tmp_path, capsys, record_property, brush, drawing, cell, command)
 
 
 @pytest.mark.parametrize(("brushes", "drawings", "cells"), MACHINES)
