@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+AT_ONCE = 256  # strokes whose neighbours are listed: in a file that was made to, each has all others
 PLACE_MM = 1.0  # strokes that begin as near to each other are at the same place
 LEAST_VISITS = 3  # to one place, for it to be a pot
 _COMMENT = re.compile(r"\(([^()]*)\)|;(.*)")
@@ -74,12 +75,18 @@ def _outside(strokes: list[np.ndarray], chosen: list[bool]) -> list[bool]:
 
 
 def _at_pots(strokes: list[np.ndarray]) -> list[bool]:
+    import shapely  # loaded for programs of other tools alone
+
     if not strokes:
         return []
     begins = np.array([points[0] for points in strokes])
-    near = np.hypot(*(begins[:, None] - begins[None]).transpose(2, 0, 1)) <= PLACE_MM
-    visits = near.sum(axis=1)
     # one after the other at one place are coats of paint
-    follows = np.array([False, *(near[k, k + 1] for k in range(len(strokes) - 1))])
-    is_pot = (visits >= LEAST_VISITS) & ~(near & follows[None]).any(axis=1)
+    follows = np.append(False, np.hypot(*np.diff(begins, axis=0).T) <= PLACE_MM)
+    places = shapely.points(begins)
+    tree, visits, coats = shapely.STRtree(places), np.zeros(len(begins), int), np.zeros(len(begins), int)
+    for first in range(0, len(begins), AT_ONCE):
+        asked, found = tree.query(places[first : first + AT_ONCE], predicate="dwithin", distance=PLACE_MM)
+        np.add.at(visits, first + asked, 1)
+        np.add.at(coats, first + asked, follows[found])
+    is_pot = (visits >= LEAST_VISITS) & (coats == 0)
     return _outside(strokes, is_pot.tolist())
