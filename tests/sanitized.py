@@ -54,6 +54,10 @@ def made_environment(build: Path) -> Path:
     (site,) = venv.glob("lib/python3.*/site-packages")
     # lines of paths: what stands in the .pth files there, such as the editable install, is not read
     (site / "sanitized.pth").write_text("\n".join([str(build / "site"), *borrowed, ""]), encoding="utf-8")
+    command = venv / "bin" / "brushsvg"
+    code = 'import sys\nfrom brushsvg.cli import main\nif __name__ == "__main__":\n    sys.exit(main())\n'
+    command.write_text(f"#!{venv}/bin/python\n{code}")
+    command.chmod(0o755)
     return venv / "bin" / "python"
 
 

@@ -109,7 +109,8 @@ def make_venv(root: Path, tree: Path) -> None:
             (venv / "bin" / script.name).symlink_to(script)
     command = venv / "bin/brushsvg"
     command.unlink()
-    command.write_text(f"#!{venv}/bin/python\nimport sys\nfrom brushsvg.cli import main\nsys.exit(main())\n")
+    code = 'import sys\nfrom brushsvg.cli import main\nif __name__ == "__main__":\n    sys.exit(main())\n'
+    command.write_text(f"#!{venv}/bin/python\n{code}")
     command.chmod(0o755)
 
 
