@@ -55,6 +55,7 @@ def build(python: str, out: Path) -> Path:
         "ZIG": zig,
         "ZIG_GLOBAL_CACHE_DIR": str(WORK / "zig-cache"),
         "SOURCE_DATE_EPOCH": _output("git", "-C", TREE, "log", "-1", "--format=%ct").strip(),
+        "CCACHE_BASEDIR": "",  # or it shortens paths, which stay in the library, before -ffile-prefix-map does
         "CCACHE_COMPILERTYPE": "clang",  # or a file compiled by one zig would serve another
         "CCACHE_COMPILERCHECK": f"string:{_output(zig, 'version')}{(TOOLS / 'zig-c++').read_text()}",
         "PYTHONDONTWRITEBYTECODE": "1",

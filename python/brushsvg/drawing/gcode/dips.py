@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-AT_ONCE = 256  # strokes whose neighbours are listed: in a file that was made to, each has all others
+AT_ONCE = 256  # places whose neighbours are listed: in a file that was made to, each has all others
 PLACE_MM = 1.0  # strokes that begin as near to each other are at the same place
 LEAST_VISITS = 3  # to one place, for it to be a pot
 _COMMENT = re.compile(r"\(([^()]*)\)|;(.*)")
@@ -82,11 +82,13 @@ def _at_pots(strokes: list[np.ndarray]) -> list[bool]:
     begins = np.array([points[0] for points in strokes])
     # one after the other at one place are coats of paint
     follows = np.append(False, np.hypot(*np.diff(begins, axis=0).T) <= PLACE_MM)
-    places = shapely.points(begins)
-    tree, visits, coats = shapely.STRtree(places), np.zeros(len(begins), int), np.zeros(len(begins), int)
-    for first in range(0, len(begins), AT_ONCE):
-        asked, found = tree.query(places[first : first + AT_ONCE], predicate="dwithin", distance=PLACE_MM)
-        np.add.at(visits, first + asked, 1)
-        np.add.at(coats, first + asked, follows[found])
-    is_pot = (visits >= LEAST_VISITS) & (coats == 0)
+    places, of = np.unique(begins, axis=0, return_inverse=True)
+    there, followed = np.bincount(of), np.bincount(of, follows)
+    points = shapely.points(places)
+    tree, visits, coats = shapely.STRtree(points), np.zeros(len(places)), np.zeros(len(places))
+    for first in range(0, len(places), AT_ONCE):
+        asked, found = tree.query(points[first : first + AT_ONCE], predicate="dwithin", distance=PLACE_MM)
+        np.add.at(visits, first + asked, there[found])
+        np.add.at(coats, first + asked, followed[found])
+    is_pot = ((visits >= LEAST_VISITS) & (coats == 0))[of]
     return _outside(strokes, is_pot.tolist())
