@@ -9,7 +9,7 @@ stamp=prefix/made-by-$(cat "$tools"/{libraries.sh,ceres.sh,sources.sha256,zig-c+
 [ ! -e "$stamp" ] || exit 0
 export ZIG ZIG_GLOBAL_CACHE_DIR=$PWD/zig-cache
 if command -v ccache >/dev/null; then  # a compilation that was stopped goes on where it was
-  export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_COMPILERTYPE=clang CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+  export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_COMPILERTYPE=clang CCACHE_BASEDIR=
   CCACHE_COMPILERCHECK="string:zig $("$ZIG" version) $(sha256sum <"$tools/zig-c++")"
   export CCACHE_COMPILERCHECK
 fi
