@@ -24,7 +24,7 @@ endif
 WERROR ?= OFF
 PIP_INSTALL := $(BIN)/pip install -q --no-build-isolation -C build-dir=$(BUILD) -C cmake.define.BRUSHSVG_WERROR=$(WERROR) -e
 
-.PHONY: wheel wheel-test wheel-docs sdist deb docs plugins help setup system test-system demo test lint format clang-headers clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan fuzz tsan clean quick FORCE
+.PHONY: wheel wheel-test wheel-docs sdist deb docs plugins help setup system test-system demo test lint format clang-headers clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan fuzz tsan tidy clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
@@ -49,6 +49,7 @@ help:
 	@echo "make test-variants  the tests under the arithmetic of other processors: compilers, maths libraries, vector units"
 	@echo "make asan         C++ tests, and Python tests with threads, under address and undefined behaviour sanitizers"
 	@echo "make tsan         C++ tests, and Python tests with threads, under the thread sanitizer"
+	@echo "make tidy         clang-tidy over the core: what compilers do not see"
 	@echo "make fuzz         each reader and each computation is fed made-up input for 20 s (FUZZ_S=600, ONLY='plan_json dxf')"
 	@echo "make format       format both languages"
 	@echo "make clean        remove what was built"
@@ -155,6 +156,12 @@ asan tsan: setup test-system
 	ctest --preset $@ -R '^cpp$$'
 	$(BIN)/python tests/sanitized.py $@ -q -m 'not long' $(THREADED_TESTS)
 
+# Faults that no compiler sees: the checks of .clang-tidy.
+tidy: setup test-system
+	@$(PIP_INSTALL) ".[analysis]"
+	cmake --preset release >/dev/null
+	git ls-files 'cpp/*.cpp' ':!cpp/bindings' | xargs -P $$(nproc) -n 4 $(BIN)/clang-tidy -p build/release --quiet
+
 # FUZZ_S: seconds for each target. ONLY: names of targets, or how they begin. SLOWEST_S: an input that takes longer is a
 # finding. Inputs that reach new code, and findings, stay in build/fuzz-kept for the next run.
 FUZZ_S ?= 20
@@ -219,7 +226,7 @@ integration: integration-system
 	$(PYTEST) -rs -m 'not long $(NOT_THOROUGH)' tests/integration
 
 thorough: test-system integration-system
-	@$(MAKE) --no-print-directory lint cpp-test asan clang-check
+	@$(MAKE) --no-print-directory lint cpp-test asan clang-check tidy
 	$(MAKE) --no-print-directory python-test integration NOT_THOROUGH=
 
 # The same suites with each test's cost recorded, then the table.

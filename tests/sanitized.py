@@ -19,7 +19,7 @@ RUNTIME = {"asan": ("libasan.so", "libubsan.so"), "tsan": ("libtsan.so",)}
 OPTIONS = {
     "ASAN_OPTIONS": "detect_leaks=0:exitcode=99",
     "UBSAN_OPTIONS": "print_stacktrace=1",
-    "TSAN_OPTIONS": f"ignore_noninstrumented_modules=1:exitcode=99:suppressions={ROOT / 'tests' / 'tsan.supp'}",
+    "TSAN_OPTIONS": "ignore_noninstrumented_modules=1:exitcode=99",
 }
 
 

@@ -271,7 +271,7 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
     require_usable(brush);
     require_tolerance(options.tolerance_mm, stroke.id);
     if (options.lag_mm && !(*options.lag_mm >= 0.0 && *options.lag_mm <= kLongestLagMm))
-        throw Error("out-of-range", "the lag is not within [0, 1000] mm", stroke.id, *options.lag_mm,
+        throw Error("out-of-range", "the lag is not within [0, 1000] mm", stroke.id, options.lag_mm,
                     std::array<double, 2>{0.0, kLongestLagMm});
     if (!(options.speed_mm_s > 0.0) || std::isinf(options.speed_mm_s))
         throw Error("out-of-range", "the speed must be finite and greater than 0 mm/s", stroke.id, options.speed_mm_s);

@@ -122,7 +122,8 @@ std::vector<Eigen::Index> from_left_to_right(const Ring& points) {
     for (Eigen::Index i = 0; i < n;) {
         begins.push_back(i);
         const Eigen::Index first = i;
-        const bool rises = ++i < n && !is_before(i, i - 1);
+        ++i;
+        const bool rises = i < n && !is_before(i, i - 1);
         while (i < n && is_before(i, i - 1) != rises) ++i;
         if (!rises) std::reverse(order.begin() + first, order.begin() + i);
     }

@@ -57,6 +57,7 @@ KINDS_OF_PAGES = {
     "report.md": "commands",
     "text.md": "commands python",
     "walkthrough.md": "commands",
+    "wheels.md": "json",
 }
 MADE = "article.md"
 LAWS = {"lag": 1.2, "width": 0.8}  # of a brush that was measured, per mm of depth
