@@ -6,6 +6,7 @@ class RobotPost:
     LOG = ""
 
     def __init__(self, robotpost, robotname, robot_axes, **kwargs):
+        assert robot_axes == 6, robot_axes
         self.lines = []
 
     def ProgStart(self, progname):  # noqa: N802 as RoboDK calls them, and those below

@@ -164,3 +164,12 @@ def test_a_plan_may_begin_and_end_pressed_down(first_mm, last_mm, cell):
     brush = find_brush("round-6")
     tight = replace(find_cell(cell), workspace=find_cell().workspace)
     assert problems(plan, brush, _core.simulate(plan, brush), tight, 0.05) == []
+
+
+def test_without_a_tolerance_nothing_is_cut_and_a_place_that_stands_twice_is_no_corner():
+    line = np.array([[0, 0, -1], [5, 0, -1], [10, 0, -1.0]])
+    assert not blend_radii(line, Blending(tolerance_mm=0.0)).any()
+    twice = np.array([[0, 0, -1], [5, 0, -1], [5, 0, -1], [5, 5, -1.0]])
+    assert np.array_equal(blended(twice, np.array([0.0, 1.0, 1.0, 0.0]))[0], twice)
+    once = np.array([[4, 0, -1], [5, 0, -1], [5, 1, -1.0]])
+    assert len(blended(once, np.array([0.0, 0.3, 0.0]))[0]) == 5  # moves of exactly 1 mm are cut as others are

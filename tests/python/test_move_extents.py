@@ -137,3 +137,14 @@ def test_a_circle_that_climbs_through_a_box_on_its_way_is_found():
     half = ways([], [((10, 0, 0), (-10, 0, 8), (0, 0, 1))])
     assert place_inside(half, (-1, 9, 3), (1, 11, 5)) is not None
     assert place_inside(half, (-1, -11, 3), (1, -9, 5)) is None
+
+
+def test_the_nearest_place_of_a_climbing_circle_lies_on_its_way():
+    climbing = ways([], [((2, 0, -3), (2, 0, 5), (0, 0, 1))])  # round the z axis: nearest where it passes z 0
+    assert from_origin(climbing) == pytest.approx((2.0, math.hypot(2, 5)))
+
+
+def test_a_circle_that_only_grazes_a_box_is_found_in_it():
+    flat = ways([], [((10, 0, 0), (10, 0, 0), (0, 0, 1))])
+    place = place_inside(flat, (-0.5, 9.9, -1), (0.5, 11, 1))
+    assert place == pytest.approx((0, 10, 0))

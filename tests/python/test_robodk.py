@@ -47,6 +47,21 @@ def test_the_post_is_called_for_each_move(capsys):
     assert lines[-1] == "finish"
 
 
+def test_a_circle_right_after_the_press_is_painted_at_the_speed_of_painting():
+    turn = np.linspace(0, np.pi, 9)
+    round_ = np.column_stack([60 - 10 * np.cos(turn), 30 + 10 * np.sin(turn), np.full(9, -2.0)])
+    poses = [[50, 30, 0], *round_.tolist(), [70, 20, -2], [70, 20, 0]]
+    a_pass = _core.Pass("s", poses, 17.0, arcs=[_core.Arc(1, 9, (60, 30), -1)])
+    cell = replace(cell_with(POST), arm=None)
+    loads = in_loads(_core.Plan("round-6", "", (100, 60), [a_pass]), find_brush("round-6"), cell)
+    lines = "".join(
+        text_of(POSTS["robodk"], walked(loads, find_brush("round-6"), cell).allowed())
+    ).splitlines()
+    (at,) = (k for k, line in enumerate(lines) if line.startswith("circle"))
+    speeds = [line for line in lines[:at] if line.startswith("speed")]
+    assert speeds[-1] == "speed 17" and speeds[-2] != "speed 17"
+
+
 def test_a_tilted_brush_is_told_pose_by_pose():
     """The brush leans by 20 degrees towards x from its second pose on, the tip where the plan has it."""
     leans = np.array([[0.0, 0, 1], [np.sin(np.pi / 9), 0, np.cos(np.pi / 9)]])[[0, 1, 1]]
