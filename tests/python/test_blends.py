@@ -172,4 +172,5 @@ def test_without_a_tolerance_nothing_is_cut_and_a_place_that_stands_twice_is_no_
     twice = np.array([[0, 0, -1], [5, 0, -1], [5, 0, -1], [5, 5, -1.0]])
     assert np.array_equal(blended(twice, np.array([0.0, 1.0, 1.0, 0.0]))[0], twice)
     once = np.array([[4, 0, -1], [5, 0, -1], [5, 1, -1.0]])
-    assert len(blended(once, np.array([0.0, 0.3, 0.0]))[0]) == 5  # moves of exactly 1 mm are cut as others are
+    path, _, _ = blended(once, np.array([0.0, 0.3, 0.0]))
+    assert len(path) == 5  # moves of exactly 1 mm are cut as others are
