@@ -113,7 +113,9 @@ def test_doctor_fails_without_what_is_always_needed(capsys, without, version):
 def test_the_extras_of_users_have_a_purpose():
     text = (ROOT / "pyproject.toml").read_text()
     names = set(metadata.metadata("brushsvg").get_all("Provides-Extra"))
-    assert names - {"bench", "docs", "dev", "fuzz"} == set(doctor.PURPOSE)  # without those of developers
+    assert names - {"analysis", "bench", "docs", "dev", "fuzz"} == set(
+        doctor.PURPOSE
+    )  # without those of developers
     assert all(f"\n{name} = [" in text for name in doctor.PURPOSE)
 
 
