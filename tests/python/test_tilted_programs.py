@@ -610,6 +610,12 @@ def test_no_turn_on_the_spot():
         text_for(plan(axes(0, 0, 10, 10), poses=poses), brushsvg.find_cell("ur5e"))
 
 
+def test_a_place_that_stands_twice_is_no_turn():
+    poses = [[20, 20, 0], [30, 20, -2], [30, 20, -2], [60, 20, 0]]
+    (a_pass,) = plan(axes(10, 10, 10, 10), poses=poses).passes
+    assert broken_limits(a_pass, brushsvg.find_cell("ur5e")) == []
+
+
 def test_in_the_air_it_turns_as_slowly():
     cell = brushsvg.find_cell("ur5e")
     robot = run(text_for(plan(axes(*[30] * 5)), cell))
