@@ -129,6 +129,7 @@ def test_it_says_that_it_is_simulated(drawing):
     ("toml", "code"),
     [
         ("[machine]\nbacklash_mm = [4.0, 0.0]\n", "out-of-range 4 0 3"),
+        (f"[machine]\nbacklash_mm = [{10**400}, 0.0]\n", "out-of-range 0 3"),
         ("[machine]\nbacklash = 0.1\n", "key-unknown machine.backlash"),
         ("[brush]\nlag = true\n", "wrong-type brush.lag"),
         ("[robot]\n", "key-unknown robot"),

@@ -160,8 +160,12 @@ def _value(said, value, where: str):
         raise Error(f"{where} must be a finite number, not {str(value)[:40]}", where, code="wrong-type")
     least, greatest = said["range"]
     if not least <= value <= greatest:
-        sentence = f"{where} {value:g} is outside the range [{least:g}, {greatest:g}]"
-        raise Error(sentence, where, float(value), (least, greatest), code="out-of-range")
+        shown = (
+            str(value)[:40] if isinstance(value, int) else f"{value:g}"
+        )  # TOML's whole numbers have no end
+        sentence = f"{where} {shown} is outside the range [{least:g}, {greatest:g}]"
+        number = float(value) if abs(value) < 1e300 else None
+        raise Error(sentence, where, number, (least, greatest), code="out-of-range")
     return value
 
 
