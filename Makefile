@@ -226,7 +226,7 @@ integration: integration-system
 	$(PYTEST) -rs -m 'not long $(NOT_THOROUGH)' tests/integration
 
 thorough: test-system integration-system
-	@$(MAKE) --no-print-directory lint cpp-test asan clang-check tidy
+	@$(MAKE) --no-print-directory lint cpp-test asan clang-check
 	$(MAKE) --no-print-directory python-test integration NOT_THOROUGH=
 
 # The same suites with each test's cost recorded, then the table.

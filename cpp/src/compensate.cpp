@@ -349,13 +349,12 @@ CompensatedPass compensated(const Stroke& stroke, const Brush& brush, const Comp
         CompensateOptions finely = options;
         finely.tolerance_mm = finer_mm;
         CompensatedPass finer = at_its_tolerance(stroke, brush, finely);
-        if (finer.pass.poses_mm.rows() >= result.pass.poses_mm.rows() ||
-            finer.miss.largest_mm > std::max(options.tolerance_mm, result.miss.largest_mm))
-            continue;
-        // looked at as closely as its neighbours, whatever it was made for
+        if (finer.pass.poses_mm.rows() >= result.pass.poses_mm.rows()) continue;
+        // measured as the plan that it would replace
         const bool turns = finer.miss.has_turn_in_place;
         finer.miss = tracking_error_of(finer.pass, stroke, brush, options.tolerance_mm);
         finer.miss.has_turn_in_place = turns;
+        if (finer.miss.largest_mm > std::max(options.tolerance_mm, result.miss.largest_mm)) continue;
         result = finer;
     }
     return result;

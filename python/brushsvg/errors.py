@@ -100,6 +100,11 @@ def told(sentence: str, advice: str) -> str:
     return f"{sentence}; {advice}" if advice else sentence
 
 
+def shown(number: float) -> str:
+    """A number of a file in a sentence: whole numbers of TOML have no end."""
+    return str(number)[:40] if isinstance(number, int) else f"{number:g}"
+
+
 def need(value, kind: type | tuple[type, ...], what: str) -> None:
     """Error for a value of another Python type than what it should be, in words. True is no number."""
     kinds = kind if isinstance(kind, tuple) else (kind,)

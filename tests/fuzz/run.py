@@ -12,7 +12,6 @@ import importlib.util
 import os
 import random
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -21,7 +20,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path.insert(0, str(HERE / "python"))
+sys.path[:0] = [str(HERE / "python"), str(HERE.parent)]
 
 SLOWEST_S = 10  # by the clock: a machine that is busy with other work needs more
 MOST_MB = {"cpp": 2048, "python": 1024}  # the address sanitizer keeps freed memory
@@ -56,12 +55,10 @@ def main() -> int:
         print(f"no fuzz target is called {' or '.join(given.targets)}", file=sys.stderr)
         return 2
     rows = []
-    with tempfile.TemporaryDirectory() as copy:
-        if any(language == "python" for _, language in chosen):
-            _copy_package(Path(copy))
-        for name, language in chosen:
-            rows.append(_run(name, language, given, copy))
-            _show(rows[-1:])
+    python = _python(given.kept) if any(language == "python" for _, language in chosen) else None
+    for name, language in chosen:
+        rows.append(_run(name, language, given, python))
+        _show(rows[-1:])
     print()
     _show(rows, head=True)
     found = [path for row in rows for path in row.findings]
@@ -91,21 +88,19 @@ def _chosen(known: list[tuple[str, str]], wanted: list[str]) -> list[tuple[str, 
     ]
 
 
-def _copy_package(folder: Path) -> None:
+def _python(kept: Path) -> Path:
+    from copied_package import made_environment
+
     import brushsvg._core
 
-    package = folder / "brushsvg"
-    shutil.copytree(
-        ROOT / "python" / "brushsvg", package, ignore=shutil.ignore_patterns("__pycache__", "*.so")
-    )
-    shutil.copy(brushsvg._core.__file__, package)
+    return made_environment(kept / "environment", Path(brushsvg._core.__file__))
 
 
 def _log(given, name: str, language: str) -> Path:
     return given.kept / "logs" / f"{language}_{name}.txt"
 
 
-def _run(name: str, language: str, given, copy: str) -> Ran:
+def _run(name: str, language: str, given, python: Path | None) -> Ran:
     corpus = given.kept / "corpus" / f"{language}_{name}"
     findings = given.kept / "findings" / f"{language}_{name}"
     for folder in (corpus, findings, given.kept / "logs"):
@@ -129,9 +124,9 @@ def _run(name: str, language: str, given, copy: str) -> Ran:
             if name in CPP_BYTES:
                 command.append(f"-dict={HERE / 'cpp' / 'json.dict'}")
         else:
-            command = [sys.executable, str(HERE / "python" / "fuzz_target.py"), name, *flags]
+            command = [str(python), str(HERE / "python" / "fuzz_target.py"), name, *flags]
         with open(_log(given, name, language), "w", encoding="utf-8", errors="replace") as log:
-            ended = _ended(command, copy, log, 2 * given.seconds + 20 * given.slowest)
+            ended = _ended(command, log, 2 * given.seconds + 20 * given.slowest)
     text = _log(given, name, language).read_text(encoding="utf-8", errors="replace")
     ran = Ran(name, language)
     if states := STATE.findall(text):
@@ -142,11 +137,10 @@ def _run(name: str, language: str, given, copy: str) -> Ran:
     return ran
 
 
-def _ended(command: list[str], copy: str, log, most_s: int) -> int:
+def _ended(command: list[str], log, most_s: int) -> int:
     """Its exit status. The target stops by itself; what hangs where no signal reaches it is ended."""
-    env = {**os.environ, "BRUSHSVG_FUZZED": copy}
     try:
-        return subprocess.run(command, stdout=log, stderr=log, timeout=most_s, env=env).returncode
+        return subprocess.run(command, stdout=log, stderr=log, timeout=most_s).returncode
     except subprocess.TimeoutExpired:
         return -1
 

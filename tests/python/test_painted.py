@@ -221,3 +221,12 @@ def test_a_sheet_that_lies_otherwise_is_told_how(moved, said):
     ]
     with refused(said, "marks"):
         read_painted(plan_, rows, None)
+
+
+def test_a_path_of_thousands_of_characters_does_not_fill_the_terminal():
+    def read(path):
+        raise Error("the file cannot be read: its name is too long", code="file-unreadable")
+
+    with pytest.raises(Error) as refusal:
+        read_painted(plan(), "a" * 5000, read)
+    assert refusal.value.code == "file-unreadable" and len(str(refusal.value)) < 400

@@ -30,24 +30,28 @@ def painted(fill, stroke, more="", before=""):
     return read(f'<path id="first" d="M0 0H1"/>{before}{BOTH.format(fill, stroke, more)}')
 
 
-def told(design):
+def notices_of(design):
     return list(design.notices)
 
 
 @pytest.mark.parametrize("server", SERVERS.values(), ids=SERVERS)
 def test_a_paint_that_is_not_read_is_named_for_fill_and_stroke(server):
     of = "paint-unread p {} #s #000000".format
-    assert are_told(told(painted("url(#s)", "none", before=server)), of("fill"))
-    assert are_told(told(painted("url(#s)", "red", before=server)), of("fill")), "under a stroke, too"
-    assert are_told(told(painted("red", "url(#s)", before=server)), of("stroke"))
-    assert are_told(told(painted("url(#s)", "url(#s)", before=server)), of("fill"), of("stroke"))
+    assert are_told(notices_of(painted("url(#s)", "none", before=server)), of("fill"))
+    assert are_told(notices_of(painted("url(#s)", "red", before=server)), of("fill")), "under a stroke, too"
+    assert are_told(notices_of(painted("red", "url(#s)", before=server)), of("stroke"))
+    assert are_told(notices_of(painted("url(#s)", "url(#s)", before=server)), of("fill"), of("stroke"))
 
 
 @pytest.mark.parametrize("server", NOTHING.values(), ids=NOTHING)
 def test_a_paint_of_nothing_paints_nothing(server):
     design = painted("url(#s)", "blue", before=server)
-    assert (design.elements[1].fill_rule, design.elements[1].colour, told(design)) == ("", "#0000ff", [])
-    assert are_told(told(painted("url(#s)", "none", before=server)), "neither-stroke-nor-fill p")
+    assert (design.elements[1].fill_rule, design.elements[1].colour, notices_of(design)) == (
+        "",
+        "#0000ff",
+        [],
+    )
+    assert are_told(notices_of(painted("url(#s)", "none", before=server)), "neither-stroke-nor-fill p")
 
 
 @pytest.mark.parametrize(
@@ -61,18 +65,18 @@ def test_a_paint_of_nothing_paints_nothing(server):
 )
 def test_a_gradient_of_one_colour_is_that_colour(gradient):
     design = painted("url(#s)", "none", before=gradient)
-    assert (design.elements[1].colour, told(design)) == ("#00ff00", [])
+    assert (design.elements[1].colour, notices_of(design)) == ("#00ff00", [])
 
 
 @pytest.mark.parametrize("colour", ["#ff000033", "#f003", "rgba(255,0,0,.2)", "hsl(0 100% 50% / 20%)"])
 def test_a_colour_seen_through_is_named_wherever_it_paints(colour):
     of = "opacity-unread p {} 0.2 1".format
-    assert are_told(told(painted(colour, "none")), of("fill"))
-    assert are_told(told(painted(colour, "blue")), of("fill"))
-    assert are_told(told(painted("blue", colour)), of("stroke"))
-    assert are_told(told(painted("none", "currentColor", f'color="{colour}"')), of("stroke"))
+    assert are_told(notices_of(painted(colour, "none")), of("fill"))
+    assert are_told(notices_of(painted(colour, "blue")), of("fill"))
+    assert are_told(notices_of(painted("blue", colour)), of("stroke"))
+    assert are_told(notices_of(painted("none", "currentColor", f'color="{colour}"')), of("stroke"))
     gradient = f'<linearGradient id="s"><stop stop-color="{colour}"/></linearGradient>'
-    assert are_told(told(painted("url(#s)", "none", before=gradient)), of("fill"))
+    assert are_told(notices_of(painted("url(#s)", "none", before=gradient)), of("fill"))
     assert painted(colour, "none").elements[1].colour == "#ff0000"
 
 
@@ -84,10 +88,10 @@ def test_a_colour_of_glass_paints_nothing(colour):
 
 
 def test_opacities_are_named_for_what_is_painted():
-    assert are_told(told(painted("red", "blue", 'fill-opacity=".5"')), "opacity-unread fill-opacity 1")
-    assert told(painted("none", "blue", 'fill-opacity=".5"')) == []
-    assert told(painted("red", "blue", 'fill-opacity="2" opacity="101%" stroke-opacity="1.0"')) == []
-    assert are_told(told(painted("red", "blue", 'opacity="x"')), "css-invalid opacity x")
+    assert are_told(notices_of(painted("red", "blue", 'fill-opacity=".5"')), "opacity-unread fill-opacity 1")
+    assert notices_of(painted("none", "blue", 'fill-opacity=".5"')) == []
+    assert notices_of(painted("red", "blue", 'fill-opacity="2" opacity="101%" stroke-opacity="1.0"')) == []
+    assert are_told(notices_of(painted("red", "blue", 'opacity="x"')), "css-invalid opacity x")
     assert painted("red", "blue", 'fill-opacity="-1" stroke-opacity="100%"').elements[1].fill_rule == ""
     with refused("nothing-to-paint transparent"):
         read(BOTH.format("red", "blue", 'opacity="1e-9"'))
@@ -124,8 +128,8 @@ def test_white_is_told():
         ("blue", "#fff"),
         ("rgb(250 250 248)", "none"),
     ):
-        assert are_told(told(painted(fill, stroke)), "white-paint p data-brushsvg-skip")
-    assert not told(painted("#e8e8e8", "none"))
+        assert are_told(notices_of(painted(fill, stroke)), "white-paint p data-brushsvg-skip")
+    assert not notices_of(painted("#e8e8e8", "none"))
 
 
 def test_a_fill_of_another_colour_than_the_stroke_keeps_it():

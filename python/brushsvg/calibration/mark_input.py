@@ -19,7 +19,6 @@ LEAST_MM2 = 0.1
 LARGEST_MM = 1e6
 STRAIGHT_RAD = 0.35  # strokes that turn less in all say nothing of the lag that a displacement would not
 UPRIGHT = "brushes are found from marks of a brush held upright"
-LONGEST_PATH = 200  # characters of one in a sentence
 PAINTED_MM = 5.0  # a depth counts where this much was painted at it
 DEPTH_BINS = 20
 DAB = "dab"  # the kind of stroke, in a plan's settings, that is set down and taken up without a way
@@ -147,8 +146,7 @@ def _listed(marks, read) -> list[tuple[str, list]]:
         try:
             found = _core.read_marks(read(marks).decode("utf-8", "replace"))
         except Error as refusal:
-            path = marks if len(marks) <= LONGEST_PATH else f"{marks[: LONGEST_PATH // 2]} ..."
-            raise Error(f"{path}: {refusal}", "marks", refusal.value, code=refusal.code) from None
+            raise Error(f"{marks[:200]}: {refusal}", "marks", refusal.value, code=refusal.code) from None
         return [(one.stroke, [np.array(ring) for ring in one.outline_mm]) for one in found.passes]
     out = []
     for i, row in enumerate(json_fields.objects(marks, "marks", ", or the path of a marks.json")):

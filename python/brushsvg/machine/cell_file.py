@@ -9,7 +9,7 @@ import textwrap
 from dataclasses import fields
 from pathlib import Path
 
-from ..errors import Error, need
+from ..errors import Error, need, shown
 from ..files import find_file, names_in, read_bytes, toml_document
 from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries, required, tables_of
 from .cell_check import check
@@ -148,9 +148,8 @@ def _number(entry: Entry, value, where: str):
         said = "a whole number" if entry.kind == "whole" else "a finite number"
         raise Error(f"{where} must be {said}, not {str(value)[:40]}", where=where, code="wrong-type")
     if not entry.least <= value <= entry.greatest:
-        said = str(value)[:40] if isinstance(value, int) else f"{value:g}"
         raise Error(
-            f"{where} {said} is outside the range [{entry.least:g}, {entry.greatest:g}]",
+            f"{where} {shown(value)} is outside the range [{entry.least:g}, {entry.greatest:g}]",
             where=where,
             code="out-of-range",
         )

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field, fields
 
 import numpy as np
 
-from ..errors import Error
+from ..errors import Error, shown
 from ..files import toml_document
 
 FORMAT, VERSION = "brushsvg/studio", 1
@@ -160,10 +160,7 @@ def _value(said, value, where: str):
         raise Error(f"{where} must be a finite number, not {str(value)[:40]}", where, code="wrong-type")
     least, greatest = said["range"]
     if not least <= value <= greatest:
-        shown = (
-            str(value)[:40] if isinstance(value, int) else f"{value:g}"
-        )  # TOML's whole numbers have no end
-        sentence = f"{where} {shown} is outside the range [{least:g}, {greatest:g}]"
+        sentence = f"{where} {shown(value)} is outside the range [{least:g}, {greatest:g}]"
         number = float(value) if abs(value) < 1e300 else None
         raise Error(sentence, where, number, (least, greatest), code="out-of-range")
     return value

@@ -26,14 +26,10 @@ except ImportError:
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 INSTRUMENTED = ["brushsvg", "tinycss2", "cssselect2"]
-COPY = "BRUSHSVG_FUZZED"  # a folder with a copy of the package: Atheris instruments no editable install
 
 
 def main(argv: list[str]) -> int:
     name, *flags = argv[1:]
-    if copy := os.environ.get(COPY):
-        sys.meta_path = [each for each in sys.meta_path if "Redirecting" not in type(each).__name__]
-        sys.path.insert(0, copy)
     if atheris:
         with atheris.instrument_imports(include=INSTRUMENTED):
             import targets
