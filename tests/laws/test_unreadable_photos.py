@@ -143,6 +143,12 @@ def test_a_picture_that_cannot_be_read_is_refused_for_its_cause(kind):
     assert code_of(photograph.encoded(make())) == code
 
 
+@pytest.mark.parametrize("shape", [(1, 84), (84, 1), (1, 1)])
+def test_a_picture_one_pixel_wide_is_refused(shape):
+    pixels = np.resize(np.linspace(0, 255, 84).astype(np.uint8), shape)
+    assert code_of(photograph.encoded(cv2.cvtColor(pixels, cv2.COLOR_GRAY2BGR)))
+
+
 def test_a_picture_that_was_saved_too_small_is_refused():
     assert code_of(photograph.encoded(good(), 5)) == "photo-compressed"
     found = read_chart_photos(a5(), [("", photograph.encoded(good(), 30))])

@@ -210,6 +210,12 @@ def test_a_steep_way_of_rounded_parts_is_no_jump(width_mm):
     assert simulate_program.run(read, find_brush("round-6"), cell, (100.0, 60.0)).problems == []
 
 
+def test_a_lift_before_any_feed_has_a_speed():
+    text = GOLDEN.read_text(encoding="utf-8").replace("G21 G90", "M3 S800\nM3 S796\nG21 G90")
+    read = read_program(text, ".ngc", CELL)
+    assert all(step.speed_mm_s > 0 for section in read.sections for step in section.steps)
+
+
 def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():
     """The machine's feed is that of the way beside the lift: at 20 mm/s a slope of 1.2 made 31 of it."""
     poses = np.array([(10, 10, 0), (13, 10, -3.6), (20, 10, -3.6), (23, 10, 0)])

@@ -160,7 +160,7 @@ def white_share(light: np.ndarray) -> float:
 def blur_px(light: np.ndarray) -> float:
     """Over how many pixels the steepest edges go from black to white, across or down, whichever takes longer."""
     low, high = np.quantile(light[::5, ::5], [0.01, 0.99])
-    if high - low < FLAT:
+    if high - low < FLAT or min(light.shape) < 2:
         return 0.0
     steepest = min(float(np.quantile(np.abs(np.diff(light, axis=axis)), 0.998)) for axis in (0, 1))
     return float(high - low) / max(steepest, 1e-3)

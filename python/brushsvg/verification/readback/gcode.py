@@ -353,7 +353,8 @@ class _Reader:
 
     def _go(self, number: int, rapid: bool, places: dict[str, float], centre) -> None:
         self.at |= places
-        speed = self.rapid_mm_s if rapid else self.feed_mm_s
+        # a servo may lift before any F
+        speed = self.rapid_mm_s if rapid else self.feed_mm_s or self.press_mm_s
         if "Z" in places and math.isnan(self.at["X"] + self.at["Y"]):
             self.out.rises_mm.append(places["Z"])
         step = Step(number, rapid, self.at["X"], self.at["Y"], self.at["Z"], speed, 0.0, centre)
