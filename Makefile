@@ -24,7 +24,7 @@ endif
 WERROR ?= OFF
 PIP_INSTALL := $(BIN)/pip install -q --no-build-isolation -C build-dir=$(BUILD) -C cmake.define.BRUSHSVG_WERROR=$(WERROR) -e
 
-.PHONY: wheel wheel-test wheel-docs sdist deb docs plugins help setup system test-system demo test lint format clang-headers clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan fuzz tsan tidy clean quick FORCE
+.PHONY: wheel wheel-test wheel-docs sdist deb deb-test docs plugins help setup system test-system demo test lint format clang-headers clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan fuzz tsan tidy clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
@@ -271,6 +271,7 @@ docs: setup
 
 # Interpreters with headers, a wheel for each; JOBS: at most so many compilers at once.
 PYTHONS ?= $(PYTHON)
+DEB = $(firstword $(wildcard dist/libbrushsvg-dev_*.deb))
 WHEEL = $(firstword $(wildcard dist/brushsvg-*-cp311-*manylinux*.whl))
 
 wheel: system
@@ -292,6 +293,11 @@ sdist: $(VENV)/.created
 deb: system
 	@$(call install,dpkg-dev debhelper lintian)
 	tools/build_deb.sh
+
+deb-test:
+	@test -n "$(DEB)" || { echo "there is no package in dist/: run  make deb" >&2; exit 1; }
+	$(call install,mmdebstrap)
+	tools/deb_bare_root.sh $(DEB)
 
 plugins:
 	@mkdir -p dist

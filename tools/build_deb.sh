@@ -15,7 +15,7 @@ brushsvg ($version) unstable; urgency=low
 
   * See CHANGELOG.md.
 
- -- The brushsvg authors <brushsvg@localhost>  $date
+ -- The brushsvg authors <authors@brushsvg.invalid>  $date
 END
 dpkg-buildpackage --build=binary --no-sign ${JOBS:+"--jobs=$JOBS"}
 cp "$work"/libbrushsvg-dev_*.deb "$tree/dist/"

@@ -258,7 +258,7 @@ class Tree:
             spent, size, seconds = 0.0, FIRST_TESTS, FIRST_S
             for group in waiting:
                 while group and spent < budget:
-                    chunk = first(group, size, seconds)
+                    chunk = first(group, size, min(seconds, budget - spent))
                     caught, why, ran = self.run_tests(fault.number, chunk)
                     outcome.tried += ran
                     if caught and self.run_tests(0, [caught])[0]:

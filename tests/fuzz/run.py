@@ -114,6 +114,7 @@ def _run(name: str, language: str, given, python: Path | None) -> Ran:
             seeds,
             f"-max_total_time={given.seconds}",
             f"-timeout={given.slowest}",
+            f"-report_slow_units={given.slowest}",
             f"-rss_limit_mb={MOST_MB[language]}",
             f"-artifact_prefix={findings}/",
             "-print_final_stats=1",

@@ -154,6 +154,8 @@ def test_no_speed_stops_a_motor_or_is_too_fast_for_one():
     found = run(made([(10, 10, 0), (10, 10, -1), (12.003, 11.984, -1), (12.003, 11.984, 0)], speed=0.1))
     slow = [leg.speed_mm_s for leg in found.legs if leg.kind == "feed" and leg.end[2] < 0]
     assert 0.05 < max(slow) <= 0.1
+    fine = replace(fast, motors=Motors(((300.0, 0.0), (0.0, 300.0)), 5))  # which no cell file may be
+    run(made(wave(), cell=fine), fine)
     with refused("out-of-range 222 0.1 221.0"):
         parse_cell(write_cell(replace(CELL, speeds=replace(CELL.speeds, travel_mm_s=222.0))))
 

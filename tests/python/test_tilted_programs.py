@@ -244,6 +244,12 @@ def test_an_xarm_is_told_what_stands_in_the_lines():
     assert len(rows) > 15
 
 
+def test_a_pass_without_a_place_is_left_as_it_is():
+    """It is refused where the plan is simulated."""
+    (a_pass,) = plan(TILTED, poses=np.where(np.arange(15).reshape(5, 3) == 6, np.nan, POSES)).passes
+    assert in_steps(a_pass) is a_pass
+
+
 def test_the_plan_s_own_poses_are_among_those_of_a_robot():
     of = plan(TILTED)
     steps = in_steps(of.passes[0])
@@ -572,6 +578,14 @@ def test_a_tilt_beyond_the_cells_limit_is_refused():
     with refused("tilt-out-of-range 20 15 ur5e", "s0"):
         text_for(plan(TILTED), cell)
     text_for(plan(axes(0, 15, 15, 15, 15)), cell)
+
+
+@pytest.mark.parametrize(("tilt_deg", "count"), [(15.0005, 0), (15.0015, 1)])
+def test_a_tilt_may_exceed_the_limit_by_rounding_alone(tilt_deg, count):
+    cell = brushsvg.find_cell("ur5e")
+    cell = replace(cell, tool=replace(cell.tool, tilt_limit_deg=15.0, turn_deg_s=360.0))
+    (a_pass,) = plan(axes(0, 5, 10, tilt_deg, 10)).passes
+    assert len(broken_limits(a_pass, cell)) == count
 
 
 def test_a_tool_that_would_turn_too_fast_is_refused():
