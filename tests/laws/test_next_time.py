@@ -351,6 +351,11 @@ def test_two_strokes_tell_no_corrections(tmp_path, capsys):
     words = ("convert", tmp_path / "five.svg", tmp_path / "a.ngc", "--corrections", found)
     status, _, told = in_json(capsys, *words)
     assert status == 1 and is_told(told, "corrections-missing 2 3", "strokes"), told
+    rows = json.loads(found.read_text())
+    rows["strokes"] += [{**rows["strokes"][0], "stroke": "third"}]
+    found.write_text(json.dumps(rows))
+    status, _, told = in_json(capsys, *words)
+    assert status == 1 and is_told(told, "corrections-missing 'no mark is seen well enough'", "strokes"), told
 
 
 @pytest.fixture(scope="module")

@@ -247,6 +247,9 @@ def test_near_a_corner_that_may_be_cut_twice_the_cut_is_kept_free():
     assert len(astray(path, np.eye(4), near)) == 1
     exact = replace(near, blending=replace(near.blending, tolerance_mm=0.005))
     assert astray(path, np.eye(4), exact) == []
+    path = ways([[(-200, 150.015, 0), (200, 150.015, 0)]])
+    assert len(astray(path, np.eye(4), robot(**RING))) == 1
+    assert astray(path, np.eye(4), replace(robot(**RING), blending=exact.blending)) == []
 
 
 def test_a_way_between_two_places_says_only_what_they_do_not():

@@ -7,21 +7,26 @@ tree=$(cd "$(dirname "$0")/../.." && pwd)
 wheel=$(realpath "$1") && shift
 extras=("$@")
 [ ${#extras[@]} -gt 0 ] || extras=(text plot arm cluster parquet)
-mkdir -p "${FOLDER:-$tree/build/wheel}" && cd "${FOLDER:-$tree/build/wheel}"
-suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
+python=$(sed -E 's/.*-cp3([0-9]+)-.*/3.\1/' <<<"$(basename "$wheel")")
+own=$(. /etc/os-release && echo "$VERSION_CODENAME")
+case $python in 3.11) suite=bookworm ;; 3.13) suite=trixie ;; *) suite=$own ;; esac  # Debian's release with that Python
+mkdir -p "${FOLDER:-$tree/build/wheel/$suite}" && cd "${FOLDER:-$tree/build/wheel/$suite}"
 
 # Other packages, fetched where there is a network. The bare system has none.
 if [ ! -e wheelhouse/complete ]; then
   mkdir -p wheelhouse
-  "${PYTHON:-python3}" -m pip download -q --only-binary :all: -d wheelhouse "$wheel[$(IFS=,; echo "${extras[*]}")]" pytest hypothesis svgelements
+  "${PYTHON:-python3}" -m pip download -q --only-binary :all: --python-version "$python" -d wheelhouse "$wheel[$(IFS=,; echo "${extras[*]}")]" pytest hypothesis svgelements
   rm -f wheelhouse/brushsvg-*.whl
   touch wheelhouse/complete
 fi
 if [ ! -e bare/usr/bin/python3 ]; then
   rm -rf bare
-  sources=()
-  for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.{list,sources}; do [ ! -f "$list" ] || sources+=("$list"); done
-  mmdebstrap --quiet --variant=minbase --include=python3,python3-venv,fonts-dejavu-core "$suite" bare "${sources[@]}"
+  lists=$(mktemp -d)
+  for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.{list,sources}; do
+    ! grep -qs "/debian" "$list" || sed "s/\b$own\b/$suite/g" "$list" >"$lists/$(basename "$list")"
+  done
+  mmdebstrap --quiet --variant=minbase --include=python3,python3-venv,fonts-dejavu-core "$suite" bare "$lists"/*
+  rm -r "$lists"
 fi
 if chroot bare sh -c 'command -v cc || command -v g++ || ls -d /usr/include/eigen3' 2>/dev/null; then
   echo "the bare system has a compiler or Eigen" >&2

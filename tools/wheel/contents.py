@@ -67,7 +67,7 @@ def components(work: Path, tools: Path) -> list[Component]:
         _debian_source("ceres-solver", "2.1.0+really2.1.0+dfsg-1", "BSD-3-Clause", work),
         _debian_source("highway", "1.0.3-3+deb12u1", "Apache-2.0", work),
         _debian_headers("libeigen3-dev", "Eigen", "MPL-2.0", _copyright("libeigen3-dev")),
-        _debian_headers("libboost1.74-dev", "Boost", "BSL-1.0", _boost_licence()),
+        _debian_headers(_boost_package(), "Boost", "BSL-1.0", _boost_licence()),
         _debian_headers("nlohmann-json3-dev", "nlohmann json", "MIT", _copyright("nlohmann-json3-dev")),
         Component(
             "pybind11",
@@ -117,11 +117,15 @@ def _copyright(package: str) -> str:
     return (Path("/usr/share/doc") / package / "copyright").read_text()
 
 
+def _boost_package() -> str:
+    """Its name has the version: libboost1.74-dev on Debian 12, libboost1.83-dev on 13."""
+    asked = ["dpkg-query", "-S", "/usr/include/boost/version.hpp"]
+    return subprocess.run(asked, check=True, capture_output=True, text=True).stdout.partition(":")[0]
+
+
 def _boost_licence() -> str:
     """The licence alone: Debian's file names the authors of every file of Boost, in two megabytes."""
-    paragraph = re.search(r"^License: BSL-1\.0\n((?: .*\n)+)", _copyright("libboost1.74-dev"), re.MULTILINE)[
-        1
-    ]
+    paragraph = re.search(r"^License: BSL-1\.0\n((?: .*\n)+)", _copyright(_boost_package()), re.MULTILINE)[1]
     lines = [line[1:] if line != " ." else "" for line in paragraph.splitlines()]
     return "Boost.Polygon and Boost.Math, copyright of their authors\n\n" + "\n".join(lines) + "\n"
 

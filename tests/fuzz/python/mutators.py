@@ -158,7 +158,7 @@ def _parsed(data: bytes, seed: bytes, parse):
     for each in (data, seed):
         try:
             found = parse(each)
-        except (ValueError, ElementTree.ParseError, RecursionError):
+        except (ValueError, LookupError, ElementTree.ParseError, RecursionError):
             continue
         return found
     return parse(b"<svg/>" if parse is ElementTree.fromstring else b"{}")
