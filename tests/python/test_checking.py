@@ -197,6 +197,8 @@ def test_a_header_that_does_not_tell_is_refused(desk, capsys, edit, said):
         ),
         ("sheet: 0 x 70 mm", "header-damaged sheet 0"),
         ("sheet: nan x 70 mm", "header-damaged sheet nan"),
+        ("sheet: 1500000 x 70 mm", "header-damaged sheet 1.5e+06"),
+        ("margin: 99999999 strokes", "header-damaged margin 1e+08"),
         ("paper: +0.3.1 mm against the cell's", "header-damaged '(paper: +0.3.1 mm'"),
         ("paper: +30 mm against the cell's", "header-damaged paper 30 -20 20"),
         ("paper: 1e400 mm against the cell's", "header-damaged paper inf"),
@@ -226,6 +228,13 @@ def test_damaged_numbers_of_a_header_are_told_in_a_sentence(desk, capsys, line, 
     (desk / "two.ngc").write_text(text.replace("(cell:", f"({line})\n(cell:"))
     status, _, ((_, told),) = in_json(capsys, "check", "two.ngc", "two.svg")
     assert status == 1 and agrees(told, said), told
+
+
+def test_flags_for_gcode_have_no_effect_on_an_svg(desk, capsys):
+    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    status, _, told = in_json(capsys, "check", "two.ngc", "two.svg", "--paper-z", "0")
+    assert status == 0 and is_told(told, "flag-without-effect --paper-z")
+    assert not is_told(in_json(capsys, "check", "two.ngc", "two.svg")[2], "flag-without-effect")
 
 
 def test_a_drawing_named_like_our_own_jobs_is_checked(desk, capsys):

@@ -14,7 +14,7 @@ from brushsvg.machine.cell import Machine, Paper, axes_along_paper  # noqa: E402
 from brushsvg.machine.cell_file import cell_names, find_cell, parse_cell, write_cell  # noqa: E402
 from brushsvg.machine.distortion import told_mm, true_mm  # noqa: E402
 from brushsvg.painted.fault_model import BRUSH, MACHINE, PAPER, FaultModel  # noqa: E402
-from brushsvg.painted.mended_cell import as_table, mended  # noqa: E402
+from brushsvg.painted.mended_cell import as_table, certain_of, mended  # noqa: E402
 from brushsvg.painted.next_time import next_corrections  # noqa: E402
 from brushsvg.painted.placing import Placed  # noqa: E402
 from brushsvg.pipeline.comparing import _not_undone, _undoable  # noqa: E402
@@ -189,3 +189,15 @@ def test_of_what_may_be_chance_less_is_taken_back(aside_mm, one_mm, share, of_on
     for k, row in enumerate(rows):
         share_of = of_one if k == 0 else share
         assert made[row.stroke].shift_mm == pytest.approx((-share_of * asides[k], 0.0))
+
+
+@pytest.mark.parametrize(("value", "kept"), [(0.0015, 0.0015), (-0.0011, -0.0011), (0.0009, 0.0)])
+def test_a_number_is_certain_beyond_half_its_interval(value, kept):
+    number = SimpleNamespace(name="skew", cause=MACHINE)
+    found = SimpleNamespace(found=[SimpleNamespace(value=value, half=0.001, number=number)])
+    assert certain_of(found) == {"skew": kept}
+
+
+def test_a_scale_alone_stands_in_the_table():
+    assert as_table(Machine(scale=(1.01, 1.0)))[1:] == ["scale = [1.01000, 1.00000]", "skew = 0.00000"]
+    assert as_table(Machine()) == ["[machine]"]

@@ -31,7 +31,8 @@ from brushsvg.machine.cell import Blending, Contact, Paper, Reload, Station, rob
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.writer import text_of
-from brushsvg.verification.readback import read_program
+from brushsvg.verification.readback import Act, read_program
+from brushsvg.verification.readback.dobot import _is_in_function
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 NAMES = {
@@ -417,3 +418,10 @@ def test_rapidchecker_knows_the_grammar(tmp_path, broken):
     (tmp_path / "rapidchecker.toml").write_text("indentation_check = false\n")
     done = subprocess.run([sys.executable, "-m", "rapidchecker", "p.mod"], cwd=tmp_path, capture_output=True)
     assert (done.returncode == 0) == (broken is None), done.stdout
+
+
+def test_settings_within_a_function_of_dobots_are_not_sorted():
+    texts = ["(title: a)", "function paint()", "User(1)", "end"]
+    acts = [Act(k, "text", text) for k, text in enumerate(texts, 1)]
+    assert _is_in_function(acts) and not _is_in_function(acts[:2])
+    assert not _is_in_function([acts[0], acts[2], acts[1], acts[3]])

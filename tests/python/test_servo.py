@@ -22,6 +22,7 @@ from brushsvg.machine.setup_programs import border
 from brushsvg.verification import simulate_program
 from brushsvg.verification.against_regenerated import _Alike
 from brushsvg.verification.readback import Act, read_program
+from brushsvg.verification.servo_lifts import without_none
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes_servo.ngc"
 CELL = find_cell("grbl-servo")
@@ -181,6 +182,18 @@ def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
 
     assert like.is_same(lift(0.275), lift(0.325))
     assert not like.is_same(lift(0.150), lift(0.325)), "shorter than that something was taken away"
+
+
+def test_lifts_that_are_none_are_left_out_up_to_the_end_of_either_program():
+    def lift(value):
+        return Act(1, "lift", same=(value,))
+
+    def without(ours, theirs):
+        return without_none(ours, theirs, lambda act: act.same == (0.0,), lambda a, b: a.same == b.same)
+
+    ours, theirs = [lift(5.0), lift(0.0), lift(6.0), lift(0.0)], [lift(5.0), lift(6.0)]
+    assert without(ours, theirs) == ([lift(5.0), lift(6.0), lift(0.0)], theirs)
+    assert without(theirs, ours) == (theirs, [lift(5.0), lift(6.0), lift(0.0)])
 
 
 @pytest.mark.parametrize("width_mm", [0.0004, 0.002, 0.003, 0.006, 0.04, 0.08, 0.3])

@@ -115,6 +115,8 @@ def test_a_part_of_a_stroke_that_takes_longer_is_a_stop(desk, capsys):
     amid = slices[len(slices) // 2]
     slow = text[: amid.start()] + f"SM,{int(amid[1]) + 50}" + text[amid.end() :]
     assert is_told(problems(path, slow, "axidraw-ebb"), "stands-in-paint 0.050")
+    hardly = text[: amid.start()] + f"SM,{int(amid[1]) + 15}" + text[amid.end() :]
+    assert is_told(problems(path, hardly, "axidraw-ebb"), "stands-in-paint 0.015")
     status, _, told = in_json(capsys, "check", path, "a.svg", "--cell", "axidraw-ebb")
     assert status == 1 and is_told(told, "stands-in-paint")
     path, text = written("fr3")

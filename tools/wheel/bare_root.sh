@@ -54,7 +54,8 @@ tests() { # ENVIRONMENT TESTS: the tests against the package that is installed t
 }
 
 size() { # ENVIRONMENT: of all that is installed there, and of brushsvg alone
-  du -sm "bare/$1" bare/"$1"/lib/python3*/site-packages/brushsvg | awk '{ print $1 " MB " (NR == 1 ? "installed" : "of them brushsvg") }'
+  for what in "bare/$1" bare/"$1"/lib/python3*/site-packages/brushsvg; do du -sm "$what"; done |
+    awk '{ print $1 " MB " (NR == 1 ? "installed" : "of them brushsvg") }'
 }
 
 start=$EPOCHREALTIME
