@@ -117,6 +117,40 @@ TEST_CASE("a circle that bulges out of the sheet's margin is refused where its p
     CHECK(posts::linuxcnc(plan, round6(), cell).find("G3") != std::string::npos);
 }
 
+TEST_CASE("a circle that goes over a part of its round alone may lie beside the sheet") {
+    Plan plan;
+    plan.brush = "round-6";
+    plan.sheet_mm = {100.0, 60.0};
+    Pass pass;
+    pass.stroke = StrokeId("o");
+    pass.poses_mm.resize(2, 3);
+    const double c = 20.0 * std::cos(1.0), s = 20.0 * std::sin(1.0);
+    pass.poses_mm << 115 - c, 30 + s, -2, 115 - c, 30 - s, -2;  // its left side, at x = 95; the right one is at 135
+    pass.arcs = {{0, 1, {115, 30}, 1}};
+    plan.passes = {pass};
+    CHECK(posts::linuxcnc(plan, round6()).find("G3") != std::string::npos);
+}
+
+TEST_CASE("the slowest speed is a millionth of a millimetre in a second") {
+    const auto at = [](double speed) {
+        return code_of([=](Plan&, Brush&, posts::FlatCell& cell) { cell.travel_mm_s = speed; });
+    };
+    CHECK(at(1.5e-6) == "");
+    CHECK(at(0.5e-6) == "out-of-range");
+}
+
+TEST_CASE("a long comment is cut, and what no machine reads in it is replaced") {
+    Plan plan = golden_plan();
+    plan.passes[0].stroke = StrokeId(std::string(150, 'a'));
+    plan.passes[1].stroke = StrokeId(
+        "b\x01\x7F\xCD\xAF"
+        "c");  // U+036F: an accent by itself
+    const std::string text = posts::linuxcnc(plan, round6());
+    const std::string begin = "(stroke 1 of 3: ";
+    CHECK(text.find(begin + std::string(118 + 1 - begin.size() - 3, 'a') + "...)\n") != std::string::npos);
+    CHECK(text.find("(stroke 2 of 3: b??c)\n") != std::string::npos);
+}
+
 TEST_CASE("a comment stays one") {
     Plan plan = golden_plan();
     plan.passes[0].stroke = StrokeId("a) M2\n(\xC3\xA9");

@@ -165,3 +165,36 @@ TEST_CASE("a paint that does not get on is refused") {
     CHECK_THROWS_AS(interrupted(whole, brush, {-1.0, 80.0, 5.0}), Error);
     CHECK_THROWS_AS(interrupted(whole, brush, {10.0, std::nan(""), 5.0}), Error);
 }
+
+TEST_CASE("a stroke is fetched paint for a thousand times at most") {
+    const Brush brush = shipped("round-6");
+    Pass line;
+    line.poses_mm.resize(2, 3);
+    line.poses_mm << 0, 0, -2, 150000, 0, -2;
+    CHECK_THROWS_AS(interrupted(line, brush, {100.0, 100.0, 1.0}), Error);
+}
+
+TEST_CASE("a brush that turns in place is not interrupted") {
+    const Brush brush = shipped("round-6");
+    Stroke dot;
+    dot.id = "dot";
+    dot.middle_mm.resize(1, 8);
+    dot.middle_mm << 50, 50, 50, 50, 50, 50, 50, 50;
+    dot.half_width = {{0.0, 3.0}};
+    CompensateOptions options;
+    options.start = Beginning::hidden;
+    const Pass whole = compensate(dot, brush, options).pass;
+    REQUIRE(whole.arcs.size() == 1);
+    REQUIRE(length(whole) > 30.0);
+    for (const double first : {5.0, 15.0, 25.0}) CHECK(interrupted(whole, brush, {first, 80.0, 1.0}).size() == 1);
+}
+
+TEST_CASE("a brush that still trails loosely is not interrupted") {
+    const Brush brush = shipped("round-6");
+    Pass line;  // pressed on the spot: the patch stays until the lag is taken up
+    line.poses_mm.resize(4, 3);
+    line.poses_mm << 10, 10, 0, 10, 10, -3, 70, 10, -3, 70, 10, 0;
+    const std::vector<Pass> parts = interrupted(line, brush, {4.0, 40.0, 0.0});
+    REQUIRE(parts.size() > 1);
+    CHECK(parts[0].poses_mm.col(0).maxCoeff() > 10.0 + 0.95 * brush.lag(3.0));
+}

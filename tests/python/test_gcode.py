@@ -17,6 +17,8 @@ from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.gcode import LINE_LIMIT
 from brushsvg.machine.rounding import as_written
+from brushsvg.verification import simulate_program
+from brushsvg.verification.readback import read_program
 from brushsvg.verification.readback.gcode import read_gcode
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
@@ -272,3 +274,12 @@ def test_check_allows_what_cpp_writes_and_finds_what_was_changed(tmp_path, capsy
     (tmp_path / "it.ngc").write_text(cpp_golden("flat_bench.ngc").replace("F300.0", "F900.0", 1))
     status, _, told = in_json(capsys, *call)
     assert status == 1 and is_told(told, "program-changed 15.0 5.0")
+
+
+def test_a_stroke_is_read_as_fast_as_its_fastest_move():
+    text = GOLDEN.read_text(encoding="ascii").replace(
+        "F1200.0\nG1 X12.5000 Y10.0000 Z-3.0000", "F1500.0\nG1 X12.5000 Y10.0000 Z-3.0000\nF1200.0"
+    )
+    cell = find_cell("linuxcnc-3axis")
+    ran = simulate_program.run(read_program(text, ".ngc", cell), find_brush("round-6"), cell, (100.0, 60.0))
+    assert ran.plan.passes[0].speed_mm_s == 25.0
