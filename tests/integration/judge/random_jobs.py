@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -97,7 +98,8 @@ def judged(
             of = job_for(
                 exact.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags
             )
-            wrong += apart(way, way_of(of.interpret(twin.read_text(encoding="latin-1")), of), cell)
+            has_circles = re.search(r"^G[23] ", text, re.MULTILINE) is not None
+            wrong += apart(way, way_of(of.interpret(twin.read_text(encoding="latin-1")), of), cell, has_circles)
     words = [word for flag in asked for word in said_of(flags, flag)]
     drawing = () if source.suffix == ".json" else (source,)
     denied = check(program, *drawing, "--cell", toml, *words)
@@ -117,13 +119,14 @@ def without_backlash(cell):
     return replace(cell, machine=replace(cell.machine, backlash_mm=(0.0, 0.0)))
 
 
-def apart(way: Way, exact: Way, cell) -> list[str]:
+def apart(way: Way, exact: Way, cell, has_circles: bool) -> list[str]:
     """What a machine with backlash paints elsewhere than one without that runs its own program. A brush that stands in
     one place while play is taken up is in that place in both."""
-    # half of the backlash is rounded, so are centres of circles; a servo's parts are those of a way whose ends are
-    # and a height that is rounded leans the tool aside
+    # half of the backlash is rounded; a circle's centre too, which is told from a start that is rounded, in both
+    # programs; a servo's parts are those of a way whose ends are; and a height that is rounded leans the tool aside
     leans = np.abs(cell.machine.lean_mm_per_mm)
-    near_mm = unit_mm(cell) * ((1.5 if cell.servo else 1.0) * 2**0.5 + np.hypot(*leans)) + CHORDS_MM
+    units = 2.0 if has_circles else 1.5 if cell.servo else 1.0
+    near_mm = unit_mm(cell) * (units * 2**0.5 + np.hypot(*leans)) + CHORDS_MM
     if len(way.touches) != len(exact.touches):
         return [f"{len(way.touches)} touches, {len(exact.touches)} without backlash"]
     lines = [shapely.LineString(each.samples[:, :2]) for each in (way, exact)]
