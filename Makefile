@@ -24,7 +24,7 @@ endif
 WERROR ?= OFF
 PIP_INSTALL := $(BIN)/pip install -q --no-build-isolation -C build-dir=$(BUILD) -C cmake.define.BRUSHSVG_WERROR=$(WERROR) -e
 
-.PHONY: wheel wheel-test wheel-docs sdist deb deb-test docs plugins help setup system test-system demo test lint format clang-headers clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan fuzz tsan tidy clean quick FORCE
+.PHONY: wheel wheel-test wheel-docs sdist deb deb-test cross docs plugins help setup system test-system demo test lint format clang-headers clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan fuzz tsan tidy clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
@@ -41,6 +41,8 @@ help:
 	@echo "make wheel-docs   write docs/wheels.md anew: licenses, auditwheel's report, bill of materials"
 	@echo "make sdist        the source as an archive in dist/, which builds without a network"
 	@echo "make deb          the C++ library as libbrushsvg-dev, a package for Debian, in dist/"
+	@echo "make deb-test     that package in a bare system: programs are compiled against it and run"
+	@echo "make cross        the C++ library compiled for aarch64 Linux and Windows"
 	@echo "make docs         the documentation as pages to read in a browser, with a search, in docs/_build"
 	@echo "make clang-headers  the public headers read by clang and g++ with all warnings as errors"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
@@ -298,6 +300,9 @@ deb-test:
 	@test -n "$(DEB)" || { echo "there is no package in dist/: run  make deb" >&2; exit 1; }
 	$(call install,mmdebstrap)
 	tools/deb_bare_root.sh $(DEB)
+
+cross: system
+	@PYTHON=$(PYTHON) tools/cross_compile.sh
 
 plugins:
 	@mkdir -p dist
