@@ -213,6 +213,23 @@ def test_a_steep_way_is_pressed_and_lifted_on_the_spot(name, suffix, width_mm):
     assert deep[:, 0].max() == pytest.approx(40 + width_mm, abs=0.16)
 
 
+@pytest.mark.parametrize("cell", ["grbl-servo", "axidraw-ebb"])
+@pytest.mark.parametrize("lag", ["2", "5", "8"])
+def test_check_accepts_a_straight_line_by_a_brush_of_one_lag(tmp_path, monkeypatch, capsys, lag, cell):
+    """Such a stroke ends with a lift of 2.1 mm on a way of 0.04 mm, in parts of nearly two steps each."""
+    monkeypatch.chdir(tmp_path)
+    Path("line.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'
+        '<path d="M20 30H100" fill="none" stroke="#000" stroke-width="4"/></svg>'
+    )
+    words = ("--lag", lag, "--width-at", "3=2.5", "--width-at", "8=7")
+    assert call(capsys, "brush", "new", "mine", *words)[0] == 0
+    program = "line.ebb" if cell.endswith("ebb") else "line.gcode"
+    assert call(capsys, "convert", "line.svg", program, "--brush", "mine.json", "--cell", cell)[0] == 0
+    status, _, told = call(capsys, "check", program, "line.svg", "--brush", "mine.json", "--cell", cell)
+    assert status == 0, told
+
+
 @pytest.mark.parametrize("width_mm", [0.0503, 0.0707, 0.1103])
 def test_a_steep_way_of_rounded_parts_is_no_jump(width_mm):
     """Places rounded by half a unit of 3e-3 mm took that much less time, and check called its own program fast."""

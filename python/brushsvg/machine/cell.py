@@ -498,12 +498,17 @@ def servo_parts(ways_mm: np.ndarray, cell: Cell) -> np.ndarray:
     return np.maximum(1, np.minimum(lengths_mm // least_part_mm(cell), steps)).astype(int)
 
 
-def servo_is_outrun(ways_mm: np.ndarray, speed_mm_s: float, cell: Cell) -> np.ndarray:
+def servo_is_outrun(
+    ways_mm: np.ndarray, speed_mm_s: float, cell: Cell, are_rounded: bool = False
+) -> np.ndarray:
     """(n,) which straight ways (n, 3) are too steep for a servo that moves along: its height would change by more than
     two steps in a part, no step being less than a value, or the feed, slowed down for it, would be less than the
-    firmware runs."""
+    firmware runs. are_rounded: as a program has them, which may be steeper than what was planned, by as much."""
     rises_mm = np.abs(ways_mm[:, 2])
     flat_mm, length_mm = np.hypot(ways_mm[:, 0], ways_mm[:, 1]), np.linalg.norm(ways_mm, axis=1)
+    if are_rounded:
+        rises_mm, flat_mm = np.maximum(rises_mm - value_mm(cell), 0.0), flat_mm + 2**0.5 * unit_mm(cell)
+        length_mm = np.hypot(flat_mm, rises_mm)
     least_mm_s = LEAST_SPEED_MM_S.get(cell.language, LEAST_SERVO_SPEED_MM_S)
     step_mm = max(cell.servo.step_mm, value_mm(cell))
     has_few_parts = rises_mm > 2 * step_mm * servo_parts(ways_mm, cell)

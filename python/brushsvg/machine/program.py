@@ -178,12 +178,13 @@ def _is_little(loads: PlanInLoads, job: Job) -> bool:
     return sum(len(a_pass.poses_mm) for a_pass in left) <= POSES_KEPT
 
 
-def written_of(loads: PlanInLoads, cell: Cell, job: Job) -> Callable[[int], Written]:
-    """What a program has of each load, by its number from 1 on; made once where that is little."""
+def written_of(loads: PlanInLoads, cell: Cell, job: Job, was_read: bool = False) -> Callable[[int], Written]:
+    """What a program has of each load, by its number from 1 on; made once where that is little. was_read: the loads,
+    in a program."""
     frame = robot_from_paper(cell, job.z_offset_mm)
 
     def written(number: int) -> Written:
-        return as_written(loads.loads[number - 1], cell, frame)
+        return as_written(loads.loads[number - 1], cell, frame, was_read)
 
     return cache(written) if _is_little(loads, job) else written
 

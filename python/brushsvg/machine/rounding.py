@@ -38,10 +38,10 @@ class Written:
     axes: np.ndarray | None = None
 
 
-def as_written(a_pass, cell: Cell, frame: np.ndarray) -> Written:
+def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) -> Written:
     """A pass as the cell's language has it; frame: (4, 4) the paper's in the robot's. The pass is what shall be run,
-    written is what the cell's machine is told for it."""
-    a_pass = told_pass(steep_ways_lifted(a_pass, cell) if cell.servo else a_pass, cell)
+    written is what the cell's machine is told for it. was_read: in a program."""
+    a_pass = told_pass(steep_ways_lifted(a_pass, cell, was_read) if cell.servo else a_pass, cell)
     post = POSTS.get(cell.language)
     unit = unit_mm(cell)
     meant = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
@@ -89,13 +89,13 @@ def _at_values(poses: np.ndarray, servo: Servo) -> np.ndarray:
     return np.column_stack([poses[:, :2], np.interp(found, values[rising], heights[rising])])
 
 
-def steep_ways_lifted(a_pass, cell: Cell):
+def steep_ways_lifted(a_pass, cell: Cell, was_read: bool = False):
     """The same pass for a servo. Its height changes in steps along a way, each with a move of its own. Where a way is
     too steep for that, the brush is pressed before it, or lifted after it, on the spot: both are at an end of a stroke
     for most, and a way that steep is shorter than a tenth of its change of height."""
 
     def outrun(poses: np.ndarray) -> np.ndarray:
-        return np.flatnonzero(servo_is_outrun(np.diff(poses, axis=0), a_pass.speed_mm_s, cell))
+        return np.flatnonzero(servo_is_outrun(np.diff(poses, axis=0), a_pass.speed_mm_s, cell, was_read))
 
     poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     if not len(outrun(poses)):

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from ..errors import Error, Notice
-from ..machine.cell import Cell, least_move_mm, unit_mm, value_mm
+from ..machine.cell import Cell, least_move_mm, servo_parts, servo_stands, unit_mm, value_mm
 from ..machine.paint_reload import PlanInLoads, visits
 from ..machine.posts.text import spelled
 from ..machine.rounding import steep_ways_lifted
@@ -92,7 +92,7 @@ def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
     # where units are coarse, a pose gives way to one that is less than a move away
     limit_mm = max(STRAY_MM, slack_mm(cell), least_move_mm(cell) + unit_mm(cell))
     # a servo's height goes in steps of whole values, beside the line by half of both
-    beside_mm = (cell.servo.step_mm + value_mm(cell)) / 2 if cell.servo else 0.0
+    beside_mm = (_step_mm(meant, cell) + value_mm(cell)) / 2 if cell.servo else 0.0
     steepness = limit_mm / (limit_mm + beside_mm)
     if _pose_by_pose(a_pass, meant) > limit_mm:  # it may yet be the same path, with other poses on it
         (found, owner), (asked, _) = _round(a_pass), _round(meant)
@@ -108,6 +108,13 @@ def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
         sentence = f"it is painted at {a_pass.speed_mm_s:.1f} mm/s, {asked_for}"
         problems.append(Notice(a_pass.stroke, sentence, code="stroke-too-fast"))
     return problems
+
+
+def _step_mm(a_pass, cell: Cell) -> float:
+    """The most that a servo's height changes by in one part of a way: a steep one has no room for more parts."""
+    ways = np.diff(np.asarray(a_pass.poses_mm, dtype=float), axis=0)
+    ways = ways[~servo_stands(ways, cell)]
+    return max(cell.servo.step_mm, float((np.abs(ways[:, 2]) / servo_parts(ways, cell)).max(initial=0.0)))
 
 
 HELD_DEG = 0.5  # off what was meant, a brush's mark does not show it

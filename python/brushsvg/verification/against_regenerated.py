@@ -18,7 +18,7 @@ from ..machine.paint_reload import PlanInLoads
 from ..machine.posts import POSTS
 from ..machine.posts.fanuc import cnt_mm
 from ..machine.posts.script import down
-from ..machine.program import Job, unchecked_program
+from ..machine.program import Job, unchecked_program, written_of
 from ..machine.writer import text_of
 from .readback import Act, Readback, read_program
 from .servo_lifts import as_lifts, as_ways, seen_from_above_mm, without_none, without_steps
@@ -51,7 +51,7 @@ def again(
         ]
     loads = PlanInLoads(tuple(ran.plan.sheet_mm), (None,) * before + tuple(passes))
     job = Job(z_offset_mm, first_stroke, ((),) * before + ran.visits)
-    made = unchecked_program(loads, brush, cell, job)
+    made = unchecked_program(loads, brush, cell, job, written_of(loads, cell, job, was_read=True))
     if told is None:
         return made
     return replace(made, header=header_of(told.title, brush.name, loads, told.notes, made, job))

@@ -99,7 +99,9 @@ def judged(
                 exact.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags
             )
             has_circles = re.search(r"^G[23] ", text, re.MULTILINE) is not None
-            wrong += apart(way, way_of(of.interpret(twin.read_text(encoding="latin-1")), of), cell, has_circles)
+            wrong += apart(
+                way, way_of(of.interpret(twin.read_text(encoding="latin-1")), of), cell, has_circles
+            )
     words = [word for flag in asked for word in said_of(flags, flag)]
     drawing = () if source.suffix == ".json" else (source,)
     denied = check(program, *drawing, "--cell", toml, *words)
