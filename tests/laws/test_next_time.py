@@ -355,7 +355,7 @@ def test_two_strokes_tell_no_corrections(tmp_path, capsys):
     rows["strokes"] += [{**rows["strokes"][0], "stroke": "third"}]
     found.write_text(json.dumps(rows))
     status, _, told = in_json(capsys, *words)
-    assert status == 1 and is_told(told, "corrections-missing 'no mark is seen well enough'", "strokes"), told
+    assert status == 1 and is_told(told, "corrections-missing 3", "strokes"), told
 
 
 @pytest.fixture(scope="module")

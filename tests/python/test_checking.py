@@ -11,6 +11,7 @@ from programs import LANGUAGES, RUNNABLE, SERVOS, call
 from sampling import sample
 
 from brushsvg import _core
+from brushsvg.cli import main
 from brushsvg.machine import preflight, writer
 from brushsvg.machine.cell_file import SHIPPED, find_cell
 from brushsvg.pipeline import preparation
@@ -228,6 +229,24 @@ def test_damaged_numbers_of_a_header_are_told_in_a_sentence(desk, capsys, line, 
     (desk / "two.ngc").write_text(text.replace("(cell:", f"({line})\n(cell:"))
     status, _, ((_, told),) = in_json(capsys, "check", "two.ngc", "two.svg")
     assert status == 1 and agrees(told, said), told
+
+
+@pytest.mark.parametrize(
+    ("offset", "said"), [("-3", "paper-offset 3 lower"), ("20", "paper-offset 20 higher")]
+)
+def test_check_says_that_a_program_is_for_another_height_of_the_paper(desk, capsys, offset, said):
+    assert call(capsys, "convert", "two.svg", "two.ngc", f"--z-offset={offset}")[0] == 0
+    status, _, told = in_json(capsys, "check", "two.ngc", "two.svg")
+    assert status == 0 and is_told(told, said), told
+
+
+def test_what_a_command_is_refused_for_says_so_in_json(desk, capsys):
+    """A warning said the same: refused false."""
+    main(["--messages", "json", "convert", "two.svg", "two.ngc", "--sheet", "10x10"])
+    rows = [json.loads(line) for line in capsys.readouterr().err.splitlines()]
+    assert any(row["refused"] for row in rows) and not (desk / "two.ngc").exists()
+    main(["--messages", "json", "convert", "missing.svg", "two.ngc"])
+    assert [json.loads(line)["refused"] for line in capsys.readouterr().err.splitlines()] == [True]
 
 
 def test_flags_for_gcode_have_no_effect_on_an_svg(desk, capsys):

@@ -76,6 +76,8 @@ def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
 
 
 def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
+    from dataclasses import replace
+
     from ..errors import unexpected
     from .arguments.parser import parse
     from .console import RefusedError, say_notice, tell_in_json
@@ -93,13 +95,13 @@ def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
         return leaving.code
     except RefusedError as refused:
         for notice in refused.why:
-            say_notice(refused.file, notice)
+            say_notice(refused.file, replace(notice, refused=True))
         return 1
     except OSError:
         raise
     except Exception as mistake:
         if interrupts.seen:
             raise
-        say_notice(file, unexpected(mistake).notice())
+        say_notice(file, replace(unexpected(mistake).notice(), refused=True))
         return 1
     return 0

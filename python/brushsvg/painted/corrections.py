@@ -224,7 +224,7 @@ def _why_none(rows: list[dict]) -> str:
             f"{LEAST_MARKS} are needed to tell a stroke's own place from the sheet's"
         )
     if seen:
-        return "it corrects no stroke: no mark is seen well enough and near enough to where it was predicted"
+        return f"it corrects no stroke: of {seen} marks none is seen well enough, and near enough to its prediction"
     return "it corrects no stroke: the photograph did not show where marks lie"
 
 

@@ -215,6 +215,8 @@ def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:
                 code="sheet-unknown",
             )
         ran = simulate_program.run(read, brush, cell, sheet_mm, z_offset_mm)
+    told(program.path, _of_offset(z_offset_mm))
+    with concerning(program.path):
         problems = ran.problems + simulate_program.misnumbered(read, made.first_stroke, made.strokes)
         strokes, drawn, speeds = None, None, None
         if work:
@@ -247,6 +249,17 @@ def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:
         marks=ran.marks,
         figures=figures,
     )
+
+
+def _of_offset(z_offset_mm: float) -> list[Notice]:
+    """What is allowed of a paper that lies elsewhere, and is not where a cell has it."""
+    if not z_offset_mm:
+        return []
+    sentence = (
+        f"it is for a paper {abs(z_offset_mm):g} mm {'higher' if z_offset_mm > 0 else 'lower'} than the cell has it: "
+        f"there all limits were checked; --z-offset {z_offset_mm:g} made it so"
+    )
+    return [Notice("", sentence, code="paper-offset")]
 
 
 def _unlike_drawing(unlike: list[Notice]) -> list[Notice]:
