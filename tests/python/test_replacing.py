@@ -101,6 +101,18 @@ def test_where_nothing_can_be_remembered_files_are_somebodys(desk, capsys, monke
     assert is_kept(capsys, "a.ngc", *CONVERT)
 
 
+def test_who_is_refused_for_a_home_that_cannot_be_written_reads_where(desk, capsys, monkeypatch):
+    """Root may write anywhere, so that is asked of a stand-in."""
+    place = desk / "state" / "brushsvg" / "written.txt"
+    place.mkdir(parents=True)
+    monkeypatch.setattr(
+        replacing.os, "access", lambda path, mode: not str(path).startswith(str(desk / "state"))
+    )
+    assert in_json(capsys, *CONVERT)[0] == 0
+    status, _, told = in_json(capsys, *CONVERT)
+    assert status == 1 and is_told(told, f"file-exists {place}"), told
+
+
 def test_a_device_is_written_through(desk, capsys):
     Path("out.ngc").symlink_to(os.devnull)
     assert [in_json(capsys, "convert", "a.svg", "out.ngc")[0] for _ in range(2)] == [0, 0]

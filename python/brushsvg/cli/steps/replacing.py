@@ -34,8 +34,12 @@ def refuse_replacing(paths: Iterable[str], sources: Collection[str] = (), force:
         known = _remembered() if known is None else known
         if path in sources:
             sentence = "the file is there already, and might be somebody's own"
-        elif known.get(_key(path)) != _sha256_of(path):
-            sentence = "the file is there already, and is not as brushsvg wrote it here"
+        elif _key(path) not in known:
+            sentence = (
+                f"the file is there already, and brushsvg does not know that it wrote it{_unwritable()}"
+            )
+        elif known[_key(path)] != _sha256_of(path):
+            sentence = "the file is there already, and was changed since brushsvg wrote it"
         else:
             continue
         advice = "give another name, or --force to replace it"
@@ -61,6 +65,16 @@ def _place() -> Path:
     if sys.platform == "win32" and os.environ.get("LOCALAPPDATA"):
         return Path(os.environ["LOCALAPPDATA"], "brushsvg", "written.txt")
     return Path.home() / ".local" / "state" / "brushsvg" / "written.txt"
+
+
+def _unwritable() -> str:
+    """Why nothing is remembered, where nothing can be: as in a container whose home cannot be written."""
+    with suppress(RuntimeError):
+        place = _place()
+        there = next(folder for folder in place.parents if folder.exists())
+        if not os.access(there, os.W_OK) or (place.exists() and not os.access(place, os.W_OK)):
+            return f": {place}, where it would stand, cannot be written"
+    return ""
 
 
 def _remembered() -> dict[str, str]:
