@@ -41,7 +41,8 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
             )
         return b"".join(parts)
     except FileNotFoundError:
-        sentence = "there is no such file"
+        is_address = "://" in path
+        sentence = "addresses are not read: save the file first" if is_address else "there is no such file"
     except IsADirectoryError:
         sentence = "this is a directory, not a file"
     except (OSError, ValueError) as problem:  # ValueError: a name that no file can have

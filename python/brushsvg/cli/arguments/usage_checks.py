@@ -51,4 +51,5 @@ def check_files(args, read, written) -> None:
 
 def check_extension(args, path: str, suffixes: tuple[str, ...]) -> None:
     if suffix_of(path) not in suffixes:
-        args.parser.error(f"{path} does not end in {' or '.join(suffixes)}")
+        what = "is a folder, and no file that ends in" if os.path.isdir(path) else "does not end in"
+        args.parser.error(f"{path} {what} {' or '.join(suffixes)}")

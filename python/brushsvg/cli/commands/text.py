@@ -35,10 +35,8 @@ def font_of(name: str) -> bytes:
         for known in (SINGLE_LINE_FONTS / name, SINGLE_LINE_FONTS / f"{name}.svg"):
             if Path(name).name == name and known.is_file():
                 return read_bytes(known)
-        raise Error(
-            "there is no such file; fonts of single lines come with Inkscape and are found by name, such as "
-            f"EMSAllure.svg, where they lie in {SINGLE_LINE_FONTS}",
-            file=name,
-            code="file-unreadable",
-        )
+        sentence = "there is no such file"
+        if Path(name).suffix.lower() in ("", ".svg"):
+            sentence += f"; by name alone, fonts of single lines are found in {SINGLE_LINE_FONTS}: Inkscape brings them"
+        raise Error(sentence, file=name, code="file-unreadable")
     return read_bytes(name)
