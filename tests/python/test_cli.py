@@ -772,6 +772,20 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
     assert not {"numpy", "cv2", "brushsvg._core", "brushsvg.pipeline.preparation"} & set(done.stderr.split())
 
 
+def test_a_plain_convert_imports_no_large_library(desk):
+    """They take as long as all the rest."""
+    code = (
+        "import sys; from brushsvg.cli import main; main(['convert', 'a.svg', 'a.ngc']); print(*sys.modules)"
+    )
+    (desk / "a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">'
+        '<path d="M20 30h40" stroke="#000" stroke-width="2"/></svg>'
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert (desk / "a.ngc").exists()
+    assert not {"cv2", "scipy", "shapely", "ezdxf", "svgpathtools", "matplotlib"} & set(done.stdout.split())
+
+
 def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
     status, out, err = run(capsys, "cell", "list")
     assert (status, err) == (0, [])

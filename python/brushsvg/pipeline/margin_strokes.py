@@ -13,7 +13,6 @@ import numpy as np
 from .. import _core
 from ..brush.confidence import fitted_down_to_mm, law_band
 from ..brush.describe import LAWS
-from ..calibration.chart.layout import GAP_MM, angular, chart_depths, room_for, straight
 from ..errors import Notice
 from ..machine.paint_reload import in_loads
 from ..machine.preflight import look
@@ -125,6 +124,8 @@ def _left_out(work: Work, why: str) -> Work:
 
 def _placed(work: Work, deepest_mm: float) -> tuple[list, tuple[float, float]] | None:
     """Passes in rows above the sheet, and the sheet with their strip; None where one is wider than the sheet."""
+    from ..calibration.chart.layout import GAP_MM, angular, chart_depths, room_for, straight  # brings OpenCV
+
     brush, (width, height) = work.brush, work.plan.sheet_mm
     _, least, *deeper = chart_depths(
         brush, 1 + DEPTHS, deepest_mm
