@@ -4,6 +4,7 @@ import json
 import re
 from dataclasses import replace
 from importlib.util import find_spec
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,8 +15,8 @@ from programs import RUNNABLE, call, program
 from test_robot_scripts import GOLDEN, LEANING, SQUARE, TURNED, on
 from test_urscript import ARC, BRUSH, STROKES, text_for
 
-from brushsvg import _core
-from brushsvg.machine.cell import Reload, Station, robot_from_paper
+from brushsvg import _core, write_plan
+from brushsvg.machine.cell import Machine, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.motion import in_robot_frame
 from brushsvg.machine.posts import POSTS
@@ -187,3 +188,21 @@ def test_a_person_cannot_be_waited_for_and_frames_have_names():
     ):
         with refused(said):
             parse_cell(write_cell(each))
+
+
+def test_check_accepts_lifts_that_are_hardly_longer_than_what_is_rounded(tmp_path, monkeypatch, capsys):
+    """By 0.015 mm on a machine that leans: how fast that is depends on the last decimals of both ends."""
+    monkeypatch.chdir(tmp_path)
+    cell = find_cell("fr3")
+    leans = Machine(lean_mm_per_mm=(-0.333, -0.861), scale=(1.0014, 1.035), skew=0.0589, height_mm=-1.2)
+    cell = replace(cell, paper=Paper(cell.paper.origin_mm, (0.0, 0.0, 276.023)), arm=None, machine=leans)
+    Path("mine.toml").write_text(write_cell(cell))
+    random, passes = np.random.default_rng(3), []
+    for k in range(40):
+        x, y, z = random.uniform(10, 80), random.uniform(10, 45), -random.uniform(0.009, 0.02)
+        way = [(x, y, 0), (x, y, -2), (x + 3, y + 1, -2), (x + 3.3, y + 1.2, z), (x + 3.3, y + 1.2, 0)]
+        passes.append(_core.Pass(f"s{k}", np.array(way), 20.0))
+    Path("p.json").write_text(write_plan(_core.Plan("round-6", "", (100, 60), passes)))
+    assert call(capsys, "convert", "p.json", "p.csv", "--cell", "mine.toml")[0] == 0
+    status, _, told = call(capsys, "check", "p.csv", "p.json", "--cell", "mine.toml")
+    assert status == 0, told

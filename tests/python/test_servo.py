@@ -12,9 +12,9 @@ from diagnostics import refused
 from programs import RUNNABLE, call, program
 from test_gcode import TWO, text_of
 
-from brushsvg import _core
+from brushsvg import _core, write_plan
 from brushsvg.brush.library import find_brush
-from brushsvg.machine.cell import Reload, Servo, Station
+from brushsvg.machine.cell import Machine, Reload, Servo, Station
 from brushsvg.machine.cell_file import cell_names, find_cell, parse_cell, write_cell
 from brushsvg.machine.posts.gcode_servo import grbl_servo, value_at
 from brushsvg.machine.program import Job
@@ -227,6 +227,25 @@ def test_check_accepts_a_straight_line_by_a_brush_of_one_lag(tmp_path, monkeypat
     program = "line.ebb" if cell.endswith("ebb") else "line.gcode"
     assert call(capsys, "convert", "line.svg", program, "--brush", "mine.json", "--cell", cell)[0] == 0
     status, _, told = call(capsys, "check", program, "line.svg", "--brush", "mine.json", "--cell", cell)
+    assert status == 0, told
+
+
+def test_check_accepts_a_pose_at_the_value_of_the_one_before(tmp_path, monkeypatch, capsys):
+    """It gives way to that, and the line begins 0.024 mm higher than it was planned."""
+    monkeypatch.chdir(tmp_path)
+    servo = Servo(((-10.613, 262.466), (11.656, 1012.189)), 0.05, 0.0)
+    machine = Machine(height_mm=-0.18880217172035013)
+    Path("mine.toml").write_text(write_cell(replace(CELL, servo=servo, machine=machine)))
+    poses = [
+        (27.885, 26.897, 0),
+        (27.885, 26.897, -0.0244),
+        (30.5614, 28.031, -1.5931),
+        (33.2121, 28.8717, 0),
+    ]
+    plan = _core.Plan("round-6", "", (100, 60), [_core.Pass("a", np.array(poses), 6.42)])
+    Path("p.json").write_text(write_plan(plan))
+    assert call(capsys, "convert", "p.json", "p.nc", "--cell", "mine.toml")[0] == 0
+    status, _, told = call(capsys, "check", "p.nc", "p.json", "--cell", "mine.toml")
     assert status == 0, told
 
 

@@ -91,8 +91,9 @@ def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
     meant = steep_ways_lifted(meant, cell) if cell.servo else meant
     # where units are coarse, a pose gives way to one that is less than a move away
     limit_mm = max(STRAY_MM, slack_mm(cell), least_move_mm(cell) + unit_mm(cell))
-    # a servo's height goes in steps of whole values, beside the line by half of both
-    beside_mm = (_step_mm(meant, cell) + value_mm(cell)) / 2 if cell.servo else 0.0
+    # a servo's height goes in steps of whole values, beside the line by half of both; and a pose at the value of the
+    # one before gives way to it, by which the line begins up to a value higher
+    beside_mm = (_step_mm(meant, cell) + 3 * value_mm(cell)) / 2 if cell.servo else 0.0
     steepness = limit_mm / (limit_mm + beside_mm)
     if _pose_by_pose(a_pass, meant) > limit_mm:  # it may yet be the same path, with other poses on it
         (found, owner), (asked, _) = _round(a_pass), _round(meant)

@@ -46,8 +46,8 @@ class Act(NamedTuple):
 
     line: of the file, from 1; kind: move, circle, way (a servo's move), lift (of a servo), wait or text, which says
     something, or is a statement; place: where it goes [mm]; at_most: its speed [mm/s] and acceleration [mm/s^2],
-    where it names them; for a slice of an EBB the feed, the speed, and what one more step adds to it [mm/s]; same:
-    other numbers; turned: (9,) the tool's rotation there, row by row, in the frame of the program, where the move
+    where it names them; of a timed move its limit, its speed, and what rounding or one more step adds to that [mm/s];
+    same: other numbers; turned: (9,) the tool's rotation there, row by row, in the frame of the program, where the move
     names one that is not upright. Of a rapid move the speed is inf.
     """
 

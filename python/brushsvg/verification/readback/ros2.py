@@ -117,6 +117,7 @@ class _Rows:
     def __init__(self, cell: Cell):
         self.out = Readback(blends_by_radius=True)
         self.near_mm = max(NEAR_MM, 1.5 * 10.0**-cell.decimals)
+        self.rounded_mm = 3**0.5 * 10.0**-cell.decimals  # of a way between two poses
         self.now_s, self.begin_s = 0.0, 0.0  # of the last row, of the last pose
         self.last: tuple = ()
         self.here: tuple | None = None
@@ -129,7 +130,7 @@ class _Rows:
         if self.here is None:
             if kind != "pose" or now_s != 0:
                 raise Error(f"line {number}: the first row is no pose at time 0", code="line-unread")
-            self._pose(number, tip, limit_mm_s, limit_mm_s, now_s, turned)
+            self._pose(number, tip, (limit_mm_s, limit_mm_s), now_s, turned)
             return
         if now_s < self.now_s + LEAST_S:
             raise Error(f"line {number}: time {now_s:g} s does not go on", code="line-unread")
@@ -154,21 +155,21 @@ class _Rows:
             self.ways.append((number, tip, limit_mm_s, turned))
             return
         self._on_the_way(tip, limit_mm_s, turned)
-        way_mm = math.dist(tip, self.here)
-        self._pose(number, tip, limit_mm_s, way_mm / (now_s - self.begin_s), now_s, turned)
+        way_mm, took_s = math.dist(tip, self.here), now_s - self.begin_s
+        # the mean speed of a short way says little: both of its ends are rounded
+        self._pose(number, tip, (limit_mm_s, way_mm / took_s, self.rounded_mm / took_s), now_s, turned)
 
     def _pose(
         self,
         number: int,
         tip: tuple,
-        limit_mm_s: float,
-        mean_mm_s: float,
+        at_most: tuple,
         now_s: float,
         turned: np.ndarray | None,
     ) -> None:
         axis, told = ((), ()) if turned is None else (tuple(-turned[:, 2]), tuple(turned.ravel().tolist()))
-        self.out.section().steps.append(Step(number, False, *tip, limit_mm_s, axis=axis))
-        self.out.acts.append(Act(number, "move", "movel", tip, (limit_mm_s, mean_mm_s), (0.0,), told))
+        self.out.section().steps.append(Step(number, False, *tip, at_most[0], axis=axis))
+        self.out.acts.append(Act(number, "move", "movel", tip, at_most, (0.0,), told))
         self.here = self.last = tip
         self.turned = turned
         self.now_s = self.begin_s = now_s
