@@ -64,7 +64,8 @@ def judged(
     suffix = CELLS[dialect][1]
     toml = put(folder / "mine.toml", write_cell(cell))
     program, plan = folder / f"program{suffix}", folder / "plan.json"
-    program.unlink(missing_ok=True)
+    for left in [program, *_parts(program)]:
+        left.unlink(missing_ok=True)
     plan.unlink(missing_ok=True)
     try:
         find_cell(toml)
@@ -74,7 +75,7 @@ def judged(
         wrong = (f"refused, and written: {said}",) if program.exists() else ()
         return Judged(tuple(said), wrong)
     planned = [word for word in flags if word not in said_of(flags, "--z-offset")]
-    text = program.read_text(encoding="latin-1")
+    text = _whole(program)
     # the plan's own file is written without the machine's limits, which the program has passed
     if said := converted(source, plan, "--cell", toml, *planned):
         if "--z-offset" in flags:  # the plan's paper lies lower, which may be out of reach
@@ -99,14 +100,22 @@ def judged(
                 exact.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags
             )
             has_circles = re.search(r"^G[23] ", text, re.MULTILINE) is not None
-            wrong += apart(
-                way, way_of(of.interpret(twin.read_text(encoding="latin-1")), of), cell, has_circles
-            )
+            wrong += apart(way, way_of(of.interpret(_whole(twin)), of), cell, has_circles)
     words = [word for flag in asked for word in said_of(flags, flag)]
     drawing = () if source.suffix == ".json" else (source,)
     denied = check(program, *drawing, "--cell", toml, *words)
     assert not any(CRASHED in said for said in denied), denied
     return Judged((), tuple(wrong), tuple(denied), job)
+
+
+def _parts(program: Path) -> list[Path]:
+    """The files that a long program goes on in."""
+    found = program.parent.glob(f"{program.stem}-part*{program.suffix}")
+    return sorted(found, key=lambda path: int(path.stem.rpartition("part")[2]))
+
+
+def _whole(program: Path) -> str:
+    return "".join(each.read_text(encoding="latin-1") for each in [program, *_parts(program)])
 
 
 def has_steep_ways(job: Job) -> bool:
