@@ -10,7 +10,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return fuzz::refusing([&] {
         const Brush brush = fuzz::brush_from(in);
         const double pi = 3.14159265358979323846;
-        const double radius = std::abs(in.wild(in.coarse(0.2, 40.0))), depth = in.coarse(0.0, 1.0) * brush.depth_range_mm[1];
+        const double radius = std::abs(in.wild(in.coarse(0.2, 40.0))),
+                     depth = in.coarse(0.0, 1.0) * brush.depth_range_mm[1];
         const double begins = in.coarse(-pi, pi), step = in.coarse(0.05, 3.0);
         const int direction = in.chance(2) ? -1 : 1, steps = in.integer(1, 4);
         // down from the side, once round some of the circle, and straight on
