@@ -149,7 +149,7 @@ def test_what_is_not_ours_is_refused(desk, name):
 def test_the_command_compares_with_the_drawing(desk, capsys):
     assert call(capsys, "convert", "two.svg", "two.ngc", "--z-offset", "0.4")[0] == 0
     status, out, err = call(capsys, "check", "two.ngc", "two.svg", "--preview", "two.png")
-    assert (status, len(err)) == (0, 1) and err[0].startswith("brushsvg: two.png: written"), err
+    assert (status, len(err)) == (0, 2) and err[1].startswith("brushsvg: two.png: written"), err
     assert re.search(r"(?m)^all +0\.9\d\d ", out)
     assert out.endswith(f"two.ngc: {RUNNABLE}\n")
     assert (desk / "two.png").exists()
