@@ -138,7 +138,6 @@ def test_what_a_servo_paints_to_and_fro_is_known_again(tmp_path, capsys, table, 
             assert status == 0, ([each.poses_mm for each in both], told)
 
 
-@pytest.mark.xfail(strict=True, reason="a landing between two values of 0.25 mm is read as the other one")
 def test_a_landing_between_two_coarse_values_is_known_again():
     poses = [
         (25.711771, 28.8686, -0.368637),

@@ -502,8 +502,9 @@ def servo_is_outrun(
     ways_mm: np.ndarray, speed_mm_s: float, cell: Cell, are_rounded: bool = False
 ) -> np.ndarray:
     """(n,) which straight ways (n, 3) are too steep for a servo that moves along: its height would change by more than
-    two steps in a part, no step being less than a value, or the feed, slowed down for it, would be less than the
-    firmware runs. are_rounded: as a program has them, which may be steeper than what was planned, by as much."""
+    two steps in a part, no step being less than a value; or by more than STEEP times its length, whose parts say little
+    once they are rounded; or the feed, slowed down for it, would be less than the firmware runs. are_rounded: as a
+    program has them, which may be steeper than what was planned, by as much."""
     rises_mm = np.abs(ways_mm[:, 2])
     flat_mm, length_mm = np.hypot(ways_mm[:, 0], ways_mm[:, 1]), np.linalg.norm(ways_mm, axis=1)
     if are_rounded:
@@ -512,8 +513,12 @@ def servo_is_outrun(
     least_mm_s = LEAST_SPEED_MM_S.get(cell.language, LEAST_SERVO_SPEED_MM_S)
     step_mm = max(cell.servo.step_mm, value_mm(cell))
     has_few_parts = rises_mm > 2 * step_mm * servo_parts(ways_mm, cell)
+    is_steep = rises_mm > STEEP * flat_mm
     is_slow = speed_mm_s * flat_mm < least_mm_s * length_mm
-    return (rises_mm > step_mm + 1e-9) & (has_few_parts | is_slow) & ~servo_stands(ways_mm, cell)
+    return (rises_mm > step_mm + 1e-9) & (has_few_parts | is_steep | is_slow) & ~servo_stands(ways_mm, cell)
+
+
+STEEP = 10.0  # of a way that a servo's brush is pressed before, or lifted after, on the spot
 
 
 def least_part_mm(cell: Cell) -> float:
