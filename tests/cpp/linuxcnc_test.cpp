@@ -100,35 +100,27 @@ TEST_CASE("what would lead a machine astray is refused") {
         CHECK(code_of([=](Plan& plan, Brush&, FlatCell&) { plan.passes[2].speed_mm_s = speed; }) == "out-of-range");
 }
 
-TEST_CASE("a circle that bulges out of the sheet's margin is refused where its poses lie inside") {
-    Plan plan;
-    plan.brush = "round-6";
-    plan.sheet_mm = {100.0, 60.0};
-    Pass pass;
-    pass.stroke = StrokeId("o");
-    pass.poses_mm.resize(2, 3);
+TEST_CASE("a circle must be inside of the sheet's margin where it is run, and nowhere else") {
     const double c = 20.0 * std::cos(1.0), s = 20.0 * std::sin(1.0);
-    pass.poses_mm << 115 + c, 30 - s, -2, 115 + c, 30 + s, -2;  // its right side is at x = 135
-    pass.arcs = {{0, 1, {115, 30}, 1}};
-    plan.passes = {pass};
-    CHECK_THROWS_AS(posts::linuxcnc(plan, round6()), Error);
+    const auto plan_of = [](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+        Plan plan;
+        plan.brush = "round-6";
+        plan.sheet_mm = {100.0, 60.0};
+        Pass pass;
+        pass.stroke = StrokeId("o");
+        pass.poses_mm.resize(2, 3);
+        pass.poses_mm << from.transpose(), -2, to.transpose(), -2;
+        pass.arcs = {{0, 1, {115, 30}, 1}};
+        plan.passes = {pass};
+        return plan;
+    };
+    const Plan right = plan_of({115 + c, 30 - s}, {115 + c, 30 + s});  // out to x = 135, its poses inside
+    CHECK_THROWS_AS(posts::linuxcnc(right, round6()), Error);
     posts::FlatCell cell;
     cell.margin_mm = 36.0;
-    CHECK(posts::linuxcnc(plan, round6(), cell).find("G3") != std::string::npos);
-}
-
-TEST_CASE("a circle that goes over a part of its round alone may lie beside the sheet") {
-    Plan plan;
-    plan.brush = "round-6";
-    plan.sheet_mm = {100.0, 60.0};
-    Pass pass;
-    pass.stroke = StrokeId("o");
-    pass.poses_mm.resize(2, 3);
-    const double c = 20.0 * std::cos(1.0), s = 20.0 * std::sin(1.0);
-    pass.poses_mm << 115 - c, 30 + s, -2, 115 - c, 30 - s, -2;  // its left side, at x = 95; the right one is at 135
-    pass.arcs = {{0, 1, {115, 30}, 1}};
-    plan.passes = {pass};
-    CHECK(posts::linuxcnc(plan, round6()).find("G3") != std::string::npos);
+    CHECK(posts::linuxcnc(right, round6(), cell).find("G3") != std::string::npos);
+    const Plan left = plan_of({115 - c, 30 + s}, {115 - c, 30 - s});  // the rest of the same circle
+    CHECK(posts::linuxcnc(left, round6()).find("G3") != std::string::npos);
 }
 
 TEST_CASE("the slowest speed is a millionth of a millimetre in a second") {

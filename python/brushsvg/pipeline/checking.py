@@ -252,12 +252,13 @@ def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:
 
 
 def _of_offset(z_offset_mm: float) -> list[Notice]:
-    """What is allowed of a paper that lies elsewhere, and is not where a cell has it."""
+    """A notice where the paper is expected at another height than the cell has it."""
     if not z_offset_mm:
         return []
+    where = "higher" if z_offset_mm > 0 else "lower"
     sentence = (
-        f"it is for a paper {abs(z_offset_mm):g} mm {'higher' if z_offset_mm > 0 else 'lower'} than the cell has it: "
-        f"there all limits were checked; --z-offset {z_offset_mm:g} made it so"
+        f"the program was made with --z-offset {z_offset_mm:g}: all limits were checked for a paper "
+        f"{abs(z_offset_mm):g} mm {where} than the cell has it"
     )
     return [Notice("", sentence, code="paper-offset")]
 

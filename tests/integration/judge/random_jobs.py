@@ -133,8 +133,8 @@ def without_backlash(cell):
 def apart(way: Way, exact: Way, cell, has_circles: bool) -> list[str]:
     """What a machine with backlash paints elsewhere than one without that runs its own program. A brush that stands in
     one place while play is taken up is in that place in both."""
-    # half of the backlash is rounded; a circle's centre too, which is told from a start that is rounded, in both
-    # programs; a servo's parts are those of a way whose ends are; and a height that is rounded leans the tool aside
+    # half of the backlash is rounded; in both programs a circle's centre is rounded, and the start that it counts from;
+    # a servo's parts are those of a way whose ends are rounded; and a rounded height displaces a tool that leans
     leans = np.abs(cell.machine.lean_mm_per_mm)
     units = 2.0 if has_circles else 1.5 if cell.servo else 1.0
     near_mm = unit_mm(cell) * (units * 2**0.5 + np.hypot(*leans)) + CHORDS_MM

@@ -37,6 +37,6 @@ def font_of(name: str) -> bytes:
                 return read_bytes(known)
         sentence = "there is no such file"
         if Path(name).suffix.lower() in ("", ".svg"):
-            sentence += f"; by name alone, fonts of single lines are found in {SINGLE_LINE_FONTS}: Inkscape brings them"
+            sentence += f"; single-line fonts of Inkscape are found by name in {SINGLE_LINE_FONTS}"
         raise Error(sentence, file=name, code="file-unreadable")
     return read_bytes(name)

@@ -68,12 +68,12 @@ def _place() -> Path:
 
 
 def _unwritable() -> str:
-    """Why nothing is remembered, where nothing can be: as in a container whose home cannot be written."""
+    """Why nothing is remembered, if nothing can be: in a container, for example, whose home cannot be written."""
     with suppress(RuntimeError):
         place = _place()
         there = next(folder for folder in place.parents if folder.exists())
         if not os.access(there, os.W_OK) or (place.exists() and not os.access(place, os.W_OK)):
-            return f": {place}, where it would stand, cannot be written"
+            return f": {place}, where brushsvg keeps this, cannot be written"
     return ""
 
 
