@@ -43,6 +43,7 @@ def stops(read: Readback, program: Program) -> list[Notice]:
         most_s = np.interp(at_mm[1:] + off_mm, asked_mm, asked_s) - np.interp(
             at_mm[:-1] - off_mm, asked_mm, asked_s
         )
+        most_s = np.maximum(most_s, _as_next_to_it(np.diff(at_mm), least_s))
         late_s = took_s - slower * most_s
         if late_s[worst := int(late_s.argmax())] > STANDS_S:
             sentence = (
@@ -50,6 +51,17 @@ def stops(read: Readback, program: Program) -> list[Notice]:
             )
             return [Notice(name, sentence, code="stands-in-paint")]
     return []
+
+
+def _as_next_to_it(ways_mm: np.ndarray, least_s: np.ndarray) -> np.ndarray:
+    """The time [s] of each part at the pace of the slower of its neighbours that are as long: two parts of a servo's
+    way share a step of its height, and which of them has it is a matter of rounding."""
+    most_s = np.zeros(len(ways_mm))
+    for a, b in ((slice(1, None), slice(None, -1)), (slice(None, -1), slice(1, None))):
+        is_as_long = (ways_mm[b] > 0) & (ways_mm[b] > 0.9 * ways_mm[a])
+        pace = np.divide(least_s[b], ways_mm[b], out=np.zeros(len(ways_mm[b])), where=is_as_long)
+        most_s[a] = np.maximum(most_s[a], pace * ways_mm[a])
+    return most_s
 
 
 def _strokes(acts: list[Act], touching_mm_s: float) -> list[tuple[str, list[Act]]]:

@@ -72,19 +72,20 @@ def true_of(told: np.ndarray, machine: dict | None) -> np.ndarray:
     if not machine or not len(told):
         return told
     along, across = machine.get("scale", (1.0, 1.0))
-    tilts, lean = machine.get("tilt_mm_per_mm", (0.0, 0.0)), machine.get("lean_mm_per_mm", (0.0, 0.0))
+    lean = machine.get("lean_mm_per_mm", (0.0, 0.0))
     x, y, z = told.T
-    z = (
-        z
-        - machine.get("height_mm", 0.0)
-        - tilts[0] * x
-        - tilts[1] * y
-        - on_map(told, machine.get("map_mm", ()))
-    )
+    z = z - paper_height(told, machine)
     pressed = np.maximum(-z, 0.0)
     aside = np.array([bent(place, machine) for place in told[:, :2]])
     x, y = along * x + machine.get("skew", 0.0) * y + lean[0] * pressed, across * y + lean[1] * pressed
     return np.column_stack([x + aside[:, 0], y + aside[:, 1], z])
+
+
+def paper_height(told: np.ndarray, machine: dict) -> np.ndarray:
+    """(n,) how much higher the paper lies where the tool is told to go than it was taught."""
+    tilts = machine.get("tilt_mm_per_mm", (0.0, 0.0))
+    on = on_map(told, machine.get("map_mm", ()))
+    return machine.get("height_mm", 0.0) + told[:, 0] * tilts[0] + told[:, 1] * tilts[1] + on
 
 
 def bent(place, machine: dict) -> np.ndarray:
@@ -108,15 +109,17 @@ def on_map(told: np.ndarray, rows) -> np.ndarray:
 
 
 def told_in_air(place, height: float, machine: dict | None) -> np.ndarray:
-    """(3,) what such a machine is told so that the tool is over a place: there it leans nowhere."""
-    along, across = (machine or {}).get("scale", (1.0, 1.0))
+    """(3,) where such a machine is told to go so that the tool is that high over the paper at a place: there it leans
+    nowhere."""
+    if not machine:
+        return np.array([*place[:2], height])
+    along, across = machine.get("scale", (1.0, 1.0))
     y = place[1] / across
-    straight = np.array([(place[0] - (machine or {}).get("skew", 0.0) * y) / along, y])
-    if "field_mm" not in (machine or {}):
-        return np.array([*straight, height])
-    axes = np.array([[along, machine.get("skew", 0.0)], [0.0, across]])
-    found = least_squares(lambda told: axes @ told + bent(told, machine) - place[:2], straight, xtol=1e-15)
-    return np.array([*found.x, height])
+    told = np.array([(place[0] - machine.get("skew", 0.0) * y) / along, y])
+    if "field_mm" in machine:
+        axes = np.array([[along, machine.get("skew", 0.0)], [0.0, across]])
+        told = least_squares(lambda at: axes @ at + bent(at, machine) - place[:2], told, xtol=1e-15).x
+    return np.array([*told, height + paper_height(told[None], machine)[0]])
 
 
 def angle_rad(one: np.ndarray, other: np.ndarray) -> float:

@@ -203,7 +203,7 @@ def _sampled(points: np.ndarray) -> np.ndarray:
 class Way:
     """A run in the paper's frame, as the machine goes. starts, ends (n, 3), speeds (n,) of its legs, circles as chords;
     leg: which leg each belongs to; samples (m, 3) with the row that each belongs to, and as they are told; touches: of
-    the samples, those of each touch."""
+    the samples, those of each touch; told_touches: where the tool was told to go for them."""
 
     run: Run
     starts: np.ndarray
@@ -213,6 +213,7 @@ class Way:
     row: np.ndarray
     told: np.ndarray
     touches: list[np.ndarray] = field(default_factory=list)
+    told_touches: list[np.ndarray] = field(default_factory=list)
 
 
 def way_of(run: Run, job: Job) -> Way:
@@ -251,8 +252,10 @@ def way_of(run: Run, job: Job) -> Way:
     samples = places.true_of(told, job.machine)
     on = samples[:, 2] <= job.touch_mm
     edges = np.flatnonzero(np.diff(np.r_[False, on, False].astype(int)))
-    touches = [samples[a:b] for a, b in zip(edges[::2], edges[1::2], strict=True)]
-    return Way(run, true_starts, true_ends, owner, samples, row, told, touches)
+    touches, told_touches = (
+        [each[a:b] for a, b in zip(edges[::2], edges[1::2], strict=True)] for each in (samples, told)
+    )
+    return Way(run, true_starts, true_ends, owner, samples, row, told, touches, told_touches)
 
 
 # Limits -----------------------------------------------------------------------------------------------
@@ -389,12 +392,13 @@ def _to_path(points: np.ndarray, path: np.ndarray) -> np.ndarray:
 
 
 def strokes_of(way: Way, job: Job) -> list[np.ndarray]:
-    """The touches that are no visits to a vessel."""
+    """The touches that are no visits to a vessel. A vessel's place is told as it stands in the cell, so that it is off
+    the sheet where it is told."""
     width, height = job.plan["sheet_mm"]
     found = []
-    for touch in way.touches:
-        beside = (touch[:, :2] <= 0).any(axis=1) | (touch[:, :2] >= (width, height)).any(axis=1)
-        if beside.all() and any(_to_path(touch, visit).max() < job.near_mm for visit in job.stations):
+    for touch, told in zip(way.touches, way.told_touches, strict=True):
+        is_off = (told[:, :2] <= 0).any(axis=1) | (told[:, :2] >= (width, height)).any(axis=1)
+        if is_off.all() and any(_to_path(touch, visit).max() < job.near_mm for visit in job.stations):
             continue
         found.append(touch)
     return found

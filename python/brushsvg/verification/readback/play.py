@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ...machine.arc_chords import OVER_MM
 from ...machine.backlash import first_side, half_mm
 from ...machine.cell import Cell, unit_mm, value_mm
 from . import Act, Readback, ReadSection, Step
@@ -111,7 +112,8 @@ class _Axes:
         radius = math.hypot(*(begin[:2] - (x, y)))
         on = np.column_stack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
         low, high = (of(np.vstack([begin[:2], end[:2]]), axis=0) for of in (np.min, np.max))
-        is_one_way = (on > low - self.near_mm).all() and (on < high + self.near_mm).all()
+        near_mm = self.near_mm + OVER_MM  # no program's circle is cut for less
+        is_one_way = (on > low - near_mm).all() and (on < high + near_mm).all()
         pushes = np.abs(begin[:2] - self.slide - np.sign(end - begin)[:2] * self.half) < self.near_mm
         if is_one_way and (pushes | (np.abs(end - begin)[:2] < self.near_mm)).all():
             aside, self.beside = self.slide - begin[:2], self._pushed(self.beside, end)
