@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <functional>
+#include <set>
 
 #include "bindings.hpp"
 #include "brushsvg/compensate.hpp"
@@ -82,6 +83,28 @@ too sharp for the lever.)");
                                    for (std::size_t i = 0; i < out.size(); ++i) out[i] = notice(done.warnings[i]);
                                    return out;
                                })
+        .def(
+            "spliced",
+            [](const Compensated& done, const Compensated& other,
+               const std::vector<std::pair<bool, std::size_t>>& passes) {
+                Compensated out;
+                out.plan = done.plan;
+                out.plan.passes.clear();
+                std::set<std::string> names;
+                for (const auto& [is_other, k] : passes) {
+                    const Compensated& from = is_other ? other : done;
+                    out.plan.passes.push_back(from.plan.passes.at(k));
+                    out.misses.push_back(from.misses.at(k));
+                    if (is_other) names.insert(out.plan.passes.back().stroke.name());
+                }
+                for (const brushsvg::Warning& each : done.warnings)
+                    if (names.count(each.where) == 0) out.warnings.push_back(each);
+                for (const brushsvg::Warning& each : other.warnings)
+                    if (!each.where.empty()) out.warnings.push_back(each);
+                return out;
+            },
+            py::arg("other"), py::arg("passes"),
+            "One plan of passes of both: (whether it is the other's, its number), in order.")
         .def("__repr__", [](const Compensated& done) {
             double largest = 0.0;
             for (const TrackingError& each : done.misses) largest = std::max(largest, each.largest_mm);

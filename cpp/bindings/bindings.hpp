@@ -34,6 +34,7 @@ void bind_coverage(py::module_& m);
 void bind_mark_overlap(py::module_& m);
 void bind_stroke_score(py::module_& m);
 void bind_compensate(py::module_& m);
+void bind_stroke_search(py::module_& m);
 void bind_paint_loads(py::module_& m);
 void bind_thin_out(py::module_& m);
 void bind_io(py::module_& m);

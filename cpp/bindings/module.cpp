@@ -62,6 +62,7 @@ PYBIND11_MODULE(_core, m) {
     bind_mark_overlap(m);
     bind_stroke_score(m);
     bind_compensate(m);
+    bind_stroke_search(m);
     bind_paint_loads(m);
     bind_thin_out(m);
     bind_io(m);

@@ -33,6 +33,7 @@ OPTIONS = {
     "--colour": ["", "#000000"],
     "--wide": ["", "clamp", "passes", "refuse"],
     "--corners": ["", "turn"],
+    "--detail": ["", "draft", "fine"],
     "--join": ["", True],
     "--compensation": ["", "none", "constant", "closed", "refined"],
     "--tolerance": ["", "0.1"],
@@ -122,7 +123,7 @@ def test_each_pair_of_options_of_convert_works(desk, capsys, options):
 
 CHECKED = (
     *("--brush", "--cell", "--sheet", "--layer", "--select", "--background", "--width", "--as", "--placed"),
-    *("--colour", "--wide", "--corners", "--join", "--speed", "--lenient"),
+    *("--colour", "--wide", "--corners", "--detail", "--join", "--speed", "--lenient"),
 )
 
 
@@ -151,7 +152,17 @@ OF_COMPARE = {
 OF_PAINTED = {  # those that a photograph is planned and compared with; one line is too little to compare
     name: OPTIONS[name]
     for name in (
-        *("--brush", "--cell", "--width", "--placed", "--corners", "--join", "--compensation", "--start"),
+        *(
+            "--brush",
+            "--cell",
+            "--width",
+            "--placed",
+            "--corners",
+            "--detail",
+            "--join",
+            "--compensation",
+            "--start",
+        ),
         *("--end", "--tolerance", "--lenient"),
     )
 }

@@ -754,6 +754,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
         "--as",
         "--wide",
         "--corners",
+        "--detail",
         "--join",
         "--speed",
     }

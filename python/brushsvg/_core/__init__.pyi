@@ -84,11 +84,13 @@ __all__: list[str] = [
     "read_plan",
     "refuse_tilted",
     "remarks",
+    "search_strokes",
     "simulate",
     "thin_out",
     "thorns",
     "touching",
     "trace_outlines",
+    "uncovered_areas",
     "unite",
     "verdicts",
     "wanted_coverage",
@@ -889,6 +891,12 @@ class Compensated:
     def __getstate__(self) -> tuple: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: tuple) -> None: ...
+    def spliced(
+        self, other: Compensated, passes: collections.abc.Sequence[tuple[bool, int]]
+    ) -> Compensated:
+        """
+        One plan of passes of both: (whether it is the other's, its number), in order.
+        """
     @property
     def misses(self) -> tuple[Miss, ...]: ...
     @property
@@ -1754,6 +1762,41 @@ def remarks(brush: Brush) -> list[Notice]:
     What is odd about an admissible brush: notices about its laws.
     """
 
+def search_strokes(
+    shapes: collections.abc.Sequence[
+        tuple[
+            collections.abc.Sequence[numpy.typing.ArrayLike],
+            collections.abc.Sequence[Stroke],
+            collections.abc.Sequence[Pass],
+        ]
+    ],
+    brush: Brush,
+    detail: str = "normal",
+    are_free: bool = True,
+) -> list[
+    tuple[
+        list[list[Stroke]],
+        list[bool],
+        list[
+            tuple[
+                Stroke,
+                int,
+                list[numpy.typing.NDArray[numpy.float64]],
+                list[numpy.typing.NDArray[numpy.float64]],
+                float,
+            ]
+        ],
+    ]
+]:
+    """
+    The strokes by which the mark of each shape costs least: for each (strokes, changed, added).
+
+    shapes: (rings of the shape, strokes, the passes that paint them). detail: "draft", "normal" or "fine", how small an area
+    gets a stroke of its own. are_free: whether strokes may be led otherwise, and not only added. strokes: for each that was
+    given what it is best painted as, [] for not at all; changed: whether that differs; added: (stroke, number of the stroke
+    that is nearest, rings of the area that it is for, rings of what it paints, cost that it wins [mm2]).
+    """
+
 def simulate(
     plan: Plan,
     brush: Brush,
@@ -1801,6 +1844,23 @@ def trace_outlines(
 ) -> None:
     """
     Fills outline_mm of every pass and of the whole.
+    """
+
+def uncovered_areas(
+    shapes: collections.abc.Sequence[
+        tuple[
+            collections.abc.Sequence[numpy.typing.ArrayLike],
+            collections.abc.Sequence[Stroke],
+            collections.abc.Sequence[Pass],
+        ]
+    ],
+    brush: Brush,
+    least_share: float,
+) -> list[list[tuple[list[numpy.typing.NDArray[numpy.float64]], list[float], float]]]:
+    """
+    The areas of each shape that its passes leave without paint, from a share of the shape on, the largest first.
+
+    shapes: as for search_strokes. For each a list of (rings [mm], (x, y) in it [mm], area [mm2]).
     """
 
 def unite(

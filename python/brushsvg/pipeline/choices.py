@@ -36,7 +36,18 @@ LAYOUT_FLAGS = (
 NAMED_OTHERWISE = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset", "paper-z": "paper_z"} | {
     name: name.replace("-", "_") for name in ("skip-region", "skip-comment", "margin-strokes")
 }  # flag: choice
-MADE_FLAGS = ("wide", "corners", "join", "compensation", "lag", "tolerance", "start", "end", "margin-strokes")
+MADE_FLAGS = (
+    "wide",
+    "corners",
+    "detail",
+    "join",
+    "compensation",
+    "lag",
+    "tolerance",
+    "start",
+    "end",
+    "margin-strokes",
+)
 RANGES = {  # the same as a flag's
     "width": (0.001, 1000.0),
     "scale": (1e-4, 1e4),
@@ -53,6 +64,7 @@ ONE_OF = {
     "paths_as": ("stroke", "outline"),
     "wide": ("auto", "clamp", "passes", "refuse"),
     "corners": ("auto", "turn"),
+    "detail": ("draft", "normal", "fine"),
     "compensation": ("none", "constant", "closed", "refined"),
     "start": ("exposed", "hidden", "squared", "auto"),
     "end": ("lifted", "squared", "auto"),
@@ -87,6 +99,7 @@ class Choices:
     origin: tuple[float, float] | None = None
     wide: str | None = None
     corners: str | None = None
+    detail: str | None = None
     join: bool | None = None
     compensation: str | None = None
     lag: float | None = None
@@ -121,6 +134,7 @@ class Given(TypedDict, total=False):
     origin: tuple[float, float] | None
     wide: str | None
     corners: str | None
+    detail: str | None
     join: bool | None
     compensation: str | None
     lag: float | None
@@ -322,6 +336,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options
         paths_as=chosen.paths_as,
         wide=chosen.wide or Options.wide,
         corners=chosen.corners or Options.corners,
+        detail=chosen.detail or Options.detail,
         colour=chosen.colour,
         join=bool(chosen.join),
         margin_strokes=chosen.margin_strokes or Options.margin_strokes,

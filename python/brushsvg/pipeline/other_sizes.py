@@ -7,6 +7,7 @@ from dataclasses import replace
 from .. import _core
 from ..planning import size_advice
 from ..planning.refinement import refined
+from ..strokes.stroke_search import Searched, searched
 from ..strokes.wide_shapes import within_reach
 from .compensated import compensation_by
 from .options import Options
@@ -37,12 +38,11 @@ def _trial(brush, options: Options):
     compensated = compensation_by(brush, None, options)
 
     def made(strokes):
-        painted, wanted, _ = within_reach(strokes, brush, options.wide)
-        done = compensated(painted)
-        plan = done.plan
+        found = _searched(strokes, brush, options, compensated)
+        plan = found.done.plan
         if options.compensation == "refined":
-            plan.passes = refined(painted, wanted, brush, done, compensated).passes
-        return _core.simulate(plan, brush).passes, wanted
+            plan.passes = refined(found.painted, found.wanted, brush, found.done, compensated).passes
+        return _core.simulate(plan, brush).passes, found.wanted
 
     return made
 
@@ -52,10 +52,9 @@ def _quick_trial(brush, options: Options):
     if options.compensation not in ("closed", "refined"):
         return None
 
-    def made(strokes):
-        painted, wanted, _ = within_reach(strokes, brush, options.wide)
-        done = _core.compensate(
-            painted,
+    def compensated(strokes):
+        return _core.compensate(
+            strokes,
             brush,
             tolerance_mm=options.tolerance_mm,
             few_poses=False,
@@ -63,6 +62,18 @@ def _quick_trial(brush, options: Options):
             start=options.start,
             end=options.end,
         )
-        return _core.simulate(done.plan, brush).passes, wanted
+
+    def made(strokes):
+        found = _searched(strokes, brush, options, compensated)
+        return _core.simulate(found.done.plan, brush).passes, found.wanted
 
     return made
+
+
+def _searched(strokes: list, brush, options: Options, compensated) -> Searched:
+    painted, wanted, _ = within_reach(strokes, brush, options.wide)
+    if options.compensation not in ("closed", "refined"):
+        return Searched(strokes, painted, wanted, compensated(painted))
+    corners = (options.start, options.end, options.corners) == ("auto", "auto", "auto")
+    sides = options.wide != "clamp"
+    return searched(strokes, painted, wanted, compensated, brush, options.detail, corners, sides)

@@ -25,10 +25,9 @@ from ..planning.refinement import refined
 from ..strokes.corners import lifted_at_corners
 from ..strokes.extraction import strokes as strokes_of
 from ..strokes.joining import joined
-from ..strokes.left_limbs import with_left_limbs
-from ..strokes.outline_corners import squared_at_corners
-from ..strokes.unreached import left_blank, missed, unreached
-from ..strokes.unreached import notices as blank_notices
+from ..strokes.stroke_search import searched
+from ..strokes.uncovered_areas import notices as blank_notices
+from ..strokes.uncovered_areas import uncovered_areas
 from ..strokes.wide_shapes import is_within_reach, within_reach
 from .compensated import begun_within_reach, compensation_by
 from .json_files import read_plan
@@ -82,9 +81,11 @@ def _planned(design: Design, brush, options: Options, stage, partly: bool, notic
     if not partly:
         _refuse_wide_lines(found, brush)
     lines = _within_reach(found, brush, options, partly)
-    notices += lines.notices
     compensated = compensation_by(brush, design.sheet_mm, options, stage)
     lines, done = _compensated(lines, compensated, partly)
+    if _leads(options):
+        lines, done = _searched(lines, done, brush, compensated, options)
+    notices += lines.notices
     way = _refined(_way(lines, done, brush, compensated, options, stage), brush, compensated, options)
     way.plan = _at_speed(_with_speeds(way.plan, lines.wanted), options)
     advised = compensated if options.layout.width_mm is None else None
@@ -94,7 +95,7 @@ def _planned(design: Design, brush, options: Options, stage, partly: bool, notic
         *warnings_with_advice(way.painted, way.done, brush, advised),
         *_other_brushes(lines.wanted, brush),
         *blank_notices(bare),
-        *blank_notices(blank, is_reached=True),
+        *blank_notices(blank),
         *(astray if _leads(options) else []),
     )
     work = Work(
@@ -162,8 +163,6 @@ def _found(design: Design, brush, options: Options) -> tuple[list, list[Notice]]
         notices += joints
     if options.corners == "auto" and _leads(options):
         strokes = lifted_at_corners(strokes, brush)
-        if _fills_corners(options):
-            strokes = squared_at_corners(strokes, brush)
     return strokes, notices
 
 
@@ -173,21 +172,33 @@ def _fills_corners(options: Options) -> bool:
 
 
 def _within_reach(found: list, brush, options: Options, partly: bool) -> _Lines:
-    """No wider than the brush, with strokes for limbs that have none."""
+    """No wider than the brush."""
     strokes, refused, left_out = found, [], []
     if partly and options.wide == "refuse":
         strokes, _, refused, left_out = _sorted_out(
             strokes, strokes, lambda some: within_reach(some, brush, options.wide)
         )
     painted, wanted, notices = within_reach(strokes, brush, options.wide)
-    drawn = list(found)
-    if _leads(options):
-        drawn, painted, wanted, beside = with_left_limbs(
-            drawn, painted, wanted, brush, _fills_corners(options), options.wide != "clamp"
-        )
-        whole = {stroke.id for stroke in painted if stroke.origin.element in beside}
-        notices = [_painted_beside(each) if each.where in whole else each for each in notices]
-    return _Lines(drawn, painted, wanted, notices, refused, left_out)
+    return _Lines(list(found), painted, wanted, notices, refused, left_out)
+
+
+def _searched(lines: _Lines, done, brush, compensated, options: Options) -> tuple[_Lines, _core.Compensated]:
+    """The lines as a search leads them, and those that it adds."""
+    found = searched(
+        lines.drawn,
+        lines.painted,
+        lines.wanted,
+        compensated,
+        brush,
+        options.detail,
+        _fills_corners(options),
+        options.wide != "clamp",
+        done,
+    )
+    whole = {stroke.id for stroke in found.painted if stroke.origin.element in found.widened}
+    notices = [_painted_beside(each) if each.where in whole else each for each in lines.notices]
+    lines = replace(lines, drawn=found.drawn, painted=found.painted, wanted=found.wanted, notices=notices)
+    return lines, found.done
 
 
 def _painted_beside(notice: Notice) -> Notice:
@@ -254,11 +265,9 @@ def _beside_shapes(lines: _Lines, way: _Way, brush, options: Options) -> tuple[l
     where nobody wants them."""
     refused = {notice.where for notice in lines.refused}
     planned = [stroke for stroke in lines.drawn if stroke.id not in refused]
-    bare, blank = unreached(planned, way.painted, brush), []
-    if _leads(options) and any(stroke.wanted_mm for stroke in planned):
-        traces = _core.simulate(way.plan, brush).passes
-        bare = left_blank(bare, way.painted, traces, brush)
-        blank = missed(planned, way.painted, traces, bare, brush)
+    areas = uncovered_areas(planned, way.painted, list(way.plan.passes), brush)
+    bare = [each for each in areas if not each.is_reached]
+    blank = [each for each in areas if each.is_reached and _leads(options)]
     return bare, blank, _astray(way, brush, options)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..drawing.design import Design, Element, Notice
-from ..strokes.unreached import finest
+from ..strokes.uncovered_areas import finest
 
 
 def without_thin_outlines(design: Design, brush) -> tuple[Design, list[Notice]]:

@@ -1,9 +1,8 @@
-"""A shape wider than the brush, filled: passes along its outline and inside of them, then lines into what is left.
+"""A shape wider than the brush, filled along its outline.
 
 Discs of the brush's greatest half width h fit into the shape where it is wider, with their centres in the shape moved
 inward by h. The first passes run along that line's rings, so their edge is the outline; further ones farther inside.
-Corners, necks and narrow parts are left: there the strokes found for the shape, and where those leave something, its
-medial axis, are painted at the width that the shape has there.
+Corners, necks and narrow parts are left to the search.
 """
 
 from __future__ import annotations
@@ -12,34 +11,25 @@ import numpy as np
 import shapely
 
 from .. import _core
-from .contour_rings import (
-    cut,
-    no_corners,
-    ring_along,
-    rings_inward,
-    slanted_corners,
-)
+from .contour_rings import cut, no_corners, ring_along, rings_inward, slanted_corners
 from .offset_passes import Line
-from .rest_lines import SQUARED, axis_rows, fill, lengthened, rows_along
-from .swept_areas import GRID_MM, QUARTER, areas, region, unpainted
+from .swept_areas import GRID_MM, QUARTER, unpainted
 
-# What counts most of the unpainted: gaps amid paint, so many half widths from the edge, and tips, what a mark so
-# narrow, in half widths, leaves at square ends, if more than so many squares of them.
-_INSIDE, _NARROW, _TIP = 0.05, 0.27, 0.02
+_SQUARED = 0.4  # of the greatest width, the least of a brush whose marks can begin and end square
 _TURNED_IN = 2.0  # half widths round a ring that is all of a filling: in a smaller one the brush would turn on the spot
 _AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
+_AMID = 0.05  # squares of the half width that a dot and a ring round it may leave between them
 # A ring round a dot, in half widths of the brush: it lies on it by so much, and is so wide at least and at most.
 _ON_DOT, _NARROWEST_RING, _WIDEST_RING = 0.2, 0.36, 0.8
 _SIMPLER_MM = 0.02  # an edge of the outline costs as much as all the rest
 _MOST_PAIRS = 10_000  # beyond, a shape is no lettering, and the middle lines have to do
 
 
-def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -> list[list[Line]]:
+def contour_passes(shape, least: float, half: float) -> list[list[Line]]:
     """Ways to fill a shape, each as lines, outermost ring first: with sides that end square in right-angled corners,
     where the brush can and the shape has some, and with rings that turn there; none for a shape that no lettering has.
 
-    shape: a polygon of shapely; wide, narrow: strokes found for it, those that the brush cannot
-    paint and those that are painted anyway; least, half: the brush's half widths [mm].
+    shape: a polygon of shapely; least, half: the brush's half widths [mm].
     """
     least = min(least, _AS_WIDE * half)  # of a pen, whose least width is its greatest
     shape = shape.simplify(_SIMPLER_MM)
@@ -48,12 +38,15 @@ def contour_passes(shape, wide: list, narrow: list, least: float, half: float) -
     rings = rings_inward(shape, half)
     if rings is None:
         return []
-    kinds = (slanted_corners, no_corners) if least < SQUARED * half else (no_corners,)
+    kinds = (slanted_corners, no_corners) if least < _SQUARED * half else (no_corners,)
     ways = [cut(rings, half, shape, squared_at) for squared_at in kinds]
     counts = [sum(bool(line.wanted_mm) for line in lines) for lines in ways]
     ways = [lines for k, lines in enumerate(ways) if counts[k] not in counts[k + 1 :]]
-    filled = [_rest_filled(lines, shape, wide, narrow, least, half) for lines in ways]
-    return [lines for lines in (*filled, _dot_and_ring(shape, least, half)) if lines]
+    return [
+        lines
+        for lines in (*ways, _dot_and_ring(shape, least, half))
+        if lines and not _turns_on_the_spot(lines, half)
+    ]
 
 
 def _dot_and_ring(shape, least: float, half: float) -> list[Line]:
@@ -70,37 +63,11 @@ def _dot_and_ring(shape, least: float, half: float) -> list[Line]:
     lines = [Line(np.tile(centre, 4).reshape(1, 8), [(0.0, half)]), *cut([rings], width, shape, no_corners)]
     dot = shapely.Point(centre).buffer((1 - _ON_DOT / 2) * half, quad_segs=QUARTER)
     amid = shapely.difference(unpainted(shape.buffer(-width), lines[1:]), dot, grid_size=GRID_MM)
-    return lines if amid.area < _INSIDE * half**2 else []
+    return lines if amid.area < _AMID * half**2 else []
 
 
-def _rest_filled(lines: list[Line], shape, wide: list, narrow: list, least: float, half: float) -> list[Line]:
-    """Rings, and lines into what they leave of a shape."""
-    left = unpainted(shape, [*narrow, *lines])
-    edge = shape.boundary
-    tips = _tips(shape, lines, half)
-    inside = [part for part in shapely.get_parts(left) if shapely.distance(part, edge) > _INSIDE * half]
-    dear = areas(shapely.union_all([*tips, *inside], grid_size=GRID_MM))
-    left = areas(shapely.union(left, dear, grid_size=GRID_MM))
-    shapely.prepare(edge)
-    for candidates in ([rows_along(stroke, edge, half) for stroke in wide], axis_rows(shape, half)):
-        longer = [lengthened(rows, shape, edge, half) for rows in candidates]
-        found, left = fill(left, dear, longer, least, half, shape)
-        lines += found
-    alone = len(lines) == 1 and lines[0].closed
-    return [] if alone and _length_mm(lines[0]) < _TURNED_IN * half else lines
-
-
-def _tips(shape, lines: list[Line], half: float) -> list:
-    """What the narrow mark that runs into the shape's corners at square ends of lines leaves of the sharpest."""
-    squared = [region(list(line.wanted_mm)) for line in lines if line.wanted_mm]
-    if not squared:
-        return []
-    narrow = _NARROW * half
-    bare = shapely.difference(
-        shape, shape.buffer(-narrow).buffer(narrow, quad_segs=QUARTER), grid_size=GRID_MM
-    )
-    left = shapely.intersection(bare, shapely.union_all(squared), grid_size=GRID_MM)
-    return [part for part in areas(left).geoms if part.area > _TIP * half**2]
+def _turns_on_the_spot(lines: list[Line], half: float) -> bool:
+    return len(lines) == 1 and lines[0].closed and _length_mm(lines[0]) < _TURNED_IN * half
 
 
 def _length_mm(line: Line) -> float:

@@ -15,26 +15,18 @@ from .swept_areas import painted, region, rings_of, unpainted
 
 _MOST_STROKES = 500
 _SLIT_MM = 0.01  # half as wide as slits between parts may be
-_SHOWN_SHARE, _SHOWN_GAP_MM = 0.02, 1.0  # what a round brush leaves of blunt corners is less
 
 
 @dataclass(frozen=True)
 class Filling:
     """What fills one shape. passes: for the number of each stroke that is wider than the brush, the lines to paint in
-    its place, none where those of another do; meant: of what they become, the first's line and rings; unpainted: share
-    of the shape; gap_mm: width of the widest gap; rings: of the shape; narrow: its strokes that are not filled."""
+    its place, none where those of another do; meant: of what they become, the first's line and rings; rings: of the
+    shape; narrow: its strokes that are not filled."""
 
     passes: dict[int, list[Line]]
     meant: dict[int, tuple[Line, list[np.ndarray]]]
-    unpainted: float
-    gap_mm: float
     rings: list[np.ndarray]
     narrow: list
-
-    @property
-    def shows(self) -> bool:
-        """Whether something is left that one sees."""
-        return self.unpainted > _SHOWN_SHARE or self.gap_mm > _SHOWN_GAP_MM
 
     @property
     def count(self) -> int:
@@ -59,12 +51,13 @@ def _ways(shape, wide: dict[int, object], narrow: list, least: float, greatest: 
         k: [clamped(stroke, least, greatest), *offset_passes(stroke, greatest)] for k, stroke in wide.items()
     }
     meant = {k: (Line(s.middle_mm, s.half_width, s.closed), s.wanted_mm) for k, s in wide.items()}
-    ways = [_tried(shape, beside, meant, narrow)]
+    rings = rings_of(shape)
+    ways = [Filling(beside, meant, rings, narrow)]
     first, *others = wide
     part = _core.unite([ring for stroke in wide.values() for ring in stroke.wanted_mm])
-    for lines in contour_passes(shape, list(wide.values()), narrow, least, greatest):
+    for lines in contour_passes(shape, least, greatest):
         passes = {first: lines, **{k: [] for k in others}}
-        ways.append(_tried(shape, passes, {first: (lines[0], _first_share(part, lines))}, narrow))
+        ways.append(Filling(passes, {first: (lines[0], _first_share(part, lines))}, rings, narrow))
     return ways
 
 
@@ -73,28 +66,6 @@ def _first_share(part: list[np.ndarray], lines: list[Line]) -> list[np.ndarray]:
     whole = region(part)
     share = shapely.union(shapely.intersection(painted(lines[:1]), whole), unpainted(whole, lines))
     return rings_of(share)
-
-
-def with_lines(filling: Filling, passes: dict[int, list[Line]]) -> Filling:
-    """The filling with these lines in place of its own."""
-    meant = {
-        k: (passes[k][0] if line is filling.passes[k][0] else line, rings)
-        for k, (line, rings) in filling.meant.items()
-        if passes[k]
-    }
-    return _tried(region(filling.rings), passes, meant, filling.narrow)
-
-
-def _tried(shape, passes, meant, narrow: list) -> Filling:
-    left = unpainted(shape, [*narrow, *(line for lines in passes.values() for line in lines)])
-    rings = rings_of(shape)
-    return Filling(passes, meant, left.area / shape.area, _gap_mm(left), rings, narrow)
-
-
-def _gap_mm(left) -> float:
-    parts = [part for part in shapely.get_parts(left) if part.area > 0.1]
-    largest = sorted(parts, key=lambda part: -part.area)[:20]
-    return max((2 * shapely.maximum_inscribed_circle(part, 0.05).length for part in largest), default=0.0)
 
 
 def _shapes(strokes: list, wider: list[int]) -> list[tuple]:

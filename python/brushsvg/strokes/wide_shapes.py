@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import replace
-
 import numpy as np
 
 from .. import _core
 from ..drawing.design import Notice
 from ..errors import Error, need, need_one_of
 from .offset_passes import clamped
-from .trial_mark import spoiling, trial_overlap, trial_plan
+from .trial_mark import trial_overlap
 
 WIDE = ("auto", "clamp", "passes", "refuse")
 # At the nearest width the mark overlaps with a shape by so much, or passes are taken for it.
@@ -22,10 +19,7 @@ BETTER = 0.01  # and passes by so much more
 CLEARLY = 0.1
 # Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
 _WORTH_PASSES = 1 / 0.95
-_NEARLY = 0.035  # less of overlap, before bare places are painted: then it may be the better way all the same
-_POSE_MM2 = 0.02  # of faults, which a pose of a filling is worth
 _ALIKE = 0.003  # of overlap: less is not worth the direction of writing, or more passes
-_BLOT, _MOST_BLOTS = 3.0, 60  # in half widths, a line of a filling that is looked at; of one shape
 POINT_MM = 1e-3  # half the width of a line where it ends in a point
 UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge lies beside the shape's by more
 
@@ -150,13 +144,11 @@ def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int
 
     done: dict[int, tuple] = {}
     found = fillings(strokes, wider, *brush.half_width_range_mm())
-    best = [_cleanest(_best(ways, strokes, brush), strokes, brush) for ways in found]
+    best = [_best(ways, strokes, brush) for ways in found]
     chosen, fillable = ({}, set()) if wide == "passes" else _chosen(best, strokes, brush, wide)
     for number, (filling, _) in enumerate(best):
         if wide != "passes" and number not in chosen:
             continue
-        first = min(filling.passes)
-        left_over = _left_over(filling)
         for k in filling.passes:
             passes = [_like(strokes[k], line, lane) for lane, line in enumerate(filling.passes[k], start=1)]
             meant = []
@@ -164,64 +156,24 @@ def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int
                 line, rings = filling.meant[k]
                 meant = [_like(strokes[k], line), *passes[1:]]
                 meant[0].wanted_mm = rings
-            done[k] = (passes, meant, _how(passes) + left_over * (k == first) + chosen.get(number, ""))
+            done[k] = (passes, meant, _how(passes) + chosen.get(number, ""))
     return done, fillable
 
 
-def _best(ways: list, strokes: list, brush) -> list[tuple]:
-    """Of the ways to fill a shape the one whose mark overlaps with it most, without lines that spoil it, and how much:
-    passes beside its middle lines, which have the direction of writing, unless others are fewer or plainly better. And
-    others along its outline that overlap nearly as much."""
-    beside, *along = [_without_blots(each, strokes, brush) for each in ways]
+def _best(ways: list, strokes: list, brush) -> tuple:
+    """Of the ways to fill a shape the one whose mark overlaps with it most, and how much: passes beside its middle
+    lines, which have the direction of writing, unless others are fewer or plainly better."""
+    beside, *along = [(each, _filled_overlap(each, strokes, brush)) for each in ways]
     if not along:
-        return [beside]
-    best = max(along, key=lambda each: (each[1], -each[0].unpainted))
-    if best[1] == beside[1] == 0:  # of a brush whose marks are refused there
-        return [min(beside, best, key=lambda each: each[0].unpainted)]
+        return beside
+    best = max(along, key=lambda each: each[1])
     worth = _ALIKE if best[0].count > beside[0].count else -_ALIKE if best[0].count < beside[0].count else 0
-    if best[1] <= beside[1] + worth:
-        return [beside]
-    return [best, *(each for each in along if each is not best and each[1] > best[1] - _NEARLY)]
+    return best if best[1] > beside[1] + worth else beside
 
 
-def _cleanest(ways: list[tuple], strokes: list, brush) -> tuple:
-    """Of fillings with how much they overlap the one with the cleanest edges, once marks that stick out are mended and
-    bare places are painted, and the fewest poses."""
-    mended = [_mended(*each, strokes, brush) for each in ways]
-    return min(mended, key=lambda each: each[2])[:2]
-
-
-def _mended(filling, overlap: float, strokes: list, brush) -> tuple:
-    """The filling without marks that stick out of the shape where other lines help, and with lines where its edge stays
-    bare; how much its mark overlaps with it then; and its faults and poses, to be compared with others'."""
-    from .bulges import faults_mm2, mended
-    from .edge_lines import edge_lines
-    from .fillings import with_lines
-
-    numbers = [(k, lane) for k, of_stroke in filling.passes.items() for lane in range(len(of_stroke))]
-    lines = [filling.passes[k][lane] for k, lane in numbers]
-
-    def as_stroke(n: int, line):
-        return _like(strokes[numbers[n][0]], line, numbers[n][1] + 1)
-
-    if not overlap:
-        return filling, overlap, math.inf
-    made, paint, shape = mended(lines, filling.narrow, filling.rings, brush, as_stroke)
-    more = edge_lines(paint, shape, brush, lambda line: as_stroke(0, line))
-    passes: dict[int, list] = {k: [] for k in filling.passes}
-    for (k, _), line in zip(numbers, made, strict=True):
-        passes[k] += [line] if line else []
-    passes[numbers[0][0]] += more
-    painted = [
-        _like(strokes[k], line, lane) for k, some in passes.items() for lane, line in enumerate(some, 1)
-    ]
-    try:
-        plan = trial_plan([*painted, *filling.narrow], brush)
-    except Error:
-        return filling, overlap, math.inf
-    marks = shape.painted(_core.simulate(plan, brush).passes, brush)
-    worse = faults_mm2(shape, marks) + _POSE_MM2 * sum(len(one.poses_mm) for one in plan.passes)
-    return with_lines(filling, passes), shape.overlap(marks), worse
+def _filled_overlap(filling, strokes: list, brush) -> float:
+    passes = [_like(strokes[k], line) for k, lines in filling.passes.items() for line in lines]
+    return _mark_overlap([*passes, *filling.narrow], filling.rings, brush)
 
 
 def _chosen(best: list[tuple], strokes: list, brush, wide: str) -> tuple[dict[int, str], set[int]]:
@@ -268,37 +220,7 @@ def _mark_overlap(strokes: list, rings: list, brush) -> float:
 def _how(passes: list) -> str:
     if not passes:
         return "painted in the passes of its shape's first stroke"
-    return f"painted in {len(passes)} passes" if len(passes) > 1 else "painted in one pass"
-
-
-def _without_blots(filling, strokes: list, brush) -> tuple:
-    """The filling without short lines that paint more beside the shape than they add to it, as a mark shorter than a
-    footprint lies behind its line; and how much its mark overlaps with the shape, 0 where it is refused."""
-    lines = [(k, lane) for k, of_stroke in filling.passes.items() for lane in range(len(of_stroke))]
-    passes = [_like(strokes[k], filling.passes[k][lane]) for k, lane in lines]
-    greatest = brush.half_width_range_mm()[1]
-    short = [n for n, one in enumerate(passes) if _is_short(one, _BLOT * greatest) and lines[n][1] > 0]
-    try:
-        spoil, overlap = spoiling([*passes, *filling.narrow], short[:_MOST_BLOTS], filling.rings, brush)
-    except Error:
-        return filling, 0.0
-    left_out = {lines[n] for n in spoil}
-    kept = {
-        k: [line for lane, line in enumerate(of_stroke) if (k, lane) not in left_out]
-        for k, of_stroke in filling.passes.items()
-    }
-    return replace(filling, passes=kept), overlap
-
-
-def _is_short(stroke, least_mm: float) -> bool:
-    return not stroke.closed and not stroke.wanted_mm and _core.flatten(stroke, 0.05)[-1, 2] < least_mm
-
-
-def _left_over(filling) -> str:
-    if not filling.shows:
-        return ""
-    share = f"{100 * filling.unpainted:.2g} % of the shape"
-    return f"; {share} stay unpainted, with gaps up to {filling.gap_mm:.2g} mm wide"
+    return "painted in passes side by side"
 
 
 def _like(stroke, line, lane: int = 1):

@@ -107,6 +107,7 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add_colour(command)
     add_wide(command)
     add_corners(command)
+    add_detail(command)
     add_join(command)
     add(
         "--compensation",
@@ -173,6 +174,14 @@ def add_corners(command: argparse.ArgumentParser) -> None:
         "--corners",
         choices=("auto", "turn"),
         help="corners: the brush turns in place; default: auto, it is lifted where that is better",
+    )
+
+
+def add_detail(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--detail",
+        choices=("draft", "normal", "fine"),
+        help="filled shapes: how small a corner gets a stroke of its own; default: normal",
     )
 
 

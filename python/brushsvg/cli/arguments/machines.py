@@ -8,6 +8,7 @@ from .flags import (
     add_colour,
     add_corners,
     add_corrections,
+    add_detail,
     add_input,
     add_join,
     add_layout,
@@ -103,6 +104,7 @@ def add_check(commands) -> None:
     add_colour(check)
     add_wide(check)
     add_corners(check)
+    add_detail(check)
     add_join(check)
     add_speed(check)
     add_corrections(check)

@@ -1,0 +1,247 @@
+#include "strokes/candidates.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace brushsvg {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+// Half widths, in those of the brush: as narrow as at square ends, and wider next to deeper areas.
+constexpr std::array<double, 4> kWidths{0.27, 0.45, 0.7, 1.0};
+constexpr double kOfDepth = 0.7;       // and in how deep the area reaches from its edge
+constexpr double kLanding = 2.5;       // half widths that a line is longer than the area at either end, on paint
+constexpr double kRoom = 0.9;          // of its half width that a line has on either side
+constexpr double kEvenMm = 0.2;        // between places on a line
+constexpr std::size_t kLookedAt = 60;  // places of an area that are looked at
+constexpr double kTouching = 0.4;      // half widths of the brush: so near to a corner an area lies in it
+constexpr double kTip = 0.03;          // half width of a line where it begins in a corner, in those of the brush
+constexpr double kRound = -0.85;  // half width won per length where a limb ends round or square: there its line ends
+
+std::vector<Vector2d> some_of(const std::vector<Vector2d>& places) {
+    std::vector<Vector2d> out;
+    const std::size_t step = 1 + places.size() / kLookedAt;
+    for (std::size_t k = 0; k < places.size(); k += step) out.push_back(places[k]);
+    return out;
+}
+
+WideLine line_of(const std::vector<Vector2d>& places, const std::vector<double>& halves) {
+    WideLine line(Index(places.size()), 3);
+    for (Index i = 0; i < line.rows(); ++i) line.row(i) << places[std::size_t(i)].transpose(), halves[std::size_t(i)];
+    return line;
+}
+
+void add_both_ways(const WideLine& line, Candidates& out) {
+    out.push_back(line);
+    out.push_back(line.colwise().reverse());
+}
+
+}  // namespace
+
+Outline::Outline(const Rings& rings, const Canvas& canvas) : canvas_(canvas), edges_(edge_runs(rings)) {
+    for (const Ring& ring : rings) {
+        if (ring.rows() == 0) continue;
+        Ring closed(ring.rows() + 1, 2);
+        closed << ring, ring.row(0);
+        closed_.push_back(std::move(closed));
+    }
+    nearest_ = std::vector<Nearest<Ring>>(closed_.begin(), closed_.end());
+}
+
+double Outline::edge_mm(const Vector2d& at_mm) {
+    double least = std::numeric_limits<double>::infinity();
+    for (auto& ring : nearest_) least = std::min(least, ring.distance(at_mm, least));
+    return least;
+}
+
+double Outline::room_mm(const Vector2d& at_mm) { return canvas_.is_inside(at_mm) ? edge_mm(at_mm) : 0.0; }
+
+Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>& middles, Outline& outline,
+                        const std::array<double, 2>& half_mm) {
+    const auto root_of = [&](const Vector2d& place) {
+        Vector2d best(0.0, 0.0);
+        double least = std::numeric_limits<double>::infinity();
+        for (const MiddlePolyline& line : middles)
+            for (Index i = 0; i < line.rows(); ++i) {
+                const Vector2d a = line.block<1, 2>(i, 0).transpose();
+                const Vector2d way = line.block<1, 2>(std::min(i + 1, line.rows() - 1), 0).transpose() - a;
+                const double squared = way.squaredNorm();
+                const double t = squared > 0.0 ? std::clamp((place - a).dot(way) / squared, 0.0, 1.0) : 0.0;
+                const Vector2d on = a + t * way;
+                if ((on - place).squaredNorm() >= least) continue;
+                least = (on - place).squaredNorm();
+                best = on;
+            }
+        return std::pair(best, std::sqrt(least));
+    };
+    Vector2d farthest = area.deepest;
+    double most = -1.0;
+    for (const Vector2d& place : some_of(area.places))
+        if (const double away = root_of(place).second; away > most) {
+            most = away;
+            farthest = place;
+        }
+    Candidates out;
+    for (const Vector2d& place : {area.deepest, farthest}) {
+        const auto [root, away] = root_of(place);
+        if (away < kEvenMm) continue;  // a stroke runs there, and its mark leaves it
+        const Vector2d onward = (place - root) / away;
+        const double there = (area.deepest - root).norm();
+        double reach = 0.0;
+        for (const Vector2d& each : area.places) reach = std::max(reach, (each - root).dot(onward));
+        std::vector<Vector2d> places;
+        std::vector<double> halves;
+        for (double at = 0.0; at < away + 4.0 * half_mm[1]; at += kEvenMm / 2.0) {
+            const Vector2d here = root + at * onward;
+            const double half = outline.room_mm(here);
+            const bool is_out = at > there;
+            if (half <= half_mm[0] || (is_out && at + half > reach)) break;
+            if (is_out && halves.size() > 1 && half - halves[halves.size() - 2] < kRound * kEvenMm) break;
+            places.push_back(here);
+            halves.push_back(half);
+        }
+        for (double& half : halves) half = std::min(half, half_mm[1]);
+        if (places.size() > 2) out.push_back(line_of(places, halves));
+    }
+    return out;
+}
+
+Candidates along_edges(const BareArea& area, Outline& outline, const std::array<double, 2>& half_mm) {
+    struct Side {
+        double first = std::numeric_limits<double>::infinity(), last = -first, deep = 0.0;
+        double before = first, behind = -first;  // of a ring: in its second half, in its first
+        std::size_t count = 0;
+    };
+    const std::vector<EdgeRun>& runs = outline.edges().runs;
+    std::vector<Side> sides(runs.size());
+    const std::vector<Vector2d> places = some_of(area.places);
+    for (const Vector2d& place : places) {
+        double least = std::numeric_limits<double>::infinity(), at = 0.0;
+        std::size_t which = 0;
+        for (std::size_t k = 0; k < runs.size(); ++k)
+            if (const auto [off, where] = runs[k].nearest(place); off < least) {
+                least = off;
+                at = where;
+                which = k;
+            }
+        if (runs.empty()) break;
+        Side& side = sides[which];
+        side.first = std::min(side.first, at);
+        side.last = std::max(side.last, at);
+        const double half = runs[which].length_mm() / 2.0;
+        if (at > half)
+            side.before = std::min(side.before, at);
+        else
+            side.behind = std::max(side.behind, at);
+        side.deep = std::max(side.deep, least);
+        ++side.count;
+    }
+    Candidates out;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+        const EdgeRun& run = runs[k];
+        Side side = sides[k];
+        if (side.count == 0) continue;
+        if (run.is_ring && side.last - side.first > run.length_mm() / 2.0) {  // across where the ring begins
+            side.first = side.before;
+            side.last = side.behind + run.length_mm();
+        }
+        std::vector<double> widths{kOfDepth * side.deep};
+        for (const double share : kWidths) widths.push_back(share * half_mm[1]);
+        for (const double width : widths) {
+            if (width < half_mm[0] || width > half_mm[1] || side.deep >= 2.0 * width) continue;
+            double first = side.first - kLanding * width, last = side.last + kLanding * width;
+            if (!run.is_ring) {
+                // a line ends before an outer corner, so that its mark stays in the shape, and runs on past an inner
+                // one
+                const auto short_of = [&](double turn) {
+                    return turn < 0.0 ? -kLanding * width : width * std::tan(turn / 2.0);
+                };
+                first = std::max(first, short_of(run.turns_rad[0]));
+                last = std::min(last, run.length_mm() - short_of(run.turns_rad[1]));
+            }
+            if (last - first < width) continue;
+            const int count = std::max(int((last - first) / kEvenMm), 4);
+            std::vector<Vector2d> middle;
+            bool is_clear = true;
+            for (int i = 0; i < count && is_clear; ++i) {
+                const double at = first + (last - first) * i / (count - 1);
+                const auto [place, along] = run.at(at);
+                const Vector2d here = place + width * Vector2d(-along.y(), along.x());
+                if (outline.edge_mm(here) > kRoom * width)
+                    middle.push_back(here);
+                else if (at < side.first)
+                    middle.clear();
+                else if (at > side.last)
+                    break;
+                else
+                    is_clear = false;
+            }
+            if (is_clear && middle.size() > 3)
+                add_both_ways(line_of(middle, std::vector<double>(middle.size(), width)), out);
+        }
+    }
+    return out;
+}
+
+Candidates from_corners(const BareArea& area, Outline& outline, const std::array<double, 2>& half_mm) {
+    Candidates out;
+    for (const OuterCorner& corner : outline.edges().corners) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const Vector2d& place : area.places) least = std::min(least, (place - corner.at_mm).squaredNorm());
+        if (std::sqrt(least) > kTouching * half_mm[1]) continue;
+        for (const double share : {kWidths[0], kWidths[1]}) {
+            const double width = share * half_mm[1], thin = std::max(kTip * half_mm[1], half_mm[0]);
+            if (width < thin) continue;
+            std::vector<Vector2d> places;
+            std::vector<double> halves;
+            double wide_mm = -1.0;  // where it is as wide as that
+            for (double at = kEvenMm; at < 4.0 * half_mm[1]; at += kEvenMm) {
+                const Vector2d here = corner.at_mm + at * corner.inwards;
+                const double room = outline.room_mm(here);
+                if (room < thin) {
+                    if (places.empty()) continue;
+                    break;
+                }
+                if (wide_mm < 0.0 && room >= width) wide_mm = at;
+                if (wide_mm >= 0.0 && at > wide_mm + kLanding * width) break;
+                places.push_back(here);
+                halves.push_back(std::min(room, width));
+            }
+            if (wide_mm >= 0.0 && places.size() > 3) out.push_back(line_of(places, halves));
+        }
+    }
+    return out;
+}
+
+Candidates across(const BareArea& area, Outline& outline, const std::array<double, 2>& half_mm) {
+    Eigen::Matrix2Xd places(2, Index(area.places.size()));
+    for (Index i = 0; i < places.cols(); ++i) places.col(i) = area.places[std::size_t(i)];
+    const Vector2d centre = (places.rowwise().minCoeff() + places.rowwise().maxCoeff()) / 2.0;
+    const Eigen::Matrix2Xd off = places.colwise() - places.rowwise().mean();
+    Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();
+    if (places.cols() > 1)
+        axes = Eigen::JacobiSVD<Eigen::Matrix2d>(off * off.transpose(), Eigen::ComputeFullU).matrixU();
+    Candidates out;
+    for (const Index k : {0, 1}) {
+        const Vector2d along = axes.col(k), aside = axes.col(1 - k);
+        const Eigen::RowVectorXd on = along.transpose() * off, over = aside.transpose() * off;
+        const double width = std::clamp(0.65 * (over.maxCoeff() - over.minCoeff()),
+                                        std::max(kWidths[0] * half_mm[1], half_mm[0]), half_mm[1]);
+        const double reach = (on.maxCoeff() - on.minCoeff()) / 2.0 + kLanding * width;
+        const int count = std::max(int(2.0 * reach / kEvenMm), 4);
+        std::vector<Vector2d> middle;
+        for (int i = 0; i < count; ++i) {
+            middle.push_back(centre + (2.0 * i / (count - 1) - 1.0) * reach * along);
+            if (outline.room_mm(middle.back()) <= width) break;
+        }
+        if (int(middle.size()) == count && outline.room_mm(middle.back()) > width)
+            add_both_ways(line_of(middle, std::vector<double>(middle.size(), width)), out);
+    }
+    return out;
+}
+
+}  // namespace brushsvg

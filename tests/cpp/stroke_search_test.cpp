@@ -1,0 +1,110 @@
+#include "brushsvg/stroke_search.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "brushsvg/compensate.hpp"
+#include "brushsvg/coverage.hpp"
+#include "brushsvg/region.hpp"
+#include "brushsvg/simulate.hpp"
+#include "round6.hpp"
+
+using namespace brushsvg;
+
+namespace {
+
+Ring box(double left, double bottom, double right, double top) {
+    Ring ring(4, 2);
+    ring << left, bottom, right, bottom, right, top, left, top;
+    return ring;
+}
+
+Stroke straight(Eigen::RowVector2d from, Eigen::RowVector2d to, double half) {
+    Stroke stroke;
+    stroke.middle_mm.resize(1, 8);
+    stroke.middle_mm << from, from + (to - from) / 3.0, from + (to - from) / 1.5, to;
+    stroke.half_width = {{0.0, half}};
+    return stroke;
+}
+
+Pass pass_of(const Stroke& stroke, const Brush& brush) {
+    CompensateOptions options;
+    options.start = Beginning::automatic;
+    options.end = Ending::automatic;
+    return compensate(stroke, brush, options).pass;
+}
+
+Rings mark_of(const std::vector<Stroke>& strokes, const Brush& brush) {
+    Rings all;
+    for (const Stroke& stroke : strokes)
+        for (const Ring& ring : outline(simulate(pass_of(stroke, brush), brush), brush)) all.push_back(ring);
+    return unite(all);
+}
+
+std::vector<Stroke> all_of(const SearchedShape& found) {
+    std::vector<Stroke> all;
+    for (const std::vector<Stroke>& parts : found.strokes) all.insert(all.end(), parts.begin(), parts.end());
+    for (const AddedStroke& each : found.added) all.push_back(each.stroke);
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("a limb without a stroke gets one, and the mark is nearer to the shape for it") {
+    const Brush brush = shipped("round-6");
+    const Rings shape = unite({box(10, 10, 17, 50), box(17, 26, 34, 33)});
+    const Stroke stem = straight({13.5, 46.5}, {13.5, 13.5}, 3.5);
+    const auto found = search_strokes({{shape, {stem}, {pass_of(stem, brush)}}}, brush);
+    REQUIRE(found.size() == 1);
+    REQUIRE(!found[0].added.empty());
+    CHECK(found[0].added[0].won_mm2 > 50.0);
+    CHECK(found[0].added[0].neighbour == 0);
+    CHECK(area(found[0].added[0].area_mm) > 50.0);
+    CHECK(overlap(mark_of(all_of(found[0]), brush), shape) > overlap(mark_of({stem}, brush), shape) + 0.15);
+}
+
+TEST_CASE("a stroke that sticks out of its shape is led back") {
+    const Brush brush = shipped("round-6");
+    const Rings shape{box(10, 10, 17, 40)};
+    const Stroke longer = straight({13.5, 36.5}, {13.5, 10.5}, 3.5);  // half a width too far
+    const auto found = search_strokes({{shape, {longer}, {pass_of(longer, brush)}}}, brush);
+    CHECK(found[0].changed[0]);
+    const Rings before = mark_of({longer}, brush), after = mark_of(found[0].strokes[0], brush);
+    const auto beyond = [&](const Rings& mark) { return area(mark) - area(intersect(mark, shape)); };
+    CHECK(beyond(after) < 0.5 * beyond(before));
+    const auto left_alone = search_strokes({{shape, {longer}, {pass_of(longer, brush)}}}, brush, {}, false);
+    CHECK(!left_alone[0].changed[0]);
+}
+
+TEST_CASE("the result is the same for shapes that are searched together and alone") {
+    const Brush brush = shipped("round-6");
+    std::vector<PaintedShape> shapes;
+    for (int k = 0; k < 6; ++k) {
+        const double x = 40.0 * k;
+        const Stroke stem = straight({x + 13.5, 46.5}, {x + 13.5, 13.5}, 3.5);
+        shapes.push_back({unite({box(x + 10, 10, x + 17, 50), box(x + 17, 26, x + 24 + 2 * k, 33)}),
+                          {stem},
+                          {pass_of(stem, brush)}});
+    }
+    const auto together = search_strokes(shapes, brush);
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+        const auto alone = search_strokes({shapes[k]}, brush);
+        REQUIRE(alone[0].added.size() == together[k].added.size());
+        for (std::size_t i = 0; i < alone[0].added.size(); ++i)
+            CHECK(alone[0].added[i].stroke.middle_mm == together[k].added[i].stroke.middle_mm);
+    }
+}
+
+TEST_CASE("areas without paint are found, the largest first, from a share of the shape on") {
+    const Brush brush = shipped("round-6");
+    const Rings shape = unite({box(10, 10, 17, 50), box(17, 26, 34, 33), box(17, 40, 22, 44)});
+    const Stroke stem = straight({13.5, 46.5}, {13.5, 13.5}, 3.5);
+    const std::vector<PaintedShape> painted{{shape, {stem}, {pass_of(stem, brush)}}};
+    const auto found = uncovered_areas(painted, brush, 0.02);
+    REQUIRE(found[0].size() >= 2);
+    CHECK(found[0][0].mm2 > found[0][1].mm2);
+    CHECK(found[0][0].mm2 == doctest::Approx(17 * 7).epsilon(0.1));
+    CHECK(std::abs(found[0][0].place_mm.x() - 25.5) < 6.0);
+    CHECK(uncovered_areas(painted, brush, 0.5)[0].empty());
+}

@@ -1,0 +1,94 @@
+"""Filled shapes are painted whole, from their simulated marks: corners, slabs, arms and counters."""
+
+import numpy as np
+import pytest
+import shapely
+
+from brushsvg import _core, find_brush
+from brushsvg.pipeline.options import Options
+from brushsvg.pipeline.prediction import predict
+from brushsvg.pipeline.preparation import prepare
+from brushsvg.strokes.swept_areas import region
+
+FLAG = "M10 5H25V50H17V10H10Z"
+CORNERS = {
+    "an L": "M20 5H28V42H45V49H20Z",
+    "a P": "M20 5H33Q46 5 46 15Q46 25 33 25H28V39H20ZM28 11V19H33Q39 19 39 15Q39 11 33 11Z",
+    "a flag": FLAG,
+    "a foot": "M17 5H25V45H12V42.3H17Z",
+    "a thin foot": "M17 5H25V45H14.2V43H17Z",
+    "a Z": "M10 6H44V12L20 38H44V44H10V38L34 12H10Z",
+    "a slab on both sides": "M8 44V38H20V14H12V8H36V14H28V38H40V44Z",
+    "a diamond": "M30 12L40 26L30 40L20 26Z",
+    "a bar wider than the brush": "M10 20H52V30H10Z",
+}
+
+
+def painted(tmp_path, d, **options):
+    """(shape, mark, plan) of a path."""
+    file = tmp_path / "shape.svg"
+    file.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="60mm" viewBox="0 0 60 60">'
+        f'<path id="p" d="{d}"/></svg>'
+    )
+    work = prepare(file, Options(brush=find_brush("round-6"), **options))
+    rings = _core.unite([ring for stroke in work.strokes if stroke.wanted_mm for ring in stroke.wanted_mm])
+    return region(rings), region(predict(work).outline_mm), work.plan
+
+
+@pytest.mark.parametrize("d", CORNERS.values(), ids=CORNERS)
+def test_nothing_that_one_sees_is_missing_or_sticks_out(tmp_path, d):
+    shape, mark, _ = painted(tmp_path, d)
+    assert mark.difference(shape.buffer(0.3)).area < 0.1
+    missing = shape.buffer(-0.15).difference(mark)
+    largest = max((each.area for each in shapely.get_parts(missing)), default=0.0)
+    assert largest < 0.03 * 4.2**2  # of a stroke's price, 0.1 squares of the greatest half width
+    assert shape.intersection(mark).area / shape.union(mark).area > 0.965
+
+
+def test_corners_are_bare_where_strokes_shall_turn_and_end_plainly(tmp_path):
+    plans = [
+        painted(tmp_path, CORNERS["an L"], **plain)[2]
+        for plain in ({}, {"corners": "turn"}, {"end": "lifted"})
+    ]
+    assert len(plans[0].passes) > len(plans[1].passes) == len(plans[2].passes) == 1
+
+
+def test_a_counter_stays_open(tmp_path):
+    """As of a fat 4: a stroke ran down the counter."""
+    shape, mark, _ = painted(tmp_path, "M20 5H32V35H38V43H32V52H22V43H6V36ZM22 18L14 35H22Z")
+    assert mark.difference(shape.buffer(0.15)).area < 1.0
+    counter = shapely.Polygon([(22, 60 - 18), (14, 60 - 35), (22, 60 - 35)])
+    assert counter.buffer(-0.3).intersection(mark).area < 0.05 * counter.area
+
+
+@pytest.mark.parametrize(("detail", "corners"), [("draft", 0), ("normal", 4), ("fine", 4)])
+def test_the_detail_says_how_small_an_area_gets_a_stroke(detail, corners):
+    """A square of 5 mm, painted by a dot, lacks 0.21 squares of half a width in each corner."""
+    square = np.array([(0.0, 0.0), (5.0, 0.0), (5.0, 5.0), (0.0, 5.0)])
+    brush = find_brush("round-6")
+    dot = _core.Stroke("p", np.full((1, 8), 2.5), half_width=[(0.0, 2.5)])
+    passes = _core.compensate([dot], brush, None, start="hidden").plan.passes
+    ((_, _, added),) = _core.search_strokes([([square], [dot], list(passes))], brush, detail)
+    assert len(added) == corners
+
+
+def test_the_cost_of_a_bare_square_is_its_area_and_that_of_its_inside():
+    """By the weights: 1 per mm2, and 3 more where it is deeper than 0.15 mm."""
+    square = np.array([(0.0, 0.0), (8.0, 0.0), (8.0, 8.0), (0.0, 8.0)])
+    ((_, _, added),) = _core.search_strokes([([square], [], [])], find_brush("round-6"))
+    assert 0.8 * (64 + 3 * 7.7**2) < sum(won for *_, won in added) < 64 + 3 * 7.7**2
+
+
+def test_a_stroke_whose_ends_the_artist_set_stays_as_it_is(tmp_path):
+    d, words = CORNERS["a slab on both sides"], 'data-brushsvg-end="lifted" data-brushsvg-start="exposed"'
+    file = tmp_path / "s.svg"
+    file.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="60mm" viewBox="0 0 60 60">'
+        f'<path id="p" d="{d}" {words}/></svg>'
+    )
+    work = prepare(file, Options(brush=find_brush("round-6")))
+    assert {stroke.settings.end for stroke in work.strokes} == {"lifted"}
+    assert len(work.strokes) == len(
+        prepare(file, Options(brush=find_brush("round-6"), detail="draft")).strokes
+    )
