@@ -14,6 +14,7 @@ import numpy as np
 
 from ... import _core
 from ...geometry.polylines import evenly, length
+from ...geometry.rings import signed_area
 
 # Fewer bumps are a drawing: an ampersand with serifs has 34. More would leave rough letters below 5 mm as they are.
 MIN_BUMPS = 40
@@ -32,10 +33,13 @@ ALIKE_SHARE, ALIKE = 0.2, 0.03
 MAX_STEP_MM = 0.15
 # Curves are flattened to 0.02 mm, so lower bumps mean nothing, and no brush shows them.
 MIN_ROUGHNESS_MM = 0.02
-# Length of the smoothing (standard deviation along the outline), in roughnesses. With 5, dents become strokes; with 20,
+# Length of the smoothing (standard deviation along the outline), in roughnesses. With 4, dents become strokes; with 16,
 # bowls and corners lose more of a letter's area than noise does.
-SMOOTHING = 10.0
-MAX_RING_SHARE = 0.03  # of the smoothing length, of a ring's length: a longer one changes a small hole's shape
+SMOOTHING = 8.0
+MAX_RING_SHARE = 0.05  # of the smoothing length, of a ring's length: a longer one changes a small hole's shape
+# Side of a square, in roughnesses: smaller specks and pinholes are noise. A speck becomes a stroke, and a pinhole parts a
+# line in two; more would lose the dot of a small i.
+SPECK = 2.0
 PLACES_PER_SMOOTHING = 4  # places along a ring per smoothing length: fewer show as corners
 MAX_PLACES = 200_000  # of a smoothed shape; about 50 MB, and as many edges as a shape may have
 
@@ -45,34 +49,34 @@ def smooth_rough_outlines(rings: list[np.ndarray]) -> list[np.ndarray]:
 
     rings: (n, 2) [mm], as _core.fill returns them.
     """
-    smoothing_mm = SMOOTHING * measure_roughness_mm(rings)
-    if smoothing_mm == 0.0:
+    roughness_mm = measure_roughness_mm(rings)
+    if roughness_mm == 0.0:
         return rings
-    lines = [np.vstack([ring, ring[:1]]) for ring in rings]
+    smoothing_mm, speck_mm2 = SMOOTHING * roughness_mm, (SPECK * roughness_mm) ** 2
+    lines = [np.vstack([ring, ring[:1]]) for ring in rings if abs(signed_area(ring)) > speck_mm2]
     if sum(map(length, lines)) * PLACES_PER_SMOOTHING > MAX_PLACES * smoothing_mm:
         return rings
     return _core.unite([_smooth(line, smoothing_mm) for line in lines])
 
 
 def measure_roughness_mm(rings: list[np.ndarray]) -> float:
-    """Return the median height of a rough outline's bumps; 0 for a clean outline."""
+    """Return the height that two thirds of a rough outline's bumps have at most; 0 for a clean outline."""
     bumps = _find_bumps(rings)
     if bumps is None:
         return 0.0
     heights, turns, length_mm = bumps
     order = np.argsort(heights)
     turned = np.cumsum(turns[order])
-    median_mm, most_mm = heights[order][np.searchsorted(turned, np.array([0.5, LOW_SHARE]) * turned[-1])]
+    low_mm = float(heights[order][np.searchsorted(turned, LOW_SHARE * turned[-1])])
     half_width_mm = _core.area(rings) / length_mm
-    is_low = most_mm < min(MAX_BUMP_MM, MAX_BUMP_HALF_WIDTHS * half_width_mm)
-    if not is_low or median_mm < MIN_ROUGHNESS_MM:
+    if not MIN_ROUGHNESS_MM < low_mm < min(MAX_BUMP_MM, MAX_BUMP_HALF_WIDTHS * half_width_mm):
         return 0.0
-    if most_mm > MAX_STEP_MM:
+    if low_mm > MAX_STEP_MM:
         up = heights[order]
         alike = np.searchsorted(up, up * (1 + ALIKE), "right") - np.arange(len(up))
         if alike.max() > ALIKE_SHARE * len(up):
             return 0.0
-    return float(median_mm)
+    return low_mm
 
 
 def _find_bumps(rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray, float] | None:
