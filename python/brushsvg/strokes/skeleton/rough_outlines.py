@@ -23,24 +23,29 @@ MIN_BUMPS = 40
 LOW_SHARE = 2 / 3
 # What is low. Higher bumps are a drawing's own: steps of 2 mm are 0.7 mm high. Noise of 0.3 mm (standard deviation)
 # makes bumps up to 0.5 mm high.
-MAX_BUMP_MM = 0.5
-MAX_BUMP_HALF_WIDTHS = 1 / 3  # of the shape's mean half width: with more, an alphabet of 3 mm height is rough
+MAX_BUMP_MM = 0.6
+MAX_BUMP_HALF_WIDTHS = 0.5  # of the shape's mean half width: with more, an alphabet of 3 mm height is rough
 # Teeth of a gear and points of a star are alike; noise is not. Where this share of all bumps has one height (within
 # 3 %), they were drawn. Noise has up to 0.07, gears and regular stars have at least 0.5 per kind of bump.
 ALIKE_SHARE, ALIKE = 0.2, 0.03
-# Steps of a bitmap's pixels are alike too, and half a pixel high. More smooths teeth of a gear that a brush can paint;
-# with less, pixels of 0.3 mm stay.
-MAX_STEP_MM = 0.15
+# Steps of a bitmap's pixels are alike too. They run in two directions only, for all but a thousandth of the outline, and
+# are up to half a pixel high. A larger MAX_STEP_MM smooths drawn steps that a brush can paint; with a smaller one, pixels
+# of 0.3 mm stay.
+MAX_STEP_MM, RIGHT_ANGLED = 0.15, 0.999
 # Curves are flattened to 0.02 mm, so lower bumps mean nothing, and no brush shows them.
 MIN_ROUGHNESS_MM = 0.02
 # Length of the smoothing (standard deviation along the outline), in roughnesses. With 4, dents become strokes; with 16,
 # bowls and corners lose more of a letter's area than noise does.
 SMOOTHING = 8.0
+# The longest smoothing, in mm and in mean half widths of the shape: with more, bowls and corners lose more of a letter's
+# area than noise does.
+MAX_SMOOTHING_MM, MAX_HALF_WIDTHS = 2.0, 1.0
 MAX_RING_SHARE = 0.05  # of the smoothing length, of a ring's length: a longer one changes a small hole's shape
 # Side of a square, in roughnesses: smaller specks and pinholes are noise. A speck becomes a stroke, and a pinhole parts a
 # line in two; more would lose the dot of a small i.
 SPECK = 2.0
 PLACES_PER_SMOOTHING = 4  # places along a ring per smoothing length: fewer show as corners
+ROUNDS = 3  # fine ripples on longer waves: the first round smooths the ripples, the next one the waves
 MAX_PLACES = 200_000  # of a smoothed shape; about 50 MB, and as many edges as a shape may have
 
 
@@ -49,34 +54,48 @@ def smooth_rough_outlines(rings: list[np.ndarray]) -> list[np.ndarray]:
 
     rings: (n, 2) [mm], as _core.fill returns them.
     """
-    roughness_mm = measure_roughness_mm(rings)
-    if roughness_mm == 0.0:
-        return rings
-    smoothing_mm, speck_mm2 = SMOOTHING * roughness_mm, (SPECK * roughness_mm) ** 2
-    lines = [np.vstack([ring, ring[:1]]) for ring in rings if abs(signed_area(ring)) > speck_mm2]
-    if sum(map(length, lines)) * PLACES_PER_SMOOTHING > MAX_PLACES * smoothing_mm:
-        return rings
-    return _core.unite([_smooth(line, smoothing_mm) for line in lines])
+    for _ in range(ROUNDS):
+        roughness_mm, half_width_mm = measure_roughness_mm(rings)
+        smoothing_mm = min(
+            SMOOTHING * roughness_mm, MAX_HALF_WIDTHS * half_width_mm, MAX_SMOOTHING_MM
+        )
+        speck_mm2 = (SPECK * roughness_mm) ** 2
+        lines = [np.vstack([ring, ring[:1]]) for ring in rings if abs(signed_area(ring)) > speck_mm2]
+        if PLACES_PER_SMOOTHING * sum(map(length, lines)) >= MAX_PLACES * smoothing_mm:
+            break
+        rings = _core.unite([_smooth(line, smoothing_mm) for line in lines])
+    return rings
 
 
-def measure_roughness_mm(rings: list[np.ndarray]) -> float:
-    """Return the height that two thirds of a rough outline's bumps have at most; 0 for a clean outline."""
+def measure_roughness_mm(rings: list[np.ndarray]) -> tuple[float, float]:
+    """Return the height that two thirds of a rough outline's bumps have at most, and the shape's mean half width; zeros
+    for a clean outline."""
     bumps = _find_bumps(rings)
     if bumps is None:
-        return 0.0
+        return 0.0, 0.0
     heights, turns, length_mm = bumps
     order = np.argsort(heights)
     turned = np.cumsum(turns[order])
     low_mm = float(heights[order][np.searchsorted(turned, LOW_SHARE * turned[-1])])
     half_width_mm = _core.area(rings) / length_mm
     if not MIN_ROUGHNESS_MM < low_mm < min(MAX_BUMP_MM, MAX_BUMP_HALF_WIDTHS * half_width_mm):
-        return 0.0
-    if low_mm > MAX_STEP_MM:
-        up = heights[order]
-        alike = np.searchsorted(up, up * (1 + ALIKE), "right") - np.arange(len(up))
-        if alike.max() > ALIKE_SHARE * len(up):
-            return 0.0
-    return low_mm
+        return 0.0, 0.0
+    is_bitmap = low_mm <= MAX_STEP_MM and _is_right_angled(rings)
+    return (low_mm, half_width_mm) if is_bitmap or not _are_alike(heights[order]) else (0.0, 0.0)
+
+
+def _are_alike(heights: np.ndarray) -> bool:
+    """Return whether many of these ascending heights are the same."""
+    counts = np.searchsorted(heights, heights * (1 + ALIKE), "right") - np.arange(len(heights))
+    return bool(counts.max() > ALIKE_SHARE * len(heights))
+
+
+def _is_right_angled(rings: list[np.ndarray]) -> bool:
+    """Return whether all edges run in two directions, at right angles: four times their angles are the same."""
+    step = np.vstack([np.roll(ring, -1, axis=0) - ring for ring in rings])
+    lengths_mm = np.hypot(*step.T)
+    fourfold = np.exp(4j * np.arctan2(step[:, 1], step[:, 0]))
+    return bool(abs(lengths_mm @ fourfold) > RIGHT_ANGLED * lengths_mm.sum())
 
 
 def _find_bumps(rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray, float] | None:
