@@ -59,7 +59,10 @@ class OutlineStroke:
 def outline_strokes(rings: list[np.ndarray]) -> list[OutlineStroke]:
     """Strokes of a shape, in the order and direction of writing; rings as _core.fill returns them. Error if it has more
     branches than any lettering."""
-    areas = [[without_slivers(ring, SLIVER_MM) for ring in area] for area in with_holes(smooth_rough_outlines(rings))]
+    areas = [
+        [without_slivers(ring, SLIVER_MM) for ring in area]
+        for area in with_holes(smooth_rough_outlines(rings))
+    ]
     axes = [_core.medial_axis(area, LEAST_SHARE, LEAST_LIMB) for area in areas]
     if (count := sum(len(branches) for _, branches in axes)) > MOST_BRANCHES:
         raise Error(
