@@ -101,8 +101,8 @@ def _without_ripples(rings: list[np.ndarray]) -> list[np.ndarray]:
 
 
 def _are_alike(heights: np.ndarray) -> bool:
-    """Return whether many bumps have the same height; rings without a bump do not count."""
-    heights = np.sort(heights[np.isfinite(heights)])
+    """Return whether many bumps have the same height."""
+    heights = np.sort(heights)
     counts = np.searchsorted(heights, heights * (1 + ALIKE), "right") - np.arange(len(heights))
     return bool(counts.max() > ALIKE_SHARE * len(heights))
 
@@ -133,14 +133,16 @@ def _find_bumps(rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray, float]
     if np.count_nonzero(changes) < MIN_BUMPS:
         return None
     turn = np.arctan2(cross, x * x_after + y * y_after)
-    heights, turns, length_mm = [], [], 0.0
+    heights: list[np.ndarray] = []
+    turns: list[np.ndarray] = []
+    length_mm = 0.0
     for first, count in zip(firsts.tolist(), counts.tolist(), strict=True):
         own = slice(first, first + count)
         ends = np.flatnonzero(changes[own]) + 1
         ring, turned = np.roll(points[own], -1, axis=0), turn[own]
         if len(ends) < 2:
-            heights.append([np.inf])
-            turns.append([np.abs(turned).sum()])
+            heights.append(np.array([np.inf]))
+            turns.append(np.abs(turned).sum(keepdims=True))
             length_mm += float(np.hypot(*step[own].T).sum())
             continue
         ring, turned, starts = np.roll(ring, -ends[0], axis=0), np.roll(turned, -ends[0]), ends - ends[0]
