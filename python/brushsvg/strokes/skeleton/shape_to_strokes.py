@@ -16,6 +16,7 @@ from ...geometry.rings import with_holes, without_slivers
 from ...geometry.rotation import rotation
 from .cut_ends import run_to_cuts
 from .graph import Skeleton, skeleton
+from .rough_outlines import smooth_rough_outlines
 from .shared_corners import with_shared_corners
 from .touching_dots import touching_dots
 from .writing_order import in_rows, joined, ordered, side_by_side
@@ -58,7 +59,10 @@ class OutlineStroke:
 def outline_strokes(rings: list[np.ndarray]) -> list[OutlineStroke]:
     """Strokes of a shape, in the order and direction of writing; rings as _core.fill returns them. Error if it has more
     branches than any lettering."""
-    areas = [[without_slivers(ring, SLIVER_MM) for ring in area] for area in with_holes(rings)]
+    areas = [
+        [without_slivers(ring, SLIVER_MM) for ring in area]
+        for area in with_holes(smooth_rough_outlines(rings))
+    ]
     axes = [_core.medial_axis(area, LEAST_SHARE, LEAST_LIMB) for area in areas]
     if (count := sum(len(branches) for _, branches in axes)) > MOST_BRANCHES:
         raise Error(
