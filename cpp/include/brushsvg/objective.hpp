@@ -16,7 +16,7 @@ struct ObjectiveWeights {
     /// How deep [mm] an area without paint, or paint outside, is seen. Less: every edge counts, since a mark lies on
     /// its shape's edge to about 0.1 mm. More: thorns of half a millimetre are free.
     double seen_mm = 0.15;
-    double notch = 3.0;  ///< more per mm^2 without paint deeper than that. More: strokes into each corner
+    double notch = 3.0;   ///< more per mm^2 without paint deeper than that. More: strokes into each corner
     double bulge = 12.0;  ///< more per mm^2 of paint farther out. Less: strokes that stick out of corners they fill
     /// Per full turn of the mark's outline beyond what it was, in squares of the brush's greatest half width. Less:
     /// blobs and waves beside a stem. More: corners stay bare.

@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "brushsvg/checkpoint.hpp"
+#include "brushsvg/compensate.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/excess_turning.hpp"
 #include "brushsvg/region.hpp"
 #include "brushsvg/stroke_search.hpp"
-#include "brushsvg/target_mark.hpp"
 #include "closed_form.hpp"
 #include "half_painted.hpp"
 #include "parallel.hpp"
@@ -34,10 +34,10 @@ constexpr double kMiddleMm = 0.1;  // of middle lines, to which the nearest plac
 constexpr std::array<double, 3> kNarrower{1.0, 0.95, 0.88};
 constexpr std::array<double, 4> kCuts{0.1, 0.4, 0.8, 1.5};
 constexpr double kNoiseMm2 = 0.05;        // what sticks out of a shape, as it is counted: less is a pixel's noise
-constexpr double kWorthMm2 = 0.05;         // won by another way: less is not worth to differ from what was asked for
+constexpr double kWorthMm2 = 0.05;        // won by another way: less is not worth to differ from what was asked for
 constexpr double kBesideStroke = 3.0;     // half widths of a stroke: no way to lead it paints farther out
 constexpr std::size_t kMostLedBack = 40;  // of one shape
-constexpr int kTurnedPx = 3;  // round a change, in which the outline's turning is compared
+constexpr int kTurnedPx = 3;              // round a change, in which the outline's turning is compared
 
 /// The search for strokes into what the others leave of one shape.
 class Search {
@@ -451,8 +451,9 @@ class Search {
 std::vector<SearchedShape> search_strokes(const std::vector<PaintedShape>& shapes, const Brush& brush,
                                           const ObjectiveWeights& weights, bool are_free) {
     std::vector<SearchedShape> found(shapes.size());
-    on_all_processors(0, shapes.size(),
-                      [&](std::size_t k) { found[k] = Search(shapes[k], brush, weights).run(shapes[k].strokes, are_free); });
+    on_all_processors(0, shapes.size(), [&](std::size_t k) {
+        found[k] = Search(shapes[k], brush, weights).run(shapes[k].strokes, are_free);
+    });
     return found;
 }
 

@@ -20,7 +20,8 @@ constexpr double kLeastLeft = 0.8;     // half widths that are left of a stroke 
 Eigen::Matrix<double, 1, 8> between(Eigen::Matrix<double, 1, 8> cubic, double t0, double t1) {
     const auto point = [&](Index k) { return cubic.segment<2>(2 * k); };
     for (Index last = 3; last > 0; --last)  // up to t1
-        for (Index k = 3; k > 3 - last; --k) cubic.segment<2>(2 * k) = (point(k - 1) + t1 * (point(k) - point(k - 1))).eval();
+        for (Index k = 3; k > 3 - last; --k)
+            cubic.segment<2>(2 * k) = (point(k - 1) + t1 * (point(k) - point(k - 1))).eval();
     const double t = t1 > 0.0 ? t0 / t1 : 0.0;
     for (Index last = 3; last > 0; --last)  // from there on
         for (Index k = 0; k < last; ++k) cubic.segment<2>(2 * k) = (point(k) + t * (point(k + 1) - point(k))).eval();

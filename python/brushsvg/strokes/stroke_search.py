@@ -64,8 +64,9 @@ def searched(
     """
     done = compensated(painted) if done is None else done
     shapes = _shapes(drawn, painted, list(done.plan.passes), brush)
+    are_free = are_corners_filled and brush.width_follows_depth()  # what a pen fills has exact edges
     found = _core.search_strokes(
-        [(each.rings, each.strokes, each.passes) for each in shapes], brush, detail, are_corners_filled
+        [(each.rings, each.strokes, each.passes) for each in shapes], brush, detail, are_free
     )
     rows = [(stroke, meant, k) for k, (stroke, meant) in enumerate(zip(painted, wanted, strict=True))]
     lanes = [_lanes(shape.strokes) for shape in shapes]
