@@ -5,14 +5,9 @@
 #include <optional>
 
 #include "brushsvg/simulate.hpp"
-#include "dot.hpp"
+#include "ends/end_styles.hpp"
 #include "nearest_on_polyline.hpp"
-#include "squared_beginning.hpp"
-#include "squared_dot.hpp"
-#include "squared_end.hpp"
-#include "stroke_ends.hpp"
 #include "tolerance.hpp"
-#include "turned_end.hpp"
 
 namespace brushsvg {
 
@@ -43,15 +38,13 @@ Eigen::RowVector2d begins_along(const Cubics& middle_mm) {
 }
 
 /// Whether a mark was last led to where a squared end's way ends, and not to the drawn path's end.
-bool ends_squared(const PassMarks& marks, const Ring& widest, const SquaredEnd& squared) {
+bool ends_squared(const PassMarks& marks, const Ring& widest, const Squared& squared) {
     constexpr double kThere = 0.25;
     std::size_t end = marks.taut.size();
     while (end > 0 && !marks.taut[end - 1]) --end;
     if (end == 0) return false;
     const Eigen::Vector2d last = widest.row(Index(end) - 1).transpose();
-    const Cubics& way = squared.stroke.middle_mm;
-    const Eigen::Vector2d there = way.row(way.rows() - 1).tail<2>().transpose();
-    return (last - there).norm() < kThere * (last - squared.end_mm).norm();
+    return (last - squared.back_mm).norm() < kThere * (last - squared.end.at_mm).norm();
 }
 
 /// The row that comes nearest to a place.
@@ -72,16 +65,16 @@ struct WayRound {
 
 /// None where a mark is not set down heading back, or does not come back along the side.
 std::optional<WayRound> way_round(const PassMarks& marks, const Ring& widest, std::size_t begin, std::size_t end,
-                                  const SquaredBeginning& squared) {
+                                  const Squared& squared) {
     constexpr double kThere = 0.25;
     if (begin == end) return {};
     const double heading = marks.heading_rad[Index(begin)];
-    if (squared.along.dot(Eigen::Vector2d(std::cos(heading), std::sin(heading))) > 0.0) return {};
-    const std::size_t aside = nearest_row(widest, begin, end, squared.aside_mm);
-    const Eigen::Vector2d on = squared.joins_mm - squared.aside_mm;
-    const Eigen::Vector2d off = squared.aside_mm - squared.start_mm, along = squared.along;
+    if (-squared.end.along.dot(Eigen::Vector2d(std::cos(heading), std::sin(heading))) > 0.0) return {};
+    const std::size_t aside = nearest_row(widest, begin, end, squared.back_mm);
+    const Eigen::Vector2d on = squared.joins_mm - squared.back_mm;
+    const Eigen::Vector2d off = squared.back_mm - squared.end.at_mm, along = squared.end.along;
     const double off_line_mm = std::abs(along.x() * off.y() - along.y() * off.x());
-    if ((widest.row(Index(aside)).transpose() - squared.aside_mm).norm() > kThere * off_line_mm) return {};
+    if ((widest.row(Index(aside)).transpose() - squared.back_mm).norm() > kThere * off_line_mm) return {};
     std::size_t last = aside + 1;  // a stroke may come by again
     for (double way = 0.0; last < end && way < 2.0 * on.norm(); ++last)
         way += (widest.row(Index(last)) - widest.row(Index(last) - 1)).norm();
@@ -104,7 +97,7 @@ std::size_t last_at(const Ring& rows, std::size_t begin, std::size_t end, const 
 Turned inside_of(const PassMarks& marks, const Ring& widest, const Turned& turned, const Brush& brush) {
     const Eigen::RowVector2d at = marks.contact_mm.row(Index(turned.last));
     const auto depth = marks.depth_mm.begin();
-    const double reach_mm = reach_of_dot_mm(
+    const double reach_mm = reach_of_turn_mm(
         brush,
         *std::max_element(depth + Index(turned.first), depth + Index(turned.last) + 1));  // it is lifted in place
     const auto is_inside = [&](std::size_t row) { return (widest.row(Index(row)) - at).norm() < reach_mm; };
@@ -117,8 +110,8 @@ Turned inside_of(const PassMarks& marks, const Ring& widest, const Turned& turne
 /// all_turned: dots in the mark, of which the widest section goes round the line.
 TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, const Stroke& stroke, const Brush& brush,
                                 double tolerance_mm, const std::vector<Turned>& all_turned,
-                                const std::optional<SquaredBeginning>& beginning = {},
-                                const std::optional<SquaredEnd>& squared = {},
+                                const std::optional<Squared>& beginning = {},
+                                const std::optional<Squared>& squared = {},
                                 const std::optional<Surroundings>& all = {}) {
     const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
     // on its way back to a hidden beginning a blunt front goes beyond the path's
@@ -159,7 +152,7 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
         look_at(from, to, nearest);
     };
     if (const auto round = beginning ? way_round(marks, widest, begin, end, *beginning) : std::nullopt) {
-        Surroundings surroundings{beginning->start_mm, beginning->reach_mm};
+        Surroundings surroundings{beginning->end.at_mm, beginning->reach_mm};
         look(begin, round->leaves, nearest);
         look(round->leaves, round->joins, surroundings);
         begin = round->joins;
@@ -171,7 +164,7 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
     }
     if (squared) {
         const std::size_t leaves = last_at(widest, begin, end, squared->leaves_mm);
-        Surroundings surroundings{squared->end_mm, squared->reach_mm};
+        Surroundings surroundings{squared->end.at_mm, squared->reach_mm};
         look(leaves, end, surroundings);
         end = leaves;
     }
@@ -201,17 +194,22 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     const Ring widest = is_all ? marks.contact_mm : widest_points(marks, brush);
     if (is_all) turned.clear();
     // a blunt front goes beyond the path's end, and the middle of a cap may lie there
-    Stroke whole = up_to_its_end(stroke, brush);
+    Stroke whole = up_to_drawn_end(stroke, brush);
     if (!turned.empty() && !is_taut_within(turned.back().last + 1, marks.taut.size()))
         if (const auto end = turned_end(stroke, brush)) whole = end->stroke;
     const TrackingError miss = tracking_error_of(marks, widest, whole, brush, tolerance_mm, turned);
     if (miss.within_tolerance) return miss;
     if (!turned.empty())
-        if (const std::optional<SquaredDot> dot = squared_dot(stroke, brush))
-            return tracking_error_of(marks, widest, whole, brush, tolerance_mm, turned, {}, {},
-                                     Surroundings{dot->dot.from_mm, dot->reach_mm});
-    const std::optional<SquaredBeginning> beginning = squared_beginning(stroke, brush, Caps::straight);
-    std::optional<SquaredEnd> end = squared_end(stroke, brush, Caps::straight);
+        if (const auto dot = squared_dot(stroke, brush)) {
+            Surroundings all{dot->front().turn->at_mm, 0.0};
+            const Cubics& way = dot->back().line->middle_mm;
+            const double lever = brush.lever_to_widest(depth_of(*dot->back().line, brush, 0.0));
+            for (Index i = 0; i < way.rows(); ++i)
+                all.radius_mm = std::max(all.radius_mm, (way.row(i).tail<2>().transpose() - all.middle_mm).norm() + lever);
+            return tracking_error_of(marks, widest, whole, brush, tolerance_mm, turned, {}, {}, all);
+        }
+    const std::optional<Squared> beginning = squared(stroke, brush, Caps::straight, Side::start);
+    std::optional<Squared> end = squared(stroke, brush, Caps::straight, Side::end);
     if (end && !ends_squared(marks, widest, *end)) end.reset();
     if (!beginning && !end) return miss;
     return tracking_error_of(marks, widest, end ? stroke : whole, brush, tolerance_mm, turned, beginning, end);
