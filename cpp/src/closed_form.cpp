@@ -57,7 +57,8 @@ void lead(const Samples& samples, const Brush& brush, PoseList& out, bool& turns
     }
 }
 
-/// Turns the brush round on the spot, from the heading in which it comes, or so that it ends in that in which it goes on.
+/// Turns the brush round on the spot, from the heading in which it comes, or so that it ends in that in which it goes
+/// on.
 void turn_round(const TurnRound& turn, const Samples& then, std::optional<Stance>& now, const Brush& brush,
                 PoseList& out) {
     const Vector2d heading = now ? now->heading : then.empty() ? turn.ends_heading : then.front().heading;
@@ -100,8 +101,8 @@ Samples led_along(const BrushMove& move, const Brush& brush, const std::optional
     }
     Samples samples;
     if (line.length() > 0.0 && move.to_mm - *from_mm > 1e-6)
-        samples = line.coarse(*from_mm, move.to_mm,
-                              places_of_depths(*move.line, brush, line.length(), inverse.crossings()));
+        samples =
+            line.coarse(*from_mm, move.to_mm, places_of_depths(*move.line, brush, line.length(), inverse.crossings()));
     if (samples.size() < 2) {
         if (rests) return {};
         samples = dab(*move.line, line);

@@ -232,7 +232,8 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
     const Pass plain = pass;
     for (const BrushMoves& moves : ways) {
         const bool is_first = &moves == &ways.front();
-        const bool few_poses = options.few_poses && (moves.front().line || moves.back().line);  // a disc has none to spare
+        const bool few_poses =
+            options.few_poses && (moves.front().line || moves.back().line);  // a disc has none to spare
         if (!is_first && result.miss.within_tolerance) break;
         const auto poses_by = [&](double steps, bool& turns) { return closed_form(moves, brush, steps, turns); };
         CompensatedPass done = led(plain, few_poses, stroke, brush, options.tolerance_mm, poses_by);

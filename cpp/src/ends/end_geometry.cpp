@@ -1,6 +1,5 @@
 #include "ends/end_geometry.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,17 +11,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::Vector2d;
-
-/// The steepest slope of a cut: beyond it is a side.
-constexpr double kSteepest = 1.3;
-/// How far from its chord a cut may stray, and within what it is looked for, both in half widths.
-constexpr double kStraight = 0.12, kNearest = 0.2, kFarthest = 2.5;
-/// In half widths: within what a cap is looked at, how far it may stray from its circle, and how far the circle may be
-/// from one about the path's end, as wide as the stroke.
-constexpr double kAsideCap = 0.92, kRound = 0.06, kAsWide = 0.2;
-/// What a front may stay short of the drawn end, as a share of its half width: less is not seen and costs a pose.
-constexpr double kShortOfEnd = 0.05;
-constexpr double kStraightBack = 0.5;  // cosine
 
 /// Both parts of a cubic (de Casteljau).
 std::array<Eigen::Matrix<double, 1, 8>, 2> split(const Cubics& middle_mm, Index cubic, double t) {
@@ -56,21 +44,6 @@ Cubics reversed(const Cubics& middle_mm) {
     return out;
 }
 
-/// How far ahead of the end the outline is first left, at a distance to its left.
-std::optional<double> outline_ahead_mm(const Rings& rings, const PathEnd& end, double aside_mm) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Ring& ring : rings)
-        for (Index i = 0, n = ring.rows(); i < n; ++i) {
-            const Vector2d a = ring.row(i).transpose() - end.at_mm, b = ring.row((i + 1) % n).transpose() - end.at_mm;
-            const double ya = a.dot(end.left) - aside_mm, yb = b.dot(end.left) - aside_mm;
-            if ((ya > 0.0) == (yb > 0.0)) continue;
-            const double x = a.dot(end.along) + (b - a).dot(end.along) * ya / (ya - yb);
-            if (x > 0.0) nearest = std::min(nearest, x);
-        }
-    if (!std::isfinite(nearest)) return {};
-    return nearest;
-}
-
 }  // namespace
 
 PathEnd path_end(const Stroke& stroke, const Line& line, Side side) {
@@ -84,6 +57,7 @@ void StrokePath::append(const Cubics& more_mm) {
     const Index before = middle_mm_.rows();
     middle_mm_.conservativeResize(before + more_mm.rows(), Eigen::NoChange);
     middle_mm_.bottomRows(more_mm.rows()) = more_mm;
+    here_mm_ = more_mm.row(more_mm.rows() - 1).tail<2>().transpose();
 }
 
 void StrokePath::add_width(double at_mm, double half_mm) {
@@ -103,16 +77,11 @@ void StrokePath::follow(const Stroke& stroke, const Line& line, double from_mm, 
     for (const double s : at) add_width(before_mm + std::abs(s - from_mm), half_width_at(stroke, s / whole_mm));
 }
 
-void StrokePath::curve_to(const Cubics& curve_mm, double half_mm) {
-    append(curve_mm);
-    add_width(length_mm() + arc_length(curve_mm, 0, 0.0, 1.0), half_mm);
-}
-
 void StrokePath::line_to(const Vector2d& to_mm, double half_mm) {
-    const Vector2d from_mm = middle_mm_.row(middle_mm_.rows() - 1).tail<2>();
     Cubics straight(1, 8);
-    for (int i = 0; i < 4; ++i) straight.row(0).segment<2>(2 * i) = from_mm + i / 3.0 * (to_mm - from_mm);
-    curve_to(straight, half_mm);
+    for (int i = 0; i < 4; ++i) straight.row(0).segment<2>(2 * i) = here_mm_ + i / 3.0 * (to_mm - here_mm_);
+    add_width(length_mm() + (to_mm - here_mm_).norm(), half_mm);
+    append(straight);
 }
 
 Stroke StrokePath::like(const Stroke& stroke) const {
@@ -130,40 +99,27 @@ Stroke as_wide_as_painted(const Stroke& stroke, const Brush& brush) {
     return out;
 }
 
-std::optional<Cap> find_cap(const Stroke& stroke, const PathEnd& end) {
-    if (stroke.wanted_mm.empty()) return Cap{end.at_mm, end.half_mm};
-    // the circle through the drawn end, by least squares
-    constexpr int n = 9;
-    Eigen::Matrix<double, n, 2> at;  // ahead and aside
-    for (int k = 0; k < n; ++k) {
-        const double aside = kAsideCap * (2.0 * k / (n - 1) - 1.0) * end.half_mm;
-        const auto ahead = outline_ahead_mm(stroke.wanted_mm, end, aside);
-        if (!ahead || *ahead > kFarthest * end.half_mm) return {};
-        at.row(k) << *ahead, aside;
-    }
-    Eigen::Matrix<double, n, 3> rows;
-    rows << 2.0 * at, Eigen::Matrix<double, n, 1>::Ones();
-    const Eigen::Vector3d found = rows.colPivHouseholderQr().solve(at.rowwise().squaredNorm());
-    const Vector2d middle = found.head<2>();
-    const double radius = std::sqrt(std::max(0.0, found[2] + middle.squaredNorm()));
-    const auto strays = ((at.rowwise() - middle.transpose()).rowwise().norm().array() - radius).abs();
-    if (strays.maxCoeff() > kRound * end.half_mm || std::abs(radius - end.half_mm) > kAsWide * end.half_mm ||
-        middle.norm() > kAsWide * end.half_mm)
-        return {};
-    return Cap{end.place(middle.x(), middle.y()), radius};
+double outline_ahead_mm(const Rings& rings, const PathEnd& end, double aside_mm) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Ring& ring : rings)
+        for (Index i = 0, n = ring.rows(); i < n; ++i) {
+            const Vector2d a = ring.row(i).transpose() - end.at_mm, b = ring.row((i + 1) % n).transpose() - end.at_mm;
+            const double ya = a.dot(end.left) - aside_mm, yb = b.dot(end.left) - aside_mm;
+            if ((ya > 0.0) == (yb > 0.0)) continue;
+            const double x = a.dot(end.along) + (b - a).dot(end.along) * ya / (ya - yb);
+            if (x > 0.0) nearest = std::min(nearest, x);
+        }
+    return nearest;
 }
 
 std::optional<Cut> find_cut(const Stroke& stroke, const PathEnd& end, double aside_mm, Caps caps) {
     if (stroke.wanted_mm.empty()) return caps == Caps::straight ? std::optional(Cut{end.half_mm, 0.0}) : std::nullopt;
-    const auto right = outline_ahead_mm(stroke.wanted_mm, end, -aside_mm),
-               left = outline_ahead_mm(stroke.wanted_mm, end, aside_mm);
-    if (!right || !left) return {};
-    const Cut cut{0.5 * (*right + *left), 0.5 * (*right - *left) / aside_mm};
-    if (std::abs(cut.slope) > kSteepest) return {};
+    const auto ahead_mm = [&](double share) { return outline_ahead_mm(stroke.wanted_mm, end, share * aside_mm); };
+    const double right = ahead_mm(-1.0), left = ahead_mm(1.0);
+    const Cut cut{0.5 * (right + left), 0.5 * (right - left) / aside_mm};
     for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
-        const auto ahead = outline_ahead_mm(stroke.wanted_mm, end, share * aside_mm);
-        if (!ahead || *ahead < kNearest * end.half_mm || *ahead > kFarthest * end.half_mm ||
-            std::abs(*ahead - (cut.ahead_mm - cut.slope * share * aside_mm)) > kStraight * end.half_mm)
+        const double ahead = ahead_mm(share), strays = ahead - (cut.ahead_mm - cut.slope * share * aside_mm);
+        if (!(ahead <= kTuning.cut_farthest * end.half_mm && std::abs(strays) <= kTuning.cut_straight * end.half_mm))
             return {};
     }
     return cut;
@@ -196,33 +152,18 @@ std::array<double, 2> painted_stretch(const Stroke& stroke, const Brush& brush, 
 
 Stroke up_to_drawn_end(const Stroke& stroke, const Brush& brush) {
     if (stroke.closed || brush.is_rigid()) return stroke;
-    const Stroke painted = as_wide_as_painted(stroke, brush);
-    const Line line(painted, brush);
-    const double length_mm = line.length(), half_mm = half_width_at(painted, 1.0);
-    const double beyond_mm = -reach_beyond_end_mm(brush, depth_of(painted, brush, 1.0), half_mm);
-    if (!(length_mm > 0.0) || !(beyond_mm > kShortOfEnd * half_mm)) return stroke;
-    const auto [s0, s1] = painted_stretch(painted, brush, length_mm);
-    if (!(s1 - s0 > 1e-6)) return stroke;  // a dab
+    const Line line(stroke, brush);
+    const double length_mm = line.length();
+    if (!(length_mm > 0.0)) return stroke;
+    const PathEnd end = path_end(stroke, line, Side::end);
+    const double beyond_mm = -reach_beyond_end_mm(brush, depth_of(stroke, brush, 1.0), end.half_mm);
+    const auto [s0, s1] = painted_stretch(stroke, brush, length_mm);
+    const bool is_dab = !(s1 - s0 > 1e-6);
+    if (is_dab || !(beyond_mm > kTuning.short_of_end * end.half_mm)) return stroke;
     StrokePath path;
     path.follow(stroke, line, 0.0, length_mm);
-    path.line_to(path_end(painted, line, Side::end).place(beyond_mm, 0.0), half_width_at(stroke, 1.0));
+    path.line_to(end.place(beyond_mm, 0.0), end.half_mm);
     return path.like(stroke);
-}
-
-bool rear_lies_inside(const Stroke& stroke, const Brush& brush, const Line& line, double widest_mm) {
-    constexpr int n = 6;
-    const Sample widest = line.at(widest_mm);
-    const Vector2d along = line.tangent(widest);
-    const double rear = brush.tip_to_widest(widest.depth);
-    if (along.dot(line.tangent(line.at(0.0))) < kStraightBack) return false;  // P would be dragged past a corner
-    for (int i = 1; i <= n; ++i) {
-        const double t = double(i) / n, s = widest_mm + t * rear;
-        const double half = half_width_at(stroke, std::min(1.0, s / line.length()));
-        const Vector2d on_line = s <= line.length() ? line.at(s).middle : line.at(line.length()).middle;
-        if ((widest.middle + t * rear * along - on_line).norm() > half - (1.0 - t) * brush.half_width(widest.depth))
-            return false;
-    }
-    return true;
 }
 
 }  // namespace brushsvg

@@ -39,15 +39,13 @@ struct EndedStroke {
 /// room, or where the brush is too coarse.
 struct StartStyle {
     Beginning name;
-    double worth;  ///< what its mark must win over a plainer style's, in squares of the half width
     std::optional<BrushMoves> (*moves)(const Stroke& ended, const Brush& brush, Caps caps);
 };
 struct EndStyle {
     Ending name;
-    double worth;
     std::optional<EndedStroke> (*ended)(const Stroke& stroke, const Brush& brush, Caps caps);
 };
-extern const std::array<StartStyle, 4> kStartStyles;  ///< the plainest first
+extern const std::array<StartStyle, 5> kStartStyles;  ///< the plainest first
 extern const std::array<StartStyle, 3> kDotStyles;    ///< of a stroke that is a dot: it has no end of its own
 extern const std::array<EndStyle, 3> kEndStyles;
 
@@ -64,15 +62,10 @@ std::optional<BrushMoves> squared_dot(const Stroke& stroke, const Brush& brush, 
 struct Squared {
     Stroke stroke;
     PathEnd end;
-    Eigen::Vector2d leaves_mm;  ///< where it leaves the path
-    Eigen::Vector2d back_mm;    ///< where the way back along the side ends
-    Eigen::Vector2d joins_mm;   ///< a start: where it is on the path again
-    double reach_mm;            ///< how far from the path's end its widest section goes
+    Eigen::Vector2d back_mm;  ///< where the way back along the side ends
+    double reach_mm;          ///< how far from the path's end its widest section goes
 };
 std::optional<Squared> squared(const Stroke& stroke, const Brush& brush, Caps caps, Side side);
-
-/// A stroke that ends with a disc amid its round cap.
-std::optional<EndedStroke> turned_end(const Stroke& stroke, const Brush& brush, Caps caps = Caps::round);
 
 /// How far from P the paint reaches when the brush is pressed to a depth and turned there [mm].
 double reach_of_turn_mm(const Brush& brush, double depth);

@@ -5,20 +5,12 @@
 #include <utility>
 
 #include "brushsvg/coverage.hpp"
-#include "brushsvg/excess_turning.hpp"
 #include "brushsvg/mark_overlap.hpp"
 #include "brushsvg/simulate.hpp"
 #include "closed_form.hpp"
-#include "half_painted.hpp"
 
 namespace brushsvg {
 namespace {
-
-/// Half a side of the square about an end that is looked at, in half widths, and pixels on one half width.
-constexpr double kLookedAt = 3.0, kPixels = 8.0;
-/// What a full turn of the mark's outline weighs against it, in squares of the greatest half width: knobs on
-/// the thin ends of drops.
-constexpr double kCalm = 0.3;
 
 /// The surroundings of an end, and how far marks are from what is wanted there.
 class EndView {
@@ -28,16 +20,13 @@ class EndView {
         const Line line(wanted, brush);
         const PathEnd end = path_end(wanted, line, side);
         half_mm_ = std::min(end.half_mm, brush.half_width_range_mm()[1]);
-        greatest_mm_ = half_mm_;
-        for (const WidthKnot& knot : wanted.half_width) greatest_mm_ = std::max(greatest_mm_, knot.half_width_mm);
-        px_per_mm_ = kPixels / half_mm_;
-        const double reach_mm = kLookedAt * half_mm_;
+        px_per_mm_ = kTuning.pixels / half_mm_;
+        const double reach_mm = kTuning.looked_at * half_mm_;
         window_ = {end.at_mm.x() - reach_mm, end.at_mm.y() - reach_mm, 2.0 * reach_mm, 2.0 * reach_mm};
         wanted_ = wanted_coverage({wanted}, window_, px_per_mm_);
     }
 
-    /// Paint that is missing or too much, in squares of the half width, and what the turns of the outline weigh. None
-    /// where the moves cannot be made.
+    /// Paint that is missing or too much, in squares of the half width. None where the moves cannot be made.
     std::optional<double> score(const BrushMoves& moves) const {
         bool turns = false;
         const auto poses = closed_form(moves, brush_, step_tolerance_, turns);
@@ -47,14 +36,12 @@ class EndView {
         poses->into(pass);
         marks.passes.push_back(simulate_near(pass, brush_, window_, 0.05 * half_mm_));
         const Coverage seen = coverage(marks, brush_, window_, px_per_mm_);
-        const double off = (seen - wanted_).cwiseAbs().sum() / (kPixels * kPixels);
-        const double turned = excess_turning(half_painted(seen, window_, px_per_mm_), {});
-        return off + kCalm * turned * greatest_mm_ * greatest_mm_ / (half_mm_ * half_mm_);
+        return (seen - wanted_).cwiseAbs().sum() / (kTuning.pixels * kTuning.pixels);
     }
 
  private:
     const Brush& brush_;
-    double step_tolerance_, half_mm_, greatest_mm_, px_per_mm_;
+    double step_tolerance_, half_mm_, px_per_mm_;
     Window window_;
     Coverage wanted_;
 };
@@ -79,11 +66,11 @@ Requests<Ending> requested(Ending asked) {
 }
 
 /// Try the styles that are asked for and keep those that are better than the ones before them, the best first.
-/// `moves_with`: the moves with a style; none where there is no room.
+/// `worth`: what each must win. `moves_with`: the moves with a style; none where there is no room.
 template <class Styles, class Name, class MovesWith>
 std::vector<std::pair<typename Styles::value_type, BrushMoves>> best_styles(const Styles& styles,
                                                                             const Requests<Name>& requests,
-                                                                            const EndView& view,
+                                                                            const EndView& view, double worth,
                                                                             MovesWith&& moves_with) {
     std::vector<std::pair<typename Styles::value_type, BrushMoves>> best;
     for (const std::vector<Name>& names : requests) {
@@ -92,7 +79,7 @@ std::vector<std::pair<typename Styles::value_type, BrushMoves>> best_styles(cons
             if (std::find(names.begin(), names.end(), style.name) == names.end()) continue;
             const std::optional<BrushMoves> moves = moves_with(style);
             const std::optional<double> score = moves ? view.score(*moves) : std::nullopt;
-            if (!score || (least && !(*score + style.worth < *least))) continue;
+            if (!score || (least && !(*score + worth < *least))) continue;
             least = score;
             best.insert(best.begin(), {style, *moves});
         }
@@ -115,21 +102,25 @@ std::optional<BrushMoves> moves_with(const StartStyle& start, const EndedStroke&
 std::vector<BrushMoves> select_ends(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
                                     double step_tolerance) {
     const Settings& own = stroke.settings;
-    const Beginning start = own.start ? beginning_named(*own.start, stroke.id) : options.start;
+    const bool is_dot = turned_dot(stroke, brush).has_value();
+    Beginning start = own.start ? beginning_named(*own.start, stroke.id) : options.start;
+    if (is_dot && start == Beginning::squared) start = Beginning::automatic;  // where it has corners
     const Ending end = own.end ? ending_named(*own.end, stroke.id) : options.end;
     const Caps start_caps = start == Beginning::squared ? Caps::straight : Caps::round;
     const Caps end_caps = end == Ending::squared ? Caps::straight : Caps::round;
     const auto starts = [&](const auto& styles, const EndedStroke& ended) {
         return best_styles(styles, requested(start), EndView(stroke, brush, Side::start, step_tolerance),
+                           stroke.start_covered ? kTuning.worth_covered : kTuning.worth,
                            [&](const StartStyle& style) { return moves_with(style, ended, brush, start_caps); });
     };
     std::vector<BrushMoves> out;
-    if (turned_dot(stroke, brush)) {
+    if (is_dot) {
         for (auto& [style, moves] : starts(kDotStyles, {stroke, {}})) out.push_back(std::move(moves));
         return out;
     }
     const auto begun = starts(kStartStyles, {up_to_drawn_end(stroke, brush), {}});
     const auto ended = best_styles(kEndStyles, requested(end), EndView(stroke, brush, Side::end, step_tolerance),
+                                   stroke.end_covered ? kTuning.worth_covered : kTuning.worth,
                                    [&](const EndStyle& style) -> std::optional<BrushMoves> {
                                        const auto with_end = style.ended(stroke, brush, end_caps);
                                        if (!with_end) return {};
