@@ -9,7 +9,7 @@
 #include "brushsvg/mark_overlap.hpp"
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/target_mark.hpp"
-#include "dot.hpp"
+#include "ends/end_styles.hpp"
 #include "outline_fit.hpp"
 #include "patch_path.hpp"
 #include "thin_out_after_turn.hpp"

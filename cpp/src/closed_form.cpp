@@ -1,15 +1,13 @@
 #include "closed_form.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "brushsvg/lag_arc.hpp"
-#include "dot.hpp"
-#include "hidden_beginning.hpp"
 #include "inverse_lag.hpp"
 #include "landing.hpp"
-#include "stroke_ends.hpp"
-#include "turned_beginning.hpp"
 
 namespace brushsvg {
 namespace {
@@ -59,6 +57,62 @@ void lead(const Samples& samples, const Brush& brush, PoseList& out, bool& turns
     }
 }
 
+/// Turns the brush round on the spot, from the heading in which it comes, or so that it ends in that in which it goes
+/// on.
+void turn_round(const TurnRound& turn, const Samples& then, std::optional<Stance>& now, const Brush& brush,
+                PoseList& out) {
+    const Vector2d heading = now ? now->heading : then.empty() ? turn.ends_heading : then.front().heading;
+    const double first_rad = std::atan2(heading.y(), heading.x()) - (now ? 0.0 : kTurnRad);
+    const double reach_mm = brush.lag(turn.depth_mm);
+    const auto direction = [&](double angle) { return Vector2d(std::cos(angle), std::sin(angle)); };
+    if (now)
+        out.add(turn.at_mm + reach_mm * direction(first_rad), turn.depth_mm);
+    else
+        land({turn.at_mm, direction(first_rad), turn.depth_mm}, brush, out);
+    const int n = int(std::ceil(kTurnRad / kTurnChordRad));
+    const std::int64_t before = out.last();
+    for (int k = 1; k <= n; ++k)
+        out.add(turn.at_mm + reach_mm * direction(first_rad + kTurnRad * k / n), turn.depth_mm);
+    out.arc(before, turn.at_mm, kTurnRad);
+    now = Stance{turn.at_mm, direction(first_rad + kTurnRad), turn.depth_mm};
+}
+
+/// Arc length where the widest section is as far from the resting P as its lever. None where that is nowhere.
+std::optional<double> goes_on_mm(const BrushMove& move, const Brush& brush, const Line& line, const Vector2d& rests) {
+    const auto is_beyond = [&](double s) {
+        return (line.at(s).middle - rests).norm() >
+               brush.lever_to_widest(depth_of(*move.line, brush, std::clamp(s / line.length(), 0.0, 1.0)));
+    };
+    if (!(move.from_mm < move.latest_mm) || is_beyond(move.from_mm) || !is_beyond(move.latest_mm)) return {};
+    return bisect(move.from_mm, move.latest_mm, is_beyond);
+}
+
+/// The way of the brush along a move's line, which goes on from where P rests. None where it cannot.
+Samples led_along(const BrushMove& move, const Brush& brush, const std::optional<Vector2d>& rests,
+                  double step_tolerance) {
+    const Line line(*move.line, brush);
+    const InverseLag inverse(line, brush);
+    std::optional<double> from_mm = move.from_mm;
+    std::optional<Vector2d> first;
+    if (rests) {
+        from_mm = goes_on_mm(move, brush, line, *rests);
+        if (!from_mm) return {};
+        first = (line.at(*from_mm).middle - *rests).normalized();
+    }
+    Samples samples;
+    if (line.length() > 0.0 && move.to_mm - *from_mm > 1e-6)
+        samples =
+            line.coarse(*from_mm, move.to_mm, places_of_depths(*move.line, brush, line.length(), inverse.crossings()));
+    if (samples.size() < 2) {
+        if (rests) return {};
+        samples = dab(*move.line, line);
+        inverse(samples);
+        return samples;
+    }
+    refine_steps(line, samples, step_tolerance, [&](Samples& all) { inverse(all, first); });
+    return samples;
+}
+
 }  // namespace
 
 std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, double length,
@@ -78,68 +132,29 @@ std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, d
     return out;
 }
 
-PoseList closed_form(const Stroke& stroke, const Brush& brush, const Line& line, Beginning start, double step_tolerance,
-                     bool& turns, std::optional<double> turned_depth_mm) {
-    auto [s0, s1] = painted_stretch(stroke, brush, line.length());
-    const InverseLag drawn(line, brush);
-    std::optional<HiddenBeginning> hidden;
-    if (start == Beginning::hidden) hidden = hidden_beginning(stroke, brush, line, drawn, s1, step_tolerance);
-    std::optional<TurnedBeginning> turned;
-    if (start == Beginning::turned || (start == Beginning::hidden && !hidden))
-        turned = turned_beginning(stroke, brush, step_tolerance);
-    std::optional<Vector2d> first;
-    if (hidden) {
-        s0 = hidden->on_from_mm;
-        first = hidden->on_along;
-    } else if (turned) {
-        s0 = turned->on_from_mm;
-        first = turned->on_along;
-    }
-    const Stroke& painted = hidden ? hidden->onward : turned ? turned->onward : stroke;
-    const Line onward(painted, brush);
-    std::optional<InverseLag> led_anew;
-    if (onward.length() != line.length()) led_anew.emplace(onward, brush);  // amid a cap
-    const InverseLag& inverse = led_anew ? *led_anew : drawn;
-    s1 += onward.length() - line.length();
-    Samples samples;
-    if (line.length() > 0.0 && s1 - s0 > 1e-6)
-        samples = onward.coarse(s0, s1, places_of_depths(painted, brush, onward.length(), inverse.crossings()));
-    if (samples.size() < 2) {
-        hidden.reset();
-        turned.reset();
-        turned_depth_mm.reset();
-        samples = dab(stroke, line);
-        drawn(samples);
-    } else {
-        refine_steps(onward, samples, step_tolerance, [&](Samples& all) { inverse(all, first); });
-    }
+std::optional<PoseList> closed_form(const BrushMoves& moves, const Brush& brush, double step_tolerance, bool& turns) {
     PoseList out;
-    if (hidden) {
-        land(stance_of(hidden->back.front()), brush, out);
-        for (const Sample& sample : hidden->back) out.add(sample.tcp, sample.depth);
-        turn_over(stance_of(hidden->back.back()), stance_of(samples.front()), brush, out);
-    } else if (turned) {
-        const Vector2d heading = turn(*turned, brush, out);
-        turn_over({turned->at_mm, heading, turned->depth_mm}, stance_of(samples.front()), brush, out);
-    } else {
-        land(stance_of(samples.front()), brush, out);
+    std::optional<Stance> now;
+    for (const BrushMove& move : moves) {
+        Samples samples;
+        if (move.line) {
+            std::optional<Vector2d> rests;
+            if (move.turn || now) rests = move.turn ? move.turn->at_mm : now->contact_mm;
+            samples = led_along(move, brush, rests, step_tolerance);
+            if (samples.empty()) return {};
+        }
+        if (move.turn) turn_round(*move.turn, samples, now, brush, out);
+        if (!move.line) continue;
+        const bool is_dab = samples.size() == 1;
+        if (now)
+            turn_over(*now, stance_of(samples.front()), brush, out);
+        else
+            land(stance_of(samples.front()), brush, out);
+        lead(samples, brush, out, turns);
+        now = stance_of(samples.back());
+        if (is_dab) break;
     }
-    lead(samples, brush, out, turns);
-    const Stance last = stance_of(samples.back());
-    lift(turned_depth_mm ? turn_round_ahead(last, *turned_depth_mm, brush, out) : last, brush, out);
-    return out;
-}
-
-PoseList closed_form(const SquaredDot& dot, const Brush& brush, double step_tolerance, bool& turns) {
-    const Line line(dot.way, brush);
-    const InverseLag inverse(line, brush);
-    Samples samples = line.coarse(dot.on_from_mm, line.length(), {});
-    refine_steps(line, samples, step_tolerance, [&](Samples& all) { inverse(all, dot.on_along); });
-    PoseList out;
-    const Stance turned = turn(dot.dot, brush, out);
-    turn_over(turned, stance_of(samples.front()), brush, out);
-    lead(samples, brush, out, turns);
-    lift(stance_of(samples.back()), brush, out);
+    lift(*now, brush, out);
     return out;
 }
 

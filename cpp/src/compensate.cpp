@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,18 +14,12 @@
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag_arc.hpp"
 #include "brushsvg/simulate.hpp"
-#include "choose_ends.hpp"
 #include "closed_form.hpp"
-#include "dot.hpp"
+#include "ends/select_ends.hpp"
 #include "middle_line.hpp"
 #include "refuse_unusable.hpp"
-#include "squared_beginning.hpp"
-#include "squared_dot.hpp"
-#include "squared_end.hpp"
-#include "stroke_ends.hpp"
 #include "thin_out_after_turn.hpp"
 #include "tolerance.hpp"
-#include "turned_end.hpp"
 
 namespace brushsvg {
 namespace {
@@ -108,6 +101,13 @@ void warn(const Depths& depths, const std::string& stroke, const Brush& brush, s
     warnings.push_back(Warning{"depth-not-measured", stroke, text + brush.name + " was measured"});
 }
 
+/// Depths at which the brush is turned on the spot, where a stroke begins with that alone: a dot.
+std::optional<Depths> depths_of_turns(const BrushMoves& moves) {
+    if (moves.front().line) return {};
+    const auto [least, greatest] = std::minmax(moves.front().turn->depth_mm, moves[moves.size() / 2].turn->depth_mm);
+    return Depths{least, greatest};
+}
+
 constexpr double kLongestLagMm = 1000.0;  // no brush is longer
 
 /// What the steps along the line use up of the tolerance where poses are thinned out afterwards: more leaves too little
@@ -152,77 +152,6 @@ Ending ending_named(const std::string& name, const std::string& where) {
 
 namespace {
 
-/// How a stroke begins in closed form, and what is led along.
-struct Begun {
-    Stroke stroke, whole;            ///< with the way of a squared beginning; and up to its end
-    Beginning start;                 ///< of that line: all of a squared beginning's way is in it
-    std::optional<SquaredDot> dot;   ///< instead of that line
-    std::vector<Beginning> instead;  ///< what `auto` tries where this one misses the line
-    std::shared_ptr<Ends> ends;      ///< of the stroke as it is, where its beginning is none of a way's
-};
-
-/// A squared beginning where that is asked for and can be, or is chosen: else hidden; else exposed.
-Begun begun_as_asked(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
-                     double step_tolerance) {
-    const Beginning asked = stroke.settings.start ? beginning_named(*stroke.settings.start, stroke.id) : options.start;
-    const bool choose = asked == Beginning::automatic;
-    Begun plain{stroke, up_to_its_end(stroke, brush), asked, {}, {}, {}};
-    plain.ends = std::make_shared<Ends>(stroke, plain.whole, brush, step_tolerance);
-    if (choose)
-        plain.start = plain.ends->best_beginning();
-    else if (asked != Beginning::exposed)
-        plain.start = Beginning::hidden;
-    const auto hidden_as_suits = [&] {
-        if (!choose && !dot_of(stroke, brush)) plain.start = plain.ends->hidden_or_turned();
-        return plain;
-    };
-    if (choose && plain.start == Beginning::turned) plain.instead = {Beginning::hidden};
-    if (choose && plain.start != Beginning::exposed) plain.instead.push_back(Beginning::exposed);
-    if (asked == Beginning::exposed) return plain;
-    if (asked != Beginning::hidden)
-        if (auto dot = squared_dot(stroke, brush)) {
-            if (choose && !plain.ends->is_better_squared(*dot, plain.start)) return plain;
-            if (choose) plain.instead.insert(plain.instead.begin(), plain.start);
-            plain.start = Beginning::hidden;
-            plain.dot = std::move(dot);
-            return plain;
-        }
-    if (asked == Beginning::hidden || dot_of(stroke, brush)) return hidden_as_suits();
-    const std::optional<SquaredBeginning> squared =
-        squared_beginning(stroke, brush, asked == Beginning::squared ? Caps::straight : Caps::round);
-    if (!squared) return hidden_as_suits();
-    Begun begun{squared->stroke, up_to_its_end(squared->stroke, brush), Beginning::exposed, {}, {}, {}};
-    if (choose) {
-        begun.instead = plain.instead;
-        begun.instead.insert(begun.instead.begin(), plain.start);
-    }
-    if (asked != Beginning::squared && !plain.ends->begins_better(begun.whole, plain.start)) return plain;
-    begun.ends = std::make_shared<Ends>(begun.stroke, begun.whole, brush, step_tolerance);
-    return begun;
-}
-
-/// A stroke with its end, and the depth at which it is turned round there, if it is.
-struct Ended {
-    Stroke stroke;
-    std::optional<double> turned_depth_mm;
-};
-
-/// A squared end where that is asked for and can be, or chosen; or a turned one; else none.
-std::optional<Ended> ended_as_asked(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
-                                    Ends& ends, Beginning start) {
-    const Ending end = stroke.settings.end ? ending_named(*stroke.settings.end, stroke.id) : options.end;
-    if (end == Ending::lifted) return {};
-    const bool choose = end == Ending::automatic;
-    if (auto squared = squared_end(stroke, brush, choose ? Caps::round : Caps::straight))
-        return choose && ends.best_ending(*squared, start) == Ending::lifted
-                   ? std::nullopt
-                   : std::optional(Ended{std::move(squared->stroke), {}});
-    if (!choose || stroke.end_covered) return {};
-    if (auto turned = turned_end(stroke, brush); turned && ends.is_better(*turned, start))
-        return Ended{std::move(turned->stroke), turned->depth_mm};
-    return {};
-}
-
 /// A pass by poses at all steps of the closed form, as fine as the tolerance asks for, or by few of them. `plain`: what
 /// it is called; `poses_by(step_tolerance, turns)`: the closed form.
 template <class PosesBy>
@@ -236,7 +165,10 @@ CompensatedPass led(const Pass& plain, bool few_poses, const Stroke& stroke, con
     for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {
         bool turns = false;
         Pass trial = plain;
-        poses_by(step_tolerance, turns).into(trial);
+        auto poses = poses_by(step_tolerance, turns);
+        if (!poses) poses = poses_by(0.5 * tolerance_mm, turns);  // as it was tried
+        if (!poses) return result;
+        poses->into(trial);
         if (few_poses && thin_out(trial, kThinShare, kSurely * tolerance_mm, stroke, brush, tolerance_mm, result.pass,
                                   result.miss)) {
             result.miss.has_turn_in_place = turns;
@@ -295,46 +227,21 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
         return result;
     }
-    const Begun begun = begun_as_asked(stroke, brush, options, step_tolerance);
-    const Beginning start = begun.start;
-    if (const std::optional<Dot> dot = dot_of(stroke, brush); dot && start == Beginning::hidden) {
-        const auto [least, greatest] = std::minmax(dot->from_depth_mm, dot->to_depth_mm);
-        warn({least, greatest}, stroke.id, brush, result.warnings);
-        if (!begun.dot) {
-            poses_of(*dot, brush).into(pass);
-            result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
-            if (all_poses) *all_poses = pass;
-            return result;
-        }
-    } else {
-        warn(depths, stroke.id, brush, result.warnings);
-    }
-    std::optional<Ended> ended;
-    if (!begun.dot) ended = ended_as_asked(begun.stroke, brush, options, *begun.ends, start);
-    const Stroke& whole = ended ? ended->stroke : begun.whole;
-    const auto turned_depth_mm = ended ? ended->turned_depth_mm : std::nullopt;
-    const Line whole_line(whole, brush);
-    const auto poses_by = [&](double steps, bool& turns) {
-        return begun.dot ? closed_form(*begun.dot, brush, steps, turns)
-                         : closed_form(whole, brush, whole_line, start, steps, turns, turned_depth_mm);
-    };
+    const std::vector<BrushMoves> ways = select_ends(stroke, brush, options, step_tolerance);
+    warn(depths_of_turns(ways.front()).value_or(depths), stroke.id, brush, result.warnings);
     const Pass plain = pass;
-    CompensatedPass done = led(plain, options.few_poses, stroke, brush, options.tolerance_mm, poses_by);
-    pass = std::move(done.pass);
-    result.miss = done.miss;
-    if (all_poses) *all_poses = led(plain, false, stroke, brush, options.tolerance_mm, poses_by).pass;
-    for (const Beginning start_instead : begun.instead) {
-        if (result.miss.within_tolerance) break;
-        Stroke unsaid = stroke;
-        unsaid.settings.start.reset();
-        CompensateOptions instead = options;
-        instead.start = start_instead;
-        Pass its_poses;
-        CompensatedPass other = at_its_tolerance(unsaid, brush, instead, all_poses ? &its_poses : nullptr);
-        other.pass.settings = stroke.settings;
-        if (!(other.miss.largest_mm < result.miss.largest_mm - kHairShare * options.tolerance_mm)) continue;
-        result = std::move(other);
-        if (all_poses) *all_poses = std::move(its_poses);
+    for (const BrushMoves& moves : ways) {
+        const bool is_first = &moves == &ways.front();
+        const bool few_poses =
+            options.few_poses && (moves.front().line || moves.back().line);  // a disc has none to spare
+        if (!is_first && result.miss.within_tolerance) break;
+        const auto poses_by = [&](double steps, bool& turns) { return closed_form(moves, brush, steps, turns); };
+        CompensatedPass done = led(plain, few_poses, stroke, brush, options.tolerance_mm, poses_by);
+        if (done.pass.poses_mm.rows() == 0) continue;
+        if (!is_first && !(done.miss.largest_mm < result.miss.largest_mm - kHairShare * options.tolerance_mm)) continue;
+        result.pass = std::move(done.pass);
+        result.miss = done.miss;
+        if (all_poses) *all_poses = led(plain, false, stroke, brush, options.tolerance_mm, poses_by).pass;
     }
     return result;
 }

@@ -93,7 +93,7 @@ std::vector<double> path_lengths(const Poses& poses) {
 
 bool turns_in_place(const Pass& pass, Index pose, const Vector2d& contact) {
     for (const Arc& arc : pass.arcs)
-        if (arc.first < pose && pose < arc.last) return (contact - arc.centre_mm).norm() < kRestsMm;
+        if (arc.first <= pose && pose <= arc.last) return (contact - arc.centre_mm).norm() < kRestsMm;
     return false;
 }
 

@@ -72,7 +72,7 @@ if grep -q "^BRUSHSVG_SHARED:BOOL=ON" "$build/CMakeCache.txt"; then
   offered=$(nm -DC --defined-only "$libraries/libbrushsvg.so" | grep -v " A BRUSHSVG_${version%.*}$")
   if grep -v " [A-Zu] \(typeinfo for \|typeinfo name for \|vtable for \|\)brushsvg::.*@@BRUSHSVG_${version%.*}$" <<<"$offered"; then echo "libbrushsvg.so offers more than names of brushsvg" >&2; exit 1; fi
   grep -q " brushsvg::compensate(" <<<"$offered"
-  if grep "choose_ends\|squared_end\|nlohmann\|boost" <<<"$offered"; then echo "libbrushsvg.so offers what is private" >&2; exit 1; fi
+  if grep "select_ends\|squared_end\|nlohmann\|boost" <<<"$offered"; then echo "libbrushsvg.so offers what is private" >&2; exit 1; fi
   readelf -d "$libraries/libbrushsvg.so" | grep -q "SONAME.*libbrushsvg.so.${version%.*}\]"
   if ldd "$libraries/libbrushsvg.so" | grep -i ceres; then echo "libbrushsvg.so needs Ceres" >&2; exit 1; fi
 fi

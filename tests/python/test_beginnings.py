@@ -106,11 +106,8 @@ def test_a_ball_at_the_beginning_is_turned_round_where_that_is_better_than_going
             assert overlap(stroke, brush, start) > 0.972, "going back 0.959 and 0.962 were reached"
 
 
-def test_a_ball_is_turned_round_its_middle_where_the_line_begins_beside_it():
-    """Turned about the line's first point, as wide as it is there, it left a crescent of the ball of a c."""
+def test_a_ball_is_filled_where_the_line_begins_beside_its_middle():
+    """A disc about the line's first point, as wide as the line is there, leaves a crescent of the ball of a c."""
     brush = find_brush("round-6")
     stroke = ball(3.5, 2.8, 0.7)
-    middle = 100 + 3.5 * np.array([np.cos(0.08 * 4.5), np.sin(0.08 * 4.5)])
-    marks = _core.simulate(compensate([stroke], brush, (200, 200), start="auto").plan, brush)
-    assert np.hypot(*(marks.passes[0].contact_mm[0] - middle)) < 0.1
-    assert overlap(stroke, brush, "auto") > 0.95
+    assert overlap(stroke, brush, "auto") > 0.965

@@ -11,9 +11,9 @@
 #include "brushsvg/region.hpp"
 #include "brushsvg/stroke_search.hpp"
 #include "closed_form.hpp"
+#include "ends/end_styles.hpp"
 #include "half_painted.hpp"
 #include "parallel.hpp"
-#include "stroke_ends.hpp"
 #include "strokes/candidates.hpp"
 #include "strokes/canvas.hpp"
 #include "strokes/variants.hpp"
@@ -347,10 +347,12 @@ class Search {
         for (WidthKnot& knot : trial.stroke.half_width)
             knot.half_width_mm = std::clamp(knot.half_width_mm, half_mm_[0], half_mm_[1]);
         try {
-            Pass pass;
             bool turns = false;
-            const Stroke whole = up_to_its_end(trial.stroke, brush_);
-            closed_form(whole, brush_, Line(whole, brush_), Beginning::exposed, kStepMm, turns).into(pass);
+            const auto moves = kStartStyles.front().moves(up_to_drawn_end(trial.stroke, brush_), brush_, Caps::round);
+            const auto poses = moves ? closed_form(*moves, brush_, kStepMm, turns) : std::nullopt;
+            if (!poses) return std::nullopt;
+            Pass pass;
+            poses->into(pass);
             trial.tile = canvas_.paint(pass, brush_);
         } catch (const Error&) {
             return std::nullopt;

@@ -1,0 +1,136 @@
+#include "ends/select_ends.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "brushsvg/coverage.hpp"
+#include "brushsvg/mark_overlap.hpp"
+#include "brushsvg/simulate.hpp"
+#include "closed_form.hpp"
+
+namespace brushsvg {
+namespace {
+
+/// The surroundings of an end, and how far marks are from what is wanted there.
+class EndView {
+ public:
+    EndView(const Stroke& wanted, const Brush& brush, Side side, double step_tolerance)
+        : brush_(brush), step_tolerance_(step_tolerance) {
+        const Line line(wanted, brush);
+        const PathEnd end = path_end(wanted, line, side);
+        half_mm_ = std::min(end.half_mm, brush.half_width_range_mm()[1]);
+        px_per_mm_ = kTuning.pixels / half_mm_;
+        const double reach_mm = kTuning.looked_at * half_mm_;
+        window_ = {end.at_mm.x() - reach_mm, end.at_mm.y() - reach_mm, 2.0 * reach_mm, 2.0 * reach_mm};
+        wanted_ = wanted_coverage({wanted}, window_, px_per_mm_);
+    }
+
+    /// Paint that is missing or too much, in squares of the half width. None where the moves cannot be made.
+    std::optional<double> score(const BrushMoves& moves) const {
+        bool turns = false;
+        const auto poses = closed_form(moves, brush_, step_tolerance_, turns);
+        if (!poses) return {};
+        Marks marks;
+        Pass pass;
+        poses->into(pass);
+        marks.passes.push_back(simulate_near(pass, brush_, window_, 0.05 * half_mm_));
+        const Coverage seen = coverage(marks, brush_, window_, px_per_mm_);
+        return (seen - wanted_).cwiseAbs().sum() / (kTuning.pixels * kTuning.pixels);
+    }
+
+ private:
+    const Brush& brush_;
+    double step_tolerance_, half_mm_, px_per_mm_;
+    Window window_;
+    Coverage wanted_;
+};
+
+/// Names of styles to try together; the next ones where none of them has room.
+template <class Name>
+using Requests = std::vector<std::vector<Name>>;
+
+Requests<Beginning> requested(Beginning asked) {
+    using B = Beginning;
+    if (asked == B::exposed) return {{B::exposed}};
+    if (asked == B::hidden) return {{B::hidden, B::turned}, {B::exposed}};
+    if (asked == B::squared) return {{B::squared}, {B::hidden, B::turned}, {B::exposed}};
+    return {{B::exposed, B::hidden, B::turned, B::squared}};
+}
+
+Requests<Ending> requested(Ending asked) {
+    using E = Ending;
+    if (asked == E::lifted) return {{E::lifted}};
+    if (asked == E::squared) return {{E::squared}, {E::lifted}};
+    return {{E::lifted, E::squared, E::automatic}};
+}
+
+/// Try the styles that are asked for and keep those that are better than the ones before them, the best first.
+/// `worth`: what each must win. `moves_with`: the moves with a style; none where there is no room.
+template <class Styles, class Name, class MovesWith>
+std::vector<std::pair<typename Styles::value_type, BrushMoves>> best_styles(const Styles& styles,
+                                                                            const Requests<Name>& requests,
+                                                                            const EndView& view, double worth,
+                                                                            MovesWith&& moves_with) {
+    std::vector<std::pair<typename Styles::value_type, BrushMoves>> best;
+    for (const std::vector<Name>& names : requests) {
+        std::optional<double> least;
+        for (const auto& style : styles) {
+            if (std::find(names.begin(), names.end(), style.name) == names.end()) continue;
+            const std::optional<BrushMoves> moves = moves_with(style);
+            const std::optional<double> score = moves ? view.score(*moves) : std::nullopt;
+            if (!score || (least && !(*score + worth < *least))) continue;
+            least = score;
+            best.insert(best.begin(), {style, *moves});
+        }
+        if (least) break;
+    }
+    return best;
+}
+
+std::optional<BrushMoves> moves_with(const StartStyle& start, const EndedStroke& ended, const Brush& brush, Caps caps) {
+    std::optional<BrushMoves> moves = start.moves(ended.stroke, brush, caps);
+    if (moves && ended.turn_depth_mm) {
+        const Cubics& line = ended.stroke.middle_mm;
+        moves->push_back({TurnRound{point_at(line, {line.rows() - 1, 1.0}), *ended.turn_depth_mm}});
+    }
+    return moves;
+}
+
+}  // namespace
+
+std::vector<BrushMoves> select_ends(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
+                                    double step_tolerance) {
+    const Settings& own = stroke.settings;
+    const bool is_dot = turned_dot(stroke, brush).has_value();
+    Beginning start = own.start ? beginning_named(*own.start, stroke.id) : options.start;
+    if (is_dot && start == Beginning::squared) start = Beginning::automatic;  // where it has corners
+    const Ending end = own.end ? ending_named(*own.end, stroke.id) : options.end;
+    const Caps start_caps = start == Beginning::squared ? Caps::straight : Caps::round;
+    const Caps end_caps = end == Ending::squared ? Caps::straight : Caps::round;
+    const auto starts = [&](const auto& styles, const EndedStroke& ended) {
+        return best_styles(styles, requested(start), EndView(stroke, brush, Side::start, step_tolerance),
+                           stroke.start_covered ? kTuning.worth_covered : kTuning.worth,
+                           [&](const StartStyle& style) { return moves_with(style, ended, brush, start_caps); });
+    };
+    std::vector<BrushMoves> out;
+    if (is_dot) {
+        for (auto& [style, moves] : starts(kDotStyles, {stroke, {}})) out.push_back(std::move(moves));
+        return out;
+    }
+    const auto begun = starts(kStartStyles, {up_to_drawn_end(stroke, brush), {}});
+    const auto ended = best_styles(kEndStyles, requested(end), EndView(stroke, brush, Side::end, step_tolerance),
+                                   stroke.end_covered ? kTuning.worth_covered : kTuning.worth,
+                                   [&](const EndStyle& style) -> std::optional<BrushMoves> {
+                                       const auto with_end = style.ended(stroke, brush, end_caps);
+                                       if (!with_end) return {};
+                                       return moves_with(begun.front().first, *with_end, brush, start_caps);
+                                   });
+    out.push_back(ended.front().second);
+    const auto with_end = ended.front().first.ended(stroke, brush, end_caps);
+    for (std::size_t i = 1; i < begun.size(); ++i)
+        if (auto moves = moves_with(begun[i].first, *with_end, brush, start_caps)) out.push_back(std::move(*moves));
+    return out;
+}
+
+}  // namespace brushsvg
