@@ -20,7 +20,7 @@ struct ObjectiveWeights {
     double bulge = 12.0;  ///< more per mm^2 of paint farther out. Less: strokes that stick out of corners they fill
     /// Per full turn of the mark's outline beyond what it was, in squares of the brush's greatest half width. Less:
     /// blobs and waves beside a stem. More: corners stay bare.
-    double turn = 0.6;
+    double turn = 1.0;
     /// Per stroke, in squares of the greatest half width; a round mark leaves 0.21 in a right-angled corner. Less: two
     /// strokes more for each blunt end. More: only whole limbs get one.
     double stroke = 0.1;
