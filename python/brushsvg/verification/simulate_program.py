@@ -510,6 +510,7 @@ def _ahead(
     ways_mm = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)
     speeds = np.array([step.speed_mm_s for step in steps])
     took_s = np.divide(ways_mm, speeds, out=np.zeros(len(steps)), where=speeds > 0)
+    took_s = np.maximum(took_s, [step.took_s for step in steps])
     ends_s = np.cumsum(took_s + np.r_[0.0, [step.wait_s for step in steps[:-1]]])
     begins_s, ends_mm = ends_s - took_s, np.cumsum(ways_mm)
     # a steep way is slow: what rounding makes of its ends takes its time

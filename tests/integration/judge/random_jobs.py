@@ -109,7 +109,9 @@ def judged(
 
 
 def _parts(program: Path) -> list[Path]:
-    """The files that a long program goes on in."""
+    """The files that a long program goes on in; a Fanuc's have names of eight letters and digits."""
+    if program.suffix == ".ls":
+        return sorted(program.parent.glob("[A-Z]*[0-9][0-9][0-9].ls"))
     found = program.parent.glob(f"{program.stem}-part*{program.suffix}")
     return sorted(found, key=lambda path: int(path.stem.rpartition("part")[2]))
 

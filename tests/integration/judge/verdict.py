@@ -269,11 +269,12 @@ def broken(way: Way, job: Job) -> list[str]:
 
 
 def _beyond(way: Way, job: Job):
-    cell, points = job.cell, way.told[1:]
+    first = _first_place(way)
+    cell, points = job.cell, way.told[first:]
     if not len(points):
         return
     # how low, of the strokes as they are painted and of vessels as they stand
-    heights = points[:, 2] if job.machine is None else np.maximum(points[:, 2], way.samples[1:, 2])
+    heights = points[:, 2] if job.machine is None else np.maximum(points[:, 2], way.samples[first:, 2])
     workspace = cell["workspace"]
     slack = SLACK_MM + job.servo_mm[0] / 2
     margin = np.array([workspace["margin_mm"]] * 2) + SLACK_MM
@@ -281,23 +282,31 @@ def _beyond(way: Way, job: Job):
         axis=1
     )
     if over.max() > 0:
-        yield f"{over.max():.3f} mm beyond the sheet's margin, line {_line(way, over.argmax() + 1)}"
+        yield f"{over.max():.3f} mm beyond the sheet's margin, line {_line(way, over.argmax() + first)}"
     if heights.min() < cell["heights"]["lowest_mm"] - slack:
-        yield f"height {heights.min():.3f} mm, line {_line(way, heights.argmin() + 1)}"
+        yield f"height {heights.min():.3f} mm, line {_line(way, heights.argmin() + first)}"
     robot = places.moved(job.paper, points)
     if box := workspace.get("box_mm"):
         over = np.maximum(np.array(box[0]) - robot, robot - np.array(box[1])).max(axis=1)
         if over.max() > SLACK_MM:
-            yield f"{over.max():.3f} mm out of the box, line {_line(way, over.argmax() + 1)}"
+            yield f"{over.max():.3f} mm out of the box, line {_line(way, over.argmax() + first)}"
     for low, high in workspace.get("keep_out_mm", ()):
         inside = np.minimum(robot - np.array(low), np.array(high) - robot).min(axis=1)
         if inside.max() > SLACK_MM:
-            yield f"{inside.max():.3f} mm within what is kept out of, line {_line(way, inside.argmax() + 1)}"
+            yield f"{inside.max():.3f} mm within what is kept out of, line {_line(way, inside.argmax() + first)}"
     if reach := workspace.get("reach_mm"):
         away = np.linalg.norm(robot, axis=1)
         over = np.maximum(reach[0] - away, away - reach[1])
         if over.max() > SLACK_MM:
-            yield f"{over.max():.3f} mm out of reach, line {_line(way, over.argmax() + 1)}"
+            yield f"{over.max():.3f} mm out of reach, line {_line(way, over.argmax() + first)}"
+
+
+def _first_place(way: Way) -> int:
+    """The first sample behind the way to the first place that the run names, from wherever the tool was."""
+    if not len(way.row):
+        return 0
+    sideways = np.linalg.norm((way.ends - way.starts)[:, :2], axis=1) > SLACK_MM
+    return int(np.searchsorted(way.row, sideways.argmax(), "right")) if sideways.any() else 1
 
 
 def _line(way: Way, sample: int) -> int:
@@ -311,9 +320,18 @@ def _fast(way: Way, job: Job):
     low = np.minimum(way.starts[:, 2], way.ends[:, 2]) <= job.touch_mm
     still = np.linalg.norm(way.ends - way.starts, axis=1) < 1e-6
     still &= ~np.array([legs[k].takes_up for k in way.leg], dtype=bool)
+    # of a program that says when the tool is where, places are rounded
+    lengths = np.maximum(np.linalg.norm(way.ends - way.starts, axis=1), 1e-9)
+    rounded = 2e-5 * speeds / lengths if job.language == "ros2" else 0.0
     fast = (
-        low & ~still & (kinds != "jump") & ((kinds == "rapid") | (speeds > job.fastest_mm_s * 1.001 + 0.01))
+        low
+        & ~still
+        & (kinds != "jump")
+        & ((kinds == "rapid") | (speeds > job.fastest_mm_s * 1.001 + 0.01 + rounded))
     )
+    for k in np.flatnonzero(fast):  # a vessel may stand where the paper's map has it lower than the paper
+        ends = np.array([way.starts[k], way.ends[k]])[:, :2]
+        fast[k] = not any(_to_path(ends, visit[:, :2]).max() < job.near_mm for visit in job.stations)
     if fast.any():
         k = int(fast.argmax())
         yield f"fast while touching: {kinds[k]} at {speeds[k]:.1f} mm/s, line {legs[way.leg[k]].line}"

@@ -128,10 +128,10 @@ class _Reader:
             last = steps[-1]
             steps[-1] = last._replace(wait_s=last.wait_s + wait_ms / 1e3, waits=last.waits + 1)
 
-    def _step(self, number: int) -> None:
+    def _step(self, number: int, took_s: float = 0.0) -> None:
         x, y = self._place()
         height = self._height(self.value)
-        self.out.section().steps.append(Step(number, False, x, y, height, self.feed_mm_s))
+        self.out.section().steps.append(Step(number, False, x, y, height, self.feed_mm_s, took_s=took_s))
 
     def _place(self) -> tuple[float, float]:
         x, y = (self.mm_from_steps @ self.steps).tolist()
@@ -168,7 +168,7 @@ class _Reader:
                 code="speed-out-of-range",
             )
         self.steps = [self.steps[0] + one, self.steps[1] + two]
-        self._step(number)
+        self._step(number, time_ms / 1e3)
         at_most = (self.feed_mm_s, speed_mm_s, 1e3 * self.unit_mm / time_ms)
         self.out.acts.append(Act(number, "way", "", self._place(), at_most, (float(self.value),)))
 
