@@ -12,6 +12,7 @@
 #include "brushsvg/stroke_search.hpp"
 #include "closed_form.hpp"
 #include "ends/end_styles.hpp"
+#include "ends/select_ends.hpp"
 #include "half_painted.hpp"
 #include "parallel.hpp"
 #include "strokes/candidates.hpp"
@@ -25,7 +26,7 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 constexpr std::size_t kMostAreas = 200;  // of one shape that are looked at: bounds the work
-constexpr double kStepMm = 0.025;        // of the poses of a trial, as plans have by default before few are kept
+constexpr double kStepMm = 0.01;         // of the poses of a trial: coarser ones paint thorns that plans have not
 constexpr double kSmoothed = 0.03;       // of its half width, how far a line may be off its curve
 constexpr double kBesideHalves =
     2.0;                           // of the brush's greatest half width round a shape: no paint that counts is farther
@@ -33,10 +34,11 @@ constexpr double kMiddleMm = 0.1;  // of middle lines, to which the nearest plac
 // Of strokes that are led otherwise: narrower by so much, cut so many half widths short.
 constexpr std::array<double, 3> kNarrower{1.0, 0.95, 0.88};
 constexpr std::array<double, 4> kCuts{0.1, 0.4, 0.8, 1.5};
-constexpr double kNoiseMm2 = 0.05;        // what sticks out of a shape, as it is counted: less is a pixel's noise
+constexpr double kNoiseMm2 = 0.4;         // what sticks out of a shape, as it is counted: less is a pixel's noise
 constexpr double kWorthMm2 = 0.05;        // won by another way: less is not worth to differ from what was asked for
 constexpr double kBesideStroke = 3.0;     // half widths of a stroke: no way to lead it paints farther out
 constexpr std::size_t kMostLedBack = 40;  // of one shape
+constexpr float kBare = 0.5f;             // share of a pixel without paint from which it is bare
 constexpr int kTurnedPx = 3;              // round a change, in which the outline's turning is compared
 
 /// The search for strokes into what the others leave of one shape.
@@ -117,18 +119,26 @@ class Search {
         for (std::size_t other = 0; other < tiles_.size(); ++other)
             if (other != k) paint_over(rest, box, tiles_[other]);
         // what this leaves bare may be painted by another stroke
-        const auto cost_with = [&](const Led& now) {
+        const auto picture_with = [&](const Led& now) {
             Coverage both = rest;
             paint_over(both, box, now.tile);
-            return canvas_.cost_mm2(box, both, false) + turn_mm2() * turns(both, box) +
-                   (double(now.strokes.size()) - 1.0) * stroke_mm2();
+            return both;
         };
-        double least = cost_with(led) - kWorthMm2;
+        const auto area_cost = [&](const Led& now, const Coverage& both) {
+            return canvas_.cost_mm2(box, both, false) + (double(now.strokes.size()) - 1.0) * stroke_mm2();
+        };
+        const Coverage given_picture = picture_with(led);
+        double least_area = area_cost(led, given_picture) - kWorthMm2;
+        double least = least_area + turn_mm2() * turns(given_picture, box);
         bool is_changed = false;
         const auto keep_better = [&](Led other) {
-            const double cost = cost_with(other);
+            const Coverage both = picture_with(other);
+            const double area_mm2 = area_cost(other, both);
+            if (area_mm2 >= least_area + turn_mm2()) return false;  // a turn less is more than can be won
+            const double cost = area_mm2 + turn_mm2() * turns(both, box);
             if (cost >= least) return false;
             least = cost;
+            least_area = area_mm2;
             led = std::move(other);
             return is_changed = true;
         };
@@ -202,13 +212,18 @@ class Search {
     /// What strokes paint of a box as a plan would; none where one of them cannot be painted.
     std::optional<Tile> painted(const std::vector<Stroke>& strokes, const PixelBox& box) const {
         CompensateOptions options;
-        options.few_poses = false;
         options.start = Beginning::automatic;
         options.end = Ending::automatic;
         Tile all{box, Coverage::Zero(box.rows, box.columns)};
         for (const Stroke& stroke : strokes) try {
                 checkpoint(100);
-                paint_over(all.share, box, canvas_.paint(compensate(stroke, brush_, options).pass, brush_));
+                bool turns = false;
+                const auto poses =
+                    closed_form(select_ends(stroke, brush_, options, kStepMm).front(), brush_, kStepMm, turns);
+                if (!poses) return std::nullopt;
+                Pass pass;
+                poses->into(pass);
+                paint_over(all.share, box, canvas_.paint(pass, brush_));
             } catch (const Error&) {
                 return std::nullopt;
             }
@@ -242,7 +257,7 @@ class Search {
     }
 
     bool is_bare(Index row, Index column) const {
-        return !refused_(row, column) && canvas_.inner()(row, column) - paint_(row, column) > 0.5f;
+        return !refused_(row, column) && canvas_.inner()(row, column) - paint_(row, column) > kBare;
     }
 
     using Pixels = std::vector<std::array<Index, 2>>;
@@ -253,6 +268,7 @@ class Search {
         Mask seen = Mask::Zero(paint_.rows(), paint_.cols());
         for (Index row = 1; row + 1 < paint_.rows(); ++row) {
             checkpoint(1);
+            if ((canvas_.inner().row(row) - paint_.row(row)).maxCoeff() <= kBare) continue;
             for (Index column = 1; column + 1 < paint_.cols(); ++column) {
                 if (seen(row, column) || !is_bare(row, column)) continue;
                 Pixels pixels{{row, column}};
@@ -393,7 +409,7 @@ class Search {
         Led led{{best->stroke}, best->tile};
         tiles_.push_back(best->tile);
         paint_over(paint_, canvas_.whole(), best->tile);
-        if (sticks_out(best->tile)) lead_back(led, tiles_.size() - 1, true, false);
+        if (weights_.bulge * canvas_.bulge_mm2(best->tile) > kWorthMm2) lead_back(led, tiles_.size() - 1, true, false);
         AddedStroke added;
         added.stroke = std::move(led.strokes.front());
         added.mark_mm = half_painted(led.tile.share, canvas_.window_of(led.tile.box), canvas_.px_per_mm());
@@ -417,23 +433,32 @@ class Search {
 
     /// The outline of a bare area, up to the edges of shape and paint.
     Rings bare_rings(const Pixels& pixels) const {
-        const Coverage bare = canvas_.target() - paint_;
         const int steps = 1 + int(std::ceil(weights_.seen_mm * canvas_.px_per_mm()));
-        Coverage picture = Coverage::Zero(paint_.rows(), paint_.cols());
-        Pixels rim = pixels;
+        Index top = pixels[0][0], left = pixels[0][1], bottom = top, right = left;
+        for (const auto& [row, column] : pixels) {
+            top = std::min(top, row), bottom = std::max(bottom, row);
+            left = std::min(left, column), right = std::max(right, column);
+        }
+        PixelBox box{std::max<Index>(top - steps, 0), std::max<Index>(left - steps, 0), 0, 0};
+        box.rows = std::min(bottom + steps + 1, paint_.rows()) - box.row;
+        box.columns = std::min(right + steps + 1, paint_.cols()) - box.column;
+        Coverage picture = Coverage::Zero(box.rows, box.columns);
+        Pixels rim;
+        for (const auto& [row, column] : pixels) rim.push_back({row - box.row, column - box.column});
         for (const auto& [row, column] : rim) picture(row, column) = 1.0f;
+        const Coverage bare = (canvas_.target() - paint_).block(box.row, box.column, box.rows, box.columns);
         for (int step = 0; step < steps; ++step) {
             Pixels next;
             for (const auto& [row, column] : rim)
-                for (Index r = std::max<Index>(row - 1, 0); r <= std::min(row + 1, paint_.rows() - 1); ++r)
-                    for (Index c = std::max<Index>(column - 1, 0); c <= std::min(column + 1, paint_.cols() - 1); ++c)
-                        if (picture(r, c) == 0.0f && bare(r, c) > 0.5f) {
+                for (Index r = std::max<Index>(row - 1, 0); r <= std::min(row + 1, box.rows - 1); ++r)
+                    for (Index c = std::max<Index>(column - 1, 0); c <= std::min(column + 1, box.columns - 1); ++c)
+                        if (picture(r, c) == 0.0f && bare(r, c) > kBare) {
                             picture(r, c) = 1.0f;
                             next.push_back({r, c});
                         }
             rim = std::move(next);
         }
-        return half_painted(picture, canvas_.window_of(canvas_.whole()), canvas_.px_per_mm());
+        return half_painted(picture, canvas_.window_of(box), canvas_.px_per_mm());
     }
 
     const Brush& brush_;
