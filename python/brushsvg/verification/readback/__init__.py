@@ -24,8 +24,8 @@ class Step(NamedTuple):
     line: of the file, from 1; centre: of the circle it runs on, with its turn (1 counter-clockwise), or None;
     blend_mm: how far before the point the next move may begin; via: a point of the circle that was named, in the
     frame of the program; wait_s: what is waited for behind it, in so many waits. What a servo does alone takes no time
-    but that. axis: (3,) the unit vector from the tip up along a tilted brush, in the frame of the program; () upright. took_s:
-    how long it takes, where the program says that; 0: it says how fast it is.
+    but that. axis: (3,) the unit vector from the tip up along a tilted brush, in the frame of the program; () upright.
+    took_s: how long it takes, where the program says that; 0: it says how fast it is.
     """
 
     line: int
