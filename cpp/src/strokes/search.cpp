@@ -129,13 +129,13 @@ class Search {
         };
         const Coverage given_picture = picture_with(led);
         double least_area = area_cost(led, given_picture) - kWorthMm2;
-        double least = least_area + turn_mm2() * turns(given_picture, box);
+        double least = least_area + turn_mm2() * excess_turns(given_picture, box);
         bool is_changed = false;
         const auto keep_better = [&](Led other) {
             const Coverage both = picture_with(other);
             const double area_mm2 = area_cost(other, both);
             if (area_mm2 >= least_area + turn_mm2()) return false;  // a turn less is more than can be won
-            const double cost = area_mm2 + turn_mm2() * turns(both, box);
+            const double cost = area_mm2 + turn_mm2() * excess_turns(both, box);
             if (cost >= least) return false;
             least = cost;
             least_area = area_mm2;
@@ -251,9 +251,12 @@ class Search {
     double stroke_mm2() const { return weights_.stroke * half_mm_[1] * half_mm_[1]; }
     double turn_mm2() const { return weights_.turn * half_mm_[1] * half_mm_[1]; }
 
-    /// How much the outlines of paint turn, in full turns.
-    double turns(const Coverage& paint, const PixelBox& box) const {
-        return excess_turning(half_painted(paint, canvas_.window_of(box), canvas_.px_per_mm()), {});
+    /// How much the outlines of paint turn beyond the shape's in a box, in full turns.
+    double excess_turns(const Coverage& paint, const PixelBox& box) const {
+        const Window window = canvas_.window_of(box);
+        const Coverage target = canvas_.target().block(box.row, box.column, box.rows, box.columns);
+        return std::max(0.0, excess_turning(half_painted(paint, window, canvas_.px_per_mm()),
+                                            half_painted(target, window, canvas_.px_per_mm())));
     }
 
     bool is_bare(Index row, Index column) const {
@@ -390,7 +393,7 @@ class Search {
         const Coverage before = paint_.block(box.row, box.column, box.rows, box.columns);
         Coverage after = before;
         paint_over(after, box, tile);
-        return turns(after, box) - turns(before, box);
+        return excess_turns(after, box) - excess_turns(before, box);
     }
 
     std::optional<AddedStroke> best_into(const BareArea& area) {
@@ -398,8 +401,8 @@ class Search {
         for (const WideLine& line : candidates_into(area)) {
             checkpoint(50);
             std::optional<Trial> trial = tried(line);
-            if (!trial || trial->won_mm2 <= (best ? best->won_mm2 : 0.0)) continue;
-            trial->won_mm2 -= turn_mm2() * std::max(turned(trial->tile), 0.0);
+            if (!trial || trial->won_mm2 + turn_mm2() <= (best ? best->won_mm2 : 0.0)) continue;
+            trial->won_mm2 -= turn_mm2() * turned(trial->tile);
             if (trial->won_mm2 > (best ? best->won_mm2 : 0.0)) best = std::move(trial);
         }
         if (!best) return std::nullopt;
