@@ -216,7 +216,7 @@ def test_a_pen_plots_the_markers_where_they_would_be_printed(tmp_path, monkeypat
         corners = np.array(marker.corners_mm)
         for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
             for share in np.linspace(0.1, 0.9, 17):
-                assert inked.boundary.distance(shapely.Point(a + share * (b - a))) < 0.016
+                assert inked.boundary.distance(shapely.Point(a + share * (b - a))) < 0.015
 
 
 def svg_shapes(svg, height_mm):

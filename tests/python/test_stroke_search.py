@@ -48,7 +48,9 @@ def test_nothing_that_one_sees_is_missing_or_sticks_out(tmp_path, d):
 
 def test_the_arms_of_a_k_stay_on_its_stem(tmp_path):
     """Each stroke lay within its own limb, and a gap of 0.24 mm was left between them, without a word."""
-    shape, mark, _ = painted(tmp_path, "M20 20H26.1V32.7L31.5 20H37.4L31.8 33.5L37.8 50H31.7L27.1 36.6L26.1 38.3V50H20Z")
+    shape, mark, _ = painted(
+        tmp_path, "M20 20H26.1V32.7L31.5 20H37.4L31.8 33.5L37.8 50H31.7L27.1 36.6L26.1 38.3V50H20Z"
+    )
     assert len(shapely.get_parts(shape)) == len(shapely.get_parts(mark)) == 1
 
 

@@ -347,7 +347,7 @@ BARS = (
 
 def test_a_cut_beginning_that_the_cell_cannot_square_is_hidden_or_exposed(tmp_path, capsys):
     cell = find_cell()
-    cell = replace(cell, name="tight", workspace=replace(cell.workspace, margin_mm=3.0))
+    cell = replace(cell, name="tight", workspace=replace(cell.workspace, margin_mm=2.0))
     (tmp_path / "tight.toml").write_text(write_cell(cell), encoding="utf-8")
     (tmp_path / "a.svg").write_text(BARS, encoding="utf-8")
     words = ("--cell", str(tmp_path / "tight.toml"))

@@ -167,6 +167,8 @@ def _best(ways: list, strokes: list, brush) -> tuple:
     if not along:
         return beside
     best = max(along, key=lambda each: each[1])
+    if not brush.width_follows_depth():
+        return best  # a pen's edges are those of its outermost ring
     worth = _ALIKE if best[0].count > beside[0].count else -_ALIKE if best[0].count < beside[0].count else 0
     return best if best[1] > beside[1] + worth else beside
 
