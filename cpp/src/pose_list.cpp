@@ -8,10 +8,11 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// An arc turns the heading by no less: smaller ones say no more than their chord.
-constexpr double kLeastArcRad = 1e-3;
+/// An arc turns the heading by no less: of a lag of 20 mm its chord is 0.001 mm off, and three rounded points of a
+/// smaller one may be on one line.
+constexpr double kLeastArcRad = 0.02;
 /// Poses nearer than this are one: the way between them is rounding, and points anywhere.
-constexpr double kSamePoseMm = 1e-6;
+constexpr double kSamePoseMm = 1e-3;
 
 }  // namespace
 
