@@ -17,9 +17,9 @@ struct ObjectiveWeights {
     /// its shape's edge to about 0.1 mm. More: thorns of half a millimetre are free.
     double seen_mm = 0.15;
     double notch = 3.0;   ///< more per mm^2 without paint deeper than that. More: strokes into each corner
-    double bulge = 12.0;  ///< more per mm^2 of paint farther out. Less: strokes that stick out of corners they fill
+    double bulge = 12.0;  ///< more per mm^2 of paint further out. Less: strokes that stick out of corners they fill
     /// Per full turn of the mark's outline beyond what it was, in squares of the brush's greatest half width. Less:
-    /// blobs and waves beside a stem. More: corners stay bare.
+    /// blobs and waves next to a stem. More: corners stay bare.
     double turn = 1.0;
     /// Per stroke, in squares of the greatest half width; a round mark leaves 0.21 in a right-angled corner. Less: two
     /// strokes more for each blunt end. More: only whole limbs get one.

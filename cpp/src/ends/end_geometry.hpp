@@ -31,7 +31,7 @@ struct EndTuning {
     double ball_within = 2.0;            ///< where a line begins in a ball, the middle of the ball is so near
     double wet_narrows_per_m = 1e-3;     ///< paint that runs out faster is pressed deeper: a disc would be a knob
 
-    double cap_off = 0.2;  ///< a path that ends farther from the middle of its cap ends in no cap
+    double cap_off = 0.2;  ///< a path that ends further from the middle of its cap ends in no cap
     double cut_straight = 0.12, cut_farthest = 2.5;  ///< how far a cut may stray from its chord, and be ahead
     /// Half width of the mark that runs along a cut. Its corners are as round as it is wide; a finer one leaves a hole.
     double narrowest = 0.27, widest_narrow = 0.6;

@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 /// Press depth at which a footprint that is turned on the spot reaches so far; none where that leaves a hole about P,
-/// or the least depth reaches farther already; the greatest depth where none reaches so far.
+/// or the least depth reaches further already; the greatest depth where none reaches so far.
 std::optional<double> depth_of_turn(const Stroke& stroke, const Brush& brush, double radius_mm) {
     if (stroke.closed || brush.is_rigid() || !brush.width_follows_depth()) return {};
     const double least = std::max(brush.depth_range_mm[0], 1e-3), most = brush.depth_range_mm[1];
@@ -294,7 +294,7 @@ std::optional<Squared> squared(const Stroke& stroke, const Brush& brush, Caps ca
     StrokePath path;
     path.follow(stroke, line, from_mm, at_start ? inside_mm : length_mm - inside_mm);
     if (ahead_mm > 0.0) path.line_to(end.place(ahead_mm, 0.0), half_mm);
-    // the corner that is farther ahead first
+    // the corner that is further ahead first
     const double aside = std::copysign(half_mm - *narrow, -cut->slope);
     const double steep_mm = *narrow * std::hypot(1.0, cut->slope);
     const double first_mm = cut->ahead_mm - cut->slope * aside - steep_mm,

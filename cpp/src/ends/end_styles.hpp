@@ -56,7 +56,7 @@ std::optional<BrushMoves> turned_dot(const Stroke& stroke, const Brush& brush, C
 /// A dot with corners, as of the i of a sans: turned round, then a narrow mark goes round its corners.
 std::optional<BrushMoves> squared_dot(const Stroke& stroke, const Brush& brush, Caps caps = Caps::round);
 
-/// A stroke that is squared at one side. Near its end it narrows and runs on into the corner that is farther ahead, its
+/// A stroke that is squared at one side. Near its end it narrows and runs on into the corner that is further ahead, its
 /// outer edge on the stroke's own, then along the cut into the other corner, and a little way back. A squared start is
 /// the same on the way back from where the brush was set down, inside of the stroke; then it is on the path again.
 struct Squared {

@@ -18,7 +18,7 @@ constexpr double kMostSide = 2e3;  // pixels: of a shape of half a metre they ar
 constexpr double kStepMm = 2.0;    // in which long edges are looked at, each with the pixels about it
 constexpr double kRowsMm = 0.05;   // of marks: a third of a pixel
 
-/// Distance [mm] of each pixel near an outline from it; those farther than the reach are far.
+/// Distance [mm] of each pixel near an outline from it; those further than the reach are far.
 Coverage distances(const Rings& rings, const Canvas& canvas, Index rows, Index columns, double reach_mm) {
     Coverage out = Coverage::Constant(rows, columns, std::numeric_limits<float>::max());
     const auto near = [&](const Vector2d& a, const Vector2d& b) {

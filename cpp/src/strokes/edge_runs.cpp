@@ -17,7 +17,7 @@ constexpr double kCornerRad = 30.0 / 180.0 * 3.14159265358979323846;
 constexpr double kFlatMm = 0.02;  // edges that bend by less are straight, as outlines are flattened
 constexpr double kChordMm = 0.1;  // over which a direction is measured, both ways
 
-/// A ring with fewer points, no farther than kFlatMm from it.
+/// A ring with fewer points, no further than kFlatMm from it.
 Ring simpler(const Ring& ring) {
     const Index n = ring.rows();
     Index farthest = 0;

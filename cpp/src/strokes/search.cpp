@@ -29,14 +29,14 @@ constexpr std::size_t kMostAreas = 200;  // of one shape that are looked at: bou
 constexpr double kStepMm = 0.01;         // of the poses of a trial: coarser ones paint thorns that plans have not
 constexpr double kSmoothed = 0.03;       // of its half width, how far a line may be off its curve
 constexpr double kBesideHalves =
-    2.0;                           // of the brush's greatest half width round a shape: no paint that counts is farther
+    2.0;                           // of the brush's greatest half width round a shape: no paint that counts is further
 constexpr double kMiddleMm = 0.1;  // of middle lines, to which the nearest place is looked for
 // Of strokes that are led otherwise: narrower by so much, cut so many half widths short.
 constexpr std::array<double, 3> kNarrower{1.0, 0.95, 0.88};
 constexpr std::array<double, 4> kCuts{0.1, 0.4, 0.8, 1.5};
 constexpr double kNoiseMm2 = 0.4;         // what sticks out of a shape, as it is counted: less is a pixel's noise
 constexpr double kWorthMm2 = 0.05;        // won by another way: less is not worth to differ from what was asked for
-constexpr double kBesideStroke = 3.0;     // half widths of a stroke: no way to lead it paints farther out
+constexpr double kBesideStroke = 3.0;     // half widths of a stroke: no way to lead it paints further out
 constexpr std::size_t kMostLedBack = 40;  // of one shape
 constexpr float kBare = 0.5f;             // share of a pixel without paint from which it is bare
 constexpr int kTurnedPx = 3;              // round a change, in which the outline's turning is compared
@@ -94,7 +94,7 @@ class Search {
             if (is_set(given.settings.start) || is_set(given.settings.end)) continue;  // by the artist
             const bool fills = given.start_covered && given.end_covered;
             Led led{{given}, tiles_[k]};
-            if (!lead_back(led, k, fills, fills && k > 0)) continue;
+            if (!lead_back(led, k, fills, true, fills && k > 0)) continue;
             found.strokes[k] = std::move(led.strokes);
             found.changed[k] = true;
         }
@@ -111,7 +111,7 @@ class Search {
     };
 
     /// Leads a stroke, of the tile k, so that it costs less; false where nothing does.
-    bool lead_back(Led& led, std::size_t k, bool may_be_reversed, bool may_be_left_out) {
+    bool lead_back(Led& led, std::size_t k, bool may_be_reversed, bool may_be_cut, bool may_be_left_out) {
         const Stroke given = led.strokes.front();
         const PixelBox box = about(given);
         if (box.is_empty()) return false;
@@ -166,7 +166,7 @@ class Search {
         }
         const Stroke whole = led.strokes.front();
         std::vector<Gap> gaps;
-        for (bool is_better = true; is_better;) {
+        for (bool is_better = may_be_cut; is_better;) {
             is_better = false;
             std::vector<Gap> best_gaps;
             for (const Gap& gap : gaps_of(whole)) {
@@ -412,7 +412,8 @@ class Search {
         Led led{{best->stroke}, best->tile};
         tiles_.push_back(best->tile);
         paint_over(paint_, canvas_.whole(), best->tile);
-        if (weights_.bulge * canvas_.bulge_mm2(best->tile) > kWorthMm2) lead_back(led, tiles_.size() - 1, true, false);
+        if (weights_.bulge * canvas_.bulge_mm2(best->tile) > kWorthMm2)
+            lead_back(led, tiles_.size() - 1, true, false, false);
         AddedStroke added;
         added.stroke = std::move(led.strokes.front());
         added.mark_mm = half_painted(led.tile.share, canvas_.window_of(led.tile.box), canvas_.px_per_mm());

@@ -126,15 +126,14 @@ def _with_added(
 
 @dataclass(frozen=True)
 class _Shape:
-    """An element's shape: its strokes as they were found, its rings, the strokes that paint it once, their passes and
-    numbers; how often it is painted; is_filled: in passes."""
+    """An element's shape: its strokes as they were found, its rings, the strokes that paint it once and their passes;
+    which times it is painted; is_filled: in passes."""
 
     element: str
     found: list
     rings: list[np.ndarray]
     strokes: list
     passes: list
-    numbers: list[int]
     repeats: list[int]
 
     @property
@@ -148,12 +147,12 @@ def _shapes(drawn: list, painted: list, passes: list, brush) -> list[_Shape]:
     for stroke in drawn:
         if stroke.origin.repeat == 1 and stroke.wanted_mm:
             found[stroke.origin.element].append(stroke)
-    for k, (stroke, one) in enumerate(zip(painted, passes, strict=True)):
+    for stroke, one in zip(painted, passes, strict=True):
         element = stroke.origin.element
         if element in found:
             repeats[element].add(stroke.origin.repeat)
             if stroke.origin.repeat == 1:
-                paint[element].append((stroke, one, k))
+                paint[element].append((stroke, one))
     return [
         _Shape(
             element,
@@ -164,7 +163,7 @@ def _shapes(drawn: list, painted: list, passes: list, brush) -> list[_Shape]:
         )
         for element, strokes in found.items()
         if paint[element]
-        and (brush.width_follows_depth() or not all(stroke.wanted_mm for stroke, _, _ in paint[element]))
+        and (brush.width_follows_depth() or not all(stroke.wanted_mm for stroke, _ in paint[element]))
     ]
 
 
