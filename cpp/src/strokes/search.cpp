@@ -32,7 +32,7 @@ constexpr double kBesideHalves =
     2.0;                           // of the brush's greatest half width round a shape: no paint that counts is further
 constexpr double kMiddleMm = 0.1;  // of middle lines, to which the nearest place is looked for
 // Of strokes that are led otherwise: narrower by so much, cut so many half widths short.
-constexpr std::array<double, 3> kNarrower{1.0, 0.95, 0.88};
+constexpr std::array<double, 2> kNarrower{0.95, 0.88};
 constexpr std::array<double, 4> kCuts{0.1, 0.4, 0.8, 1.5};
 constexpr double kNoiseMm2 = 0.4;         // what sticks out of a shape, as it is counted: less is a pixel's noise
 constexpr double kWorthMm2 = 0.05;        // won by another way: less is not worth to differ from what was asked for
@@ -113,7 +113,8 @@ class Search {
     /// Leads a stroke, of the tile k, so that it costs less; false where nothing does.
     bool lead_back(Led& led, std::size_t k, bool may_be_reversed, bool may_be_cut, bool may_be_left_out) {
         const Stroke given = led.strokes.front();
-        const PixelBox box = about(given);
+        const MiddlePolyline line = flatten(given, kMiddleMm);
+        const PixelBox box = about(line, kBesideStroke);
         if (box.is_empty()) return false;
         Coverage rest = Coverage::Zero(box.rows, box.columns);
         for (std::size_t other = 0; other < tiles_.size(); ++other)
@@ -149,21 +150,33 @@ class Search {
             const std::optional<Tile> tile = stroke ? painted({*stroke}, box) : std::nullopt;
             if (tile && keep_better({{*stroke}, *tile})) best = variant;
         };
-        for (const bool reversed : {false, true})
-            for (const bool square : {true, false})
-                for (const bool exposed : {false, true})
-                    for (const double width : kNarrower)
-                        if ((may_be_reversed || !reversed) && (square || !given.wanted_mm.empty()) &&
-                            (!exposed || !square || given.wanted_mm.empty()))
-                            look({reversed, square, exposed, width, {0.0, 0.0}});
-        for (const std::size_t end : {0u, 1u}) {
-            const Variant so_far = best;
-            for (const double cut : kCuts) {
-                Variant variant = so_far;
-                variant.cut[end] = cut;
-                if (!given.closed) look(variant);
+        // one choice after the other: each way round, what its ends look like, how wide, how short at ends that stick
+        // out
+        for (const bool reversed : {false, true}) {
+            if (reversed && !may_be_reversed) break;
+            Variant from;
+            from.is_reversed = reversed;
+            if (reversed) look(from);
+            for (const auto& [square, exposed] : {std::pair{true, true}, {false, false}, {false, true}}) {
+                if (square != given.wanted_mm.empty()) continue;  // a stroke without a shape has no square ends
+                Variant variant = from;
+                variant.is_square = square;
+                variant.is_exposed = exposed;
+                look(variant);
             }
         }
+        const auto try_each = [&](const auto& values, auto&& set) {
+            const Variant so_far = best;
+            for (const double value : values) {
+                Variant variant = so_far;
+                set(variant, value);
+                look(variant);
+            }
+        };
+        try_each(kNarrower, [](Variant& variant, double width) { variant.width = width; });
+        for (const std::size_t end : {0u, 1u})
+            if (!given.closed && sticks_out_at(line.row(end == 0 ? 0 : line.rows() - 1), led.tile))
+                try_each(kCuts, [&](Variant& variant, double cut) { variant.cut[end] = cut; });
         const Stroke whole = led.strokes.front();
         std::vector<Gap> gaps;
         for (bool is_better = may_be_cut; is_better;) {
@@ -201,12 +214,20 @@ class Search {
         return all;
     }
 
-    PixelBox about(const Stroke& stroke) const {
-        const MiddlePolyline line = flatten(stroke, kMiddleMm);
-        const double beside = kBesideStroke * line.col(3).maxCoeff();
+    /// The pixels about a line, so many of its greatest half widths beyond its places.
+    PixelBox about(const MiddlePolyline& line, double beside_halves) const {
+        const double beside = beside_halves * line.col(3).maxCoeff();
         const Vector2d low = line.leftCols<2>().colwise().minCoeff().transpose().array() - beside;
         const Vector2d high = line.leftCols<2>().colwise().maxCoeff().transpose().array() + beside;
         return canvas_.box_of(low, high);
+    }
+
+    /// Whether a mark sticks out of the shape near the end of its line: only there is it worth to be cut short.
+    bool sticks_out_at(const MiddlePolyline& end, const Tile& tile) const {
+        Tile near{about(end, kBesideStroke), {}};
+        near.share = Coverage::Zero(near.box.rows, near.box.columns);
+        paint_over(near.share, near.box, tile);
+        return weights_.bulge * canvas_.bulge_mm2(near) > kWorthMm2;
     }
 
     /// What strokes paint of a box as a plan would; none where one of them cannot be painted.
