@@ -15,7 +15,9 @@ namespace brushsvg {
 struct EndTuning {
     /// Half a side of the square about an end that trials look at. A pointed footprint reaches back by 2.
     double looked_at = 3.0;
-    double pixels = 8.0;  ///< of a trial's picture on one half width
+    double flat = 0.1;       ///< a path is flattened so to find what is near the square
+    double footprint = 3.0;  ///< further from the square no footprint paints in it: a pointed one reaches back by 2
+    double pixels = 8.0;     ///< of a trial's picture on one half width
     /// What a style must win over a plainer one, in squares of the half width. A pointed start lacks 1.5, two blunt
     /// corners lack 0.4, the shoulders of a blunt front 0.04. More leaves blunt ends, less costs poses that nobody
     /// sees.

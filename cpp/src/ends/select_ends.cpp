@@ -1,6 +1,7 @@
 #include "ends/select_ends.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -16,9 +17,10 @@ namespace {
 class EndView {
  public:
     EndView(const Stroke& wanted, const Brush& brush, Side side, double step_tolerance)
-        : brush_(brush), step_tolerance_(step_tolerance) {
+        : brush_(brush), step_tolerance_(step_tolerance), side_(side) {
         const Line line(wanted, brush);
         const PathEnd end = path_end(wanted, line, side);
+        at_mm_ = end.at_mm;
         half_mm_ = std::min(end.half_mm, brush.half_width_range_mm()[1]);
         px_per_mm_ = kTuning.pixels / half_mm_;
         const double reach_mm = kTuning.looked_at * half_mm_;
@@ -27,7 +29,8 @@ class EndView {
     }
 
     /// Paint that is missing or too much, in squares of the half width. None where the moves cannot be made.
-    std::optional<double> score(const BrushMoves& moves) const {
+    std::optional<double> score(BrushMoves moves) const {
+        leave_out_far_part(moves);
         bool turns = false;
         const auto poses = closed_form(moves, brush_, step_tolerance_, turns);
         if (!poses) return {};
@@ -40,8 +43,34 @@ class EndView {
     }
 
  private:
+    /// Leave out the part of the path from which no paint reaches the window.
+    void leave_out_far_part(BrushMoves& moves) const {
+        const bool at_start = side_ == Side::start;
+        BrushMove& move = at_start ? moves.back() : moves.front();
+        if (!move.line || (!at_start && move.turn)) return;
+        const MiddlePolyline line = flatten(*move.line, kTuning.flat * half_mm_);
+        const double reach_mm =
+            std::sqrt(2.0) * kTuning.looked_at * half_mm_ + kTuning.footprint * line.col(3).maxCoeff();
+        double first = line(line.rows() - 1, 2), last = 0.0;
+        for (Eigen::Index i = 0; i + 1 < line.rows(); ++i) {
+            const Eigen::Vector2d a = line.block<1, 2>(i, 0).transpose() - at_mm_;
+            const Eigen::Vector2d way = (line.block<1, 2>(i + 1, 0) - line.block<1, 2>(i, 0)).transpose();
+            const double length = way.norm(), near = length > 0.0 ? std::clamp(-a.dot(way) / length, 0.0, length) : 0.0;
+            if (!(length > 0.0) || (a + near / length * way).norm() > reach_mm) continue;
+            first = std::min(first, line(i, 2) + std::max(0.0, near - 2.0 * reach_mm));
+            last = std::max(last, line(i, 2) + std::min(length, near + 2.0 * reach_mm));
+        }
+        if (at_start)
+            move.to_mm = std::min(move.to_mm, std::max(last, move.latest_mm + reach_mm));
+        else
+            move.from_mm = move.latest_mm =
+                std::min(std::max(move.from_mm, first), std::max(move.from_mm, move.to_mm - reach_mm));
+    }
+
     const Brush& brush_;
     double step_tolerance_, half_mm_, px_per_mm_;
+    Side side_;
+    Eigen::Vector2d at_mm_;
     Window window_;
     Coverage wanted_;
 };
@@ -78,7 +107,8 @@ std::vector<std::pair<typename Styles::value_type, BrushMoves>> best_styles(cons
         for (const auto& style : styles) {
             if (std::find(names.begin(), names.end(), style.name) == names.end()) continue;
             const std::optional<BrushMoves> moves = moves_with(style);
-            const std::optional<double> score = moves ? view.score(*moves) : std::nullopt;
+            const bool is_only = names.size() == 1 && requests.size() == 1;  // the plainest: it has room everywhere
+            const std::optional<double> score = !moves ? std::nullopt : is_only ? 0.0 : view.score(*moves);
             if (!score || (least && !(*score + worth < *least))) continue;
             least = score;
             best.insert(best.begin(), {style, *moves});

@@ -128,15 +128,17 @@ class Search {
         const auto area_cost = [&](const Led& now, const Coverage& both) {
             return canvas_.cost_mm2(box, both, false) + (double(now.strokes.size()) - 1.0) * stroke_mm2();
         };
+        const double own_turns = target_turns(box);
+        const auto excess = [&](const Coverage& both) { return std::max(0.0, turns(both, box) - own_turns); };
         const Coverage given_picture = picture_with(led);
         double least_area = area_cost(led, given_picture) - kWorthMm2;
-        double least = least_area + turn_mm2() * excess_turns(given_picture, box);
+        double least = least_area + turn_mm2() * excess(given_picture);
         bool is_changed = false;
         const auto keep_better = [&](Led other) {
             const Coverage both = picture_with(other);
             const double area_mm2 = area_cost(other, both);
             if (area_mm2 >= least_area + turn_mm2()) return false;  // a turn less is more than can be won
-            const double cost = area_mm2 + turn_mm2() * excess_turns(both, box);
+            const double cost = area_mm2 + turn_mm2() * excess(both);
             if (cost >= least) return false;
             least = cost;
             least_area = area_mm2;
@@ -272,12 +274,14 @@ class Search {
     double stroke_mm2() const { return weights_.stroke * half_mm_[1] * half_mm_[1]; }
     double turn_mm2() const { return weights_.turn * half_mm_[1] * half_mm_[1]; }
 
-    /// How much the outlines of paint turn beyond the shape's in a box, in full turns.
-    double excess_turns(const Coverage& paint, const PixelBox& box) const {
-        const Window window = canvas_.window_of(box);
-        const Coverage target = canvas_.target().block(box.row, box.column, box.rows, box.columns);
-        return std::max(0.0, excess_turning(half_painted(paint, window, canvas_.px_per_mm()),
-                                            half_painted(target, window, canvas_.px_per_mm())));
+    /// How much the outlines in a picture of a box turn, in full turns.
+    double turns(const Coverage& picture, const PixelBox& box) const {
+        return excess_turning(half_painted(picture, canvas_.window_of(box), canvas_.px_per_mm()), {});
+    }
+
+    /// The shape's own turning in a box. What a mark turns less than that is not won.
+    double target_turns(const PixelBox& box) const {
+        return turns(canvas_.target().block(box.row, box.column, box.rows, box.columns), box);
     }
 
     bool is_bare(Index row, Index column) const {
@@ -414,7 +418,8 @@ class Search {
         const Coverage before = paint_.block(box.row, box.column, box.rows, box.columns);
         Coverage after = before;
         paint_over(after, box, tile);
-        return excess_turns(after, box) - excess_turns(before, box);
+        const double own = target_turns(box);
+        return std::max(own, turns(after, box)) - std::max(own, turns(before, box));
     }
 
     std::optional<AddedStroke> best_into(const BareArea& area) {
