@@ -16,15 +16,11 @@ _MOST_ROWS = 400  # beside the middle line; more is no stroke of a brush
 
 @dataclass(frozen=True)
 class Line:
-    """middle_mm: cubics (n, 8); half_width: [(fraction of arc length, mm)]; wanted_mm: rings of what it paints, with
-    corners that round marks do not reach, () where it is its discs; start: how it begins, where that
-    is not left open."""
+    """middle_mm: cubics (n, 8); half_width: [(fraction of arc length, mm)]."""
 
     middle_mm: np.ndarray
     half_width: list[tuple[float, float]]
     closed: bool = False
-    wanted_mm: tuple = ()
-    start: str | None = None
 
 
 def clamped(stroke, least: float, greatest: float) -> Line:

@@ -232,10 +232,9 @@ def _like(stroke, line, lane: int = 1):
         middle_mm=line.middle_mm,
         closed=line.closed,
         half_width=line.half_width,
-        wanted_mm=list(line.wanted_mm),
-        start_covered=not line.wanted_mm,  # by other passes
-        end_covered=not line.wanted_mm,
-        settings=stroke.settings.replaced(start=line.start) if line.start else stroke.settings,
+        wanted_mm=[],
+        start_covered=True,  # by other passes
+        end_covered=True,
     )
 
 
