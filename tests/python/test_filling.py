@@ -12,9 +12,9 @@ from svg_text import read
 from brushsvg import _core, find_brush
 from brushsvg.calibration.from_widths import new_brush
 from brushsvg.strokes.contour_fill import contour_passes
+from brushsvg.strokes.contour_rings import Line
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.fillings import fillings
-from brushsvg.strokes.offset_passes import Line
 from brushsvg.strokes.skeleton import shape_to_strokes
 from brushsvg.strokes.swept_areas import painted, region
 from brushsvg.strokes.wide_shapes import within_reach
@@ -95,12 +95,12 @@ def test_holes_belong_to_no_stroke_of_a_shape_too_large_to_be_cut(monkeypatch):
 
 
 @pytest.mark.parametrize("times", [1.1, 1.5, 2.0, 2.3])
-def test_a_disc_hardly_wider_than_the_brush_is_a_dot_and_a_ring_round_it(brush, times):
+def test_a_disc_hardly_wider_than_the_brush_is_a_dot_and_what_is_left_round_it(brush, times):
     """A ring of the full width would turn too sharply in it: 0.72 to 0.95 of such a disc was painted."""
     radius = times * HALF_MM
     made = of(f"M40 {30 - radius}A{radius} {radius} 0 1 1 39.99 {30 - radius}Z")
-    passes, _, _ = within_reach(made, brush, "passes")
-    assert [each.closed for each in passes] == [False, True]
+    passes = passes_of(made, brush)
+    assert [each.closed for each in passes][:2] == [False, True]
     paint, disc = paint_of(passes, brush), shapely.Point(40, 20).buffer(radius, quad_segs=64)
     disc = shapely.affinity.translate(disc, *(np.array(made[0].middle_mm[0, :2]) - (40, 20)))
     assert paint.intersection(disc).area / paint.union(disc).area > 0.985
@@ -199,32 +199,23 @@ def test_no_other_way_to_fill_a_shape_plainly_paints_more_of_it(brush, name):
     """Compared by the marks' outlines with shapely; discs would tell of the star's five square ends as the best."""
     made = of(SHAPES[name])
     wide = [k for k, each in enumerate(made) if max(half for _, half in each.half_width) > HALF_MM]
-    (ways,) = fillings(made, wide, *brush.half_width_range_mm())
-    assert len(ways) > 1
-    shape = region(ways[0].rings)
+    (filling,) = fillings(made, wide, *brush.half_width_range_mm())
+    assert filling.along
+    shape = region(filling.rings)
 
     def overlap(passes) -> float:
         paint = paint_of(passes, brush)
         return paint.intersection(shape).area / paint.union(shape).area
 
-    others = [
-        [
-            *way.narrow,
-            *(
-                made[k].replaced(
-                    middle_mm=line.middle_mm,
-                    closed=line.closed,
-                    half_width=line.half_width,
-                    wanted_mm=[],
-                )
-                for k, lines in way.passes.items()
-                for line in lines
-            ),
-        ]
-        for way in ways
-    ]
+    ways = [[*filling.narrow, *(like(made[0], line) for line in lines)] for lines in filling.along]
     taken = overlap(passes_of(made, brush))
-    assert taken > max(map(overlap, others)) - 0.008
+    assert taken > max(map(overlap, [*ways, within_reach(made, brush, "clamp")[0]])) - 0.008
+
+
+def like(stroke, line):
+    return stroke.replaced(
+        middle_mm=line.middle_mm, closed=line.closed, half_width=line.half_width, wanted_mm=[]
+    )
 
 
 @pytest.mark.slow
@@ -249,14 +240,15 @@ def test_a_short_fat_stroke_is_a_ring_without_a_tip(brush):
     assert [each.closed for each in passes][:1] == [True]
 
 
-def test_a_stroke_that_its_own_passes_cover_keeps_them_and_its_direction(brush):
+def test_a_stroke_with_its_sides_keeps_its_direction(brush):
     (stroke,) = of("M10 40Q25 10 50 18T90 15Q70 36 48 28T10 40Z")
     passes, wanted, _ = within_reach([stroke], brush, "passes")
-    lanes = [(each.id, max(h for _, h in each.half_width) > 0.75 * HALF_MM) for each in passes]
-    assert lanes[:3] == [("p", True), ("p~2", True), ("p~3", True)]
-    assert not any(is_whole for _, is_whole in lanes[3:])  # narrow lines where an edge stayed bare
+    assert [each.id for each in passes] == ["p"]
     assert passes[0].middle_mm.tolist() == stroke.middle_mm.tolist()
     assert wanted[0].half_width == stroke.half_width
+    every = passes_of([stroke], brush)
+    assert len(every) > 2  # with its sides
+    assert every[0].middle_mm.tolist() == stroke.middle_mm.tolist()
 
 
 def test_narrow_strokes_of_a_shape_stay_as_they_are(brush):
@@ -337,8 +329,8 @@ def straight(name, start, end, half):
 def test_slits_between_the_parts_of_a_shape_s_strokes_are_no_edges(brush):
     """Rings led round them, by 2 mm beside an inner corner of this star."""
     made = of(SHAPES["star"])
-    (ways,) = fillings(made, list(range(len(made))), *brush.half_width_range_mm())
+    (filling,) = fillings(made, list(range(len(made))), *brush.half_width_range_mm())
     parts = _core.unite([ring for stroke in made for ring in stroke.wanted_mm])
-    corners = [len(shapely.LinearRing(ring).simplify(0.02).coords) - 1 for ring in ways[0].rings]
+    corners = [len(shapely.LinearRing(ring).simplify(0.02).coords) - 1 for ring in filling.rings]
     assert corners == [10]
-    assert region(ways[0].rings).symmetric_difference(region(parts)).area < 0.1
+    assert region(filling.rings).symmetric_difference(region(parts)).area < 0.1

@@ -38,8 +38,8 @@ constexpr double kNoiseMm2 = 0.4;         // what sticks out of a shape, as it i
 constexpr double kWorthMm2 = 0.05;        // won by another way: less is not worth to differ from what was asked for
 constexpr double kBesideStroke = 3.0;     // half widths of a stroke: no way to lead it paints further out
 constexpr std::size_t kMostLedBack = 40;  // of one shape
-constexpr float kBare = 0.5f;             // share of a pixel without paint from which it is bare
-constexpr int kTurnedPx = 3;              // round a change, in which the outline's turning is compared
+constexpr float kBare = 0.4f;  // share of a pixel without paint from which it is bare: of strips, at their edges
+constexpr int kTurnedPx = 3;   // round a change, in which the outline's turning is compared
 
 /// The search for strokes into what the others leave of one shape.
 class Search {
@@ -177,8 +177,7 @@ class Search {
         };
         try_each(kNarrower, [](Variant& variant, double width) { variant.width = width; });
         for (const std::size_t end : {0u, 1u})
-            if (!given.closed && sticks_out_at(line.row(end == 0 ? 0 : line.rows() - 1), led.tile))
-                try_each(kCuts, [&](Variant& variant, double cut) { variant.cut[end] = cut; });
+            if (!given.closed) try_each(kCuts, [&](Variant& variant, double cut) { variant.cut[end] = cut; });
         const Stroke whole = led.strokes.front();
         std::vector<Gap> gaps;
         for (bool is_better = may_be_cut; is_better;) {
@@ -222,14 +221,6 @@ class Search {
         const Vector2d low = line.leftCols<2>().colwise().minCoeff().transpose().array() - beside;
         const Vector2d high = line.leftCols<2>().colwise().maxCoeff().transpose().array() + beside;
         return canvas_.box_of(low, high);
-    }
-
-    /// Whether a mark sticks out of the shape near the end of its line: only there is it worth to be cut short.
-    bool sticks_out_at(const MiddlePolyline& end, const Tile& tile) const {
-        Tile near{about(end, kBesideStroke), {}};
-        near.share = Coverage::Zero(near.box.rows, near.box.columns);
-        paint_over(near.share, near.box, tile);
-        return weights_.bulge * canvas_.bulge_mm2(near) > kWorthMm2;
     }
 
     /// What strokes paint of a box as a plan would; none where one of them cannot be painted.
@@ -443,7 +434,6 @@ class Search {
         AddedStroke added;
         added.stroke = std::move(led.strokes.front());
         added.mark_mm = half_painted(led.tile.share, canvas_.window_of(led.tile.box), canvas_.px_per_mm());
-        added.won_mm2 = best->won_mm2;
         added.neighbour = nearest_middle(area.deepest);
         added.area_mm = area_mm;
         return added;

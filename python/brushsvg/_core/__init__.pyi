@@ -1783,7 +1783,6 @@ def search_strokes(
                 int,
                 list[numpy.typing.NDArray[numpy.float64]],
                 list[numpy.typing.NDArray[numpy.float64]],
-                float,
             ]
         ],
     ]
@@ -1794,7 +1793,7 @@ def search_strokes(
     shapes: (rings of the shape, strokes, the passes that paint them). detail: "draft", "normal" or "fine", how small an area
     gets a stroke of its own. are_free: whether strokes may be led otherwise, and not only added. strokes: for each that was
     given what it is best painted as, [] for not at all; changed: whether that differs; added: (stroke, number of the stroke
-    that is nearest, rings of the area that it is for, rings of what it paints, cost that it wins [mm2]).
+    that is nearest, rings of the area that it is for, rings of what it paints).
     """
 
 def simulate(

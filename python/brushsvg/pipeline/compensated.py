@@ -34,12 +34,13 @@ def compensation_by(brush, sheet_mm, options: Options, stage=lambda text: None):
 
 
 def begun_within_reach(
-    painted: list, brush, plan, compensated, options: Options, stage
+    painted: list, brush, plan, compensated, options: Options, stage, added: frozenset[str] = frozenset()
 ) -> tuple[list, Known | None]:
     """The strokes, those plain that choose how they begin or end, cannot be run as they chose, and can plain: lifted,
     or hidden or exposed as well. A hidden beginning is landed on the far side, from where the tool may not be, and its
-    round front may be wider than what is wanted; at a squared beginning or end the tool runs aside. The list itself
-    where there are none. And what was found of the plan, where that was asked and is little enough to be kept.
+    round front may be wider than what is wanted; at a squared beginning or end the tool runs aside. Strokes that were
+    added, by their ids, are left out where they cannot be run: their areas stay bare. The list itself where there are
+    none. And what was found of the plan, where that was asked and is little enough to be kept.
     """
 
     def tried(of) -> Known:
@@ -54,7 +55,7 @@ def begun_within_reach(
         return {problem.where for problem in of.walk.problems}
 
     choosing = [stroke for stroke in painted if "auto" in _ends(stroke, options)]
-    if not choosing:
+    if not choosing and not added:
         return painted, None
     whole = tried(plan)
     left = {stroke.id for stroke in choosing} & astray(whole)
@@ -66,8 +67,10 @@ def begun_within_reach(
         found |= {name: some[name] for name in fits}
         left -= fits
     is_little = sum(len(run.poses_mm) for run in plan.passes) <= POSES_KEPT
-    fitting = [found.get(stroke.id, stroke) for stroke in painted] if found else painted
-    return fitting, whole if is_little and not found else None
+    no_room = added & astray(whole) - found.keys()
+    if not found and not no_room:
+        return painted, whole if is_little else None
+    return [found.get(stroke.id, stroke) for stroke in painted if stroke.id not in no_room], None
 
 
 def _ends(stroke, options: Options) -> tuple[str, str]:

@@ -11,10 +11,12 @@ import numpy as np
 import shapely
 
 from .. import _core
-from .contour_rings import cut, ring_along, rings_inward
-from .offset_passes import Line
+from .contour_rings import Line, cut, ring_along, rings_inward
 from .swept_areas import GRID_MM, QUARTER, unpainted
 
+_WIDE = (
+    1.5  # half widths of a disc in the shape: in a narrower one opposite sides of a ring paint the same place
+)
 _TURNED_IN = 2.0  # half widths round a ring that is all of a filling: in a smaller one the brush would turn on the spot
 _AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
 _AMID = 0.05  # squares of the half width that a dot and a ring round it may leave between them
@@ -34,14 +36,13 @@ def contour_passes(shape, least: float, half: float) -> list[list[Line]]:
     shape = shape.simplify(_SIMPLER_MM)
     if _close_pairs(shape, half) > _MOST_PAIRS:
         return []
-    rings = rings_inward(shape, half)
-    if rings is None:
-        return []
-    return [
-        lines
-        for lines in (cut(rings, half), _dot_and_ring(shape, least, half))
-        if lines and not _turns_on_the_spot(lines, half)
-    ]
+    ways = [_dot_and_ring(shape, least, half)]
+    radius = shapely.maximum_inscribed_circle(shape, 0.01 * half).length
+    is_pen = least == _AS_WIDE * half
+    rings = rings_inward(shape, half) if is_pen or radius > _WIDE * half else None
+    if rings is not None:
+        ways.insert(0, cut(rings, half))
+    return [lines for lines in ways if lines and not _turns_on_the_spot(lines, half)]
 
 
 def _dot_and_ring(shape, least: float, half: float) -> list[Line]:

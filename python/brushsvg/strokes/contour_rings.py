@@ -4,14 +4,15 @@ turn too sharply."""
 from __future__ import annotations
 
 import itertools
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
 
 from .. import _core
 from ..geometry.polylines import lengths
-from .offset_passes import FITTED, Line
 
+FITTED = 0.03  # of a pass's half width, off its curve at most: as much is outside of the shape
 # From ring to ring at most, in half widths: at corners of 90 degrees a step of 1.7 leaves a gap, of 60 one of 1.5.
 _STEP = 1.5
 _INNERMOST = 0.9  # in half widths, from the innermost ring to the shape's middle: it covers that
@@ -24,6 +25,15 @@ _OFF_CUSP = 0.4  # in half widths
 _FOOTPRINT, _AS_STRAIGHT = 1.5, 0.02
 _ROUND = 8  # edges of a quarter of a circle, off by 5e-3 of its radius
 _MOST_RINGS = 400  # with more, the middle lines have to do
+
+
+@dataclass(frozen=True)
+class Line:
+    """middle_mm: cubics (n, 8); half_width: [(fraction of arc length, mm)]."""
+
+    middle_mm: np.ndarray
+    half_width: list[tuple[float, float]]
+    closed: bool = False
 
 
 def ring_along(shape, half: float) -> list[np.ndarray]:

@@ -164,8 +164,8 @@ def add_wide(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--wide",
         choices=("auto", "clamp", "passes", "refuse"),
-        help="shapes wider than the brush: its greatest width, several passes, or refuse; default: auto, passes where "
-        "the mark of its greatest width overlaps with a shape by less than 0.8, or with all of them by 0.1 less",
+        help="shapes wider than the brush: fill them in passes, paint them as wide as it can, or refuse them; default: "
+        "auto, which fills them, except that a pen draws their middle lines",
     )
 
 
