@@ -16,6 +16,8 @@ from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.move_extents import ways
 from brushsvg.machine.setup_programs import border, paper_height
 from brushsvg.machine.workspace_limits import astray, astray_between
+from brushsvg.pipeline.options import Options
+from brushsvg.pipeline.preparation import prepare
 
 BRUSH = find_brush("round-6")
 SHEET = (600.0, 200.0)
@@ -373,3 +375,16 @@ def test_a_stroke_whose_round_beginning_is_too_wide_for_the_sheet_begins_pointed
     assert call(capsys, "convert", drawing, program, "--start", "hidden")[0] == 1
     assert call(capsys, "convert", drawing, program)[0] == 0
     assert call(capsys, "check", program, drawing)[0] == 0
+
+
+@pytest.mark.parametrize(("margin_mm", "strokes"), [(8.0, 3), (3.0, 1)])
+def test_a_stroke_that_was_added_is_left_out_where_the_cell_has_no_room_for_it(tmp_path, margin_mm, strokes):
+    """The drawing was refused for the strokes into the corners of an L, 0.6 mm beyond the workspace."""
+    file = tmp_path / "l.svg"
+    file.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="46mm" height="50mm" viewBox="0 0 46 50">'
+        '<path id="p" d="M20 5H28V42H45V49H20Z"/></svg>'
+    )
+    work = prepare(file, Options(brush=BRUSH, cell=robot(margin_mm=margin_mm)))
+    assert len(work.strokes) == len(work.plan.passes) == strokes
+    assert work.strokes[0].id == "p"
