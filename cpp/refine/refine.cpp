@@ -117,15 +117,15 @@ struct Tried {
     std::array<double, 4> painted_bounds, tool_bounds;
     double overlap, turning;  ///< the latter of the mark's outline beyond the wanted one [full turns]
     int thorns;
-    Tried(const Pass& pass, const Target& target, const Brush& brush, Beginning start) {
+    Tried(const Pass& pass, const Target& target, const Brush& brush, Terminal start) {
         const PassMarks marks = simulate(pass, brush);
         painted_bounds = brushsvg::painted_bounds(marks, brush);
         tool_bounds = box_of(pass.poses_mm);
         const Rings mark = outline(marks, brush);
         overlap = target.overlap_with(mark);
         turning = excess_turning(mark, target.outline);
-        // the point of a beginning that is to be exposed was asked for
-        thorns = std::max(0, brushsvg::thorns(mark, target.outline) - (start == Beginning::exposed ? 1 : 0));
+        // the point of a beginning that is to be pointed was asked for
+        thorns = std::max(0, brushsvg::thorns(mark, target.outline) - (start == Terminal::pointed ? 1 : 0));
     }
     /// Turning counts below none as well: the pieces of a letter that strokes are to paint are ragged where others were
     /// cut from them, so that every mark turns less.

@@ -57,7 +57,7 @@ def test_the_arms_of_a_k_stay_on_its_stem(tmp_path):
 def test_corners_are_bare_where_strokes_shall_turn_and_end_plainly(tmp_path):
     plans = [
         painted(tmp_path, CORNERS["an L"], **plain)[2]
-        for plain in ({}, {"corners": "turn"}, {"end": "lifted"})
+        for plain in ({}, {"corners": "turn"}, {"end": "round"})
     ]
     assert len(plans[0].passes) > len(plans[1].passes) == len(plans[2].passes) == 1
 
@@ -76,7 +76,7 @@ def test_the_detail_says_how_small_an_area_gets_a_stroke(detail, corners):
     square = np.array([(0.0, 0.0), (5.0, 0.0), (5.0, 5.0), (0.0, 5.0)])
     brush = find_brush("round-6")
     dot = _core.Stroke("p", np.full((1, 8), 2.5), half_width=[(0.0, 2.5)])
-    passes = _core.compensate([dot], brush, None, start="hidden").plan.passes
+    passes = _core.compensate([dot], brush, None, start="round").plan.passes
     ((_, _, added),) = _core.search_strokes([([square], [dot], list(passes))], brush, detail)
     assert len(added) == corners
 
@@ -89,14 +89,14 @@ def test_the_cost_of_a_bare_square_is_its_area_and_that_of_its_inside():
 
 
 def test_a_stroke_whose_ends_the_artist_set_stays_as_it_is(tmp_path):
-    d, words = CORNERS["a slab on both sides"], 'data-brushsvg-end="lifted" data-brushsvg-start="exposed"'
+    d, words = CORNERS["a slab on both sides"], 'data-brushsvg-end="round" data-brushsvg-start="pointed"'
     file = tmp_path / "s.svg"
     file.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="60mm" viewBox="0 0 60 60">'
         f'<path id="p" d="{d}" {words}/></svg>'
     )
     work = prepare(file, Options(brush=find_brush("round-6")))
-    assert {stroke.settings.end for stroke in work.strokes} == {"lifted"}
+    assert {stroke.settings.end for stroke in work.strokes} == {"round"}
     assert len(work.strokes) == len(
         prepare(file, Options(brush=find_brush("round-6"), detail="draft")).strokes
     )

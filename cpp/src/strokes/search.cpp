@@ -149,13 +149,15 @@ class Search {
             const std::optional<Tile> tile = stroke ? painted({*stroke}, box) : std::nullopt;
             if (tile && keep_better({{*stroke}, *tile})) best = variant;
         };
+        const bool is_matched = given.alike_start || given.alike_end;  // what ends drawn alike chose is kept
         for (const bool reversed : {false, true})
             for (const bool square : {true, false})
-                for (const bool exposed : {false, true})
+                for (const bool pointed : {false, true})
                     for (const double width : kNarrower)
-                        if ((may_be_reversed || !reversed) && (square || !given.wanted_mm.empty()) &&
-                            (!exposed || !square || given.wanted_mm.empty()))
-                            look({reversed, square, exposed, width, {0.0, 0.0}});
+                        if ((may_be_reversed || !reversed) &&
+                            (square || (!given.wanted_mm.empty() && !is_matched)) &&
+                            (!pointed || (!is_matched && (!square || given.wanted_mm.empty()))))
+                            look({reversed, square, pointed, width, {0.0, 0.0}});
         for (const std::size_t end : {0u, 1u}) {
             const Variant so_far = best;
             for (const double cut : kCuts) {
@@ -212,8 +214,8 @@ class Search {
     /// What strokes paint of a box as a plan would; none where one of them cannot be painted.
     std::optional<Tile> painted(const std::vector<Stroke>& strokes, const PixelBox& box) const {
         CompensateOptions options;
-        options.start = Beginning::automatic;
-        options.end = Ending::automatic;
+        options.start = Terminal::automatic;
+        options.end = Terminal::automatic;
         Tile all{box, Coverage::Zero(box.rows, box.columns)};
         for (const Stroke& stroke : strokes) try {
                 checkpoint(100);
@@ -407,8 +409,8 @@ class Search {
         }
         if (!best) return std::nullopt;
         const Rings area_mm = bare_rings(pixels_);
-        best->stroke.settings.start = "exposed";  // under the paint of others
-        best->stroke.settings.end = "lifted";
+        best->stroke.settings.start = "pointed";  // under the paint of others
+        best->stroke.settings.end = "round";
         Led led{{best->stroke}, best->tile};
         tiles_.push_back(best->tile);
         paint_over(paint_, canvas_.whole(), best->tile);
