@@ -162,6 +162,8 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
     };
     const bool anywhere = options.sheet_mm == std::array<double, 2>{0.0, 0.0};
     if (!turned_round(simulate(dense, brush, 0.02, false)).empty()) return closed;  // round already
+    const Terminal end = stroke.settings.end ? terminal_named(*stroke.settings.end, stroke.id) : options.end;
+    if (end == Terminal::pointed) return closed;  // it would be filled as far as the drawing goes
     const Target target(wanted, half_width);
     const Tried before(closed.plan.pass, target, brush, options.start);
     closed.overlap = closed.overlap_closed = before.overlap;
