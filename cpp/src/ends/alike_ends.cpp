@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "brushsvg/compensate.hpp"
@@ -126,10 +127,18 @@ void match_alike_ends(std::vector<Stroke>& strokes, const Brush& brush, const Co
     }
     groups.erase(std::remove_if(groups.begin(), groups.end(), [](const auto& group) { return group.size() < 2; }),
                  groups.end());
-    std::vector<FreeEnd*> all;
-    for (const auto& group : groups) all.insert(all.end(), group.begin(), group.end());
+    std::vector<std::pair<FreeEnd*, bool>> all;  // and whether the start of its stroke is in the same group
+    for (const auto& group : groups)
+        for (FreeEnd* end : group) {
+            const auto is_start = [&](const FreeEnd* other) {
+                return other->stroke == end->stroke && other->side == Side::start;
+            };
+            all.emplace_back(end, std::any_of(group.begin(), group.end(), is_start));
+        }
     on_all_processors(0, all.size(), [&](std::size_t i) {
-        all[i]->costs = terminal_costs(strokes[all[i]->stroke], brush, all[i]->side, 0.5 * options.tolerance_mm);
+        const auto& [end, with_same_start] = all[i];
+        end->costs =
+            terminal_costs(strokes[end->stroke], brush, end->side, with_same_start, 0.5 * options.tolerance_mm);
     });
     for (const auto& group : groups)
         if (const auto terminal = best_for_all(group))

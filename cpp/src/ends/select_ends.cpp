@@ -93,23 +93,31 @@ std::optional<BrushMoves> moves_with(const StartStyle& start, const EndedStroke&
     return moves;
 }
 
+/// What a style looks like.
+Terminal shown(Terminal style) { return style == Terminal::automatic ? Terminal::round : style; }
+
 }  // namespace
 
-TerminalCosts terminal_costs(const Stroke& stroke, const Brush& brush, Side side, double step_tolerance) {
+TerminalCosts terminal_costs(const Stroke& stroke, const Brush& brush, Side side, bool with_same_start,
+                             double step_tolerance) {
     const EndView view(stroke, brush, side, step_tolerance);
     TerminalCosts costs;
     const auto take = [&](Terminal terminal, const std::optional<BrushMoves>& moves) {
         const std::optional<double> cost = moves ? view.score(*moves) : std::nullopt;
-        std::optional<double>& least = costs[std::size_t(terminal == Terminal::automatic ? Terminal::round : terminal)];
+        std::optional<double>& least = costs[std::size_t(shown(terminal))];
         if (cost && !(least && *least <= *cost)) least = cost;
     };
     if (side == Side::start) {
         const EndedStroke ended{up_to_drawn_end(stroke, brush), {}};
         for (const StartStyle& style : kStartStyles) take(style.name, moves_with(style, ended, brush, Caps::round));
     } else {
-        for (const EndStyle& style : kEndStyles)
-            if (const auto ended = style.ended(stroke, brush, Caps::round))
-                take(style.name, moves_with(kStartStyles.front(), *ended, brush, Caps::round));
+        for (const EndStyle& style : kEndStyles) {
+            const auto ended = style.ended(stroke, brush, Caps::round);
+            if (!ended) continue;
+            for (const StartStyle& start : kStartStyles)
+                if (start.name == (with_same_start ? shown(style.name) : Terminal::pointed))
+                    take(style.name, moves_with(start, *ended, brush, Caps::round));
+        }
     }
     return costs;
 }
