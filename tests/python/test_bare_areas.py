@@ -64,7 +64,7 @@ def test_a_corner_that_one_sees_is_painted_unless_strokes_shall_end_and_turn_pla
     assert [stroke.id for stroke in work.strokes][:2] == ["p", "p~2"]
     share, _ = blank(TAIL, predict(work))
     assert share < 0.005
-    for plain in ({"end": "lifted"}, {"start": "exposed"}, {"corners": "turn"}):
+    for plain in ({"end": "round"}, {"start": "pointed"}, {"corners": "turn"}):
         work = prepared(tmp_path, TAIL, **plain)
         assert [stroke.id for stroke in work.strokes] == ["p"]
     share, _ = blank(TAIL, predict(work))

@@ -152,18 +152,18 @@ class Search {
             const std::optional<Tile> tile = stroke ? painted({*stroke}, box) : std::nullopt;
             if (tile && keep_better({{*stroke}, *tile})) best = variant;
         };
-        // one choice after the other: each way round, what its ends look like, how wide, how short at ends that stick
-        // out
+        const bool is_matched = given.alike_start || given.alike_end;  // what ends drawn alike chose is kept
+        // one choice after the other: each way round, what its ends look like, how wide, how short
         for (const bool reversed : {false, true}) {
             if (reversed && !may_be_reversed) break;
             Variant from;
             from.is_reversed = reversed;
             if (reversed) look(from);
-            for (const auto& [square, exposed] : {std::pair{true, true}, {false, false}, {false, true}}) {
-                if (square != given.wanted_mm.empty()) continue;  // a stroke without a shape has no square ends
+            for (const auto& [square, pointed] : {std::pair{true, true}, {false, false}, {false, true}}) {
+                if (is_matched || square != given.wanted_mm.empty()) continue;  // without a shape no end is square
                 Variant variant = from;
                 variant.is_square = square;
-                variant.is_exposed = exposed;
+                variant.is_pointed = pointed;
                 look(variant);
             }
         }
@@ -226,8 +226,8 @@ class Search {
     /// What strokes paint of a box as a plan would; none where one of them cannot be painted.
     std::optional<Tile> painted(const std::vector<Stroke>& strokes, const PixelBox& box) const {
         CompensateOptions options;
-        options.start = Beginning::automatic;
-        options.end = Ending::automatic;
+        options.start = Terminal::automatic;
+        options.end = Terminal::automatic;
         Tile all{box, Coverage::Zero(box.rows, box.columns)};
         for (const Stroke& stroke : strokes) try {
                 checkpoint(100);
@@ -424,8 +424,8 @@ class Search {
         }
         if (!best) return std::nullopt;
         const Rings area_mm = bare_rings(pixels_);
-        best->stroke.settings.start = "exposed";  // under the paint of others
-        best->stroke.settings.end = "lifted";
+        best->stroke.settings.start = "pointed";  // under the paint of others
+        best->stroke.settings.end = "round";
         Led led{{best->stroke}, best->tile};
         tiles_.push_back(best->tile);
         paint_over(paint_, canvas_.whole(), best->tile);

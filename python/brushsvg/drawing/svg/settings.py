@@ -43,6 +43,8 @@ def _read(attributes: dict[str, str], known: dict) -> tuple[dict, list[str]]:
             settings[key] = read(text.strip())
         except (Error, ValueError) as problem:
             problems.append(f"{attribute}: {problem}")
+    if both := settings.pop("terminals", None):
+        settings = {"start": both, "end": both} | settings
     return settings, problems
 
 
@@ -101,6 +103,7 @@ def _in_range(value, least, greatest, unit: str = ""):
     return value
 
 
+_TERMINAL = _one_of("auto", "round", "butt", "pointed")
 _KNOWN = {
     "width": ("width_mm", _width_mm),
     "speed": ("speed_mm_s", _speed_mm_s),
@@ -109,8 +112,9 @@ _KNOWN = {
     "reload": ("reload", _yes),
     "skip": ("skip", _yes),
     "brush": ("brush", _name),
-    "start": ("start", _one_of("exposed", "hidden", "squared", "auto")),
-    "end": ("end", _one_of("lifted", "squared", "auto")),
+    "terminals": ("terminals", _TERMINAL),
+    "start": ("start", _TERMINAL),
+    "end": ("end", _TERMINAL),
 }
 _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
     "cell": ("cell", _name),
@@ -118,4 +122,4 @@ _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
     "tolerance": ("tolerance", _tolerance_mm),
     "wide": ("wide", _one_of("auto", "clamp", "passes", "refuse")),
 }
-_OF_JOB_ON_ROOT = {"start", "end"}  # of a stroke elsewhere; here a flag counts more
+_OF_JOB_ON_ROOT = {"terminals", "start", "end"}  # of a stroke elsewhere; here a flag counts more
