@@ -153,8 +153,8 @@ TerminalCosts terminal_costs(const Stroke& stroke, const Brush& brush, Side side
     return costs;
 }
 
-std::vector<BrushMoves> select_ends(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
-                                    double step_tolerance) {
+SelectedEnds select_ends(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
+                         double step_tolerance) {
     const Settings& own = stroke.settings;
     const bool is_dot = turned_dot(stroke, brush).has_value();
     Terminal start = own.start ? terminal_named(*own.start, stroke.id) : options.start;
@@ -168,9 +168,9 @@ std::vector<BrushMoves> select_ends(const Stroke& stroke, const Brush& brush, co
                            stroke.start_covered ? kTuning.worth_covered : kTuning.worth,
                            [&](const StartStyle& style) { return moves_with(style, ended, brush, start_caps); });
     };
-    std::vector<BrushMoves> out;
+    SelectedEnds out{{}, Terminal::automatic, Terminal::automatic};
     if (is_dot) {
-        for (auto& [style, moves] : starts(kDotStyles, {stroke, {}})) out.push_back(std::move(moves));
+        for (auto& [style, moves] : starts(kDotStyles, {stroke, {}})) out.ways.push_back(std::move(moves));
         return out;
     }
     auto begun = starts(kStartStyles, {up_to_drawn_end(stroke, brush), {}});
@@ -184,10 +184,13 @@ std::vector<BrushMoves> select_ends(const Stroke& stroke, const Brush& brush, co
                         if (!with_end) return {};
                         return moves_with(begun.front().first, *with_end, brush, start_caps);
                     });
-    out.push_back(ended.front().second);
+    out.start = shown(begun.front().first.name);
+    out.end = shown(ended.front().first.name);
+    out.ways.push_back(ended.front().second);
     const auto with_end = ended.front().first.ended(stroke, brush, end_caps);
     for (std::size_t i = 1; i < begun.size(); ++i)
-        if (auto moves = moves_with(begun[i].first, *with_end, brush, start_caps)) out.push_back(std::move(*moves));
+        if (auto moves = moves_with(begun[i].first, *with_end, brush, start_caps))
+            out.ways.push_back(std::move(*moves));
     return out;
 }
 

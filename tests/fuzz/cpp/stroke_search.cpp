@@ -37,8 +37,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         shape.target_mm = fill(drawn, FillRule::nonzero);
         if (shape.target_mm.empty()) return;
         CompensateOptions options;
-        options.start = Beginning::automatic;
-        options.end = Ending::automatic;
+        options.start = Terminal::automatic;
+        options.end = Terminal::automatic;
         for (int i = 0, strokes = in.integer(0, 2); i < strokes; ++i) {
             Stroke stroke = fuzz::stroke_from(in, brush, 2);
             if (in.chance(2)) stroke.wanted_mm = shape.target_mm;
