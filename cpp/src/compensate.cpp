@@ -240,8 +240,11 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
     return result;
 }
 
-CompensatedPass compensated(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
+CompensatedPass compensated(const Stroke& given, const Brush& brush, const CompensateOptions& options,
                             Pass* all_poses) {
+    Stroke stroke = given;
+    if (!stroke.settings.end && options.end == Terminal::pointed)
+        stroke.settings.end = "pointed";  // its tracking error is that of a point
     CompensatedPass result = at_its_tolerance(stroke, brush, options, all_poses);
     if (options.method != Compensation::closed || !options.few_poses) return result;
     // who goes as far as he may in each move does not always get there in the fewest

@@ -30,8 +30,8 @@ struct Stroke {
     std::string layer;
     std::string colour;
     Settings settings;
-    bool start_covered = false, end_covered = false;    ///< where it meets others, whose paint lies over that end
-    std::optional<std::string> alike_start, alike_end;  ///< the terminal of all ends drawn like this one: tried first
+    bool start_covered = false, end_covered = false;  ///< where it meets others, whose paint lies over that end
+    std::optional<std::string> start_hint, end_hint;  ///< the terminal that is tried first: the search found it best
 };
 
 /// A place on the middle line: cubic number and its parameter in [0, 1].

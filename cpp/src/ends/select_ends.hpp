@@ -17,10 +17,4 @@ struct SelectedEnds {
 SelectedEnds select_ends(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
                          double step_tolerance);
 
-/// What the mark of each terminal costs at one end: paint that is missing or too much, in squares of the half width.
-/// None where there is no room for it, or, with the same start, not at both ends. In the order of the terminals.
-using TerminalCosts = std::array<std::optional<double>, 3>;
-TerminalCosts terminal_costs(const Stroke& stroke, const Brush& brush, Side side, bool with_same_start,
-                             double step_tolerance);
-
 }  // namespace brushsvg

@@ -155,7 +155,6 @@ class Search {
             best = variant;
             best_ends = ends;
         };
-        const bool is_matched = given.alike_start || given.alike_end;  // what ends drawn alike chose is kept
         // one choice after the other: each way round, what its ends look like, how wide, how short
         for (const bool reversed : {false, true}) {
             if (reversed && !may_be_reversed) break;
@@ -163,7 +162,7 @@ class Search {
             from.is_reversed = reversed;
             if (reversed) look(from);
             for (const auto& [square, pointed] : {std::pair{true, true}, {false, false}, {false, true}}) {
-                if (is_matched || square != given.wanted_mm.empty()) continue;  // without a shape no end is square
+                if (square != given.wanted_mm.empty()) continue;  // without a shape no end is square
                 Variant variant = from;
                 variant.is_square = square;
                 variant.is_pointed = pointed;
@@ -173,8 +172,8 @@ class Search {
         // from here on with the terminals of the best so far
         if (best_ends[0] == Terminal::automatic) painted({given}, box, &best_ends);
         if (best.is_reversed) std::swap(best_ends[0], best_ends[1]);
-        given.alike_start = name_of(best_ends[0]);
-        given.alike_end = name_of(best_ends[1]);
+        given.start_hint = name_of(best_ends[0]);
+        given.end_hint = name_of(best_ends[1]);
         const auto try_each = [&](const auto& values, auto&& set) {
             const Variant so_far = best;
             for (const double value : values) {
