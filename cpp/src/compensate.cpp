@@ -221,7 +221,7 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
         return result;
     }
-    const std::vector<BrushMoves> ways = select_ends(stroke, brush, options, step_tolerance).ways;
+    const std::vector<BrushMoves> ways = select_ends(stroke, brush, options, step_tolerance);
     warn(depths_of_turns(ways.front()).value_or(depths), stroke.id, brush, result.warnings);
     const Pass plain = pass;
     for (const BrushMoves& moves : ways) {

@@ -173,8 +173,6 @@ VALUES_OF = {
                 "wanted_mm": [SQUARE],
                 "start_covered": True,
                 "end_covered": True,
-                "start_hint": "round",
-                "end_hint": "butt",
                 "layer": "x",
                 "colour": "#ffffff",
                 "settings": _core.Settings(skip=True),

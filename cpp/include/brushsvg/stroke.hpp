@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,7 +30,6 @@ struct Stroke {
     std::string colour;
     Settings settings;
     bool start_covered = false, end_covered = false;  ///< where it meets others, whose paint lies over that end
-    std::optional<std::string> start_hint, end_hint;  ///< the terminal that is tried first: the search found it best
 };
 
 /// A place on the middle line: cubic number and its parameter in [0, 1].

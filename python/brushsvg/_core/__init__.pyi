@@ -499,19 +499,16 @@ class Stroke:
     A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
 
     id: its name, made of origin, a StrokeId, and set by a name or one. middle_mm, half_width, wanted_mm, settings: to be
-    set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint lies over that end. start_hint,
-    end_hint: the terminal of all ends drawn like this one, tried first, see match_end_hints.
+    set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint lies over that end.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
     closed: bool
     colour: str
     end_covered: bool
-    end_hint: str | None
     layer: str
     settings: Settings
     start_covered: bool
-    start_hint: str | None
     @staticmethod
     def from_points(
         points_mm: numpy.typing.ArrayLike,
