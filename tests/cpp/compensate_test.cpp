@@ -342,21 +342,6 @@ TEST_CASE("steps round a cusp come to an end, however fine they are asked for") 
     }
 }
 
-namespace {
-
-/// A bar cut straight half a width beyond both ends of its line.
-Stroke bar(const std::string& id, double x, double y, double length_mm, double half_mm = 2.0) {
-    Stroke stroke = stroke_of(polyline({V(x, y), V(x + length_mm, y)}), {{0.0, half_mm}});
-    stroke.id = StrokeId(id);
-    Ring outline(4, 2);
-    outline << x - half_mm, y - half_mm, x + length_mm + half_mm, y - half_mm, x + length_mm + half_mm, y + half_mm,
-        x - half_mm, y + half_mm;
-    stroke.wanted_mm = {outline};
-    return stroke;
-}
-
-}  // namespace
-
 TEST_CASE("a hook has a plan of ordinary size") {
     const CompensatedPass found = compensate(hook(), shipped("round-6"));
     CHECK(found.pass.poses_mm.rows() < 200);
