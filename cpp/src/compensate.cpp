@@ -243,7 +243,7 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
 CompensatedPass compensated(const Stroke& given, const Brush& brush, const CompensateOptions& options,
                             Pass* all_poses) {
     Stroke stroke = given;
-    if (!stroke.settings.end && options.end == Terminal::pointed)
+    if (options.method == Compensation::closed && !stroke.settings.end && options.end == Terminal::pointed)
         stroke.settings.end = "pointed";  // its tracking error is that of a point
     CompensatedPass result = at_its_tolerance(stroke, brush, options, all_poses);
     if (options.method != Compensation::closed || !options.few_poses) return result;

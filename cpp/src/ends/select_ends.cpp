@@ -144,9 +144,7 @@ std::vector<BrushMoves> select_ends(const Stroke& stroke, const Brush& brush, co
         for (auto& [style, moves] : starts(kDotStyles, {stroke, {}})) out.push_back(std::move(moves));
         return out;
     }
-    auto begun = starts(kStartStyles, {up_to_drawn_end(stroke, brush), {}});
-    if (start == Terminal::automatic && begun.back().first.name != kStartStyles.front().name)
-        begun.push_back({kStartStyles.front(), {}});
+    const auto begun = starts(kStartStyles, {up_to_drawn_end(stroke, brush), {}});
     const auto ended =
         best_styles(kEndStyles, requested(Side::end, end), EndView(stroke, brush, Side::end, step_tolerance),
                     stroke.end_covered ? kTuning.worth_covered : kTuning.worth,

@@ -78,11 +78,14 @@ def searched(
     new = compensated([stroke for stroke, _, k in rows if k is None])
     numbers = iter(range(len(rows)))
     done = done.spliced(new, [(True, next(numbers)) if k is None else (False, k) for _, _, k in rows])
-    before = {stroke.id for stroke in painted}
-    found_now = {row[0].id for row in rows}
-    return Searched(
-        drawn, [row[0] for row in rows], [row[1] for row in rows], done, frozenset(found_now - before)
+    added = frozenset(
+        _repeated(each.stroke, repeat).id
+        for shape in shapes
+        for each in every
+        if each.stroke.origin.element == shape.element
+        for repeat in shape.repeats
     )
+    return Searched(drawn, [row[0] for row in rows], [row[1] for row in rows], done, added)
 
 
 def _next_to_narrow(added: list[_Added], drawn: list, brush) -> list[_Added]:
