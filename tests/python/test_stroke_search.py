@@ -98,3 +98,10 @@ def test_a_stroke_whose_ends_the_artist_set_stays_as_it_is(tmp_path):
     assert len(work.strokes) == len(
         prepare(file, Options(brush=find_brush("round-6"), detail="draft")).strokes
     )
+
+
+@pytest.mark.parametrize("plain", [{"end": "round"}, {"start": "pointed"}, {"corners": "turn"}])
+def test_the_sides_of_a_wide_shape_are_painted_with_any_ends(tmp_path, plain):
+    """Of a bar 12 mm wide two thirds were painted once an end was set."""
+    shape, mark, _ = painted(tmp_path, "M5 20H55V32H5Z", **plain)
+    assert shape.intersection(mark).area / shape.union(mark).area > 0.93

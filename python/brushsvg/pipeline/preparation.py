@@ -180,7 +180,7 @@ def _within_reach(found: list, brush, options: Options, partly: bool) -> _Lines:
         strokes, _, refused, left_out = _sorted_out(
             strokes, strokes, lambda some: within_reach(some, brush, options.wide)
         )
-    painted, wanted, notices = within_reach(strokes, brush, options.wide)
+    painted, wanted, notices = within_reach(strokes, brush, options.wide, _leads(options))
     return _Lines(list(found), painted, wanted, notices, refused, left_out)
 
 
