@@ -65,6 +65,7 @@ def within_reach(
                     f"{what} {2 * worst:.3g} mm wide, outside the range {reach}: {how}",
                     code="width-out-of-reach",
                     about="in passes" if k in filled else "wider" if worst > greatest else "narrower",
+                    advice="--wide passes fills it" if wide == "clamp" and worst > greatest else "",
                 )
             )
         painted += made
