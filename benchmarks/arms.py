@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "python"))
 
 from arm_judge import compare
 
-from brushsvg.machine.cell_file import cell_names, find_cell
+from brushsvg.machine.cells.cell_file import cell_names, find_cell
 
 if __name__ == "__main__":
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000

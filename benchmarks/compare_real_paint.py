@@ -25,10 +25,10 @@ from real_paint import LEVEL
 from scipy.optimize import minimize
 
 from brushsvg import _core
+from brushsvg.comparison.photographs import Wanted, compare_paint
+from brushsvg.comparison.placing import Canvas
 from brushsvg.errors import Error
 from brushsvg.geometry.rings import centroid
-from brushsvg.painted.comparison import Wanted, compare_paint
-from brushsvg.painted.placing import Canvas
 
 WITHIN_MM, WITHIN_OVERLAP = 0.25, 0.01
 GROWN_MM = np.arange(-2.0, 2.001, 0.05)

@@ -26,8 +26,8 @@ import numpy as np
 from svgpathtools import parse_path
 
 from brushsvg import _core
-from brushsvg.drawing.svg import read_svg
-from brushsvg.drawing.text import text_svg
+from brushsvg.read.svg import read_svg
+from brushsvg.read.text import text_svg
 from brushsvg.strokes.extraction import strokes
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"

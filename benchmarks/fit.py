@@ -22,9 +22,9 @@ import numpy as np
 import truth_recovery
 
 from brushsvg import _core
-from brushsvg.calibration import machine_found
-from brushsvg.calibration.from_marks import calibrate_marks
-from brushsvg.calibration.mark_input import read_painted
+from brushsvg.calibration.marks import machine_found
+from brushsvg.calibration.marks.from_marks import calibrate_marks
+from brushsvg.calibration.marks.mark_input import read_painted
 
 painter = truth_recovery.painter
 

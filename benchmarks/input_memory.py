@@ -16,7 +16,7 @@ import numpy as np
 
 MB = 2**20
 READ = "import brushsvg; brushsvg.read_drawing({!r})"
-PHOTO = "from pathlib import Path; from brushsvg.scan.photo import read_photo; read_photo(Path({!r}).read_bytes())"
+PHOTO = "from pathlib import Path; from brushsvg.photo.photo import read_photo; read_photo(Path({!r}).read_bytes())"
 CHECK = "from brushsvg.cli import main; main(['check', {!r}, '--cell', 'linuxcnc-3axis', '--paper-z', '6', '--quiet'])"
 PLAN = "import brushsvg; brushsvg.read_plan({!r})"
 MEASURED = "from brushsvg.cli import main; main(['calibrate', {0!r}, '-o', {0!r} + '.json', '--quiet'])"

@@ -19,7 +19,7 @@ import numpy as np
 
 import brushsvg
 from brushsvg import laws
-from brushsvg.brush.confidence import half_interval_mm
+from brushsvg.model.confidence import half_interval_mm
 
 BRUSH = brushsvg.find_brush("round-6")
 LAG, GAP, HALF = BRUSH.lag, BRUSH.tip_gap, BRUSH.half_width

@@ -28,11 +28,11 @@ import numpy as np
 from letters import GLYPHS, fitting_mm
 
 from brushsvg import find_brush
-from brushsvg.drawing.svg import read_svg
-from brushsvg.drawing.text import text_svg
-from brushsvg.pipeline.options import Options
-from brushsvg.pipeline.prediction import predict
-from brushsvg.pipeline.preparation import prepare
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.prediction import predict
+from brushsvg.jobs.preparation.preparation import prepare
+from brushsvg.read.svg import read_svg
+from brushsvg.read.text import text_svg
 from brushsvg.strokes.skeleton import filled
 
 WORDS = Path("/usr/share/dict/american-english")

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from brushsvg import _core, find_brush
-from brushsvg.drawing.design import Design
+from brushsvg.read.design import Design
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.wide_shapes import within_reach
 

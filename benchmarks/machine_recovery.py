@@ -23,10 +23,10 @@ import numpy as np
 import truth_recovery
 
 from brushsvg import _core
-from brushsvg.brush.confidence import half_interval_mm, places
-from brushsvg.calibration import machine_found
-from brushsvg.calibration.from_marks import brush_of
+from brushsvg.calibration.marks import machine_found
+from brushsvg.calibration.marks.from_marks import brush_of
 from brushsvg.cli.arguments import values
+from brushsvg.model.confidence import half_interval_mm, places
 
 painter = truth_recovery.painter
 

@@ -15,17 +15,12 @@ import cv2
 import numpy as np
 
 from brushsvg import _core
-from brushsvg.drawing.svg import read_svg
-from brushsvg.drawing.text import text_svg
 from brushsvg.geometry.rings import with_holes
+from brushsvg.read.svg import read_svg
+from brushsvg.read.text import text_svg
 from brushsvg.strokes.skeleton import filled
 from brushsvg.strokes.skeleton.graph import skeleton
-from brushsvg.strokes.skeleton.shape_to_strokes import (
-    LEAST_LIMB,
-    LEAST_SHARE,
-    _strokes,
-    outline_strokes,
-)
+from brushsvg.strokes.skeleton.shape_to_strokes import LEAST_LIMB, LEAST_SHARE, _strokes, outline_strokes
 from brushsvg.strokes.skeleton.writing_order import joined, ordered
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"

@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
-from brushsvg.drawing import read_drawing
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.preflight import look
 from brushsvg.machine.writer import encoded
+from brushsvg.model.library import find_brush
+from brushsvg.read import read_drawing
 from brushsvg.strokes.extraction import strokes as strokes_of
 
 STROKES = 1000

@@ -31,13 +31,13 @@ import photograph
 from numpy.polynomial import polynomial
 
 from brushsvg import _core
-from brushsvg.brush.confidence import law_band
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import edge_mm, marks_of, read_chart_photos, remarks
-from brushsvg.calibration.from_marks import brush_of, calibrate_marks, options_for
-from brushsvg.calibration.mark_input import read_painted
+from brushsvg.calibration.marks.from_marks import brush_of, calibrate_marks, options_for
+from brushsvg.calibration.marks.mark_input import read_painted
 from brushsvg.cli.arguments import values
 from brushsvg.errors import Error
+from brushsvg.model.confidence import law_band
 
 KNOWN_TO = 0.15  # what a person knows of the brush beforehand
 SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)  # of the deepest

@@ -13,11 +13,11 @@ from dataclasses import replace
 import numpy as np
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
 from brushsvg.machine import writer
-from brushsvg.machine.cell import Workspace
-from brushsvg.machine.cell_file import cell_names, find_cell
+from brushsvg.machine.cells.cell import Workspace
+from brushsvg.machine.cells.cell_file import cell_names, find_cell
 from brushsvg.machine.posts import POSTS
+from brushsvg.model.library import find_brush
 
 STROKES = 1000
 POSES = 150

@@ -37,8 +37,8 @@ import time
 begin = time.perf_counter()
 from brushsvg.cli import commands
 from brushsvg.machine import paint_reload, preflight
-from brushsvg.machine.cell_file import find_cell
-from brushsvg.pipeline import outputs, prediction, preparation
+from brushsvg.machine.cells.cell_file import find_cell
+from brushsvg.jobs import outputs, prediction, preparation
 told = []
 def stage(name):
     told.append((name, time.perf_counter()))

@@ -18,18 +18,11 @@ from xml.parsers import expat
 import numpy as np
 
 from brushsvg import units
-from brushsvg.drawing.svg import (
-    colour,
-    css_cascade,
-    css_declarations,
-    read_svg,
-    style_sheets,
-    transform,
-    viewport,
-)
-from brushsvg.drawing.svg import shapes as svg_shapes
-from brushsvg.drawing.svg.path_to_cubics import trace
-from brushsvg.drawing.svg.xml import parse_xml
+from brushsvg.read.svg import colour, read_svg, transform, viewport
+from brushsvg.read.svg.css import cascade, declarations, style_sheets
+from brushsvg.read.svg.paths import shapes as svg_shapes
+from brushsvg.read.svg.paths.path_to_cubics import trace
+from brushsvg.read.svg.xml import parse_xml
 from brushsvg.strokes.extraction import strokes
 
 ELEMENTS = 1000
@@ -94,7 +87,7 @@ def _style(random) -> str:
 def cold_ms(work, rounds: int) -> float:
     times = []
     for _ in range(rounds):
-        for remembering in (css_declarations.declarations, colour.parse_colour, units._parts):
+        for remembering in (declarations.declarations, colour.parse_colour, units._parts):
             remembering.cache_clear()
         begin = time.perf_counter()
         work()
@@ -105,10 +98,10 @@ def cold_ms(work, rounds: int) -> float:
 def styles(root) -> None:
     """The rules, and the style of every element from its parent's."""
     rules = style_sheets.Rules(root)
-    waiting = [(root, css_cascade.INITIAL)]
+    waiting = [(root, cascade.INITIAL)]
     while waiting:
         node, parent = waiting.pop()
-        style, _ = css_cascade.cascade(parent, node.attrib, rules.of(node), 100.0)
+        style, _ = cascade.cascade(parent, node.attrib, rules.of(node), 100.0)
         waiting += [(child, style) for child in node]
 
 

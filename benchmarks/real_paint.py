@@ -49,13 +49,20 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize
 
 from brushsvg import _core
-from brushsvg.calibration import machine_found
-from brushsvg.calibration.by_overlap_report import aside_in_words, chosen_in_words
-from brushsvg.calibration.from_marks import brush_of
-from brushsvg.calibration.overlap_choice import best_predicting
-from brushsvg.calibration.overlap_search import Begin, Target, best_shift, on_paper, predicted, soft_overlap
+from brushsvg.calibration.marks import machine_found
+from brushsvg.calibration.marks.from_marks import brush_of
+from brushsvg.calibration.overlap.by_overlap_report import aside_in_words, chosen_in_words
+from brushsvg.calibration.overlap.overlap_choice import best_predicting
+from brushsvg.calibration.overlap.overlap_search import (
+    Begin,
+    Target,
+    best_shift,
+    on_paper,
+    predicted,
+    soft_overlap,
+)
 from brushsvg.cli.arguments import values
-from brushsvg.scan.mask_contours import mask_outlines
+from brushsvg.photo.mask_contours import mask_outlines
 
 LEVEL = 70
 FARTHEST_MM = 3.0

@@ -17,9 +17,9 @@ import cv2
 import numpy as np
 
 from brushsvg.geometry.rings import signed_area
-from brushsvg.scan.edges import Room, find_marks
-from brushsvg.scan.flatten import Flat
-from brushsvg.scan.photo import read_photo
+from brushsvg.photo.edges import Room, find_marks
+from brushsvg.photo.flatten import Flat
+from brushsvg.photo.photo import read_photo
 
 BAR_MM = 50.8
 SHRUNK = 4  # the grid is looked for in so much smaller a picture

@@ -36,15 +36,15 @@ from studios import camera, over
 
 from brushsvg import find_brush
 from brushsvg._core import MarkLaws
-from brushsvg.brush.library import save_brush
-from brushsvg.calibration.from_marks import brush_of
+from brushsvg.calibration.marks.from_marks import brush_of
 from brushsvg.cli import main
-from brushsvg.evaluation.report import wanted_rings
-from brushsvg.painted.job_page import job_page
-from brushsvg.pipeline.json_files import read_plan
-from brushsvg.pipeline.margin_strokes import is_margin
-from brushsvg.pipeline.options import Options
-from brushsvg.pipeline.preparation import prepare
+from brushsvg.comparison.job_page import job_page
+from brushsvg.jobs.json_files import read_plan
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.preparation.margin_strokes import is_margin
+from brushsvg.jobs.preparation.preparation import prepare
+from brushsvg.model.library import save_brush
+from brushsvg.show.evaluation.report import wanted_rings
 
 SHEETS, WIDEST_MM = 3, 4.0  # of the word
 WORD = re.sub(

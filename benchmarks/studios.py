@@ -38,14 +38,14 @@ from numpy.polynomial.polynomial import polyval
 from photograph import Camera
 
 from brushsvg import find_brush
-from brushsvg.brush.library import save_brush
 from brushsvg.cli import main
-from brushsvg.evaluation.report import wanted_rings
-from brushsvg.machine.cell_file import find_cell, write_cell
-from brushsvg.painted.job_page import job_page
-from brushsvg.pipeline.json_files import read_plan
-from brushsvg.pipeline.options import Options
-from brushsvg.pipeline.preparation import prepare
+from brushsvg.comparison.job_page import job_page
+from brushsvg.jobs.json_files import read_plan
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.preparation.preparation import prepare
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
+from brushsvg.model.library import save_brush
+from brushsvg.show.evaluation.report import wanted_rings
 
 STROKES_A_LOAD = 2
 SURE_GAIN = 0.005

@@ -31,7 +31,7 @@ import numpy as np
 import page
 import truth_recovery
 
-from brushsvg.drawing.text import text_svg
+from brushsvg.read.text import text_svg
 
 ROOT = Path(__file__).parents[1]
 SYSTEM_PYTHON = "/usr/bin/python3"  # has lxml, as Inkscape's own has

@@ -33,10 +33,10 @@ import painter
 
 import brushsvg
 from brushsvg import _core
-from brushsvg.brush.confidence import half_interval_mm, places
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.from_marks import brush_of, height_at
+from brushsvg.calibration.marks.from_marks import brush_of, height_at
 from brushsvg.cli.arguments import values
+from brushsvg.model.confidence import half_interval_mm, places
 
 KNOWN_TO = 0.15
 SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)  # of the deepest

@@ -23,9 +23,9 @@ import studio
 
 import brushsvg
 from brushsvg._core import MarkLaws
-from brushsvg.calibration.from_marks import brush_of
-from brushsvg.calibration.from_widths import lag_of_turn, new_brush
-from brushsvg.evaluation.report import wanted_rings
+from brushsvg.calibration.marks.from_marks import brush_of
+from brushsvg.calibration.numbers.from_widths import lag_of_turn, new_brush
+from brushsvg.show.evaluation.report import wanted_rings
 
 READ_TO_MM = 0.5
 SHARES = (0.25, 0.6, 1.0)  # of the greatest depth

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import brushsvg
 from brushsvg.cli.arguments.parser import command_parser
-from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
 
 COLUMNS = 100  # of help texts, whatever the terminal is
 

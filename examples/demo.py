@@ -6,14 +6,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from brushsvg.cli.console import RefusedError, about, say_notice, warn
-from brushsvg.evaluation import report
 from brushsvg.files import write_files
+from brushsvg.jobs import outputs, prediction
+from brushsvg.jobs.comparison_picture import comparison_png
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.preparation import constant_lag, preparation
 from brushsvg.machine import preflight, writer
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.paint_reload import in_loads
-from brushsvg.pipeline import constant_lag, outputs, prediction, preparation
-from brushsvg.pipeline.comparison_picture import comparison_png
-from brushsvg.pipeline.options import Options
+from brushsvg.show.evaluation import report
 
 
 def main(drawing: Path, directory: Path) -> None:

@@ -19,8 +19,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "python"))
 from test_dabs import assumed, lopsided, painted, photo_of, printed
 from walkthrough_pictures import side_by_side
 
-from brushsvg.brush.library import save_brush
 from brushsvg.calibration.chart.file import write_chart
+from brushsvg.model.library import save_brush
 
 ROOT = Path(__file__).parents[1]
 TALL_PX = 900

@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 
 from brushsvg import _core, find_brush
-from brushsvg.machine.arc_chords import with_chords
+from brushsvg.machine.realised.arc_chords import with_chords
 
 PX_PER_MM = 24.0
 SIZE_MM = (26.0, 13.0)

@@ -10,9 +10,9 @@ import sys
 from pathlib import Path
 
 from brushsvg import _core
-from brushsvg.brush.footprint_shapes import disc, drop
-from brushsvg.calibration.from_widths import GAP_PER_HALF, WIDEST_PER_HALF
+from brushsvg.calibration.numbers.from_widths import GAP_PER_HALF, WIDEST_PER_HALF
 from brushsvg.files import write_files
+from brushsvg.model.footprint_shapes import disc, drop
 
 SHIPPED = Path(__file__).parents[1] / "python" / "brushsvg" / "data" / "brushes"
 

@@ -11,7 +11,7 @@ import vpype
 import vpype_cli
 
 import brushsvg
-from brushsvg.drawing import InMemory
+from brushsvg.read import InMemory
 
 MM_PER_PX = 25.4 / 96
 CORNER_RAD = np.radians(

@@ -12,7 +12,6 @@ import types
 
 TYPE_CHECKING = False  # True to editors and type checkers; typing itself is slow to import
 if TYPE_CHECKING:  # what the table below resolves to
-    from . import laws
     from ._core import (
         Arc,
         Brush,
@@ -38,23 +37,24 @@ if TYPE_CHECKING:  # what the table below resolves to
         write_marks,
         write_plan,
     )
-    from .batch.run import Batch, batch
-    from .brush.library import brush_like, brush_names, find_brush, save_brush
     from .calibration.chart.layout import chart
     from .calibration.from_file import calibrate
-    from .calibration.from_widths import new_brush
-    from .drawing import ReadOptions, read_drawing
-    from .drawing.text import text_svg
+    from .calibration.numbers.from_widths import new_brush
     from .errors import Error
-    from .machine.cell import Cell
-    from .machine.cell_file import cell_names, find_cell, read_cell, write_cell
+    from .jobs.batch.run import Batch, batch
+    from .jobs.checking import Check, check
+    from .jobs.comparing import PaintedJob, compare
+    from .jobs.conversion import Conversion, convert
+    from .jobs.json_files import read_marks, read_plan
+    from .machine.cells.cell import Cell
+    from .machine.cells.cell_file import cell_names, find_cell, read_cell, write_cell
     from .machine.writer import write_program
-    from .pictures.marks_png import marks_png
-    from .pictures.marks_svg import marks_svg
-    from .pipeline.checking import Check, check
-    from .pipeline.comparing import PaintedJob, compare
-    from .pipeline.conversion import Conversion, convert
-    from .pipeline.json_files import read_marks, read_plan
+    from .model import laws
+    from .model.library import brush_like, brush_names, find_brush, save_brush
+    from .read import ReadOptions, read_drawing
+    from .read.text import text_svg
+    from .show.marks_png import marks_png
+    from .show.marks_svg import marks_svg
     from .strokes.corners import lifted_at_corners
     from .strokes.extraction import strokes
     from .strokes.path_objects import path_from_pass, path_from_stroke, stroke_from_path
@@ -64,40 +64,40 @@ if TYPE_CHECKING:  # what the table below resolves to
 
 _HOME = {
     "Error": "errors",
-    "ReadOptions": "drawing",
-    "read_drawing": "drawing",
-    "text_svg": "drawing.text",
+    "ReadOptions": "read",
+    "read_drawing": "read",
+    "text_svg": "read.text",
     "strokes": "strokes.extraction",
     "stroke_from_path": "strokes.path_objects",
     "path_from_stroke": "strokes.path_objects",
     "path_from_pass": "strokes.path_objects",
-    "Cell": "machine.cell",
-    "brush_like": "brush.library",
-    "brush_names": "brush.library",
-    "cell_names": "machine.cell_file",
-    "find_cell": "machine.cell_file",
-    "read_cell": "machine.cell_file",
-    "write_cell": "machine.cell_file",
-    "find_brush": "brush.library",
-    "save_brush": "brush.library",
-    "new_brush": "calibration.from_widths",
+    "Cell": "machine.cells.cell",
+    "brush_like": "model.library",
+    "brush_names": "model.library",
+    "cell_names": "machine.cells.cell_file",
+    "find_cell": "machine.cells.cell_file",
+    "read_cell": "machine.cells.cell_file",
+    "write_cell": "machine.cells.cell_file",
+    "find_brush": "model.library",
+    "save_brush": "model.library",
+    "new_brush": "calibration.numbers.from_widths",
     "calibrate": "calibration.from_file",
     "chart": "calibration.chart.layout",
-    "Check": "pipeline.checking",
-    "check": "pipeline.checking",
-    "PaintedJob": "pipeline.comparing",
-    "compare": "pipeline.comparing",
-    "Conversion": "pipeline.conversion",
-    "convert": "pipeline.conversion",
-    "Batch": "batch.run",
-    "batch": "batch.run",
-    "read_marks": "pipeline.json_files",
-    "read_plan": "pipeline.json_files",
+    "Check": "jobs.checking",
+    "check": "jobs.checking",
+    "PaintedJob": "jobs.comparing",
+    "compare": "jobs.comparing",
+    "Conversion": "jobs.conversion",
+    "convert": "jobs.conversion",
+    "Batch": "jobs.batch.run",
+    "batch": "jobs.batch.run",
+    "read_marks": "jobs.json_files",
+    "read_plan": "jobs.json_files",
     "write_program": "machine.writer",
     "lifted_at_corners": "strokes.corners",
     "within_reach": "strokes.wide_shapes",
-    "marks_png": "pictures.marks_png",
-    "marks_svg": "pictures.marks_svg",
+    "marks_png": "show.marks_png",
+    "marks_svg": "show.marks_svg",
 } | dict.fromkeys(
     [
         "Arc",
@@ -127,7 +127,7 @@ _HOME = {
     "_core",
 )
 
-_MODULES = ("laws",)
+_MODULES = {"laws": "model.laws"}
 
 __all__ = [
     "Arc",
@@ -210,7 +210,7 @@ def __getattr__(name: str):
 
         value = version("brushsvg")
     elif name in _MODULES:
-        value = importlib.import_module(f".{name}", __name__)
+        value = importlib.import_module(f".{_MODULES[name]}", __name__)
     elif name in _HOME:
         value = getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
     else:

@@ -9,12 +9,12 @@ from __future__ import annotations
 import numpy as np
 
 from . import _core
-from .brush.plot import brush_picture
-from .drawing.design import Design
 from .errors import Error
-from .machine.arc_chords import with_chords
-from .pictures.import_picture import overview
-from .pictures.marks_svg import known_colour, marks_svg
+from .machine.realised.arc_chords import with_chords
+from .model.plot import brush_picture
+from .read.design import Design
+from .show.import_picture import overview
+from .show.marks_svg import known_colour, marks_svg
 from .strokes.extraction import strokes
 
 MOST_POINTS = 300_000  # of a picture: a browser that holds more is slow

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from diagnostics import heard
 
-from brushsvg.brush.library import SHIPPED
 from brushsvg.errors import Notice
+from brushsvg.model.library import SHIPPED
 
 COMMAND = Path(sys.executable).with_name("brushsvg")
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'

@@ -1,6 +1,6 @@
 """Small DXF drawings of one feature each. By name, in tables: a function that draws into (document, model space)."""
 
-from brushsvg.drawing.dxf.ezdxf_import import ezdxf
+from brushsvg.read.dxf.ezdxf_import import ezdxf
 
 ALIGN = ezdxf.enums.TextEntityAlignment
 WORDS = "Axp A"

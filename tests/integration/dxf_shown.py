@@ -7,9 +7,9 @@ import numpy as np
 import shapely
 
 from brushsvg import Error
-from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.dxf import read_dxf
-from brushsvg.drawing.dxf.ezdxf_import import ezdxf
+from brushsvg.read import ReadOptions
+from brushsvg.read.dxf import read_dxf
+from brushsvg.read.dxf.ezdxf_import import ezdxf
 
 from ezdxf.addons.drawing import Frontend, RenderContext, config, recorder  # isort: skip  after the library
 

@@ -6,9 +6,9 @@ import numpy as np
 from svgpathtools import Line, parse_path
 
 from brushsvg import _core
-from brushsvg.drawing.design import Design, Element, SubPath
-from brushsvg.drawing.svg import read_svg
-from brushsvg.drawing.text import text_svg
+from brushsvg.read.design import Design, Element, SubPath
+from brushsvg.read.svg import read_svg
+from brushsvg.read.text import text_svg
 
 PACKAGES = {
     "hanzi-writer-data": "2.0.1",

@@ -8,8 +8,8 @@ import numpy as np
 import shapely
 
 from brushsvg import Error
-from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.svg import read_svg
+from brushsvg.read import ReadOptions
+from brushsvg.read.svg import read_svg
 
 SIDE = 200  # px of each drawing
 SCALE = 2

@@ -11,12 +11,13 @@ from command import OPEN, SOUND, brush_file, brushsvg
 
 import brushsvg as package
 from brushsvg import _core
-from brushsvg.machine.cell_file import SHIPPED, find_cell
+from brushsvg.jobs import outputs, prediction
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.preparation import preparation
+from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.writer import whole_program
-from brushsvg.pictures.timeline import timeline
-from brushsvg.pipeline import outputs, prediction, preparation
-from brushsvg.pipeline.options import Options
+from brushsvg.show.timeline import timeline
 
 SIZE = (1300, 860)
 COLOUR = "1b1b3a"  # of all strokes of the demo's drawing

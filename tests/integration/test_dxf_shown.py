@@ -13,7 +13,7 @@ import pytest
 from dxf_text import drawing, encoded, save_font
 from sampling import sample
 
-from brushsvg.drawing.dxf.ezdxf_import import ezdxf
+from brushsvg.read.dxf.ezdxf_import import ezdxf
 
 import ezdxf.addons.drawing.frontend  # isort: skip  after the library
 

@@ -7,7 +7,7 @@ import pytest
 from command import SOUND, brushsvg
 
 from brushsvg import read_drawing
-from brushsvg.drawing import ReadOptions
+from brushsvg.read import ReadOptions
 
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 GAP_MM = 10

@@ -9,7 +9,7 @@ from command import OPEN, SOUND
 from diagnostics import gives
 
 from brushsvg import read_drawing
-from brushsvg.drawing import ReadOptions
+from brushsvg.read import ReadOptions
 
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"

@@ -10,7 +10,7 @@ from diagnostics import gives
 from plugin import SOURCE, sentence
 
 from brushsvg import read_drawing
-from brushsvg.drawing import ReadOptions
+from brushsvg.read import ReadOptions
 
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"

@@ -8,7 +8,7 @@ from diagnostics import gives
 from plugin import SOURCE, sentence
 
 from brushsvg import __version__
-from brushsvg.pipeline.options import DEFAULT_BRUSH, Options
+from brushsvg.jobs.options import DEFAULT_BRUSH, Options
 
 MACHINES = "the usual machine of the format that you save"
 STORED = {"brush": "mine", "cell": "grbl-servo", "tolerance": "0.1mm", "speed": "7"}

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from command import OPEN, SOUND, brushsvg
 
-from brushsvg.drawing.svg import read_svg
-from brushsvg.drawing.text import text_svg
+from brushsvg.read.svg import read_svg
+from brushsvg.read.text import text_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"

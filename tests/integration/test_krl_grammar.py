@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from command import brushsvg
 
-from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
 
 NAMED = os.environ.get("BRUSHSVG_KRL_GRAMMAR", "")
 pytestmark = pytest.mark.skipif(

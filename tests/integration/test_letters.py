@@ -20,10 +20,10 @@ from lettering import (
 )
 
 from brushsvg import _core, find_brush
-from brushsvg.drawing.design import Design, Element
-from brushsvg.pipeline.options import Options
-from brushsvg.pipeline.prediction import predict
-from brushsvg.pipeline.preparation import prepare
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.prediction import predict
+from brushsvg.jobs.preparation.preparation import prepare
+from brushsvg.read.design import Design, Element
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.skeleton import filled
 from brushsvg.strokes.wide_shapes import within_reach

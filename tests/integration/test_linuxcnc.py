@@ -16,9 +16,9 @@ from judge.moves import Leg, Run
 from judge.play import with_play
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
-from brushsvg.machine.cell import Machine
-from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.cells.cell import Machine
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
+from brushsvg.model.library import find_brush
 
 INTERPRET = Path(__file__).with_name("interpret.py")
 NEAR_MM = 1e-3

@@ -6,10 +6,10 @@ import numpy as np
 from controller import ran
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
 from brushsvg.machine import writer
-from brushsvg.machine.cell_file import find_cell
-from brushsvg.machine.corner_blending import blend_radii, blended
+from brushsvg.machine.cells.cell_file import find_cell
+from brushsvg.machine.realised.corner_blending import blend_radii, blended
+from brushsvg.model.library import find_brush
 
 TURNS_DEG = (10, -45, 90, -120, 5, 60, -90, 150, -30, 20, 20, 20)
 TOLERANCE_MM = 0.04

@@ -12,10 +12,10 @@ from sampling import sample
 from scipy.spatial import cKDTree
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
 from brushsvg.machine import writer
-from brushsvg.machine.cell import Workspace, unit_mm, value_mm
-from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.cells.cell import Workspace, unit_mm, value_mm
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
+from brushsvg.model.library import find_brush
 
 STROKES, POSES = 1000, 6
 SHEET = (400.0, 400.0)

@@ -10,7 +10,7 @@ import pytest
 import shapely
 from shapely.ops import polygonize
 
-from brushsvg.drawing.svg import read_svg
+from brushsvg.read.svg import read_svg
 
 PX_PER_MM = 10
 FINER = 4  # of each pixel, for its edges

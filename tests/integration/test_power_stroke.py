@@ -9,9 +9,9 @@ import pytest
 import shapely
 
 from brushsvg import flatten, strokes
-from brushsvg.drawing.svg import read_svg
-from brushsvg.drawing.text import text_svg
-from brushsvg.pictures.editable_svg import lines_svg
+from brushsvg.read.svg import read_svg
+from brushsvg.read.text import text_svg
+from brushsvg.show.editable_svg import lines_svg
 
 FONT = Path("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf")
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&@$%?!&SGQRBDgase"

@@ -92,7 +92,7 @@ def every_name() -> str:
     """A program that looks at every public name, and at every member of every public class."""
     names = {name for name in brushsvg.__all__ if name not in ("__version__", "laws")}
     lines = ["import brushsvg", ""]
-    for number, name in enumerate(sorted(names | {f"laws.{each}" for each in brushsvg.laws.__all__})):
+    for number, name in enumerate(sorted(names | {f"laws.{each}" for each in brushsvg.model.laws.__all__})):
         thing = attrgetter(name)(brushsvg)
         lines.append(f"print(brushsvg.{name})")
         if inspect.isclass(thing):

@@ -12,9 +12,9 @@ from fontTools.pens.boundsPen import BoundsPen
 from fontTools.ttLib import TTFont
 
 from brushsvg import _core
-from brushsvg.drawing import read_drawing
-from brushsvg.drawing.svg import read_svg
-from brushsvg.drawing.text import text_svg
+from brushsvg.read import read_drawing
+from brushsvg.read.svg import read_svg
+from brushsvg.read.text import text_svg
 from brushsvg.strokes.extraction import strokes
 
 SVG = "{http://www.w3.org/2000/svg}"

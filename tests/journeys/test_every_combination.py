@@ -16,7 +16,7 @@ from desk import BRUSHES, DRAWINGS, SLOW_BRUSHES, STUDIO, brush_file, drawing_fi
 from diagnostics import in_json, is_told
 from sampling import sample
 
-from brushsvg.machine.cell_file import cell_names, find_cell
+from brushsvg.machine.cells.cell_file import cell_names, find_cell
 from brushsvg.machine.posts import POSTS
 
 CELLS = cell_names()

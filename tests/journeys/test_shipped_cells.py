@@ -11,7 +11,7 @@ import pytest
 from sampling import sample
 from user import STUDIO
 
-from brushsvg.machine.cell_file import cell_names, find_cell
+from brushsvg.machine.cells.cell_file import cell_names, find_cell
 from brushsvg.machine.posts import POSTS
 
 WORD = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">

@@ -16,8 +16,8 @@ from shapely.geometry import Polygon
 from shapely.ops import unary_union
 
 from brushsvg._core import MarkLaws
-from brushsvg.calibration.from_marks import brush_of
-from brushsvg.painted.job_page import job_page
+from brushsvg.calibration.marks.from_marks import brush_of
+from brushsvg.comparison.job_page import job_page
 
 WORD = """<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="90mm" viewBox="0 0 150 90">
 <title>word</title><g fill="none" stroke="#000" stroke-linecap="round">

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from made_up_brushes import law, make_brush, make_plan
 
 core = pytest.importorskip("brushsvg._core")
-find_brush = pytest.importorskip("brushsvg.brush.library").find_brush
+find_brush = pytest.importorskip("brushsvg.model.library").find_brush
 
 DEPTH = 5.0
 LAG = float(law("round")(DEPTH))

@@ -5,12 +5,13 @@ import pytest
 import shapely
 
 from brushsvg import _core, find_brush
-from brushsvg.brush.perturbed import with_lag
-from brushsvg.calibration.from_measurements import calibrate
-from brushsvg.calibration.measurements import Measurements, Row
-from brushsvg.evaluation import uncertainty
-from brushsvg.pipeline import prediction, preparation
-from brushsvg.pipeline.options import Options
+from brushsvg.calibration.numbers.from_measurements import calibrate
+from brushsvg.calibration.numbers.measurements import Measurements, Row
+from brushsvg.jobs import prediction
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.preparation import preparation
+from brushsvg.model.perturbed import with_lag
+from brushsvg.show.evaluation import uncertainty
 
 LAWS = uncertainty.LAWS
 DRAWN = 400

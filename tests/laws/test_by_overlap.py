@@ -15,9 +15,10 @@ if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
 import brushsvg  # noqa: E402
-from brushsvg.calibration import by_overlap, machine_found, overlap_choice, overlap_field  # noqa: E402
-from brushsvg.calibration.by_overlap_report import aside_in_words, chosen_in_words, report  # noqa: E402
-from brushsvg.calibration.overlap_search import Begin, Target  # noqa: E402
+from brushsvg.calibration.marks import machine_found  # noqa: E402
+from brushsvg.calibration.overlap import by_overlap, overlap_choice, overlap_field
+from brushsvg.calibration.overlap.by_overlap_report import aside_in_words, chosen_in_words, report  # noqa: E402
+from brushsvg.calibration.overlap.overlap_search import Begin, Target  # noqa: E402
 
 pytestmark = pytest.mark.long
 
@@ -228,7 +229,7 @@ def test_what_is_changed_is_what_predicts_marks_that_had_no_part_and_the_report_
 
 
 def outlines(target):
-    from brushsvg.scan.mask_contours import mask_outlines
+    from brushsvg.photo.mask_contours import mask_outlines
 
     left, bottom, _, height = target.window_mm
     paint = np.uint8(np.round(255 * target.paint))

@@ -12,11 +12,11 @@ from made_up_brushes import law
 from sampling import sample
 
 from brushsvg import _core, laws
-from brushsvg.brush.confidence import half_interval_mm
-from brushsvg.calibration.angle_series import read_series, scatter_of_series
-from brushsvg.calibration.centre_lines import read_turn
-from brushsvg.calibration.from_measurements import calibrate
-from brushsvg.calibration.measurements import read_measurements
+from brushsvg.calibration.numbers.angle_series import read_series, scatter_of_series
+from brushsvg.calibration.numbers.centre_lines import read_turn
+from brushsvg.calibration.numbers.from_measurements import calibrate
+from brushsvg.calibration.numbers.measurements import read_measurements
+from brushsvg.model.confidence import half_interval_mm
 
 DEPTHS = np.arange(1.0, 11.0)
 LAG = np.array([3.1, 0.86, 0.31, -5.0e-2, 2.1e-3])

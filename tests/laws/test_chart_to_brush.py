@@ -8,12 +8,12 @@ import pytest
 import shapely
 
 from brushsvg import _core, find_brush
-from brushsvg.brush.confidence import law_band
 from brushsvg.calibration.chart.file import read_chart
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.from_marks import brush_of, calibrate_marks, expected_brush
-from brushsvg.calibration.mark_input import read_painted
+from brushsvg.calibration.marks.from_marks import brush_of, calibrate_marks, expected_brush
+from brushsvg.calibration.marks.mark_input import read_painted
 from brushsvg.cli import main
+from brushsvg.model.confidence import law_band
 
 NOISE_MM, DISPLACED_MM, TURN_RAD, SHIFT_MM = 0.1, 0.3, 0.008, np.array([0.8, -0.6])
 DEPTHS = np.linspace(1, 10, 7)

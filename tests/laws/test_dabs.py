@@ -21,18 +21,18 @@ if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
 from brushsvg import find_brush  # noqa: E402
-from brushsvg.brush.confidence import law_band  # noqa: E402
-from brushsvg.brush.library import save_brush  # noqa: E402
 from brushsvg.calibration.chart.file import write_chart  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
-from brushsvg.calibration.from_marks import calibrate_marks  # noqa: E402
-from brushsvg.calibration.from_widths import new_brush  # noqa: E402
-from brushsvg.calibration.lag_by_outlines import lag_by_outlines  # noqa: E402
-from brushsvg.calibration.lag_by_outlines_report import report  # noqa: E402
-from brushsvg.calibration.mark_input import read_painted  # noqa: E402
+from brushsvg.calibration.marks.from_marks import calibrate_marks  # noqa: E402
+from brushsvg.calibration.marks.mark_input import read_painted  # noqa: E402
+from brushsvg.calibration.numbers.from_widths import new_brush  # noqa: E402
+from brushsvg.calibration.overlap.lag_by_outlines import lag_by_outlines  # noqa: E402
+from brushsvg.calibration.overlap.lag_by_outlines_report import report  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
-from brushsvg.pipeline.options import Options  # noqa: E402
-from brushsvg.pipeline.preparation import prepare  # noqa: E402
+from brushsvg.jobs.options import Options  # noqa: E402
+from brushsvg.jobs.preparation.preparation import prepare  # noqa: E402
+from brushsvg.model.confidence import law_band  # noqa: E402
+from brushsvg.model.library import save_brush  # noqa: E402
 
 pytestmark = pytest.mark.long
 

@@ -12,10 +12,10 @@ core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
-from brushsvg.brush.library import save_brush  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
-from brushsvg.machine.cell_file import cell_names, read_cell  # noqa: E402
-from brushsvg.pipeline.json_files import read_plan  # noqa: E402
+from brushsvg.jobs.json_files import read_plan  # noqa: E402
+from brushsvg.machine.cells.cell_file import cell_names, read_cell  # noqa: E402
+from brushsvg.model.library import save_brush  # noqa: E402
 
 pytestmark = pytest.mark.long
 

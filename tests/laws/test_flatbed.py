@@ -20,7 +20,7 @@ from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import read_chart_photos, remarks, told
 from brushsvg.cli import main
 from brushsvg.errors import Error
-from brushsvg.scan.place_by_strokes import _along_ways
+from brushsvg.photo.place_by_strokes import _along_ways
 
 pytestmark = pytest.mark.long
 

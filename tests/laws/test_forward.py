@@ -332,7 +332,7 @@ def test_bristle_values():
 
 
 def test_round_6_is_the_article_s_brush():
-    brush = pytest.importorskip("brushsvg.brush.library").find_brush("round-6")
+    brush = pytest.importorskip("brushsvg.model.library").find_brush("round-6")
     assert brush.lag.coefficients == pytest.approx(LAGS["round"][0], abs=0)
     for d in np.linspace(0, 10, 41):
         assert brush.tip_gap(d) == pytest.approx(0.52 * d, abs=1e-12)

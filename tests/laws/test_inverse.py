@@ -14,8 +14,8 @@ from shapely import affinity
 
 core = pytest.importorskip("brushsvg._core")
 Error = pytest.importorskip("brushsvg").Error
-find_brush = pytest.importorskip("brushsvg.brush.library").find_brush
-with_chords = pytest.importorskip("brushsvg.machine.arc_chords").with_chords
+find_brush = pytest.importorskip("brushsvg.model.library").find_brush
+with_chords = pytest.importorskip("brushsvg.machine.realised.arc_chords").with_chords
 
 ROUND = find_brush("round-6")
 LAG = oracle.Law(*LAGS["round"])

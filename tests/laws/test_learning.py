@@ -17,14 +17,14 @@ if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
 from brushsvg import find_brush  # noqa: E402
-from brushsvg.brush.confidence import LAWS, law_band  # noqa: E402
-from brushsvg.brush.library import save_brush  # noqa: E402
-from brushsvg.calibration.from_marks import brush_of  # noqa: E402
+from brushsvg.calibration.marks.from_marks import brush_of  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
-from brushsvg.painted import learning  # noqa: E402
-from brushsvg.painted.job_marks import job_marks  # noqa: E402
-from brushsvg.painted.job_page import job_page  # noqa: E402
-from brushsvg.pipeline.json_files import read_plan  # noqa: E402
+from brushsvg.comparison import learning  # noqa: E402
+from brushsvg.comparison.job_marks import job_marks  # noqa: E402
+from brushsvg.comparison.job_page import job_page  # noqa: E402
+from brushsvg.jobs.json_files import read_plan  # noqa: E402
+from brushsvg.model.confidence import LAWS, law_band  # noqa: E402
+from brushsvg.model.library import save_brush  # noqa: E402
 
 HEAD = """<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="90mm" viewBox="0 0 150 90">
 <title>word</title><g fill="none" stroke="#000" stroke-linecap="round">"""

@@ -20,11 +20,11 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
 import machine_recovery  # noqa: E402
 
-from brushsvg.brush.confidence import law_band  # noqa: E402
-from brushsvg.calibration import machine_found  # noqa: E402
-from brushsvg.calibration.from_marks import calibrate_marks  # noqa: E402
-from brushsvg.calibration.mark_input import read_painted  # noqa: E402
-from brushsvg.calibration.mark_report import report  # noqa: E402
+from brushsvg.calibration.marks import machine_found  # noqa: E402
+from brushsvg.calibration.marks.from_marks import calibrate_marks  # noqa: E402
+from brushsvg.calibration.marks.mark_input import read_painted  # noqa: E402
+from brushsvg.calibration.marks.mark_report import report  # noqa: E402
+from brushsvg.model.confidence import law_band  # noqa: E402
 
 pytestmark = pytest.mark.long
 

@@ -17,14 +17,14 @@ from shapely.geometry.polygon import orient
 from shapely.ops import unary_union
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush, save_brush
 from brushsvg.cli import main
-from brushsvg.machine.arc_chords import with_chords
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.distortion import told_pass
-from brushsvg.painted.corrections import Correction, corrected
-from brushsvg.painted.job_page import job_page
-from brushsvg.pipeline.json_files import read_plan
+from brushsvg.comparison.corrections import Correction, corrected
+from brushsvg.comparison.job_page import job_page
+from brushsvg.jobs.json_files import read_plan
+from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.realised.arc_chords import with_chords
+from brushsvg.machine.realised.distortion import told_pass
+from brushsvg.model.library import find_brush, save_brush
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="110mm" height="70mm" viewBox="0 0 110 70">
 <title>five</title><g fill="none" stroke="#000" stroke-linecap="round">

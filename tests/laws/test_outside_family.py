@@ -16,9 +16,9 @@ core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
-from brushsvg.brush.confidence import half_interval_mm, places  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
-from brushsvg.calibration.from_marks import brush_of, height_at  # noqa: E402
+from brushsvg.calibration.marks.from_marks import brush_of, height_at  # noqa: E402
+from brushsvg.model.confidence import half_interval_mm, places  # noqa: E402
 
 pytestmark = pytest.mark.long
 

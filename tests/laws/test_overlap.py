@@ -74,7 +74,7 @@ def overlap(a, b):
 
 def check_figures(strokes, compensation, brush_name="round-6"):
     from brushsvg import _core, find_brush
-    from brushsvg.evaluation import report
+    from brushsvg.show.evaluation import report
 
     brush = find_brush(brush_name)
     done = _core.compensate(strokes, brush, (300.0, 300.0), compensation)

@@ -14,14 +14,14 @@ core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
-from brushsvg.brush.confidence import law_band  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
 from brushsvg.calibration.from_file import calibrate  # noqa: E402
-from brushsvg.calibration.from_marks import brush_of, calibrate_marks, expected_marks  # noqa: E402
-from brushsvg.calibration.mark_input import read_painted  # noqa: E402
-from brushsvg.calibration.mark_report import report  # noqa: E402
-from brushsvg.calibration.paint_found import expected_paint  # noqa: E402
+from brushsvg.calibration.marks.from_marks import brush_of, calibrate_marks, expected_marks  # noqa: E402
+from brushsvg.calibration.marks.mark_input import read_painted  # noqa: E402
+from brushsvg.calibration.marks.mark_report import report  # noqa: E402
+from brushsvg.calibration.marks.paint_found import expected_paint  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
+from brushsvg.model.confidence import law_band  # noqa: E402
 
 pytestmark = pytest.mark.long
 

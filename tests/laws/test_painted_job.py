@@ -19,10 +19,10 @@ import brushsvg
 from brushsvg import _core
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.cli import main
+from brushsvg.comparison.job_page import job_page
 from brushsvg.errors import Error
-from brushsvg.painted.job_page import job_page
-from brushsvg.pipeline.preparation import prepare
-from brushsvg.pipeline.work import nearest_first
+from brushsvg.jobs.preparation.preparation import prepare
+from brushsvg.jobs.work import nearest_first
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="110mm" height="70mm" viewBox="0 0 110 70">
 <title>four</title><g fill="none" stroke="#000" stroke-linecap="round">

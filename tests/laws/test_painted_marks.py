@@ -15,11 +15,16 @@ core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
-from brushsvg.brush.confidence import law_band  # noqa: E402
-from brushsvg.calibration import mark_report  # noqa: E402
-from brushsvg.calibration.from_marks import _refuse_undetermined, brush_of, calibrate_marks, expected_brush  # noqa: E402
-from brushsvg.calibration.mark_input import read_painted  # noqa: E402
-from brushsvg.calibration.mark_report import report  # noqa: E402
+from brushsvg.calibration.marks import mark_report  # noqa: E402
+from brushsvg.calibration.marks.from_marks import (
+    _refuse_undetermined,
+    brush_of,
+    calibrate_marks,
+    expected_brush,
+)  # noqa: E402
+from brushsvg.calibration.marks.mark_input import read_painted  # noqa: E402
+from brushsvg.calibration.marks.mark_report import report  # noqa: E402
+from brushsvg.model.confidence import law_band  # noqa: E402
 
 pytestmark = pytest.mark.long
 

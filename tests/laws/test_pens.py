@@ -22,7 +22,7 @@ LINES = {
 
 def pen(name):
     from brushsvg import find_brush
-    from brushsvg.calibration.from_widths import new_brush
+    from brushsvg.calibration.numbers.from_widths import new_brush
 
     return find_brush("rigid") if name == "rigid" else new_brush("pen", 0.0, [(0.5, 1.0)])
 
@@ -40,7 +40,7 @@ def share(a, b):
 @pytest.mark.parametrize("name", ["rigid", "brush new --lag 0"])
 @pytest.mark.parametrize("compensation", ["none", "constant", "closed", "refined"])
 def test_a_pen_paints_all_of_its_line(compensation, name, line):
-    from brushsvg.evaluation import report
+    from brushsvg.show.evaluation import report
 
     brush, stroke = pen(name), stroke_along(LINES[line])
     plan = core.compensate([stroke], brush, SHEET_MM, compensation).plan

@@ -19,13 +19,13 @@ if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
 from brushsvg import find_brush  # noqa: E402
-from brushsvg.brush.confidence import law_band  # noqa: E402
 from brushsvg.calibration.chart.file import write_chart  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
-from brushsvg.calibration.from_marks import refuse_many  # noqa: E402
-from brushsvg.calibration.sheet_scale import SheetScale  # noqa: E402
-from brushsvg.calibration.stray_marks import strays  # noqa: E402
+from brushsvg.calibration.marks.from_marks import refuse_many  # noqa: E402
+from brushsvg.calibration.marks.sheet_scale import SheetScale  # noqa: E402
+from brushsvg.calibration.marks.stray_marks import strays  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
+from brushsvg.model.confidence import law_band  # noqa: E402
 
 pytestmark = pytest.mark.long
 

@@ -13,13 +13,21 @@ from sampling import sample
 from brushsvg import _core
 from brushsvg.errors import Error
 from brushsvg.machine import writer
-from brushsvg.machine.cell import ARCS_IN_SEGMENTS, Heights, Machine, Paper, Reload, Station, robot_from_paper
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.cells.cell import (
+    ARCS_IN_SEGMENTS,
+    Heights,
+    Machine,
+    Paper,
+    Reload,
+    Station,
+    robot_from_paper,
+)
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.program import Job
-from brushsvg.verification import against_plan, simulate_program
-from brushsvg.verification.readback import read_program
+from brushsvg.verify import against_plan, simulate_program
+from brushsvg.verify.readback import read_program
 
 LANGUAGES = {
     "linuxcnc-3axis": ".ngc",

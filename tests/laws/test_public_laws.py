@@ -1,4 +1,4 @@
-"""brushsvg.laws against the article's check values, scipy's integration and each other."""
+"""brushsvg.model.laws against the article's check values, scipy's integration and each other."""
 
 import numpy as np
 import oracle
@@ -9,7 +9,7 @@ from scipy.integrate import quad, solve_bvp, solve_ivp
 
 import brushsvg
 from brushsvg import laws
-from brushsvg.laws.numbers import FARTHEST_MM
+from brushsvg.model.laws.numbers import FARTHEST_MM
 
 FIGURE_3 = np.array(  # s, alpha, p, tip, beta; r = 3, b = 1, from 90 degrees
     [

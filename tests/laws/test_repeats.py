@@ -11,8 +11,8 @@ from photograph import BLUE, INK, Camera
 
 from brushsvg import _core
 from brushsvg.cli import main
-from brushsvg.painted.job_page import job_page
-from brushsvg.pipeline.preparation import prepare
+from brushsvg.comparison.job_page import job_page
+from brushsvg.jobs.preparation.preparation import prepare
 
 pytestmark = pytest.mark.long  # sheets are rendered and read
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="100mm" viewBox="0 0 150 100">'

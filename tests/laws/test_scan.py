@@ -22,10 +22,10 @@ from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import expected, marks_of, read_chart_photos
 from brushsvg.cli import main
-from brushsvg.scan.edges import Room, paint_seen, told_apart
-from brushsvg.scan.flatten import Flat
-from brushsvg.scan.markers import Printed, find_view
-from brushsvg.scan.photo import read_photo
+from brushsvg.photo.edges import Room, paint_seen, told_apart
+from brushsvg.photo.flatten import Flat
+from brushsvg.photo.markers import Printed, find_view
+from brushsvg.photo.photo import read_photo
 
 A5 = (148.0, 210.0)
 SMALL = Camera(size_px=(950, 1300), blur_px=0.6)  # 5.5 pixels per mm
@@ -372,7 +372,7 @@ def test_a_picture_is_read_by_a_process_without_standard_error(tmp_path):
     path.write_bytes(cv2.imencode(".jpg", np.full((90, 80, 3), 200, np.uint8))[1])
     code = (
         "import os, sys; os.close(2)\n"
-        "from brushsvg.scan.photo import read_photo\n"
+        "from brushsvg.photo.photo import read_photo\n"
         "data = open(sys.argv[1], 'rb').read(); print(read_photo(data).shape)\n"
         "try: os.fstat(2)\nexcept OSError: print('closed still')"
     )

@@ -13,11 +13,11 @@ from test_calibration import DEPTHS, GAP, WIDTHS, corner, from_dict, lag, values
 
 import brushsvg
 from brushsvg import find_brush
-from brushsvg.brush.confidence import law_band
-from brushsvg.calibration.centre_lines import middle_of_turn, read_turn, read_turn_near
-from brushsvg.calibration.from_measurements import calibrate
-from brushsvg.calibration.measurements import read_measurements
-from brushsvg.calibration.turn_picture import centre_line
+from brushsvg.calibration.numbers.centre_lines import middle_of_turn, read_turn, read_turn_near
+from brushsvg.calibration.numbers.from_measurements import calibrate
+from brushsvg.calibration.numbers.measurements import read_measurements
+from brushsvg.calibration.numbers.turn_picture import centre_line
+from brushsvg.model.confidence import law_band
 
 SHIPPED = Path(brushsvg.__file__).parent / "data" / "brushes"
 FOOTPRINTS = {"tip_to_widest": values(DEPTHS, widest(DEPTHS)), "width": WIDTHS}

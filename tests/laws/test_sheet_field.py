@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_t
 
-from brushsvg.calibration import sheet_field as fields
-from brushsvg.calibration.sheet_field import sheet_field
+from brushsvg.calibration.overlap import sheet_field as fields
+from brushsvg.calibration.overlap.sheet_field import sheet_field
 
 ALL = np.arange(240)
 NOISE_MM = 0.6

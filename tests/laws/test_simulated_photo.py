@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from diagnostics import gives, in_json, is_told
 
-from brushsvg.brush.library import find_brush
 from brushsvg.cli import main
+from brushsvg.model.library import find_brush
 
 pytestmark = pytest.mark.long  # sheets are rendered and read
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="80mm" viewBox="0 0 120 80">
@@ -96,9 +96,9 @@ def test_letters_of_the_page_end_where_its_layout_has_them(monkeypatch):
     """Bold ones are wider than measured: the title of an A5 chart ran into a marker."""
     from brushsvg.calibration.chart.layout import chart
     from brushsvg.calibration.chart.page import label_box
-    from brushsvg.painted.job_page import JobPage
-    from brushsvg.simulated import photo
-    from brushsvg.simulated.camera import Sheet
+    from brushsvg.comparison.job_page import JobPage
+    from brushsvg.photo.simulated import photo
+    from brushsvg.photo.simulated.camera import Sheet
 
     page = JobPage(chart(find_brush("round-6"), (148, 210)), 0.0, ())
     for texels in (5.0, 20.0):

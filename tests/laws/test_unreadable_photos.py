@@ -15,7 +15,7 @@ from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import read_chart_photos, remarks
 from brushsvg.errors import Error
-from brushsvg.scan.markers import Printed, find_view
+from brushsvg.photo.markers import Printed, find_view
 
 CAMERA = Camera(size_px=(950, 1300), blur_px=0.6)
 

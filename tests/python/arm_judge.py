@@ -12,7 +12,7 @@ import numpy as np
 
 from brushsvg.machine.arm.follow import rates
 from brushsvg.machine.arm.joints import flange_rates, frames, joints_of
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.frames import frame_of_pose
 
 SAME_RAD, SINGULAR_RAD_MM = 1e-6, np.radians(300.0)

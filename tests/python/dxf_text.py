@@ -7,9 +7,9 @@ import shapely
 from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 
-from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.dxf import read_dxf
-from brushsvg.drawing.dxf.ezdxf_import import ezdxf
+from brushsvg.read import ReadOptions
+from brushsvg.read.dxf import read_dxf
+from brushsvg.read.dxf.ezdxf_import import ezdxf
 
 TOPS = {"A": 700, "x": 500, "p": 500, ".notdef": 300}  # p goes down to -200
 SHEET = (1000.0, 1000.0)  # given: the drawing's origin stays where it is

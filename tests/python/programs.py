@@ -6,7 +6,7 @@ from dataclasses import replace
 from diagnostics import in_json, is_told
 
 from brushsvg.cli import main
-from brushsvg.cli.commands import check
+from brushsvg.cli.commands.drawings import check
 from brushsvg.machine.paint_reload import PlanInLoads
 from brushsvg.machine.preflight import look
 from brushsvg.machine.program import WHOLE_JOB, walked

@@ -3,7 +3,7 @@
 import numpy as np
 
 from brushsvg import Stroke, _core
-from brushsvg.evaluation import report
+from brushsvg.show.evaluation import report
 
 SHEET_MM = (120.0, 120.0)
 

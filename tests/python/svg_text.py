@@ -1,7 +1,7 @@
 """Drawings for tests: a page of 100 x 50 mm in mm, strokes red, 1 mm wide, no fill."""
 
-from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.svg import read_svg
+from brushsvg.read import ReadOptions
+from brushsvg.read.svg import read_svg
 
 HEAD = (
     '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from programs import whole
 
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.jobs import outputs, prediction
+from brushsvg.jobs.preparation import preparation
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.writer import whole_program
-from brushsvg.pictures.timeline import timeline
-from brushsvg.pipeline import outputs, prediction, preparation
+from brushsvg.show.timeline import timeline
 
 HOSTILE = "</script><script>alert(1)</script><!-- ]]> & \" ' \u2028 \ud83d"
 LINE = '<path id="{}" d="M20 40 C40 10 60 10 90 30" fill="none" stroke="#203060" stroke-width="3"/>'

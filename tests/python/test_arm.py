@@ -10,7 +10,7 @@ from arm_judge import compare
 
 from brushsvg.errors import Error
 from brushsvg.machine.arm.joints import frames, joints_of
-from brushsvg.machine.cell_file import cell_names, find_cell
+from brushsvg.machine.cells.cell_file import cell_names, find_cell
 
 pytestmark = pytest.mark.arm
 

@@ -14,17 +14,17 @@ from sampling import sample
 from test_arm import DESCRIBED, about, placed
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
 from brushsvg.cli import main
 from brushsvg.machine import preflight
 from brushsvg.machine.arm import joints, place
 from brushsvg.machine.arm.follow import flange_at, follow, lowest_joint_mm, rates
-from brushsvg.machine.cell import robot_from_paper
-from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.cells.cell import robot_from_paper
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.frames import moved
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.program import unchecked_program
 from brushsvg.machine.setup_programs import over_sheet
+from brushsvg.model.library import find_brush
 
 pytestmark = pytest.mark.arm
 

@@ -56,7 +56,7 @@ def test_a_script_can_be_copied(script):
     text = script.read_text()
     assert len(page.code_of(text).splitlines()) <= MOST_LINES
     assert page.code_of(text) in (DOCS / "article.md").read_text().replace("\n    ", "\n")
-    public = {*brushsvg.__all__, *(f"laws.{name}" for name in brushsvg.laws.__all__)}
+    public = {*brushsvg.__all__, *(f"laws.{name}" for name in brushsvg.model.laws.__all__)}
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
             assert {alias.name for alias in node.names} <= {"brushsvg", "numpy"}

@@ -13,10 +13,10 @@ from shapely import LineString, distance, points
 
 core = pytest.importorskip("brushsvg._core")
 
-from brushsvg.machine.arc_chords import cut_at_extremes  # noqa: E402
-from brushsvg.machine.backlash import ahead, from_air_mm  # noqa: E402
-from brushsvg.machine.cell import Machine, Paper  # noqa: E402
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell  # noqa: E402
+from brushsvg.machine.cells.cell import Machine, Paper  # noqa: E402
+from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell  # noqa: E402
+from brushsvg.machine.realised.arc_chords import cut_at_extremes  # noqa: E402
+from brushsvg.machine.realised.backlash import ahead, from_air_mm  # noqa: E402
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="110mm" height="70mm" viewBox="0 0 110 70">
 <g fill="none" stroke="#000" stroke-linecap="round">

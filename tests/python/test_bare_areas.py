@@ -5,10 +5,10 @@ import pytest
 import shapely
 
 from brushsvg import _core, find_brush
-from brushsvg.evaluation import report
-from brushsvg.pipeline.options import Options
-from brushsvg.pipeline.prediction import predict
-from brushsvg.pipeline.preparation import prepare
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.prediction import predict
+from brushsvg.jobs.preparation.preparation import prepare
+from brushsvg.show.evaluation import report
 from brushsvg.strokes.swept_areas import region, rings_of
 
 SVG = (

@@ -9,12 +9,12 @@ from diagnostics import are_told
 from programs import problems
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
 from brushsvg.cli import main
-from brushsvg.machine.cell import Blending
-from brushsvg.machine.cell_file import find_cell
-from brushsvg.machine.corner_blending import blend_radii, blended, turns_rad
+from brushsvg.machine.cells.cell import Blending
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.preflight import as_exact_as
+from brushsvg.machine.realised.corner_blending import blend_radii, blended, turns_rad
+from brushsvg.model.library import find_brush
 
 CORNER = np.array([(0, 0, -2), (20, 0, -2), (20, 30, -2)], dtype=float)
 

@@ -14,9 +14,9 @@ from diagnostics import in_json, refused
 
 import brushsvg
 from brushsvg import _core
-from brushsvg.brush.library import SHIPPED, brush_names, find_brush, save_brush, unknown_keys
 from brushsvg.cli import main
 from brushsvg.errors import Error
+from brushsvg.model.library import SHIPPED, brush_names, find_brush, save_brush, unknown_keys
 
 ROOT = Path(__file__).parents[2]
 LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")

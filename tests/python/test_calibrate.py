@@ -12,16 +12,16 @@ from scipy import special
 
 import brushsvg
 from brushsvg import _core, find_brush
-from brushsvg.brush.confidence import law_band
-from brushsvg.calibration import plausibility
-from brushsvg.calibration.from_measurements import calibrate
-from brushsvg.calibration.machine_found import PARTS
-from brushsvg.calibration.measurements import Row, read_measurements
+from brushsvg.calibration.marks.machine_found import PARTS
+from brushsvg.calibration.numbers import plausibility
+from brushsvg.calibration.numbers.from_measurements import calibrate
+from brushsvg.calibration.numbers.measurements import Row, read_measurements
 from brushsvg.cli import main
 from brushsvg.errors import Error
-from brushsvg.machine.cell import Machine
-from brushsvg.machine.cell_file import cell_names, find_cell, parse_cell, write_cell
-from brushsvg.pipeline.machine_parts import undoable_parts
+from brushsvg.jobs.machine_parts import undoable_parts
+from brushsvg.machine.cells.cell import Machine
+from brushsvg.machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
+from brushsvg.model.confidence import law_band
 
 ROOT = Path(__file__).parents[2]
 TABLE = "kind,depth_mm,value_mm\n" + "".join(

@@ -8,9 +8,16 @@ import pytest
 from diagnostics import agrees, are_told, in_json, is_told, refused
 
 from brushsvg.cli import main
-from brushsvg.machine.cell import Paper, Reload, Servo, Station, Tool, robot_from_paper
-from brushsvg.machine.cell_check import check, out_of_reach, remarks
-from brushsvg.machine.cell_file import SHIPPED, cell_names, find_cell, parse_cell, read_cell, write_cell
+from brushsvg.machine.cells.cell import Paper, Reload, Servo, Station, Tool, robot_from_paper
+from brushsvg.machine.cells.cell_check import check, out_of_reach, remarks
+from brushsvg.machine.cells.cell_file import (
+    SHIPPED,
+    cell_names,
+    find_cell,
+    parse_cell,
+    read_cell,
+    write_cell,
+)
 from brushsvg.machine.frames import frame_of_pose, moved, normal_tilt_deg, rotation, rotation_vector
 from brushsvg.machine.posts import POSTS
 

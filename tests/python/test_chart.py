@@ -17,17 +17,17 @@ from programs import RUNNABLE
 from sampling import sample
 
 from brushsvg import _core, find_brush
-from brushsvg.brush.perturbed import with_lag
 from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.page import TEXT_MM, chart_page, chart_pdf
-from brushsvg.calibration.from_widths import new_brush
+from brushsvg.calibration.numbers.from_widths import new_brush
 from brushsvg.cli import main
 from brushsvg.errors import Error
-from brushsvg.machine.cell import Reload, Station
-from brushsvg.machine.cell_file import cell_names, find_cell
+from brushsvg.machine.cells.cell import Reload, Station
+from brushsvg.machine.cells.cell_file import cell_names, find_cell
 from brushsvg.machine.paint_reload import in_loads, visits
 from brushsvg.machine.posts import POSTS
+from brushsvg.model.perturbed import with_lag
 from brushsvg.strokes.swept_areas import region
 
 A4, A5, LETTER = (210.0, 297.0), (148.0, 210.0), (215.9, 279.4)

@@ -12,12 +12,12 @@ from sampling import sample
 
 from brushsvg import _core
 from brushsvg.cli import main
+from brushsvg.jobs.preparation import preparation
 from brushsvg.machine import preflight, writer
-from brushsvg.machine.cell_file import SHIPPED, find_cell
-from brushsvg.pipeline import preparation
-from brushsvg.verification import simulate_program
-from brushsvg.verification.against_regenerated import _Alike
-from brushsvg.verification.readback import Act, read_program
+from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
+from brushsvg.verify import simulate_program
+from brushsvg.verify.against_regenerated import _Alike
+from brushsvg.verify.readback import Act, read_program
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <title>two</title><g fill="none" stroke="#000" stroke-width="3"><path id="curve" d="M20 50 C40 10 60 10 90 40"/>

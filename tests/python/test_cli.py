@@ -13,9 +13,9 @@ import pytest
 from diagnostics import agrees, gives, heard, in_json, is_told
 from sampling import sample
 
-from brushsvg.brush.library import SHIPPED
 from brushsvg.cli import commands, main
 from brushsvg.cli.console import say
+from brushsvg.model.library import SHIPPED
 
 LINE = '<path id="line" d="M20 40 C40 10 60 10 90 30" fill="none" stroke="#203060" stroke-width="3"/>'
 DAB = '<path id="dab" d="M97 20h0" stroke="#802010" stroke-width="3"/>'
@@ -780,7 +780,9 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
     } | {"--force"}
     code = "import sys; from brushsvg.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert not {"numpy", "cv2", "brushsvg._core", "brushsvg.pipeline.preparation"} & set(done.stderr.split())
+    assert not {"numpy", "cv2", "brushsvg._core", "brushsvg.jobs.preparation.preparation"} & set(
+        done.stderr.split()
+    )
 
 
 def test_a_plain_convert_imports_no_large_library(desk):

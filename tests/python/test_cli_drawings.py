@@ -70,7 +70,7 @@ def test_what_was_told_of_a_drawing_stands_before_its_refusal(desk, capsys):
     with pytest.raises(brushsvg.Error) as caught:
         brushsvg.convert("thick.dxf")
     assert agrees(caught.value.notices[0], "unit-doubtful metres")
-    (row,) = brushsvg.batch(["thick.dxf"], "painted", jobs=1).rows
+    (row,) = brushsvg.jobs.batch(["thick.dxf"], "painted", jobs=1).rows
     assert row.figures is None and agrees(row.notices[0], "unit-doubtful metres")
 
 
@@ -211,7 +211,7 @@ def test_fonts_of_inkscape_are_found_by_name(desk, capsys, monkeypatch):
         """<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>
         <glyph unicode="T" d="M 0 700 L 500 700"/></font></svg>"""
     )
-    monkeypatch.setattr("brushsvg.cli.commands.text.SINGLE_LINE_FONTS", desk / "fonts")
+    monkeypatch.setattr("brushsvg.cli.commands.drawings.text.SINGLE_LINE_FONTS", desk / "fonts")
     for name in ("Lines.svg", "Lines"):
         assert main(["text", "T", f"by-{name}.svg", "--font", name]) == 0
     assert (desk / "by-Lines.svg").read_bytes() == (desk / "by-Lines.svg.svg").read_bytes()
@@ -377,7 +377,7 @@ def test_a_dot_is_warned_of_by_the_depth_that_it_is_turned_at(desk, capsys):
 
 def test_a_line_too_wide_is_refused_before_shapes_take_their_time(desk, monkeypatch):
     """Twelve letters of a metre were filled first."""
-    from brushsvg.pipeline import preparation
+    from brushsvg.jobs.preparation import preparation
 
     monkeypatch.setattr(preparation, "within_reach", lambda *_: pytest.fail("shapes were filled"))
     (desk / "wide.svg").write_text(DRAWING.replace('id="b"', 'id="b" stroke-width="12"'))

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from brushsvg import Error, _core
-from brushsvg.brush.library import find_brush
+from brushsvg.model.library import find_brush
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "python" / "brushsvg"

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from brushsvg import _core
-from brushsvg.machine.cell_file import find_cell
-from brushsvg.verification.against_plan import IN_A_BOX, _farthest, _strayed, follows
+from brushsvg.machine.cells.cell_file import find_cell
+from brushsvg.verify.against_plan import IN_A_BOX, _farthest, _strayed, follows
 
 
 def by_every_move(points, path):
@@ -197,7 +197,7 @@ def test_the_place_where_a_path_leaves_the_other_is_told():
 
 def test_long_paths_take_no_more_than_what_lies_beside_them(monkeypatch):
     """Of the cells of two paths few are looked at: a page is compared in its own time, not in the square of it."""
-    from brushsvg.verification import against_plan
+    from brushsvg.verify import against_plan
 
     t = np.linspace(0, 60, 3000)
     asked = np.column_stack([10 * np.sin(7 * t), t, -2 + np.cos(t)])

@@ -23,12 +23,12 @@ import brushsvg
 from brushsvg.cli import main
 from brushsvg.cli.arguments import values
 from brushsvg.cli.arguments.parser import command_parser
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.jobs.choices import CHOICES, ONE_OF, RANGES, Given
+from brushsvg.jobs.conversion import tried
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.preparation.preparation import prepare
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.program import Job
-from brushsvg.pipeline.choices import CHOICES, ONE_OF, RANGES, Given
-from brushsvg.pipeline.conversion import tried
-from brushsvg.pipeline.options import Options
-from brushsvg.pipeline.preparation import prepare
 
 PAGE = '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60"{}>{}</svg>'
 LINE = '<path id="{}" d="M{} 40 C40 10 60 10 {} 30" fill="none" stroke="{}" stroke-width="{}"/>'

@@ -8,15 +8,16 @@ import pytest
 from diagnostics import refused
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
 from brushsvg.cli import main
-from brushsvg.evaluation import report
+from brushsvg.jobs import prediction
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.preparation import constant_lag, preparation
+from brushsvg.jobs.work import nearest_first
 from brushsvg.machine import motion, program, writer
-from brushsvg.machine.cell_file import SHIPPED, find_cell
-from brushsvg.pipeline import constant_lag, prediction, preparation
-from brushsvg.pipeline.options import Options
-from brushsvg.pipeline.work import nearest_first
+from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
+from brushsvg.model.library import find_brush
 from brushsvg.planning import travel_order
+from brushsvg.show.evaluation import report
 
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <g fill="none" stroke="#000"><path id="thin" d="M20 50 C40 10 60 10 90 40" stroke-width="1.6"/>

@@ -5,7 +5,7 @@ import pytest
 from diagnostics import refused
 
 from brushsvg import _core, find_brush
-from brushsvg.painted.corrections import Correction, corrected
+from brushsvg.comparison.corrections import Correction, corrected
 
 BRUSH = find_brush("round-6")  # trails by 10.2 mm at 5 mm of depth
 POSES = [(30, 30, 0), (32, 30, -5), (70, 30, -5), (72, 30, 0)]

@@ -15,9 +15,9 @@ from brushsvg import find_brush  # noqa: E402
 from brushsvg.calibration.chart.dabs import dab_depths, dab_poses, is_of_dabs, landing  # noqa: E402
 from brushsvg.calibration.chart.file import read_chart  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
-from brushsvg.calibration.dab_outlines import Dab  # noqa: E402
-from brushsvg.calibration.from_dabs import calibrate_dabs  # noqa: E402
-from brushsvg.calibration.from_widths import new_brush  # noqa: E402
+from brushsvg.calibration.dabs.dab_outlines import Dab  # noqa: E402
+from brushsvg.calibration.dabs.from_dabs import calibrate_dabs  # noqa: E402
+from brushsvg.calibration.numbers.from_widths import new_brush  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
 
 BRUSH = find_brush("round-6")

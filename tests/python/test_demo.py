@@ -13,7 +13,7 @@ import pytest
 from diagnostics import in_json, refused
 
 from brushsvg.cli import main
-from brushsvg.cli.commands import demo, doctor
+from brushsvg.cli.commands.installation import demo, doctor
 from brushsvg.cli.install_plugin import install_inkscape
 from brushsvg.errors import command_to_add, lacking
 
@@ -47,7 +47,7 @@ def test_demo_paints_the_word_and_prints_where_the_picture_is(tmp_path, monkeypa
 def test_demo_opens_the_picture_where_there_is_a_display(tmp_path, monkeypatch, opened, flags, expected):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("DISPLAY", ":7")
-    monkeypatch.setattr("brushsvg.pipeline.comparison_picture.comparison_png", lambda *_: b"a picture")
+    monkeypatch.setattr("brushsvg.jobs.comparison_picture.comparison_png", lambda *_: b"a picture")
     assert main(["demo", "a.png", "--quiet", *flags]) == 0
     assert opened == expected
 

@@ -5,9 +5,9 @@ import tracemalloc
 
 import numpy as np
 
-import brushsvg.drawing.gcode.dips  # noqa: F401
+import brushsvg.read.gcode.dips  # noqa: F401
 
-dips = sys.modules["brushsvg.drawing.gcode.dips"]  # the package has a function of this name
+dips = sys.modules["brushsvg.read.gcode.dips"]  # the package has a function of this name
 
 
 def at_pots_by_definition(begins: np.ndarray) -> list[bool]:

@@ -12,14 +12,14 @@ from scipy.interpolate import RegularGridInterpolator
 from scipy.spatial import cKDTree
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
+from brushsvg.jobs.preparation import preparation
 from brushsvg.machine import preflight, writer
-from brushsvg.machine.arc_chords import with_chords
-from brushsvg.machine.cell import Machine, Reload, Station
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.pipeline import preparation
-from brushsvg.verification import simulate_program
-from brushsvg.verification.readback import read_program
+from brushsvg.machine.cells.cell import Machine, Reload, Station
+from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.realised.arc_chords import with_chords
+from brushsvg.model.library import find_brush
+from brushsvg.verify import simulate_program
+from brushsvg.verify.readback import read_program
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <title>two</title><g fill="none" stroke="#000" stroke-width="3"><path id="curve" d="M20 50 C40 10 60 10 90 40"/>

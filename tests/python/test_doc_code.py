@@ -16,10 +16,10 @@ import pytest
 from shown_code import HOUSE, PAGES, blocks, why_not_run
 
 import brushsvg
-from brushsvg.calibration.measurements import read_measurements
+from brushsvg.calibration.numbers.measurements import read_measurements
 from brushsvg.cli import main
 from brushsvg.cli.arguments.parser import parse
-from brushsvg.machine.cell_file import parse_cell
+from brushsvg.machine.cells.cell_file import parse_cell
 
 HELD = {
     "python": "here; of article.md, which is made of scripts, in test_article.py; types in integration/test_pyright.py",

@@ -8,7 +8,7 @@ from diagnostics import agrees, in_json, is_told
 from brushsvg import Settings, read_plan
 from brushsvg.cli import commands, main
 from brushsvg.cli.arguments.parser import parse
-from brushsvg.machine.cell_file import cell_names
+from brushsvg.machine.cells.cell_file import cell_names
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="160mm" height="90mm" viewBox="0 0 160 90" fill="none"
  stroke="#203060" stroke-width="3"><path id="a" d="M30 40 C50 20 70 20 90 40"/><path id="b" d="M30 60 H90"/></svg>"""

@@ -8,8 +8,8 @@ import pytest
 from diagnostics import agrees, are_told, refused
 
 import brushsvg
-from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.svg import read_svg
+from brushsvg.read import ReadOptions
+from brushsvg.read.svg import read_svg
 
 PAGE = 'xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60"'
 INKSCAPE = 'xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
@@ -231,8 +231,8 @@ def test_a_clipped_shape_has_no_stroke_along_the_clip():
 
 
 def test_a_cut_line_keeps_its_widths():
-    from brushsvg.drawing.clipping import clipped, region_of
-    from brushsvg.drawing.design import Element, SubPath
+    from brushsvg.read.clipping import clipped, region_of
+    from brushsvg.read.design import Element, SubPath
 
     cubics = np.array([[(0, 0), (10, 0), (20, 0), (30, 0)]], float)
     line = SubPath(cubics, widths=np.array([(0.0, 1.0), (0.5, 3.0), (1.0, 1.0)]))
@@ -244,8 +244,8 @@ def test_a_cut_line_keeps_its_widths():
 
 def test_a_closed_line_of_varying_width_keeps_its_widths_where_it_begins_inside():
     """The two parts that meet at its beginning were joined without their widths, and painted 0 mm wide."""
-    from brushsvg.drawing.clipping import clipped, region_of
-    from brushsvg.drawing.design import Element, SubPath
+    from brushsvg.read.clipping import clipped, region_of
+    from brushsvg.read.design import Element, SubPath
 
     corners = np.array([(0, 0), (30, 0), (30, 30), (0, 30), (0, 0)], float)
     a, b = corners[:-1], corners[1:]

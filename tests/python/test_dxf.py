@@ -7,9 +7,9 @@ from diagnostics import agrees, are_told, is_told, refused
 from dxf_text import SHEET, along, apart, bulged, circle, drawing, encoded, only, read
 from scipy.interpolate import BSpline, CubicSpline
 
-from brushsvg.drawing import READERS, ReadOptions, read_drawing
-from brushsvg.drawing.dxf import read_dxf
-from brushsvg.drawing.dxf.ezdxf_import import ezdxf
+from brushsvg.read import READERS, ReadOptions, read_drawing
+from brushsvg.read.dxf import read_dxf
+from brushsvg.read.dxf.ezdxf_import import ezdxf
 from brushsvg.strokes.extraction import strokes
 
 CONTROL = np.array(
@@ -634,7 +634,7 @@ def test_ezdxf_is_loaded_for_dxf_alone_and_leaves_nothing_at_home(tmp_path):
         '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm"><path stroke="red" d="M1 1h5"/></svg>'
     )
     script = (
-        "import sys, brushsvg.drawing as i; i.read_drawing('a.svg'); assert 'ezdxf' not in sys.modules; "
+        "import sys, brushsvg.read as i; i.read_drawing('a.svg'); assert 'ezdxf' not in sys.modules; "
         "i.read_drawing('a.dxf'); import ezdxf, os; assert os.environ['HOME'] == os.getcwd(); "
         "assert 'XDG_CACHE_HOME' not in os.environ"
     )

@@ -8,10 +8,10 @@ import pytest
 from diagnostics import agrees, gives, refused
 from dxf_text import SHEET, apart, bulged, drawing, encoded, read, text_dxf
 
-from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.design import Design
-from brushsvg.drawing.dxf import entity_walk, read_dxf, splines
 from brushsvg.errors import Error
+from brushsvg.read import ReadOptions
+from brushsvg.read.design import Design
+from brushsvg.read.dxf import entity_walk, read_dxf, splines
 from brushsvg.strokes.extraction import strokes
 from brushsvg.text_summary import summarized
 

@@ -5,9 +5,9 @@ import pytest
 from diagnostics import agrees, are_told, refused
 from dxf_text import circle, drawing, encoded, only, read
 
-from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.dxf import linetypes, read_dxf
-from brushsvg.drawing.dxf.ezdxf_import import ezdxf
+from brushsvg.read import ReadOptions
+from brushsvg.read.dxf import linetypes, read_dxf
+from brushsvg.read.dxf.ezdxf_import import ezdxf
 
 PATTERNS = {
     "DASHED": [15.0, 10.0, -5.0],

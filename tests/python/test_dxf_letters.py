@@ -9,9 +9,9 @@ import pytest
 from diagnostics import agrees, are_told, is_told, refused
 from dxf_text import drawing, encoded, only, read, save_font, text_dxf
 
-from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.dxf import read_dxf, text_entities
-from brushsvg.drawing.dxf.ezdxf_import import ezdxf
+from brushsvg.read import ReadOptions
+from brushsvg.read.dxf import read_dxf, text_entities
+from brushsvg.read.dxf.ezdxf_import import ezdxf
 
 ALIGN = ezdxf.enums.TextEntityAlignment
 FOLDERS = ezdxf.fonts.font_manager.FONT_DIRECTORIES
@@ -365,7 +365,7 @@ def test_text_of_no_height_is_damaged(fonts, height):
 def test_text_leaves_nothing_at_home(tmp_path):
     """Whatever fonts this machine has."""
     (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: [m.add_text("Aé"), m.add_circle((0, 0), 5)])))
-    script = "import brushsvg.drawing as i; print(i.read_drawing('a.dxf'))"
+    script = "import brushsvg.read as i; print(i.read_drawing('a.dxf'))"
     runs = [
         subprocess.run(
             [sys.executable, "-c", script], cwd=tmp_path, env={"HOME": str(tmp_path)}, capture_output=True

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from brushsvg import _core, compensate, find_brush, flatten, simulate
-from brushsvg.evaluation import report
-from brushsvg.evaluation.error_causes import _corner_deg
+from brushsvg.show.evaluation import report
+from brushsvg.show.evaluation.error_causes import _corner_deg
 from brushsvg.strokes.wide_shapes import within_reach
 
 

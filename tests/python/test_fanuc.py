@@ -10,10 +10,10 @@ from test_robot_scripts import SQUARE, on, sound
 from test_urscript import text_for
 
 from brushsvg import _core
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.posts.fanuc import REMARK, programs
-from brushsvg.verification.readback import read_program
-from brushsvg.verification.readback.header import made
+from brushsvg.verify.readback import read_program
+from brushsvg.verify.readback.header import made
 
 
 def waves(strokes: int, poses: int):

@@ -10,7 +10,7 @@ from searched import passes_of
 from svg_text import read
 
 from brushsvg import _core, find_brush
-from brushsvg.calibration.from_widths import new_brush
+from brushsvg.calibration.numbers.from_widths import new_brush
 from brushsvg.strokes.contour_fill import contour_passes
 from brushsvg.strokes.contour_rings import Line
 from brushsvg.strokes.extraction import strokes

@@ -10,13 +10,13 @@ from diagnostics import in_json, is_told
 from programs import SERVOS
 from sampling import sample
 
-from brushsvg.brush.library import find_brush
-from brushsvg.machine.cell import robot_from_paper
-from brushsvg.machine.cell_file import cell_names, find_cell
+from brushsvg.machine.cells.cell import robot_from_paper
+from brushsvg.machine.cells.cell_file import cell_names, find_cell
 from brushsvg.machine.motion import Wait
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.setup_programs import first_run
 from brushsvg.machine.writer import text_of
+from brushsvg.model.library import find_brush
 
 pytestmark = pytest.mark.arm
 

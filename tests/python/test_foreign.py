@@ -8,12 +8,12 @@ import pytest
 from diagnostics import agrees, gives, in_json, is_told, refused
 from programs import RUNNABLE, call
 
-from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.gcode import read_gcode
-from brushsvg.drawing.gcode.pen import read_pen
-from brushsvg.drawing.gcode.toolpaths import ways
-from brushsvg.machine.cell import Workspace
-from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.cells.cell import Workspace
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
+from brushsvg.read import ReadOptions
+from brushsvg.read.gcode import read_gcode
+from brushsvg.read.gcode.pen import read_pen
+from brushsvg.read.gcode.toolpaths import ways
 
 INCHES = """%
 N10 G20 G90 (a plate)

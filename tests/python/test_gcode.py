@@ -11,15 +11,15 @@ from diagnostics import in_json, is_told, refused
 from programs import program
 
 from brushsvg import _core, find_brush, read_plan, save_brush, write_cell, write_program
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.motion import in_robot_frame
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.gcode import LINE_LIMIT
-from brushsvg.machine.rounding import as_written
-from brushsvg.verification import simulate_program
-from brushsvg.verification.readback import read_program
-from brushsvg.verification.readback.gcode import read_gcode
+from brushsvg.machine.realised.rounding import as_written
+from brushsvg.verify import simulate_program
+from brushsvg.verify.readback import read_program
+from brushsvg.verify.readback.gcode import read_gcode
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.ngc"
 

@@ -11,16 +11,16 @@ from judge.hpgl import UNIT_MM, run_hpgl
 from programs import RUNNABLE, call, is_refused_when_damaged, program
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
 from brushsvg.machine import writer
-from brushsvg.machine.cell import Machine, Paper, Pen, robot_from_paper
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.cells.cell import Machine, Paper, Pen, robot_from_paper
+from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.program import Job
 from brushsvg.machine.writer import text_of
-from brushsvg.verification import against_plan, simulate_program
-from brushsvg.verification.readback import read_program
+from brushsvg.model.library import find_brush
+from brushsvg.verify import against_plan, simulate_program
+from brushsvg.verify.readback import read_program
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.hpgl"
 CELL = find_cell("hpgl-plotter")

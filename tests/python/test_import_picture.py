@@ -5,10 +5,10 @@ import numpy as np
 from diagnostics import gives
 from svg_text import read
 
-from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.design import Notice
-from brushsvg.drawing.svg import read_svg
-from brushsvg.pictures.import_picture import overview
+from brushsvg.read import ReadOptions
+from brushsvg.read.design import Notice
+from brushsvg.read.svg import read_svg
+from brushsvg.show.import_picture import overview
 from brushsvg.strokes.extraction import strokes
 
 BODY = """<path id="a" d="M10 10H60" stroke-width="6"/><path id="b&lt;" d="M10 30h30"/>

@@ -11,10 +11,10 @@ from diagnostics import refused
 from test_urscript import ARC, STROKES, text_for
 
 from brushsvg.cli import main
-from brushsvg.machine.cell import Blending, Paper, Reload, Station, robot_from_paper
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.cells.cell import Blending, Paper, Reload, Station, robot_from_paper
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.frames import moved, rotation, rotation_deg
-from brushsvg.verification.readback import read_program
+from brushsvg.verify.readback import read_program
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.jks"
 CELL = find_cell("jaka-zu3")

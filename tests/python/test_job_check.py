@@ -7,7 +7,7 @@ import pytest
 from diagnostics import agrees, gives, in_json
 from programs import LANGUAGES, RUNNABLE, call
 
-from brushsvg.machine.cell_file import SHIPPED
+from brushsvg.machine.cells.cell_file import SHIPPED
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <title>two</title><g fill="none" stroke="#000" stroke-width="3"><path id="curve" d="M20 50 C40 10 60 10 90 40"/>

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from diagnostics import refused
 
-from brushsvg.brush.library import find_brush
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.setup_programs import border, paper_height
+from brushsvg.model.library import find_brush
 
 BRUSH = find_brush("round-6")
 CELL = find_cell()

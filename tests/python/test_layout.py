@@ -3,7 +3,7 @@ import pytest
 from diagnostics import refused
 from svg_text import read
 
-from brushsvg.drawing.layout import AS_DRAWN, Layout, arrange, bounds_mm
+from brushsvg.read.layout import AS_DRAWN, Layout, arrange, bounds_mm
 
 BODY = """<g inkscape:groupmode="layer" inkscape:label="Ink"><path id="a" d="M10 10H30V20" stroke-width="4"/>
   <g inkscape:groupmode="layer" inkscape:label="Fine"><path id="b" d="M20 10Q25 0 30 10"/><text id="t">x</text></g></g>

@@ -9,8 +9,8 @@ from svg_text import HEAD, read
 
 from brushsvg import strokes
 from brushsvg.cli import main
-from brushsvg.drawing.svg import read_svg
-from brushsvg.pictures.editable_svg import EVEN, lines_svg
+from brushsvg.read.svg import read_svg
+from brushsvg.show.editable_svg import EVEN, lines_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"

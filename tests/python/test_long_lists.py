@@ -9,7 +9,7 @@ from svg_text import read
 
 import brushsvg
 from brushsvg import _core
-from brushsvg.drawing.svg import path_data, shapes
+from brushsvg.read.svg.paths import path_data, shapes
 from brushsvg.strokes import path_objects
 
 SQUARE = np.array([[0, 0], [9, 0], [9, 9], [0, 9.0]])

@@ -16,12 +16,12 @@ from test_robot_scripts import sound
 from urscript_stub import run as run_stub
 
 from brushsvg import _core, convert
-from brushsvg.brush.library import find_brush
-from brushsvg.machine import cell
-from brushsvg.machine.cell import Workspace
-from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.cells import cell
+from brushsvg.machine.cells.cell import Workspace
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.posts import ebb
 from brushsvg.machine.posts.urscript import NEXT
+from brushsvg.model.library import find_brush
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 MOST = {"ur5e": 1000, "kr6-r900": 2500}  # lines, by the sources that docs/machines.md names
@@ -162,7 +162,7 @@ def test_parts_of_an_earlier_job_are_named(tmp_path, capsys, name, parts):
 def test_a_page_of_a_thousand_strokes(name, tmp_path, capsys, monkeypatch):
     from page import STROKES, page
 
-    from brushsvg.drawing import read_drawing
+    from brushsvg.read import read_drawing
     from brushsvg.strokes.extraction import strokes
 
     (tmp_path / "page.svg").write_text(page())

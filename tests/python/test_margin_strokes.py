@@ -11,12 +11,12 @@ from shapely.geometry import Polygon, box
 
 import brushsvg
 from brushsvg import _core
-from brushsvg.brush.confidence import LAWS
-from brushsvg.brush.library import save_brush
 from brushsvg.cli import main
-from brushsvg.painted.job_page import job_page
-from brushsvg.pipeline.json_files import read_plan
-from brushsvg.pipeline.margin_strokes import is_calibrated
+from brushsvg.comparison.job_page import job_page
+from brushsvg.jobs.json_files import read_plan
+from brushsvg.jobs.preparation.margin_strokes import is_calibrated
+from brushsvg.model.confidence import LAWS
+from brushsvg.model.library import save_brush
 
 SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="{0}mm" height="60mm" viewBox="0 0 {0} 60">
 <g fill="none" stroke="#000"><path id="bow" d="M14 40 C24 16 34 16 {1} 38" stroke-width="3"/>

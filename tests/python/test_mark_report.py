@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from brushsvg import _core
-from brushsvg.calibration import machine_found
-from brushsvg.calibration.from_marks import brush_of
-from brushsvg.calibration.mark_input import Painted
-from brushsvg.calibration.mark_report import overlaps
-from brushsvg.machine.cell import not_undone, why_no_backlash
-from brushsvg.machine.cell_file import cell_names, find_cell
+from brushsvg.calibration.marks import machine_found
+from brushsvg.calibration.marks.from_marks import brush_of
+from brushsvg.calibration.marks.mark_input import Painted
+from brushsvg.calibration.marks.mark_report import overlaps
+from brushsvg.machine.cells.cell import not_undone, why_no_backlash
+from brushsvg.machine.cells.cell_file import cell_names, find_cell
 
 
 def test_overlaps_count_marks_where_they_lie_and_without_their_displacement():

@@ -10,14 +10,14 @@ from diagnostics import agrees, are_told
 core = pytest.importorskip("brushsvg._core")
 
 from brushsvg import find_brush  # noqa: E402
-from brushsvg.machine.cell import Machine, Paper, axes_along_paper  # noqa: E402
-from brushsvg.machine.cell_file import cell_names, find_cell, parse_cell, write_cell  # noqa: E402
-from brushsvg.machine.distortion import told_mm, true_mm  # noqa: E402
-from brushsvg.painted.fault_model import BRUSH, MACHINE, PAPER, FaultModel  # noqa: E402
-from brushsvg.painted.mended_cell import as_table, certain_of, mended  # noqa: E402
-from brushsvg.painted.next_time import next_corrections  # noqa: E402
-from brushsvg.painted.placing import Placed  # noqa: E402
-from brushsvg.pipeline.comparing import _not_undone, _undoable  # noqa: E402
+from brushsvg.comparison.attribution.corrected_cell import as_table, certain_of, mended  # noqa: E402
+from brushsvg.comparison.attribution.model import BRUSH, MACHINE, PAPER, FaultModel  # noqa: E402
+from brushsvg.comparison.next_corrections import next_corrections  # noqa: E402
+from brushsvg.comparison.placing import Placed  # noqa: E402
+from brushsvg.jobs.comparing import _not_undone, _undoable  # noqa: E402
+from brushsvg.machine.cells.cell import Machine, Paper, axes_along_paper  # noqa: E402
+from brushsvg.machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell  # noqa: E402
+from brushsvg.machine.realised.distortion import told_mm, true_mm  # noqa: E402
 
 MIDDLE = np.array([70.0, 40.0])
 TRUE = Machine((0.1, -0.05), (1.01, 0.992), 0.004, -0.3, (0.006, -0.008))

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from brushsvg.machine.cell import Blending
-from brushsvg.machine.corner_blending import blend_radii, blended
+from brushsvg.machine.cells.cell import Blending
 from brushsvg.machine.frames import frame_of_pose, moved
 from brushsvg.machine.move_extents import bounds, from_origin, place_inside, ways, ways_in
+from brushsvg.machine.realised.corner_blending import blend_radii, blended
 
 COUNT = 1500
 LENGTH = st.floats(-300, 300)

@@ -9,8 +9,8 @@ import pytest
 from diagnostics import agrees, gives, in_json, refused
 
 from brushsvg import _core, brush_like, compensate, find_brush, read_drawing, strokes
-from brushsvg.calibration.from_widths import lag_of_turn, new_brush
-from brushsvg.calibration.measurements import read_measurements, read_widths
+from brushsvg.calibration.numbers.from_widths import lag_of_turn, new_brush
+from brushsvg.calibration.numbers.measurements import read_measurements, read_widths
 from brushsvg.cli import main
 
 

@@ -12,11 +12,10 @@ from judge.gcode import run_gcode
 from programs import RUNNABLE, call, forbidden, whole
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
-from brushsvg.evaluation.report import measure
+from brushsvg.jobs.prediction import marks_of
 from brushsvg.machine import writer
-from brushsvg.machine.cell import Reload, Station
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.cells.cell import Reload, Station
+from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.motion import Wait
 from brushsvg.machine.paint_reload import (
     dips_mm,
@@ -29,7 +28,8 @@ from brushsvg.machine.paint_reload import (
 )
 from brushsvg.machine.preflight import look
 from brushsvg.machine.program import visit, walked
-from brushsvg.pipeline.prediction import marks_of
+from brushsvg.model.library import find_brush
+from brushsvg.show.evaluation.report import measure
 
 BLACK = Station(
     "black", (-20.0, 10.0), ("#000000",), surface_mm=-2.0, depth_mm=7.0, rim_mm=4.0, hold_s=0.5, drip_s=2.0

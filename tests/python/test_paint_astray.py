@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from brushsvg import _core, find_brush
-from brushsvg.pipeline.paint_astray import off_middle_line, outside
+from brushsvg.jobs.preparation.paint_astray import off_middle_line, outside
 
 HALF_MM = 2.0
 

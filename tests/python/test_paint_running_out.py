@@ -11,16 +11,16 @@ from diagnostics import is_told
 from sampling import sample
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
 from brushsvg.cli import main
-from brushsvg.machine.cell import Reload, Station
-from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.jobs.conversion import tried
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.prediction import marks_of
+from brushsvg.jobs.preparation.preparation import prepare
+from brushsvg.machine.cells.cell import Reload, Station
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.paint_reload import in_loads, visits
 from brushsvg.machine.program import Job
-from brushsvg.pipeline.conversion import tried
-from brushsvg.pipeline.options import Options
-from brushsvg.pipeline.prediction import marks_of
-from brushsvg.pipeline.preparation import prepare
+from brushsvg.model.library import find_brush
 
 COUNT = 60
 

@@ -7,8 +7,8 @@ import pytest
 from diagnostics import refused
 
 from brushsvg import _core
-from brushsvg.calibration.mark_input import depths_painted, read_painted
-from brushsvg.calibration.measurements import read_measurements
+from brushsvg.calibration.marks.mark_input import depths_painted, read_painted
+from brushsvg.calibration.numbers.measurements import read_measurements
 from brushsvg.errors import Error
 
 

@@ -7,7 +7,7 @@ import pytest
 from diagnostics import gives, in_json, is_told
 from programs import LANGUAGES, RUNNABLE, SERVOS, call
 
-from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
 
 DRAWING = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80"><g fill="none" '

@@ -6,8 +6,8 @@ from shapely.geometry import LineString
 
 core = pytest.importorskip("brushsvg._core")
 
-from brushsvg.machine.as_run import as_run, with_play  # noqa: E402
-from brushsvg.machine.cell import Machine  # noqa: E402
+from brushsvg.machine.cells.cell import Machine  # noqa: E402
+from brushsvg.machine.realised.passes import as_run, with_play  # noqa: E402
 
 
 def ways_in_small_steps(passes, backlash):

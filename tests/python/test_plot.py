@@ -8,7 +8,7 @@ from diagnostics import in_json
 from sampling import sample
 
 from brushsvg import _core, find_brush
-from brushsvg.brush.plot import brush_picture, brush_picture_on, law_band, new_figure
+from brushsvg.model.plot import brush_picture, brush_picture_on, law_band, new_figure
 
 
 @sample("name", ["round-6", "rigid"], keep=1)

@@ -8,8 +8,8 @@ import pytest
 import shapely
 from diagnostics import agrees, in_json, is_told, refused
 
-from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.gcode import read_gcode
+from brushsvg.read import ReadOptions
+from brushsvg.read.gcode import read_gcode
 
 MARK_MM = 1.0
 

@@ -7,7 +7,7 @@ import pytest
 from diagnostics import are_told, refused
 from programs import forbidden, program, whole
 
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.motion import SAFE_MEANINGS, duration_s
 from brushsvg.machine.program import Job, unchecked_program
 

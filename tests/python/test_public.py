@@ -36,7 +36,7 @@ def test_names_and_table_agree():
 
 
 @pytest.mark.parametrize(
-    "first", ["import brushsvg.strokes", "from brushsvg.pipeline import preparation", "brushsvg.Plan"]
+    "first", ["import brushsvg.strokes", "from brushsvg.jobs import preparation", "brushsvg.Plan"]
 )
 def test_a_function_is_not_hidden_by_the_module_of_its_name(first):
     python("-c", f"import brushsvg; {first}; assert callable(brushsvg.strokes)")

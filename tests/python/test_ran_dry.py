@@ -2,8 +2,8 @@
 
 import pytest
 
-from brushsvg.calibration.mark_input import read_painted
-from brushsvg.calibration.ran_dry import ran_dry
+from brushsvg.calibration.marks.ink_depletion import ran_dry
+from brushsvg.calibration.marks.mark_input import read_painted
 
 LENGTHS = (40.0, 30.0, 50.0, 20.0, 60.0)
 

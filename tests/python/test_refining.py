@@ -8,11 +8,11 @@ from diagnostics import is_told
 from programs import problems
 
 from brushsvg import _core, cli, compensate, find_brush, find_cell
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.prediction import predict
+from brushsvg.jobs.preparation.paint_astray import off_middle_line, outside
+from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.preflight import as_exact_as
-from brushsvg.pipeline.options import Options
-from brushsvg.pipeline.paint_astray import off_middle_line, outside
-from brushsvg.pipeline.prediction import predict
-from brushsvg.pipeline.preparation import prepare
 from brushsvg.planning.refinement import FORBIDDEN, NO_GAIN, towards_reach
 
 BRUSH = find_brush("round-6")

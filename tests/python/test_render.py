@@ -18,7 +18,7 @@ from brushsvg import (
     simulate,
     trace_outlines,
 )
-from brushsvg.pictures.panels_png import Panel, panels_png
+from brushsvg.show.panels_png import Panel, panels_png
 
 SHEET = (60.0, 30.0)
 RED, BLUE = "#c01020", "#1020c0"

@@ -7,7 +7,7 @@ import pytest
 from diagnostics import in_json, is_told
 
 from brushsvg.cli.steps import replacing
-from brushsvg.machine.cell import MOST_POINTS
+from brushsvg.machine.cells.cell import MOST_POINTS
 
 DRAWING = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60"><g fill="none" '

@@ -9,8 +9,8 @@ from diagnostics import gives
 
 from brushsvg import Stroke, compensate, find_brush, simulate
 from brushsvg.errors import Notice
-from brushsvg.evaluation import report
-from brushsvg.evaluation.report import Figures, Group, Report, Worst, groups, measure, to_json, to_text
+from brushsvg.show.evaluation import report
+from brushsvg.show.evaluation.report import Figures, Group, Report, Worst, groups, measure, to_json, to_text
 
 
 def straight(stroke_id, start, end, half_width, knots=None):

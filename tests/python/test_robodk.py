@@ -10,8 +10,8 @@ from programs import call
 from test_urscript import ARC, STROKES, text_for
 
 from brushsvg import _core, find_brush
-from brushsvg.machine.cell import Reload, RoboDK, Station
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.cells.cell import Reload, RoboDK, Station
+from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.program import walked

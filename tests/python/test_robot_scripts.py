@@ -27,12 +27,12 @@ from sampling import sample
 from test_urscript import ARC, BRUSH, STROKES, text_for
 
 from brushsvg import _core
-from brushsvg.machine.cell import Blending, Contact, Paper, Reload, Station, robot_from_paper
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.cells.cell import Blending, Contact, Paper, Reload, Station, robot_from_paper
+from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.writer import text_of
-from brushsvg.verification.readback import Act, read_program
-from brushsvg.verification.readback.dobot import _is_in_function
+from brushsvg.verify.readback import Act, read_program
+from brushsvg.verify.readback.dobot import _is_in_function
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 NAMES = {

@@ -362,7 +362,7 @@ def test_equations_name_code_and_tests_that_exist():
         ("cpp/src/sweep.hpp", '#include "brush_json.hpp"', "touches io"),
         (
             "cpp/bindings/bind_io.cpp",
-            'py::module_::import("brushsvg.pipeline.preparation")',
+            'py::module_::import("brushsvg.jobs.preparation.preparation")',
             "touches pipeline/",
         ),
         ("cpp/src/spline.cpp", "", "room spline, which has no row"),
@@ -376,14 +376,18 @@ def test_equations_name_code_and_tests_that_exist():
         ),
         ("python/brushsvg/machine/posts/abc.py", "from shapely.geometry import Point", "touches shapely"),
         (
-            "python/brushsvg/machine/cell.py",
+            "python/brushsvg/machine/cells/cell.py",
             "from . import program",
             "touches program, which room cell inside",
         ),
         ("python/brushsvg/machine/new.py", "", "room new inside machine, which has no row"),
-        ("python/brushsvg/drawing/dxf/__init__.py", "from ... import _core", "touches _core"),
-        ("python/brushsvg/drawing/dxf/__init__.py", "import brushsvg.machine.cell as c", "touches machine/"),
-        ("python/brushsvg/drawing/svg/colour.py", "from .element import x", "touches element"),
+        ("python/brushsvg/read/dxf/__init__.py", "from ... import _core", "touches _core"),
+        (
+            "python/brushsvg/read/dxf/__init__.py",
+            "import brushsvg.machine.cells.cell as c",
+            "touches machine/",
+        ),
+        ("python/brushsvg/read/svg/colour.py", "from .element import x", "touches element"),
         ("python/brushsvg/machine/program.py", "from brushsvg import find_brush", "touches __init__"),
         (
             "python/brushsvg/machine/program.py",
@@ -391,7 +395,7 @@ def test_equations_name_code_and_tests_that_exist():
             "touches brush/",
         ),
         (
-            "python/brushsvg/evaluation/report.py",
+            "python/brushsvg/show/evaluation/report.py",
             "import importlib\nimportlib.import_module('cv2')",
             "touches cv2",
         ),

@@ -16,13 +16,13 @@ from test_robot_scripts import GOLDEN, LEANING, SQUARE, TURNED, on
 from test_urscript import ARC, BRUSH, STROKES, text_for
 
 from brushsvg import _core, write_plan
-from brushsvg.machine.cell import Machine, Paper, Reload, Station, robot_from_paper
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.cells.cell import Machine, Paper, Reload, Station, robot_from_paper
+from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.motion import in_robot_frame
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.trajectory import POSE, SLICE_S, timed
 from brushsvg.machine.writer import text_of
-from brushsvg.verification.readback import read_program
+from brushsvg.verify.readback import read_program
 
 WAVE = np.linspace(0, 1, 40)
 POSES = np.column_stack(

@@ -9,11 +9,7 @@ import shapely
 from brushsvg import _core
 from brushsvg.geometry.polylines import evenly, length
 from brushsvg.strokes.skeleton import outline_strokes
-from brushsvg.strokes.skeleton.rough_outlines import (
-    MAX_PLACES,
-    measure_roughness_mm,
-    smooth_rough_outlines,
-)
+from brushsvg.strokes.skeleton.rough_outlines import MAX_PLACES, measure_roughness_mm, smooth_rough_outlines
 
 HALF_MM = 2.2
 

@@ -12,16 +12,16 @@ from programs import LANGUAGES, call, whole
 from sampling import sample
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
-from brushsvg.machine.cell import Paper, robot_from_paper
-from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.cells.cell import Paper, robot_from_paper
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.motion import duration_s
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.program import unchecked_program
-from brushsvg.machine.rounding import as_written
+from brushsvg.machine.realised.rounding import as_written
 from brushsvg.machine.writer import text_of
-from brushsvg.verification import against_regenerated, simulate_program
-from brushsvg.verification.readback import read_program
+from brushsvg.model.library import find_brush
+from brushsvg.verify import against_regenerated, simulate_program
+from brushsvg.verify.readback import read_program
 
 BRUSH = find_brush("round-6")
 SHEET_MM = (100.0, 80.0)

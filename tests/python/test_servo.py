@@ -13,16 +13,16 @@ from programs import RUNNABLE, call, program
 from test_gcode import TWO, text_of
 
 from brushsvg import _core, write_plan
-from brushsvg.brush.library import find_brush
-from brushsvg.machine.cell import Machine, Reload, Servo, Station
-from brushsvg.machine.cell_file import cell_names, find_cell, parse_cell, write_cell
+from brushsvg.machine.cells.cell import Machine, Reload, Servo, Station
+from brushsvg.machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from brushsvg.machine.posts.gcode_servo import grbl_servo, value_at
 from brushsvg.machine.program import Job
 from brushsvg.machine.setup_programs import border
-from brushsvg.verification import simulate_program
-from brushsvg.verification.against_regenerated import _Alike
-from brushsvg.verification.readback import Act, read_program
-from brushsvg.verification.servo_lifts import without_none
+from brushsvg.model.library import find_brush
+from brushsvg.verify import simulate_program
+from brushsvg.verify.against_regenerated import _Alike
+from brushsvg.verify.readback import Act, read_program
+from brushsvg.verify.servo_lifts import without_none
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes_servo.ngc"
 CELL = find_cell("grbl-servo")

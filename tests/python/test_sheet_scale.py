@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from diagnostics import refused
 
-from brushsvg.calibration.sheet_scale import refuse_scale, sheet_scale
+from brushsvg.calibration.marks.sheet_scale import refuse_scale, sheet_scale
 from brushsvg.errors import Error
 
 A5 = np.array([[x, y] for y in (25.0, 75.0, 125.0, 175.0) for x in (20.0, 50.0, 80.0, 110.0)])

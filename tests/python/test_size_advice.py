@@ -10,8 +10,9 @@ from diagnostics import gives
 
 from brushsvg import Stroke, _core, find_brush
 from brushsvg.cli import main
-from brushsvg.pipeline import other_sizes, prediction, preparation
-from brushsvg.pipeline.options import Options
+from brushsvg.jobs import prediction
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.preparation import other_sizes, preparation
 from brushsvg.planning import size_advice
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">

@@ -14,18 +14,18 @@ from test_distortion import DRAWING, GRID, cell_with, text_of, told_places
 from test_mended_cell import MIDDLE, TRUE, found
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
+from brushsvg.comparison.attribution.corrected_cell import mended
+from brushsvg.comparison.corrections import machine_sha256
+from brushsvg.jobs.preparation import preparation
 from brushsvg.machine import writer
-from brushsvg.machine.arc_chords import with_chords
-from brushsvg.machine.cell import Machine
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.distortion import told_mm, true_mm
-from brushsvg.machine.smooth_field import beyond_field
-from brushsvg.painted.corrections import machine_sha256
-from brushsvg.painted.mended_cell import mended
-from brushsvg.pipeline import preparation
-from brushsvg.verification import simulate_program
-from brushsvg.verification.readback import read_program
+from brushsvg.machine.cells.cell import Machine
+from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.realised.arc_chords import with_chords
+from brushsvg.machine.realised.distortion import told_mm, true_mm
+from brushsvg.machine.realised.smooth_field import beyond_field
+from brushsvg.model.library import find_brush
+from brushsvg.verify import simulate_program
+from brushsvg.verify.readback import read_program
 
 FIELD = {
     "field_mm": ((0.7, -0.4, 0.9), (-0.5, 0.6, -1.1)),

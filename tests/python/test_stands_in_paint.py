@@ -8,7 +8,7 @@ import pytest
 from diagnostics import in_json, is_told, refused
 
 import brushsvg
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.posts import POSTS
 
 CURVES = (

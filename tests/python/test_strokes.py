@@ -3,8 +3,8 @@ import pytest
 from diagnostics import refused
 
 from brushsvg import Stroke, _core, flatten
-from brushsvg.drawing.design import Design, Element, SubPath
-from brushsvg.drawing.svg import read_svg
+from brushsvg.read.design import Design, Element, SubPath
+from brushsvg.read.svg import read_svg
 from brushsvg.strokes.extraction import strokes
 
 LINE = SubPath(np.array([[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]]]))

@@ -12,13 +12,13 @@ import svgpathtools
 import tinycss2
 from diagnostics import agrees, refused
 
-from brushsvg.drawing import ReadOptions, read_drawing
-from brushsvg.drawing.svg import read_svg
-from brushsvg.drawing.svg.colour import parse_colour
-from brushsvg.drawing.svg.css_declarations import declarations
-from brushsvg.drawing.svg.path_data import parse_path
-from brushsvg.drawing.svg.path_to_cubics import trace
-from brushsvg.drawing.svg.transform import IDENTITY, multiply, parse_transform
+from brushsvg.read import ReadOptions, read_drawing
+from brushsvg.read.svg import read_svg
+from brushsvg.read.svg.colour import parse_colour
+from brushsvg.read.svg.css.declarations import declarations
+from brushsvg.read.svg.paths.path_data import parse_path
+from brushsvg.read.svg.paths.path_to_cubics import trace
+from brushsvg.read.svg.transform import IDENTITY, multiply, parse_transform
 
 NAMESPACES = (
     'xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" '
@@ -823,7 +823,7 @@ def test_reading_a_small_drawing_loads_nothing_heavy(tmp_path):
         f'<svg {NAMESPACES} {PAGE}><style>path{{fill:none}}</style>{FIRST}<circle r="3"/></svg>'
     )
     loaded = loaded_by("import sys, brushsvg\nbrushsvg.read_drawing(sys.argv[1])", drawing)
-    assert "brushsvg.drawing.svg" in loaded
+    assert "brushsvg.read.svg" in loaded
     assert not loaded & HEAVY
 
 

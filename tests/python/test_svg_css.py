@@ -5,7 +5,7 @@ from diagnostics import agrees, are_told, is_told, refused
 from svg_text import read
 
 from brushsvg import Error
-from brushsvg.drawing.svg import css_selectors, style_sheets
+from brushsvg.read.svg.css import selectors, style_sheets
 
 P = '<path id="p" class="a b" d="M0 0H5"/>'
 
@@ -198,7 +198,7 @@ def test_a_variable_that_leads_to_itself_is_no_value():
     ],
 )
 def test_selectors_that_would_take_for_ever_are_refused(css, body, monkeypatch):
-    monkeypatch.setattr(css_selectors, "STEP_LIMIT", 20_000)
+    monkeypatch.setattr(selectors, "STEP_LIMIT", 20_000)
     with refused("css-too-complex"):
         read(f"<style>{css}</style>{body}")
 
@@ -253,7 +253,7 @@ def test_a_copy_in_a_copy_is_seen_for_itself():
 
 
 def test_trees_of_copies_count_as_steps(monkeypatch):
-    monkeypatch.setattr(css_selectors, "STEP_LIMIT", 20_000)
+    monkeypatch.setattr(selectors, "STEP_LIMIT", 20_000)
     nested = "".join(f'<g id="g{k}">' for k in range(300)) + "<i/>" * 300 + "</g>" * 300
     uses = "".join(f'<use href="#g{k}"/>' for k in range(300))
     assert read(f"<style>b{{stroke:red}}</style>{P}<defs>{nested}</defs>").elements

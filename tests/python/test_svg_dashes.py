@@ -4,10 +4,10 @@ from diagnostics import agrees, are_told, refused
 from scipy.integrate import quad
 from svg_text import lines, read
 
-from brushsvg.drawing.dashes import dashed
-from brushsvg.drawing.design import SubPath
-from brushsvg.drawing.svg import element
 from brushsvg.geometry.arc_length import knots, parameters_at
+from brushsvg.read.dashes import dashed
+from brushsvg.read.design import SubPath
+from brushsvg.read.svg import element
 
 
 def speed(t, cubic):

@@ -5,9 +5,9 @@ from diagnostics import agrees, refused
 from svg_text import HEAD, read
 
 from brushsvg import Error
-from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.layout import Layout, arrange
-from brushsvg.drawing.svg import read_svg
+from brushsvg.read import ReadOptions
+from brushsvg.read.layout import Layout, arrange
+from brushsvg.read.svg import read_svg
 
 A, B = '<path id="a" d="M1 1H9"/>', '<path id="b" d="M1 5H9"/>'
 

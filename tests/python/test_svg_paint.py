@@ -4,7 +4,7 @@ import pytest
 from diagnostics import are_told, refused
 from svg_text import read
 
-from brushsvg.drawing.svg import element, paint_servers
+from brushsvg.read.svg import element, paint_servers
 
 STOPS = '<stop stop-color="red"/><stop offset="1" stop-color="blue"/>'
 TILE = '<path d="M0 1H2"/>'

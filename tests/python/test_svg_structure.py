@@ -4,9 +4,9 @@ import pytest
 from diagnostics import agrees, are_told, refused
 from svg_text import HEAD, lines, read
 
-from brushsvg.drawing import ReadOptions
-from brushsvg.drawing.svg import element as svg_element
-from brushsvg.drawing.svg import read_svg, tree_walk
+from brushsvg.read import ReadOptions
+from brushsvg.read.svg import element as svg_element
+from brushsvg.read.svg import read_svg, tree_walk
 
 LINE = '<path id="l" d="M0 0H4"/>'
 
@@ -353,7 +353,7 @@ def test_filled_shapes_are_read():
 def test_illustrator_is_known_by_its_comment():
     head = b'<!-- Generator: Adobe Illustrator 24.0 --><svg xmlns="http://www.w3.org/2000/svg" '
     head += b'width="72px" height="72px">'
-    from brushsvg.drawing.svg import read_svg
+    from brushsvg.read.svg import read_svg
 
     design = read_svg(head + b'<path d="M0 0H5" stroke="red"/></svg>')
     told = design.notices[0]

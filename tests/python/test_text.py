@@ -16,8 +16,8 @@ from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import TTCollection, TTFont
 from fontTools.ttLib.sfnt import SFNTReader, SFNTWriter
 
-from brushsvg.drawing.text import text_svg
 from brushsvg.errors import Error
+from brushsvg.read.text import text_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 GLYPHS = """
@@ -470,7 +470,7 @@ def test_woff_is_unpacked_and_woff2_refused(ttf):
 
 
 def test_a_woff_bomb_is_refused(ttf, monkeypatch):
-    monkeypatch.setattr("brushsvg.drawing.text.outline_font._UNPACKED", 500)
+    monkeypatch.setattr("brushsvg.read.text.outline_font._UNPACKED", 500)
     assert agrees(refusal("A", repacked(ttf, "woff")), "file-too-large 500")
 
 
@@ -486,8 +486,8 @@ def test_the_first_of_a_collection(ttf):
 
 
 def test_without_the_extra_outlines_are_refused_and_lines_are_not(ttf, monkeypatch):
-    monkeypatch.delitem(sys.modules, "brushsvg.drawing.text.outline_font", raising=False)
-    monkeypatch.delattr("brushsvg.drawing.text.outline_font", raising=False)
+    monkeypatch.delitem(sys.modules, "brushsvg.read.text.outline_font", raising=False)
+    monkeypatch.delattr("brushsvg.read.text.outline_font", raising=False)
     monkeypatch.setitem(sys.modules, "uharfbuzz", None)
     told = refusal("A", ttf)
     assert told.code == "package-missing"

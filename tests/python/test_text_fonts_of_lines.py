@@ -6,8 +6,8 @@ from diagnostics import are_told
 from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 
-from brushsvg.drawing.svg import read_svg
-from brushsvg.drawing.text import text_svg
+from brushsvg.read.svg import read_svg
+from brushsvg.read.text import text_svg
 
 GLYPHS = {
     "L": [[(100, 700), (100, 0), (500, 0)]],

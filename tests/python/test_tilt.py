@@ -12,15 +12,15 @@ import brushsvg
 from brushsvg import _core
 from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.from_marks import expected_marks
-from brushsvg.calibration.mark_input import read_painted
-from brushsvg.evaluation.uncertainty import uncertainty
-from brushsvg.machine.as_run import as_run
-from brushsvg.machine.cell import Machine
+from brushsvg.calibration.marks.from_marks import expected_marks
+from brushsvg.calibration.marks.mark_input import read_painted
+from brushsvg.comparison.corrections import Correction, corrected
+from brushsvg.comparison.job_page import job_page
+from brushsvg.machine.cells.cell import Machine
 from brushsvg.machine.paint_reload import in_loads
-from brushsvg.machine.pass_way import on_way
-from brushsvg.painted.corrections import Correction, corrected
-from brushsvg.painted.job_page import job_page
+from brushsvg.machine.realised.passes import as_run
+from brushsvg.machine.realised.retimed import on_way
+from brushsvg.show.evaluation.uncertainty import uncertainty
 
 BRUSH = brushsvg.find_brush("round-6")
 POSES = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [70, 30, 0]]

@@ -19,20 +19,20 @@ from urscript_stub import run
 
 import brushsvg
 from brushsvg import _core
-from brushsvg.machine.cell import Machine, Paper, robot_from_paper
-from brushsvg.machine.cell_file import write_cell
+from brushsvg.machine.cells.cell import Machine, Paper, robot_from_paper
+from brushsvg.machine.cells.cell_file import write_cell
 from brushsvg.machine.frames import of_quaternion, of_rotation_vector
 from brushsvg.machine.motion import in_robot_frame
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS, ros2
 from brushsvg.machine.preflight import look
 from brushsvg.machine.program import out_of_arm, walked
-from brushsvg.machine.tilt import broken_limits, in_steps
+from brushsvg.machine.realised.tilt import broken_limits, in_steps
 from brushsvg.machine.tool_axes import turned_to
 from brushsvg.machine.writer import text_of
-from brushsvg.verification.against_regenerated import _Alike
-from brushsvg.verification.readback import Act, read_program
-from brushsvg.verification.simulate_program import run as played
+from brushsvg.verify.against_regenerated import _Alike
+from brushsvg.verify.readback import Act, read_program
+from brushsvg.verify.simulate_program import run as played
 
 BRUSH = brushsvg.find_brush("round-6")
 POSES = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [75, 35, -1], [75, 35, 0]]

@@ -9,15 +9,16 @@ from diagnostics import refused
 from programs import whole
 
 from brushsvg._core import Marks, Pass, simulate
-from brushsvg.brush import library
-from brushsvg.machine.cell import Reload, Station
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.jobs import prediction
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.preparation import preparation
+from brushsvg.machine.cells.cell import Reload, Station
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.motion import Wait, distances, duration_s
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.writer import whole_program
-from brushsvg.pictures.timeline import HAND_PAUSE_S, timeline
-from brushsvg.pipeline import prediction, preparation
-from brushsvg.pipeline.options import Options
+from brushsvg.model import library
+from brushsvg.show.timeline import HAND_PAUSE_S, timeline
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">
 <path id="line" d="M20 40 C40 10 60 10 90 30 L60 50" fill="none" stroke="#203060" stroke-width="3"/>

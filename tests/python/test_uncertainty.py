@@ -9,7 +9,7 @@ from diagnostics import gives
 
 from brushsvg import _core, find_brush
 from brushsvg.cli import main
-from brushsvg.evaluation import uncertainty
+from brushsvg.show.evaluation import uncertainty
 
 DRAWING = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'

@@ -9,11 +9,11 @@ from diagnostics import agrees, is_told
 
 import brushsvg
 from brushsvg import _core, find_brush
-from brushsvg.evaluation import report
-from brushsvg.pipeline import outputs
-from brushsvg.pipeline.options import Options
-from brushsvg.pipeline.prediction import predict
-from brushsvg.pipeline.preparation import prepare
+from brushsvg.jobs import outputs
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.prediction import predict
+from brushsvg.jobs.preparation.preparation import prepare
+from brushsvg.show.evaluation import report
 from brushsvg.strokes.uncovered_areas import Blank, notices, uncovered_areas
 from brushsvg.strokes.wide_shapes import within_reach
 

@@ -12,17 +12,17 @@ from programs import program
 from urscript_stub import matrix, run
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
+from brushsvg.jobs.preparation import preparation
 from brushsvg.machine import preflight, writer
-from brushsvg.machine.cell import Contact, Paper, Reload, Station, robot_from_paper
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.cells.cell import Contact, Paper, Reload, Station, robot_from_paper
+from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.frames import moved
 from brushsvg.machine.motion import Move
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.urscript import _lines
 from brushsvg.machine.program import Job
 from brushsvg.machine.writer import text_of
-from brushsvg.pipeline import preparation
+from brushsvg.model.library import find_brush
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.script"
 CELL = find_cell("ur5e")

@@ -13,8 +13,8 @@ from svg_text import read
 
 import brushsvg
 from brushsvg import _core, laws
-from brushsvg.drawing.design import Design, Element, SubPath
 from brushsvg.errors import Notice
+from brushsvg.read.design import Design, Element, SubPath
 
 NAN = float("nan")
 BRUSH = brushsvg.find_brush("round-6")

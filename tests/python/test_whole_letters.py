@@ -4,8 +4,8 @@ import numpy as np
 import shapely
 
 from brushsvg import Pass, Stroke, _core, compensate, find_brush
-from brushsvg.pipeline.options import Options
-from brushsvg.pipeline.preparation import prepare
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.planning.touching_strokes import worse
 
 SHORT_BAR = '<path d="M10 12H34V28H10Z"/>'

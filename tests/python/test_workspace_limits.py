@@ -9,15 +9,15 @@ from diagnostics import agrees, are_told, in_json, is_told, refused
 from programs import call, forbidden
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine import workspace_limits as limits
-from brushsvg.machine.cell import Reload, Station
-from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.cells.cell import Reload, Station
+from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.move_extents import ways
 from brushsvg.machine.setup_programs import border, paper_height
 from brushsvg.machine.workspace_limits import astray, astray_between
-from brushsvg.pipeline.options import Options
-from brushsvg.pipeline.preparation import prepare
+from brushsvg.model.library import find_brush
 
 BRUSH = find_brush("round-6")
 SHEET = (600.0, 200.0)

@@ -12,15 +12,15 @@ import numpy as np
 from .. import _core
 from ..errors import Error, need, need_one_of
 from ..files import read_bytes
-from .by_overlap import OverlapCalibration, by_overlap
-from .from_marks import MarkCalibration, calibrate_marks, options_for
-from .from_measurements import Calibration
-from .from_measurements import calibrate as calibrate_measured
-from .machine_found import ask_for, refuse_unknown_parts
-from .mark_input import read_painted
-from .measurements import FORMAT, Measurements, Row, read_measurements
-from .paint_found import calibrate_paint
-from .turn_picture import centre_line
+from .marks.from_marks import MarkCalibration, calibrate_marks, options_for
+from .marks.machine_found import ask_for, refuse_unknown_parts
+from .marks.mark_input import read_painted
+from .marks.paint_found import calibrate_paint
+from .numbers.from_measurements import Calibration
+from .numbers.from_measurements import calibrate as calibrate_measured
+from .numbers.measurements import FORMAT, Measurements, Row, read_measurements
+from .numbers.turn_picture import centre_line
+from .overlap.by_overlap import OverlapCalibration, by_overlap
 
 AIMS = ("edges", "overlap")
 

@@ -10,9 +10,9 @@ from functools import cached_property
 import numpy as np
 
 from ..geometry import polylines
-from .cell import LEAST_SPEED_MM_S, Cell, servo_stands
-from .distortion import told_high_mm
+from .cells.cell import LEAST_SPEED_MM_S, Cell, servo_stands
 from .frames import moved
+from .realised.distortion import told_high_mm
 
 SAFE_MEANINGS = ("travel", "retract")  # at or above safe height: as fast as the machine likes
 

@@ -12,13 +12,13 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from ..geometry.polylines import length, lengths
-from .arc_chords import chords, cut_at_extremes, with_chords
-from .cell import Cell, Station, briefly, robot_from_paper, why_no_waiting
-from .distortion import goes_straight, in_lines_mm, is_similar
+from .cells.cell import Cell, Station, briefly, robot_from_paper, why_no_waiting
 from .frames import is_upright
-from .pass_way import on_way
 from .posts import POSTS, circles_by
-from .tilt import in_steps, refuse_where_upright
+from .realised.arc_chords import chords, cut_at_extremes, with_chords
+from .realised.distortion import goes_straight, in_lines_mm, is_similar
+from .realised.retimed import on_way
+from .realised.tilt import in_steps, refuse_where_upright
 from .tool_axes import axes_of, unit
 
 

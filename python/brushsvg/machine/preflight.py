@@ -9,12 +9,12 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
-from .cell import Cell, unit_mm
-from .corner_blending import blend_radii, blended
-from .distortion import true_pass
+from .cells.cell import Cell, unit_mm
 from .paint_reload import PlanInLoads
 from .program import POSES_AT_ONCE, WHOLE_JOB, Job, Walked, out_of_arm, walked, written_of
-from .rounding import Written
+from .realised.corner_blending import blend_radii, blended
+from .realised.distortion import true_pass
+from .realised.rounding import Written
 from .tool_axes import mixed
 from .workspace_limits import beyond_edges
 

@@ -12,16 +12,16 @@ from .. import _core
 from ..errors import Error, Notice
 from .arm.joints import is_installed
 from .arm.place import unreachable
-from .cell import MOST_LINES, MOST_POINTS, Cell, Station, briefly, robot_from_paper, value_mm
-from .corner_blending import SHARP_RAD, blends, on_the_spot
-from .distortion import told_high_mm, told_mm, true_mm
+from .cells.cell import MOST_LINES, MOST_POINTS, Cell, Station, briefly, robot_from_paper, value_mm
 from .frames import moved
 from .motion import Arc, Move, Program, Section, Wait, at_told_speeds, rise_over
 from .paint_reload import PlanInLoads, visits
 from .posts import POSTS
 from .posts.text import told_apart
-from .rounding import Written, as_written
-from .tilt import slow_enough
+from .realised.corner_blending import SHARP_RAD, blends, on_the_spot
+from .realised.distortion import told_high_mm, told_mm, true_mm
+from .realised.rounding import Written, as_written
+from .realised.tilt import slow_enough
 from .tool_axes import axes_of, tilts_deg
 from .workspace_limits import broken_limits, rise_astray, touching_mm_s, walked_astray
 

@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import Error
-from .cell import LEAST_SPEED_MM_S, Cell, robot_from_paper, why_no_waiting
-from .distortion import in_lines_mm, told_mm
+from .cells.cell import LEAST_SPEED_MM_S, Cell, robot_from_paper, why_no_waiting
 from .motion import Move, Program, Section, Wait, at_told_speeds, rise_over
 from .move_extents import ways
 from .program import approach_mm_s, astray_in, out_of_arm, over, safely_over
+from .realised.distortion import in_lines_mm, told_mm
 from .workspace_limits import astray, touching_mm_s
 
 CORNER_WAIT_S = 0.5  # long enough to look where the tip stands

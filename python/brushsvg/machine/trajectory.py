@@ -7,7 +7,7 @@ from math import sqrt
 
 import numpy as np
 
-from .cell import robot_from_paper
+from .cells.cell import robot_from_paper
 from .motion import Move, Program, Wait
 from .tool_axes import turned_on
 

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import Notice
-from .cell import LEAST_SPEED_MM_S, Cell
+from .cells.cell import LEAST_SPEED_MM_S, Cell
 from .motion import Move, Section
 from .move_extents import Ways, bounds, from_origin, place_inside, ways, ways_in
-from .tilt import broken_limits as tilted_too_far
+from .realised.tilt import broken_limits as tilted_too_far
 
 ROUNDING_MM = 1e-6
 SLOWEST_MM_S = 1e-6  # slower, times cannot be told

@@ -10,15 +10,15 @@ from pathlib import Path
 from .. import _core
 from ..errors import Error, need
 from ..files import write_files
-from .backlash import undone
-from .cell import Cell
-from .cell_file import cell_names, find_cell, parse_cell, write_cell
+from .cells.cell import Cell
+from .cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from .header_lines import header_of
 from .motion import Program, duration_s, in_robot_frame
 from .paint_reload import PlanInLoads, in_loads, visits
 from .posts import POSTS, Post
 from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look
 from .program import WHOLE_JOB, Job, Walked, out_of_arm, unchecked_program, walked
+from .realised.backlash import undone
 
 
 def post_for(suffix: str, cell: Cell) -> Post:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..drawing.design import Notice
 from ..errors import need
+from ..read.design import Notice
 from .corners import begun_amid_a_side
 
 MEET_MM = 0.01

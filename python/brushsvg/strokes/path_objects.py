@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..drawing.svg.path_data import MOST_COMMANDS, parse_path, snippet
-from ..drawing.svg.path_to_cubics import trace
 from ..errors import Error, need
+from ..read.svg.paths.path_data import MOST_COMMANDS, parse_path, snippet
+from ..read.svg.paths.path_to_cubics import trace
 
 if TYPE_CHECKING:
     import svgpathtools

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _core
-from ..drawing.design import Notice
+from ..read.design import Notice
 
 # Of its shape, from which on an area without paint is reported: one that no stroke reaches, and one that strokes reach
 # and their marks do not. A mark that begins pointed leaves some of every letter.

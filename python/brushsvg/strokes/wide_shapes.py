@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..drawing.design import Notice
 from ..errors import Error, need, need_one_of
+from ..read.design import Notice
 from .trial_mark import trial_overlap
 
 WIDE = ("auto", "clamp", "passes", "refuse")

@@ -81,8 +81,8 @@ def _design(design) -> None:
 
 
 def _read_svg(data: bytes) -> None:
-    from brushsvg.drawing import ReadOptions
-    from brushsvg.drawing.svg import read_svg, settings_of
+    from brushsvg.read import ReadOptions
+    from brushsvg.read.svg import read_svg, settings_of
 
     settings_of(data)
     _design(read_svg(data, ReadOptions(lenient=True)))
@@ -130,8 +130,8 @@ SVG_WORDS = (
 
 def _read_css(data: bytes) -> None:
     """A style sheet, and a selector that a user gives: the first line."""
-    from brushsvg.drawing import ReadOptions
-    from brushsvg.drawing.svg import read_svg
+    from brushsvg.read import ReadOptions
+    from brushsvg.read.svg import read_svg
 
     selector, _, sheet = data.decode("utf-8", "replace").partition("\n")
     sheet = "".join(each for each in sheet if each.isprintable() or each == "\n").replace("]]>", "")
@@ -161,9 +161,9 @@ CSS_WORDS = (
 
 def _read_path(data: bytes) -> None:
     """What stands in d, and behind its first line what stands in points and transform."""
-    from brushsvg.drawing.svg.path_data import parse_path, parse_points
-    from brushsvg.drawing.svg.path_to_cubics import trace
-    from brushsvg.drawing.svg.transform import parse_transform
+    from brushsvg.read.svg.paths.path_data import parse_path, parse_points
+    from brushsvg.read.svg.paths.path_to_cubics import trace
+    from brushsvg.read.svg.transform import parse_transform
 
     d, _, rest = data.decode("latin-1").partition("\n")
     points, _, transform = rest.partition("\n")
@@ -192,14 +192,14 @@ PATH_WORDS = tuple("M m L l H h V v C c S s Q q T t A a Z z 0 1 -1 . , + - 1e309
 
 
 def _read_dxf(data: bytes) -> None:
-    from brushsvg.drawing import ReadOptions
-    from brushsvg.drawing.dxf import read_dxf
+    from brushsvg.read import ReadOptions
+    from brushsvg.read.dxf import read_dxf
 
     _design(read_dxf(data, ReadOptions(units="mm", lenient=True)))
 
 
 def _dxf_seeds() -> Iterator[bytes]:
-    from brushsvg.drawing.dxf.ezdxf_import import ezdxf
+    from brushsvg.read.dxf.ezdxf_import import ezdxf
 
     def lines(words: str) -> bytes:
         return ("\n".join(words.split()) + "\n").encode()
@@ -239,8 +239,8 @@ DXF_WORDS = (
 
 
 def _read_foreign_gcode(data: bytes) -> None:
-    from brushsvg.drawing import ReadOptions
-    from brushsvg.drawing.gcode import read_gcode
+    from brushsvg.read import ReadOptions
+    from brushsvg.read.gcode import read_gcode
 
     _design(read_gcode(data, ReadOptions(lenient=True)))
 
@@ -263,7 +263,7 @@ GCODE_WORDS = (
 
 
 def _read_font(data: bytes) -> None:
-    from brushsvg.drawing.text import text_svg
+    from brushsvg.read.text import text_svg
 
     text_svg("Aa1 fi\nÄ", data, size_mm=10.0)
 
@@ -391,7 +391,7 @@ MEASUREMENT_WORDS = (
 
 
 def _read_widths(data: bytes) -> None:
-    from brushsvg.calibration.measurements import read_widths
+    from brushsvg.calibration.numbers.measurements import read_widths
 
     for depth, width in read_widths(data.decode("utf-8", "replace")):
         require(np.isfinite(depth + width) and depth > 0 and width > 0, f"{depth}, {width}")
@@ -403,7 +403,7 @@ def _width_seeds() -> Iterator[bytes]:
 
 
 def _read_cell(data: bytes) -> None:
-    from brushsvg.machine.cell_file import parse_cell, write_cell
+    from brushsvg.machine.cells.cell_file import parse_cell, write_cell
 
     cell = parse_cell(data.decode("utf-8", "replace"))
     require(
@@ -412,7 +412,7 @@ def _read_cell(data: bytes) -> None:
 
 
 def _cell_seeds() -> Iterator[bytes]:
-    from brushsvg.machine.cell_file import parse_cell, write_cell
+    from brushsvg.machine.cells.cell_file import parse_cell, write_cell
 
     for path in sorted((DATA / "cells").glob("*.toml")):
         text = path.read_text(encoding="utf-8")
@@ -429,7 +429,7 @@ TOML_WORDS = (
 
 
 def _read_studio(data: bytes) -> None:
-    from brushsvg.simulated.studio import read_studio, write_studio
+    from brushsvg.photo.simulated.studio import read_studio, write_studio
 
     studio = read_studio(data)
     require(
@@ -439,7 +439,7 @@ def _read_studio(data: bytes) -> None:
 
 
 def _studio_seeds() -> Iterator[bytes]:
-    from brushsvg.simulated.studio import Studio, random_studio, write_studio
+    from brushsvg.photo.simulated.studio import Studio, random_studio, write_studio
 
     yield write_studio(Studio()).encode()
     yield write_studio(random_studio(3, (100.0, 100.0))).encode()
@@ -455,9 +455,9 @@ def _read_chart(data: bytes) -> None:
 
 
 def _chart_seeds() -> Iterator[bytes]:
-    from brushsvg.brush.library import find_brush
     from brushsvg.calibration.chart.file import write_chart
     from brushsvg.calibration.chart.layout import chart
+    from brushsvg.model.library import find_brush
 
     text = write_chart(chart(find_brush("round-6"), sheet_mm=(148.0, 210.0)))
     yield text.encode()
@@ -465,7 +465,7 @@ def _chart_seeds() -> Iterator[bytes]:
 
 def _read_manifest(data: bytes) -> None:
     """A manifest from a stranger: what it names outside of its folder stays there."""
-    from brushsvg.batch.manifest import Manifest, Row
+    from brushsvg.jobs.batch.manifest import Manifest, Row
 
     with tempfile.TemporaryDirectory() as above:
         outside = Path(above) / "outside.ngc"
@@ -491,7 +491,7 @@ def _read_manifest(data: bytes) -> None:
 def _manifest_seeds() -> Iterator[bytes]:
     import hashlib
 
-    from brushsvg.batch.manifest import FORMAT, Row, as_line
+    from brushsvg.jobs.batch.manifest import FORMAT, Row, as_line
 
     digest = hashlib.sha256(b"x").hexdigest()
     head = json.dumps(FORMAT) + "\n"
@@ -531,12 +531,12 @@ READ_BACK = {  # cell: a program of it among the golden ones
 
 def _read_back(name: str) -> Callable[[bytes], None]:
     def read(data: bytes) -> None:
-        from brushsvg.brush.library import find_brush
-        from brushsvg.machine.cell_file import find_cell
+        from brushsvg.machine.cells.cell_file import find_cell
         from brushsvg.machine.posts import POSTS
-        from brushsvg.verification.readback import read_program, text_of_file
-        from brushsvg.verification.readback.header import made
-        from brushsvg.verification.simulate_program import run
+        from brushsvg.model.library import find_brush
+        from brushsvg.verify.readback import read_program, text_of_file
+        from brushsvg.verify.readback.header import made
+        from brushsvg.verify.simulate_program import run
 
         cell = find_cell(name)
         text = text_of_file(data)
@@ -571,7 +571,7 @@ def _program_seeds(file: str) -> Seeds:
 
 
 def _read_photo(data: bytes) -> None:
-    from brushsvg.scan.photo import read_photo
+    from brushsvg.photo.photo import read_photo
 
     pixels = read_photo(data)
     require(pixels.dtype == np.uint8 and pixels.ndim == 3 and pixels.shape[2] == 3, f"pixels {pixels.shape}")
@@ -589,7 +589,7 @@ def _picture_seeds() -> Iterator[bytes]:
 
 
 def _read_turn(data: bytes) -> None:
-    from brushsvg.calibration.turn_picture import centre_line
+    from brushsvg.calibration.numbers.turn_picture import centre_line
 
     line = centre_line(data, 0.5, (8.0, 10.0), "right")
     require(bool(np.isfinite(line).all()) and line.shape[1] == 2, f"a line {line.shape}")
@@ -607,8 +607,8 @@ MARKERS_PX = (
 
 def _read_chart_photo(data: bytes) -> None:
     """A small photograph of a page with markers."""
-    from brushsvg.scan.markers import Printed, find_view
-    from brushsvg.scan.photo import read_photo
+    from brushsvg.photo.markers import Printed, find_view
+    from brushsvg.photo.photo import read_photo
 
     corners = {
         number: np.array([[x, 400 - y], [x + 36, 400 - y], [x + 36, 364 - y], [x, 364 - y]]) / 10

@@ -10,11 +10,12 @@ from pathlib import Path
 
 from brushsvg import _core
 from brushsvg.cli.arguments.parser import parse
-from brushsvg.cli.commands import check as command
 from brushsvg.cli.commands import convert_file
+from brushsvg.cli.commands.drawings import check as command
 from brushsvg.cli.console import RefusedError
-from brushsvg.pipeline import checking, choices, outputs, preparation
-from brushsvg.pipeline.work import Work
+from brushsvg.jobs import checking, choices, outputs
+from brushsvg.jobs.preparation import preparation
+from brushsvg.jobs.work import Work
 
 CRASHED = "this should not happen"
 

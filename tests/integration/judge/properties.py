@@ -13,10 +13,10 @@ from desk import BRUSHES, brush_file
 
 import brushsvg
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
 from brushsvg.cli.arguments.parser import parse
 from brushsvg.cli.steps.options import options_of, typed
-from brushsvg.pipeline import preparation
+from brushsvg.jobs.preparation import preparation
+from brushsvg.model.library import find_brush
 
 from .checked import CRASHED, converted, put
 from .random_jobs import ASKED, judged, said_of
@@ -316,7 +316,7 @@ def batches_differ(sources: list[Path], folder: Path) -> list[str]:
     made = {}
     for jobs in (1, 2):
         out = folder / f"jobs-{jobs}"
-        brushsvg.batch(sources, out, jobs=jobs)
+        brushsvg.jobs.batch(sources, out, jobs=jobs)
         programs = out / "programs"
         made[jobs] = {p.relative_to(programs): p.read_bytes() for p in programs.rglob("*") if p.is_file()}
     return [

@@ -11,8 +11,8 @@ import shapely
 
 from brushsvg import _core
 from brushsvg.errors import Error
-from brushsvg.machine.cell import unit_mm
-from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.cells.cell import unit_mm
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
 
 from .checked import CRASHED, converted, put
 from .random_works import random_brush, random_cell, random_flags, random_svg

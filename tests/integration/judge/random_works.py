@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from brushsvg import _core
-from brushsvg.brush.library import find_brush
-from brushsvg.calibration.from_widths import new_brush
-from brushsvg.machine.cell import Blending, Machine, Paper, Reload, Servo, Station
-from brushsvg.machine.cell_file import find_cell
+from brushsvg.calibration.numbers.from_widths import new_brush
+from brushsvg.machine.cells.cell import Blending, Machine, Paper, Reload, Servo, Station
+from brushsvg.machine.cells.cell_file import find_cell
+from brushsvg.model.library import find_brush
 
 from .verdict import ROBOTS
 from .works import CELLS, FLAT, PENS

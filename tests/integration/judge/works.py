@@ -8,9 +8,17 @@ import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from brushsvg.brush.library import find_brush
-from brushsvg.machine.cell import CONTACT_BY, Contact, Machine, Paper, Reload, Station, why_no_backlash
-from brushsvg.machine.cell_file import find_cell, write_cell
+from brushsvg.machine.cells.cell import (
+    CONTACT_BY,
+    Contact,
+    Machine,
+    Paper,
+    Reload,
+    Station,
+    why_no_backlash,
+)
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
+from brushsvg.model.library import find_brush
 
 from .checked import converted, put
 from .verdict import Job, Sound, job_of, sound

@@ -11,7 +11,7 @@ put into (2) it leaves a straight line where exp(1 - z) should stand.
 import numpy as np
 from matplotlib.figure import Figure
 
-from brushsvg import laws
+from ...model import laws
 
 z = np.linspace(0, 1, 101)
 figure = Figure(figsize=(8, 3.2), layout="constrained")

@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import brushsvg
-from brushsvg import laws
+
+from ...model import laws
 
 brush, depth = brushsvg.find_brush("round-6"), 5.0
 r, b, w = (float(law(depth)) for law in (brush.lag, brush.tip_gap, brush.tip_to_widest))

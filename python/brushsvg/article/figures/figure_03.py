@@ -8,7 +8,7 @@ from the start.
 import numpy as np
 from matplotlib.figure import Figure
 
-from brushsvg import laws
+from ...model import laws
 
 r, b = 3.0, 1.0
 s = np.arange(0, 12.01, 0.3)

@@ -9,7 +9,7 @@ never go loose by it. Here the moments are roots.
 import numpy as np
 from matplotlib.figure import Figure
 
-from brushsvg import laws
+from ...model import laws
 
 r, turn = 3.0, np.radians(135)
 back = np.array([np.sin(turn), np.cos(turn)])

@@ -8,7 +8,7 @@ so read, r turns negative from depth 9.2 on (dotted). 2.1e-3 gives 13.7 mm at de
 import numpy as np
 from matplotlib.figure import Figure
 
-from brushsvg import laws
+from ...model import laws
 
 z = np.linspace(0, 10, 201)
 w = laws.Profile([-2.35, 2.75, -0.42, 0.024], floor=0)

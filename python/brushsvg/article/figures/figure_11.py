@@ -8,7 +8,7 @@ and 0.43 to 0.61, do not touch. Noise of reading does not explain it: series mad
 import numpy as np
 from matplotlib.figure import Figure
 
-from brushsvg import laws
+from ...model import laws
 
 z = np.arange(1, 11.0)
 canvas, angles = ([3.1, 0.86, 0.31, -5.0e-2, 2.1e-3], [3.4, 1.39, 0.047, -4.56e-3, -4.56e-4])

@@ -8,7 +8,7 @@ line for 13.7 mm, which (25) gives for this depth, lies so far from it.
 import numpy as np
 from matplotlib.figure import Figure
 
-from brushsvg import laws
+from ...model import laws
 
 s = np.linspace(0, 80, 401)
 lines: dict[float, np.ndarray] = {}

@@ -31,7 +31,9 @@ distances: list[np.ndarray] = []
 for colour in ("#3f8fd9", "#e07a2f", "#2f8f4e", "#8a4fbf"):
     for way, wanted in zip(plan.passes, reference, strict=True):
         bent = brushsvg.brush_like("bent", brush)
-        bent.lag = brushsvg.laws.Profile(np.multiply(brush.lag.coefficients, rng.normal(1, 0.1)).tolist())
+        bent.lag = brushsvg.model.laws.Profile(
+            np.multiply(brush.lag.coefficients, rng.normal(1, 0.1)).tolist()
+        )
         alone = brushsvg.Plan(plan.brush, "", plan.sheet_mm, [way])
         painted = brushsvg.simulate(alone, bent).passes[0].contact_mm
         above.plot(*painted.T, color=colour, lw=0.8)

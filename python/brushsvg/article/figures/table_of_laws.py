@@ -10,7 +10,7 @@ intervals of z^0 and z^1 are narrower than the other three, and the RMSE, allow 
 import numpy as np
 from matplotlib.figure import Figure
 
-from brushsvg import laws
+from ...model import laws
 
 ten, both = np.arange(1, 11.0), np.array([*range(11), *range(0, 11, 2)], float)
 video = np.linspace(1, 10, 12)

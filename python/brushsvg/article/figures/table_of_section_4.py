@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 import brushsvg
 
 brush, z, rng = brushsvg.find_brush("round-6"), np.arange(1, 11.0), np.random.default_rng(4)
-w, r, b = brushsvg.laws.Profile([-2.35, 2.75, -0.42, 0.024], floor=0)(z), brush.lag(z), brush.tip_gap(z)
+w, r, b = brushsvg.model.laws.Profile([-2.35, 2.75, -0.42, 0.024], floor=0)(z), brush.lag(z), brush.tip_gap(z)
 exact = {  # what is read, and its scatter, in mm; w by (24)
     "width": (2 * brush.half_width(z), 0.0),
     "tip_to_widest": (w, 0.51),

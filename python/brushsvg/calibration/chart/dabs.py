@@ -13,8 +13,8 @@ import numpy as np
 
 from ... import _core
 from ...errors import Error
-from ..dab_outlines import Dab
-from ..mark_input import DAB as KIND
+from ..dabs.dab_outlines import Dab
+from ..marks.mark_input import DAB as KIND
 
 HEADINGS_DEG = (
     0.0,

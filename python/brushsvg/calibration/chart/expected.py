@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
-from ...brush.confidence import law_band
-from ...brush.describe import LAWS
-from ..from_marks import expected_brush, expected_machine, expected_marks
-from ..machine_found import PARTS
-from ..paint_found import Expected, expected_paint
+from ...model.confidence import law_band
+from ...model.describe import LAWS
+from ..marks.from_marks import expected_brush, expected_machine, expected_marks
+from ..marks.machine_found import PARTS
+from ..marks.paint_found import Expected, expected_paint
 
 ROWS = 4
 

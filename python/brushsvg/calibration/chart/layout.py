@@ -17,8 +17,8 @@ from functools import cached_property
 import numpy as np
 
 from ... import _core
-from ...brush.perturbed import with_lag
 from ...errors import Error, as_listed, need, need_number, need_one_of
+from ...model.perturbed import with_lag
 from .dabs import HEADINGS_DEG, KIND, dab_depths, dab_poses
 from .painting_order import early_and_late, shallow_to_deep
 

@@ -10,8 +10,8 @@ import cv2
 import numpy as np
 
 from ... import _core
-from ...brush.plot import new_figure
 from ...errors import lacking
+from ...model.plot import new_figure
 from .layout import TICK_MM, Bar, Chart, Label, Marker
 
 TEXT_MM = 2.3

@@ -10,13 +10,13 @@ import numpy as np
 
 from ... import _core
 from ...errors import Error, Notice
-from ...scan.edges import Marks, Room, find_marks, printed_pixels, told_apart
-from ...scan.flatten import Flat, flatten
-from ...scan.markers import TOO_WHITE, Printed, View, find_view
-from ...scan.photo import grey_light, jpeg_quality, read_photo, refuse_dark_paper, refuse_twice
-from ...scan.place_by_strokes import find_scan_view
-from ...scan.print_scale import find_paint
-from ...scan.whole_page import refuse_cropped, refuse_unsure
+from ...photo.edges import Marks, Room, find_marks, printed_pixels, told_apart
+from ...photo.flatten import Flat, flatten
+from ...photo.markers import TOO_WHITE, Printed, View, find_view
+from ...photo.photo import grey_light, jpeg_quality, read_photo, refuse_dark_paper, refuse_twice
+from ...photo.place_by_strokes import find_scan_view
+from ...photo.print_scale import find_paint
+from ...photo.whole_page import refuse_cropped, refuse_unsure
 from .layout import Chart
 from .page import bar_rings, label_box
 

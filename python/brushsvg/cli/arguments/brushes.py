@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from ...drawing import READERS
+from ...read import READERS
 from . import values
 from .flags import add_looks, add_writes, add_z_offset, plans_and_programs
 from .usage_checks import PHOTOS, PICTURES, PROGRAMS, check_files, check_job, suffix_of

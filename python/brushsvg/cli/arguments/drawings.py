@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...drawing import READERS
+from ...read import READERS
 from . import values
 from .flags import (
     add_choices,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from ...drawing import BACKGROUNDS, PENS, READERS
 from ...machine.posts import POSTS
+from ...read import BACKGROUNDS, PENS, READERS
 from . import values
 
 TERMINALS = ("auto", "round", "butt", "pointed")

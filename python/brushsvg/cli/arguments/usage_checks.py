@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 
-from ...drawing import READERS
 from ...machine.posts import POSTS
+from ...read import READERS
 
 DRAWINGS = (*READERS, ".json")
 PROGRAMS = tuple(dict.fromkeys(extension for post in POSTS.values() for extension in post.extensions))

@@ -54,7 +54,7 @@ def words(text: str) -> str:
 
 
 def machine_parts(text: str) -> tuple[str, ...]:
-    from ...calibration.machine_found import PARTS
+    from ...calibration.marks.machine_found import PARTS
 
     parts = [part.strip() for part in text.split(",")]
     if not set(parts) <= set(PARTS):
@@ -163,7 +163,7 @@ def region(text: str) -> tuple[float, float, float, float]:
 
 
 def colour(text: str) -> str:
-    from ...pipeline.choices import colour_of
+    from ...jobs.choices import colour_of
 
     return _read(colour_of, text)
 

@@ -6,7 +6,7 @@ import argparse
 import shlex
 import sys
 
-from ...calibration.from_widths import lag_of_turn
+from ...calibration.numbers.from_widths import lag_of_turn
 from ...errors import Notice
 from ..arguments import values
 from ..console import RefusedError, say

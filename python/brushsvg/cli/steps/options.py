@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from ...machine.cell import Cell
+from ...jobs import choices
+from ...jobs.choices import CHOICES, Choices
+from ...jobs.conversion import of_cell
+from ...jobs.options import Options
+from ...machine.cells.cell import Cell
 from ...machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as
-from ...pipeline import choices
-from ...pipeline.choices import CHOICES, Choices
-from ...pipeline.conversion import of_cell
-from ...pipeline.options import Options
 from ..console import about, warn
 from .output_places import suffix_of
 

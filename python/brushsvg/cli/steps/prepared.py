@@ -6,14 +6,15 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from ...errors import Error, Notice
+from ...jobs import prediction
+from ...jobs.choices import Choices, without_effect
+from ...jobs.preparation import preparation
+from ...jobs.work import Work
 from ...machine import preflight
-from ...machine.cell import Cell
+from ...machine.cells.cell import Cell
 from ...machine.motion import duration_s
 from ...machine.paint_reload import PlanInLoads, in_loads, too_long, visits
 from ...machine.program import Walked
-from ...pipeline import prediction, preparation
-from ...pipeline.choices import Choices, without_effect
-from ...pipeline.work import Work
 from ..console import about, stage, warn
 from .options import options_of
 

@@ -15,7 +15,7 @@ from itertools import chain
 import numpy as np
 
 from ...errors import Notice
-from ..cell import Arm, Cell, joint_number
+from ..cells.cell import Arm, Cell, joint_number
 from ..frames import frame_of_pose, moved
 from ..motion import Program
 from ..posts.script import down

@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from ...errors import Error, lacking
-from ..cell import Arm
+from ..cells.cell import Arm
 from ..frames import frame_of_pose
 
 MM = 1e-3  # ssik's lengths are in metres

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...errors import Notice
-from ..cell import Arm, Cell
+from ..cells.cell import Arm, Cell
 from ..frames import frame_of_pose, moved, rotation, rotation_deg
 from ..motion import Program
 from .follow import extremes, far_from_singular, flange_at, follow, lowest_joint_mm, within_limits

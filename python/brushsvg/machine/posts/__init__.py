@@ -7,7 +7,7 @@ from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from ..cell import Cell
+    from ..cells.cell import Cell
     from ..motion import Program
 
 
@@ -179,7 +179,7 @@ def sources_of_post(cell: Cell) -> list[str]:
 
 def circles_by(cell: Cell) -> str:
     """What tells a circle on this cell, see Post."""
-    from ..cell import ARCS_IN_SEGMENTS
+    from ..cells.cell import ARCS_IN_SEGMENTS
 
     post = POSTS.get(cell.language)
     if cell.language in ARCS_IN_SEGMENTS and not cell.arc_segment_mm:

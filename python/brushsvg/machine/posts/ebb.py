@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..cell import LEAST_SPEED_MM_S, least_part_mm, places_of, servo_parts, servo_stands, steps_of
+from ..cells.cell import LEAST_SPEED_MM_S, least_part_mm, places_of, servo_parts, servo_stands, steps_of
 from ..motion import Move, Program, Wait
 from ..trajectory import joint_caps, paced
 from .gcode_servo import TOUCHING, feeds_mm_min, lifted, value_at

@@ -9,7 +9,7 @@ from tempfile import SpooledTemporaryFile
 
 import numpy as np
 
-from ..cell import MOST_POINTS, Cell
+from ..cells.cell import MOST_POINTS, Cell
 from ..frames import rotation_deg
 from ..motion import Move, Program, Section, Wait, via
 from .dobot import whole_mm_s

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cell import RADII_MM
+from ..cells.cell import RADII_MM
 from ..motion import SAFE_MEANINGS, Move, Program, Wait
 from .text import AT_ONCE, BRACKETS, feed_mm_min, number, plain, rows
 

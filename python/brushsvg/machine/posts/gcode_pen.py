@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..cell import Cell
+from ..cells.cell import Cell
 from ..motion import Move, Program, Wait
 from .gcode import DIALECTS, HELD_UP, MODES, wait
 from .text import feed_mm_min, number, rows

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..cell import Cell, Servo, servo_parts, servo_stands
+from ..cells.cell import Cell, Servo, servo_parts, servo_stands
 from ..motion import Move, Program, Wait
 from .gcode import DIALECTS, HELD_UP, MODES, grbl_comment, wait
 from .text import ROWS_AT_ONCE, feed_mm_min, number, rows

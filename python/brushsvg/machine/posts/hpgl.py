@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...errors import Error
-from ..cell import UNITS_MM, Cell
+from ..cells.cell import UNITS_MM, Cell
 from ..motion import Move, Program
 from .text import ENDS, QUOTES, plain, rows
 

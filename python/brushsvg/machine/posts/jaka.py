@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..cell import Blending
+from ..cells.cell import Blending
 from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Wait, via
 from .script import Words, body, numbers, rounded_down, turned_at, upright_deg

@@ -15,7 +15,7 @@ from types import ModuleType
 import numpy as np
 
 from ...errors import Error
-from ..cell import Cell
+from ..cells.cell import Cell
 from ..frames import frame_of_pose
 from ..motion import Move, Program, Wait, via
 from .script import blends_mm, down, turned_at

@@ -11,7 +11,7 @@ from tempfile import SpooledTemporaryFile
 
 import numpy as np
 
-from ..cell import Cell, robot_from_paper
+from ..cells.cell import Cell, robot_from_paper
 from ..frames import frame_of_pose, quaternion, rotation
 from ..motion import Program
 from ..tool_axes import is_upright_on, turned_to

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..cell import MOST_LINES, Cell, robot_from_paper
+from ..cells.cell import MOST_LINES, Cell, robot_from_paper
 from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Section, Wait
 from ..tool_axes import is_upright_on, turned_to

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
-from ...drawing.design import Element
 from ...errors import Error
 from ...geometry.cubics import flattened
+from ...read.design import Element
 
 # Off the curves: an edge costs as much as all the rest, and middle lines are smoothed by more than half of this.
 FLATTENED_MM = 0.02

@@ -1,0 +1,1 @@
+"""A brush from the outlines of dabs."""

@@ -1,0 +1,232 @@
+"""Dabs to a brush: its outlines as they were seen, and the laws of width, widest section and tip gap that agree with
+them. The lag is that of the brush for which the dabs were landed: dabs do not tell it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+
+from ... import _core
+from ...errors import Error, Notice
+from ...model.confidence import places
+from ...model.laws.fitted import need_fits
+from .dab_outlines import SMOOTHED_MM, Dab, Outlines, Shape, outlines_of, widths_at
+
+# a law bends enough that lies so near to the mean of each depth, or so many errors of that mean
+CLOSE_MM, CHANCE = 0.03, 2.0
+AGREE_MM = 0.4  # farther from an outline, and the brush would be refused
+MOST_TERMS = 5
+BROAD = 0.85  # of the greatest width: the part by which dabs are compared
+FALLS_MM = 0.1  # by which deeper dabs may be narrower: more, and paint ran out
+OTHER_LAG = 0.2  # share by which the lag may differ from how far the tool ran
+LAWS = ("half_width", "tip_to_widest", "tip_gap")
+
+
+@dataclass(frozen=True)
+class DabCalibration:
+    """before: the brush whose lag was taken. values: of each law, (n, 2) depths and what was seen there [mm]."""
+
+    brush: _core.Brush
+    before: _core.Brush
+    outlines: Outlines
+    values: dict[str, np.ndarray]
+    edge_mm: float
+    remarks: tuple[Notice, ...]
+
+
+def calibrate_dabs(
+    dabs: list[Dab], before: _core.Brush, name: str, edge_mm: float = 0.0, joined: tuple[str, ...] = ()
+) -> DabCalibration:
+    """edge_mm: standard deviation of what all edges lie off outward together. joined: names of dabs that touch others.
+    Error where the dabs leave an outline open, or give a brush that cannot be used."""
+    need_fits()
+    _refuse_other_lag(dabs, before)
+
+    def slid_mm(dab: Dab) -> float:
+        return dab.run_mm - before.lag.extrapolated(dab.depth_mm)
+
+    outlines = outlines_of(dabs, set(joined), slid_mm)
+    shapes = outlines.shapes
+    _refuse_falling(shapes)
+    values = {law: np.vstack([_seen(law, shape) for shape in shapes]) for law in LAWS}
+    brush = _with_outlines(before, name, outlines)
+    fits = {law: _fitted(law, values[law], brush.depth_range_mm) for law in LAWS}
+    for law in LAWS:
+        setattr(brush, law, _told(fits[law].law, shapes, fits[law].law.half_interval_95))
+    covariance = _covariance(before, brush, fits, values, edge_mm)
+    if covariance is not None:
+        brush.covariance = covariance.tolist()
+        for law in LAWS:
+            variance = np.diag(covariance)[places(brush)[law]]
+            half = _core.deviations_of_95(fits[law].law.degrees_of_freedom) * np.sqrt(variance)
+            setattr(brush, law, _told(fits[law].law, shapes, half.tolist()))
+    _core.check(brush)
+    return DabCalibration(brush, before, outlines, values, edge_mm, outlines.remarks)
+
+
+def _refuse_other_lag(dabs: list[Dab], before: _core.Brush) -> None:
+    least, deepest = before.depth_range_mm
+    for dab in dabs:
+        if not least <= dab.depth_mm <= deepest + 1e-6:
+            raise Error(
+                f"the dab was pressed {dab.depth_mm:g} mm, brush {before.name} may be pressed {least:g} to "
+                f"{deepest:g} mm",
+                dab.name,
+                dab.depth_mm,
+                code="depth-out-of-range",
+            )
+    off = {
+        dab.name: dab.run_mm / before.lag.extrapolated(dab.depth_mm) - 1
+        for dab in dabs
+        if before.lag.extrapolated(dab.depth_mm) > 0
+    }
+    worst = max(off, key=lambda name: abs(off[name]), default=None)
+    if worst is None or abs(off[worst]) > OTHER_LAG:
+        dab = next(dab for dab in dabs if worst in (None, dab.name))
+        raise Error(
+            f"the tool ran {dab.run_mm:.1f} mm while it was pressed, brush {before.name} lags "
+            f"{before.lag.extrapolated(dab.depth_mm):.1f} mm there, more than {100 * OTHER_LAG:g} % off: make the page "
+            "of dabs with `brushsvg chart --dabs --brush` of this brush, and paint it",
+            dab.name,
+            dab.run_mm,
+            code="dabs-of-another-brush",
+        )
+
+
+def _refuse_falling(shapes: tuple[Shape, ...]) -> None:
+    half = [_half(shape) for shape in shapes]
+    for k in range(1, len(half)):
+        if half[k] < half[k - 1] - FALLS_MM:
+            raise Error(
+                f"dabs at depth {shapes[k].depth_mm:g} mm are {2 * half[k]:.2f} mm wide, those at "
+                f"{shapes[k - 1].depth_mm:g} mm {2 * half[k - 1]:.2f} mm: a brush that is pressed deeper does not get "
+                "narrower; was there paint on it all the time?",
+                f"{shapes[k].depth_mm:g} mm",
+                2 * half[k],
+                code="width-falls",
+            )
+
+
+def _half(shape: Shape) -> float:
+    return float(widths_at(shape.outline_mm)[1].max() / 2)
+
+
+def _seen(law: str, shape: Shape) -> np.ndarray:
+    """Depths and values, one for each dab where it has one of its own."""
+    depth = shape.depth_mm
+    if law == "tip_to_widest":
+        tops = np.array([_top(seen.outline_mm) for seen in shape.seen])
+        return np.column_stack([np.full(len(tops), depth), _widest(shape.outline_mm) + tops - tops.mean()])
+    if law == "tip_gap":
+        # a dab that lies farther ahead has its tip nearer to where it was set down
+        return np.array([[depth, shape.tip_gap_mm - seen.aside_mm[0]] for seen in shape.seen])
+    spans = np.array([_broadest(seen.outline_mm) for seen in shape.seen])
+    return np.column_stack([np.full(len(spans), depth), _half(shape) + (spans - spans.mean()) / 2])
+
+
+def _broadest(outline: np.ndarray) -> float:
+    """Between the means of the uppermost and lowermost points, which noise makes no wider."""
+    y = np.sort(outline[:, 1])
+    some = max(1, len(y) // 10)
+    return float(y[-some:].mean() - y[:some].mean())
+
+
+def _widest(outline: np.ndarray) -> float:
+    """Amid what is as wide as can be told."""
+    x, wide = widths_at(outline)
+    top = x[wide >= wide.max() - 0.004]
+    return float((top[0] + top[-1]) / 2)
+
+
+def _top(outline: np.ndarray) -> float:
+    """Where the middle of the broad part lies, by all of it: which point of it is the broadest is chance."""
+    x, wide = widths_at(np.roll(outline, -int(outline[:, 0].argmin()), axis=0))
+    broad = wide >= BROAD * wide.max()
+    bend, slope, _ = np.polyfit(x[broad], wide[broad], 2)
+    return float(np.clip(-slope / (2 * bend), x[0], x[-1])) if bend < 0 else float(x[broad].mean())
+
+
+def _fitted(law: str, values: np.ndarray, range_mm, terms: int = 0):
+    """The law with the fewest terms that runs near the mean of each depth; terms: as many."""
+    depths, counts = np.unique(values[:, 0], return_counts=True)
+    means = np.array([values[values[:, 0] == depth, 1].mean() for depth in depths])
+    spread = values[:, 1] - means[np.searchsorted(depths, values[:, 0])]
+    error = np.sqrt(np.sum(spread**2) / max(1, len(values) - len(depths)) / counts)
+    enough = np.maximum(CLOSE_MM, CHANCE * error)
+    most = min(MOST_TERMS, len(depths))
+    for count in [terms] if terms else range(1, most + 1):
+        shape = _core.LawShape(
+            tuple(range_mm),
+            count,
+            through_zero=True,
+            positive=law != "half_width",
+            rising=law == "half_width",
+        )
+        fit = _core.fit_law(values[:, 0].tolist(), values[:, 1].tolist(), shape)
+        off = [float(np.mean(np.array(fit.residual_mm)[values[:, 0] == depth])) for depth in depths]
+        worst = int(np.argmax(np.abs(off)))
+        if (np.abs(off) <= enough).all():
+            break
+    if abs(off[worst]) > AGREE_MM:
+        raise Error(
+            f"no law of {law.replace('_', ' ')} over depth runs within {AGREE_MM:g} mm of what the dabs show: at depth "
+            f"{depths[worst]:g} mm it is {off[worst]:.2f} mm off; look at the outlines (--plot)",
+            law,
+            off[worst],
+            code="law-undetermined",
+        )
+    return fit
+
+
+def _with_outlines(before: _core.Brush, name: str, outlines: Outlines) -> _core.Brush:
+    shapes = outlines.shapes
+    brush = _core.Brush()
+    brush.name, brush.kind, brush.lag = name, before.kind, before.lag
+    brush.depth_range_mm = (before.depth_range_mm[0], shapes[-1].depth_mm)
+    brush.max_speed_mm_s, brush.paint = before.max_speed_mm_s, before.paint
+    brush.paint_depth_mm = min(before.paint_depth_mm, shapes[-1].depth_mm)
+    brush.footprints = _core.FootprintTable(
+        [_core.Footprint(shape.depth_mm, shape.outline_mm.round(4) + 0.0) for shape in shapes]
+    )
+    count = sum(len(shape.seen) for shape in shapes)
+    source = (
+        f"Measured: {count} dabs at {len(shapes)} depths, those of a depth averaged and smoothed by {SMOOTHED_MM:g} mm "
+        "at most. How a brush that stands differs from one that is dragged along is not in them."
+    )
+    unsure = max(shape.unsure_mm for shape in shapes)
+    extra = json.loads(before.extra or "{}") | {
+        "footprints": {"source": source, "assumed": False, "standard_error_mm": round(unsure, 3)}
+    }
+    brush.extra = json.dumps(extra)
+    return brush
+
+
+def _told(found: _core.Profile, shapes: tuple[Shape, ...], half_interval_95) -> _core.Profile:
+    return _core.Profile(
+        found.coefficients,
+        calibrated_mm=(shapes[0].depth_mm, shapes[-1].depth_mm),
+        source=f"Of the outlines of {sum(len(shape.seen) for shape in shapes)} dabs.",
+        half_interval_95=half_interval_95,
+        rmse_mm=found.rmse_mm,
+        degrees_of_freedom=found.degrees_of_freedom,
+    )
+
+
+def _covariance(before, brush, fits, values, edge_mm: float) -> np.ndarray | None:
+    """That of the lag as it was, those of the new laws, and what all edges farther out would do to these together."""
+    if any(not np.size(fit.covariance) for fit in fits.values()):
+        return None
+    at = places(brush)
+    out = np.zeros((at["half_width"].stop, at["half_width"].stop))
+    if len(before.covariance):
+        lag = places(before)["lag"]
+        out[at["lag"], at["lag"]] = np.array(before.covariance)[lag, lag]
+    moved = np.zeros(len(out))
+    for law, fit in fits.items():
+        out[at[law], at[law]] = fit.covariance
+        wider = values[law] + [0.0, edge_mm]
+        other = _fitted(law, wider, brush.depth_range_mm, len(fit.law.coefficients) - 1)
+        moved[at[law]] = np.array(other.law.coefficients) - fit.law.coefficients
+    return out + np.outer(moved, moved)

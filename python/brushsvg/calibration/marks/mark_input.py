@@ -1,0 +1,352 @@
+"""Painted marks with the TCP's way that painted each, as a measurement file names them; nonsense is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ... import _core, json_fields
+from ...errors import Error
+from ...geometry import polylines
+
+FARTHEST_MM = 60.0  # a mark lies no farther from its stroke: lag, sheet and displacement together are shorter
+WIDEST_MM = 60.0  # no brush paints so much beyond its stroke, from one side to the other
+LEAST_MM2 = 0.1
+LARGEST_MM = 1e6
+STRAIGHT_RAD = 0.35  # strokes that turn less in all say nothing of the lag that a displacement would not
+UPRIGHT = "brushes are found from marks of a brush held upright"
+PAINTED_MM = 5.0  # a depth counts where this much was painted at it
+DEPTH_BINS = 20
+DAB = "dab"  # the kind of stroke, in a plan's settings, that is set down and taken up without a way
+UNITS = ((1 / 1000, "metres"), (1 / 25.4, "inches"), (0.1, "centimetres"), (25.4, "points or pixels"))
+# How a sheet may lie: plan to sheet, and what to say
+LAID = (
+    (((-1, 0), (0, -1)), "turned by 180 degrees"),
+    (((0, -1), (1, 0)), "turned by 90 degrees, counter-clockwise"),
+    (((0, 1), (-1, 0)), "turned by 90 degrees, clockwise"),
+    (((-1, 0), (0, 1)), "mirrored (x must go right)"),
+    (((1, 0), (0, -1)), "upside down (y must go up)"),
+    (((0, 1), (1, 0)), "with x and y exchanged"),
+    (((0, -1), (-1, 0)), "with x and y exchanged, both the other way round"),
+)
+
+
+@dataclass(frozen=True)
+class Painted:
+    """Marks of one sheet; how many different depths were painted at; before_mm: by stroke the way of the TCP on the
+    paper along all strokes of the plan before it, where that is known, and way_mm along all of them."""
+
+    marks: list
+    deepest_mm: float
+    depths: int
+    before_mm: dict[str, float] = field(default_factory=dict)
+    way_mm: float = 0.0
+
+    def without(self, strokes: set[str]) -> Painted:
+        """Error where what is left tells nothing."""
+        left = painted_of([mark for mark in self.marks if mark.stroke not in strokes])
+        return replace(left, before_mm=self.before_mm, way_mm=self.way_mm)
+
+
+def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], bytes]) -> Painted:
+    """plan: a path or what stands in a plan.json; marks: a path of a marks.json, or [{"stroke", "outline_mm"}].
+
+    read: gives what the file of a path holds. Error names the mark or the key.
+    """
+    passes = _passes(plan, read)
+    rows = _listed(marks, read)
+    found, seen = [], set()
+    for i, (stroke, outline) in enumerate(rows):
+        where = f"marks[{i}]"
+        if stroke not in passes:
+            raise Error(
+                f"there is no stroke {stroke!r} in the plan; it has {_some(list(passes))}",
+                where,
+                code="stroke-unknown",
+            )
+        if stroke in seen:
+            raise Error(
+                f"stroke {stroke!r} has two marks: join their outlines to one", where, code="stroke-twice"
+            )
+        seen.add(stroke)
+        rings = [_ring(ring, f"{where}.outline_mm[{k}]") for k, ring in enumerate(outline)]
+        if not rings:
+            raise Error("the mark has no outline: leave out what was not painted", where, code="mark-empty")
+        found.append((stroke, np.array(passes[stroke].poses_mm), rings))
+    if not found:
+        raise Error("there is no mark in it", "marks", code="measurement-missing")
+    _refuse_other_frames(found)
+    _refuse_what_is_no_paint(found)
+    painted_as = {stroke: number for number, stroke in enumerate(passes)}
+    whole = painted_of(
+        [
+            _core.PaintedMark(stroke, poses, _oriented(rings), passes[stroke].arcs)
+            for stroke, poses, rings in sorted(found, key=lambda one: painted_as[one[0]])
+        ]
+    )
+    before_mm, way_mm = ways_before_mm(passes)
+    return replace(whole, before_mm=before_mm, way_mm=way_mm)
+
+
+def ways_before_mm(passes: dict[str, _core.Pass]) -> tuple[dict[str, float], float]:
+    """By stroke the way of the TCP on the paper along all passes before it, and that along all passes."""
+    ways = [polylines.length(np.array(one.poses_mm)[:, :2]) for one in passes.values()]
+    *before, way_mm = np.cumsum([0.0, *ways]).tolist()
+    return dict(zip(passes, before, strict=True)), way_mm
+
+
+def painted_of(marks: list) -> Painted:
+    """Error where the marks tell nothing of a brush."""
+    ways = [np.array(mark.poses_mm) for mark in marks]
+    _refuse_what_tells_nothing(ways)
+    return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))
+
+
+def _passes(plan, read) -> dict[str, _core.Pass]:
+    if isinstance(plan, str):
+        try:
+            parsed = _core.read_plan(read(plan).decode("utf-8", "replace"))
+        except Error as refusal:
+            raise Error(f"{plan}: {refusal}", "plan", refusal.value, code=refusal.code) from None
+    elif isinstance(plan, dict):
+        whole = {"format": "brushsvg/plan", "version": 1, "brush": "", "brush_sha256": "", "sheet_mm": [1, 1]}
+        try:
+            parsed = _core.read_plan(json.dumps(whole | plan))
+        except Error as refusal:
+            raise Error(str(refusal), f"plan.{refusal.where}", refusal.value, code=refusal.code) from None
+    else:
+        raise Error(
+            'marks need "plan": the path of the plan.json that was painted', "plan", code="key-missing"
+        )
+    _core.refuse_tilted(parsed.passes, UPRIGHT)
+    out: dict[str, _core.Pass] = {}
+    for number, one in enumerate(parsed.passes, 1):
+        name = one.stroke or f"stroke{number}"
+        if name in out:
+            raise Error(
+                f"two passes paint stroke {name!r}: give each its own name", "plan", code="stroke-twice"
+            )
+        if one.settings.kind == DAB:
+            raise Error(
+                f"{name!r} is a dab: dabs tell the outline of the brush, but no lag",
+                "plan",
+                code="dabs-tell-no-lag",
+                advice="brushsvg calibrate PHOTO --chart CHART.json --brush BRUSH",
+            )
+        out[name] = one
+    return out
+
+
+def _listed(marks, read) -> list[tuple[str, list]]:
+    if isinstance(marks, str):
+        try:
+            found = _core.read_marks(read(marks).decode("utf-8", "replace"))
+        except Error as refusal:
+            raise Error(f"{marks[:200]}: {refusal}", "marks", refusal.value, code=refusal.code) from None
+        return [(one.stroke, [np.array(ring) for ring in one.outline_mm]) for one in found.passes]
+    out = []
+    for i, row in enumerate(json_fields.objects(marks, "marks", ", or the path of a marks.json")):
+        json_fields.refuse_unknown(row, ("stroke", "outline_mm", "note"), f"marks[{i}]")
+        for key, kind, what in (("stroke", str, "a stroke's id"), ("outline_mm", list, "a list of rings")):
+            if not isinstance(row.get(key), kind):
+                raise Error(f"{key} must be {what}", f"marks[{i}]", code="wrong-type")
+        out.append((row["stroke"], row["outline_mm"]))
+    return out
+
+
+def _ring(points, where: str) -> np.ndarray:
+    try:
+        ring = np.array(points)
+        has_truths = isinstance(points, list) and any(isinstance(v, bool) for point in points for v in point)
+        ring = ring.astype(float) if ring.dtype.kind in "iuf" and not has_truths else np.zeros(0)
+    except (TypeError, ValueError):
+        ring = np.zeros(0)
+    if ring.ndim != 2 or ring.shape[0] < 3 or ring.shape[1] != 2:
+        raise Error("a ring is a list of three or more points [x, y]", where, code="wrong-type")
+    if not np.isfinite(ring).all():
+        raise Error("a coordinate is not a finite number", where, code="not-finite")
+    if (farthest := float(np.abs(ring).max())) > LARGEST_MM:
+        raise Error(
+            f"a coordinate of {farthest:.4g} mm is outside the range [-{LARGEST_MM:g}, {LARGEST_MM:g}] mm",
+            where,
+            farthest,
+            code="out-of-range",
+        )
+    return ring
+
+
+def _oriented(rings: list[np.ndarray]) -> list[np.ndarray]:
+    """The shape they fill, outer rings counter-clockwise, holes clockwise."""
+    return [np.array(ring) for ring in _core.fill(rings, "evenodd")] or rings
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
+
+
+def middle(points: np.ndarray) -> np.ndarray:
+    """Of the box round points (n, 2)."""
+    return 0.5 * (points.min(axis=0) + points.max(axis=0))
+
+
+def _refuse_other_frames(found: list) -> None:
+    """Units, direction of y, exchanged marks: seen in where marks lie beside where their strokes do."""
+    planned = np.array([middle(poses[:, :2]) for _, poses, _ in found])
+    seen = np.array([middle(np.vstack(rings)) for _, _, rings in found])
+    spread = lambda points: float(np.hypot(*np.std(points, axis=0)))  # noqa: E731
+    sizes = lambda points: float(np.hypot(*np.ptp(points, axis=0)))  # noqa: E731
+    lengths = [sizes(poses[:, :2]) for _, poses, _ in found]
+    spans = [sizes(np.vstack(rings)) for _, _, rings in found]
+    scale = float(np.median(np.array(spans) / np.maximum(lengths, 1.0)))
+    for factor, name in UNITS:
+        if abs(math.log(max(scale, 1e-12) / factor)) < 0.5 and max(lengths) > 5.0:
+            raise Error(
+                f"the marks are {scale:.3g} times as long as their strokes: are the outlines in {name}? They count in "
+                "mm",
+                "marks",
+                code="marks-scaled",
+            )
+    off = np.hypot(*(seen - planned).T)
+    if len(found) > 2 and spread(planned) > 10.0:
+        flipped = seen * [1, -1]
+        rigid = lambda points: np.median(  # noqa: E731
+            np.hypot(*(points - planned - np.median(points - planned, axis=0)).T)
+        )
+        if rigid(flipped) < 0.3 * rigid(seen) and rigid(seen) > 10.0:
+            raise Error(
+                "the sheet of the marks stands upside down: y must go up, from the lower left corner",
+                "marks",
+                code="marks-displaced",
+            )
+    if off.max() <= FARTHEST_MM and len(found) < 2:
+        return
+    _refuse_laid_otherwise(planned, seen)
+    reach = np.hypot(*np.moveaxis(seen[:, None] - planned[None], 2, 0))
+    other = reach.argmin(axis=1)
+    wrong = [i for i, j in enumerate(other) if j != i and reach[i, j] < 0.5 * off[i] and off[i] > 15.0]
+    for i in wrong:
+        if other[i] in wrong or off[i] > FARTHEST_MM:
+            raise Error(
+                f"the mark of stroke {found[i][0]!r} lies {off[i]:.0f} mm from it, where stroke "
+                f"{found[other[i]][0]!r} was painted: do the marks have the ids of their strokes?",
+                f"marks[{i}]",
+                code="mark-off-stroke",
+            )
+    if (worst := int(off.argmax())) is not None and off[worst] > FARTHEST_MM:
+        raise Error(
+            f"the mark of stroke {found[worst][0]!r} lies {off[worst]:.0f} mm from it, more than {FARTHEST_MM:g} mm: "
+            "are plan and marks those of one sheet, both in mm from its lower left corner?",
+            f"marks[{worst}]",
+            code="mark-off-stroke",
+        )
+
+
+def _refuse_laid_otherwise(planned: np.ndarray, seen: np.ndarray) -> None:
+    """A sheet that is turned, mirrored or of another size as a whole: middles (n, 2) of strokes and marks."""
+    out = planned - planned.mean(axis=0)
+    if len(out) < 5 or np.linalg.matrix_rank(out, tol=10.0) < 2:
+        return
+    there = seen - seen.mean(axis=0)
+    slopes = np.linalg.lstsq(out, there, rcond=None)[0].T
+    size = math.sqrt(abs(np.linalg.det(slopes)))
+    if not size > 0 or np.linalg.norm(there - out @ slopes.T) > 0.2 * np.linalg.norm(there):
+        return  # no one movement of the sheet
+    for laid, words in LAID:
+        if np.linalg.norm(slopes / size - laid) < 0.5:
+            raise Error(
+                f"the sheet of the marks lies {words}; outlines count from the lower left corner of the plan's sheet",
+                "marks",
+                code="marks-displaced",
+            )
+    if abs(size - 1) > 0.2:
+        raise Error(
+            f"the marks lie {size:.3g} times as far apart as their strokes: are the outlines in pixels, or scanned at "
+            "another scale? They count in mm",
+            "marks",
+            code="marks-scaled",
+        )
+    if (away := float(np.hypot(*(seen - planned).mean(axis=0)))) > 0.5 * FARTHEST_MM:
+        raise Error(
+            f"all marks lie {away:.0f} mm from their strokes, all the same way: outlines count from the lower left "
+            "corner of the plan's sheet",
+            "marks",
+            code="marks-displaced",
+        )
+
+
+def _refuse_what_is_no_paint(found: list) -> None:
+    """A page's border would pass for paint that has no say, and the fit would take minutes to find that out."""
+    for i, (stroke, poses, rings) in enumerate(found):
+        if (area := _core.area(_oriented(rings))) < LEAST_MM2:
+            raise Error(
+                f"the mark of stroke {stroke!r} has an area of {area:.2g} mm^2, less than {LEAST_MM2:g}: leave out "
+                "what was not painted",
+                f"marks[{i}]",
+                code="mark-empty",
+            )
+        way = np.ptp(poses[:, :2], axis=0)
+        for k, ring in enumerate(rings):
+            larger = float(np.max(np.ptp(ring, axis=0) - way))
+            if larger > WIDEST_MM:
+                raise Error(
+                    f"a ring of the mark of stroke {stroke!r} is {larger:.0f} mm wider than its stroke, more than "
+                    f"{WIDEST_MM:g} mm: leave out what is not its paint, such as the border of the page",
+                    f"marks[{i}].outline_mm[{k}]",
+                    code="mark-too-large",
+                )
+
+
+def depths_painted(ways: list[np.ndarray]) -> int:
+    """At how many depths PAINTED_MM or more were painted, told apart by a twentieth of the deepest."""
+    deepest = max(float(-poses[:, 2].min()) for poses in ways)
+    if not deepest > 0:
+        return 0
+    painted = np.zeros(DEPTH_BINS)
+    for poses in ways:
+        length = polylines.steps(poses[:, :2])
+        for (a, b), along in zip(np.column_stack([poses[:-1, 2], poses[1:, 2]]), length, strict=True):
+            # a ramp paints a little at each of its depths
+            at = np.linspace(-a, -b, 10) / deepest * DEPTH_BINS
+            np.add.at(painted, np.clip(np.ceil(at).astype(int) - 1, 0, DEPTH_BINS - 1), along / 10)
+    runs = painted >= PAINTED_MM
+    # depths side by side are one: rounding may have put them on either side of a limit
+    return int(np.sum(runs & ~np.concatenate([[False], runs[:-1]]))) if runs.sum() < 4 else int(runs.sum())
+
+
+def _refuse_what_tells_nothing(ways: list[np.ndarray]) -> None:
+    count = depths_painted(ways)
+    if count == 0:
+        raise Error(
+            f"no stroke is painted for more than {PAINTED_MM:g} mm at any depth: paint longer ones",
+            "plan",
+            code="depths-too-few",
+        )
+    if count == 1:
+        raise Error(
+            "all was painted at one depth: how lag and width change with depth takes strokes at two depths or more, "
+            "better five",
+            "plan",
+            code="depths-too-few",
+        )
+    if all(_turning(poses) < STRAIGHT_RAD for poses in ways):
+        raise Error(
+            "all strokes are straight: lag and displacement of the marks cannot be told apart; add corners, arcs and "
+            "reversals, at each depth",
+            "plan",
+            code="law-undetermined",
+        )
+
+
+def _turning(poses: np.ndarray) -> float:
+    """By how much the TCP turns in all [rad], trembling left out."""
+    at = polylines.lengths(poses[:, :2])
+    if at[-1] < 1.0:
+        return 0.0
+    places = np.linspace(0, at[-1], max(3, min(200, int(at[-1]))))
+    points = np.column_stack([np.interp(places, at, poses[:, i]) for i in range(2)])
+    step = np.diff(points, axis=0) @ [1, 1j]
+    return float(np.abs(np.angle(step[1:] * np.conj(step[:-1]))).sum())

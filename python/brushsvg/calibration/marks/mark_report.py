@@ -1,0 +1,391 @@
+"""What painted marks told of a brush: laws, confidence, what moved, residuals; in words and as a picture."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ... import _core
+from ...errors import Notice
+from ...geometry.rotation import rotation
+from ...model.confidence import law_band, paint_interval_per_m
+from ...model.describe import LAWS, polynomial
+from ...model.plot import INK, brush_picture_on, encoded, fill_rings, new_figure
+from . import machine_found
+from .from_marks import (
+    GAP_TERMS,
+    HALF_TERMS,
+    LAG_TERMS,
+    TELLS,
+    front_ratio,
+    height_at,
+    simulated,
+    widest_ratio,
+)
+from .stray_marks import OUTLYING
+
+TABLE_ROWS = 6
+FOREIGN = 0.1  # of all points, masked: more than blots and gaps
+ALIKE = 0.5  # overlap of painted and predicted marks; photographs of hairy strokes have 0.6 to 0.8
+UNLIKELY, UNLIKELY_RMS = 3.0, 1.5  # times what was expected, of one number and of the displacements' rms
+PAINT, PREDICTED, WAY = "#c9ced8", "#c0392b", "#3f8fd9"
+
+
+def report(made, of_photo: bool = False) -> str:
+    """The text that `brushsvg calibrate` prints. made: a mark_calibrate.MarkCalibration; of_photo: of a photograph,
+    which has flags and no measurement file."""
+    brush, fit, painted = made.brush, made.fit, made.painted
+    lines = [
+        f"brush {brush.name}, depth {brush.depth_range_mm[0]:g} to {brush.depth_range_mm[1]:g} mm, from "
+        f"{len(painted.marks)} painted marks",
+        "",
+    ]
+    for name, _ in LAWS:
+        law = getattr(brush, name)
+        lines.append(f"{name} = {polynomial(law.coefficients)}")
+        halves = ", ".join(f"{half:.2g}" for half in law.half_interval_95)
+        lines.append(f"  95 % confidence intervals +- {halves} (ascending powers)")
+    overlap = overlaps(made)
+    lines += _paint(made) if brush.paint else []
+    lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
+    found = machine_found.numbers(fit, made.covariance, made.expected)
+    if table := machine_found.cell_table(fit, made.expected, found):
+        lines += ["", "for the cell:", *table]
+    remarks = [
+        f"note: {sentence}"
+        for sentence in [
+            *_few_depths(made),
+            *_departing(made),
+            *_astray(made),
+            *_unexpected(made, of_photo),
+            *_unlike(fit, overlap[1]),
+            *fit.remarks,
+        ]
+    ]
+    if not fit.converged:
+        remarks.append("note: the fit had not converged when it was stopped: look at the picture")
+    return "\n".join([*lines, *([""] if remarks else []), *remarks, ""])
+
+
+def _paint(made) -> list[str]:
+    paint, bends = made.brush.paint, made.paint_bends
+    half = paint_interval_per_m(paint)
+    known = "" if paint.narrows_per_m > half else ": these marks do not tell that they do"
+    lines = [
+        f"marks narrow by {paint.narrows_per_m:.3f} +- {half:.2g} per metre of way since the dip{known} (95 %, up to "
+        f"{paint.calibrated_mm[1]:.0f} mm)"
+    ]
+    if bends > _core.deviations_of_95(paint.degrees_of_freedom):
+        lines.append(
+            f"they do not narrow by one rate, by {bends:.1f} standard deviations: it is one over the whole way, "
+            "and the freshly dipped width is off by more than its interval"
+        )
+    lines.append(
+        made.dry.told()
+        if made.dry
+        else f"no mark ran dry: a load lasts {made.painted.way_mm:.0f} mm at least"
+    )
+    return lines
+
+
+def _tail(made) -> str:
+    gain = made.round_tail_gain
+    if abs(gain) < TELLS:
+        return "these marks do not tell whether the footprint's tail is pointed or round; it is taken to be pointed"
+    kinds = ("round", "pointed") if gain > 0 else ("pointed", "round")
+    return "footprints with a {} tail fit these marks, {} ones worse (chi-square {:.0f} more)".format(
+        *kinds, abs(gain)
+    )
+
+
+def _few_depths(made) -> list[str]:
+    terms = len(made.brush.lag.coefficients)
+    if terms >= LAG_TERMS:
+        return []
+    return [
+        f"the lag is a polynomial of degree {terms - 1}, not {LAG_TERMS - 1}: {made.painted.depths} depths were "
+        "painted. Between them its error may exceed its confidence interval"
+    ]
+
+
+def _departing(made) -> list[str]:
+    """Which laws have more than the usual numbers of coefficients."""
+    laws = made.fit.laws
+    departing = [
+        name
+        for name, terms, usual in (
+            ("lag", len(laws.lag), LAG_TERMS),
+            ("tip gap", len(laws.tip_gap) - 1, GAP_TERMS),
+            ("half width", len(laws.half_width) - 1, HALF_TERMS),
+            ("widest section", len(widest_ratio(laws)), 1),
+            ("front of the footprint", len(front_ratio(laws)), 1),
+        )
+        if terms > usual
+    ]
+    if not departing:
+        return []
+    return [
+        f"these marks do not speak for the usual laws: {', '.join(departing)} have more coefficients, and the "
+        "intervals hold by how much they may still be of another form"
+    ]
+
+
+def _unexpected(made, of_photo: bool = False) -> list[str]:
+    """What lies so far off that the sigmas the fit was given are not those of this sheet: they pull at the laws."""
+    fit, expected = made.fit, made.expected
+    astray = {stray.mark.stroke for stray in made.strays}
+    aside = [
+        miss.displacement_mm
+        for mark, miss in zip(made.painted.marks, fit.marks, strict=True)
+        if mark.stroke not in astray
+    ]
+    turn_deg, turn_sigma_deg = math.degrees(abs(fit.turn_rad)), math.degrees(expected.turn_rad)
+    found = (
+        (
+            "displacement_mm",
+            "marks are displaced (rms) by",
+            _rms(aside),
+            expected.displacement_mm,
+            UNLIKELY_RMS,
+        ),
+        (
+            "placement_mm",
+            "the sheet is shifted by",
+            max(map(abs, fit.shift_mm)),
+            expected.placement_mm,
+            UNLIKELY,
+        ),
+        ("height_mm", "the paper's height is off by", abs(fit.height_mm), expected.height_mm.sigma, UNLIKELY),
+        ("turn_deg", "the sheet is turned by", turn_deg, turn_sigma_deg, UNLIKELY),
+    )
+    return [
+        f"{what} {size:.2g} {_unit(key)}, but the fit expects {sigma:.2g} {_unit(key)} (standard deviation). This "
+        f"biases the laws{_remedy(key, _rounded_up(size), of_photo)}"
+        for key, what, size, sigma, times in found
+        if size > times * sigma > 0
+    ]
+
+
+def _unit(key: str) -> str:
+    return "degrees" if key.endswith("_deg") else "mm"
+
+
+def _remedy(key: str, sigma: float, of_photo: bool) -> str:
+    if not of_photo:
+        return f': give "expected": {{"{key}": {sigma:g}}} if that is how exact the sheet is'
+    of_flags = {
+        "height_mm": (
+            f": add --height {sigma:g} if you know the height no better. A liner, whose lines are wide where it just "
+            "touches, looks like high paper: measure the height (brushsvg height), add --height 0.05"
+        ),
+        "displacement_mm": ": add --spread FILE, which brushsvg compare --sheets writes",
+    }
+    return of_flags.get(key, ": compare the picture (--picture) with the page that you painted")
+
+
+def _astray(made) -> list[str]:
+    if made.strays_left_out and made.strays:
+        names = ", ".join(stray.mark.stroke for stray in made.strays)
+        return [f"left out, not being where or what the other marks say: {names}"]
+    return [f"{notice.where}: {notice.told}" for notice in strays_told(made)]
+
+
+def strays_told(made) -> list[Notice]:
+    """Of each mark that is not where or what the others say: where it was found and where expected, what it costs."""
+    out = []
+    for stray in made.strays:
+        (rings,) = predicted_marks(made, [stray.mark])
+        found, expected = (
+            _extent(np.vstack(each))
+            for each in (stray.mark.outline_mm, on_sheet(made, rings) or [np.zeros((1, 2))])
+        )
+        if stray.is_displaced:
+            dx, dy = stray.displacement_mm
+            what = (
+                f"its mark lies {math.hypot(dx, dy):.1f} mm aside ({dx:+.1f}, {dy:+.1f}), the others scatter by "
+                f"{stray.spread_mm:.2f} mm"
+            )
+        else:
+            what = (
+                f"its outline is off by {stray.rms_mm:.2f} mm (rms), the others by {stray.usual_rms_mm:.2f}: something "
+                "lies on the mark, or it is smeared or torn"
+            )
+        sentence = f"{what}; found in {found}, expected in {expected}; {_cost(made, stray.mark)}"
+        out.append(Notice(stray.mark.stroke, sentence, code="mark-astray", about=stray.mark.stroke))
+    return out
+
+
+def _extent(points: np.ndarray) -> str:
+    (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
+    return f"x [{x0:.1f}, {x1:.1f}], y [{y0:.1f}, {y1:.1f}] mm"
+
+
+def _cost(made, mark) -> str:
+    if not made.strays_left_out:
+        return "look at the picture, and leave it out if it is not the mark of this stroke"
+    depth = deepest_mm(mark)
+    alike = sum(abs(deepest_mm(other) - depth) < 0.01 for other in made.painted.marks)
+    at = min(depth, made.brush.depth_range_mm[1])
+    half = float(law_band(made.brush, "lag", np.array([at]))[0][0])
+    return f"it is left out: {alike} other marks are {depth:.4g} mm deep, the lag is known there to +- {half:.2f} mm"
+
+
+def _unlike(fit, moved: float) -> list[str]:
+    """moved: overlap without the displacements."""
+    out = []
+    if fit.left_aside > FOREIGN:
+        out.append(
+            f"{100 * fit.left_aside:.0f} % of the edge points are masked outliers, outside the range [0, "
+            f"{100 * FOREIGN:.0f}] %: the tail and the confidence intervals may be wrong; clean the outlines of blots, "
+            "borders and slits"
+        )
+    if moved <= ALIKE:
+        out.append(
+            f"painted and predicted marks overlap by {moved:.2f}, outside the range [{ALIKE:g}, 1]: look at the "
+            "picture before use"
+        )
+    return out
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def _rounded_up(size: float) -> float:
+    """To one digit."""
+    unit = 10.0 ** math.floor(math.log10(size))
+    return unit * math.ceil(size / unit)
+
+
+def _table(brush) -> list[str]:
+    lines = ["  depth" + "".join(name.rjust(18) for name, _ in LAWS)]
+    depths = np.linspace(*brush.depth_range_mm, TABLE_ROWS)
+    bands = {name: law_band(brush, name, depths) for name, _ in LAWS}
+    for i, depth in enumerate(depths):
+        cells = []
+        for name, _ in LAWS:
+            band = bands[name]
+            half = f" +- {band[0][i]:.2f}" if band else ""
+            cells.append(f"{getattr(brush, name)(depth):.2f}{half}".rjust(18))
+        lines.append(f"{depth:7.2f}" + "".join(cells))
+    return [*lines, "  +-: half the 95 % confidence interval of the law"]
+
+
+def _moved(made) -> list[str]:
+    """Height of the paper, place of the sheet, displacement of the marks: found along with the laws."""
+    fit = made.fit
+    half_intervals = _core.deviations_of_95() * np.sqrt(np.diag(made.covariance))
+    first = height_at(fit)
+    height, shift, turn = (
+        half_intervals[first],
+        half_intervals[first + 1 : first + 3],
+        half_intervals[first + 3],
+    )
+    way = "higher" if fit.height_mm >= 0 else "lower"
+    sizes = [math.hypot(*miss.displacement_mm) for miss in fit.marks]
+    far = int(np.argmax(sizes))
+    lines = [
+        f"the paper lies {abs(fit.height_mm):.2f} +- {height:.2f} mm {way} than the plan took it to be",
+        f"the sheet is shifted by {fit.shift_mm[0]:+.2f} +- {shift[0]:.2f}, {fit.shift_mm[1]:+.2f} +- {shift[1]:.2f} "
+        f"mm and turned by {math.degrees(fit.turn_rad):+.2f} +- {math.degrees(turn):.2f} degrees",
+        f"marks are displaced by {np.sqrt(np.mean(np.square(sizes))):.2f} mm (rms), {made.painted.marks[far].stroke} "
+        f"most, by {sizes[far]:.2f} mm",
+    ]
+    lines += machine_found.told(machine_found.numbers(fit, made.covariance, made.expected))
+    if made.scale:
+        lines.append(f"by where its marks lie the sheet is {made.scale.told(made.scale.both)} than the plan")
+    return lines
+
+
+def _stays(made, lying: float, moved: float) -> list[str]:
+    """lying, moved: overlap with and without the displacements."""
+    fit = made.fit
+    worst = int(np.argmax([miss.rms_mm for miss in fit.marks]))
+    lines = [
+        f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, worth "
+        f"{fit.effective_samples:.0f} independent ones",
+        f"largest residuals: {made.painted.marks[worst].stroke}, {fit.marks[worst].rms_mm:.2f} mm (rms)",
+        f"painted and predicted marks overlap by {lying:.3f} where they lie, by {moved:.3f} with their displacements "
+        "taken away (mean of intersection over union)",
+    ]
+    if made.edge_mm > 0:
+        lines.append(
+            f"all edges may lie {made.edge_mm:.2f} mm off together (standard deviation), as a picture has them: the "
+            "intervals hold that"
+        )
+    if fit.left_aside > 0.01:
+        bound = f"residual above {OUTLYING:g} standard deviations"
+        lines.append(f"masked: {100 * fit.left_aside:.0f} % of the points, outliers ({bound})")
+    if fit.slim > 0.01:
+        lines.append(
+            f"masked: {100 * fit.slim:.0f} % of the points, beside ends hardly wider than the residuals"
+        )
+    outliers = [
+        mark.stroke for mark, found in zip(made.painted.marks, fit.marks, strict=True) if found.outlier
+    ]
+    if outliers:
+        lines.append(
+            f"masked marks, outliers as a whole: {', '.join(outliers)}: look at them, and paint them again"
+        )
+    return lines
+
+
+def overlaps(made) -> tuple[float, float]:
+    """Mean overlap of painted with predicted marks, where they lie and with their displacements taken away: how well
+    the brush says where paint will be, which is more than the confidence of its laws."""
+    marks, lying, moved = made.painted.marks, [], []
+    predicted = predicted_marks(made, marks)
+    for mark, miss, rings in zip(marks, made.fit.marks, predicted, strict=True):
+        lying.append(_core.overlap(_home(made, mark.outline_mm, (0.0, 0.0)), rings))
+        moved.append(_core.overlap(_home(made, mark.outline_mm, miss.displacement_mm), rings))
+    return float(np.mean(lying)), float(np.mean(moved))
+
+
+def report_picture(made, suffix: str) -> bytes:
+    """The laws with bands, and painted outlines against predicted ones: best, median and worst mark."""
+    figure = new_figure((11, 11))
+    laws, marks = figure.subfigures(2, 1, height_ratios=(1.6, 1))
+    brush_picture_on(laws, made.brush)
+    order = np.argsort([miss.rms_mm for miss in made.fit.marks])
+    chosen = [("best", order[0]), ("median", order[len(order) // 2]), ("worst", order[-1])]
+    predicted = predicted_marks(made, [made.painted.marks[int(k)] for _, k in chosen])
+    for axes, (what, k), rings in zip(marks.subplots(1, 3), chosen, predicted, strict=True):
+        mark, miss = made.painted.marks[int(k)], made.fit.marks[int(k)]
+        fill_rings(axes, _home(made, mark.outline_mm, miss.displacement_mm), PAINT)
+        for ring in rings:
+            axes.plot(*np.vstack([ring, ring[:1]]).T, color=PREDICTED, linewidth=1)
+        axes.plot(*mark.poses_mm[:, :2].T, color=WAY, linewidth=0.8)
+        axes.set_aspect("equal")
+        title = f"{what}: {mark.stroke}, {miss.rms_mm:.2f} mm (rms)".replace("$", r"\$")
+        axes.set_title(title, fontsize=9, color=INK)
+        axes.tick_params(labelsize=7)
+    marks.suptitle("grey: painted; red: predicted; blue: the tool's way", fontsize=8)
+    return encoded(figure, suffix)
+
+
+def _home(made, rings, displacement) -> list[np.ndarray]:
+    """Rings of the sheet in the frame of the plan, as the fit found the one to lie on the other."""
+    fit = made.fit
+    centre, back = np.array(fit.centre_mm), rotation(-fit.turn_rad)
+    return [(ring - fit.shift_mm - centre) @ back + centre - displacement for ring in rings]
+
+
+def on_sheet(made, rings) -> list[np.ndarray]:
+    """Rings in the frame of the plan where they lie on the sheet that was painted."""
+    fit = made.fit
+    centre, turned = np.array(fit.centre_mm), rotation(fit.turn_rad)
+    return [(ring - centre) @ turned + centre + fit.shift_mm for ring in rings]
+
+
+def deepest_mm(mark) -> float:
+    return float(-np.array(mark.poses_mm)[:, 2].min())
+
+
+def predicted_marks(made, marks: list) -> list:
+    """Rings of what the brush that was found paints along the ways of these marks, in the frame of the plan."""
+    brush, traces = simulated(made, marks)
+    painted = _core.Marks()
+    painted.passes = traces
+    _core.trace_outlines(painted, brush)
+    return [one.outline_mm for one in painted.passes]

@@ -1,0 +1,1 @@
+"""A brush from measured numbers."""

@@ -1,0 +1,1 @@
+"""A known brush, updated by a painted job."""

@@ -1,0 +1,1 @@
+"""Commands for brushes: charts, calibration, comparison."""

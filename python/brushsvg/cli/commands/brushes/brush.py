@@ -1,0 +1,87 @@
+"""brushsvg brush: list, show, check, new, plot."""
+
+from __future__ import annotations
+
+import os
+
+from ...._core import remarks, write_brush
+from ....errors import Error, Notice
+from ....files import read_bytes
+from ....model.describe import LAWS, one_line, page, reach
+from ....model.library import brush_like, brush_names, find_brush, unknown_keys
+from ...console import RefusedError, about, tell, warn
+from ...steps.ask_measurements import ask_measurements, few_depths
+from ...steps.output_places import check_places, suffix_of, tell_list, write
+
+
+def brush_list(_args) -> None:
+    tell_list(brush_names(), lambda name: one_line(find_brush(name)))
+
+
+def brush_show(args) -> None:
+    with about(args.input):
+        tell(page(find_brush(args.input)) + "\n")
+
+
+def brush_check(args) -> None:
+    with about(args.input):
+        brush = find_brush(args.input)
+        odd = [*unknown_keys(brush), *remarks(brush)]
+    warn(args.input, odd)
+    tell(f"{args.input}: brush {brush.name} can be used\n")
+
+
+def brush_new(args) -> None:
+    from ....calibration.numbers.from_widths import new_brush
+    from ....calibration.numbers.measurements import read_widths
+
+    path = args.name if suffix_of(args.name) == ".json" else f"{args.name}.json"
+    name = os.path.splitext(os.path.basename(path))[0]
+    if not os.path.basename(args.name).strip(". "):
+        why = Notice("", "a brush needs a name, as in brushsvg brush new mine", code="name-invalid")
+        raise RefusedError(args.name, [why])
+    check_places(args, path, sources=[path])
+    if args.like is None and args.lag is None and not (args.lag_at or args.width_at or args.widths):
+        args.lag_at, args.width_at = ask_measurements(args.name)
+    widths = list(args.width_at)
+    if args.widths:
+        with about(args.widths):
+            widths += read_widths(read_bytes(args.widths).decode("utf-8", "replace"))
+    with about(path):
+        if name in brush_names():
+            raise Error(
+                f"a brush named {name} comes along: give yours another name", "name", code="name-taken"
+            )
+        if args.like is not None:
+            brush = brush_like(name, find_brush(args.like))
+            brush.max_speed_mm_s = args.speed or brush.max_speed_mm_s
+        else:
+            brush = new_brush(name, args.lag_at or args.lag, widths, args.depth_max, args.speed or 25.0)
+        text = write_brush(brush)
+    warn(path, few_depths(args, widths))
+    write(args, {path: text}, sources=[path])
+    tell(f"{path}: {reach(brush)}\n")
+    if args.like is not None:
+        tell(f"assumed: all of it, as {args.like} has it; brushsvg brush show {path} says how\n")
+        return
+    assumed = [law for law, _ in LAWS if getattr(brush, law).assumed]
+    deepest, measured = brush.depth_range_mm[1], max(depth for depth, _ in widths)
+    if deepest > measured and "half_width" not in assumed:
+        assumed.append(
+            f"widths beyond {measured:g} mm of depth ({2 * brush.half_width(deepest):.1f} mm at {deepest:g} mm)"
+        )
+    farthest = max((depth for depth, _ in args.lag_at), default=deepest)
+    if deepest > farthest and "lag" not in assumed:
+        assumed.append(
+            f"lags beyond {farthest:g} mm of depth ({brush.lag(deepest):.1f} mm at {deepest:g} mm)"
+        )
+    tell(f"assumed: {', '.join(assumed)} and the footprints; brushsvg brush show {path} says how\n")
+
+
+def brush_plot(args) -> None:
+    from ....model.plot import brush_picture
+
+    check_places(args, args.output)
+    with about(args.input):
+        picture = brush_picture(find_brush(args.input), suffix_of(args.output))
+    write(args, {args.output: picture})

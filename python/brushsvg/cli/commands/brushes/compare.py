@@ -1,0 +1,82 @@
+"""brushsvg compare: photographs of a painted job held against what was wanted and predicted."""
+
+from __future__ import annotations
+
+from ....errors import Error, Notice
+from ....machine.cells.cell_file import parse_cell, write_cell
+from ...console import RefusedError, about, stage, tell, warn
+from ...steps.options import typed
+from ...steps.output_places import check_places, suffix_of, write
+
+
+def compare_files(args) -> None:
+    from ....jobs.comparing import compared, painted_sheet
+
+    sources = _sources(args)
+    check_places(args, args.output, args.picture, args.mended_cell, sources=sources)
+    with about(args.input):
+        sheet = painted_sheet(typed(args), stage, warn)
+    if args.sheets:
+        _repeats(args, sheet)
+        return
+    with about(args.photos[0]):
+        job = compared(sheet, args.photos, stage, warn)
+    files = {}
+    if args.output:
+        files[args.output] = job.json if suffix_of(args.output) == ".json" else job.text
+    if args.picture:
+        files[args.picture] = job.picture()
+    if args.mended_cell:
+        with about(args.mended_cell):
+            files[args.mended_cell] = _cell_text(job.cell)
+        if not job.is_mended:
+            sentence = (
+                "nothing is certain to be amiss of the machine or the paper's height: the cell is as it was"
+            )
+            warn(args.mended_cell, [Notice("machine", sentence, code="cell-unchanged")])
+    if files:
+        write(args, files, sources=sources)
+    tell(job.json if args.json else job.text)
+    if args.at_least is not None and job.overlap < args.at_least:
+        sentence = f"the overlap {job.overlap:.3f} is below {args.at_least:g}"
+        low = Error(sentence, value=job.overlap, code="overlap-low")
+        raise RefusedError(args.photos[0], [low.notice()])
+
+
+def _sources(args) -> list[str]:
+    """Corrections, or how well a studio repeats, and a cell: files that later commands read."""
+    made = [args.output] if suffix_of(args.output) == ".json" else []
+    return [*made, *([args.mended_cell] if args.mended_cell else [])]
+
+
+def _cell_text(cell) -> str:
+    """Error where a number of its machine is beyond what a cell may have."""
+    text = write_cell(cell)
+    parse_cell(text)
+    return text
+
+
+def _repeats(args, sheet) -> None:
+    """How well the same strokes lie on several sheets, or copies of strokes on one."""
+    from ....comparison.photographs import compare_sheets
+    from ....comparison.repeats import as_json, as_text, repeats
+    from ....comparison.repeats_picture import repeats_png
+    from ....jobs.comparing import on_its_page, photographs
+
+    with about(args.photos[0]):
+        photos = photographs(args.photos, stage)
+        sheet, sheets = on_its_page(sheet, lambda one: compare_sheets(one.page, [*one.strokes], photos))
+    title, strokes = sheet.title, list(sheet.strokes)
+    for path, each in zip(args.photos, sheets, strict=True):
+        warn(path, list(each.notices))
+    with about(args.photos[0]):
+        found = repeats(sheet.plan, sheets)
+    files = {}
+    if args.output:
+        makes = as_json if suffix_of(args.output) == ".json" else as_text
+        files[args.output] = makes(title, found)
+    if args.picture:
+        files[args.picture] = repeats_png(title, found, sheets, strokes)
+    if files:
+        write(args, files, sources=_sources(args))
+    tell(as_json(title, found) if args.json else as_text(title, found))

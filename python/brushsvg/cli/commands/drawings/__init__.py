@@ -1,0 +1,1 @@
+"""Commands for drawings and their programs."""

@@ -1,0 +1,18 @@
+"""brushsvg animate: a program as it is painted, to play in a browser."""
+
+from __future__ import annotations
+
+from ....jobs import outputs
+from ...console import about
+from ...steps.options import settled, typed
+from ...steps.output_places import check_places, write
+from ...steps.prepared import look
+
+
+def animate_file(args) -> None:
+    check_places(args, args.output)
+    looked = look(settled(typed(args), args.input), outlines=True, at_loads=True)
+    work, loads, cell = looked.work, looked.loads, looked.work.options.cell
+    with about(args.input):
+        page = outputs.played(work, loads, looked.marks, cell, args.speed)
+    write(args, {args.output: page}, len(loads.loads), looked.seconds())

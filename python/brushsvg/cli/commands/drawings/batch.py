@@ -1,0 +1,67 @@
+"""brushsvg batch: many drawings, each to its program, its picture and a row of a table."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ....errors import Notice
+from ....jobs.choices import CHOICES
+from ....text_summary import summarized
+from ....units import clock
+from ...console import RefusedError, about, clear_stage, say, stage, warn
+from ...steps.options import typed
+from .text import font_of
+
+OF_ONE = ("input", "corrections")  # choices that are of one drawing
+
+
+def batch_files(args) -> None:
+    from ....jobs.batch.items import drawings, words
+    from ....jobs.batch.run import batch
+
+    with about(args.font or ""):  # errors about the words name their file
+        set_in_font = (
+            words(args.words, font_of(args.font), args.size or 20.0, args.sheet) if args.words else []
+        )
+    chosen = typed(args)
+    with about(args.output):
+        done = batch(
+            [*drawings(args.inputs), *set_in_font],
+            args.output,
+            jobs=args.jobs,
+            cluster=args.cluster,
+            format=args.format or "",
+            order=args.order,
+            lenient=args.lenient,
+            parquet=args.parquet,
+            progress=stage,
+            **{name: getattr(chosen, name) for name in CHOICES if name not in OF_ONE},
+        )
+    clear_stage()
+    told = [replace(each, where=_where(row, each.where)) for row in done.rows for each in row.notices]
+    outdated = "removed: it was made from an earlier version of the drawing"
+    told += [Notice(path, outdated, code="outdated-removed") for path in done.removed]
+    warn(args.output, told)
+    if not args.quiet:
+        say(args.output, _said(done))
+    if done.refused:
+        why = [Notice(_where(row, row.where), row.sentence, code=row.code) for row in done.refused]
+        raise RefusedError(args.output, summarized(why))
+
+
+def _where(row, element: str) -> str:
+    return ": ".join(filter(None, (row.source, element)))
+
+
+def _said(done) -> str:
+    painted = [row.figures for row in done.rows if row.figures]
+    known = [f"{len(done.rows)} drawing{'s' * (len(done.rows) != 1)}"]
+    known += [f"{done.resumed} of them done before"] if done.resumed else []
+    known += [f"{len(done.refused)} refused"] if done.refused else []
+    seconds = [each.time_s for each in painted if each.time_s is not None]
+    known += [f"all take about {clock(sum(seconds))}"] if seconds else []
+    overlaps = [each.overlap for each in painted if each.overlap is not None]
+    if overlaps:
+        mean = sum(overlaps) / len(overlaps)
+        known += [f"overlap {mean:.3f} on average, {min(overlaps):.3f} at least"]
+    return f"written; {', '.join(known)}"

@@ -1,0 +1,73 @@
+"""brushsvg check: a program read back, simulated, and held against what it should paint."""
+
+from __future__ import annotations
+
+import json
+
+from ....errors import Error
+from ....jobs import outputs, prediction
+from ....jobs.checking import Check, checked
+from ....show.evaluation import report
+from ....text_summary import summarized
+from ....units import clock
+from ...console import RefusedError, about, stage, tell, warn
+from ...steps.options import typed
+from ...steps.output_places import check_places, suffix_of, write
+
+RUNNABLE = "nothing forbids to run it"
+
+
+def check_file(args) -> None:
+    check_places(args, args.preview)
+    with about(""):  # errors name their file
+        done = checked(args.program, typed(args), stage, warn)
+    with about(args.program):
+        if done.is_foreign and args.lenient:
+            sentence = "brushsvg did not write it: --lenient would change nothing"
+            raise Error(sentence, code="flag-without-effect")
+        if done.work is None and args.preview:
+            raise Error("it paints no drawing: there is no picture of it", code="nothing-to-show")
+        if args.preview:
+            outlined = prediction.outlined(done.marks, done.work.brush, stage)
+            picture = outputs.picture(suffix_of(args.preview), done.work, outlined)
+            overlap = None if done.is_foreign else done.figures.total.overlap
+            write(args, {args.preview: picture}, len(done.plan.passes), done.time_s, overlap)
+    if done.job == "painting":
+        tell(report.as_text(".json" if args.json else ".txt", done.figures))
+    elif args.json:
+        tell(json.dumps(_in_json(done)) + "\n")
+    else:
+        tell(f"{args.program}: {_does(done)}; takes about {clock(done.time_s)}\n")
+    if done.problems:
+        raise RefusedError(args.program, summarized(list(done.problems)))
+    if not args.json:
+        tell(f"{args.program}: {_allowed(done)}\n")
+
+
+def _allowed(done: Check) -> str:
+    if done.is_foreign:
+        return (
+            f"brushsvg did not write it; with brush {done.work.brush.name} it keeps the limits asked of it: "
+            "depth, speed, rapid moves while the brush touches, the sheet, the workspace"
+        )
+    is_alone = not done.is_compared and done.job in ("painting", "border")
+    return RUNNABLE + ("; it was not compared with a drawing" if is_alone else "")
+
+
+def _does(done: Check) -> str:
+    """What a program before the first stroke does."""
+    if done.job == "border":
+        left, bottom, right, top = done.border_mm
+        return (
+            f"goes round {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm of the sheet, in the air"
+        )
+    if done.job == "first-run":
+        does = "goes round the sheet in the air, touches it at four points, strokes at heights from {:g} to {:g} mm"
+        return does.format(*done.heights_mm)
+    highest, lowest, step = done.heights_mm
+    return f"strokes at heights from {highest:g} to {lowest:g} mm, {step:g} mm apart"
+
+
+def _in_json(done: Check) -> dict:
+    told = {"job": done.job, "time_s": round(done.time_s, 3)}
+    return told | ({"border_mm": done.border_mm} if done.border_mm else {"heights_mm": done.heights_mm})

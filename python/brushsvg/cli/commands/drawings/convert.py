@@ -1,0 +1,122 @@
+"""brushsvg convert: a drawing to the program of a machine, with its picture and its figures."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+from pathlib import Path
+
+from ....errors import Notice
+from ....jobs import conversion, outputs, prediction
+from ....jobs.choices import on_a_page
+from ....jobs.preparation.margin_strokes import expected_in_words
+from ....jobs.work import Work, colours, of_colour
+from ....machine.paint_reload import has_pens, may_pause, pens_changed
+from ....machine.program import Job
+from ....machine.writer import beside, called_programs
+from ....show.evaluation import report
+from ...console import RefusedError, about, stage, tell, warn
+from ...steps.options import settled, typed, warn_of_cell
+from ...steps.output_places import check_places, suffix_of, write
+from ...steps.prepared import prepare
+
+
+def convert_file(args) -> None:
+    check_places(args, args.output, args.preview, args.report, args.page)
+    chosen = settled(typed(args), args.input)
+    # check knows strokes in the margin by the program that paints them: of several, only one would
+    work = prepare(on_a_page(chosen) if args.page and not args.per_colour else chosen)
+    warn(args.input, [notice for notice in work.notices if args.lenient or not notice.damaged])
+    parts = _per_colour(args.output, work) if args.per_colour else [(args.output, work)]
+    check_places(args, *(path for path, _ in parts))
+    files, overlap = {}, None
+    if args.page:
+        with about(args.page):
+            files[args.page] = outputs.page(suffix_of(args.page), work)
+    with about(args.input):
+        tries = [_tried(args, path, part) for path, part in parts]
+        for (path, _), one in reversed([*zip(parts, tries, strict=True)]):
+            files = {beside(path, name): text for name, text in one.encoded().items()} | files
+        shown = tries[0] if len(tries) == 1 else None
+        if args.preview or args.report:
+            marks = (
+                shown.marks if shown else prediction.predict(work, suffix_of(args.preview) == ".svg", stage)
+            )
+            of_all = shown.work if shown else work
+        if args.preview:
+            files[args.preview] = outputs.picture(suffix_of(args.preview), of_all, marks)
+        if args.report:
+            figures = outputs.reported(of_all, marks, work.options.cell)
+            files[args.report] = report.as_text(suffix_of(args.report), figures)
+            overlap = figures.total.overlap
+    warn(args.input, dict.fromkeys(notice for one in tries for notice in one.remarks()))
+    warn_of_cell(args, tries[0].cell)
+    warn(args.output, _left_from_before(args.output, files, _called_before(args.output)))
+    strokes = sum(len(one.loads.loads) for one in tries) - args.from_stroke + 1
+    times_s = [one.time_s() for one in tries]
+    seconds = None if None in times_s else sum(times_s)
+    write(
+        args, files, strokes, seconds, overlap, "" if args.per_colour else _pens(tries[0], args.from_stroke)
+    )
+    if not args.quiet and (words := expected_in_words(work)):
+        tell(f"{words}\n")
+
+
+def _per_colour(output: str, work: Work) -> list[tuple[str, Work]]:
+    """A file and the strokes of one colour each, the lightest first."""
+    path = Path(output)
+    return [
+        (str(path.with_name(f"{path.stem}-{number}-{colour[1:]}{path.suffix}")), of_colour(work, colour))
+        for number, colour in enumerate(colours(work), 1)
+    ]
+
+
+def _by_number(name: str) -> list:
+    """A key that sorts part2 before part10."""
+    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
+
+
+def _called_before(output: str) -> list[str]:
+    """Names of the files that the program calls which is now at the output, if it is one of several files."""
+    return [Path(file).name for file in called_programs(output, _text_of_before(output), _text_of_before)]
+
+
+def _text_of_before(path: str) -> str:
+    """A program of an earlier run, as far as it can be read; names in it are ASCII. Devices and pipes hold none."""
+    try:
+        return Path(path).read_bytes().decode("ascii", "replace") if Path(path).is_file() else ""
+    except OSError:
+        return ""
+
+
+def _left_from_before(output: str, files: Collection[str], called_before: list[str]) -> list[Notice]:
+    """A notice of programs for a colour, or of parts, that an earlier run wrote and this one does not: nobody should
+    run them."""
+    path = Path(output)
+    name = re.compile(rf"{re.escape(path.stem)}(-\d+-[0-9a-f]{{6}})?(-part\d+)?{re.escape(path.suffix)}")
+    there = [each.name for each in path.parent.glob("*") if name.fullmatch(each.name)]
+    there += [each for each in called_before if path.with_name(each).exists()]
+    left = sorted({each for each in there if str(path.with_name(each)) not in files}, key=_by_number)
+    if not left:
+        return []
+    sentence = f"programs of an earlier run are still here and belong to another version: {', '.join(left)}"
+    return [Notice("", sentence, code="programs-of-before", advice="delete them")]
+
+
+def _tried(args, path: str, work: Work) -> conversion.Tried:
+    """A program that may be written. RefusedError with all that forbids it."""
+    rings, job = suffix_of(args.preview) == ".svg", Job(args.z_offset, args.from_stroke)
+    one = conversion.tried(work, suffix_of(path), job, args.order, args.lenient, rings, stage, path=path)
+    if one.problems:
+        raise RefusedError(args.input, one.problems)
+    return one
+
+
+def _pens(one: conversion.Tried, from_stroke: int) -> str:
+    """How often somebody has to change the pen, in words."""
+    if not (one.is_program and may_pause(one.cell)):
+        return ""
+    stops = pens_changed(one.loads, one.cell, from_stroke)
+    times = "once" if stops == 1 else f"{stops} times"
+    more = f"takes another pen {times}" if has_pens(one.cell) else f"stops {times} for another pen"
+    return more if stops else ""

@@ -1,0 +1,63 @@
+"""brushsvg report: how near the paint comes to the drawing, with one brush or with all."""
+
+from __future__ import annotations
+
+from ....jobs import outputs
+from ....jobs.choices import layout_of, reading_of
+from ....jobs.options import DEFAULT_BRUSH
+from ....jobs.preparation import other_brushes, other_sizes
+from ....model.library import brush_names, find_brush
+from ....read import read_drawing
+from ....read.layout import arrange
+from ....show.evaluation import report
+from ....text_summary import summarized
+from ...console import RefusedError, about, stage, tell
+from ...steps.options import options_of, settled, typed
+from ...steps.output_places import check_places, suffix_of, write
+from ...steps.prepared import look
+
+
+def report_file(args) -> None:
+    check_places(args, args.preview)
+    if args.all_brushes:
+        return _all_brushes(args)
+    chosen = settled(typed(args, brush=args.brush[0] if args.brush else None), args.input)
+    looked = look(chosen, outlines=suffix_of(args.preview) == ".svg", partly=True)
+    work, marks = looked.work, looked.marks
+    with about(args.input):
+        stage("trying other sizes")
+        advice = other_sizes.advice(work)
+        figures = outputs.reported(
+            work,
+            marks,
+            work.options.cell,
+            looked.warnings,
+            looked.forbidden,
+            seconds=looked.seconds(),
+            advice=advice,
+        )
+        text = report.as_text(".json" if args.json else ".txt", figures)
+        if args.preview:
+            picture = outputs.overlap_picture(suffix_of(args.preview), work, marks)
+            write(args, {args.preview: picture}, len(figures.strokes), figures.time_s, figures.total.overlap)
+    if work.plan.passes or args.json:
+        tell(text)
+    elif advice:
+        tell(advice + "\n")
+    if work.refused:
+        raise RefusedError(args.input, summarized(work.refused))
+
+
+def _all_brushes(args) -> None:
+    # whatever brush the drawing asks for
+    chosen = settled(typed(args, brush=DEFAULT_BRUSH), args.input)
+    asked = [*brush_names(), *(name for name in args.brush or () if name not in brush_names())]
+    brushes = []
+    for name in asked:
+        with about(name):
+            brushes.append(find_brush(name))
+    options = options_of(chosen)
+    with about(args.input):
+        suits = other_brushes.suits(args.input, options, brushes, stage)
+        title = arrange(read_drawing(args.input, reading_of(chosen)), layout_of(chosen)).title
+        tell(report.brushes_json(title, suits) if args.json else report.brushes_text(title, suits))

@@ -1,0 +1,42 @@
+"""brushsvg text: words in a font, as a drawing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ....errors import Error
+from ....files import read_bytes
+from ...console import about, stage, warn
+from ...steps.output_places import check_places, write
+
+SINGLE_LINE_FONTS = Path("/usr/share/inkscape/extensions/svg_fonts")
+
+
+def text_file(args) -> None:
+    check_places(args, args.output, sources=[args.output])
+    from ....read.text import text_svg
+
+    with about(args.font):
+        stage("setting the text")
+        drawing, notices = text_svg(
+            args.input.replace("\\n", "\n"),
+            font_of(args.font),
+            size_mm=args.size,
+            width_mm=args.width,
+            sheet_mm=args.sheet,
+        )
+    warn(args.font, notices)
+    write(args, {args.output: drawing.encode()}, sources=[args.output])
+
+
+def font_of(name: str) -> bytes:
+    """Of a file, or by the name of a file among Inkscape's fonts of single lines."""
+    if not Path(name).exists():
+        for known in (SINGLE_LINE_FONTS / name, SINGLE_LINE_FONTS / f"{name}.svg"):
+            if Path(name).name == name and known.is_file():
+                return read_bytes(known)
+        sentence = "there is no such file"
+        if Path(name).suffix.lower() in ("", ".svg"):
+            sentence += f"; single-line fonts of Inkscape are found by name in {SINGLE_LINE_FONTS}"
+        raise Error(sentence, file=name, code="file-unreadable")
+    return read_bytes(name)

@@ -1,0 +1,55 @@
+"""brushsvg demo: a first picture, from a word that comes with the package."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from ...console import stage, tell
+from ...steps.output_places import check_places, write
+
+WORD = Path(__file__).parents[3] / "data" / "drawings" / "vincent.svg"
+
+
+def demo_picture(args) -> None:
+    """Write the picture of the word, print its path, and open it where there is a display."""
+    check_places(args, args.output)
+    from ....jobs import prediction
+    from ....jobs.comparison_picture import TITLES, comparison_png
+    from ....jobs.options import Options
+    from ....jobs.preparation import preparation
+    from ....show.evaluation import report
+
+    stage("painting")
+    works = {how: preparation.prepare(WORD, Options(compensation=how)) for how in TITLES}
+    marks = {how: prediction.predict(work) for how, work in works.items()}
+    totals = {
+        how: report.measure(work.plan, marks[how], work.brush, work.strokes)[1] for how, work in works.items()
+    }
+    made = comparison_png(works, marks, totals)
+    write(args, {args.output: made}, len(works["closed"].strokes or ()), overlap=totals["closed"].overlap)
+    tell(f"{os.path.abspath(args.output)}\n")
+    if not args.no_open:
+        open_picture(args.output)
+
+
+def open_picture(path: str) -> None:
+    """Show a picture in the viewer of the desktop. Nothing happens where there is no desktop."""
+    if sys.platform == "win32":
+        os.startfile(path)
+    elif sys.platform == "darwin":
+        _start("open", path)
+    elif os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+        _start("xdg-open", path)
+
+
+def _start(program: str, path: str) -> None:
+    nothing = subprocess.DEVNULL
+    try:
+        subprocess.Popen(
+            [program, path], stdin=nothing, stdout=nothing, stderr=nothing, start_new_session=True
+        )
+    except OSError:  # the path was printed
+        return

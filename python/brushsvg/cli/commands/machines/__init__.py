@@ -1,0 +1,1 @@
+"""Commands for a machine before its first job."""

@@ -1,0 +1,134 @@
+"""brushsvg cell: list, show, check, new, place."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import replace
+
+from ....errors import Error, Notice
+from ....jobs.options import DEFAULT_BRUSH
+from ....machine.cells import cell_check as cell_checks
+from ....machine.cells.cell import robot_from_paper
+from ....machine.cells.cell_file import (
+    DEFAULT_CELL,
+    cell_names,
+    find_cell,
+    own_name,
+    parse_cell,
+    write_cell,
+)
+from ....machine.cells.describe_cell import cell_page
+from ....machine.paint_reload import in_loads
+from ....machine.posts import POSTS
+from ....machine.program import stations_astray
+from ....machine.writer import whole_program
+from ....model.library import find_brush
+from ...console import RefusedError, about, stage, tell, warn
+from ...steps.options import brush_of, exact_cell, typed
+from ...steps.output_places import check_places, suffix_of, tell_list, write
+from ...steps.prepared import prepare
+
+
+def cell_list(_args) -> None:
+    tell_list(cell_names(), lambda name: find_cell(name).description)
+
+
+def cell_show(args) -> None:
+    with about(args.input):
+        tell(cell_page(find_cell(args.input)) + "\n")
+
+
+def cell_check(args) -> None:
+    with about(args.input):
+        cell = find_cell(args.input)
+    if cell.language not in POSTS:
+        known = ", ".join(POSTS)
+        sentence = f"no program can be written in {cell.language!r} yet, only plans; known: {known}"
+        warn(args.input, [Notice("language", sentence, code="language-unknown")])
+    frame = robot_from_paper(cell)
+    if problems := cell_checks.out_of_reach(cell) or stations_astray(find_brush(DEFAULT_BRUSH), cell, frame):
+        raise RefusedError(args.input, problems)
+    warn(args.input, cell_checks.remarks(cell))
+    tell(f"{args.input}: cell {cell.name} can be used\n")
+
+
+def cell_place(args) -> None:
+    from ....machine.arm import place
+    from ....machine.arm.follow import follow
+    from ....machine.arm.joints import joints_of
+    from ....machine.program import astray_in
+    from ....machine.setup_programs import over_sheet
+    from ....show.table_picture import table_picture
+
+    check_places(args, args.output)
+    cell = exact_cell(args.input)
+    with about(args.input):
+        if cell.arm is None:
+            raise Error(
+                f"cell {cell.name} has no table arm: nobody knows what its machine reaches",
+                code="arm-missing",
+            )
+        joints = joints_of(cell.arm)
+    if args.drawing:
+        work = prepare(typed(args, input=args.drawing, cell=args.input), cell)
+        sheet_mm = work.plan.sheet_mm
+        made = whole_program(in_loads(work.plan, work.brush, cell), work.brush, cell)
+    else:
+        sheet_mm = args.sheet or SHEET_MM
+        made = over_sheet(brush_of(args.brush) or find_brush(DEFAULT_BRUSH), cell, sheet_mm)
+    stage("following the joints")
+    followed = follow(made, joints)
+    problems = [*followed.problems, *astray_in(made, sheet_mm)]
+    found = place.nearest(made, joints, lambda there: not astray_in(there, sheet_mm)) if problems else None
+    there = followed if found is None else follow(place.at(made, found.frame), joints)
+    if args.output:
+        stage("looking at the table")
+        table = place.table_of(cell, made.robot_from_frame, joints)
+        drawn = table_picture(
+            suffix_of(args.output), table, cell, sheet_mm, made.robot_from_frame, found and found.frame
+        )
+        write(args, {args.output: drawn})
+    if not problems:
+        tell(f"{args.input}: arm {cell.arm.name} does it all with the paper where it lies\n")
+    elif found:
+        pose = place.cell_at(cell, found.frame).paper
+        tell(f"{args.input}: the sheet {found.told} would do: {_pose(pose)}\n")
+    if there.start_rad is not None:
+        told = ", ".join(f"{math.degrees(angle):.0f}" for angle in there.start_rad)
+        tell(f"{args.input}: it begins with its joints at {told} degrees, or turned by whole turns\n")
+    if problems:
+        if not found:
+            problems[0] = replace(problems[0], advice=place.NOWHERE)
+        raise RefusedError(args.drawing or args.input, problems)
+
+
+SHEET_MM = (200.0, 100.0)
+
+
+def _pose(paper) -> str:
+    origin, turned = (", ".join(f"{v:g}" for v in each) for each in (paper.origin_mm, paper.rotation_deg))
+    return f"origin_mm = [{origin}], rotation_deg = [{turned}]"
+
+
+def cell_new(args) -> None:
+    check_places(args, args.output, sources=[args.output])
+    with about(args.like or DEFAULT_CELL):
+        cell = find_cell(args.like or DEFAULT_CELL)
+    name = os.path.splitext(os.path.basename(args.output))[0]
+    with about(args.output):
+        paper = (
+            replace(
+                cell.paper,
+                taught_mm=tuple(args.taught),
+                origin_mm=(0.0, 0.0, 0.0),
+                rotation_deg=(0.0, 0.0, 0.0),
+                example=False,
+            )
+            if args.taught
+            else cell.paper
+        )
+        text = write_cell(replace(cell, name=own_name(name), paper=paper))
+        made = parse_cell(text)
+    warn(args.output, cell_checks.out_of_reach(made) or cell_checks.remarks(made))
+    write(args, {args.output: text}, sources=[args.output])

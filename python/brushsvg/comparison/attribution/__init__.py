@@ -1,0 +1,1 @@
+"""The causes of errors: brush, machine or paper."""

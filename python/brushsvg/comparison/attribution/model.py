@@ -1,0 +1,139 @@
+"""What a job's marks would be if this or that were amiss: of the sheet, the machine, the paper, the brush."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ... import _core
+from ...geometry.rotation import rotation
+from ...machine.cells.cell import Machine
+from ...machine.realised.passes import as_run
+from ...model.confidence import law_band
+from ...model.perturbed import with_factors
+
+SHEET, MACHINE, PAPER, BRUSH = "place of the sheet", "machine", "height and tilt of the paper", "brush"
+OTHER_OF_MAKE, OTHER_BENT = (
+    0.15,
+    0.1,
+)  # of a law, standard deviation between brushes of one make; how it bends
+SUREST = 0.005  # of a law: on paper as it lies no brush is surer
+AT_ONCE = min(8, os.cpu_count() or 1)
+ROUGHLY_MM = 0.02  # between rows of a mark: with 0.1 outlines are rough by as much as a number moves them
+
+
+@dataclass(frozen=True)
+class Number:
+    """One number that may be amiss, 0 where it is not. sigma: standard deviation beforehand; step: that moves edges by
+    about 0.1 mm."""
+
+    cause: str
+    name: str
+    unit: str
+    sigma: float
+    step: float
+
+
+@dataclass(frozen=True)
+class FaultModel:
+    """plan: as it was told; names: of the strokes that are looked at; the frame is the sheet's; turn, height and
+    tilt are about the middle of the marks, scale and skew about the work zero, which is the sheet's corner. learned:
+    the brush was made from these marks and its laws are as sure as its file says; else it may be another of its
+    make."""
+
+    plan: object
+    brush: object
+    names: tuple[str, ...]
+    middle_mm: np.ndarray
+    learned: bool = False
+
+    @cached_property
+    def _depths_mm(self) -> tuple[float, float]:
+        """The usual depth, and how far from it a law is off by another number: as the deepest one, or as the paper."""
+        depths = -np.concatenate([np.array(one.poses_mm)[:, 2] for one in self.plan.passes])
+        usual = float(np.median(depths[depths > 0.1])) if (depths > 0.1).any() else 1.0
+        return usual, max(float(depths.max()) - usual, usual)
+
+    @cached_property
+    def numbers(self) -> tuple[Number, ...]:
+        half = 0.5 * np.array(self.plan.sheet_mm)
+        deepest = max(float(-np.array(one.poses_mm)[:, 2].min()) for one in self.plan.passes)
+        at = self.brush.lag(deepest)
+        wide = self.brush.half_width(deepest)
+        sure = {law: self._sure_of(law) for law in ("lag", "half_width")} if self.learned else {}
+        lag, width = min(0.1, 0.15 / max(at, 0.5)), min(0.1, 0.1 / max(wide, 0.5))
+        return (
+            Number(SHEET, "shift in x", "mm", 2.0, 0.1),
+            Number(SHEET, "shift in y", "mm", 2.0, 0.1),
+            Number(SHEET, "turn", "degrees", 1.0, 0.15),
+            Number(MACHINE, "scale in x", "", 0.01, 0.2 / half[0]),
+            Number(MACHINE, "scale in y", "", 0.01, 0.2 / half[1]),
+            Number(MACHINE, "skew", "mm in x per mm in y", 0.005, 0.2 / half[1]),
+            Number(MACHINE, "lean in x", "mm per mm of depth", 0.1, 0.1 / max(deepest, 1.0)),
+            Number(MACHINE, "lean in y", "mm per mm of depth", 0.1, 0.1 / max(deepest, 1.0)),
+            Number(MACHINE, "backlash in x", "mm", 0.3, 0.1),
+            Number(MACHINE, "backlash in y", "mm", 0.3, 0.1),
+            Number(PAPER, "height", "mm", 0.3, 0.1),
+            Number(PAPER, "tilt in x", "mm per mm", 1.0 / half[0], 0.1 / half[0]),
+            Number(PAPER, "tilt in y", "mm per mm", 1.0 / half[1], 0.1 / half[1]),
+            Number(BRUSH, "lag", "of it", sure.get("lag", OTHER_OF_MAKE), lag),
+            Number(BRUSH, "lag, deepest against usual", "of it", sure.get("lag", OTHER_BENT), lag),
+            Number(BRUSH, "width", "of it", sure.get("half_width", OTHER_OF_MAKE), width),
+            Number(BRUSH, "width, deepest against usual", "of it", sure.get("half_width", OTHER_BENT), width),
+        )
+
+    def _sure_of(self, law: str) -> float:
+        """Standard deviation of a law at the usual depth, as a share of it."""
+        usual = self._depths_mm[0]
+        band = law_band(self.brush, law, np.array([usual]))
+        if band is None:
+            return OTHER_OF_MAKE
+        share = float(band[0][0]) / _core.deviations_of_95() / max(getattr(self.brush, law)(usual), 1e-6)
+        return min(max(share, SUREST), OTHER_OF_MAKE)
+
+    def rings(self, amiss: np.ndarray) -> dict[str, list[np.ndarray]]:
+        """By stroke, on the sheet; strokes that would not be painted are left out."""
+        shift, turn = amiss[:2], np.radians(amiss[2])
+        scale, skew, lean, backlash = 1 + amiss[3:5], amiss[5], amiss[6:8], amiss[8:10]
+        height, tilt, lag, width = amiss[10], amiss[11:13], amiss[13:15], amiss[15:17]
+        middle = self.middle_mm
+        machine = Machine(
+            tuple(lean.tolist()),
+            tuple(scale.tolist()),
+            float(skew),
+            float(height - tilt @ middle),  # true_mm has them from the sheet's corner
+            tuple(tilt.tolist()),
+        )
+        deepest = self.brush.depth_range_mm[1]
+        run = as_run(self.plan.passes, machine, np.maximum(backlash, 0.0), deepest)
+        if (backlash < 0).any():  # as far the other way: only a derivative at 0 asks for it
+            run = as_run(self.plan.passes, machine, (0.0, 0.0), deepest)
+        asked = [one for one in run if one.stroke in self.names]
+        usual, spread = self._depths_mm
+        factors = {
+            name: (1 + even - slope * usual / spread, slope / spread)
+            for name, (even, slope) in (("lag", lag), ("half_width", width))
+        }
+        brush = with_factors(self.brush, factors)
+        marks = _core.simulate(
+            _core.Plan("", "", self.plan.sheet_mm, asked), brush, ROUGHLY_MM, may_rise=True
+        )
+        lie = rotation(turn)
+        with ThreadPoolExecutor(AT_ONCE) as pool:  # without the interpreter's lock
+            outlines = list(pool.map(lambda mark: _traced(mark, brush), marks.passes))
+        return {
+            mark.stroke: [(np.array(ring) - middle) @ lie + middle + shift for ring in outline]
+            for mark, outline in zip(marks.passes, outlines, strict=True)
+        }
+
+
+def _traced(mark, brush):
+    """The rings of one stroke: what all paint together covers is not asked."""
+    alone = _core.Marks()
+    alone.passes = [mark]
+    _core.trace_outlines(alone, brush)
+    return alone.passes[0].outline_mm

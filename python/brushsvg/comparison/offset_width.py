@@ -1,0 +1,88 @@
+"""A pass that paints its edges farther out or in, as far as the brush's laws were measured."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .. import _core
+from ..errors import Error
+from ..machine.realised.arc_chords import with_chords
+from ..machine.realised.retimed import on_way
+
+DEPTHS = 400  # that the law of width is inverted between
+
+
+def wider(a_pass, by_mm: float, brush):
+    """The pass whose edges lie by_mm farther out (below 0: in), where it is as wide as it is on average, and elsewhere
+    by the same share: deeper, and the tool ahead by as much as the brush trails more, so that it drags along the same
+    line.
+    Error where the brush cannot."""
+    refuse_width(a_pass, by_mm, brush)
+    a_pass = with_chords(a_pass)
+    poses = np.array(a_pass.poses_mm, dtype=float)
+    before = np.maximum(-poses[:, 2], 0.0)
+    share = 1 + by_mm / _half_mm(a_pass, brush)
+    _, deepest = measured_mm(brush)
+    depths = np.linspace(0.0, max(deepest, float(before.max())), DEPTHS)
+    after = np.interp(share * brush.half_width(before), brush.half_width(depths), depths)
+    after[before == 0] = 0.0
+    heading = _headings(a_pass, brush)
+    ahead = brush.lag(after) - brush.lag(before)
+    poses[:, :2] += ahead[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
+    poses[:, 2] = -after
+    return on_way(a_pass, poses, [])
+
+
+def refuse_width(a_pass, by_mm: float, brush) -> None:
+    """Where the brush cannot paint a stroke so much wider."""
+    if not brush.width_follows_depth():
+        raise Error(
+            f"brush {brush.name} is as wide at every depth: the width of its strokes is not corrected",
+            a_pass.stroke,
+            code="width-correction-refused",
+        )
+    half_mm, (least, deepest) = _half_mm(a_pass, brush), measured_mm(brush)
+    low, high = 2 * float(brush.half_width(least)), 2 * float(brush.half_width(deepest))
+    widest_mm = 2 * float(brush.half_width(-np.array(a_pass.poses_mm)[:, 2]).max())
+    share = 1 + by_mm / half_mm
+    told_mm = share * (widest_mm if by_mm > 0 else 2 * half_mm)
+    if low <= told_mm <= high or half_mm <= 0:
+        return
+    raise Error(
+        f"with its width corrected by {2 * by_mm:+.2f} mm it would be {told_mm:.2f} mm wide, outside the range "
+        f"[{low:.2f}, {high:.2f}] mm in which brush {brush.name} was measured: its width is not corrected",
+        a_pass.stroke,
+        told_mm,
+        (low, high),
+        code="width-correction-refused",
+    )
+
+
+def measured_mm(brush) -> tuple[float, float]:
+    """Depths at which its lag and its width were measured; of laws that say nothing, all that it may go."""
+    least, deepest = brush.depth_range_mm
+    for law in (brush.lag, brush.half_width):
+        if law.calibrated_mm:
+            least, deepest = max(least, law.calibrated_mm[0]), min(deepest, law.calibrated_mm[1])
+    return least, deepest
+
+
+def _trace(a_pass, brush):
+    return _core.simulate(_core.Plan("", "", (1.0, 1.0), [a_pass]), brush, for_outlines=False).passes[0]
+
+
+def _half_mm(a_pass, brush) -> float:
+    """Half width on average of its way on the paper."""
+    trace = _trace(a_pass, brush)
+    steps = np.hypot(*np.diff(np.asarray(trace.contact_mm), axis=0).T)
+    halves = brush.half_width(np.asarray(trace.depth_mm))
+    if not steps.sum():
+        return float(np.max(halves))
+    return float(np.average((halves[1:] + halves[:-1]) / 2, weights=steps))
+
+
+def _headings(a_pass, brush) -> np.ndarray:
+    """At each pose the direction in which the brush points."""
+    trace = _trace(a_pass, brush)
+    heading = np.unwrap(np.asarray(trace.heading_rad))
+    return np.interp(np.arange(len(a_pass.poses_mm)), np.asarray(trace.pose), heading)

@@ -1,0 +1,93 @@
+"""What was painted, as it is, over what was wanted, under a line where it was predicted; the worst strokes named."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from .attribution.faults import Faults
+from .job_page import JobPage
+from .photographs import Comparison, Wanted
+
+LONG_SIDE_PX = 2400
+WANTED, PREDICTED, TEXT = (190, 190, 190), (40, 40, 220), (30, 30, 30)  # blue, green, red
+NAMED = 5
+MARGIN_PX = 90
+ROW_PX = 40
+
+
+def comparison_png(
+    page: JobPage, strokes: list[Wanted], found: Comparison, title: str, faults: Faults | None
+) -> bytes:
+    left, bottom, right, top = _extent(strokes, found)
+    fine = min(LONG_SIDE_PX / max(right - left, top - bottom), 2 * found.flat.px_per_mm)
+    corner = found.flat.to_px(np.array([[left, top]]) + page.frame_mm)[0]
+    size = round((right - left) * fine), round((top - bottom) * fine)
+    step = found.flat.px_per_mm / fine
+    matrix = np.array([[step, 0, corner[0]], [0, step, corner[1]]])
+    image = cv2.warpAffine(
+        found.flat.pixels,
+        matrix,
+        size,
+        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+        borderMode=cv2.BORDER_REPLICATE,
+    )
+
+    def lines(rings):
+        return [np.round((ring - [left, top]) * [1, -1] * fine * 16).astype(np.int32) for ring in rings]
+
+    grey = image.copy()
+    for stroke in strokes:
+        cv2.fillPoly(grey, lines(stroke.wanted or ()), WANTED, cv2.LINE_AA, 4)
+    image = cv2.min(image, grey)
+    for stroke in strokes:
+        cv2.polylines(image, lines(stroke.predicted), True, PREDICTED, 2, cv2.LINE_AA, 4)
+    worst = sorted(found.strokes, key=lambda one: one.overlap_predicted)[:NAMED]
+    places = {stroke.stroke: np.vstack(stroke.predicted) for stroke in strokes if stroke.predicted}
+    for one in worst:
+        at = places[one.stroke]
+        x, y = (np.array([at[:, 0].min(), at[:, 1].max()]) - [left, top]) * [1, -1] * fine
+        words = f"{one.stroke} {one.overlap_predicted:.2f}"
+        _write(image, words, (int(x), max(24, int(y) - 8)), PREDICTED)
+    out = np.full((image.shape[0] + MARGIN_PX, max(image.shape[1], 900), 3), 255, np.uint8)
+    out[MARGIN_PX:, : image.shape[1]] = image
+    _write(out, title[:60], (16, 34), TEXT)
+    _write(
+        out,
+        "paint as photographed; grey: wanted; red line: predicted, the worst named",
+        (16, 72),
+        (30, 30, 30),
+        0.75,
+    )
+    if faults is not None:
+        out = np.vstack([out, _shares(faults, out.shape[1])])
+    return cv2.imencode(".png", out)[1].tobytes()
+
+
+def _shares(faults: Faults, width: int) -> np.ndarray:
+    """What mending each cause alone would gain, as bars with their intervals."""
+    shares = sorted(faults.shares, key=lambda one: -one.gain)
+    out = np.full((80 + ROW_PX * len(shares), width, 3), 255, np.uint8)
+    _write(out, "mending it alone would gain in overlap (line: 95 %)", (16, 50), TEXT, 0.75)
+    left = min(760, round(0.55 * width))
+    most = max(0.02, *(share.high for share in shares))
+    per_px = (width - left - 40) / most
+    for row, share in enumerate(shares):
+        y = 80 + ROW_PX * row
+        _write(out, f"{share.gain + 0.0:+.3f}  {share.cause}", (16, y + 26), TEXT, 0.75)
+        ends = [left + round(max(value, 0.0) * per_px) for value in (share.gain, share.low, share.high)]
+        cv2.rectangle(out, (left, y + 4), (ends[0], y + 28), WANTED if row else PREDICTED, -1)
+        cv2.line(out, (ends[1], y + 16), (ends[2], y + 16), TEXT, 2, cv2.LINE_AA)
+    return out
+
+
+def _extent(strokes: list[Wanted], found: Comparison):
+    points = np.vstack([ring for stroke in strokes for ring in (*stroke.predicted, *(stroke.wanted or ()))])
+    low = np.maximum(points.min(axis=0) - 8, found.canvas.window_mm[:2])
+    high = np.minimum(points.max(axis=0) + 8, found.canvas.window_mm[2:])
+    return *low, *high
+
+
+def _write(image, words: str, at, colour, size: float = 0.9) -> None:
+    cv2.putText(image, words, at, cv2.FONT_HERSHEY_SIMPLEX, size, (255, 255, 255), 6, cv2.LINE_AA)
+    cv2.putText(image, words, at, cv2.FONT_HERSHEY_SIMPLEX, size, colour, 2, cv2.LINE_AA)

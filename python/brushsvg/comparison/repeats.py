@@ -1,0 +1,288 @@
+"""How well a studio repeats: the same strokes on several sheets, or several times on one."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _core, json_fields
+from ..errors import Error
+from ..files import read_bytes
+from ..geometry.polylines import evenly
+from ..geometry.rotation import rotation
+from .corrections import LEAST_MARKS
+from .next_corrections import UNSEEN
+from .photographs import Comparison
+
+FORMAT = "brushsvg/repeatability"
+SAME_MM = (
+    0.2  # copies of a stroke have the same way but for its place, and for how its poses were thinned out
+)
+ALONG = 65  # places at which ways are compared
+LEAST_FREEDOM = 4  # values to spare for a spread: fewer say next to nothing
+ALIKE_MM = 1e-9  # no two sheets repeat so well
+BIN_SHARE = 0.25  # width of a column of the histogram over the spread
+BAR = 40
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A stroke, or copies of one: how many were seen, their mean displacement beyond the sheet's place, and how far
+    they lie from it: rms in x and y together over the square root of two, and the farthest; wider_mm: rms of how much
+    farther out edges lie than on average."""
+
+    stroke: str
+    count: int
+    mean_mm: tuple[float, float]
+    spread_mm: float
+    farthest_mm: float
+    wider_mm: float
+
+
+@dataclass(frozen=True)
+class Approach:
+    """By how much strokes that begin in the positive direction of an axis lie farther along it than those that begin
+    in the negative one, with half its 95 % interval; None where there are too few of either. plus_mm, minus_mm: mean
+    place along the axis of each stroke, by that direction."""
+
+    axis: str
+    value_mm: float | None
+    half_mm: float | None
+    plus_mm: np.ndarray
+    minus_mm: np.ndarray
+
+
+@dataclass(frozen=True)
+class Repeats:
+    """displacement_mm: standard deviation in x and in y of where the same stroke lies, with its 95 % interval; away_mm:
+    (n,) of each one, how far from its mean; over_sheets: else over copies on one, which their places
+    move, too; once: strokes that were seen once or not at all, of which nothing is told."""
+
+    rows: tuple[Spread, ...]
+    displacement_mm: float
+    low_mm: float
+    high_mm: float
+    away_mm: np.ndarray
+    approaches: tuple[Approach, ...]
+    sheets: int
+    over_sheets: bool
+    once: tuple[str, ...] = ()
+
+
+def repeats(plan, sheets: list[Comparison]) -> Repeats:
+    """sheets: comparisons of sheets that were painted by the same plan. Error where nothing was painted twice."""
+    places = [_places(found) for found in sheets]
+    names = [one.stroke for one in plan.passes]
+    over_sheets = len(sheets) > 1
+    groups = [[name] for name in names] if over_sheets else _copies(plan)
+    rows, once, away, squares, seen, used = [], [], [], 0.0, 0, 0
+    for group in groups:
+        values = [each[name] for each in places for name in group if name in each]
+        if len(values) < 2:
+            once += group
+            continue
+        at = np.array([value[:2] for value in values])
+        off = at - at.mean(axis=0)
+        far = np.hypot(*off.T)
+        wide = np.array([value[2] for value in values])
+        count = len(values)
+        rows.append(
+            Spread(
+                group[0],
+                count,
+                tuple(at.mean(axis=0).tolist()),
+                math.sqrt(float(np.square(off).sum()) / (2 * (count - 1))),
+                float(far.max()),
+                float(wide.std(ddof=1)),
+            )
+        )
+        away.append(far)
+        squares += float(np.square(off).sum())
+        seen += count
+        used += 1
+    # two means of each group, and of each sheet but one a shift and a turn
+    freedom = 2 * (seen - used) - 3 * (len(sheets) - 1)
+    if freedom < LEAST_FREEDOM:
+        what = "on these sheets" if over_sheets else "on this sheet, where copies of a stroke are looked for"
+        sentence = (
+            f"too few strokes are seen more than once {what}: {seen} marks of {used} strokes tell no spread"
+        )
+        raise Error(sentence, code="too-few-repeats")
+    sigma = math.sqrt(squares / freedom)
+    if sigma < ALIKE_MM:
+        sentence = "marks lie alike to the last digit: photographs of two sheets are needed, not of one twice"
+        raise Error(sentence, code="too-few-repeats")
+    low, high = (sigma * math.sqrt(freedom / _chi_square(freedom, side)) for side in (1.96, -1.96))
+    approaches = tuple(_approach(plan, places, axis) for axis in (0, 1))
+    return Repeats(
+        tuple(rows), sigma, low, high, np.concatenate(away), approaches, len(sheets), over_sheets, tuple(once)
+    )
+
+
+def _places(found: Comparison) -> dict[str, tuple[float, float, float]]:
+    """By stroke x and y beyond the sheet's place, in the sheet's own directions, and how much wider it is."""
+    if found.spread_mm is None:
+        sentence = f"fewer than {LEAST_MARKS} of its marks are found, which do not tell how the sheet lies"
+        raise Error(sentence, code="marks-missing")
+    sheet, out = found.common, {}
+    for row in found.strokes:
+        if row.placed.found and row.missing <= UNSEEN:
+            middle = np.array([row.middle_mm])
+            beyond = middle + row.placed.shift_mm - sheet.moved(middle, found.middle_mm)
+            x, y = (beyond @ rotation(-sheet.turn_rad))[0].tolist()
+            out[row.stroke] = (x, y, row.placed.wider_mm)
+    return out
+
+
+def _copies(plan) -> list[list[str]]:
+    """Names of strokes that are the same but for their place."""
+    groups: list[tuple[np.ndarray, list[str]]] = []
+    for one in plan.passes:
+        way = _along(np.array(one.poses_mm))
+        for known, names in groups:
+            if np.abs(known - way).max() < SAME_MM:
+                names.append(one.stroke)
+                break
+        else:
+            groups.append((way, [one.stroke]))
+    return [names for _, names in groups]
+
+
+def _along(poses_mm: np.ndarray) -> np.ndarray:
+    """(n, 3) from its beginning, at places that part the way into equal lengths."""
+    way = evenly(poses_mm, ALONG)
+    way[:, :2] -= poses_mm[0, :2]
+    return way
+
+
+def _approach(plan, places, axis: int) -> Approach:
+    """The way to a stroke's beginning: from where the one before it ended."""
+    ways: dict[bool, list[float]] = {True: [], False: []}
+    for before, one in zip(plan.passes[:-1], plan.passes[1:], strict=True):
+        way = one.poses_mm[0][axis] - before.poses_mm[-1][axis]
+        values = [each[one.stroke][axis] for each in places if one.stroke in each]
+        if values and abs(way) > 1.0:
+            ways[way > 0].append(float(np.mean(values)))
+    name = "xy"[axis]
+    up, down = (np.array(ways[side]) for side in (True, False))
+    if min(len(up), len(down)) < 2:
+        return Approach(name, None, None, up, down)
+    freedom = len(up) + len(down) - 2
+    within = (np.square(up - up.mean()).sum() + np.square(down - down.mean()).sum()) / freedom
+    half = _core.deviations_of_95(freedom) * math.sqrt(within * (1 / len(up) + 1 / len(down)))
+    return Approach(name, float(up.mean() - down.mean()), float(half), up, down)
+
+
+def _chi_square(freedom: int, deviate: float) -> float:
+    """The quantile of a normal deviate (Wilson and Hilferty)."""
+    part = 2.0 / (9.0 * freedom)
+    return freedom * max(1.0 - part + deviate * math.sqrt(part), 0.05) ** 3
+
+
+def histogram(found: Repeats) -> list[tuple[float, int]]:
+    """(upper edge in mm, how many displacements lie below it and above the one before)."""
+    edges, counts = bins_of(found)
+    return list(zip(edges[1:].tolist(), counts.tolist(), strict=True))
+
+
+def bins_of(found: Repeats) -> tuple[np.ndarray, np.ndarray]:
+    """Edges (n + 1,) of bins in mm, from 0, and how many displacements (n,) lie in each."""
+    step = max(0.01, round(BIN_SHARE * float(np.quantile(found.away_mm, 0.9)), 2))
+    edges = np.arange(math.ceil(float(found.away_mm.max()) / step) + 1) * step
+    return edges, np.histogram(found.away_mm, np.concatenate([[0.0], edges[1:] + 1e-9]))[0]
+
+
+def as_text(title: str, found: Repeats) -> str:
+    width = max(6, *(len(row.stroke) for row in found.rows))
+    over = (
+        f"{found.sheets} sheets" if found.over_sheets else "copies on one sheet, which their place moves, too"
+    )
+    lines = [
+        f"{title}: {len(found.rows)} strokes on {over}",
+        "",
+        f"{'stroke'.ljust(width)}  seen  mean x  mean y  spread  farthest  wider",
+    ]
+    for row in found.rows:
+        x, y = row.mean_mm
+        lines.append(
+            f"{row.stroke.ljust(width)}  {row.count:4d}  {x:+6.2f}  {y:+6.2f}  {row.spread_mm:6.3f}  "
+            f"{row.farthest_mm:8.2f}  {row.wider_mm:5.3f}"
+        )
+    if found.once:
+        count = f"{len(found.once)} stroke{'s' * (len(found.once) != 1)}"
+        lines += [
+            "",
+            f"Not told, since not seen twice (not found, or more than {100 * UNSEEN:g} % of the mark without paint): "
+            f"{count}: {', '.join(found.once)}.",
+        ]
+    lines += [
+        "",
+        f"The same stroke lies {found.displacement_mm:.3f} mm aside in x and in y (standard deviation, 95 % interval "
+        f"{found.low_mm:.3f} to {found.high_mm:.3f}).",
+        *(_approach_words(one) for one in found.approaches),
+        "",
+        "How far from its mean each lies, mm:",
+    ]
+    bins = histogram(found)
+    most, before = max(count for _, count in bins), 0.0
+    for edge, count in bins:
+        lines.append(f"  {before:5.2f} to {edge:5.2f}  {count:4d}  {'#' * round(BAR * count / most)}")
+        before = edge
+    lines += [
+        "",
+        "Mean, spread, farthest: displacement beyond the sheet's place, mm; spread in x and in y; wider: how far edges",
+        "lie from their mean (standard deviation, mm).",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _approach_words(one: Approach) -> str:
+    if one.value_mm is None:
+        return f"Too few strokes are approached from either side in {one.axis} to tell a hysteresis."
+    certain = "" if abs(one.value_mm) > one.half_mm else ", which may be chance"
+    return (
+        f"Strokes that are approached towards +{one.axis} lie {one.value_mm:+.3f} +- {one.half_mm:.3f} mm farther that "
+        f"way than those approached towards -{one.axis}{certain}."
+    )
+
+
+def as_json(title: str, found: Repeats) -> str:
+    made = {
+        "format": FORMAT,
+        "version": 1,
+        "title": title,
+        "sheets": found.sheets,
+        "displacement_mm": round(found.displacement_mm, 4),
+        "displacement_95_mm": [round(found.low_mm, 4), round(found.high_mm, 4)],
+        "hysteresis_mm": {
+            one.axis: None if one.value_mm is None else [round(one.value_mm, 4), round(one.half_mm, 4)]
+            for one in found.approaches
+        },
+        "not_seen_twice": list(found.once),
+        "histogram": [{"to_mm": round(edge, 4), "count": count} for edge, count in histogram(found)],
+        "strokes": [
+            {
+                "stroke": row.stroke,
+                "seen": row.count,
+                "mean_mm": [round(value, 4) for value in row.mean_mm],
+                "spread_mm": round(row.spread_mm, 4),
+                "farthest_mm": round(row.farthest_mm, 4),
+                "wider_mm": round(row.wider_mm, 4),
+            }
+            for row in found.rows
+        ],
+    }
+    return json.dumps(made, indent=1, ensure_ascii=False) + "\n"
+
+
+def read_displacement_mm(path: str) -> float:
+    """The standard deviation in a file that `compare --sheets` wrote. Error naming file and key."""
+    try:
+        content = json_fields.document(read_bytes(path), FORMAT)
+        return json_fields.number(content.get("displacement_mm"), "displacement_mm", 1e-3, 10.0)
+    except Error as refusal:
+        refusal.file = path
+        raise

@@ -1,0 +1,221 @@
+"""What a batch paints: drawings in files, folders and lists, words in a font; each with a name of its own."""
+
+from __future__ import annotations
+
+import glob
+import hashlib
+import json
+import os
+import unicodedata
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...errors import Error, need
+from ...files import read_bytes
+from ...read import READERS, InMemory
+from ...read.text import text_svg
+
+IN_FOLDERS = (".svg", ".svgz", ".dxf")  # G-code is read where it is named: programs lie in folders, too
+LIST = ".txt"
+MOST_LETTERS = 60  # of a word, in the name of its files
+
+
+@dataclass(frozen=True)
+class Item:
+    """One drawing. name: of its files, without extension, below the batch's folder; source: what a person calls it;
+    read: it, when it is its turn; digest: of all that it depends on; "" where it cannot be read, which `read` tells;
+    path: where it lies, absolute; "" where it is no file."""
+
+    name: str
+    source: str
+    digest: str
+    read: Callable[[], InMemory]
+    path: str = ""
+
+
+def drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
+    """Of files, folders (all SVG and DXF below them), patterns with * ? [], and lists (.txt: a path on each line, from
+    where the list lies), in that order. Error where one names nothing, or two would have the same name."""
+    items = []
+    for operand in map(os.fspath, operands):
+        if os.path.isdir(operand):
+            items += [_drawing(path, path.relative_to(operand)) for path in _below(Path(operand))]
+        elif Path(operand).suffix.lower() == LIST:
+            items += drawings(_listed(operand))
+        elif os.path.exists(operand) or not glob.has_magic(operand):
+            items.append(_drawing(Path(operand), Path(Path(operand).name)))
+        else:
+            found = [
+                Path(path) for path in sorted(glob.glob(operand, recursive=True)) if os.path.isfile(path)
+            ]
+            drawn = [path for path in found if path.suffix.lower() in READERS]
+            items += [_drawing(path, Path(path.name)) for path in drawn]
+            if not drawn:
+                raise Error("no drawing has such a name", file=operand, code="file-unreadable")
+    return items
+
+
+def _below(folder: Path) -> list[Path]:
+    found = sorted(path for path in folder.rglob("*") if path.suffix.lower() in IN_FOLDERS and path.is_file())
+    if not found:
+        sentence = f"no drawing lies in this folder; looked for {', '.join(IN_FOLDERS)}"
+        raise Error(sentence, file=str(folder), code="file-unreadable")
+    return found
+
+
+def _listed(path: str) -> list[str]:
+    lines = _lines(path)
+    return [os.path.join(os.path.dirname(path), line) for line in lines]
+
+
+def _lines(path: str | os.PathLike[str]) -> list[str]:
+    """Lines of a text that are not blank, without blanks around them."""
+    try:
+        lines = [line.strip() for line in read_bytes(path).decode("utf-8-sig").splitlines()]
+    except UnicodeDecodeError:
+        raise Error("the list is not text in UTF-8", file=os.fspath(path), code="not-text") from None
+    if not any(lines):
+        raise Error("the list is empty", file=os.fspath(path), code="file-empty")
+    return [line for line in lines if line]
+
+
+def _drawing(path: Path, name: Path) -> Item:
+    stem = name.with_suffix("").as_posix() if name.name else ""
+    if not stem.isprintable():
+        return _unnamed(_printable(stem), _printable(str(path)))
+
+    def read() -> InMemory:
+        extension = path.suffix.lower()
+        if extension not in READERS and (extension or path.exists()):
+            known = ", ".join(READERS)
+            sentence = f"{extension or 'no extension'} is not a drawing format that is read; known: {known}"
+            raise Error(sentence, file=str(path), code="drawing-format")
+        return InMemory(extension, read_bytes(path))
+
+    try:
+        digest = hashlib.sha256(f"{path.suffix.lower()}\n".encode() + read_bytes(path)).hexdigest()
+    except Error:
+        digest = ""
+    return Item(stem, str(path), digest, read, os.path.realpath(path))
+
+
+def _unnamed(name: str, source: str) -> Item:
+    """A drawing that is refused when it is its turn, since its files cannot have its name."""
+
+    def read() -> InMemory:
+        sentence = (
+            f"{name[:60]} cannot be the name of a file that is written: it holds more than printed letters"
+        )
+        raise Error(sentence, code="name-invalid", advice="rename the drawing")
+
+    return Item(name, source, "", read)
+
+
+def _printable(text: str) -> str:
+    """With what is not printed, as the end of a line, written as in Python."""
+    return "".join(
+        each if each.isprintable() else each.encode("unicode_escape", "surrogatepass").decode()
+        for each in text
+    )
+
+
+def words(
+    path: str | os.PathLike[str],
+    font: bytes,
+    size_mm: float = 20.0,
+    sheet_mm: tuple[float, float] | None = None,
+) -> list[Item]:
+    """A drawing of each line of a text file (\\n in it starts a line), as `brushsvg text` makes it, named by its
+    letters."""
+    lines = _lines(path)
+    _check_font(lines[0], font, size_mm, sheet_mm)
+    setting = [hashlib.sha256(font).hexdigest(), size_mm, sheet_mm]
+
+    def item(line: str, name: str) -> Item:
+        text = line.replace("\\n", "\n")
+
+        def read() -> InMemory:
+            document, notices = text_svg(text, font, size_mm=size_mm, sheet_mm=sheet_mm)
+            for notice in notices:  # nobody looks at each word: one that would lack a letter is not painted
+                if notice.where == "font":  # of what kind it is
+                    continue
+                raise Error(notice.sentence, notice.where, code=notice.code)
+            return InMemory(".svg", document.encode())
+
+        said = json.dumps([text, *setting]).encode()
+        return Item(name, line, hashlib.sha256(said).hexdigest(), read)
+
+    names: dict[str, int] = {}
+    items = []
+    for line in lines:
+        name = "".join(each if _may_name(each) else "_" for each in line)[:MOST_LETTERS]
+        count = names[as_one_file(name)] = names.get(as_one_file(name), 0) + 1
+        items.append(item(line, name if count == 1 else f"{name}~{count}"))
+    return items
+
+
+def _check_font(line: str, font: bytes, size_mm: float, sheet_mm) -> None:
+    """Error for what concerns all words."""
+    try:
+        text_svg(line, font, size_mm=size_mm, sheet_mm=sheet_mm)
+    except Error as refusal:
+        if refusal.where != "text":
+            raise
+
+
+def _may_name(letter: str) -> bool:
+    return letter in "-" or unicodedata.category(letter)[0] in "LMN"
+
+
+def given(items: Iterable) -> list[Item]:
+    """Paths, pairs of a name and an SVG document (text or bytes), and Items as they are."""
+    found = []
+    for each in items:
+        if isinstance(each, Item):
+            found.append(each)
+        elif isinstance(each, str | os.PathLike):
+            found += drawings([each])
+        else:
+            need(each, tuple, "a path, or a pair of a name and an SVG document")
+            if len(each) != 2 or not isinstance(each[0], str) or not isinstance(each[1], str | bytes):
+                raise Error("a pair is a name and an SVG document as text or bytes", code="wrong-type")
+            found.append(_in_memory(*each))
+    _told_apart(found)
+    return found
+
+
+def _in_memory(name: str, document: str | bytes) -> Item:
+    data = document.encode() if isinstance(document, str) else document
+    return Item(name, name, hashlib.sha256(b".svg\n" + data).hexdigest(), lambda: InMemory(".svg", data))
+
+
+def _told_apart(items: list[Item]) -> None:
+    """Error where two would be written to the same place, or one outside of the folder."""
+    by_name: dict[str, Item] = {}
+    for item in items:
+        parts = Path(item.name).parts
+        if not parts or Path(item.name).is_absolute() or ".." in parts or not item.name.isprintable():
+            raise Error(f"{item.name[:60]!r} cannot be the name of a file", code="name-invalid")
+        other = by_name.setdefault(as_one_file(item.name), item)
+        if other is not item:
+            sentence = f"{other.source} and {item.source} would both be written as {item.name}"
+            raise Error(sentence, code="name-taken", advice=_way_out(other, item, items))
+
+
+def as_one_file(name: str) -> str:
+    """Equal for names that are one file on Windows or macOS, which ignore case and how accents are composed."""
+    return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold())
+
+
+def _way_out(one: Item, other: Item, items: list[Item]) -> str:
+    """What helps where two drawings have one name."""
+    if one.path and one.path == other.path:
+        return "it is one drawing: give it once"
+    for each in (other, one):
+        names = [item.name for item in items if each.path and item.path == each.path]
+        if len(names) > 1:
+            return f"{each.source} is given twice, as {' and '.join(names)}: leave its folder out"
+    if one.path and os.path.dirname(one.path) == os.path.dirname(other.path):
+        return "rename one of them"
+    return "give one of them to a batch of its own, with another --out"

@@ -1,0 +1,358 @@
+"""What may be chosen for a drawing, as it was typed or given, completed by what the drawing says, as options."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, fields, replace
+from typing import TypedDict
+
+from .. import _core
+from ..comparison.corrections import SheetBefore, read_sheet_before
+from ..errors import Error, Notice, as_listed, need, need_number, need_one_of, need_truth
+from ..machine.cells.cell import Cell
+from ..machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
+from ..machine.posts import GCODE
+from ..model.library import brush_names, find_brush
+from ..read import BACKGROUNDS, PENS, SIZE_MM, UNITS, ReadOptions, settings_in
+from ..read.layout import Layout
+from .options import Options
+
+GCODE_FLAGS = ("pen", "paper-z", "skip-region", "skip-comment")
+LAYOUT_FLAGS = (
+    "sheet",
+    "units",
+    "select",
+    "layer",
+    "background",
+    *GCODE_FLAGS,
+    "width",
+    "fit",
+    "scale",
+    "origin",
+    "as",
+)
+NAMED_OTHERWISE = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset", "paper-z": "paper_z"} | {
+    name: name.replace("-", "_") for name in ("skip-region", "skip-comment", "margin-strokes")
+}  # flag: choice
+MADE_FLAGS = (
+    "wide",
+    "corners",
+    "detail",
+    "join",
+    "compensation",
+    "lag",
+    "tolerance",
+    "terminals",
+    "start",
+    "end",
+    "margin-strokes",
+)
+TERMINALS = ("auto", "round", "butt", "pointed")
+RANGES = {  # the same as a flag's
+    "width": (0.001, 1000.0),
+    "scale": (1e-4, 1e4),
+    "lag": (0.0, 1000.0),
+    "tolerance": (1e-5, 10.0),
+    "paint_speed": (0.001, 5000.0),
+    "z_offset": (-20.0, 20.0),
+    "paper_z": (-1000.0, 1000.0),
+}
+ONE_OF = {
+    "units": UNITS,
+    "background": BACKGROUNDS,
+    "pen": PENS,
+    "paths_as": ("stroke", "outline"),
+    "wide": ("auto", "clamp", "passes", "refuse"),
+    "corners": ("auto", "turn"),
+    "detail": ("draft", "normal", "fine"),
+    "compensation": ("none", "constant", "closed", "refined"),
+    "terminals": TERMINALS,
+    "start": TERMINALS,
+    "end": TERMINALS,
+    "margin_strokes": ("auto", "on", "off"),
+}
+
+
+@dataclass(frozen=True)
+class Choices:
+    """What a drawing or plan is read and painted with; None where nobody says it. Lengths in mm, the speed in mm/s.
+
+    input: a path, or whatever else a drawing may be; brush, cell: by name or path, or themselves.
+    """
+
+    input: object = None
+    brush: object = None
+    cell: object = None
+    sheet: tuple[float, float] | None = None
+    units: str | None = None
+    layer: list[str] | None = None
+    select: str | None = None
+    background: str | None = None
+    pen: str | None = None
+    paper_z: float | None = None
+    skip_region: list[tuple[float, float, float, float]] | None = None
+    skip_comment: list[str] | None = None
+    colour: str | None = None
+    width: float | None = None
+    paths_as: str | None = None
+    fit: tuple[float, float] | None = None
+    scale: float | None = None
+    origin: tuple[float, float] | None = None
+    wide: str | None = None
+    corners: str | None = None
+    detail: str | None = None
+    join: bool | None = None
+    compensation: str | None = None
+    lag: float | None = None
+    paint_speed: float | None = None
+    tolerance: float | None = None
+    terminals: str | None = None
+    start: str | None = None
+    end: str | None = None
+    z_offset: float | None = None
+    corrections: str | os.PathLike[str] | None = None
+    margin_strokes: str | None = None
+
+
+class Given(TypedDict, total=False):
+    """The same as keywords, for editors and type checkers; see `convert`."""
+
+    brush: str | os.PathLike[str] | _core.Brush | None
+    cell: str | os.PathLike[str] | Cell | None
+    sheet: tuple[float, float] | None
+    units: str | None
+    layer: Sequence[str] | None
+    select: str | None
+    background: str | None
+    pen: str | None
+    paper_z: float | None
+    skip_region: Sequence[tuple[float, float, float, float]] | None
+    skip_comment: Sequence[str] | None
+    colour: str | None
+    width: float | None
+    paths_as: str | None
+    fit: tuple[float, float] | None
+    scale: float | None
+    origin: tuple[float, float] | None
+    wide: str | None
+    corners: str | None
+    detail: str | None
+    join: bool | None
+    compensation: str | None
+    lag: float | None
+    paint_speed: float | None
+    tolerance: float | None
+    terminals: str | None
+    start: str | None
+    end: str | None
+    z_offset: float | None
+    corrections: str | os.PathLike[str] | None
+    margin_strokes: str | None
+
+
+def checked(chosen: Choices) -> Choices:
+    """The choices themselves. Error for what no flag would take."""
+    for name, choices in ONE_OF.items():
+        if getattr(chosen, name) is not None:
+            need_one_of(getattr(chosen, name), choices, name)
+    for name, limits in RANGES.items():
+        if getattr(chosen, name) is not None:
+            need_number(getattr(chosen, name), name, *limits)
+    for name, limits in (("sheet", SIZE_MM), ("fit", SIZE_MM), ("origin", (-1e6, 1e6))):
+        pair = as_listed(getattr(chosen, name))
+        if pair is not None:
+            need(pair, (tuple, list), f"two numbers, which {name} is")
+            if len(pair) != 2:
+                raise Error(f"{name} has {len(pair)} numbers, not two", name, code="wrong-type")
+            chosen = replace(
+                chosen, **{name: tuple(need_number(each, f"a number of {name}", *limits) for each in pair)}
+            )
+    if chosen.skip_region is not None:
+        need(chosen.skip_region, (tuple, list), "a list of regions, which skip_region is")
+        for region in chosen.skip_region:
+            need(region, (tuple, list), "a region, (x0, y0, x1, y1) in mm")
+            for side in region:
+                need_number(side, "a number of skip_region", -1e6, 1e6)
+    if chosen.colour is not None:
+        need(chosen.colour, str, "a colour, as #1a237e")
+        chosen = replace(chosen, colour=colour_of(chosen.colour))
+    if chosen.join is not None:
+        need_truth(chosen.join, "join")
+    for name in ("layer", "select", "skip_comment"):
+        given = getattr(chosen, name)
+        is_list = name != "select"
+        if is_list and given is not None:
+            need(given, (tuple, list), f"a list of texts, which {name} is")
+        for text in () if given is None else given if is_list else [given]:
+            need(text, str, f"a text, which {name} is")
+    for name in ("brush", "cell", "corrections"):
+        kinds = {"brush": (_core.Brush,), "cell": (Cell,)}.get(name, ())
+        if getattr(chosen, name) is not None:
+            need(getattr(chosen, name), (str, os.PathLike, *kinds), f"the name or the path of {name}")
+    if isinstance(chosen.brush, _core.Brush):
+        _core.check(chosen.brush)
+    if isinstance(chosen.cell, Cell):  # one made by hand must be one that a file may hold
+        chosen = replace(chosen, cell=parse_cell(write_cell(chosen.cell)))
+    if chosen.fit is not None and chosen.scale is not None:
+        raise Error("fit and scale exclude each other", code="options-contradict")
+    if chosen.lag is not None and chosen.compensation != "constant":
+        raise Error("a lag needs compensation constant", "lag", code="options-contradict")
+    suffix = suffix_of(chosen.input)
+    if chosen.units and suffix in (".svg", ".svgz"):
+        sentence = "units are for drawings that do not say them; an SVG does"
+        raise Error(sentence, "units", code="options-contradict")
+    if chosen.select and suffix == ".dxf":
+        sentence = "select is for SVG; layers of a DXF are chosen by layer"
+        raise Error(sentence, "select", code="options-contradict")
+    return chosen
+
+
+def colour_of(text: str) -> str:
+    """A colour as SVG writes it, as "#rrggbb". Error for anything else."""
+    from ..read.svg.colour import parse_colour
+
+    found = parse_colour(text.strip())
+    if found is None or not found.startswith("#"):
+        raise Error(
+            f"{text[:24]!r} is not a colour; write for example #1a237e or red",
+            "colour",
+            code="colour-invalid",
+        )
+    return found[:7]
+
+
+def suffix_of(source) -> str:
+    """The extension of a path or of a Document; ".json" for a plan, "" for other things."""
+    if isinstance(source, _core.Plan):
+        return ".json"
+    if isinstance(source, str | os.PathLike):
+        return os.path.splitext(os.fspath(source))[1].lower()
+    return getattr(source, "extension", "")
+
+
+def name_of(source) -> str:
+    """What a person calls it: its path, or nothing."""
+    return os.fspath(source) if isinstance(source, str | os.PathLike) else ""
+
+
+@contextmanager
+def concerning(file: str | os.PathLike[str]) -> Iterator[None]:
+    """Lets an error inside be one of this file, unless it names another."""
+    try:
+        yield
+    except Error as problem:
+        problem.file = problem.file or os.fspath(file)
+        raise
+
+
+def settled(chosen: Choices, drawing, alone: bool = False) -> Choices:
+    """What nobody chose is as the drawing says. It can only name what comes along: it reads no other file. alone:
+    nothing else of the drawing is read."""
+    said = settings_in(drawing, alone)
+    if chosen.terminals is not None:
+        said = {name: value for name, value in said.items() if name not in ("start", "end")}
+    for kind, names in (("brush", brush_names()), ("cell", cell_names())):
+        if getattr(chosen, kind) is None and said.get(kind, names[0]) not in names:
+            raise Error(
+                f"data-brushsvg-{kind} asks for {kind} {said[kind]!r}, which does not come along; known are "
+                f"{', '.join(names)}",
+                where="svg",
+                code=f"{kind}-unknown",
+                advice=f"give --{kind}",
+            )
+    return replace(chosen, **{name: value for name, value in said.items() if getattr(chosen, name) is None})
+
+
+def without_effect(chosen: Choices) -> list[Notice]:
+    """What was chosen for a plan, whose poses are fixed, and for G-code where the drawing is none."""
+    suffix = suffix_of(chosen.input)
+    flags, on = GCODE_FLAGS, "a drawing that is not G-code"
+    if suffix == ".json":
+        flags, on = (*LAYOUT_FLAGS, *MADE_FLAGS), "a plan, whose poses are fixed"
+    elif suffix in GCODE:
+        flags = ()
+    return [
+        Notice("", f"--{flag} has no effect on {on}", code="flag-without-effect", about=flag)
+        for flag in flags
+        if getattr(chosen, NAMED_OTHERWISE.get(flag, flag)) is not None
+    ]
+
+
+def on_a_page(chosen: Choices) -> Choices:
+    """The same for a page that is painted and photographed: strokes in its margin where the brush is not calibrated."""
+    if chosen.margin_strokes or suffix_of(chosen.input) == ".json":
+        return chosen
+    return replace(chosen, margin_strokes="auto")
+
+
+def brush_of(given):
+    """The brush of a name or path, itself, or None."""
+    if given is None or isinstance(given, _core.Brush):
+        return given
+    with concerning(given):
+        return find_brush(given)
+
+
+def cell_of(given) -> Cell:
+    """The cell of a name or path, itself, or the default one."""
+    if given is None or isinstance(given, Cell):
+        return given or find_cell()
+    with concerning(given):
+        return find_cell(given)
+
+
+def sheet_before_of(path: str | os.PathLike[str] | None) -> SheetBefore:
+    if path is None:
+        return SheetBefore()
+    with concerning(path):
+        return read_sheet_before(path)
+
+
+def reading_of(chosen: Choices) -> ReadOptions:
+    return ReadOptions(
+        chosen.sheet,
+        chosen.units,
+        chosen.select,
+        chosen.background or ReadOptions.background,
+        chosen.pen,
+        chosen.paper_z,
+        tuple(map(tuple, chosen.skip_region or ())),
+        tuple(chosen.skip_comment or ()),
+        lenient=True,  # damage is reported with all the rest
+    )
+
+
+def layout_of(chosen: Choices) -> Layout:
+    return Layout(tuple(chosen.layer or ()), chosen.width, chosen.fit, chosen.scale, chosen.origin)
+
+
+def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:
+    """cell, brush: where they are known already."""
+    cell = cell or cell_of(chosen.cell)
+    return Options(
+        brush=brush or brush_of(chosen.brush),
+        reading=reading_of(chosen),
+        layout=layout_of(chosen),
+        compensation=chosen.compensation or Options.compensation,
+        lag_mm=chosen.lag,
+        tolerance_mm=(suffix_of(chosen.input) != ".json" and chosen.tolerance) or Options.tolerance_mm,
+        start=chosen.start or chosen.terminals or Options.start,
+        end=chosen.end or chosen.terminals or Options.end,
+        paths_as=chosen.paths_as,
+        wide=chosen.wide or Options.wide,
+        corners=chosen.corners or Options.corners,
+        detail=chosen.detail or Options.detail,
+        colour=chosen.colour,
+        join=bool(chosen.join),
+        margin_strokes=chosen.margin_strokes or Options.margin_strokes,
+        speed_mm_s=min(Options.speed_mm_s, cell.speeds.paint_mm_s),
+        speed_of_all_mm_s=chosen.paint_speed,
+        cell=cell,
+        z_offset_mm=chosen.z_offset or 0.0,
+        corrections=sheet_before_of(chosen.corrections).corrections,
+    )
+
+
+CHOICES = tuple(field.name for field in fields(Choices))

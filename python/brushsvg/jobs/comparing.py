@@ -1,0 +1,306 @@
+"""Photographs of a painted sheet held against what was wanted and predicted: what `brushsvg compare` does, from
+Python."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, TypeVar, Unpack
+
+from .. import _core
+from ..calibration.prior.from_prior import has_learned
+from ..comparison import report
+from ..comparison.attribution.corrected_cell import certain_of, key_of, mended, sure
+from ..comparison.attribution.faults import Faults, whose_fault
+from ..comparison.attribution.model import BRUSH
+from ..comparison.attribution.residual import beside_machine as left_beside
+from ..comparison.corrections import (
+    Correction,
+    SheetBefore,
+    beside_machine,
+    corrected,
+    is_corrected,
+    machine_sha256,
+    uncorrected,
+)
+from ..comparison.ends import Ends, ends_of
+from ..comparison.job_marks import job_marks
+from ..comparison.job_page import JobPage, job_page
+from ..comparison.next_corrections import farther, next_corrections
+from ..comparison.photographs import Compared, Comparison, Wanted, compare_photos, of_drawing
+from ..comparison.picture import comparison_png
+from ..errors import Error, Notice, need
+from ..files import read_bytes
+from ..machine.cells.cell import Cell, Machine, axes_along_paper, not_undone
+from ..machine.cells.cell_file import own_name, parse_cell, write_cell
+from ..show.evaluation.report import wanted_rings
+from . import cancelling, prediction
+from .cancelling import Cancel
+from .checking import Told
+from .choices import (
+    Choices,
+    Given,
+    concerning,
+    name_of,
+    on_a_page,
+    options_of,
+    settled,
+    sheet_before_of,
+    without_effect,
+)
+from .conversion import chosen_of
+from .preparation import preparation
+from .preparation.margin_strokes import is_margin
+from .work import Work
+
+if TYPE_CHECKING:
+    from .preparation.preparation import Source
+
+Read = TypeVar("Read")
+
+
+LEAST_PRINT_SCALE, SAME_SCALE = 0.015, 0.006  # shares: print scales begin at 2 %, and both axes share one
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """What was told to the machine, and the page that it painted on: plan, with the corrections of before, as far as
+    they are of its cell; strokes: rings on the sheet of what was wanted and predicted; otherwise: makes the sheet of
+    the other page that this drawing may have been painted on, without strokes in its margin."""
+
+    work: Work
+    plan: _core.Plan
+    before: SheetBefore
+    page: JobPage
+    strokes: tuple[Wanted, ...]
+    otherwise: Callable[[], Sheet] | None = None
+
+    @property
+    def title(self) -> str:
+        return self.work.title or "untitled"
+
+
+@dataclass(frozen=True)
+class PaintedJob:
+    """What photographs of a painted sheet show.
+
+    overlap: of all paint with what was wanted, or predicted where there is no drawing, as it lies. strokes: each with
+    its overlaps and where it lies; ends: by stroke, how much later than wanted it begins and ends. faults: whose it is,
+    None where nothing can be told. corrections: by stroke, where it should be led next time. cell: with a [machine]
+    that undoes what is certain, besides what it undid; is_mended: whether anything is. notices: what is to be warned
+    of. text, json: what the command prints and what `convert` takes as corrections.
+    """
+
+    title: str
+    overlap: float
+    strokes: tuple[Compared, ...] = field(repr=False)
+    ends: dict[str, Ends] = field(repr=False)
+    faults: Faults | None = field(repr=False)
+    corrections: dict[str, Correction] = field(repr=False)
+    cell: Cell = field(repr=False)
+    is_mended: bool
+    notices: tuple[Notice, ...] = field(repr=False)
+    text: str = field(repr=False)
+    json: str = field(repr=False)
+    _shown: tuple[JobPage, list[Wanted], Comparison, str] | None = field(
+        default=None, repr=False, compare=False
+    )
+
+    def picture(self) -> bytes:
+        """A PNG: the paint as photographed over what was wanted, in grey, under a red line where it was predicted."""
+        if self._shown is None:
+            raise Error("it was not made of photographs", code="nothing-to-show")
+        return comparison_png(*self._shown, self.faults)
+
+
+def compare(
+    drawing: Source,
+    photos: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    *,
+    progress: Callable[[str], object] | None = None,
+    cancel: Cancel | None = None,
+    **choices: Unpack[Given],
+) -> PaintedJob:
+    """Photographs of one painted sheet held against what was wanted and predicted, as `brushsvg compare` does.
+
+    drawing: what was painted, as `convert` takes it, with the choices that it was converted with; corrections: those
+    that it was painted with. photos: the path of one, or a list of them, which are averaged. progress, cancel: as for
+    `convert`.
+
+    Raises Error, with a code of docs/diagnostics.md, for a photograph that cannot be read or shows another job.
+    """
+    single = isinstance(photos, (str, os.PathLike))
+    need(photos, (str, os.PathLike, tuple, list), "a path or a list of paths, which photos are")
+    paths = [photos] if single else list(photos)
+    if not paths:
+        raise Error("there is no photograph", "photos", code="wrong-type")
+    for each in paths:
+        need(each, (str, os.PathLike), "a path, which each of photos is")
+    chosen, notices = chosen_of(drawing, choices), []
+
+    def work(stage) -> PaintedJob:
+        def told(_, found):
+            notices.extend(found)
+
+        return compared(painted_sheet(chosen, stage, told), [*map(os.fspath, paths)], stage, told)
+
+    return replace(cancelling.run(work, progress, cancel), notices=tuple(notices))
+
+
+def painted_sheet(chosen: Choices, stage: Callable[[str], object], told: Told) -> Sheet:
+    """What stands on the page that was painted on; notices are told with the file that they are of."""
+    before = sheet_before_of(chosen.corrections)
+    return _sheet(replace(chosen, corrections=None), before, stage, told)
+
+
+def _sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], told: Told) -> Sheet:
+    name = name_of(given.input)
+    with concerning(name):
+        chosen = settled(given, given.input)
+        told(name, without_effect(chosen))
+        chosen = on_a_page(chosen)
+        work = preparation.prepare(chosen.input, options_of(chosen), stage)
+        told(name, work.notices)
+        painted, corrections_before = None, before
+        if is_corrected(work.plan):  # a plan.json, which says itself what it was painted with
+            _refuse_corrections_of_two(before)
+            painted = work.plan
+            planned, known = uncorrected(painted)
+            work, before = replace(work, plan=planned), SheetBefore(known)
+        marks = prediction.predict(work, True, stage)
+        before = replace(before, corrections=beside_machine(before.corrections, _undone(work)))
+        plan = painted or corrected(work.plan, before.corrections, work.brush)
+        wanted = {} if work.strokes is None else {one.id: wanted_rings([one]) for one in work.strokes}
+        strokes = (
+            Wanted(mark.stroke, wanted.get(mark.stroke), [*mark.outline_mm], not is_margin(a_pass))
+            for mark, a_pass in zip(marks.passes, work.plan.passes, strict=True)
+        )
+        otherwise = None
+        if given.margin_strokes is None and any(map(is_margin, work.strokes or ())):
+            without = replace(given, margin_strokes="off")
+            otherwise = functools.partial(_sheet, without, corrections_before, stage, drop_notices)
+        return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes), otherwise)
+
+
+def drop_notices(file: str, notices: Iterable[Notice]) -> None:
+    """Keep warnings from being printed twice when a drawing is prepared again."""
+
+
+def on_its_page(sheet: Sheet, read: Callable[[Sheet], Read]) -> tuple[Sheet, Read]:
+    """What photographs show, read with the sheet whose page they show."""
+    try:
+        return sheet, read(sheet)
+    except Error as refusal:
+        if refusal.code != "photo-of-another-chart" or sheet.otherwise is None:
+            raise
+    sheet = sheet.otherwise()
+    return sheet, read(sheet)
+
+
+def _refuse_corrections_of_two(given: SheetBefore) -> None:
+    if given.corrections:
+        sentence = "the plan was written with corrections and holds them: leave --corrections out"
+        raise Error(sentence, "corrections", code="corrections-twice")
+
+
+def photographs(paths: Iterable[str], stage: Callable[[str], object]) -> list[tuple[str, bytes]]:
+    """Names, and what their files hold."""
+    stage("reading the photographs")
+    return [(path, read_bytes(path)) for path in paths]
+
+
+def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], told: Told) -> PaintedJob:
+    """paths: photographs of one sheet; notices are told with the first of them."""
+    with concerning(paths[0]):
+        photos = photographs(paths, stage)
+        sheet, found = on_its_page(sheet, lambda one: compare_photos(one.page, [*one.strokes], photos))
+    work, brush, strokes = sheet.work, sheet.work.brush, list(sheet.strokes)
+    stage("looking for what is amiss")
+    every = found, sheet.page, strokes
+    found, strokes = of_drawing(found, strokes)
+    learned = has_learned(brush, [hashlib.sha256(data).hexdigest() for _, data in photos])
+    faults = whose_fault(sheet.plan, brush, strokes, found, learned)
+    before = sheet.before.corrections
+    corrections, too_far = next_corrections(found, work.plan, before, brush)
+    beyond = farther(found, sheet.before.aside_mm)
+    told(paths[0], [*found.notices, *too_far, *beyond])
+    cell, machine, beside = work.options.cell, None, None
+    if cell and faults:
+        along = axes_along_paper(cell)
+        machine, left_out = _undoable(faults, found.middle_mm, cell, along)
+        told(paths[0], _not_undone(faults, cell, left_out))
+        if machine:
+            certain = sure(faults, cell.machine, along, left_out)
+            rest = left_beside(found, certain, sheet.plan, brush, strokes)
+            beside = machine_sha256(machine), next_corrections(rest, work.plan, before, brush)[0]
+    ends = ends_of(found, strokes, work.strokes or ())
+    made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_undone(work)))
+    any_alone = faults is None or faults.first != BRUSH or bool(job_marks(*every).rings)
+    return PaintedJob(
+        sheet.title,
+        found.overlap_predicted if found.overlap_wanted is None else found.overlap_wanted,
+        found.strokes,
+        ends,
+        faults,
+        corrections,
+        replace(cell, name=own_name(cell.name), machine=machine) if machine else cell,
+        machine is not None,
+        (),
+        report.as_text(sheet.title, found, faults, ends, machine, any_alone),
+        report.as_json(sheet.title, found, corrections, faults, ends, made_with, beside),
+        (sheet.page, strokes, found, sheet.title),
+    )
+
+
+def _undoable(faults: Faults, middle_mm, cell: Cell, along) -> tuple[Machine | None, dict[str, str]]:
+    """The machine for the next cell, without the numbers that such a cell refuses; and why, by key."""
+    left_out = not_undone(cell)
+    if printed := _printed_at(faults):
+        left_out["scale"] = f"the page was probably printed at {100 * printed:.1f} %"
+    while True:
+        machine = mended(faults, middle_mm, cell.machine, along, left_out)
+        try:
+            if machine:
+                parse_cell(write_cell(replace(cell, machine=machine)))
+            return machine, left_out
+        except Error as problem:
+            key = problem.where.removeprefix("machine.")
+            if key == problem.where or key in left_out:
+                raise
+            left_out[key] = str(problem)
+
+
+def _not_undone(faults: Faults, cell: Cell, left_out: dict[str, str]) -> list[Notice]:
+    """One notice on all that is certain of the machine and goes into no cell of its kind."""
+    certain = [name for name, value in certain_of(faults).items() if value]
+    printed = _printed_at(faults)
+    rest = [
+        name for name in certain if key_of(name) in left_out and not (printed and key_of(name) == "scale")
+    ]
+    notices = []
+    if printed:
+        sentence = f"the page was probably printed at {100 * printed:.1f} %: both axes seem to be as much off"
+        advice = "measure its bar and print it at 100 %; the scale goes into no cell"
+        notices.append(Notice("page", sentence, code="page-scale", advice=advice))
+    if not rest:
+        return notices
+    why = "; ".join(dict.fromkeys(left_out[key_of(name)] for name in rest))
+    sentence = f"cell {cell.name} cannot undo {', '.join(rest)}: {why}"
+    advice = "repair the machine, or give the corrections to convert"
+    return [*notices, Notice("machine", sentence, code="machine-not-undone", advice=advice)]
+
+
+def _printed_at(faults: Faults) -> float | None:
+    """The scale of the page's print, where both axes of the machine seem to be off by as much: printers shrink a page
+    to its printable area, and machines seldom have the same fault in both axes."""
+    x, y = (certain_of(faults).get(f"scale in {axis}", 0.0) for axis in "xy")
+    if min(abs(x), abs(y)) < LEAST_PRINT_SCALE or abs(x - y) > SAME_SCALE:
+        return None
+    return 1.0 / (1.0 + (x + y) / 2)
+
+
+def _undone(work: Work):
+    return work.options.cell.machine if work.options.cell else None

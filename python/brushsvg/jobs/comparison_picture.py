@@ -1,0 +1,37 @@
+"""A picture for a first look: the drawing, and its paint without and with compensation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from .. import _core
+from ..machine.realised.arc_chords import with_chords
+from ..model.describe import one_line
+from ..show.evaluation import report
+from ..show.panels_png import MIDDLE_LINE, Panel, panels_png
+from .work import Work
+
+TITLES = {"none": "Tool follows the drawing", "closed": "With compensation"}
+
+
+def comparison_png(
+    works: Mapping[str, Work], marks: Mapping[str, _core.Marks], totals: Mapping[str, report.Figures]
+) -> bytes:
+    """Draw three panels of one drawing. Each argument has the keys of TITLES: ways of compensation."""
+    work = works["closed"]
+    strokes = work.strokes or []
+    wanted = report.wanted_rings(strokes)
+    middle = [_core.flatten(stroke, 0.01)[:, :2] for stroke in strokes]
+    width_mm, height_mm = np.ptp(np.vstack(wanted), axis=0)
+    drawn = ("middle lines and their widths,", f"{width_mm:.0f} x {height_mm:.0f} mm")
+    count = (str(len(strokes)), "strokes")
+    panels = [Panel("What was drawn", count, drawn, wanted, [], middle, MIDDLE_LINE)]
+    for how, title in TITLES.items():
+        total = totals[how]
+        score = (f"{total.overlap:.2f}", "overlap with the drawing")
+        off = f"{total.centre_mean_mm:.2f} mm mean, {total.centre_largest_mm:.2f} mm at most"
+        paths = [with_chords(a_pass).poses_mm[:, :2] for a_pass in works[how].plan.passes]
+        panels.append(Panel(title, score, ("centre-line error", off), wanted, marks[how].outline_mm, paths))
+    return panels_png(panels, work.title, f"with brush {work.brush.name}. {one_line(work.brush)}")

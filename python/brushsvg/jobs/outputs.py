@@ -1,0 +1,163 @@
+"""What is written of prepared work: header lines, pictures, pages, reports."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from .. import _core
+from ..errors import Error, Notice
+from ..machine.cells.cell import Cell
+from ..machine.paint_reload import PlanInLoads, in_loads
+from ..machine.tool_axes import is_tilted
+from ..machine.writer import time_s, whole_program
+from ..show.animation import animation
+from ..show.evaluation import report
+from ..show.evaluation.uncertainty import Band, uncertainty
+from ..show.marks_svg import marks_svg
+from ..show.overlap_svg import overlap_svg
+from ..show.timeline import timeline
+from .options import Options
+from .preparation.margin_strokes import KIND, is_margin, without_margin_strokes
+from .work import Work
+
+SHOWN_MM = 0.02  # how exactly a page shows what was wanted: less cannot be seen
+
+
+def notes(work: Work) -> tuple[str, ...]:
+    """Lines for a program's header: how it was made, and how much there is to know about it."""
+    options = work.options
+    lag = f", lag {options.lag_mm:g} mm" if options.lag_mm is not None else ""
+    start = f", start {options.start}" if options.start != Options.start else ""
+    end = f", end {options.end}" if options.end != Options.end else ""
+    made = f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm{lag}{start}{end}"
+    damaged = sum(notice.damaged for notice in work.notices)
+    count = f"warnings: {len(work.notices)}" + (f", {damaged} of them damaged geometry" if damaged else "")
+    lines = (made, count) if work.strokes is not None else (count,)
+    if any(map(is_margin, work.strokes or ())):
+        lines += (f"{KIND}: {sum(map(is_margin, work.strokes))} strokes",)
+    elif any(notice.code == "margin-strokes-left-out" for notice in work.notices):
+        lines += (f"{KIND}: 0 strokes",)
+    if options.corrections:
+        farthest_mm = max(np.hypot(*each.shift_mm) for each in options.corrections)
+        lines += (
+            f"corrections: {len(options.corrections)} strokes, shifted by {farthest_mm:.2f} mm at most",
+        )
+    return lines
+
+
+def picture(suffix: str, work: Work, marks: _core.Marks, band: Band | None = None) -> bytes:
+    """The marks as the bytes of a .png, .svg or .json (marks.json); the latter two need their outlines. band: an
+    uncertainty.Band to draw around them."""
+    if suffix == ".json":
+        return _core.write_marks(marks).encode()
+    colours = [a_pass.colour for a_pass in work.plan.passes]
+    bare = [ring for piece in (*work.unreached, *work.missed) for ring in piece.rings]
+    if suffix == ".svg":
+        how = "" if work.strokes is None else f", {work.options.compensation}"
+        made = f"{work.plan.brush}{how}"
+        text = marks_svg(
+            marks,
+            work.plan.sheet_mm,
+            colours,
+            work.title,
+            work.tracking_errors,
+            made,
+            band,
+            bare,
+            work.astray,
+        )
+        return text.encode()
+    from ..show import marks_png  # brings OpenCV, which the others do not need
+
+    return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band, bare)
+
+
+def page(suffix: str, work: Work) -> bytes:
+    """The page that is printed for a job (.pdf, .svg), of strokes in the order they were drawn in."""
+    from ..calibration.chart.page import chart_page, chart_pdf
+    from ..comparison.job_page import job_page
+
+    made = job_page(work.plan, work.title)
+    if suffix == ".pdf":
+        return chart_pdf(made.printed, made.ticks)
+    return chart_page(made.printed, made.ticks).encode()
+
+
+def overlap_picture(suffix: str, work: Work, marks: _core.Marks, long_side_px: int | None = None) -> bytes:
+    """Where paint is missing and where there is too much of it, as the bytes of a .png or an .svg; the latter needs
+    outlines. long_side_px: of a small .png without legend. Error for a plan, which does not say what was wanted."""
+    if work.strokes is None:
+        raise Error("a plan does not say what was wanted: give the drawing", code="plan-without-target")
+    if suffix == ".svg":
+        wanted = report.wanted_rings(work.strokes)
+        return overlap_svg(wanted, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
+    from ..show.overlap_png import overlap_png
+    from ..show.png_canvas import PNG_LONG_SIDE_PX
+
+    px_per_mm = min(20.0, (long_side_px or PNG_LONG_SIDE_PX) / max(work.plan.sheet_mm))
+    window = (0.0, 0.0, *work.plan.sheet_mm)
+    wanted = _core.wanted_coverage(work.strokes, window, px_per_mm)
+    painted = _core.coverage(marks, work.brush, window, px_per_mm)
+    return overlap_png(wanted, painted, legend=long_side_px is None)
+
+
+def played(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed: float = 1.0) -> bytes:
+    """An HTML page that plays tool and paint over time, speed times as fast at first. marks: of the work's plan in
+    loads, with outlines."""
+    _core.refuse_tilted(work.plan.passes, "the tool is shown upright")
+    runs = replace(cell, machine=None)  # the tool is shown where it goes, not where it is told to go
+    moves = timeline(whole_program(loads, work.brush, runs), marks)
+    wanted = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
+    return animation(moves, loads, work.brush, marks, wanted, cell.stations, work.title, speed)
+
+
+def reported(
+    work: Work,
+    marks: _core.Marks,
+    cell: Cell,
+    warnings: Iterable[Notice] | None = None,
+    forbidden: Iterable[Notice] = (),
+    drawn: Sequence[_core.Stroke] | None = None,
+    seconds: float | None = None,
+    advice: str = "",
+    as_run: _core.Plan | None = None,
+) -> report.Report:
+    """The figures of a work. warnings: None for those of the work; forbidden:
+    those of them for which no program would be written; drawn: see report.measure; seconds: how long it takes, where
+    that is known better than from the plan; advice: on the size; as_run: what the marks are of, where a machine cuts
+    corners of the work's plan."""
+    known = warnings if warnings is not None else work.notices
+    if seconds is None:
+        seconds = time_s(in_loads(work.plan, work.brush, cell), work.brush, cell)
+    work, marks, as_run = without_margin_strokes(work, marks, as_run)
+    leans = any(map(is_tilted, work.plan.passes))
+    is_drawing = work.strokes is not None
+    rows, total = report.measure(
+        work.plan,
+        marks,
+        work.brush,
+        work.strokes,
+        work.options.tolerance_mm,
+        drawn,
+        work.options.compensation,
+        work.unreached,
+    )
+    return report.Report(
+        title=work.title,
+        brush=work.plan.brush,
+        compensation=work.options.compensation if is_drawing else "",
+        tolerance_mm=work.options.tolerance_mm if is_drawing else None,
+        strokes=rows,
+        total=total,
+        time_s=seconds,
+        warnings=tuple(known),
+        refused=tuple(work.refused),
+        forbidden=tuple(forbidden),
+        confidence=None if leans else uncertainty(as_run or work.plan, work.brush, marks),
+        is_tilted=leans,
+        groups=report.groups(marks, work.brush, work.strokes),
+        advice=advice,
+    )

@@ -1,0 +1,1 @@
+"""A drawing to the plan of one brush and cell, with its warnings."""

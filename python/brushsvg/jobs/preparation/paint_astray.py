@@ -1,0 +1,74 @@
+"""Strokes whose paint lies where nobody wants it, by more than one sees and than the brush is known to."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ... import _core
+from ...model.confidence import unseen_mm
+from ...read.design import Notice
+
+BESIDE = 0.5  # of half the width: paint farther outside of what was drawn is seen as a bulge or a thorn
+_SWEPT_MM = 0.05
+
+
+def off_middle_line(painted, tracking_errors, brush, tolerance_mm: float) -> list[Notice]:
+    """Tracking errors above the tolerance that are not lost in what nobody knows of the brush.
+
+    painted: strokes, None for those that leave their middle lines on purpose.
+    """
+    found = []
+    for stroke, miss in zip(painted, tracking_errors, strict=True):
+        if stroke is None or miss.within_tolerance:
+            continue
+        if miss.largest_mm <= unseen_mm(brush, _depth(stroke, brush)):
+            continue
+        sentence = (
+            f"tracking error {miss.largest_mm:.3g} mm near {_place(miss.at_mm)}, above the tolerance of "
+            f"{tolerance_mm:g} mm"
+        )
+        turns = ": it turns too sharply there for the brush"
+        found.append(Notice(stroke.id, sentence + turns * miss.has_turn_in_place, code="off-middle-line"))
+    return found
+
+
+def outside(wanted, passes, brush) -> list[Notice]:
+    """Of passes that leave their middle lines on purpose: where their paint lies outside of all that was drawn.
+
+    wanted: what strokes should become; passes: one each, None for those that are not looked at.
+    """
+    looked_at = [(stroke, run) for stroke, run in zip(wanted, passes, strict=True) if run is not None]
+    if not looked_at:
+        return []
+    import shapely
+
+    from ...strokes.swept_areas import region
+
+    marks = _core.simulate(_core.Plan(sheet_mm=(1.0, 1.0), passes=[run for _, run in looked_at]), brush)
+    _core.trace_outlines(marks, brush)
+    shapes = [region(_core.unite(_core.wanted_outline(stroke, _SWEPT_MM))) for stroke in wanted]
+    near = shapely.STRtree(shapes)
+    found = []
+    for (stroke, _), trace in zip(looked_at, marks.passes, strict=True):
+        paint = region(_core.unite(list(trace.outline_mm)))
+        drawn = shapely.union_all([shapes[k] for k in near.query(paint)])
+        half_mm = max(half for _, half in stroke.half_width)
+        seen_mm = max(BESIDE * half_mm, unseen_mm(brush, _depth(stroke, brush)))
+        corners = shapely.points(shapely.get_coordinates(shapely.difference(paint, drawn)))
+        away_mm = shapely.distance(corners, drawn) if len(corners) else np.zeros(1)
+        if away_mm.max() > seen_mm:
+            place = _place(shapely.get_coordinates(corners[away_mm.argmax()])[0])
+            sentence = f"its paint lies up to {away_mm.max():.2g} mm outside of what was drawn, near {place}"
+            found.append(Notice(stroke.id, sentence, code="paint-outside"))
+    return found
+
+
+def _depth(stroke, brush) -> float:
+    if not brush.width_follows_depth():
+        return brush.paint_depth_mm
+    half_mm = float(np.mean([half for _, half in stroke.half_width]))
+    return brush.depth_for_half_width(float(np.clip(half_mm, *brush.half_width_range_mm())), stroke.id)
+
+
+def _place(at_mm) -> str:
+    return f"x {at_mm[0]:.1f}, y {at_mm[1]:.1f} mm"

@@ -1,0 +1,406 @@
+"""A file to its plan: read, strokes found, brought within reach, compensated."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ... import _core, read
+from ...comparison.corrections import corrected
+from ...errors import Error
+from ...machine.cells.cell import LEAST_SPEED_MM_S
+from ...machine.paint_reload import fetched_mm, in_loads
+from ...machine.preflight import look
+from ...machine.program import Job
+from ...model.library import find_brush, mistyped_keys
+from ...planning.paint_running_out import pressed_deeper
+from ...planning.refinement import refined
+from ...read import layout
+from ...read.design import Design, Notice
+from ...strokes.corners import lifted_at_corners
+from ...strokes.extraction import strokes as strokes_of
+from ...strokes.joining import joined
+from ...strokes.stroke_search import searched
+from ...strokes.uncovered_areas import notices as blank_notices
+from ...strokes.uncovered_areas import uncovered_areas
+from ...strokes.wide_shapes import is_within_reach, within_reach
+from ..json_files import read_plan
+from ..options import DEFAULT_BRUSH, DEFAULTS, Options
+from ..work import Known, Work, of_colour
+from .compensated import begun_within_reach, compensation_by
+from .margin_strokes import with_margin_strokes
+from .paint_astray import off_middle_line, outside
+from .thin_outlines import without_thin_outlines
+from .width_advice import warnings_with_advice
+
+if TYPE_CHECKING:
+    Source = read.Source | Design | _core.Plan
+
+
+def prepare(
+    source: Source,
+    options: Options = DEFAULTS,
+    stage: Callable[[str], object] = lambda text: None,
+    partly: bool = False,
+) -> Work:
+    """Read a drawing or plan.json and lay out the TCP's path. source: the path of one, a Plan, a Design, or an open
+    drawing as read_drawing takes it. Error when it cannot be read or painted; partly: strokes that are refused are left
+    out."""
+    work = _prepared(source, options, stage, partly)
+    return work if options.colour is None else of_colour(work, options.colour)
+
+
+def _prepared(source: Source, options: Options, stage: Callable[[str], object], partly: bool) -> Work:
+    if isinstance(source, _core.Plan):
+        _core.write_plan(source)  # refuses what no file may hold
+        return _prepare_plan(source, options)
+    if isinstance(source, str | os.PathLike) and Path(source).suffix.lower() == ".json":
+        return _prepare_plan(read_plan(source), options)
+    stage("reading")
+    brush = options.brush or find_brush(DEFAULT_BRUSH)
+    _check_speed(brush, options)
+    design = layout.arrange(_design(source, options.reading), options.layout)
+    notices = [*mistyped_keys(brush), *design.notices]
+    try:
+        return _planned(design, brush, options, stage, partly, notices)
+    except Error as refusal:
+        refusal.notices = tuple(notices)
+        raise
+
+
+def _planned(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> Work:
+    """The work of a drawing that was read. notices: what was told of it; what else is found is added."""
+    stage("finding strokes")
+    found, of_strokes = _found(design, brush, options)
+    notices += of_strokes
+    if not partly:
+        _refuse_wide_lines(found, brush)
+    lines = _within_reach(found, brush, options, partly)
+    compensated = compensation_by(brush, design.sheet_mm, options, stage)
+    lines, done = _compensated(lines, compensated, partly)
+    if _leads(options):
+        lines, done = _searched(lines, done, brush, compensated, options)
+    notices += lines.notices
+    way = _refined(_way(lines, done, brush, compensated, options, stage), brush, compensated, options)
+    lines = _without_left_out(lines, way)
+    way.plan = _at_speed(_with_speeds(way.plan, lines.wanted), options)
+    advised = compensated if options.layout.width_mm is None else None
+    bare, blank, astray = _beside_shapes(lines, way, brush, options)
+    notices += (
+        *way.notices,
+        *warnings_with_advice(way.painted, way.done, brush, advised),
+        *_other_brushes(lines.wanted, brush),
+        *blank_notices(bare),
+        *blank_notices(blank),
+        *(astray if _leads(options) else []),
+    )
+    work = Work(
+        design.title,
+        brush,
+        way.plan,
+        lines.wanted,
+        tuple(way.tracking_errors),
+        options,
+        tuple(notices),
+        tuple(lines.refused),
+        tuple(lines.left_out),
+        tuple(lines.drawn),
+        tuple(bare),
+        tuple(blank),
+        tuple(notice.where for notice in astray),
+        way.known,
+    )
+    work = with_margin_strokes(work)
+    return replace(work, plan=corrected(work.plan, options.corrections, brush))
+
+
+def _leads(options: Options) -> bool:
+    """Whether the tool leads the paint, or goes where the lines are."""
+    return options.compensation in ("closed", "refined")
+
+
+@dataclass(frozen=True)
+class _Lines:
+    """Strokes as they were found, as the brush will paint them, and what each of these should become; what is told of
+    them, why some were refused, what those should have become, and which the search added."""
+
+    drawn: list
+    painted: list
+    wanted: list
+    notices: list[Notice]
+    refused: list[Notice]
+    left_out: list
+    added: frozenset[str] = frozenset()
+
+
+@dataclass
+class _Way:
+    """How lines are painted. painted, wanted: as in _Lines, pressed deeper where paint runs out; done: what
+    compensation said; moved: which strokes refinement moved."""
+
+    painted: list
+    wanted: list
+    done: _core.Compensated
+    plan: _core.Plan
+    tracking_errors: list
+    moved: list[bool]
+    notices: list[Notice]
+    known: Known | None
+
+
+def _found(design: Design, brush, options: Options) -> tuple[list, list[Notice]]:
+    """A design's strokes, joined, lifted and cut at their corners as is asked for."""
+    thin: list[Notice] = []
+    if options.paths_as is None:
+        design, thin = without_thin_outlines(design, brush)
+    strokes, notices = strokes_of(design, options.paths_as)
+    notices += thin
+    if options.join:
+        strokes, joints = joined(strokes)
+        notices += joints
+    if options.corners == "auto" and _leads(options):
+        strokes = lifted_at_corners(strokes, brush)
+    return strokes, notices
+
+
+def _fills_corners(options: Options) -> bool:
+    """Whether strokes may begin, end and turn as fills the corners of a shape."""
+    return (options.start, options.end, options.corners) == ("auto", "auto", "auto")
+
+
+def _within_reach(found: list, brush, options: Options, partly: bool) -> _Lines:
+    """No wider than the brush."""
+    strokes, refused, left_out = found, [], []
+    if partly and options.wide == "refuse":
+        strokes, _, refused, left_out = _sorted_out(
+            strokes, strokes, lambda some: within_reach(some, brush, options.wide)
+        )
+    painted, wanted, notices = within_reach(strokes, brush, options.wide, _leads(options))
+    return _Lines(list(found), painted, wanted, notices, refused, left_out)
+
+
+def _searched(lines: _Lines, done, brush, compensated, options: Options) -> tuple[_Lines, _core.Compensated]:
+    """The lines as a search leads them, and those that it adds."""
+    found = searched(
+        lines.drawn,
+        lines.painted,
+        lines.wanted,
+        compensated,
+        brush,
+        options.detail,
+        _fills_corners(options),
+        options.wide != "clamp",
+        done,
+    )
+    lines = replace(lines, drawn=found.drawn, painted=found.painted, wanted=found.wanted, added=found.added)
+    return lines, found.done
+
+
+def _compensated(lines: _Lines, compensated, partly: bool) -> tuple[_Lines, _core.Compensated]:
+    try:
+        return lines, compensated(lines.painted)
+    except Error:
+        if not partly:
+            raise
+    painted, wanted, refused, left_out = _sorted_out(lines.painted, lines.wanted, compensated)
+    lines = replace(
+        lines,
+        painted=painted,
+        wanted=wanted,
+        refused=lines.refused + refused,
+        left_out=lines.left_out + left_out,
+    )
+    return lines, compensated(lines.painted)
+
+
+def _way(lines: _Lines, done, brush, compensated, options: Options, stage) -> _Way:
+    """Begun where the tool may be, and pressed deeper as paint runs out."""
+    painted, wanted, notices, known, cell = lines.painted, lines.wanted, [], None, options.cell
+    if cell is not None and _leads(options):
+        fitting, known = begun_within_reach(
+            painted, brush, done.plan, compensated, options, stage, lines.added
+        )
+        if fitting is not painted:
+            kept = {stroke.id for stroke in fitting}
+            wanted = [meant for meant, stroke in zip(wanted, painted, strict=True) if stroke.id in kept]
+            painted, done = fitting, compensated(fitting)
+    if brush.paint and brush.width_follows_depth() and _leads(options):
+        lowest_mm = cell.heights.lowest_mm if cell else -np.inf
+
+        def fetched(plan):
+            return fetched_mm(plan, brush, cell)
+
+        pressed = pressed_deeper(painted, wanted, brush, done, compensated, fetched, lowest_mm)
+        painted, wanted, done = pressed.painted, pressed.wanted, pressed.done
+        notices = pressed.told
+    return _Way(painted, wanted, done, done.plan, done.misses, [False] * len(painted), notices, known)
+
+
+def _without_left_out(lines: _Lines, way: _Way) -> _Lines:
+    """The lines without the added strokes for which the cell has no room."""
+    left_out = lines.added - {stroke.id for stroke in way.painted}
+    drawn, wanted = (
+        [each for each in some if each.id not in left_out] for some in (lines.drawn, lines.wanted)
+    )
+    return replace(lines, drawn=drawn, wanted=wanted)
+
+
+def _refined(way: _Way, brush, compensated, options: Options) -> _Way:
+    """The same, or moved where the mark lies better, if that is asked for."""
+    if options.compensation != "refined":
+        return way
+    forbidden = _forbidden(brush, options)
+    better = refined(way.painted, way.wanted, brush, way.done, compensated, forbidden)
+    way.plan.passes = better.passes
+    told = better.nothing_moved()
+    return replace(
+        way,
+        tracking_errors=better.tracking_errors,
+        moved=better.moved,
+        notices=[*way.notices, *([told] if told else [])],
+    )
+
+
+def _beside_shapes(lines: _Lines, way: _Way, brush, options: Options) -> tuple[list, list, list[Notice]]:
+    """Pieces of shapes that no stroke reaches, those that strokes reach and their marks do not, and which strokes lie
+    where nobody wants them."""
+    refused = {notice.where for notice in lines.refused}
+    planned = [stroke for stroke in lines.drawn if stroke.id not in refused]
+    areas = uncovered_areas(planned, way.painted, list(way.plan.passes), brush)
+    bare = [each for each in areas if not each.is_reached]
+    blank = [each for each in areas if each.is_reached and _leads(options)]
+    return bare, blank, _astray(way, brush, options)
+
+
+def _refuse_wide_lines(strokes: list, brush) -> None:
+    """Error for the first line that is wider than the brush, before the time is taken that shapes do."""
+    for stroke in strokes if brush.width_follows_depth() else ():
+        widest = max(half for _, half in stroke.half_width)
+        if not stroke.wanted_mm and not is_within_reach(widest, brush.half_width_range_mm()[1]):
+            brush.depth_for_half_width(widest, stroke.id)
+
+
+def _design(source, reading: read.ReadOptions) -> Design:
+    if not isinstance(source, Design):
+        return read.read_drawing(source, reading)
+    if reading.units or reading.select:
+        sentence = "units and select are for reading: a Design was read already"
+        raise Error(sentence, code="options-contradict")
+    return source if reading.sheet_mm is None else replace(source, sheet_mm=reading.sheet_mm)
+
+
+def _forbidden(brush, options: Options):
+    """What says of a plan why the cell may not run it, one sentence each; None without a cell."""
+    if options.cell is None:
+        return None
+    cell, job = options.cell, Job(options.z_offset_mm)
+
+    def sentences(plan) -> list:
+        loads, marks = in_loads(plan, brush, cell), _core.simulate(plan, brush)
+        return look(loads, brush, marks, cell, options.tolerance_mm, job).problems
+
+    return sentences
+
+
+def _sorted_out(painted, wanted, step):
+    """Strokes that a step takes, with what they should become, why it refuses the others, and what those should become:
+    each is tried alone."""
+    sound, refused, left_out = [], [], []
+    for pair in zip(painted, wanted, strict=True):
+        try:
+            step(pair[:1])
+        except Error as error:
+            refused.append(error.notice(pair[0].id))
+            left_out.append(pair[1])
+        else:
+            sound.append(pair)
+    return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused, left_out
+
+
+def _with_speeds(plan, strokes):
+    """The plan with the speeds that the drawing's settings ask for."""
+    speeds = [stroke.settings.speed_mm_s for stroke in strokes]
+    if any(speeds):
+        for a_pass, speed in zip(plan.passes, speeds, strict=True):
+            a_pass.speed_mm_s = speed or a_pass.speed_mm_s
+    return plan
+
+
+def _check_speed(brush, options: Options) -> None:
+    """Error where all is to be painted at a speed that is not the brush's, or not the cell's."""
+    speed, cell = options.speed_of_all_mm_s, options.cell
+    if speed is None:
+        return
+    least = LEAST_SPEED_MM_S.get(cell.language, 0.001) if cell else 0.001
+    most = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s) if cell else brush.max_speed_mm_s
+    whose = f"brush {brush.name}" if most == brush.max_speed_mm_s else f"cell {cell.name}"
+    if not least <= speed <= most:
+        sentence = f"speed {speed:.4g} mm/s is outside the range [{least:g}, {most:g}] mm/s of {whose}"
+        raise Error(sentence, code="speed-out-of-range")
+
+
+def _at_speed(plan, options: Options):
+    """The plan with the one speed that all was asked to be painted at."""
+    if options.speed_of_all_mm_s is not None:
+        for a_pass in plan.passes:
+            a_pass.speed_mm_s = options.speed_of_all_mm_s
+    return plan
+
+
+def _other_brushes(strokes, brush) -> list[Notice]:
+    asked = ((stroke.id, stroke.settings.brush or brush.name) for stroke in strokes)
+    return [
+        Notice(
+            name,
+            f"the drawing asks for brush {other}, all is painted with {brush.name}",
+            code="brush-asked-for",
+        )
+        for name, other in asked
+        if other != brush.name
+    ]
+
+
+def _astray(way: _Way, brush, options: Options) -> list[Notice]:
+    """Of strokes that lie where nobody wants them. Who drew a shape drew no middle line, and refinement leaves it on
+    purpose: there the paint is judged."""
+    shapes = {stroke.origin.element for stroke in way.wanted if stroke.wanted_mm}
+    by_paint = [
+        is_moved or stroke.origin.element in shapes
+        for stroke, is_moved in zip(way.wanted, way.moved, strict=True)
+    ]
+    lines = [None if by else stroke for stroke, by in zip(way.painted, by_paint, strict=True)]
+    off = [by and not miss.within_tolerance for by, miss in zip(by_paint, way.tracking_errors, strict=True)]
+    runs = [run if is_off else None for run, is_off in zip(way.plan.passes, off, strict=True)]
+    return [
+        *off_middle_line(lines, way.tracking_errors, brush, options.tolerance_mm),
+        *outside(way.wanted, runs, brush),
+    ]
+
+
+def _prepare_plan(plan, options: Options) -> Work:
+    brush = options.brush or find_brush(plan.brush)
+    notices = mistyped_keys(brush)
+    if brush.name != plan.brush:
+        notices.append(
+            Notice(
+                "brush",
+                f"the plan was made for brush {plan.brush}, not for {brush.name}",
+                code="plan-of-other-brush",
+            )
+        )
+    elif plan.brush_sha256 and brush.sha256 and plan.brush_sha256 != brush.sha256:
+        notices.append(
+            Notice(
+                "brush_sha256",
+                f"the plan was made with another file of brush {brush.name}",
+                code="plan-of-other-brush",
+            )
+        )
+    _check_speed(brush, options)
+    plan = _at_speed(plan, options)
+    return Work("", brush, corrected(plan, options.corrections, brush), None, (), options, tuple(notices))

@@ -1,0 +1,1 @@
+"""Cells: a machine, its limits and the place of its paper."""

@@ -1,0 +1,611 @@
+"""Whether a cell makes sense: what no single key tells is refused, what is odd is remarked on."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from ...errors import Error, Notice
+from ..frames import moved, normal_tilt_deg
+from ..move_extents import from_origin, ways
+from ..realised.smooth_field import steepest
+from ..workspace_limits import astray
+from .cell import (
+    ARCS_IN_SEGMENTS,
+    CONTACT_BY,
+    FANUC_CONFIGURATION,
+    LEAST_ACCELERATION_MM_S2,
+    LEAST_SPEED_MM_S,
+    NEEDED_BY,
+    RELOADS,
+    Cell,
+    Machine,
+    Speeds,
+    Station,
+    entries,
+    least_backlash_mm,
+    not_undone,
+    robot_from_paper,
+    value_mm,
+    why_no_waiting,
+)
+
+STEEP_DEG = (
+    45.0  # from here on paper is painted from the robot's side alone; flatter, an arm may reach across it
+)
+LEAST_GRID_MM, MOST_MAP_MM = 5.0, 5.0  # how far apart a map's lines are at least, and how high or low it is
+MOST_BENT = 0.1  # of a field, mm in a mm: as far off as scale and skew may be; from 1 on a sheet would fold
+JOINTS = 6  # of an arm: with more of them, angles for a place are no longer few
+COARSEST_VALUE_MM = 0.5  # of height, that a servo's value may change: half of it is what depths are off by
+
+
+def check(cell: Cell) -> None:
+    """Error, with the key in `where`, for what no single key tells."""
+    heights = cell.heights
+    if not heights.clearance_mm <= heights.safe_mm:
+        raise Error(
+            f"clearance_mm {heights.clearance_mm:g} must not be above safe_mm {heights.safe_mm:g}",
+            where="heights.clearance_mm",
+            code="cell-heights",
+        )
+    for table in NEEDED_BY.get(cell.language, ()):
+        if getattr(cell, table) is None:
+            raise Error(f"language {cell.language!r} needs a table {table}", where=table, code="key-missing")
+    least = LEAST_ACCELERATION_MM_S2.get(cell.language, 0.0)
+    if cell.speeds.acceleration_mm_s2 < least:
+        greatest = entries(Speeds)["acceleration_mm_s2"].greatest
+        raise Error(
+            f"{cell.speeds.acceleration_mm_s2:g} mm/s2 is outside the range [{least:g}, {greatest:g}] "
+            f"mm/s2 of language {cell.language!r}",
+            where="speeds.acceleration_mm_s2",
+            code="out-of-range",
+        )
+    _check_speeds(cell)
+    _check_own_keys(cell)
+    _check_paper(cell)
+    _check_workspace(cell)
+    if cell.machine and cell.machine.map_mm:
+        _check_map(cell.machine.map_mm)
+    if cell.machine:
+        _check_field(cell.machine)
+        _check_undone(cell)
+    if cell.pen:
+        _check_pen(cell)
+    if cell.motors:
+        _check_motors(cell)
+    if cell.servo:
+        _check_servo(cell)
+    _check_paint(cell)
+    if cell.contact:
+        _check_contact(cell)
+    if cell.arm:
+        _check_arm(cell)
+
+
+def _check_contact(cell: Cell) -> None:
+    by = CONTACT_BY.get(cell.language)
+    if by is None:
+        raise Error(
+            f"language {cell.language!r} has no word for contact: what stops its arm is set on the controller",
+            where="contact",
+            code="cell-contact",
+        )
+    for key in CONTACT_BY.values():
+        if bool(getattr(cell.contact, key)) != (key == by):
+            says = "needs" if key == by else "is not told"
+            raise Error(
+                f"language {cell.language!r} {says} {key}", where=f"contact.{key}", code="cell-contact"
+            )
+
+
+def _check_arm(cell: Cell) -> None:
+    arm = cell.arm
+    if cell.tool is None:
+        raise Error("an arm needs a table tool: the brush on its flange", where="tool", code="key-missing")
+    if len(arm.dh) != JOINTS:
+        raise Error(f"the arm has {len(arm.dh)} rows of links, not {JOINTS}", where="arm.dh", code="cell-arm")
+    for key in ("limits_deg", "speeds_deg_s", "posture_deg", "numbers"):
+        if len(given := getattr(arm, key)) != JOINTS and (given or key == "limits_deg"):
+            sentence = f"{len(given)} values are given for {JOINTS} joints"
+            raise Error(sentence, where=f"arm.{key}", code="cell-arm")
+    if any(number % 1 or number <= before for before, number in pairwise((0, *arm.numbers))):
+        sentence = f"{[*arm.numbers]} are no numbers of joints, each larger than the one before"
+        raise Error(sentence, where="arm.numbers", code="cell-arm")
+    for number, (low, high) in enumerate(arm.limits_deg, 1):
+        if not low < high:
+            sentence = f"joint {number}: the least angle {low:g} must be below the greatest, {high:g} degrees"
+            raise Error(sentence, where="arm.limits_deg", code="cell-arm")
+
+
+OWN = {  # keys that one language has, and why another has none
+    "blending.step_mm": ("dobot", "has no steps of blends: they are as fine as its decimals"),
+    "blending.ramp_s": ("fanuc", "tells blends in mm, whatever the time to speed"),
+    "tool.configuration": ("fanuc", "tells no configuration of the arm"),
+    "pen.servo_values": ("marlin-servo", "sets no servo"),
+    "pen.servo_number": ("marlin-servo", "sets no servo"),
+    "pen.settle_s": ("marlin-servo", "waits for no pen"),
+    "tool.base_frame": ("ros2", "names no frames"),
+    "tool.flange_frame": ("ros2", "names no frames"),
+}
+
+
+def _check_own_keys(cell: Cell) -> None:
+    """What only one language tells must not be said for another."""
+    for key, (language, why) in OWN.items():
+        name, _, entry = key.partition(".")
+        table = getattr(cell, name)
+        if table and getattr(table, entry) != getattr(type(table), entry) and cell.language != language:
+            raise Error(f"language {cell.language!r} {why}", where=key, code="out-of-range")
+    if cell.arc_segment_mm and cell.language not in ARCS_IN_SEGMENTS:
+        raise Error(
+            f"language {cell.language!r} makes no lines of circles",
+            where="arc_segment_mm",
+            code="out-of-range",
+        )
+    if (cell.language == "robodk") != (cell.robodk is not None):
+        says = "needs a table robodk" if cell.robodk is None else "runs no post of RoboDK's kind"
+        raise Error(f"language {cell.language!r} {says}", where="robodk", code="key-missing")
+    if cell.language == "fanuc" and not re.fullmatch(CONFIGURATION, cell.tool.configuration):
+        raise Error(
+            f"{cell.tool.configuration[:40]!r} is no configuration as the pendant shows it, such as "
+            f"{FANUC_CONFIGURATION!r}",
+            where="tool.configuration",
+            code="out-of-range",
+        )
+    for key in ("base_frame", "flange_frame") if cell.language == "ros2" else ():
+        if not re.fullmatch(r"[A-Za-z]\w{0,99}(?:/\w{1,99})*", name := getattr(cell.tool, key)):
+            sentence = f"{name[:40]!r} is no name of a frame: letters, digits, _ and /"
+            raise Error(sentence, where=f"tool.{key}", code="name-invalid")
+
+
+CONFIGURATION = r"[NF] [UD] [TB], -?\d, -?\d, -?\d"
+
+
+def _check_speeds(cell: Cell) -> None:
+    least = LEAST_SPEED_MM_S.get(cell.language, 0.0)
+    for name in ("travel_mm_s", "approach_mm_s", "press_mm_s", "paint_mm_s"):
+        if (speed := getattr(cell.speeds, name)) < least:
+            raise Error(
+                f"{speed:g} mm/s is outside the range [{least:g}, {entries(Speeds)[name].greatest:g}] mm/s of "
+                f"language {cell.language!r}",
+                where=f"speeds.{name}",
+                code="out-of-range",
+            )
+
+
+def _check_paper(cell: Cell) -> None:
+    if cell.paper.taught_mm and len(cell.paper.taught_mm) not in (3, 4):
+        raise Error(
+            f"{len(cell.paper.taught_mm)} points were taught, not 3 or 4",
+            where="paper.taught_mm",
+            code="paper-taught",
+        )
+    if cell.paper.taught_mm and (any(cell.paper.origin_mm) or any(cell.paper.rotation_deg)):
+        raise Error(
+            "the paper has both a pose and taught points: one must go",
+            where="paper.taught_mm",
+            code="paper-taught",
+        )
+    try:
+        tilt_deg = normal_tilt_deg(robot_from_paper(cell))
+    except Error as refusal:
+        refusal.where = "paper.taught_mm"
+        raise
+    limit_deg = cell.workspace.tilt_limit_deg
+    if tilt_deg > limit_deg + 1e-9:
+        raise Error(
+            f"the paper leans {tilt_deg:.2f} degrees, outside the range [0, {limit_deg:g}] degrees of tilt_limit_deg",
+            where="paper",
+            code="paper-tilted",
+            advice="seen from above, the third point lies to the left of the way from the first to the second"
+            if cell.paper.taught_mm and tilt_deg > 90
+            else "",
+        )
+
+
+def _check_workspace(cell: Cell) -> None:
+    box_mm, reach_mm = cell.workspace.box_mm, cell.workspace.reach_mm
+    if box_mm and not all(low < high for low, high in zip(*box_mm, strict=True)):
+        raise Error(
+            "the first corner must be the lower one in x, y and z",
+            where="workspace.box_mm",
+            code="cell-workspace",
+        )
+    for number, corners in enumerate(cell.workspace.keep_out_mm, 1):
+        if not all(low < high for low, high in zip(*corners, strict=True)):
+            sentence = f"box {number}: the first corner must be the lower one in x, y and z"
+            raise Error(sentence, where="workspace.keep_out_mm", code="cell-workspace")
+    if reach_mm and not reach_mm[0] < reach_mm[1]:
+        raise Error(
+            "the least distance must be below the greatest", where="workspace.reach_mm", code="cell-workspace"
+        )
+
+
+LARGEST_SHEET_MM = 1e5
+
+
+def out_of_reach(cell: Cell) -> list[Notice]:
+    """A notice of the key where no sheet of any size has a point that the tool may go to, on it or above it."""
+    found: list[Notice] = []
+    for height_mm in (0.0, cell.heights.safe_mm):
+        found = found or _beyond(cell, height_mm)
+    return found
+
+
+def _beyond(cell: Cell, height_mm: float) -> list[Notice]:
+    box_mm, reach_mm = cell.workspace.box_mm, cell.workspace.reach_mm
+    ends = (-cell.workspace.margin_mm, LARGEST_SHEET_MM)
+    sheet = np.array([(ends[a], ends[b], height_mm) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))])
+    left = moved(robot_from_paper(cell), sheet)
+    at = f"at height {height_mm:g} mm the whole sheet"
+    for axis, name in enumerate("xyz" if box_mm else ""):
+        low, high = box_mm[0][axis], box_mm[1][axis]
+        for bound, sign, where in ((low, 1.0, "below"), (high, -1.0, "above")):
+            left = _clipped(left, sign * (left[:, axis] - bound))
+            if not len(left):
+                sentence = f"{at} has {name} {where} {bound:g} mm, outside the range [{low:g}, {high:g}] mm of the box"
+                return [Notice("workspace.box_mm", sentence, code="sheet-out-of-reach")]
+    if reach_mm:
+        nearest_mm, farthest_mm = _distances_mm(left)
+        if nearest_mm > reach_mm[1] or farthest_mm < reach_mm[0]:
+            away = (
+                f"{nearest_mm:.0f} mm and more"
+                if nearest_mm > reach_mm[1]
+                else f"at most {farthest_mm:.0f} mm"
+            )
+            bounds = "[{:g}, {:g}] mm".format(*reach_mm)
+            sentence = f"{at} lies {away} from the robot's origin, outside the range {bounds} of its reach"
+            return [Notice("workspace.reach_mm", sentence, code="sheet-out-of-reach")]
+    return []
+
+
+def _clipped(corners: np.ndarray, inside: np.ndarray) -> np.ndarray:
+    """What of a flat polygon (n, 3) lies where `inside` (n,), which is linear on it, is not negative."""
+    kept = []
+    for k in range(len(corners)):
+        a, b = inside[k - 1], inside[k]
+        if (a < 0) != (b < 0):
+            kept.append(corners[k - 1] + (corners[k] - corners[k - 1]) * (a / (a - b)))
+        if b >= 0:
+            kept.append(corners[k])
+    return np.array(kept).reshape(-1, 3)
+
+
+def _distances_mm(corners: np.ndarray) -> tuple[float, float]:
+    """The least and the greatest distance [mm] of a flat convex polygon (n, 3) from the origin."""
+    nearest, farthest = from_origin(ways([[*corners, corners[0]]]))
+    sides = np.roll(corners, -1, axis=0) - corners
+    normal = np.cross(sides[0], sides[1]) if len(corners) > 2 else np.zeros(3)
+    if size := np.linalg.norm(normal):
+        normal = normal / size
+        foot = normal * (normal @ corners[0])
+        turns = np.cross(sides, foot - corners) @ normal
+        if (turns >= 0).all():
+            nearest = min(nearest, float(np.linalg.norm(foot)))
+    return nearest, farthest
+
+
+PENS = ("hpgl", "marlin-servo")
+
+
+def _check_pen(cell: Cell) -> None:
+    pen = cell.pen
+    if cell.language not in PENS:
+        sentence = (
+            f"language {cell.language!r} tells heights: a pen that knows none is for {' and '.join(PENS)}"
+        )
+        raise Error(sentence, where="pen", code="out-of-range")
+    if cell.language == "marlin-servo" and len(set(map(round, pen.servo_values))) != 2:
+        sentence = (
+            "the servo needs two values, whole degrees: one that lifts the pen, another that lets it down"
+        )
+        raise Error(sentence, where="pen.servo_values", code="servo-table")
+    if cell.language == "marlin-servo" and pen.colours:
+        sentence = "the servo holds one pen: it stops for those of other colours"
+        raise Error(sentence, where="pen.colours", code="out-of-range")
+    frame = robot_from_paper(cell)
+    if abs(frame[2, 3]) > 1e-9 or normal_tilt_deg(frame) > 1e-9:
+        sentence = "a pen is up or down over the paper: it must lie level, at z 0"
+        raise Error(sentence, where="paper", code="paper-tilted")
+    if pen.down_mm < cell.heights.lowest_mm:
+        sentence = f"down_mm {pen.down_mm:g} is below lowest_mm {cell.heights.lowest_mm:g}"
+        raise Error(sentence, where="pen.down_mm", code="cell-heights")
+    if cell.stations or cell.reload:
+        sentence = "a pen that is up or down goes into no vessel: stations and reload must go"
+        raise Error(sentence, where="stations", code="cell-station")
+    for number, colour in enumerate(pen.colours, 1):
+        if not re.fullmatch("#[0-9a-fA-F]{6}", colour) or colour.lower() in map(
+            str.lower, pen.colours[: number - 1]
+        ):
+            sentence = f"colour {colour[:24]!r} of pen {number} is not written as #rrggbb, or given twice"
+            raise Error(sentence, where="pen.colours", code="colour-invalid")
+
+
+MOST_STEPS_S = 25_000  # of each motor of an EBB
+MOST_VALUE = 65_535  # of its servo
+
+
+def _check_motors(cell: Cell) -> None:
+    if cell.language != "ebb":
+        sentence = f"language {cell.language!r} tells no steps: motors that are told them are for ebb"
+        raise Error(sentence, where="motors", code="out-of-range")
+    rows = np.array(cell.motors.steps_per_mm)
+    if np.linalg.cond(rows) > 1e3:
+        sentence = "both motors turn for the same way: no place can be told by them"
+        raise Error(sentence, where="motors.steps_per_mm", code="out-of-range")
+    most_mm_s = MOST_STEPS_S / float(np.linalg.norm(rows, axis=1).max())
+    for name in ("travel_mm_s", "approach_mm_s", "press_mm_s", "paint_mm_s"):
+        if (speed := getattr(cell.speeds, name)) > most_mm_s:
+            raise Error(
+                f"{speed:g} mm/s is outside the range [{LEAST_SPEED_MM_S['ebb']:g}, {most_mm_s:.1f}] mm/s, in which no "
+                f"motor makes more than {MOST_STEPS_S} steps in a second",
+                where=f"speeds.{name}",
+                code="out-of-range",
+            )
+    if (value := max(row[1] for row in cell.servo.table)) > MOST_VALUE:
+        sentence = f"value {value:g} is outside the range [0, {MOST_VALUE}] of 1/12 microseconds"
+        raise Error(sentence, where="servo.table", code="servo-table")
+
+
+def _check_servo(cell: Cell) -> None:
+    frame = robot_from_paper(cell)
+    lies_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
+    if "servo" in NEEDED_BY.get(cell.language, ()) and not lies_level:
+        raise Error(
+            "a servo's heights are those over the paper: it must lie level, at z 0",
+            where="paper",
+            code="paper-tilted",
+        )
+    table = np.array(cell.servo.table)
+    steps = np.diff(table, axis=0)
+    if len(table) < 2 or not ((steps[:, 0] > 0).all() or (steps[:, 0] < 0).all()):
+        raise Error(
+            "at least two heights are needed, steadily rising or falling",
+            where="servo.table",
+            code="servo-table",
+        )
+    if not ((steps[:, 1] > 0).all() or (steps[:, 1] < 0).all()):
+        raise Error(
+            "the values must steadily rise or fall with the height", where="servo.table", code="servo-table"
+        )
+    if (table[:, 1] < 0).any():
+        raise Error(f"value {table[:, 1].min():g} is below 0", where="servo.table", code="servo-table")
+    low, high = table[:, 0].min(), table[:, 0].max()
+    if not (low <= cell.heights.lowest_mm and cell.heights.safe_mm <= high):
+        raise Error(
+            f"the heights [{low:g}, {high:g}] mm must hold lowest_mm {cell.heights.lowest_mm:g} and "
+            f"safe_mm {cell.heights.safe_mm:g}",
+            where="servo.table",
+            code="servo-table",
+        )
+    if (value := value_mm(cell)) > COARSEST_VALUE_MM:
+        raise Error(
+            f"one value changes the height by {value:.2g} mm, outside the range [0, {COARSEST_VALUE_MM:g}] mm: depths "
+            "would be off by half of it",
+            where="servo.table",
+            code="servo-coarse",
+        )
+    if cell.heights.clearance_mm < 2 * value:
+        raise Error(
+            f"clearance_mm {cell.heights.clearance_mm:g} is outside the range [{2 * value:.2g}, "
+            f"{cell.heights.safe_mm:g}] mm: one value of the servo changes the height by {value:.2g} mm",
+            where="heights.clearance_mm",
+            code="cell-heights",
+        )
+
+
+def _check_undone(cell: Cell) -> None:
+    for key, why in not_undone(cell).items():
+        values = np.atleast_1d(getattr(cell.machine, key)).tolist()
+        if np.any(values):
+            sentence = f"{key} {values} is outside the range [0, 0] of this machine: {why}"
+            raise Error(sentence, where=f"machine.{key}", code="cell-machine")
+    least = least_backlash_mm(cell)
+    for value in cell.machine.backlash_mm:
+        if 0 < value < least:
+            raise Error(
+                f"backlash_mm {value:g} is neither 0 nor in the range [{least:g}, 3] mm",
+                where="machine.backlash_mm",
+                code="cell-machine",
+            )
+
+
+def _check_map(map_mm: tuple) -> None:
+    where = "machine.map_mm"
+    places = [row[:2] for row in map_mm]
+    xs, ys = (sorted({place[k] for place in places}) for k in range(2))
+    for x, y in places:
+        if places.count((x, y)) > 1:
+            raise Error(f"the place x {x:g}, y {y:g} mm is given twice", where=where, code="cell-machine")
+    missing = [(x, y) for y in ys for x in xs if (x, y) not in set(places)]
+    if missing:
+        x, y = missing[0]
+        raise Error(
+            f"no height is given at x {x:g}, y {y:g} mm, one of {len(xs)} x {len(ys)} places of a grid",
+            where=where,
+            code="cell-machine",
+        )
+    if min(len(xs), len(ys)) < 2:
+        raise Error(
+            f"{len(xs)} x {len(ys)} places are no grid, 2 x 2 at least", where=where, code="cell-machine"
+        )
+    for axis, lines in (("x", xs), ("y", ys)):
+        for one, other in pairwise(lines):
+            if other - one < LEAST_GRID_MM:
+                raise Error(
+                    f"{axis} {one:g} and {other:g} mm are less than {LEAST_GRID_MM:g} mm apart",
+                    where=where,
+                    code="cell-machine",
+                )
+    for x, y, height in map_mm:
+        if abs(height) > MOST_MAP_MM:
+            raise Error(
+                f"{height:g} mm at x {x:g}, y {y:g} mm is outside the range [{-MOST_MAP_MM:g}, {MOST_MAP_MM:g}] mm",
+                where=where,
+                code="cell-machine",
+            )
+
+
+def _check_field(machine: Machine) -> None:
+    keys = ("field_mm", "field_middle_mm", "field_reach_mm")
+    missing = [key for key in keys if not getattr(machine, key)]
+    if 0 < len(missing) < len(keys):
+        sentence = f"a field needs {', '.join(keys)}: there is no {missing[0]}"
+        raise Error(sentence, where=f"machine.{missing[0]}", code="key-missing")
+    if machine.field_mm and (slope := steepest(machine)) > MOST_BENT:
+        sentence = (
+            f"the field changes by up to {slope:.3g} mm in a mm, outside the range [0, {MOST_BENT:g}]: with "
+            f"field_reach_mm {[*machine.field_reach_mm]} its numbers are too large"
+        )
+        raise Error(sentence, where="machine.field_mm", code="cell-machine")
+
+
+def _check_paint(cell: Cell) -> None:
+    names = [station.name for station in cell.stations]
+    for number, station in enumerate(cell.stations, 1):
+        where = f"station {number}"
+        if names.index(station.name) != number - 1:
+            raise Error(f"the name {station.name!r} is given twice", where=where, code="name-taken")
+        _check_heights_of(station, cell, where)
+        for colour in station.colours:
+            if not re.fullmatch("#[0-9a-fA-F]{6}", colour):
+                raise Error(
+                    f"colour {colour[:24]!r} is not written as #rrggbb", where=where, code="colour-invalid"
+                )
+        if station.by_hand and (station.depth_mm or station.wipe_mm or station.stir_mm):
+            raise Error(
+                "with by_hand a person loads the brush: depth_mm, wipe_mm and stir_mm must go",
+                where=where,
+                code="cell-station",
+            )
+        if (
+            not station.by_hand
+            and not station.depth_mm
+            and station.name != getattr(cell.reload, "wash", None)
+        ):
+            raise Error("depth_mm 0 takes no paint", where=where, code="cell-station")
+    if cell.stations and not cell.reload:
+        raise Error(
+            "stations need a table reload that says when to visit them", where="reload", code="cell-reload"
+        )
+    if not cell.reload:
+        return
+    if cell.reload.when not in RELOADS:
+        raise Error(
+            f"{cell.reload.when!r} is none of {', '.join(RELOADS)}", where="reload.when", code="cell-reload"
+        )
+    if not cell.stations:
+        raise Error("there is no station to reload at", where="reload", code="cell-reload")
+    if cell.reload.when == "length" and not cell.reload.every_mm > 2 * cell.reload.backtrack_mm:
+        raise Error(
+            f"every_mm {cell.reload.every_mm:g} must be more than twice backtrack_mm {cell.reload.backtrack_mm:g}",
+            where="reload.every_mm",
+            code="cell-reload",
+        )
+    if cell.reload.wash and cell.reload.wash not in names:
+        raise Error(f"there is no station {cell.reload.wash!r}", where="reload.wash", code="cell-reload")
+    if cell.reload.rinse and not cell.reload.wash:
+        raise Error("rinse needs wash, the station of the water", where="reload.rinse", code="cell-reload")
+
+
+def _check_heights_of(station: Station, cell: Cell, where: str) -> None:
+    if station.by_hand:
+        if why := why_no_waiting(cell):
+            raise Error(f"{why}: by_hand cannot be", where=where, code="cell-station")
+        return
+    top = cell.heights.safe_mm - cell.heights.clearance_mm
+    if not station.surface_mm <= station.rim_mm <= top:
+        raise Error(
+            f"rim_mm {station.rim_mm:g} is outside the range [{station.surface_mm:g}, {top:g}] mm, from the paint's "
+            f"surface to clearance_mm below the safe height",
+            where=where,
+            code="cell-station",
+        )
+    bottom = station.surface_mm - station.depth_mm
+    if bottom < cell.heights.lowest_mm:
+        raise Error(
+            f"the tip goes to {bottom:g} mm in the paint, below lowest_mm {cell.heights.lowest_mm:g}",
+            where=where,
+            code="cell-station",
+        )
+    for point in station.wipe_mm:
+        if not station.rim_mm <= point[2] <= cell.heights.safe_mm:
+            raise Error(
+                f"a wipe at {point[2]:g} mm is outside the range [{station.rim_mm:g}, {cell.heights.safe_mm:g}] mm, "
+                f"from the rim to the safe height",
+                where=where,
+                code="cell-station",
+            )
+
+
+USUAL = (  # (key, least, greatest, what is unusual beyond them)
+    ("heights.safe_mm", 2.0, 200.0, "clips, vessels and drops of paint stand higher; or the way up is long"),
+    ("heights.lowest_mm", -50.0, -0.5, "few brushes bend so far; or nothing is painted"),
+    ("speeds.travel_mm_s", 1.0, 1000.0, "few machines are so fast or slow"),
+    ("speeds.approach_mm_s", 1.0, 200.0, "the tool comes down on the paper with it"),
+    ("speeds.press_mm_s", 0.5, 100.0, "the brush is pressed down with it"),
+    ("speeds.paint_mm_s", 1.0, 500.0, "bristles whip or dry at such a speed"),
+    (
+        "speeds.acceleration_mm_s2",
+        10.0,
+        10000.0,
+        "few machines accelerate so; the estimate of time hangs on it",
+    ),
+    ("paper.flatness_mm", 0.0, 2.0, "half a millimetre already changes the width of a thin line"),
+    ("workspace.margin_mm", 5.0, 500.0, "the tool leads the brush by its lag, and goes no further for paint"),
+    ("servo.step_mm", 0.0, 0.5, "the depth is off by half of it"),
+    ("reload.every_mm", 20.0, 1e5, "few paint loads last for less or more"),
+)
+
+
+OF_EXAMPLE = Notice(
+    "paper",
+    "the paper's place is an example: teach where yours lies",
+    code="paper-example",
+    advice="brushsvg cell new --taught writes a cell with it",
+)
+
+
+def remarks(cell: Cell) -> list[Notice]:
+    """A notice of the key for what is odd, and yet may be meant so."""
+    found = []
+    for key, least, greatest, why in USUAL:
+        table, _, name = key.partition(".")
+        value = getattr(getattr(cell, table), name, None)
+        if value is not None and not least <= value <= greatest:
+            sentence = f"{value:g} is outside the usual range [{least:g}, {greatest:g}]: {why}"
+            found.append(Notice(key, sentence, code="unusual-value", about=key))
+    if cell.servo and (value := value_mm(cell)) > 0.1:
+        sentence = f"one value changes the height by {value:.2g} mm: depths are off by half of it"
+        found.append(Notice("servo.table", sentence, code="servo-coarse"))
+    if cell.tool and not 10.0 <= (length_mm := float(np.linalg.norm(cell.tool.tcp_mm))) <= 500.0:
+        sentence = f"the tip is {length_mm:.0f} mm from the flange, outside the usual range [10, 500] mm"
+        found.append(Notice("tool.tcp_mm", sentence, code="unusual-value", about="tool.tcp_mm"))
+    if cell.paper.example:
+        found.append(OF_EXAMPLE)
+    return found + _faces_away(cell) + _corner(cell)
+
+
+def _faces_away(cell: Cell) -> list[Notice]:
+    """Paper on a wall, of which the robot stands at the back: the points were taught the other way round."""
+    frame = robot_from_paper(cell)
+    tilt_deg, ahead_mm = normal_tilt_deg(frame), float(frame[:2, 2] @ frame[:2, 3])
+    if not cell.tool or tilt_deg < STEEP_DEG or ahead_mm <= 0:
+        return []
+    sentence = (
+        f"the paper leans {tilt_deg:.0f} degrees and faces away from the robot's origin, as if painted from behind: "
+        "seen from its front, the third point lies to the left of the way from the first to the second"
+    )
+    return [Notice("paper", sentence, code="paper-faces-away")]
+
+
+def _corner(cell: Cell) -> list[Notice]:
+    """The sheet's corner may be out of reach, where nothing is painted near it."""
+    corner = ways([[(0.0, 0.0, 0.0), (0.0, 0.0, cell.heights.safe_mm)]])
+    return [
+        replace(each, where="workspace", sentence=f"over the sheet's lower left corner {each.sentence}")
+        for each in astray(corner, robot_from_paper(cell), replace(cell, servo=None))
+    ]

@@ -1,0 +1,210 @@
+"""Cells as TOML files: found, read with every key checked, written with every key explained."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import textwrap
+from dataclasses import fields
+from pathlib import Path
+
+from ...errors import Error, need, shown
+from ...files import find_file, names_in, read_bytes, toml_document
+from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries, required, tables_of
+from .cell_check import check
+
+SHIPPED = Path(__file__).parents[2] / "data" / "cells"
+DEFAULT_CELL = "linuxcnc-3axis"
+FORMAT, VERSION = "brushsvg/cell", 1
+
+
+def cell_names() -> list[str]:
+    """Names of the cells that come with the package, in alphabetical order."""
+    return names_in(SHIPPED, ".toml")
+
+
+def own_name(name: str) -> str:
+    """What a cell of somebody's own is called instead of a name that comes along: programs that name it would be taken
+    for that one's."""
+    return f"my-{name}" if name in cell_names() else name
+
+
+def find_cell(name_or_path: str | os.PathLike[str] = DEFAULT_CELL) -> Cell:
+    """The shipped cell of a name, or the cell in a .toml file.
+
+    Error for an unknown name, a file that cannot be read and a cell that is refused; the latter two have the
+    file in `file`, the last the key in `where`.
+    """
+    return read_cell(find_file("cell", SHIPPED, ".toml", name_or_path))
+
+
+def read_cell(path: str | os.PathLike[str]) -> Cell:
+    """The cell in a cell.toml. Error, with the path in `file` and the key in `where`, when it is refused."""
+    data = read_bytes(path)
+    try:
+        return parse_cell(data.decode("utf-8"))
+    except UnicodeDecodeError:
+        raise Error(
+            "the file is not a cell: it is not text in UTF-8", file=str(path), code="not-toml"
+        ) from None
+    except Error as refusal:
+        refusal.file = str(path)
+        raise
+
+
+def parse_cell(text: str) -> Cell:
+    """The cell that a TOML text describes. Error naming the key that is missing, unknown or out of range."""
+    document = toml_document(text, "cell")
+    if document.pop("format", None) != FORMAT:
+        raise Error(
+            f'the file is not a cell: format = "{FORMAT}" is missing', where="format", code="format-unknown"
+        )
+    if (version := document.pop("version", None)) != VERSION or isinstance(version, bool):
+        raise Error(
+            f"version {str(version)[:40]} of the cell file is not known; known: {VERSION}",
+            where="version",
+            code="version-unknown",
+        )
+    parts = {name: document.pop(name) for name in TABLES if name in document}
+    stations = document.pop("stations", [])
+    if not isinstance(stations, list):
+        raise Error("stations are written as [[stations]]", where="stations", code="wrong-type")
+    for name in TABLES:
+        if name not in parts and name not in OPTIONAL_TABLES:
+            raise Error(f"the cell file lacks the table {name}", where=name, code="key-missing")
+    cell = Cell(
+        **_read(Cell, document, ""),
+        **{name: TABLES[name](**_read(TABLES[name], part, name)) for name, part in parts.items()},
+        stations=tuple(
+            Station(**_read(Station, part, f"station {number}")) for number, part in enumerate(stations, 1)
+        ),
+    )
+    check(cell)
+    return cell
+
+
+def write_cell(cell: Cell) -> str:
+    """The cell as TOML that parse_cell reads back, each key with a word on its meaning."""
+    need(cell, Cell, "a cell")
+    lines = [f"format = {json.dumps(FORMAT)}", f"version = {VERSION}", "", *_lines(cell)]
+    for name, table in tables_of(cell).items():
+        lines += ["", *_comment(type(table).__doc__), f"[{name}]", *_lines(table)]
+    for station in cell.stations:
+        lines += ["", *_comment(Station.__doc__), "[[stations]]", *_lines(station)]
+    return "\n".join([*lines, ""])
+
+
+MOST_ROWS = 1000  # of one key: no table of a servo and no shop is longer
+
+
+def _read(table, values, where: str) -> dict:
+    known = entries(table)
+    prefix = f"{where}." if where else ""
+    if not isinstance(values, dict):
+        raise Error(f"{where} must be a table", where=where, code="wrong-type")
+    for key in values:
+        if key not in known:
+            raise Error(
+                f"a cell has no key {prefix}{key}; known here: {', '.join(known)}",
+                where=prefix + key,
+                code="key-unknown",
+            )
+    for key in required(table):
+        if key not in values:
+            raise Error(f"the cell file lacks the key {prefix}{key}", where=prefix + key, code="key-missing")
+    return {key: _value(known[key], value, prefix + key) for key, value in values.items()}
+
+
+def _value(entry: Entry, value, where: str):
+    if entry.kind == "text":
+        return _text(value, where)
+    if entry.kind == "texts":
+        if not isinstance(value, list):
+            raise Error(
+                f"{where} must be a list of texts, not {str(value)[:40]}", where=where, code="wrong-type"
+            )
+        return tuple(_text(item, where) for item in value)
+    if entry.kind == "yes":
+        if not isinstance(value, bool):
+            raise Error(
+                f"{where} must be true or false, not {str(value)[:40]}", where=where, code="wrong-type"
+            )
+        return value
+    if entry.kind in ("number", "whole"):
+        return _number(entry, value, where)
+    return _rows(entry, entry.kind, value, where)
+
+
+def _text(value, where: str) -> str:
+    if not isinstance(value, str) or not value.isprintable() or not value or len(value) > 200:
+        raise Error(f"{where} must be one line of text", where=where, code="wrong-type")
+    return value
+
+
+def _number(entry: Entry, value, where: str):
+    wanted = int if entry.kind == "whole" else int | float
+    if isinstance(value, bool) or not isinstance(value, wanted) or value != value or abs(value) == math.inf:
+        said = "a whole number" if entry.kind == "whole" else "a finite number"
+        raise Error(f"{where} must be {said}, not {str(value)[:40]}", where=where, code="wrong-type")
+    if not entry.least <= value <= entry.greatest:
+        raise Error(
+            f"{where} {shown(value)} is outside the range [{entry.least:g}, {entry.greatest:g}]",
+            where=where,
+            code="out-of-range",
+        )
+    return value if entry.kind == "whole" else float(value)
+
+
+def _rows(entry: Entry, shape: tuple, value, where: str) -> tuple:
+    count = shape[0]
+    if isinstance(value, list) and len(value) > MOST_ROWS:
+        sentence = f"{where} has {len(value)} rows, more than {MOST_ROWS}"
+        raise Error(sentence, where=where, code="out-of-range")
+    if not isinstance(value, list) or (count is not None and len(value) != count):
+        raise Error(
+            f"{where} must be {_shape_in_words(shape)}, not {str(value)[:40]}",
+            where=where.partition("[")[0],
+            code="wrong-type",
+        )
+    if len(shape) == 1:
+        return tuple(_number(entry, item, where) for item in value)
+    rows = enumerate(value)
+    return tuple(_rows(entry, shape[1:], item, f"{where}[{number}]") for number, item in rows)
+
+
+def _shape_in_words(shape: tuple) -> str:
+    """(None, 2, 3) is a list of lists of 2 rows of 3 numbers."""
+    if len(shape) == 1:
+        return "a list of numbers" if shape[0] is None else f"{shape[0]} numbers"
+    within = _shape_in_words(shape[1:])
+    return f"a list of rows of {within}" if shape[0] is None else f"{shape[0]} rows of {within}"
+
+
+def _lines(table) -> list[str]:
+    """The keys of a table as TOML; those that hold what is theirs without a word stay away."""
+    lines = []
+    for item in fields(table):
+        entry = item.metadata.get("entry")
+        value = getattr(table, item.name)
+        if entry is None or value == item.default:
+            continue
+        text = f"{item.name} = {_toml(value)}"
+        if len(text) + len(entry.help) <= 110:
+            lines.append(f"{text}  # {entry.help}")
+        else:
+            lines += [*_comment(entry.help), text]
+    return lines
+
+
+def _comment(text: str) -> list[str]:
+    return textwrap.wrap(text, 108, initial_indent="# ", subsequent_indent="# ")
+
+
+def _toml(value) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, tuple):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    # JSON's escapes are TOML's, but for what lies beyond 16 bits
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)

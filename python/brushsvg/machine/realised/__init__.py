@@ -1,0 +1,1 @@
+"""The motion that an inexact machine makes of a pass."""

@@ -1,0 +1,69 @@
+"""Where a DXF's lines lie on the sheet: model space has no page, and may be measured from anywhere on earth."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...geometry.cubics import extremes
+from ..design import Element, Notice
+from ..svg.paths.path_to_cubics import LARGEST_MM
+from .entity_walk import Piece
+
+MARGIN_MM = 20.0
+
+
+def anchored(pieces: list[Piece]) -> list[Piece]:
+    """The pieces, moved to the origin if most of them lie beyond 1e6 mm from it, as in the coordinates of maps."""
+    if not pieces:
+        return pieces
+    starts = np.array([piece.curves[0].cubics[0, 0, :2] for piece in pieces])
+    middle = np.sort(starts, axis=0)[(len(starts) - 1) // 2]
+    if np.abs(middle).max() <= LARGEST_MM:
+        return pieces
+    shift = np.array([*middle.round(), 0.0])
+    return [
+        replace(piece, curves=tuple(replace(curve, cubics=curve.cubics - shift) for curve in piece.curves))
+        for piece in pieces
+    ]
+
+
+def in_range(pieces: list[Piece]) -> tuple[list[Piece], list[Notice]]:
+    """Those within 1e6 mm, and what is to be told of the others."""
+    kept, notices = [], []
+    for piece in pieces:
+        if all(np.abs(curve.cubics).max() <= LARGEST_MM for curve in piece.curves):
+            kept.append(piece)
+        else:
+            sentence = "its geometry lies beyond 1e6 mm: left out"
+            notices.append(
+                Notice(piece.id, sentence, damaged=True, layer=piece.pen.layer, code="geometry-out-of-range")
+            )
+    return kept, notices
+
+
+def with_margin(elements: list[Element]) -> tuple[tuple[float, float], tuple[Element, ...]]:
+    """The sheet that holds all that is drawn, widths included, and 20 mm around it; the elements moved onto it."""
+    least, greatest = extents(elements)
+    shift = MARGIN_MM - least
+    width, height = (greatest + shift + MARGIN_MM).tolist()
+    return (width, height), tuple(_moved(element, shift) for element in elements)
+
+
+def extents(elements: list[Element]) -> tuple[np.ndarray, np.ndarray]:
+    """Lower left and upper right corner of what is drawn, half the widths included."""
+    cubics, halves = [], []
+    for element in elements:
+        for subpath in element.subpaths:
+            widest = element.stroke_width_mm if subpath.widths is None else subpath.widths[:, 1].max()
+            cubics.append(subpath.cubics)
+            halves.append(np.full(len(subpath.cubics), widest / 2))
+    half = np.concatenate(halves)[:, None]
+    points = extremes(np.concatenate(cubics)).reshape(-1, len(half), 2)
+    return (points - half).min(axis=(0, 1)), (points + half).max(axis=(0, 1))
+
+
+def _moved(element: Element, shift: np.ndarray) -> Element:
+    subpaths = tuple(replace(subpath, cubics=subpath.cubics + shift) for subpath in element.subpaths)
+    return replace(element, subpaths=subpaths)

@@ -1,0 +1,119 @@
+"""SVG to Design. What is not read is named in a notice. How it is read: docs/drawings.md."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+from contextlib import suppress
+
+from ...errors import Error
+from ...units import MM_PER
+from .. import AS_DRAWN, ReadOptions
+from ..background import without_background
+from ..design import Design, Notice
+from ..empty_drawing import nothing_to_paint
+from ..off_page import on_page
+from .context import local, one_line
+from .css.cascade import INITIAL, cascade
+from .selection import selected
+from .settings import PREFIX, document_settings
+from .tree_walk import SVG, Walk
+from .viewport import Page, read_page
+from .xml import Document, parse_xml
+
+_INKSCAPE_VERSION = "{http://www.inkscape.org/namespaces/inkscape}version"
+
+
+def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
+    """The drawing, its elements in document order, in mm with y up.
+
+    A sheet given replaces the viewport's size; the drawing keeps its scale and its upper left corner.
+
+    Error if it is not SVG, has no size, has nothing to paint, or copies itself beyond all bounds.
+    """
+    try:
+        return _read(parse_xml(data), options)
+    except RecursionError:
+        raise Error("its CSS is nested too deeply", where="style", code="css-too-complex") from None
+
+
+def settings_of(data: bytes, alone: bool = False) -> dict:
+    """What the root says of the whole job; {} for a file that is not sound, of which read_svg tells what is wrong.
+    alone: nobody asks read_svg, so that is told here."""
+    is_plain = not data.startswith((b"\x1f\x8b", b"\xff\xfe", b"\xfe\xff"))  # neither compressed nor UTF-16
+    if is_plain and PREFIX.encode() not in data and not alone:
+        return {}
+    try:
+        return document_settings(_root_of(parse_xml(data)).attrib)
+    except Error:
+        if alone:
+            raise
+        return {}
+
+
+def _root_of(document: Document) -> ET.Element:
+    root = document.root
+    if root.tag not in (SVG + "svg", "svg"):
+        raise Error(f"the root element is <{local(root)[:40]}>, not <svg>", code="not-svg")
+    return root
+
+
+def _read(document: Document, options: ReadOptions) -> Design:
+    root = _root_of(document)
+    style = cascade(INITIAL, root.attrib, [], 0.0)[0].geometry
+    page = read_page(root.attrib, options.sheet_mm, style)
+    chosen = selected(root, options.select) if options.select else None
+    walk = Walk(root, page, chosen, _outside_the_tree(document, root, page))
+    walk.run()
+    if not walk.elements:
+        raise nothing_to_paint(walk.notices, walk.left_out)
+    elements, off_page = on_page(walk.elements, page.sheet_mm)
+    title = root.find(SVG + "title" if root.tag.startswith("{") else "title")
+    name = "" if title is None else one_line("".join(title.itertext()))
+    design = Design(page.sheet_mm, elements, (*walk.notices, *off_page), name, walk.layers)
+    if options.background == "keep":
+        return design
+    own_mm = page.sheet_mm
+    if options.sheet_mm is not None:
+        with suppress(Error):  # a drawing without a size of its own has the sheet's
+            own_mm = read_page(root.attrib, None, style).sheet_mm
+    return without_background(design, own_mm)
+
+
+def _outside_the_tree(document: Document, root: ET.Element, page: Page) -> list[Notice]:
+    """What is to be told of what stands beside the tree."""
+    notices = []
+    if "xml-stylesheet" in document.instructions:
+        sentence = "CSS in another file is not read: what it says is missing"
+        notices.append(Notice("xml-stylesheet", sentence, code="css-unread"))
+    if page.in_px and (found := _other_pixels(document, root)):
+        own = page if root.get("viewBox") is None else read_page(root.attrib)  # whatever sheet is asked for
+        notices.append(_probable_size(*found, own.sheet_mm, root.get("viewBox") is not None))
+    return notices
+
+
+def _other_pixels(document: Document, root: ET.Element) -> tuple[str, int] | None:
+    """The program that wrote the drawing and its pixels per inch, where these are not 96.
+
+    Illustrator's "Save as" leaves a comment, its "Export as" a data-name on the root; "enable-background: new" is its
+    own, and stays where tools have taken the comment away. Inkscape counted 90 px until 0.91 (wiki.inkscape.org,
+    "Release notes/0.92").
+    """
+    is_its_style = "enable-background" in root.get("style", "") or "enable-background" in root.attrib
+    if (
+        any("Adobe Illustrator" in comment for comment in document.comments)
+        or root.get("data-name")
+        or (is_its_style and _INKSCAPE_VERSION not in root.attrib)
+    ):
+        return "Adobe Illustrator", 72
+    version = re.match(r"0\.(\d+)", root.get(_INKSCAPE_VERSION, ""))
+    return (f"Inkscape {version[0]}", 90) if version and int(version[1]) < 92 else None
+
+
+def _probable_size(program: str, per_inch: int, read_mm: tuple[float, float], has_box: bool) -> Notice:
+    w, h = (side * 96 / per_inch for side in read_mm)
+    sentence = f"written by {program}, which counts {per_inch} px to the inch, so it was probably drawn as "
+    advice = f'give its svg width="{w:.6g}mm" height="{h:.6g}mm"'
+    if not has_box:
+        advice += f' viewBox="0 0 {read_mm[0] / MM_PER["px"]:.6g} {read_mm[1] / MM_PER["px"]:.6g}"'
+    return Notice("svg", f"{sentence}{w:.4g} x {h:.4g} mm", code="other-pixels", advice=advice)

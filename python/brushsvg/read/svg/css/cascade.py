@@ -1,0 +1,162 @@
+"""Which SVG properties an element has: attributes, CSS rules, style="", inheritance, in the order CSS prescribes."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from operator import itemgetter
+
+from ....errors import Notice
+from ....units import FONT_PX, NUMBER
+from .declarations import Declaration, declarations
+from .math import computed_length
+from .values import computed, path_text, problem_of, substituted
+
+INHERITED = {
+    "font-size": f"{FONT_PX:g}",  # in px
+    "stroke": "none",
+    "stroke-width": "1",
+    "stroke-opacity": "1",
+    "stroke-dasharray": "none",
+    "stroke-dashoffset": "0",
+    "fill": "",  # SVG's default, black, that nobody asked for
+    "fill-opacity": "1",
+    "fill-rule": "nonzero",
+    "clip-rule": "nonzero",
+    "color": "#000000",
+    "visibility": "visible",
+    "marker-start": "none",
+    "marker-mid": "none",
+    "marker-end": "none",
+}
+OWN = {
+    "display": "inline",
+    "opacity": "1",
+    "vector-effect": "none",
+    "clip-path": "none",
+    "mask": "none",
+    "filter": "none",
+    "overflow": "",
+}
+# What CSS alone says and nobody here reads, with the value that changes nothing.
+_CSS_ALONE = {
+    "mask-image": "none",
+    "mix-blend-mode": "normal",
+    "backdrop-filter": "none",
+    "offset-path": "none",
+    "animation": "none",
+    "animation-name": "none",
+    "content-visibility": "visible",
+    "all": "",
+}
+_UNREAD = ("filter", *_CSS_ALONE)
+OWN |= _CSS_ALONE
+# Attributes that CSS may set as well; CSS wins.
+_GEOMETRY = frozenset(
+    "transform transform-origin transform-box translate rotate scale d x y width height cx cy r rx ry".split()
+)
+_LENGTHS = frozenset("x y width height cx cy r rx ry".split())
+_COMPUTED = ("font-size", "stroke-width", "stroke-dashoffset")
+_BARE_NUMBER = re.compile(NUMBER)  # a length in an attribute, and in CSS none unless it is 0
+_OLD_PREFIX = "-webkit-"  # still means the same where nothing else does
+_PREFIXED = frozenset(
+    "transform transform-origin clip-path mask mask-image filter animation animation-name".split()
+)
+_PRESENTED = tuple(name for name in (*INHERITED, *OWN) if name not in _CSS_ALONE)  # as attributes
+_READ = frozenset((*INHERITED, *OWN)) | _GEOMETRY
+MARKERS = ("marker-start", "marker-mid", "marker-end")
+
+
+@dataclass(frozen=True)
+class Style:
+    """Computed values. Colours are "#rrggbb", "#rrggbbaa", "none", "currentcolor" or url(...), widths as written.
+
+    inherited: what children start from, custom properties among them; own: what they do not; geometry:
+    attributes that CSS replaces.
+    """
+
+    inherited: dict[str, str]
+    own: dict[str, str]
+    geometry: dict[str, str]
+
+
+INITIAL = Style(INHERITED, OWN, {})
+
+
+def cascade(
+    parent: Style, attributes: dict[str, str], rules: list[Declaration], diagonal: float
+) -> tuple[Style, list[Notice]]:
+    """An element's style, and what was wrong with it: what is not valid falls back to the parent's, as CSS asks.
+
+    rules: declarations of the style sheets, the strongest last; diagonal: of the viewport [px], base of percentages.
+    """
+    inline = declarations(attributes["style"]) if "style" in attributes else ()
+    said: dict[str, list[str]] = {
+        name: [attributes[name]] for name in _PRESENTED if name in attributes and attributes[name].strip()
+    }
+    if not (said or rules or inline):
+        return Style(parent.inherited, OWN, {}), []
+    for name, value, _ in sorted((*rules, *inline), key=itemgetter(2)):
+        if name.startswith(_OLD_PREFIX) and name.removeprefix(_OLD_PREFIX) in _PREFIXED:
+            name = name.removeprefix(_OLD_PREFIX)
+        for each in MARKERS if name == "marker" else (name,):
+            if each in _READ or each.startswith("--"):
+                said.setdefault(each, []).append(value)
+    inherited, own, geometry = dict(parent.inherited), dict(OWN), {}
+    inherited.update((name, said.pop(name)[-1]) for name in list(said) if name.startswith("--"))
+    if "font-size" in said:  # others count in it
+        said = {"font-size": said["font-size"], **said}
+    problems: list[Notice] = []
+    for name, values in said.items():
+        for text in reversed(values):  # the strongest that is valid
+            value = text.strip()
+            if "var(" in value.lower():
+                value, problem = substituted(value, inherited)
+                if problem:  # CSS does not fall back to a weaker declaration here
+                    sentence = f"{name} {text[:40]!r} {problem}: it counts as not given"
+                    if name != "font-size":
+                        is_damage = name == "stroke-width" or name in _GEOMETRY
+                        problems.append(Notice("", sentence, is_damage, code="css-invalid", about=name))
+                    break
+            if "(" in value and (name in _LENGTHS or name in _COMPUTED):
+                value = computed_length(value)
+            if name == "d":
+                if (text := path_text(value)) is not None:
+                    geometry[name] = text
+                    break
+                continue
+            if name in _LENGTHS and _BARE_NUMBER.fullmatch(value) and float(value):
+                sentence = f"{name} {value[:40]!r} of its style has no unit: it counts as not given"
+                problems.append(Notice("", sentence, code="css-invalid", about=name))
+                continue
+            if name in _GEOMETRY:
+                geometry[name] = value
+                break
+            if name == "all":
+                own[name] = value
+                break
+            target, initial = (inherited, INHERITED) if name in INHERITED else (own, OWN)
+            keyword = value.lower()
+            if keyword in ("inherit", "initial", "unset", "revert"):
+                if keyword == "initial" or (keyword != "inherit" and target is own):
+                    target[name] = initial[name]
+                elif keyword == "inherit":
+                    target[name] = (parent.inherited if target is inherited else parent.own)[name]
+                break
+            problem = problem_of(name, value, diagonal)
+            if problem is None:
+                target[name] = computed(name, value, inherited)
+                break
+            problems.append(problem)
+    return Style(inherited, own, geometry), problems
+
+
+def unread_own(own: dict[str, str]) -> list[tuple[str, str]]:
+    """(property, sentence) for those of an element or group that apply to all it holds and are not read."""
+    effects = [name for name in _UNREAD if own[name] != OWN[name]]
+    told = [(name, f"{name} is not read: it counts as {OWN[name] or 'not given'}") for name in effects]
+    if own["display"] == "contents":
+        told.append(("display", "display: contents is not read: it counts as inline"))
+    if own["opacity"] != "1":
+        told.append(("opacity", "opacity is not read: it counts as 1"))
+    return told

@@ -1,0 +1,97 @@
+"""Lengths that CSS computes: calc(), min(), max() and clamp(), where what comes out is one length."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import tinycss2
+
+from ....errors import Error
+from ....units import length_px
+
+DEEPEST = 20  # functions and brackets in each other
+_RELATIVE = ("%", "em", "rem", "ex")  # come to px where an element is known
+Amount = tuple[float, str]  # of a unit: "" for a number, "px", or one of _RELATIVE
+
+
+def computed_length(value: str) -> str:
+    """The one length that a function comes to; the value itself where it holds none, or percent beside px."""
+    tokens = _told(tinycss2.parse_component_value_list(value))
+    if len(tokens) != 1 or tokens[0].type != "function":
+        return value
+    found = _amount(tokens[0], 0)
+    return value if found is None or not math.isfinite(found[0]) else f"{found[0]:.15g}{found[1]}"
+
+
+def _told(tokens: list) -> list:
+    return [each for each in tokens if each.type != "comment"]
+
+
+def _amount(token, depth: int) -> Amount | None:
+    if token.type == "number":
+        return token.value, ""
+    if token.type == "percentage":
+        return token.value, "%"
+    if token.type == "dimension":
+        if token.lower_unit in _RELATIVE:
+            return token.value, token.lower_unit
+        try:
+            return token.value * length_px(f"1{token.lower_unit}", 0.0), "px"
+        except Error:
+            return None
+    if depth > DEEPEST:
+        return None
+    if token.type == "() block":
+        return _sum(_told(token.content), depth + 1)
+    if token.type != "function":
+        return None
+    parts: list[list] = [[]]
+    for each in _told(token.arguments):
+        if each == ",":
+            parts.append([])
+        else:
+            parts[-1].append(each)
+    amounts = [_sum(part, depth + 1) for part in parts]
+    if None in amounts or len({unit for _, unit in amounts}) != 1:
+        return None
+    values, unit = [value for value, _ in amounts], amounts[0][1]
+    if token.lower_name == "calc" and len(values) == 1:
+        return values[0], unit
+    if token.lower_name in ("min", "max"):
+        return {"min": min, "max": max}[token.lower_name](values), unit
+    if token.lower_name == "clamp" and len(values) == 3:
+        return max(values[0], min(values[1], values[2])), unit
+    return None
+
+
+def _sum(tokens: list, depth: int) -> Amount | None:
+    """Of products; + and - stand between blanks."""
+    ends = [k for k, each in enumerate(tokens) if each in ("+", "-")]
+    blanks = [
+        tokens[k + side].type == "whitespace" for k in ends for side in (-1, 1) if 0 <= k + side < len(tokens)
+    ]
+    if len(blanks) < 2 * len(ends) or not all(blanks):
+        return None
+    products = [_product(tokens[a + 1 : b], depth) for a, b in pairwise([-1, *ends, len(tokens)])]
+    if None in products or len({unit for _, unit in products}) != 1:
+        return None
+    signs = [1.0, *(1.0 if tokens[k] == "+" else -1.0 for k in ends)]
+    return sum(sign * value for sign, (value, _) in zip(signs, products, strict=True)), products[0][1]
+
+
+def _product(tokens: list, depth: int) -> Amount | None:
+    words = [each for each in tokens if each.type != "whitespace"]
+    if len(words) % 2 == 0 or any(each not in ("*", "/") for each in words[1::2]):
+        return None
+    amounts = [_amount(each, depth) for each in words[::2]]
+    if None in amounts:
+        return None
+    value, unit = amounts[0]
+    for sign, (other, others) in zip(words[1::2], amounts[1:], strict=True):
+        if others and (unit or sign == "/"):
+            return None
+        if sign == "/" and other == 0:
+            return None
+        value, unit = (value * other if sign == "*" else value / other), unit or others
+    return value, unit

@@ -1,0 +1,131 @@
+"""The style sheets of an SVG document: which declarations reach which element, by tinycss2 and cssselect2."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+
+import tinycss2
+from cssselect2 import Matcher, compile_selector_list
+
+from ....errors import Error
+from ...design import Notice
+from .declarations import Declaration, declarations
+from .selectors import Tree
+
+TEXT_LIMIT = 1_000_000  # characters of style sheets: drawing programs write a hundredth of it
+
+_SVG = "http://www.w3.org/2000/svg"
+_ROOT = re.compile(r":(?:root|scope)\b", re.IGNORECASE)
+_STYLES = (f"{{{_SVG}}}style", "{http://www.w3.org/1999/xhtml}style", "style")
+
+
+class Rules:
+    """The document's style sheets, in order. notices: what of them is not read."""
+
+    def __init__(self, root: ET.Element):
+        self.notices: list[Notice] = []
+        self._matcher, self._in_copies = Matcher(), Matcher()
+        self._copies: dict[ET.Element, Tree] = {}
+        self._of_type = 0  # rules that count siblings of a type
+        sheets = [node for node in root.iter() if node.tag in _STYLES and self._counts(node)]
+        self._tree = Tree(root) if sheets else None
+        texts = ["".join(sheet.itertext()) for sheet in sheets]
+        if (length := sum(map(len, texts))) > TEXT_LIMIT:
+            raise Error(
+                f"its CSS of {length} characters is beyond the limit of {TEXT_LIMIT}",
+                where="style",
+                code="css-too-complex",
+            )
+        for text in texts:
+            self._add(tinycss2.parse_stylesheet(text, True, True))
+
+    def of(self, node: ET.Element, copied: ET.Element | None = None) -> list[Declaration]:
+        """An element's declarations, from the weakest to the strongest among those of equal importance. copied: what
+        a `use` copies and this is of: selectors see nothing but what is copied, as SVG 2 (5.6.3) asks."""
+        if self._tree is None:
+            return []
+        self._tree.budget.spend(self._matcher.order // 10)
+        if copied is None:
+            matches = self._matcher.match(self._tree.nodes[node])
+        else:
+            matches = self._in_copies.match(self._copy(copied).nodes[node])
+        return [declaration for *_, pseudo, found in matches if pseudo is None for declaration in found]
+
+    def _copy(self, copied: ET.Element) -> Tree:
+        if copied not in self._copies:
+            tree = self._copies[copied] = Tree(copied, self._tree.budget)
+            tree.budget.spend(len(tree.nodes))
+            for _ in range(self._of_type):
+                tree.spend_of_type()
+        return self._copies[copied]
+
+    def _add(self, rules: Iterable) -> None:
+        for rule in rules:
+            if rule.type == "at-rule" and rule.lower_at_keyword == "media" and rule.content is not None:
+                if self._for_screens(rule.prelude):
+                    self._add(tinycss2.parse_rule_list(rule.content, True, True))
+            elif rule.type == "at-rule" and rule.lower_at_keyword == "import":
+                self._note("@import names another file, which is not read", about="@import")
+            elif rule.type == "at-rule" and rule.lower_at_keyword == "namespace":
+                if not any(each.type in ("url", "string") and each.value == _SVG for each in rule.prelude):
+                    self._note("@namespace is not read: its rules count for all elements", about="@namespace")
+            elif rule.type == "at-rule" and rule.lower_at_keyword not in _NO_STROKES:
+                name = f"@{rule.at_keyword[:40]}"
+                self._note(f"{name} is not read: what it says is missing", about=name)
+            elif rule.type == "error":
+                self._note(
+                    f"line {rule.source_line} is not CSS: {rule.message[:80]}",
+                    code="css-invalid",
+                    about="syntax",
+                )
+            elif rule.type == "qualified-rule":
+                self._add_rule(rule)
+
+    def _add_rule(self, rule) -> None:
+        text = tinycss2.serialize(rule.content)
+        declared = declarations(text)
+        if "{" in text:
+            where = tinycss2.serialize(rule.prelude).strip()[:60]
+            self._note(f"rules in the rule {where!r} are not read", about="rules in rules")
+        if not declared:
+            return
+        selectors = self._tree.compiled(rule.prelude)
+        if selectors is None:
+            selector = tinycss2.serialize(rule.prelude).strip()[:60]
+            self._note(f"selector {selector!r} is not read", about="selector")
+        for selector in selectors or ():
+            self._matcher.add_selector(selector, declared)
+        # the root of a copy is none of a document's
+        text = tinycss2.serialize(rule.prelude)
+        self._of_type += "-of-type" in text
+        for selector in (selectors and compile_selector_list(_ROOT.sub(":host", text))) or ():
+            self._in_copies.add_selector(selector, declared)
+
+    def _counts(self, style: ET.Element) -> bool:
+        media = tinycss2.parse_component_value_list(style.get("media", ""))
+        return style.get("type", "").strip().lower() in ("", "text/css") and self._for_screens(media)
+
+    def _for_screens(self, media) -> bool:
+        """Whether one of the media queries holds on a screen in daylight, or there is none; told if that is open."""
+        queries = [" ".join(query.split()) for query in tinycss2.serialize(media).lower().split(",")]
+        known = [_MEDIA.get(query.removeprefix("only ")) for query in queries]
+        if True not in known and None in known:
+            self._note(
+                f"@media {queries[known.index(None)][:60]} is not read: what it says is missing",
+                about="@media",
+            )
+        return True in known
+
+    def _note(self, sentence: str, *, code: str = "css-unread", about: str) -> None:
+        self.notices.append(Notice("style", sentence, code=code, about=about))
+
+
+# What media queries say, as far as it is known beforehand.
+_MEDIA = {"": True, "all": True, "screen": True, "not print": True, "(prefers-color-scheme: light)": True}
+_MEDIA |= {"print": False, "speech": False, "not all": False, "not screen": False}
+_MEDIA |= {"(prefers-color-scheme: dark)": False, "(prefers-color-scheme:dark)": False}
+_MEDIA |= {"(prefers-color-scheme:light)": True}
+# At-rules that say nothing about strokes.
+_NO_STROKES = frozenset("media font-face charset keyframes -webkit-keyframes page".split())

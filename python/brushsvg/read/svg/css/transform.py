@@ -1,0 +1,136 @@
+"""Transforms as CSS writes them, and the point that a transform leaves where it is.
+
+CSS is stricter than SVG's attribute: lengths and angles have units, numbers have commas between them. What browsers
+do not accept is not guessed here either.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+
+from ....errors import Error
+from ....units import NUMBER, length_px
+from ..paths.path_data import snippet
+from ..transform import FUNCTIONS, IDENTITY, Matrix, multiply
+
+ReferenceBox = tuple[float, float, float, float]  # x, y, width, height in user units
+
+_CALL = re.compile(r"\s*+([a-zA-Z]++)\(([^()]*+)\)\s*+")
+_ANGLE = re.compile(rf"({NUMBER})(deg|rad|grad|turn)", re.IGNORECASE)
+_DEGREES = {"deg": 1.0, "rad": 180 / math.pi, "grad": 0.9, "turn": 360.0}
+_SHARE = re.compile(rf"({NUMBER})(%?)")
+_BARE = re.compile(NUMBER)
+
+# Of each function: what its arguments are. "x" and "y": lengths or percentages of that side of the box.
+_KINDS = {
+    "matrix": ("number",) * 6,
+    "translate": ("x", "y"),
+    "translatex": ("x",),
+    "translatey": ("y",),
+    "scale": ("share", "share"),
+    "scalex": ("share",),
+    "scaley": ("share",),
+    "rotate": ("angle",),
+    "skew": ("angle", "angle"),
+    "skewx": ("angle",),
+    "skewy": ("angle",),
+}
+_MAKE = {name.lower(): make for name, (_, make) in FUNCTIONS.items()} | {
+    "translatex": lambda x: (1.0, 0.0, 0.0, 1.0, x, 0.0),
+    "translatey": lambda y: (1.0, 0.0, 0.0, 1.0, 0.0, y),
+    "scalex": lambda x: (x, 0.0, 0.0, 1.0, 0.0, 0.0),
+    "scaley": lambda y: (1.0, 0.0, 0.0, y, 0.0, 0.0),
+    "skew": lambda x, y=0.0: (1.0, FUNCTIONS["skewY"][1](y)[1], FUNCTIONS["skewX"][1](x)[2], 1.0, 0.0, 0.0),
+}
+_ACROSS, _DOWN = {"left": 0.0, "center": 0.5, "right": 1.0}, {"top": 0.0, "center": 0.5, "bottom": 1.0}
+_NOTHING = ("none", "initial", "unset", "revert")
+
+
+def css_transform(text: str, box: Callable[[], ReferenceBox], em_px: float) -> Matrix:
+    """The matrix of the property `transform`. box: of which percentages are. Error if it is not CSS, or in space."""
+    matrix, at = IDENTITY, 0
+    if text.strip().lower() in _NOTHING:
+        return matrix
+    while at < len(text):
+        call = _CALL.match(text, at)
+        name = call[1].lower() if call else ""
+        words = [word.strip() for word in call[2].split(",")] if call else []
+        kinds = _KINDS.get(name, ())
+        if not kinds or not (len(words) == len(kinds) or (len(kinds) == 2 and len(words) == 1)):
+            raise Error(
+                f"transform is not read from character {at + 1} on: found {snippet(text, at)}",
+                code="transform-unread",
+            )
+        values = [_value(word, kind, box, em_px) for word, kind in zip(words, kinds, strict=False)]
+        matrix = multiply(matrix, _MAKE[name](*values))
+        at = call.end()
+    return matrix
+
+
+def individual_transform(name: str, text: str, box: Callable[[], ReferenceBox], em_px: float) -> Matrix:
+    """The matrix of one of the properties `translate`, `rotate` and `scale`. Error if it is not CSS, or in space."""
+    words = text.split()
+    if text.strip().lower() in _NOTHING:
+        return IDENTITY
+    kinds = _KINDS[name]
+    if not 1 <= len(words) <= len(kinds):
+        raise Error(f"{name} {text[:40]!r} is not read", code="transform-unread")
+    return _MAKE[name](*(_value(word, kind, box, em_px) for word, kind in zip(words, kinds, strict=False)))
+
+
+def origin(text: str, is_css: bool, box: Callable[[], ReferenceBox], em_px: float) -> tuple[float, float]:
+    """The point that `transform-origin` names. is_css: whether lengths need units. Error if it is not CSS."""
+    words = text.lower().split()
+    if not 1 <= len(words) <= 3:
+        raise Error(f"transform-origin {text[:40]!r} is not read", code="transform-unread")
+    if len(words) == 3:  # above the paper
+        if (depth := words.pop()).endswith("%"):
+            raise Error(f"transform-origin {text[:40]!r} is not read", code="transform-unread")
+        _length(depth, 0.0, is_css, em_px)
+    if len(words) == 1:
+        words = ["center", *words] if words[0] in _DOWN else [*words, "center"]
+    elif words[0] in _DOWN and words[1] in _ACROSS:
+        words.reverse()
+    x, y, width, height = box()
+    across, down = (
+        side * names[word] if word in names else _length(word, side, is_css, em_px)
+        for word, names, side in zip(words, (_ACROSS, _DOWN), (width, height), strict=True)
+    )
+    return x + across, y + down
+
+
+def about(point: tuple[float, float], matrix: Matrix) -> Matrix:
+    """A matrix as it acts about a point."""
+    x, y = point
+    return multiply(multiply((1.0, 0.0, 0.0, 1.0, x, y), matrix), (1.0, 0.0, 0.0, 1.0, -x, -y))
+
+
+def _value(word: str, kind: str, box: Callable[[], ReferenceBox], em_px: float) -> float:
+    if kind in ("x", "y"):
+        side = box()[2 if kind == "x" else 3] if word.endswith("%") else 0.0
+        return _length(word, side, True, em_px)
+    if kind == "angle":
+        found = _ANGLE.fullmatch(word)
+        if found:
+            return float(found[1]) * _DEGREES[found[2].lower()]
+        if _BARE.fullmatch(word) and float(word) == 0:
+            return 0.0
+        raise Error(
+            f"transform: {word[:24]!r} is not an angle as CSS writes it, for example 30deg",
+            code="transform-unread",
+        )
+    found = _SHARE.fullmatch(word)
+    if not found or (found[2] and kind == "number"):
+        raise Error(f"transform: {word[:24]!r} is not a number", code="transform-unread")
+    return float(found[1]) / (100 if found[2] else 1)
+
+
+def _length(word: str, percent_of: float, is_css: bool, em_px: float) -> float:
+    if is_css and _BARE.fullmatch(word) and float(word) != 0:
+        raise Error(
+            f"transform: {word[:24]!r} has no unit, which CSS asks for: write {word[:24]}px",
+            code="transform-unread",
+        )
+    return length_px(word, percent_of, em_px)

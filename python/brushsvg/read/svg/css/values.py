@@ -1,0 +1,126 @@
+"""Whether a value is one of its CSS property, what it comes to, and what var() puts into it."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+import tinycss2
+
+from ....errors import Error, Notice
+from ....units import NUMBER, length_px
+from ..colour import parse_colour
+from ..paint_servers import URL
+
+_LENGTHS = frozenset(("stroke-width", "stroke-dasharray", "stroke-dashoffset"))
+_OPACITIES = frozenset(("opacity", "stroke-opacity", "fill-opacity"))
+_SHARE = re.compile(rf"{NUMBER}%?")
+_OF_FONT = re.compile(rf"({NUMBER})(r?em|ex)\b", re.IGNORECASE)
+_FONT_SIZES = {
+    "xx-small": 9.0,
+    "x-small": 10.0,
+    "small": 13.0,
+    "medium": 16.0,
+    "large": 18.0,
+    "x-large": 24.0,
+    "xx-large": 32.0,
+}
+_LONGEST_VALUE = 10_000  # of custom properties put into each other
+
+
+def problem_of(name: str, value: str, diagonal: float) -> Notice | None:
+    """Why a value is not one of its property, as far as it matters."""
+    if name in ("stroke", "fill", "color"):
+        if not URL.match(value) and parse_colour(value) is None:
+            return Notice(
+                "",
+                f"{name} {value[:40]!r} is not a colour: it counts as not given",
+                code="colour-invalid",
+                about=name,
+            )
+    elif name == "stroke-width":
+        try:
+            if length_px(value, diagonal) < 0:
+                raise Error(f"{value[:24]!r} is negative", code="out-of-range")
+        except Error as error:
+            return Notice(
+                "", f"stroke-width: {error}; it counts as not given", True, code="stroke-width-invalid"
+            )
+    elif name in _OPACITIES and not _SHARE.fullmatch(value):
+        return Notice(
+            "",
+            f"{name} {value[:40]!r} is not a number: it counts as not given",
+            code="css-invalid",
+            about=name,
+        )
+    return None
+
+
+def computed(name: str, value: str, inherited: dict[str, str]) -> str:
+    if name in ("stroke", "fill"):
+        return value if URL.match(value) else parse_colour(value)
+    if name == "color":
+        colour = None if URL.match(value) else parse_colour(value)
+        return inherited["color"] if colour in (None, "none", "currentcolor") else colour
+    if name in _OPACITIES:
+        return f"{min(1.0, max(0.0, length_px(value, 1.0))):.15g}"
+    if name == "visibility":
+        return value.lower() if value.lower() in ("visible", "hidden", "collapse") else inherited[name]
+    if name in ("fill-rule", "clip-rule"):
+        return "evenodd" if value.lower() == "evenodd" else "nonzero"
+    if name == "font-size":
+        return _font_size(value.lower(), inherited["font-size"])
+    if name in _LENGTHS:  # what is said in em is handed down in px
+        return _OF_FONT.sub(
+            lambda found: f"{length_px(found[0], 0.0, float(inherited['font-size'])):.15g}", value
+        )
+    return value if name.startswith(("marker", "clip-path")) else value.lower()
+
+
+def _font_size(value: str, parents: str) -> str:
+    em_px = float(parents)
+    if value in ("larger", "smaller"):
+        return f"{em_px * (1.2 if value == 'larger' else 1 / 1.2):.15g}"
+    try:
+        size_px = _FONT_SIZES[value] if value in _FONT_SIZES else length_px(value, em_px, em_px)
+    except Error:
+        return parents
+    return f"{size_px:.15g}" if 0 <= size_px <= 1e6 else parents
+
+
+def substituted(value: str, inherited: dict[str, str]) -> tuple[str, str]:
+    """A value with its var(--name, fallback) replaced, and why that leads nowhere, "" if it does not."""
+    problem = ""
+
+    @cache  # or variables that name two others each would take for ever
+    def at(depth: int, value: str) -> str:
+        nonlocal problem
+        parts = []
+        for token in tinycss2.parse_component_value_list(value):
+            if token.type != "function" or token.lower_name != "var":
+                parts.append(tinycss2.serialize([token]))
+                continue
+            name, comma, fallback = tinycss2.serialize(token.arguments).partition(",")
+            found = inherited.get(name.strip(), fallback.strip() if comma else None)
+            if found is None:
+                problem = problem or f"names {name.strip()[:40]}, which nothing says"
+            elif depth > 20:
+                problem = problem or f"leads through {name.strip()[:40]} in a circle, or too far"
+            elif len(found) + sum(map(len, parts)) > _LONGEST_VALUE:
+                problem = problem or f"grows beyond {_LONGEST_VALUE} characters"
+            else:
+                parts.append(at(depth + 1, found) if "var(" in found.lower() else found)
+        return "".join(parts).strip()
+
+    return at(0, value), problem
+
+
+def path_text(value: str) -> str | None:
+    """The text in d: path("..."), "" for none; None if it is neither."""
+    if value.lower() == "none":
+        return ""
+    token, *others = tinycss2.parse_component_value_list(value, skip_comments=True)
+    if others or token.type != "function" or token.lower_name != "path":
+        return None
+    told = [each for each in token.arguments if each.type not in ("whitespace", "comment")]
+    return told[0].value if len(told) == 1 and told[0].type == "string" else None

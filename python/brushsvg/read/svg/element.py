@@ -1,0 +1,283 @@
+"""One shape of an SVG file to an Element: what it is painted with, its geometry on paper, its dashes."""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+
+import numpy as np
+
+from ...errors import Error
+from ...geometry.arc_length import knots
+from ...geometry.cubics import extremes, flattened
+from ...geometry.polylines import length
+from ...geometry.rings import signed_area
+from ...units import MM_PER, number
+from ..background import is_light
+from ..design import Element, SubPath
+from .context import Context, Notes, local
+from .css.cascade import MARKERS
+from .paint_servers import Paints
+from .paths import shapes
+from .paths.path_to_cubics import LARGEST_MM, trace
+from .paths.power_stroke import PowerStroke, drawn_line, with_widths
+from .transform import IDENTITY, scales
+
+_WITH_MARKERS = frozenset(("path", "line", "polyline", "polygon"))
+_UNEVEN = 1.05  # below it, the width along and across differs by less than a brush's own scatter
+# A page of text has a hundredth of each.
+_FLAT_MM = 0.05
+_MOST_DASHES = 100_000
+_MOST_DATA = 10_000_000  # characters of path data
+
+
+class Painted:
+    """elements: those of the drawing in the order painted. bent: what lies in path effects of groups."""
+
+    def __init__(self, by_id: dict[str, ET.Element], notes: Notes, paints: Paints, bent: set[ET.Element]):
+        self.elements: list[Element] = []
+        self.by_id = by_id
+        self.paints = paints
+        self.bent = bent
+        self.notes = notes
+        self.nameless = self.data = 0
+        self.dashes_left = _MOST_DASHES
+
+    def add(self, node: ET.Element, tag: str, context: Context) -> None:
+        """Take a shape in, as far as it is sound."""
+        properties = context.style.inherited
+        stroke, of_stroke = self.paints.of(properties, "stroke")
+        fill, of_fill = self.paints.of(properties, "fill") if tag != "line" else ("none", [])
+        attributes = {**node.attrib, **context.style.geometry} if context.style.geometry else node.attrib
+        power, told = drawn_line(node, self.by_id, node in self.bent) if tag == "path" else (None, [])
+        greatest, least = scales(context.matrix)
+        if least <= 1e-12 * greatest:
+            self.notes.add(
+                node, context, "its transforms flatten it to nothing: left out", code="geometry-empty"
+            )
+            return
+        mm_per_user = math.sqrt(greatest * least)
+        width_mm = context.length(properties["stroke-width"], context.diagonal) * mm_per_user
+        if context.is_of_screen:
+            width_mm *= MM_PER["px"] / mm_per_user
+        if power:
+            attributes = {**attributes, "d": power.d}
+            stroke, of_stroke = (fill, of_fill) if fill != "none" else (stroke, of_stroke)
+            fill = "none"
+        if "width_mm" in context.settings:
+            width_mm, power = context.settings["width_mm"], None
+            if stroke == "none" and fill == "none":  # a shape stays a shape
+                stroke = properties["color"][:7]
+        if power is None and width_mm == 0:
+            stroke = "none"
+        if stroke == "none" and fill == "none":
+            sentence = f"{self._why_unpainted(properties, tag, width_mm)}: left out"
+            self.notes.add(node, context, sentence, code="neither-stroke-nor-fill")
+            return
+        if not width_mm <= LARGEST_MM:
+            sentence = f"its stroke-width {width_mm:.6g} mm is beyond 1e6 mm: left out"
+            self.notes.add(node, context, sentence, damaged=True, code="geometry-out-of-range")
+            return
+        before = len(self.notes.notices)
+        outline = self._outline(node, tag, attributes, context, power)
+        subpaths = self._with_dashes(node, context, outline) if stroke != "none" else outline
+        if not subpaths:
+            return
+        is_even = "width_mm" in context.settings or (context.is_of_screen and power is None)
+        if stroke != "none" and greatest > _UNEVEN * least and not is_even:
+            sentence = f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
+            self.notes.add(node, context, sentence, code="stretched-unevenly")
+        for each in told + of_fill * (fill != "none") + of_stroke * (stroke != "none"):
+            self.notes.add(node, context, each.sentence, code=each.code, about=each.about)
+        if any(is_light(colour) for colour in (fill, stroke) if colour.startswith("#")):
+            sentence = (
+                "it is white or nearly white, and painted like any colour: what it hides in the drawing is painted, "
+                'too; data-brushsvg-skip="yes" on it leaves it out'
+            )
+            self.notes.add(node, context, sentence, code="white-paint")
+        # a fill that nobody chose is black, and hardly ever meant next to a stroke of another colour
+        is_two = properties["fill"] and "none" not in (fill, stroke) and fill != stroke
+        if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
+            self.notes.add(node, context, "markers are not read: left out", code="markers-unread")
+        element = Element(
+            id=self._named(node, context, before),
+            subpaths=subpaths,
+            stroke_width_mm=0.0 if stroke == "none" else width_mm,
+            colour=fill if stroke == "none" else stroke,
+            layer=context.layer,
+            settings=context.settings,
+            fill_rule="" if fill == "none" else properties["fill-rule"],
+            fill_colour=fill if is_two else "",
+        )
+        elements = [element]
+        if (
+            element.fill_rule and subpaths is not outline and _encloses(outline, width_mm)
+        ):  # its dashes do not
+            shape, line = replace(element, fill_colour=element.fill_colour or element.colour).by_colour()
+            elements = [replace(shape, subpaths=outline), line]
+        if context.clip is not None:
+            elements = [piece for each in elements for piece in self._clipped(node, context, each)]
+        self.elements += elements
+
+    def _clipped(self, node: ET.Element, context: Context, element: Element) -> list[Element]:
+        from ..clipping import clipped
+
+        found = clipped(element, context.clip)
+        if not found:
+            sentence = "it is outside the clip path, mask or viewport that would show it: left out"
+            self.notes.add(node, context, sentence, code="clipped-away")
+        return found
+
+    def _why_unpainted(self, properties: dict[str, str], tag: str, width_mm: float) -> str:
+        """What of a stroke or fill that the drawing does ask for is the cause."""
+        asked = [
+            name
+            for name in ("stroke", "fill")
+            if properties[name] != "none" and (name, tag) != ("fill", "line")
+        ]
+        causes = [
+            "its stroke-width is 0"
+            if name == "stroke" and width_mm == 0
+            else self.paints.why_none(properties, name)
+            for name in asked
+        ]
+        return " and ".join(causes) or "it has neither stroke nor fill"
+
+    def bounds(self, node: ET.Element, context: Context) -> tuple[float, float, float, float] | None:
+        """(x, y, width, height) of a shape's geometry in its own user units, None if it has none that is sound."""
+        attributes = {**node.attrib, **context.style.geometry}
+        try:
+            commands = shapes.commands_of(local(node), attributes, context.viewport, context.em_px)
+        except shapes.DamageError:
+            return None
+        line = trace(commands, IDENTITY, 1.0)
+        if line.beyond is not None or not line.subpaths:
+            return None
+        points = np.concatenate([extremes(subpath.cubics) for subpath in line.subpaths])
+        (x, y), (width, height) = points.min(axis=0).tolist(), np.ptp(points, axis=0).tolist()
+        return x, y, width, height
+
+    def _named(self, node: ET.Element, context: Context, told: int) -> str:
+        """A painted element's name; what was told about one without an id is told about its name as well."""
+        if name := context.name(node):
+            return name
+        self.nameless += 1
+        name = f"stroke{self.nameless}"
+        notices = self.notes.notices
+        if len(notices) > told:
+            label = f"{name} ({self.notes.label(node)})"
+            notices[told:] = [replace(notice, where=label) for notice in notices[told:]]
+        return name
+
+    def _outline(
+        self, node, tag: str, attributes, context: Context, power: PowerStroke | None
+    ) -> tuple[SubPath, ...]:
+        """An element's geometry on paper, without dashes."""
+        greatest, least = scales(context.matrix)
+        subpaths = self._sound(node, tag, attributes, context, greatest)
+        return with_widths(power, subpaths, math.sqrt(greatest * least)) if power else subpaths
+
+    def _with_dashes(self, node, context: Context, subpaths: tuple[SubPath, ...]) -> tuple[SubPath, ...]:
+        greatest, least = scales(context.matrix)
+        mm_per_unit = MM_PER["px"] if context.is_of_screen else math.sqrt(greatest * least)
+        return self._dashed(node, context, subpaths, mm_per_unit)
+
+    def _sound(self, node, tag: str, attributes, context: Context, greatest: float) -> tuple[SubPath, ...]:
+        self.data += len(attributes.get("d", "")) + len(attributes.get("points", ""))
+        if self.data > _MOST_DATA:
+            raise Error(
+                f"the drawing has more than {_MOST_DATA} characters of path data",
+                self.notes.label(node),
+                code="drawing-too-large",
+            )
+        try:
+            commands = shapes.commands_of(tag, attributes, context.viewport, context.em_px)
+            if not commands:
+                self.notes.add(node, context, "it has no geometry: left out", code="geometry-empty")
+        except shapes.DamageError as damage:
+            self.notes.add(node, context, str(damage), damaged=True, code="geometry-damaged")
+            commands = damage.commands
+        line = trace(commands, context.matrix, greatest)
+        if line.beyond is not None:
+            self.notes.add(
+                node,
+                context,
+                _beyond(attributes, tag, line.beyond),
+                damaged=True,
+                code="geometry-out-of-range",
+            )
+        if line.lone_movetos:
+            count = "a moveto" if line.lone_movetos == 1 else f"{line.lone_movetos} movetos"
+            self.notes.add(node, context, f"{count} without a line to follow: skipped", code="moveto-alone")
+        return line.subpaths
+
+    def _dashed(self, node, context: Context, subpaths, mm_per_unit: float) -> tuple[SubPath, ...]:
+        properties = context.style.inherited
+        if properties["stroke-dasharray"] == "none" or not subpaths:
+            return subpaths
+        from ..dashes import dashed
+
+        words = [word for part in properties["stroke-dasharray"].split(",") for word in part.split() or [""]]
+        try:
+            scale = mm_per_unit * self._path_scale(node, context, subpaths, mm_per_unit)
+            pattern = [context.length(word, context.diagonal) * scale for word in words]
+            offset = context.length(properties["stroke-dashoffset"], context.diagonal) * scale
+        except Error as error:
+            self.notes.add(
+                node, context, f"stroke-dasharray: {error}: the line counts as solid", code="dashes-unread"
+            )
+            return subpaths
+        if min(pattern, default=0.0) < 0:
+            self.notes.add(
+                node,
+                context,
+                "stroke-dasharray has a negative length: the line counts as solid",
+                code="dashes-unread",
+            )
+            return subpaths
+        if not 0 < sum(pattern) < math.inf:
+            return subpaths
+        if subpaths[0].widths is not None:
+            self.notes.add(node, context, "its dashes are not read: its width varies", code="dashes-unread")
+            return subpaths
+        pieces: list[SubPath] = []
+        try:
+            for subpath in subpaths:
+                pieces += dashed(subpath, pattern, offset, self.dashes_left - len(pieces))
+        except Error as error:
+            raise Error(str(error), where=self.notes.label(node), code=error.code) from None
+        self.dashes_left -= len(pieces)
+        self.notes.add(node, context, f"it is dashed: {len(pieces)} dashes, each a stroke", code="dashed")
+        return tuple(pieces)
+
+    def _path_scale(self, node, context: Context, subpaths, mm_per_unit: float) -> float:
+        """How long a unit of the dashes is, of mm_per_unit: pathLength may say how many the path has."""
+        text = (node.get("pathLength") or "").strip()
+        if not text:
+            return 1.0
+        try:
+            said = number(text)
+        except Error as error:
+            self.notes.add(
+                node, context, f"pathLength: {error}; it counts as not given", code="path-length-unread"
+            )
+            return 1.0
+        if said < 0:
+            return 1.0
+        length_mm = sum(float(knots(subpath.cubics)[:, -1].sum()) for subpath in subpaths)
+        return length_mm / mm_per_unit / said if said else math.inf
+
+
+def _encloses(subpaths: tuple[SubPath, ...], width_mm: float) -> bool:
+    """Whether there is more inside of an outline than a line of this width along it hides."""
+    rings = [flattened(subpath.cubics, _FLAT_MM) for subpath in subpaths]
+    return sum(abs(signed_area(ring)) for ring in rings) > sum(map(length, rings)) * width_mm / 2
+
+
+def _beyond(attributes, tag: str, place: int) -> str:
+    name = {"path": "d", "polyline": "points", "polygon": "points"}.get(tag)
+    if name is None:
+        return "its geometry lies beyond 1e6 mm: left out"
+    found = shapes.snippet(attributes[name], place)
+    return f"{name} leads beyond 1e6 mm at character {place + 1}: found {found}; read up to there"

@@ -1,0 +1,122 @@
+"""What stroke and fill paint with: a colour, nothing, or what is not read and counts as a colour."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Callable
+
+from ...errors import Error, Notice
+from ...units import length_px
+from .colour import parse_colour
+from .css.declarations import Declaration, declarations
+from .references import href, referred
+
+URL = re.compile(r"url\(([^)]*+)\)(.*)", re.DOTALL)
+UNSEEN = 1 / 512  # an opacity below half a step of 8 bits shows nothing
+_GRADIENTS = frozenset(("linearGradient", "radialGradient"))
+_NOT_IN_BROWSERS = frozenset("meshgradient mesh hatch solidcolor solidColor".split())
+
+
+class Paints:
+    """The paint servers of a drawing. by_id: its elements; rules: the declarations of its style sheets for one."""
+
+    def __init__(self, by_id: dict[str, ET.Element], rules: Callable[[ET.Element], list[Declaration]]):
+        self._by_id = by_id
+        self._rules = rules
+        self._known: dict[
+            tuple[str, str], tuple[str, list[Notice]]
+        ] = {}  # thousands of shapes share a long gradient
+
+    def of(self, properties: dict[str, str], name: str) -> tuple[str, list[Notice]]:
+        """What "stroke" or "fill" paints with: "#rrggbb" or "none", and what of it is not read."""
+        key = properties[name] or "#000000", name
+        if key not in self._known:
+            self._known[key] = self._colour(*key)
+        colour, told = self._known[key]
+        told = [*told]
+        colour = properties["color"] if colour == "currentcolor" else colour
+        opacity = float(properties[f"{name}-opacity"])
+        alpha = int(colour[7:], 16) / 255 if len(colour) == 9 else 1.0
+        if colour == "none" or alpha * opacity < UNSEEN:
+            return "none", []
+        if alpha < 1:
+            told.append(
+                Notice(
+                    "",
+                    f"the {name}'s colour has an opacity of {alpha:.2g}: it counts as 1",
+                    code="opacity-unread",
+                )
+            )
+        if opacity < 1:
+            told.append(Notice("", f"{name}-opacity is not read: it counts as 1", code="opacity-unread"))
+        return colour[:7], told
+
+    def why_none(self, properties: dict[str, str], name: str) -> str:
+        """Why a stroke or fill that is asked for paints nothing."""
+        found = URL.match(properties[name])
+        if found and self._colour(properties[name], name)[0] == "none":
+            return f"the {name}'s paint {found[1].strip()[:40]} is nowhere in the drawing or paints nothing"
+        return f"its {name} is fully transparent"
+
+    def _colour(self, value: str, name: str) -> tuple[str, list[Notice]]:
+        """A reference to nothing, or to what is no paint, counts as its fallback, as SVG asks."""
+        found = URL.match(value)
+        if not found:
+            return value, []
+        reference, fallback = found[1].strip(" \"'"), found[2].strip()
+        spare = (parse_colour(fallback) or "none") if fallback else "none"
+        server = referred(reference, self._by_id)
+        tag = "" if server is None else server.tag.rpartition("}")[2]
+        if tag in _GRADIENTS:
+            stops = [self._stop(stop) for stop in self._content(server) if _is(stop, "stop")]
+            if len(set(stops)) <= 1 and None not in stops:
+                return stops[0] if stops else "none", []
+        elif tag == "pattern":
+            if not self._tiles(server):
+                return spare, []
+        elif tag not in _NOT_IN_BROWSERS:
+            return spare, []
+        colour = spare[:7] if spare.startswith("#") else "#000000"
+        sentence = f"the {name}'s paint {reference[:40]} is not read: it counts as {colour}"
+        return colour, [Notice("", sentence, code="paint-unread", about=name)]
+
+    def _stop(self, stop: ET.Element) -> str | None:
+        """The colour of a gradient's stop, None if it is not said plainly."""
+        said = {name: stop.get(name) for name in ("stop-color", "stop-opacity") if name in stop.attrib}
+        said |= {name: value for name, value, _ in (*self._rules(stop), *declarations(stop.get("style", "")))}
+        colour = parse_colour(said.get("stop-color", "#000000").strip())
+        try:
+            opacity = min(1.0, max(0.0, length_px(said.get("stop-opacity", "1"), 1.0)))
+        except Error:
+            return None
+        if colour is None or not colour.startswith("#"):
+            return None
+        alpha = opacity * (int(colour[7:], 16) if len(colour) == 9 else 255)
+        return colour[:7] if alpha >= 254.5 else f"{colour[:7]}{round(alpha):02x}"
+
+    def _tiles(self, pattern: ET.Element) -> bool:
+        """Whether a pattern has a size and something in it; what it cannot say is taken to be there."""
+        for name in ("width", "height"):
+            said = next((each.get(name) for each in self._chain(pattern) if name in each.attrib), "0")
+            try:
+                if length_px(said or "0", 100.0) <= 0:
+                    return False
+            except Error:
+                continue
+        return bool(self._content(pattern))
+
+    def _content(self, server: ET.Element) -> list[ET.Element]:
+        """What a gradient or a pattern holds, or the first of those it refers to that holds anything."""
+        return next((list(each) for each in self._chain(server) if len(each)), [])
+
+    def _chain(self, server: ET.Element):
+        seen: set[ET.Element] = set()
+        while server is not None and server not in seen:
+            yield server
+            seen.add(server)
+            server = referred(href(server).strip(), self._by_id)
+
+
+def _is(node: ET.Element, tag: str) -> bool:
+    return isinstance(node.tag, str) and node.tag.rpartition("}")[2] == tag

@@ -1,0 +1,1 @@
+"""Shapes and path data of SVG as cubics."""

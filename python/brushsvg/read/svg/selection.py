@@ -1,0 +1,27 @@
+"""Which elements of an SVG are chosen by a CSS selector that its user gives."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+
+import tinycss2
+
+from ...errors import Error
+from .css.selectors import Tree
+
+
+def selected(root: ET.Element, text: str) -> set[ET.Element]:
+    """The elements that a CSS selector names. Error if it is none, or names nothing."""
+    tree = Tree(root)
+    selectors = tree.compiled(tinycss2.parse_component_value_list(text))
+    if not selectors:
+        raise Error(
+            f"{text[:60]!r} is not a CSS selector; write for example #signature or g.ink path",
+            code="selector-invalid",
+        )
+    found = {node for node, wrapped in tree.nodes.items() if any(each.test(wrapped) for each in selectors)}
+    if not found:
+        raise Error(
+            f"selector {text[:60]!r} matches no element of the drawing", code="selector-matches-nothing"
+        )
+    return found

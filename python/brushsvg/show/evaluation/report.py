@@ -1,0 +1,425 @@
+"""How well a plan paints what was drawn, in mm: per stroke and in all, as text and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from ... import _core
+from ...errors import Notice
+from ...geometry.polylines import length
+from ...units import clock
+from .error_causes import cause
+from .uncertainty import PlanConfidence
+
+RING_TOLERANCE_MM = 0.01
+SMALL_MM2 = 0.005  # that is no difference worth a word
+_LEAST_SQUARE_MM = 0.5  # in which paint and drawing differ most, at least: see stroke_score
+_BARE = 0.1  # of that square, what no stroke reaches: less does not make it the worst place
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Lengths in mm. None: cannot be said, since what was wanted is not known or nothing could be measured.
+
+    overlap: area of intersection over area of union of predicted and wanted mark.
+    centre_*: distance of the widest point from the middle line over taut rows.
+    width_error_mm: mean absolute difference of predicted and wanted width across the middle line.
+    excess_turning: how much more the mark's outline turns than the wanted one's, in full turns; over all, the mean.
+    drawn_mm, painted_mm: length of the middle line; of the TCP's path on the paper.
+    """
+
+    stroke: str
+    overlap: float | None
+    centre_mean_mm: float | None
+    centre_largest_mm: float | None
+    width_error_mm: float | None
+    widths_out_of_reach: int | None
+    drawn_mm: float | None
+    painted_mm: float
+    poses: int
+    worst: Worst | None = None
+    excess_turning: float | None = None
+
+
+@dataclass(frozen=True)
+class Worst:
+    """Where a stroke's paint differs most from what was drawn: place_mm (x, y); is_missing: wanted but not painted,
+    else painted but not wanted, area_mm2 of it near that place; reason: why, in words; code: see error_causes."""
+
+    place_mm: tuple[float, float]
+    is_missing: bool
+    area_mm2: float
+    reason: str
+    code: str = ""
+
+
+@dataclass(frozen=True)
+class Group:
+    """Strokes that touch or cross, a letter perhaps: overlap of all their paint with all that was drawn of them, so
+    that paint of one on the other is not counted against it."""
+
+    strokes: tuple[str, ...]
+    overlap: float
+
+
+@dataclass(frozen=True)
+class Report:
+    title: str
+    brush: str
+    compensation: str
+    tolerance_mm: float | None
+    strokes: tuple[Figures, ...]
+    total: Figures
+    time_s: float
+    warnings: tuple[Notice, ...] = ()
+    refused: tuple[Notice, ...] = ()  # strokes that are not among those of the report
+    forbidden: tuple[Notice, ...] = ()  # of the warnings, those for which no program would be written
+    confidence: PlanConfidence | None = None  # None: the brush has no confidence
+    is_tilted: bool = False  # the brush, somewhere: of that no confidence is known
+    groups: tuple[Group, ...] = ()
+    advice: str = ""  # on the drawing's size
+
+
+class Bare(Protocol):
+    """A piece of an element's shape that no stroke reaches: rings [mm]; is_rim: of a stroke wider than the brush."""
+
+    @property
+    def element(self) -> str: ...
+    @property
+    def rings(self) -> list[np.ndarray]: ...
+    @property
+    def is_rim(self) -> bool: ...
+
+
+def wanted_rings(strokes: Iterable[_core.Stroke]) -> list[np.ndarray]:
+    """Outline of everything that was drawn."""
+    return _core.unite([ring for s in strokes for ring in _core.wanted_outline(s, RING_TOLERANCE_MM)])
+
+
+def measure(
+    plan: _core.Plan,
+    marks: _core.Marks,
+    brush: _core.Brush,
+    strokes: Sequence[_core.Stroke] | None = None,
+    tolerance_mm: float = 0.05,
+    drawn: Sequence[_core.Stroke] | None = None,
+    compensation: str = "closed",
+    unreached: Iterable[Bare] = (),
+) -> tuple[tuple[Figures, ...], Figures]:
+    """Figures for each pass and for all. strokes: one per pass, None if unknown, or None for a pass that is a part of a
+    stroke: then drawn is all that was drawn, the strokes themselves where it is None; unreached: pieces of shapes that
+    no stroke reaches."""
+    if strokes is None:
+        rows = tuple(_bare_figures(a_pass) for a_pass in plan.passes)
+        return rows, _in_all(rows, None)
+    runs, traces = plan.passes, marks.passes
+    known = [k for k, stroke in enumerate(strokes) if stroke is not None]
+    alone = [strokes[k] for k in known]
+    verdicts = _core.verdicts([traces[k] for k in known], alone, brush)
+    misses = _core.misses_of([runs[k] for k in known], alone, brush, tolerance_mm)
+    found = iter(zip(verdicts, misses, strict=True))
+    rows = tuple(
+        _bare_figures(a_pass)
+        if stroke is None
+        else _figures(a_pass, stroke, *next(found), brush, tolerance_mm, compensation, unreached)
+        for a_pass, stroke in zip(runs, strokes, strict=True)
+    )
+    meant = alone if drawn is None else list(drawn)
+    overlap = _core.common_area(traces, meant, brush).overlap if rows else None
+    return rows, _in_all(rows, overlap)
+
+
+def _figures(a_pass, stroke, verdict, miss, brush, tolerance_mm, compensation: str, unreached) -> Figures:
+    line = _core.flatten(stroke, RING_TOLERANCE_MM)
+    worst, place = None, verdict.worst
+    if place.area_mm2 >= SMALL_MM2:
+        size_mm = max(_LEAST_SQUARE_MM, float(np.median(line[:, 3])))
+        here = [
+            piece
+            for piece in unreached
+            if piece.element == stroke.origin.element and _lies_in(place.at_mm, piece.rings, size_mm / 2)
+        ]
+        is_bare = place.is_missing and any(not piece.is_rim for piece in here)
+        is_rim = place.is_missing and bool(here)
+        is_corner = place.is_missing and _beside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
+        where = "bare" if is_bare else "rim" if is_rim else "corner" if is_corner else ""
+        why = cause(stroke, line, brush, place, size_mm, where, miss, tolerance_mm, compensation)
+        worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why.words, why.code)
+    return replace(
+        _bare_figures(a_pass),
+        overlap=verdict.overlap,
+        centre_mean_mm=miss.mean_mm,
+        centre_largest_mm=miss.largest_mm,
+        width_error_mm=verdict.width_error_mm,
+        excess_turning=verdict.excess_turning,
+        widths_out_of_reach=_out_of_reach(stroke, brush),
+        drawn_mm=float(line[-1, 2]),
+        worst=worst,
+    )
+
+
+def _lies_in(place_mm, rings, reach_mm: float) -> bool:
+    """Whether a square about a place meets what rings enclose."""
+    return _core.area(_core.intersect([_square(place_mm, reach_mm)], rings)) > _BARE * (2 * reach_mm) ** 2
+
+
+def _beside_discs_mm2(stroke, place_mm, size_mm: float) -> float:
+    """What discs of its widths leave of a stroke's shape in a square about a place: there no round brush paints."""
+    if not stroke.wanted_mm:
+        return 0.0
+    within = _core.intersect([_square(place_mm, size_mm / 2)], stroke.wanted_mm)
+    discs = _core.wanted_outline(stroke.replaced(wanted_mm=[]), RING_TOLERANCE_MM)
+    return _core.area(within) - _core.area(_core.intersect(within, discs))
+
+
+def _square(place_mm, reach_mm: float) -> np.ndarray:
+    x, y = place_mm
+    sides = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    return np.array([(x + reach_mm * right, y + reach_mm * up) for right, up in sides])
+
+
+def groups(
+    marks: _core.Marks, brush: _core.Brush, strokes: Sequence[_core.Stroke] | None
+) -> tuple[Group, ...]:
+    """Strokes that touch, each letter judged as one. strokes: one per pass, None for a part of one."""
+    known = [pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None]
+    traces, wanted = [trace for trace, _ in known], [stroke for _, stroke in known]
+    together = _core.touching(wanted)
+    areas = _core.common_areas(traces, wanted, together, brush)
+    return tuple(
+        Group(tuple(wanted[k].id for k in members), area.overlap)
+        for members, area in zip(together, areas, strict=True)
+    )
+
+
+def _bare_figures(a_pass) -> Figures:
+    poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    painted_mm = length(poses)
+    return Figures(a_pass.stroke, None, None, None, None, None, None, painted_mm, len(poses))
+
+
+def _in_all(rows: tuple[Figures, ...], overlap: float | None) -> Figures:
+    def known(name, combine):
+        values = [(getattr(row, name), row.drawn_mm or 0.0) for row in rows if getattr(row, name) is not None]
+        return combine(*zip(*values, strict=True)) if values else None
+
+    def mean(values, weights):
+        return float(np.average(values, weights=weights)) if sum(weights) > 0 else float(np.mean(values))
+
+    return Figures(
+        stroke="all",
+        overlap=overlap,
+        centre_mean_mm=known("centre_mean_mm", mean),
+        centre_largest_mm=known("centre_largest_mm", lambda values, _: max(values)),
+        width_error_mm=known("width_error_mm", mean),
+        excess_turning=known("excess_turning", lambda values, _: float(np.mean(values))),
+        widths_out_of_reach=known("widths_out_of_reach", lambda values, _: sum(values)),
+        drawn_mm=known("drawn_mm", lambda values, _: sum(values)),
+        painted_mm=sum(row.painted_mm for row in rows),
+        poses=sum(row.poses for row in rows),
+    )
+
+
+def _out_of_reach(stroke, brush) -> int:
+    if not brush.width_follows_depth():
+        return 0  # the drawn width is not asked of such a brush
+    least, greatest = brush.half_width_range_mm()
+    return sum(not least - 1e-9 <= half_width <= greatest + 1e-9 for _, half_width in stroke.half_width)
+
+
+def _rounded(value):
+    if isinstance(value, dict):
+        return {key: _rounded(each) for key, each in value.items()}
+    if isinstance(value, tuple):
+        return [_rounded(each) for each in value]
+    return round(value, 6) if isinstance(value, float) else value
+
+
+def to_json(report: Report) -> str:
+    """Lengths to 1e-6 mm, so that the same input gives the same bytes."""
+
+    def figures(row: Figures, confidence) -> dict:
+        known = {} if confidence is None else {"uncertainty_95": _rounded(asdict(confidence))}
+        return _rounded(asdict(row)) | known
+
+    confidence = report.confidence
+    intervals = [None] * len(report.strokes) if confidence is None else confidence.strokes
+
+    return (
+        json.dumps(
+            {
+                "format": "brushsvg/report",
+                "version": 1,
+                "title": report.title,
+                "brush": report.brush,
+                "compensation": report.compensation,
+                "tolerance_mm": report.tolerance_mm,
+                "time_s": round(report.time_s, 3),
+                "uncertainty_from": None if confidence is None else confidence.source,
+                "total": figures(report.total, None if confidence is None else confidence.total),
+                "strokes": [figures(*pair) for pair in zip(report.strokes, intervals, strict=True)],
+                "warnings": [notice.as_json() for notice in report.warnings],
+                "refused": [notice.as_json() for notice in report.refused],
+                "forbidden": [notice.as_json() for notice in report.forbidden],
+                "groups": [
+                    {"strokes": list(group.strokes), "overlap": round(group.overlap, 6)}
+                    for group in report.groups
+                ],
+                "advice": report.advice,
+            },
+            indent=1,
+            ensure_ascii=False,
+        )
+        + "\n"
+    )
+
+
+def as_text(suffix: str, report: Report) -> str:
+    """As JSON for .json, else for people."""
+    return to_json(report) if suffix == ".json" else to_text(report)
+
+
+def to_text(report: Report) -> str:
+    """A table of strokes, the sum, the time, the warnings."""
+    rows = [*report.strokes, report.total]
+    columns = [
+        ("stroke", [_short(row.stroke) for row in rows]),
+        ("overlap", [_figure(row.overlap, 3) for row in rows]),
+        ("centre mean", [_figure(row.centre_mean_mm, 3) for row in rows]),
+        ("largest", [_figure(row.centre_largest_mm, 3) for row in rows]),
+        ("width error", [_figure(row.width_error_mm, 3) for row in rows]),
+        ("turning", [_figure(row.excess_turning, 2) for row in rows]),
+        ("out of reach", [_figure(row.widths_out_of_reach, 0) for row in rows]),
+        ("drawn", [_figure(row.drawn_mm, 1) for row in rows]),
+        ("painted", [_figure(row.painted_mm, 1) for row in rows]),
+        ("poses", [str(row.poses) for row in rows]),
+        *_confidence_columns(report.confidence),
+    ]
+    notes = ["differs most", *map(_worst_text, rows)] if any(row.worst for row in rows) else []
+    table = _table(columns, notes)
+    rule = "-" * len(table[0])
+    how = f", compensation {report.compensation}" if report.compensation else ""
+    how += f", tolerance {report.tolerance_mm:g} mm" if report.tolerance_mm is not None else ""
+    count = len(report.strokes)
+    lines = [
+        f"{report.title or 'untitled'}: {count} stroke{'s' * (count != 1)}, brush {report.brush}{how}",
+        "",
+        *table[:-1],
+        rule,
+        table[-1],
+        "",
+        "Lengths in mm. Overlap: intersection over union of predicted mark and target mark. Centre: tracking",
+        "error, the distance of the widest point from the middle line. Painted: path of the TCP on the paper.",
+        "Turning: of the mark's outline beyond that of the target mark, in full turns.",
+        *_confidence_words(report.confidence, report.is_tilted),
+        f"Time, with the acceleration of the machine: {clock(report.time_s)}",
+    ]
+    if report.groups:
+        lines += ["", "Strokes that touch, judged together:", ""]
+        lines += _table(
+            [
+                ("strokes", [_short(" + ".join(group.strokes), 64) for group in report.groups]),
+                ("overlap", [_figure(group.overlap, 3) for group in report.groups]),
+            ]
+        )
+    if report.advice:
+        lines += ["", report.advice]
+    if report.refused:
+        lines += ["", f"Left out, since they cannot be painted: {len(report.refused)}"]
+        lines += ["  " + ": ".join((notice.where, notice.told)) for notice in report.refused]
+    if report.warnings:
+        lines += ["", f"Warnings: {len(report.warnings)}"]
+        lines += ["  " + ": ".join(filter(None, (notice.where, notice.told))) for notice in report.warnings]
+    return "\n".join([*lines, ""])
+
+
+def _confidence_columns(confidence: PlanConfidence | None) -> list[tuple[str, list[str]]]:
+    if confidence is None:
+        return []
+    rows = [*confidence.strokes, confidence.total]
+    return [
+        ("middle +-", [_figure(row.middle_mm, 2) for row in rows]),
+        ("ends +-", [_figure(row.ends_mm, 2) for row in rows]),
+        ("width +-", [_figure(row.width_mm, 2) for row in rows]),
+    ]
+
+
+def _confidence_words(confidence: PlanConfidence | None, is_tilted: bool) -> list[str]:
+    if is_tilted:
+        return ["No confidence intervals: how sure a mark is is known of a brush held upright."]
+    if confidence is None:
+        return ["No confidence intervals: the brush has neither covariance nor RMSE."]
+    return [
+        "+-: half the confidence interval of the mark's middle across the line, of its ends along it, of its width,",
+        f"{confidence.words}.",
+    ]
+
+
+def comparison_text(rows: list[tuple[str, Figures]]) -> str:
+    """A table of several ways to paint the same drawing: (how, its figures in all)."""
+    table = _table(
+        [
+            ("compensation", [how for how, _ in rows]),
+            ("overlap", [_figure(total.overlap, 3) for _, total in rows]),
+            ("centre mean", [_figure(total.centre_mean_mm, 3) for _, total in rows]),
+            ("largest", [_figure(total.centre_largest_mm, 3) for _, total in rows]),
+        ]
+    )
+    heading = "Compensations compared; distances of the widest point from the middle line in mm:"
+    return "\n".join([heading, "", table[0], "-" * len(table[0]), *table[1:], ""])
+
+
+def brushes_json(title: str, suits) -> str:
+    """Several suit.Suit, in their order; overlaps to 1e-6."""
+    rows = [_rounded(asdict(each)) for each in suits]
+    made = {"format": "brushsvg/brushes", "version": 1, "title": title, "brushes": rows}
+    return json.dumps(made, indent=1, ensure_ascii=False) + "\n"
+
+
+def brushes_text(title: str, suits) -> str:
+    """A table of brushes that were tried on a drawing, see suit.Suit."""
+    table = _table(
+        [
+            ("brush", [each.brush for each in suits]),
+            ("overlap", [_figure(each.overlap, 3) for each in suits]),
+            ("worst stroke", [_short(each.worst or "-") for each in suits]),
+            ("its overlap", [_figure(each.worst_overlap, 3) for each in suits]),
+            ("refused", [f"{each.refused} of {each.strokes}" for each in suits]),
+        ],
+        ["", *(_short(each.why, 100) for each in suits)],
+    )
+    heading = f"{title or 'untitled'}: which brush suits it; overlap of all that was drawn, refused strokes included"
+    return "\n".join([heading, "", table[0], "-" * len(table[0]), *table[1:], ""])
+
+
+def _worst_text(row: Figures) -> str:
+    if row.worst is None:
+        return ""
+    x, y = row.worst.place_mm
+    what = "not painted" if row.worst.is_missing else "too much paint"
+    return f"x {x:.1f}, y {y:.1f}: {what}; {row.worst.reason}"
+
+
+def _table(columns: list[tuple[str, list[str]]], notes: tuple[str, ...] | list[str] = ()) -> list[str]:
+    """Lines of a table, the names first; the first column is flush left, the others flush right; notes follow."""
+    widths = [max(len(cell) for cell in (name, *cells)) for name, cells in columns]
+    lines = []
+    for name, *values in zip(*((name, *cells) for name, cells in columns), strict=True):
+        padded = [value.rjust(width) for value, width in zip(values, widths[1:], strict=True)]
+        lines.append("  ".join([name.ljust(widths[0]), *padded]))
+    if notes:
+        lines = [f"{line}  {note}".rstrip() for line, note in zip(lines, notes, strict=True)]
+    return lines
+
+
+def _figure(value, decimals: int) -> str:
+    return "-" if value is None else f"{value:.{decimals}f}"
+
+
+def _short(name: str, most: int = 24) -> str:
+    return name if len(name) <= most else name[: most - 3] + "..."

@@ -1,0 +1,267 @@
+"""What was understood of a drawing, to look at: strokes numbered, with direction and width, and every warning.
+
+The picture is laid out once, in px with y down, and drawn by two pens, SVG and PNG.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from dataclasses import dataclass, field
+from xml.sax.saxutils import escape
+
+import numpy as np
+
+from .. import _core
+from ..geometry import polylines
+from ..geometry.cubics import at
+from ..read.design import Design, Notice
+from ..read.layout import bounds_mm
+from ..text_summary import summarized
+from .stroke_labels import Room, Run, ahead, runs_of, width_text
+
+PAPER, SHEET, EDGE, TEXT, QUIET, SHAPE = "#f3f1ec", "#ffffff", "#c9c7c0", "#22252b", "#6d717a", "#d9d7d0"
+WARNING = "#b3401f"
+INKS = ("#2b3a67", "#b3401f", "#2f7d4f", "#8a3ffc", "#c07a00", "#0f7c8a", "#c2185b", "#5d6d1e")
+SHEET_PX, MARGIN_PX, LINE_PX, FONT_PX = 1500, 40, 30, 20
+LISTED = 120  # strokes in the list
+LETTER_PX = 10.0  # room for a letter of the lists, between those of OpenCV's font and of browsers
+APART_PX = 80.0  # between two numbers of one element's dashes
+TOLERANCE_MM = 0.02
+
+
+@dataclass
+class _Canvas:
+    """Things to draw, in order: ("area", rings, colour, opacity), ("line", points, colour, width), ("text", ...)."""
+
+    width: float
+    height: float = 0.0
+    things: list[tuple] = field(default_factory=list)
+
+    def area(self, rings, colour: str, opacity: float = 1.0) -> None:
+        if rings:
+            self.things.append(("area", rings, colour, opacity))
+
+    def line(self, points: np.ndarray, colour: str, width: float) -> None:
+        self.things.append(("line", points, colour, width))
+
+    def text(self, x: float, y: float, words: str, colour: str = TEXT, size: int = FONT_PX) -> None:
+        words = "".join(letter if letter.isprintable() else " " for letter in words)
+        self.things.append(("text", (x, y), words, colour, size))
+
+
+def overview(suffix: str, design: Design, strokes: list, notices: list[Notice]) -> bytes:
+    """The picture as the bytes of an .svg or a .png. strokes: of the design, maybe none; notices: all of them."""
+    canvas = _picture(design, strokes, notices)
+    return _svg(canvas).encode() if suffix == ".svg" else _png(canvas)
+
+
+def _picture(design: Design, strokes: list, notices: list[Notice]) -> _Canvas:
+    w, h = design.sheet_mm
+    box = bounds_mm(design)
+    x0, y0 = min(0.0, float(box[0])), min(0.0, float(box[1]))
+    x1, y1 = max(w, float(box[2])), max(h, float(box[3]))
+    px_per_mm = SHEET_PX / max(x1 - x0, y1 - y0)
+    canvas = _Canvas(max((x1 - x0) * px_per_mm, 900) + 2 * MARGIN_PX)
+    top = MARGIN_PX + 2 * LINE_PX
+
+    def place(points_mm: np.ndarray) -> np.ndarray:
+        points = np.asarray(points_mm, float)[:, :2]
+        return np.column_stack(
+            [MARGIN_PX + (points[:, 0] - x0) * px_per_mm, top + (y1 - points[:, 1]) * px_per_mm]
+        )
+
+    canvas.text(MARGIN_PX, MARGIN_PX + FONT_PX, design.title or "Drawing as understood", TEXT, 28)
+    count = f"{len(strokes)} strokes" if len(strokes) != 1 else "1 stroke"
+    warned = f"{len(notices)} warnings" if len(notices) != 1 else "1 warning"
+    # limbs, corners and passes depend on the brush, which is not asked for here
+    more = "; predict shows those that a brush adds" if any(stroke.wanted_mm for stroke in strokes) else ""
+    words = f"sheet {w:.6g} x {h:.6g} mm, {count}, {warned}{more}"
+    canvas.text(MARGIN_PX, MARGIN_PX + FONT_PX + LINE_PX, words, QUIET)
+    sheet = place(np.array([[0, 0], [w, 0], [w, h], [0, h]]))
+    canvas.area([sheet], SHEET)
+    canvas.line(np.vstack([sheet, sheet[:1]]), EDGE, 1.5)
+    for element in design.elements:
+        if element.fill_rule:
+            canvas.area([place(_flat(subpath.cubics)) for subpath in element.subpaths], SHAPE)
+    runs = runs_of(strokes)
+    inks = _inks(runs)
+    for stroke, ink in zip(strokes, inks, strict=True):
+        rings = _core.wanted_outline(stroke, TOLERANCE_MM)
+        canvas.area([place(ring) for ring in rings], ink, 0.3)
+    lines = [place(_core.flatten(stroke, TOLERANCE_MM)) for stroke in strokes]
+    for line, ink in zip(lines, inks, strict=True):
+        _direction(canvas, line, ink)
+    _numbers(canvas, lines, inks, runs)
+    y = top + (y1 - y0) * px_per_mm + 2 * LINE_PX
+    y = _list_strokes(canvas, strokes, inks, runs, y)
+    canvas.height = _list_notices(canvas, notices, y) + MARGIN_PX
+    return canvas
+
+
+def _inks(runs: list[Run]) -> list[str]:
+    inks: list[str] = []
+    number = 0
+    for run in runs:
+        for _ in range(run.first, run.last + 1):
+            inks.append(INKS[number % len(INKS)])
+            number += not run.is_one
+        number += run.is_one
+    return inks
+
+
+def _flat(cubics: np.ndarray) -> np.ndarray:
+    t = np.linspace(0.0, 1.0, 17)[1:, None]
+    p0, p1, p2, p3 = (cubics[:, None, k] for k in range(4))
+    return np.vstack([cubics[0, :1], at(t, p0, p1, p2, p3).reshape(-1, 2)])
+
+
+def _direction(canvas: _Canvas, line: np.ndarray, ink: str) -> None:
+    """Middle line, arrows and a dot at its start."""
+    length = polylines.length(line)
+    if length > 0:
+        canvas.line(line, ink, 2.0)
+        along_mm = polylines.lengths(line)
+        head = min(14.0, 0.4 * length)
+        for end in np.arange(min(length, 90.0), length + 1e-9, 180.0) if length > 180 else (0.6 * length,):
+            tip, tail = (
+                np.array([np.interp(s, along_mm, line[:, k]) for k in (0, 1)]) for s in (end, end - head)
+            )
+            if (norm := np.hypot(*(tip - tail))) > 0:
+                along = (tip - tail) / norm
+                side = np.array([-along[1], along[0]]) * head * 0.45
+                canvas.area([np.array([tip, tail + side, tail - side])], ink)
+    dot = np.linspace(0, 2 * np.pi, 16, endpoint=False)
+    canvas.area([line[0] + 4.0 * np.column_stack([np.cos(dot), np.sin(dot)])], ink)
+
+
+def _numbers(canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: list[Run]) -> None:
+    """Numbers at the starts, where there is room for them; of many dashes some."""
+    room = Room(lines)
+    for run in runs:
+        before = None
+        for number in range(run.first, run.last + 1):
+            start = lines[number][0]
+            if run.is_one and before is not None and math.dist(before, start) < APART_PX:
+                continue
+            label = str(number + 1)
+            corner = room.take(start, ahead(lines[number]), 11.0 * len(label), 16.0)
+            if corner is not None:
+                canvas.text(corner[0], corner[1] + 15, label, inks[number], 18)
+                before = start
+
+
+def _list_strokes(canvas: _Canvas, strokes: list, inks: list[str], runs: list[Run], y: float) -> float:
+    entries = [_entry(strokes, run) for run in runs[:LISTED]]
+    room = _letters(canvas)
+    columns = min(3, max(1, room // (max(map(len, entries), default=0) + 2)))
+    for k, (run, words) in enumerate(zip(runs, entries, strict=False)):
+        x = MARGIN_PX + (k % columns) * (canvas.width - 2 * MARGIN_PX) / columns
+        ink = inks[run.first] if run.is_one or run.last == run.first else TEXT
+        canvas.text(x, y, words, ink, 18)
+        y += LINE_PX if k % columns == columns - 1 or k == min(len(runs), LISTED) - 1 else 0
+    if len(runs) > LISTED:
+        canvas.text(MARGIN_PX, y, f"and {len(strokes) - runs[LISTED].first} more", QUIET, 18)
+        y += LINE_PX
+    return y + LINE_PX / 2
+
+
+def _entry(strokes: list, run: Run) -> str:
+    stroke = strokes[run.first]
+    number, names, count = f"{run.first + 1}", stroke.id, ""
+    if run.last > run.first:
+        number, names = f"{number}-{run.last + 1}", f"{names} ... {strokes[run.last].id}"
+        count = f" ({run.last - run.first + 1} strokes)"
+    layer = f", {stroke.layer}" if stroke.layer else ""
+    words = f"{number}  {names}: {width_text(stroke)} mm{count}{layer}"
+    return words if len(words) <= 46 else words[:43] + "..."
+
+
+def _letters(canvas: _Canvas) -> int:
+    """How many letters of the lists a line has room for."""
+    return int((canvas.width - 2 * MARGIN_PX) / LETTER_PX)
+
+
+def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
+    told = [
+        (colour, notice)
+        for is_damage, colour in ((True, WARNING), (False, TEXT))
+        for notice in summarized(notice for notice in notices if notice.damaged == is_damage)
+    ]
+    for colour, notice in told[:LISTED]:
+        for line in textwrap.wrap(
+            f"{notice.where}: {notice.told}", _letters(canvas), subsequent_indent="    "
+        ):
+            canvas.text(MARGIN_PX, y, line, colour, 18)
+            y += LINE_PX
+    if len(told) > LISTED:
+        canvas.text(MARGIN_PX, y, f"and {len(told) - LISTED} warnings more", QUIET, 18)
+        y += LINE_PX
+    return y
+
+
+def _svg(canvas: _Canvas) -> str:
+    w, h = f"{canvas.width:.0f}", f"{canvas.height:.0f}"
+    size = f'width="{w}" height="{h}" viewBox="0 0 {w} {h}"'
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size}>',
+        f'<rect width="100%" height="100%" fill="{PAPER}"/>',
+    ]
+    for kind, *thing in canvas.things:
+        if kind == "area":
+            rings, colour, opacity = thing
+            data = "".join(_path(ring) + "Z" for ring in rings)
+            lines.append(f'<path d="{data}" fill="{colour}" fill-opacity="{opacity:g}"/>')
+        elif kind == "line":
+            points, colour, width = thing
+            lines.append(
+                f'<path d="{_path(points)}" fill="none" stroke="{colour}" stroke-width="{width:g}"/>'
+            )
+        else:
+            (x, y), words, colour, size = thing
+            style = f'font-family="sans-serif" font-size="{size}" fill="{colour}" xml:space="preserve"'
+            lines.append(f'<text x="{x:.1f}" y="{y:.1f}" {style}>{escape(words)}</text>')
+    return "\n".join([*lines, "</svg>", ""])
+
+
+def _path(points: np.ndarray) -> str:
+    flat = (np.round(points, 2) + 0.0).ravel().tolist()
+    return ("M" + "L".join(["%.2f,%.2f"] * len(points))) % tuple(flat)
+
+
+def _png(canvas: _Canvas) -> bytes:
+    import cv2  # a tenth of a second that the SVG pen does not need
+
+    shape = (round(canvas.height), round(canvas.width))
+    image = np.full((*shape, 3), _bgr(PAPER), np.uint8)
+    for kind, *thing in canvas.things:
+        if kind == "area":
+            _fill(image, *thing)
+        elif kind == "line":
+            points, colour, width = thing
+            fixed = np.round((points - 0.5) * 16).astype(np.int32).reshape(-1, 1, 2)
+            cv2.polylines(image, [fixed], False, _bgr(colour), max(1, round(width)), cv2.LINE_AA, 4)
+        else:
+            (x, y), words, colour, size = thing
+            cv2.putText(image, words, (round(x), round(y)), _bgr(colour), cv2.FontFace("sans"), size, 400)
+    return cv2.imencode(".png", image)[1].tobytes()
+
+
+def _fill(image: np.ndarray, rings, colour: str, opacity: float) -> None:
+    import cv2
+
+    points = np.vstack(rings)
+    height, width = image.shape[:2]
+    x0, y0 = np.clip(np.floor(points.min(axis=0)), 0, (width - 1, height - 1)).astype(int)
+    x1, y1 = np.clip(np.ceil(points.max(axis=0)) + 1, (x0 + 1, y0 + 1), (width, height)).astype(int)
+    mask = np.zeros((y1 - y0, x1 - x0), np.uint8)
+    fixed = [np.round((ring - (x0 + 0.5, y0 + 0.5)) * 16).astype(np.int32) for ring in rings]
+    cv2.fillPoly(mask, fixed, 255, cv2.LINE_AA, 4)
+    rows, columns = np.divmod(np.flatnonzero(mask), mask.shape[1])
+    share = (mask[rows, columns] / 255.0 * opacity)[:, None]
+    here = image[y0 + rows, x0 + columns]
+    image[y0 + rows, x0 + columns] = np.round(here * (1 - share) + np.array(_bgr(colour)) * share)
+
+
+def _bgr(colour: str) -> tuple[int, int, int]:
+    return int(colour[5:7], 16), int(colour[3:5], 16), int(colour[1:3], 16)

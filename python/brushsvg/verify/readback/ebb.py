@@ -1,0 +1,177 @@
+"""Commands of an EBB as brushsvg writes them, read back."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from ...errors import Error
+from ...machine.cells.cell import Cell, mm_from_steps, unit_mm
+from ...machine.cells.cell_check import MOST_STEPS_S
+from ...machine.posts.ebb import EBB_END, HOME, comment
+from ...machine.posts.gcode_servo import height_at
+from . import Act, Readback, ReadSection, Step
+
+_FEED = re.compile(r"# feed (\d{1,7}\.\d) mm/min")
+_SM = re.compile(r"SM,(\d{1,8}),(-?\d{1,8})(?:,(-?\d{1,8}))?", re.IGNORECASE)
+_S2 = re.compile(r"S2,(\d{1,5}),(\d{1,2})(?:,-?0+(?:,(-?0|\d{1,5}))?)?", re.IGNORECASE)
+_READY = ("SR,0,1", "EM,1,1")
+LEAST_STEPS_S = 1.31  # with fewer the board refuses a motor's move
+
+
+def read_ebb(text: str, cell: Cell) -> Readback:
+    """The program as steps in the machine's frame, from its origin on. Error with the line for what brushsvg does not
+    write, for a slice that is faster than it says, or than a motor is, and for steps that do not lead back."""
+    reader = _Reader(cell)
+    for number, line in enumerate(text.splitlines(), 1):
+        if line := line.strip(" "):
+            reader.line(number, line)
+    if not reader.ended:
+        raise Error("the last lines are missing: half of the program was lost", code="program-cut-short")
+    if any(reader.steps):
+        raise Error(
+            "its steps do not lead back to where it began: a line was lost, or changed",
+            code="line-incomplete",
+        )
+    return reader.out
+
+
+class _Reader:
+    def __init__(self, cell: Cell):
+        self.cell, self.out = cell, Readback(blends_by_radius=True)
+        self.mm_from_steps, self.unit_mm = mm_from_steps(cell.motors), unit_mm(cell)
+        self.steps = [0, 0]
+        self.value: int | None = None
+        self.along: int | None = None  # a value that takes effect with the next move
+        self.feed_mm_s = 0.0
+        self.ready: list[str] = []
+        self.is_home = self.ended = False
+        servo = cell.servo
+        self.range = sorted(round(row[1]) for row in servo.table)
+        self.heights: dict[int, float] = {}
+
+    def line(self, number: int, line: str) -> None:
+        if self.ended:
+            raise _unread(number, line)
+        if line.startswith("#"):
+            self._remark(number, line)
+        elif found := _SM.fullmatch(line):
+            self._move(number, line, *map(int, found.groups("0")))
+        elif found := _S2.fullmatch(line):
+            self._set(number, line, *map(int, found.groups("0")))
+        elif self.ready and line == _READY[0]:
+            return  # as it is
+        elif len(self.ready) < len(_READY) and line == _READY[len(self.ready)]:
+            self.ready.append(line)
+            self.out.acts.append(Act(number, "text", line))
+        else:
+            raise _unread(number, line)
+
+    def _remark(self, number: int, line: str) -> None:
+        if found := _FEED.fullmatch(line):
+            self.feed_mm_s = float(found[1]) / 60
+            return
+        said = line.removeprefix("# ")
+        if comment(said).rstrip("\n") != line:
+            raise _unread(number, line)
+        if said == HOME:
+            self.is_home = True
+            self.out.sections.append(ReadSection(said, number))
+            self.out.acts.append(Act(number, "text", said))
+        elif said == EBB_END:
+            self.ended = True
+            if self.along is not None or not self.is_home:
+                raise _unread(number, line)
+        else:
+            self.out.comment(number, said)
+
+    def _is_ready(self, number: int, line: str) -> None:
+        if len(self.ready) < len(_READY):
+            missing = _READY[len(self.ready)]
+            raise Error(f"line {number}: {line!r} stands before {missing}", code="mode-missing")
+
+    def _set(self, number: int, line: str, value: int, pin: int, wait_ms: int) -> None:
+        self._is_ready(number, line)
+        if pin != self.cell.motors.servo_pin or self.along is not None:
+            raise _unread(number, line)
+        if not self.range[0] <= value <= self.range[-1]:
+            raise Error(
+                f"line {number}: {line!r} is outside the range [{self.range[0]}, {self.range[-1]}] of the cell's servo",
+                code="servo-out-of-range",
+            )
+        if self.value is None:  # before the first move: up from wherever it is
+            self.value = value
+            self.out.rises_mm.append(self._height(value))
+            self.out.acts.append(Act(number, "lift", same=(float(value),)))
+        elif not wait_ms:
+            self.along = value
+        else:
+            self._lift(number, value)
+            self._wait(number, wait_ms)
+
+    def _lift(self, number: int, value: int) -> None:
+        if value == self.value:
+            return
+        self.value = value
+        self.out.acts.append(Act(number, "lift", same=(float(value),)))
+        self._step(number)
+
+    def _height(self, value: int) -> float:
+        if value not in self.heights:
+            self.heights[value] = height_at(self.cell.servo, value)
+        return self.heights[value]
+
+    def _wait(self, number: int, wait_ms: int) -> None:
+        self.out.acts.append(Act(number, "wait", same=(wait_ms / 1e3,)))
+        if steps := self.out.section().steps:
+            last = steps[-1]
+            steps[-1] = last._replace(wait_s=last.wait_s + wait_ms / 1e3, waits=last.waits + 1)
+
+    def _step(self, number: int, took_s: float = 0.0) -> None:
+        x, y = self._place()
+        height = self._height(self.value)
+        self.out.section().steps.append(Step(number, False, x, y, height, self.feed_mm_s, took_s=took_s))
+
+    def _place(self) -> tuple[float, float]:
+        x, y = (self.mm_from_steps @ self.steps).tolist()
+        return x, y
+
+    def _move(self, number: int, line: str, time_ms: int, one: int, two: int) -> None:
+        self._is_ready(number, line)
+        if not time_ms or (self.value is None and (one or two)):
+            raise Error(
+                f"line {number}: {line!r} goes at no known height, or in no time", code="line-incomplete"
+            )
+        if not one and not two:
+            if self.along is not None:
+                raise _unread(number, line)
+            self._wait(number, time_ms)
+            return
+        if self.along is not None:
+            if self.along != self.value:
+                self.value = self.along
+                self._step(number)
+            self.value, self.along = self.along, None
+        for steps in (one, two):
+            if steps and not LEAST_STEPS_S <= 1e3 * abs(steps) / time_ms <= MOST_STEPS_S:
+                raise Error(
+                    f"line {number}: {line!r} has {1e3 * abs(steps) / time_ms:.4g} steps in a second, outside the "
+                    f"range [{LEAST_STEPS_S:g}, {MOST_STEPS_S}] of a motor",
+                    code="speed-out-of-range",
+                )
+        way_mm = float(np.linalg.norm(self.mm_from_steps @ (one, two)))
+        speed_mm_s = 1e3 * way_mm / time_ms
+        if speed_mm_s > self.feed_mm_s * (1 + 1e-9) + 1e-9:
+            raise Error(
+                f"line {number}: speed {speed_mm_s:.1f} mm/s, its limit {self.feed_mm_s:.1f} mm/s",
+                code="speed-out-of-range",
+            )
+        self.steps = [self.steps[0] + one, self.steps[1] + two]
+        self._step(number, time_ms / 1e3)
+        at_most = (self.feed_mm_s, speed_mm_s, 1e3 * self.unit_mm / time_ms)
+        self.out.acts.append(Act(number, "way", "", self._place(), at_most, (float(self.value),)))
+
+
+def _unread(number: int, line: str) -> Error:
+    return Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")

@@ -1,0 +1,112 @@
+"""KRL as brushsvg writes it, read back."""
+
+from __future__ import annotations
+
+import re
+
+from ...errors import Error
+from ...machine.cells.cell import Cell
+from ...machine.frames import rotation, rotation_deg
+from ...machine.posts.krl import KRL_END, RISES
+from ...machine.posts.script import down
+from . import Readback
+from .script import N, Numbered, Script, read_script
+
+
+def _point(names: str, turned: str) -> str:
+    x, y, z = (f"{axis} (?P<{name}>{N})" for axis, name in zip("xyz", names, strict=True))
+    return rf"\{{{x}, {y}, {z}, {turned}\}}"
+
+
+_TURN = rf"a {N}, b {N}, c {N}"
+_TO = _point("xyz", f"(?P<turned>{_TURN})")
+_VIA = _point("uvw", f"(?P<turned_via>{_TURN})")
+_FRAME = rf"\{{x {N}, y {N}, z {N}, {_TURN}\}}"
+_LINES = tuple(  # in small letters
+    (kind, re.compile(pattern))
+    for kind, pattern in (
+        ("blended", rf"lin {_TO} c_dis"),
+        ("sets", rf"\$apo\.cdis = (?P<blend>{N})"),
+        ("move", rf"lin {_TO}"),
+        ("sets", rf"\$vel\.cp = (?P<speed>{N})"),
+        ("circle", rf"circ {_VIA}, {_TO}"),
+        ("wait", rf"wait sec (?P<seconds>{N})"),
+        ("rise", r"lin here"),
+        ("sets", rf"\$acc\.cp = (?P<acceleration>{N})"),
+        ("text", rf"if here\.z < (?P<height>{N}) then|here\.z = {N}|here = \$pos_act|endif|halt"),
+        (
+            "text",
+            rf"def brushsvg\(\)|decl e6pos here|end|\$(?:tool|base) = {_FRAME}",
+        ),
+        ("text", r"bas\(#initmov, 0\)|ptp \$axis_act|\$ori_type = #var"),
+    )
+)
+_DEF = re.compile(r"def (\w+)\(\)")
+_CALL = re.compile(r"(b[0-9a-f]{4}\d{3,})\(\)")
+_RISES = RISES.strip().lower()
+_READY = "bas(#initmov, 0)"  # which sets all of them
+
+
+def read_krl(text: str, cell: Cell) -> Readback:
+    """The program, with those that it calls, as steps in the paper's frame. Error with the line for what brushsvg does
+    not write; lines are counted on through the programs."""
+    script = Script(
+        remark="; ",
+        lines=_LINES,
+        again=re.compile(r"\$|bas\(|ptp|here"),
+        last=(f"; {KRL_END}", "END"),
+        units_mm={"speed": 1e3, "acceleration": 1e3},
+        sets_after=_READY,
+        turned_deg=tuple(rotation_deg(down(cell.tool.spin_deg))[::-1].tolist()),
+        any_case=True,
+        rotation=lambda abc: rotation(abc[::-1]),
+    )
+    return read_script("", script, Readback(in_paper_frame=True, blends_by_radius=True), _in_order(text))
+
+
+def _in_order(text: str) -> Numbered:
+    """The lines as they run, of programs that are called without their first and last ones; what the first of them
+    declares is declared in the main one, as where that is the only one."""
+    main, others = _programs(text)
+    if not others:
+        return main
+    lines: Numbered = []
+    left = dict(others)
+    for number, line in main:
+        call = _CALL.fullmatch(line.strip(" ").lower())
+        if not call:
+            lines.append((number, line))
+            continue
+        if call[1] not in left:
+            raise Error(
+                f"line {number}: it calls {call[1]!r}, which is missing or was called before",
+                code="line-unread",
+            )
+        part = left.pop(call[1])
+        if len(left) + 1 == len(others) and part[1:2] and part[1][1].strip(" ").lower() == _RISES:
+            lines.insert(
+                next(k for k, (_, line) in enumerate(lines) if not line.startswith(";")) + 1, part.pop(1)
+            )
+        if part[-1][1].strip(" ").lower() != "end":
+            raise Error(f"program {call[1]!r} has no END", code="program-cut-short")
+        lines += part[1:-1]
+    if left:
+        raise Error(f"program {next(iter(left))!r} is not called", code="line-unread")
+    return lines
+
+
+def _programs(text: str) -> tuple[Numbered, dict[str, Numbered]]:
+    """The lines of the main program, remarks above it among them, and of others by name."""
+    main: Numbered = []
+    others: dict[str, Numbered] = {}
+    lines, names = main, set()
+    for number, line in enumerate(text.splitlines(), 1):
+        if found := _DEF.fullmatch(line.strip(" ").lower()):
+            if found[1] in names:
+                raise Error(f"line {number}: {found[1]!r} stands there twice", code="line-unread")
+            if names:
+                lines = others[found[1]] = []
+            names.add(found[1])
+        if line.strip(" "):
+            lines.append((number, line.rstrip(" ")))
+    return main, others

@@ -1,0 +1,576 @@
+"""The last look before a machine moves: a program read back, simulated as it is run, and held against the limits."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from .. import _core
+from ..errors import Error, Notice
+from ..machine.cells.cell import MOST_TILT_DEG, Blending, Cell, robot_from_paper, unit_mm, value_mm
+from ..machine.frames import is_upright, moved
+from ..machine.move_extents import ways
+from ..machine.paint_reload import may_pause, pen
+from ..machine.posts.text import NAMED, spelled
+from ..machine.preflight import as_run, off_sheet
+from ..machine.program import names_of_stations
+from ..machine.realised.arc_chords import OFF_MM
+from ..machine.realised.corner_blending import blend_radii
+from ..machine.realised.distortion import is_similar, told_pass, true_mm, true_pass
+from ..machine.setup_programs import slow_below_mm
+from ..machine.tool_axes import tilts_deg
+from ..machine.workspace_limits import astray, astray_between, broken_limits, rise_astray, touching_mm_s
+from .readback import Readback, ReadSection, Step
+
+TOUCH_MM = 2e-3  # what the rounding of a program may lift a pose off the paper
+CHORD_RAD = 0.02
+ROUNDED_DEG = 0.01  # of a tilt
+TURNS = 0.05  # by which rounded places may make a tool's turn on a short way faster
+LARGE_RAD = 3.0  # poses of a circle are less than half a turn apart
+Problems = list[Notice]
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What a program paints: its passes as they are programmed, and as they are run, with corners cut; marks of the
+    latter.
+
+    problems: one for each thing that must not be; visits: for each stroke the stations that are visited
+    before it; lines: for each pass the line of the program that leads to each pose; rests: whether a servo rests
+    there.
+    """
+
+    plan: object
+    as_run: object
+    marks: object
+    problems: Problems
+    visits: tuple
+    lines: tuple
+    rests: tuple
+
+
+def slack_mm(cell: Cell) -> float:
+    """How far the heights of a program may be off by rounding alone: its units, or a servo's whole values."""
+    return max(TOUCH_MM, 1.1 * unit_mm(cell)) + (value_mm(cell) / 2 if cell.servo else 0.0)
+
+
+def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Ran:
+    """Simulate the program as a machine of this cell runs it. Error for poses deeper than the brush allows."""
+    problems: Problems = []
+    meant, cut, lines, rests = [], [], [], []
+    slack = slack_mm(cell)
+    leans = not read.in_paper_frame and not is_upright(robot_from_paper(cell, z_offset_mm))
+    here = None
+    frame = np.eye(4) if read.in_paper_frame else robot_from_paper(cell, z_offset_mm)
+    for section, track, said in walked(read, brush, cell, sheet_mm, z_offset_mm):
+        name = _name(section)
+        problems += [replace(each, where=name) for each in said]
+        stroke = _stroke(section)
+        track = _as_true(track, cell) if stroke else track
+        track = track if cell.servo else _with_ends_on_paper(track, here, slack)
+        here = track.points[-1] if len(track.points) else here
+        found = list(_touches(track, slack))
+        if stroke and len(found) != 1:
+            times = f"{len(found)} times, not once" if found else "never"
+            problems.append(Notice(name, f"the brush touches the paper {times}", code="touches-miscounted"))
+        elif found and not stroke and not section.title.startswith("paint: "):
+            line = section.steps[track.step[found[0].start]].line
+            sentence = f"line {line}: the brush touches the paper outside of any stroke"
+            problems.append(Notice(name, sentence, code="touches-outside-stroke"))
+        for on in found if stroke else ():
+            poses, radii, speed, arcs = _pass(section, track, on, cell, leans)
+            axes = _axes(section, track, on, frame)
+            poses = _no_deeper(poses, brush, slack)
+            joint = radii if read.blends_by_radius else blend_radii(poses, Blending(read.joint_mm), arcs)
+            meant.append(_core.Pass(name, poses, speed, arcs=arcs, tool_axes=axes))
+            told = [told_pass(meant[-1], cell)]
+            run = true_pass(as_run(told, lambda *_, joint=joint: joint)[0][0], cell)
+            # where a machine whose paper bends cuts a corner it may go some micrometres deeper than the poses that are
+            # meant; those themselves are judged by the simulation
+            is_allowed = poses[:, 2].min(initial=0.0) >= -brush.depth_range_mm[1]
+            run_mm = _no_deeper(run.poses_mm, brush, np.inf if is_allowed else slack)
+            cut.append(_core.Pass(name, run_mm, run.speed_mm_s, arcs=run.arcs, tool_axes=run.tool_axes))
+            lines.append(np.array([section.steps[number].line for number in track.step[on]]))
+            rests.append(np.array([_rests(section.steps[number], cell) for number in track.step[on]]))
+    plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
+    ran = _core.Plan(brush.name, "", tuple(sheet_mm), cut)
+    marks = _core.simulate(ran, brush, may_rise=True)
+    visited = _visits(read, cell)
+    if brush.paint:
+        # where visits belong to no stroke each begins freshly dipped, as in predictions
+        is_counted = cell.reload and len(visited) == len(cut)
+        dips = [[0.0] if not is_counted or visited[k] else [] for k in range(len(cut))]
+        _core.narrow(marks, brush.paint, dips)
+    problems += broken_limits(meant, sheet_mm, brush, _rounded(cell))
+    problems += off_sheet(marks, brush, sheet_mm, rounded_mm=slack)
+    return Ran(plan, ran, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests))
+
+
+def _no_deeper(poses_mm, brush, slack: float) -> np.ndarray:
+    """Poses (n, 3) that rounding has put below the brush's deepest, at its deepest."""
+    poses, deepest_mm = np.array(poses_mm), brush.depth_range_mm[1]
+    just_over = (poses[:, 2] < -deepest_mm) & (poses[:, 2] >= -deepest_mm - slack)
+    poses[just_over, 2] = -deepest_mm
+    return poses
+
+
+def _rests(step: Step, cell: Cell) -> bool:
+    """Whether a servo rests behind a step: beside what its way takes, another wait follows."""
+    return bool(cell.servo) and step.waits > 1 and step.wait_s >= cell.servo.settle_s
+
+
+def misnumbered(read: Readback, first_stroke: int, count: int) -> Problems:
+    """A sentence where strokes are missing, too many or in another order: all from the first to the count-th follow."""
+    number = first_stroke - 1
+    for section in read.sections:
+        if found := _stroke(section):
+            number += 1
+            if (int(found[1]), int(found[2])) != (number, count):
+                told = f"line {section.line}: stroke {found[1]} of {found[2]}"
+                sentence = f"{told} stands where stroke {number} of {count} should"
+                return [Notice(_name(section), sentence, code="stroke-misnumbered")]
+    left = f"stroke {count} is" if number == count - 1 else f"strokes {number + 1} to {count} are"
+    return [Notice("", f"{left} missing at the end", code="strokes-missing")] if number < count else []
+
+
+def walked(
+    read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0, paper_mm: float = 0.0
+) -> Iterator[tuple[ReadSection, Track, Problems]]:
+    """Each section with its way in the paper's frame and a notice for whatever on it is careless or astray.
+
+    paper_mm: how high the paper may lie over where it is believed to: from there down all has to be slow.
+    """
+    frame = np.eye(4) if read.in_paper_frame else robot_from_paper(cell, z_offset_mm)
+    here, here_low, ends = None, None, []  # as told, and as it is over the paper
+    for section in read.sections:
+        track = _track(section, frame, here)
+        low = _as_true(track, cell) if _stroke(section) else track
+        said = [*_careless(section, low, brush, cell, here_low, paper_mm)]
+        said += _play_taken_up(read, section, low, frame, brush, cell, paper_mm)
+        if len(track.points):
+            ends = [ends[0] if ends else track.points[0], track.points[-1]]
+        if section is read.sections[-1]:
+            said += _rises_astray(read, np.reshape(ends, (-1, 3)), frame, cell, z_offset_mm)
+        yield section, track, said + _astray(section, track, here, cell, sheet_mm, z_offset_mm)
+        if len(track.points):
+            here, here_low = track.points[-1], low.points[-1]
+
+
+def _rises_astray(
+    read: Readback, ends: np.ndarray, frame: np.ndarray, cell: Cell, z_offset_mm: float
+) -> Problems:
+    """Notices for the limits that the rise before the first move breaks, over the program's ends in the paper's frame;
+    frame: that of the paper in the program's."""
+    robot_from_program = robot_from_paper(cell, z_offset_mm) @ np.linalg.inv(frame)
+    places = moved(frame, ends)
+    return [
+        each
+        for height_mm in dict.fromkeys(read.rises_mm)
+        for each in rise_astray(height_mm, places, robot_from_program, cell, slack_mm(cell))
+    ]
+
+
+def _rounded(cell: Cell) -> Cell:
+    """The cell with limits that what was rounded keeps, too."""
+    heights = replace(cell.heights, lowest_mm=cell.heights.lowest_mm - slack_mm(cell))
+    servo = cell.servo and replace(cell.servo, step_mm=cell.servo.step_mm + value_mm(cell))
+    tool = cell.tool and replace(cell.tool, turn_deg_s=cell.tool.turn_deg_s * (1 + TURNS))
+    return replace(cell, heights=heights, servo=servo, tool=tool)
+
+
+def _astray(
+    section: ReadSection, track: Track, here: np.ndarray | None, cell: Cell, sheet_mm, z_offset_mm: float
+) -> Problems:
+    """Notices for the limits of place that a section, or the way to it, breaks anywhere, in the air as well."""
+    slack, points = slack_mm(cell), track.points
+    if not len(points):
+        return []
+    said: Problems = []
+    frame = robot_from_paper(cell, z_offset_mm)
+    if here is not None:
+        said += astray_between(here, points[0], frame, cell, slack)
+    circles = []
+    for number in [k for k, centre in enumerate(track.centres) if centre is not None]:
+        on = np.flatnonzero(track.step == number)
+        start = points[on[0] - 1] if on[0] else here
+        circles.append((start, points[on[-1]], track.centres[number]))
+    return said + astray(ways([points], circles), frame, cell, sheet_mm, slack)
+
+
+def _visits(read: Readback, cell: Cell) -> tuple:
+    """For each stroke's section the stations that the program visits before it."""
+    by_title = {_title(f"paint: {name}"): station for station, name in names_of_stations(cell).items()}
+    found, waiting = [], []
+    for section in read.sections:
+        if section.title.startswith("paint: "):
+            taken = re.fullmatch(r"paint: pen ([0-9a-f]{6})", section.title)
+            if taken and not cell.reload and may_pause(cell):
+                waiting.append(pen(taken[1]))
+                continue
+            if (title := _title(section.title)) not in by_title:
+                name = _name(section)
+                raise Error(
+                    f"line {section.line}: cell {cell.name} has no station {name!r}, which the program visits",
+                    code="station-unknown",
+                )
+            waiting.append(by_title[title])
+        elif _stroke(section):
+            found.append(tuple(waiting))
+            waiting = []
+    return tuple(found)
+
+
+def _title(text: str) -> str:
+    """As much of a title as stands in a program of any language."""
+    return spelled(text)[: len("paint: ") + NAMED].rstrip(" ")
+
+
+@dataclass(frozen=True)
+class Track:
+    """The steps of a section in the paper's frame; circles as chords. step: which step each point belongs to."""
+
+    points: np.ndarray
+    step: np.ndarray
+    centres: list
+
+
+def _as_true(track: Track, cell: Cell) -> Track:
+    """Where the machine takes the tool that is told to go along a track."""
+    if cell.machine is None:
+        return track
+    centres = [None] * len(track.centres)
+    for number, centre in enumerate(track.centres if is_similar(cell.machine) else ()):
+        if centre is not None:
+            height_mm = track.points[np.flatnonzero(track.step == number)[-1], 2]
+            x, y, _ = true_mm(np.array([[*centre[:2], height_mm]]), cell.machine)[0].tolist()
+            centres[number] = (x, y, centre[2])
+    return Track(true_mm(track.points, cell.machine), track.step, centres)
+
+
+def _stroke(section: ReadSection) -> re.Match | None:
+    """Its number, if it is that of a stroke."""
+    return re.match(r"stroke (\d{1,6}) of (\d{1,7}): ", section.title)
+
+
+def _name(section: ReadSection) -> str:
+    before, colon, name = section.title.partition(": ")
+    return name if colon else before
+
+
+def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> Track:
+    steps, back = section.steps, np.linalg.inv(frame)
+    ends = moved(back, np.array([(step.x, step.y, step.z) for step in steps], dtype=float).reshape(-1, 3))
+    known = np.flatnonzero(~np.isnan(ends).any(axis=1))  # the others go straight up, wherever the tool is
+    stays = (np.diff(ends[known], axis=0) == 0).all(
+        axis=1
+    )  # as a line that stands twice does, but for a blend
+    does = [
+        steps[k].centre is not None
+        or steps[k].blend_mm > 0
+        or steps[k].wait_s > 0
+        or steps[k].axis != steps[before].axis
+        for before, k in pairwise(known)
+    ]
+    stays &= ~np.array(does, dtype=bool)
+    known = known[np.r_[True, ~stays]] if len(known) else known
+    centres: list = [None] * len(steps)
+    points, owner = [ends[:0]], [known[:0]]
+    done = 0
+    for at, number in enumerate(known):
+        step = steps[number]
+        last = ends[known[at - 1]] if at else here
+        if step.centre is None or last is None:
+            continue
+        middle = moved(back, np.array([[*step.centre[:2], step.z]]))[0, :2]
+        centres[number] = (*middle.tolist(), step.centre[2])
+        named = moved(back, np.reshape(step.via, (-1, 3)))
+        halves = ((last, named[0]), (named[0], ends[number])) if len(named) else ()
+        if not halves:
+            between = chords(last, ends[number], centres[number])
+        elif max(abs(_sweep_rad(*half, centres[number])) for half in halves) < LARGE_RAD:
+            between = named
+        else:  # the named place stays in the middle of those between the ends, as it is chosen to be told
+            middles = [_on_circle(*half, centres[number]) for half in halves]
+            between = [middles[0], named[0], middles[1]]
+        points += [ends[known[done:at]], np.reshape(between, (-1, 3))]
+        owner += [known[done:at], np.full(len(between), number)]
+        done = at
+    return Track(np.vstack([*points, ends[known[done:]]]), np.concatenate([*owner, known[done:]]), centres)
+
+
+def chords(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, int]) -> list[np.ndarray]:
+    """Points of a circle between its ends, CHORD_RAD apart or as close as their chords stay within OFF_MM of it."""
+    x, y, _ = centre
+    first, sweep = np.arctan2(start[1] - y, start[0] - x), _sweep_rad(start, end, centre)
+    radius = np.hypot(end[0] - x, end[1] - y)
+    least = min(CHORD_RAD, 2 * np.arccos(1 - OFF_MM / max(radius, OFF_MM)))
+    count = int(np.ceil(abs(sweep) / least))
+    angles = first + sweep * np.arange(1, count) / max(count, 1)
+    heights = np.linspace(start[2], end[2], count + 1)[1:-1]
+    return [
+        np.array([x + radius * np.cos(angle), y + radius * np.sin(angle), z])
+        for angle, z in zip(angles, heights, strict=True)
+    ]
+
+
+def _sweep_rad(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, int]) -> float:
+    """By how much a circle turns from one place on it to another."""
+    x, y, turn = centre
+    first, last = np.arctan2(start[1] - y, start[0] - x), np.arctan2(end[1] - y, end[0] - x)
+    return (last - first) * turn % (2 * np.pi) * turn
+
+
+def _on_circle(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, int]) -> np.ndarray:
+    """The place amid two of a circle."""
+    x, y, _ = centre
+    angle = np.arctan2(start[1] - y, start[0] - x) + _sweep_rad(start, end, centre) / 2
+    radius = np.hypot(end[0] - x, end[1] - y)
+    return np.array([x + radius * np.cos(angle), y + radius * np.sin(angle), (start[2] + end[2]) / 2])
+
+
+def _with_ends_on_paper(track: Track, here: np.ndarray | None, slack: float) -> Track:
+    """The track with a point wherever a straight line, that from the place before it included, goes through the paper:
+    there a touch begins or ends, whether or not the program names the place. A servo's heights go in steps, through no
+    paper."""
+    if here is None or not len(track.points):
+        ways, step = track.points, track.step
+    else:
+        ways, step = np.vstack([here, track.points]), np.r_[track.step[:1], track.step]
+    before, after = ways[:-1], ways[1:]
+    straight = np.array([track.centres[number] is None for number in step[1:]], dtype=bool)
+    crosses = np.minimum(before[:, 2], after[:, 2]) < -slack
+    crosses &= np.maximum(before[:, 2], after[:, 2]) > slack
+    at = np.flatnonzero(crosses & straight)
+    before, after = before[at], after[at]
+    part = before[:, 2:] / (before[:, 2:] - after[:, 2:])
+    first = len(ways) - len(track.points)
+    points = np.insert(ways, at + 1, before + part * (after - before), axis=0)[first:]
+    return Track(points, np.insert(step, at + 1, step[at + 1])[first:], track.centres)
+
+
+def _touches(track: Track, slack: float) -> Iterator[slice]:
+    """Of the points, those of each time that the brush is on the paper."""
+    edges = np.flatnonzero(np.diff(np.r_[False, track.points[:, 2] <= slack, False]))
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        yield slice(int(first), int(last))
+
+
+def _pass(section: ReadSection, track: Track, on: slice, cell: Cell, leans: bool) -> tuple:
+    """Poses, blends, speed and arcs of one touch. leans: the paper, in the frame that the places are told in."""
+    poses = track.points[on].copy()
+    poses[:, 2] = np.minimum(poses[:, 2], 0.0)
+    owner = track.step[on]
+    steps = [section.steps[number] for number in owner]
+    is_end = np.r_[np.diff(track.step) != 0, True][on]
+    radii = np.where(is_end, [step.blend_mm for step in steps], 0.0)
+    speeds = [step.speed_mm_s for step in steps[1:] or steps if np.isfinite(step.speed_mm_s)]
+    # a stroke is landed no faster than it is painted
+    landed_mm_s = steps[0].speed_mm_s if steps[0].speed_mm_s <= cell.speeds.press_mm_s else 0.0
+    speed = max(speeds, default=0.0)
+    # straight down is so only up to rounding: the slower feed tells what was meant; a servo is slow where it is steep
+    if leans or cell.servo is None:
+        sideways = np.abs(np.diff(poses[:, :2], axis=0)).max(axis=1, initial=0.0)
+        slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
+        for k in np.flatnonzero(slower & (sideways < 2 * unit_mm(cell))):
+            poses[k + 1, :2] = poses[k, :2]
+    arcs = _arcs(owner, track.centres)
+    for first, last in _chains(arcs):  # at one depth, but for what is rounding
+        on_arcs = poses[first : last + 1, 2]
+        if np.ptp(on_arcs) <= slack_mm(cell):
+            on_arcs[:] = on_arcs.min()
+    return poses, radii, max(speed, landed_mm_s), arcs
+
+
+def _axes(section: ReadSection, track: Track, on: slice, frame: np.ndarray) -> np.ndarray:
+    """(n, 3) how the brush is held at the poses of one touch, in the paper's frame, that of which in the program's is
+    frame; no rows where it is upright."""
+    steps = [section.steps[number] for number in track.step[on]]
+    if not any(step.axis for step in steps):
+        return np.zeros((0, 3))
+    normal = tuple(frame[:3, 2].tolist())
+    axes = np.array([step.axis or normal for step in steps]) @ frame[:3, :3]
+    most_deg = tilts_deg(axes)
+    if most_deg[worst := int(most_deg.argmax())] > MOST_TILT_DEG + ROUNDED_DEG:
+        raise Error(
+            f"line {steps[worst].line}: the brush is tilted by {most_deg[worst]:.4g} degrees, outside the range "
+            f"[0, {MOST_TILT_DEG:g}] degrees from upright",
+            _name(section),
+            code="tilt-out-of-range",
+        )
+    return axes
+
+
+def _chains(arcs: list) -> list[list[int]]:
+    """First and last pose of arcs that follow each other, where one's last pose is the next one's first."""
+    chains: list[list[int]] = []
+    for arc in arcs:
+        if chains and chains[-1][1] == arc.first:
+            chains[-1][1] = arc.last
+        else:
+            chains.append([arc.first, arc.last])
+    return chains
+
+
+def _arcs(owner: np.ndarray, centres: list) -> list:
+    """The circles among the poses."""
+    rows = []
+    for number in dict.fromkeys(owner.tolist()):
+        on = np.flatnonzero(owner == number)
+        if centres[number] is not None and on[0] > 0:
+            x, y, turn = centres[number]
+            rows.append(_core.Arc(int(on[0]) - 1, int(on[-1]), (x, y), turn))
+    return rows
+
+
+def _careless(
+    section: ReadSection, track: Track, brush, cell: Cell, here: np.ndarray | None, paper_mm: float
+) -> Iterator[Notice]:
+    """Notices for what is fast while it touches, or goes sideways too low in the air."""
+    if not len(track.points):
+        return
+    slack, safe = slack_mm(cell), cell.heights.safe_mm
+    limit = touching_mm_s(brush, cell)
+    steps = [section.steps[number] for number in track.step]
+    rapid = np.array([step.rapid for step in steps])
+    speed = np.array([step.speed_mm_s for step in steps])
+    before = np.vstack([track.points[:1] if here is None else here, track.points[:-1]])
+    low = np.minimum(before[:, 2], track.points[:, 2])
+    high = np.maximum(before[:, 2], track.points[:, 2])
+    sideways = np.abs(track.points[:, :2] - before[:, :2]).max(axis=1) > 2 * slack  # both ends were rounded
+    sideways[0] |= here is None
+    touches, is_low = low <= paper_mm + slack, low < safe - slack
+    careless = rapid & is_low & (touches | sideways)
+    goes = (track.points[:, :2] != before[:, :2]).any(axis=1) if cell.servo else True  # else no feed is used
+    fast = touches & ~rapid & goes & (speed > limit + 1e-6)
+    travels = sideways & is_low & (high > paper_mm + slack) & (not section.title.startswith("paint: "))
+    for k in np.flatnonzero(careless | fast | travels):
+        line = f"line {steps[k].line}"
+        if careless[k]:
+            yield _rapid(steps[k], "" if touches[k] else f"at {low[k]:.2f} mm, below the safe height")
+        elif fast[k]:
+            yield _fast(steps[k], limit)
+        else:
+            sentence = f"{line}: the tool travels at {low[k]:.2f} mm, below the safe height {safe:g} mm"
+            yield Notice("", sentence, code="travel-too-low")
+    if cell.servo:
+        first, last = np.diff(np.r_[False, touches, False].astype(int)).nonzero()[0].reshape(-1, 2).T
+        for on in map(slice, first, last):
+            top = paper_mm + slack
+            yield from _ahead(steps[on], before[on], track.points[on], cell, limit, top)
+        yield from _lifts_at_once(steps, before, track.points, cell, paper_mm)
+
+
+def _rapid(step: Step, where: str = "") -> Notice:
+    sentence = f"line {step.line}: a rapid move {where or 'while the brush touches'}"
+    return Notice("", sentence, code="rapid-too-low")
+
+
+def _fast(step: Step, limit: float) -> Notice:
+    speed = f"speed {step.speed_mm_s:.1f} mm/s while the brush touches, limit {limit:.1f} mm/s"
+    return Notice("", f"line {step.line}: {speed}", code="speed-out-of-range")
+
+
+def _play_taken_up(
+    read: Readback, section: ReadSection, low: Track, frame: np.ndarray, brush, cell: Cell, paper_mm: float
+) -> Iterator[Notice]:
+    """Notices for axes that take up their play too fast while the brush touches, or have not done so before."""
+    top_mm, limit = paper_mm + slack_mm(cell), touching_mm_s(brush, cell)
+    places = np.array([(step.x, step.y, step.z) for step in section.taking_up]).reshape(-1, 3)
+    places = moved(np.linalg.inv(frame), places)
+    heights = (true_mm(places, cell.machine) if _stroke(section) else places)[:, 2]
+    for step, height_mm in zip(section.taking_up, heights, strict=True):
+        if height_mm <= top_mm and step.rapid:
+            yield _rapid(step)
+        elif height_mm <= top_mm and step.speed_mm_s > limit + 1e-6:
+            yield _fast(step, limit)
+    lines = [section.steps[number].line for number in low.step[low.points[:, 2] <= top_mm]]
+    for line in (each for each in lines if each in read.unsure):
+        sentence = f"line {line}: the brush touches before the axes have taken up their backlash"
+        yield Notice("", sentence, code="backlash-not-taken-up")
+        break
+
+
+def _ahead(
+    steps: list, before: np.ndarray, after: np.ndarray, cell: Cell, limit: float, top_mm: float
+) -> Iterator[Notice]:
+    """A notice where a servo's tip is faster than the limit, from the steps of one touch. Its feed is that of the
+    way beside the lift alone, and its heights go in steps, of a value at least: over any number of moves the tip may be
+    no more than two steps and a value ahead of what the limit allows for their time."""
+    lead_mm = _lead_mm(cell)
+    ways_mm = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)
+    speeds = np.array([step.speed_mm_s for step in steps])
+    took_s = np.divide(ways_mm, speeds, out=np.zeros(len(steps)), where=speeds > 0)
+    took_s = np.maximum(took_s, [step.took_s for step in steps])
+    ends_s = np.cumsum(took_s + np.r_[0.0, [step.wait_s for step in steps[:-1]]])
+    begins_s, ends_mm = ends_s - took_s, np.cumsum(ways_mm)
+    # a steep way is slow: what rounding makes of its ends takes its time
+    rounded_s = np.divide(0.71 * unit_mm(cell), speeds, out=np.zeros(len(steps)), where=took_s > 0)
+    rounded_s = np.max([rounded_s, np.r_[rounded_s[1:], 0.0], np.r_[0.0, rounded_s[:-1]]], axis=0)
+    begins_mm = ends_mm - ways_mm
+    starts, ends = np.minimum(before[:, 2], top_mm), np.minimum(after[:, 2], top_mm)
+    for count in _counts(len(steps)):
+        rise_mm = np.abs(ends[count - 1 :] - starts[: len(steps) - count + 1])
+        on_mm = ends_mm[count - 1 :] - begins_mm[: len(steps) - count + 1]
+        path_mm = np.hypot(on_mm, np.maximum(rise_mm - lead_mm, 0.0))
+        seconds = ends_s[count - 1 :] - begins_s[: len(steps) - count + 1]
+        ends_rounded_s = np.minimum(rounded_s[: len(seconds)] + rounded_s[count - 1 :], seconds)
+        most_mm = (limit + 1e-6) * (seconds + ends_rounded_s) + ROUNDED_MM
+        ahead = np.flatnonzero((rise_mm > lead_mm) & (path_mm > most_mm))
+        if len(ahead):
+            k = int(ahead[0])
+            line = f"line {steps[k + count - 1].line}"
+            if path_mm[k] > 10 * limit * seconds[k]:
+                said = f"the height changes by {rise_mm[k]:.2f} mm at once while the brush touches"
+            else:
+                speed = path_mm[k] / seconds[k]
+                said = f"speed {speed:.1f} mm/s of the tip while the brush touches, limit {limit:.1f} mm/s"
+            yield Notice("", f"{line}: {said}", code="speed-out-of-range")
+            return
+
+
+def _lead_mm(cell: Cell) -> float:
+    """How far rounded heights, which go in steps, may be ahead: a lift begins where the last part of a way was held."""
+    return 2 * max(cell.servo.step_mm, value_mm(cell)) + value_mm(cell) + 1e-6
+
+
+def _lifts_at_once(
+    steps: list, before: np.ndarray, after: np.ndarray, cell: Cell, paper_mm: float
+) -> Iterator[Notice]:
+    """A notice where a servo lifts or lowers the brush alone, between the clearance and the paper, in a larger step
+    than brushsvg writes, or faster than the cell presses. What is wholly in the paint is held against the brush's limit
+    elsewhere."""
+    slow_mm = slow_below_mm(paper_mm, cell) if paper_mm else cell.heights.clearance_mm
+    paper, clearance = paper_mm + slack_mm(cell), slow_mm - value_mm(cell)
+    stands = ~(after[:, :2] != before[:, :2]).any(axis=1)
+    highest = np.maximum(before[:, 2], after[:, 2])
+    rise_mm = np.abs(np.minimum(after[:, 2], clearance) - np.minimum(before[:, 2], clearance))
+    waits_s = np.array([step.wait_s for step in steps])
+    least_s = rise_mm / cell.speeds.press_mm_s - ROUNDED_S
+    # along a way, heights change without a wait; then the way follows
+    is_way = (waits_s == 0) & ~np.r_[stands[1:], False]
+    fast = (rise_mm > _lead_mm(cell)) | ((waits_s < least_s) & ~is_way)
+    for k in np.flatnonzero(stands & (highest > paper) & fast):
+        sentence = (
+            f"line {steps[k].line}: the servo moves the brush by {rise_mm[k]:.2f} mm in {waits_s[k]:.3f} s near the "
+            f"paper (steps of {cell.servo.step_mm:g} mm, at most {cell.speeds.press_mm_s:g} mm/s)"
+        )
+        yield Notice("", sentence, code="speed-out-of-range")
+        return
+
+
+ROUNDED_S = 1e-3  # of a wait, by its decimals
+ROUNDED_MM = 4e-3  # of a way by the decimals of its ends
+
+
+def _counts(most: int) -> Iterator[int]:
+    """1, 2, 3, 4, 6, 8, 12, ...: what is fast over any number of moves is so, or nearly, over one of these."""
+    count = 1
+    while count <= most:
+        yield count
+        if count > 1 and count * 3 // 2 <= most:
+            yield count * 3 // 2
+        count *= 2
