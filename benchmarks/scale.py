@@ -85,7 +85,7 @@ def characters(out: Path, count: int | None, jobs: int) -> None:
     begin, before = time.perf_counter(), _used()
     # started anew, so that what they use is counted as this process's children's
     with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as executor:
-        done = brushsvg.jobs.batch(items, out / "characters", executor=executor, progress=_told)
+        done = brushsvg.batch(items, out / "characters", executor=executor, progress=_told)
     clock, used = time.perf_counter() - begin, _used() - before
     print(file=sys.stderr)
     figures = [row.figures for row in done.rows if row.figures]
@@ -107,17 +107,17 @@ def characters(out: Path, count: int | None, jobs: int) -> None:
 def cluster(out: Path, count: int) -> None:
     items = drawings(count)
     begin = time.perf_counter()
-    known = brushsvg.jobs.batch(items, out / "processes", jobs=1)
+    known = brushsvg.batch(items, out / "processes", jobs=1)
     print(f"{len(items)} characters\n  one process            {time.perf_counter() - begin:7.1f} s")
     for workers in (1, 2):
         with _workers(workers) as (address, _):
-            brushsvg.jobs.batch(items[:4], out / f"warm {workers}", cluster=address)  # what workers load once
+            brushsvg.batch(items[:4], out / f"warm {workers}", cluster=address)  # what workers load once
             begin = time.perf_counter()
-            done = brushsvg.jobs.batch(items, out / f"{workers} workers", cluster=address)
+            done = brushsvg.batch(items, out / f"{workers} workers", cluster=address)
             took = time.perf_counter() - begin
             broken = [(f"broken {k}", "<svg") for k in range(1000)]
             begin = time.perf_counter()
-            brushsvg.jobs.batch(broken, out / f"broken {workers}", cluster=address)
+            brushsvg.batch(broken, out / f"broken {workers}", cluster=address)
             cost_ms = time.perf_counter() - begin
         work_ms = 1e3 * took * workers / len(items)
         print(
@@ -133,7 +133,7 @@ def cluster(out: Path, count: int) -> None:
                 os.kill(pids[0], signal.SIGKILL)
 
         begin = time.perf_counter()
-        done = brushsvg.jobs.batch(items, out / "killed", cluster=address, progress=kill)
+        done = brushsvg.batch(items, out / "killed", cluster=address, progress=kill)
         print(f"  2, one killed half way {time.perf_counter() - begin:7.1f} s, {_same(done, known)}")
 
 

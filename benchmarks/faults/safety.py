@@ -13,7 +13,7 @@ PARTS = {
     "posts": ("machine/posts/*.py", "machine/writer.py", "cpp/posts/*.cpp"),
     "readback": ("verification/readback/*.py",),
     "bounds of corrections": ("painted/corrections.py", "painted/next_time.py", "painted/mended_cell.py"),
-    "paint loads": ("machine/paint_reload.py", "cpp/src/paint_loads.cpp"),
+    "paint loads": ("machine/paint_reload.py", "cpp/inverse/paint_loads.cpp"),
 }
 
 

@@ -1,7 +1,7 @@
+#include "base/within.hpp"
 #include "bindings.hpp"
 #include "brushsvg/lag_arc.hpp"
 #include "law_between.hpp"
-#include "within.hpp"
 
 namespace {
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "converters.hpp"
-#include "parallel.hpp"
 #include "value_type.hpp"
 
 void bind_profile(py::module_& m);

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "base/within.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
-#include "within.hpp"
 
 inline constexpr double kFarthestMm = 1e6;  // a longer way is damage
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "brushsvg/simulate.hpp"
-#include "landing.hpp"
-#include "middle_line.hpp"
+#include "inverse/landing.hpp"
+#include "inverse/middle_line.hpp"
 
 namespace brushsvg::fit {
 namespace {

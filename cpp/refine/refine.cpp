@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "all_poses.hpp"
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/excess_turning.hpp"
 #include "brushsvg/mark_overlap.hpp"
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/target_mark.hpp"
-#include "ends/end_styles.hpp"
+#include "inverse/all_poses.hpp"
+#include "inverse/ends/end_styles.hpp"
+#include "inverse/thin_out_after_turn.hpp"
 #include "outline_fit.hpp"
 #include "patch_path.hpp"
-#include "thin_out_after_turn.hpp"
 
 namespace brushsvg::fit {
 namespace {

@@ -38,10 +38,10 @@ if TYPE_CHECKING:  # what the table below resolves to
         write_plan,
     )
     from .calibration.chart.layout import chart
-    from .calibration.from_file import calibrate
     from .calibration.numbers.from_widths import new_brush
     from .errors import Error
     from .jobs.batch.run import Batch, batch
+    from .jobs.calibrating import BrushCalibration, calibrate
     from .jobs.checking import Check, check
     from .jobs.comparing import PaintedJob, compare
     from .jobs.conversion import Conversion, convert
@@ -81,7 +81,8 @@ _HOME = {
     "find_brush": "model.library",
     "save_brush": "model.library",
     "new_brush": "calibration.numbers.from_widths",
-    "calibrate": "calibration.from_file",
+    "BrushCalibration": "jobs.calibrating",
+    "calibrate": "jobs.calibrating",
     "chart": "calibration.chart.layout",
     "Check": "jobs.checking",
     "check": "jobs.checking",
@@ -133,6 +134,7 @@ __all__ = [
     "Arc",
     "Batch",
     "Brush",
+    "BrushCalibration",
     "Cell",
     "Check",
     "Compensated",

@@ -1,4 +1,4 @@
-#include "chain_union.hpp"
+#include "regions/chain_union.hpp"
 
 #include <doctest/doctest.h>
 

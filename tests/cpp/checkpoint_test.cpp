@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <thread>
 
+#include "base/meanwhile.hpp"
+#include "base/parallel.hpp"
 #include "brushsvg/compensate.hpp"
 #include "brushsvg/medial_axis.hpp"
 #include "brushsvg/region.hpp"
-#include "meanwhile.hpp"
-#include "parallel.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;

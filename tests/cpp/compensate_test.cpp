@@ -9,7 +9,7 @@
 #include "brushsvg/region.hpp"
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/target_mark.hpp"
-#include "middle_line.hpp"
+#include "inverse/middle_line.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;

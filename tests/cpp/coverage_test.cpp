@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "brushsvg/simulate.hpp"
-#include "rasterizer.hpp"
+#include "marks/rasterizer.hpp"
+#include "marks/sweep.hpp"
 #include "round6.hpp"
-#include "sweep.hpp"
 
 using namespace brushsvg;
 

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "meanwhile.hpp"
-#include "parallel.hpp"
+#include "base/meanwhile.hpp"
+#include "base/parallel.hpp"
 
 unsigned std::thread::hardware_concurrency() noexcept { return 8; }
 

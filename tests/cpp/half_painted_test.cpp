@@ -1,4 +1,4 @@
-#include "half_painted.hpp"
+#include "marks/half_painted.hpp"
 
 #include <doctest/doctest.h>
 

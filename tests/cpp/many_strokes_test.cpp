@@ -9,7 +9,7 @@
 
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag_arc.hpp"
-#include "pass_walk.hpp"
+#include "marks/pass_walk.hpp"
 #include "refusal.hpp"
 #ifdef BRUSHSVG_HIGHWAY
 #include <hwy/targets.h>

@@ -1,4 +1,4 @@
-#include "star_union.hpp"
+#include "regions/star_union.hpp"
 
 #include <doctest/doctest.h>
 

@@ -11,8 +11,8 @@
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/region.hpp"
 #include "brushsvg/simulate.hpp"
+#include "inverse/traced_pass.hpp"
 #include "round6.hpp"
-#include "traced_pass.hpp"
 
 using namespace brushsvg;
 using V = Eigen::Vector2d;

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "brushsvg/compensate.hpp"
-#include "nearest_on_polyline.hpp"
+#include "regions/nearest_on_polyline.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;

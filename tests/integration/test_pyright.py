@@ -22,7 +22,7 @@ import brushsvg
 
 PACKAGES = {"pyright": "1.1.414"}
 PACKAGE = HOUSE / "python" / "brushsvg"
-FIGURES = PACKAGE / "article" / "figures"
+FIGURES = HOUSE / "examples" / "article" / "figures"
 OTHERS = "article.md", "machines.md"  # made of FIGURES; a program that imports no brushsvg
 # what a page speaks of without saying where it is from
 GIVEN = {
@@ -92,7 +92,7 @@ def every_name() -> str:
     """A program that looks at every public name, and at every member of every public class."""
     names = {name for name in brushsvg.__all__ if name not in ("__version__", "laws")}
     lines = ["import brushsvg", ""]
-    for number, name in enumerate(sorted(names | {f"laws.{each}" for each in brushsvg.model.laws.__all__})):
+    for number, name in enumerate(sorted(names | {f"laws.{each}" for each in brushsvg.laws.__all__})):
         thing = attrgetter(name)(brushsvg)
         lines.append(f"print(brushsvg.{name})")
         if inspect.isclass(thing):

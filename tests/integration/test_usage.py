@@ -100,7 +100,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
     commands = set(re.findall(r"(?m)^    ([a-z]+)(?: |$)", pages[()]))
     assert commands == {
         *("convert", "border", "height", "predict", "animate", "check", "report", "import", "text", "batch"),
-        *("article", "brush", "calibrate", "cell", "chart", "compare", "demo", "doctor", "scan"),
+        *("brush", "calibrate", "cell", "chart", "compare", "demo", "doctor", "scan"),
     }
     assert set(re.findall(r"(?m)^    ([a-z]+) ", pages[("brush",)])) == {
         "list",

@@ -11,7 +11,7 @@ from functools import lru_cache
 import cv2
 import numpy as np
 
-from brushsvg.photo.simulated.camera import (
+from brushsvg.simulated.camera import (
     BLUE,
     INK,
     TEXELS,

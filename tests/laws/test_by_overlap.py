@@ -16,7 +16,7 @@ if not hasattr(core, "fit_marks"):
 
 import brushsvg  # noqa: E402
 from brushsvg.calibration.marks import machine_found  # noqa: E402
-from brushsvg.calibration.overlap import by_overlap, overlap_choice, overlap_field
+from brushsvg.calibration.overlap import by_overlap, overlap_choice, overlap_field  # noqa: E402
 from brushsvg.calibration.overlap.by_overlap_report import aside_in_words, chosen_in_words, report  # noqa: E402
 from brushsvg.calibration.overlap.overlap_search import Begin, Target  # noqa: E402
 

@@ -16,12 +16,12 @@ if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
 from brushsvg.calibration.marks import mark_report  # noqa: E402
-from brushsvg.calibration.marks.from_marks import (
+from brushsvg.calibration.marks.from_marks import (  # noqa: E402
     _refuse_undetermined,
     brush_of,
     calibrate_marks,
     expected_brush,
-)  # noqa: E402
+)
 from brushsvg.calibration.marks.mark_input import read_painted  # noqa: E402
 from brushsvg.calibration.marks.mark_report import report  # noqa: E402
 from brushsvg.model.confidence import law_band  # noqa: E402

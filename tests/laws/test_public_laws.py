@@ -1,4 +1,4 @@
-"""brushsvg.model.laws against the article's check values, scipy's integration and each other."""
+"""brushsvg.laws against the article's check values, scipy's integration and each other."""
 
 import numpy as np
 import oracle

@@ -97,8 +97,8 @@ def test_letters_of_the_page_end_where_its_layout_has_them(monkeypatch):
     from brushsvg.calibration.chart.layout import chart
     from brushsvg.calibration.chart.page import label_box
     from brushsvg.comparison.job_page import JobPage
-    from brushsvg.photo.simulated import photo
-    from brushsvg.photo.simulated.camera import Sheet
+    from brushsvg.simulated import photo
+    from brushsvg.simulated.camera import Sheet
 
     page = JobPage(chart(find_brush("round-6"), (148, 210)), 0.0, ())
     for texels in (5.0, 20.0):

@@ -227,14 +227,14 @@ FUNCTIONS = [
 def some_laws():
     yield 4.0
     yield brush().lag
-    yield brushsvg.model.laws.Profile([])
-    yield brushsvg.model.laws.Profile([0, 1])
-    yield brushsvg.model.laws.Profile([1, -1])
-    yield brushsvg.model.laws.Profile([0.1] * 20)
-    yield brushsvg.model.laws.Profile([1, 1], floor=-5, floor_slope=NAN)
+    yield brushsvg.laws.Profile([])
+    yield brushsvg.laws.Profile([0, 1])
+    yield brushsvg.laws.Profile([1, -1])
+    yield brushsvg.laws.Profile([0.1] * 20)
+    yield brushsvg.laws.Profile([1, 1], floor=-5, floor_slope=NAN)
     for value in NUMBERS[:-1]:
-        yield brushsvg.model.laws.Profile([value])
-        yield brushsvg.model.laws.Profile([1], floor=value, floor_slope=value)
+        yield brushsvg.laws.Profile([value])
+        yield brushsvg.laws.Profile([1], floor=value, floor_slope=value)
     yield from NUMBERS
 
 

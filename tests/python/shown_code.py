@@ -59,7 +59,6 @@ def cells(notebook: Path) -> list[str]:
 # Commands that no test types as they stand: (page, what the line begins with), and why.
 NOT_RUN = {
     ("README.md", "brushsvg calibrate photo.jpg --chart"): "as in docs/photograph.md, where it runs",
-    ("article.md", "brushsvg article"): "test_article.py holds the page itself against what it writes",
     (
         "batch.md",
         "brushsvg batch letters/ --out painted --cluster",

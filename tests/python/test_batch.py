@@ -80,7 +80,7 @@ def threads():
 
 def test_each_becomes_what_convert_makes_of_it(desk):
     with threads() as executor:
-        done = brushsvg.jobs.batch(["in"], "out", executor=executor, tolerance=0.1)
+        done = brushsvg.batch(["in"], "out", executor=executor, tolerance=0.1)
     assert [row.name for row in done.rows] == ["0", "1", "2", "below/wide"]
     assert [row.code for row in done.rows] == ["", "", "", "width-out-of-reach"]
     assert {row.name for row in done.refused} == {"below/wide"}
@@ -108,7 +108,7 @@ def test_it_is_the_same_whatever_does_the_work(desk):
         "processes of others": ProcessPoolExecutor(2, executors.multiprocessing.get_context("spawn")),
         "own processes": None,
     }.items():
-        done = brushsvg.jobs.batch(["in"], name, executor=place, **({} if place else {"jobs": 2}))
+        done = brushsvg.batch(["in"], name, executor=place, **({} if place else {"jobs": 2}))
         made[name] = done.rows, contents(name)
         if place:
             place.shutdown()
@@ -119,15 +119,15 @@ def test_it_is_the_same_whatever_does_the_work(desk):
 def test_a_cluster_makes_the_same_and_outlives_a_worker(desk, monkeypatch):
     distributed = pytest.importorskip("distributed")
     with threads() as executor:
-        known = brushsvg.jobs.batch(["in"], "by threads", executor=executor).rows
+        known = brushsvg.batch(["in"], "by threads", executor=executor).rows
     with distributed.LocalCluster(2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
         pids = list(distributed.Client(cluster).run(os.getpid).values())
         os.kill(pids[0], signal.SIGKILL)
-        done = brushsvg.jobs.batch(["in"], "by cluster", cluster=cluster.scheduler_address)
+        done = brushsvg.batch(["in"], "by cluster", cluster=cluster.scheduler_address)
     assert done.rows == known and contents("by cluster") == contents("by threads")
     monkeypatch.setattr(executors, "PATIENCE_S", 0.5)
     with refused("cluster-unreachable"):
-        brushsvg.jobs.batch(["in"], "out", cluster="tcp://127.0.0.1:9")
+        brushsvg.batch(["in"], "out", cluster="tcp://127.0.0.1:9")
 
 
 CHANGES = {
@@ -146,11 +146,11 @@ CHANGES = {
 def test_only_what_changed_is_done_again(desk, monkeypatch, change):
     happens, choices, expected = CHANGES[change]
     with threads() as executor:
-        brushsvg.jobs.batch(["in"], "out", executor=executor)
+        brushsvg.batch(["in"], "out", executor=executor)
         before = contents()
         names = done_again(monkeypatch)
         happens()
-        done = brushsvg.jobs.batch(["in"], "out", executor=executor, **choices)
+        done = brushsvg.batch(["in"], "out", executor=executor, **choices)
     assert sorted(names) == expected
     assert done.resumed == len(done.rows) - len(expected)
     if change in ("nothing", "a program", "a picture that went"):
@@ -159,34 +159,34 @@ def test_only_what_changed_is_done_again(desk, monkeypatch, change):
 
 def test_another_version_does_all_again(desk, monkeypatch):
     with threads() as executor:
-        brushsvg.jobs.batch(["in"], "out", executor=executor)
+        brushsvg.batch(["in"], "out", executor=executor)
         names = done_again(monkeypatch)
         monkeypatch.setattr(one, "version", lambda: "9.9")
-        brushsvg.jobs.batch(["in"], "out", executor=executor)
+        brushsvg.batch(["in"], "out", executor=executor)
         assert len(names) == 4
         monkeypatch.setattr(run, "made", lambda task: one.Made(None, {}, b"", version="0.0.9"))
         with refused("version-unknown 0.0.9 9.9"):
-            brushsvg.jobs.batch(["in"], "out", executor=executor, tolerance=0.2)
+            brushsvg.batch(["in"], "out", executor=executor, tolerance=0.2)
 
 
 def test_a_line_that_was_left_half_is_that_drawing_again(desk, monkeypatch):
     with threads() as executor:
-        brushsvg.jobs.batch(["in"], "out", executor=executor)
+        brushsvg.batch(["in"], "out", executor=executor)
         whole = Path("out/manifest.jsonl").read_bytes()
         Path("out/manifest.jsonl").write_bytes(whole[:-40])
         names = done_again(monkeypatch)
-        brushsvg.jobs.batch(["in"], "out", executor=executor)
+        brushsvg.batch(["in"], "out", executor=executor)
     assert names == ["below/wide"] and Path("out/manifest.jsonl").read_bytes() == whole
 
 
 def test_nothing_outdated_stays_under_a_refused_row(desk, capsys):
     """What an earlier run made of it is removed, also where that row is not done again; an edited file is kept."""
     with threads() as executor:
-        brushsvg.jobs.batch(["in"], "out", executor=executor)
+        brushsvg.batch(["in"], "out", executor=executor)
         Path("in/1.svg").write_text(drawing(1, width=30))
         Path("in/2.svg").write_text(drawing(2, width=30))
         Path("out/programs/2.ngc").write_text("mine")
-        done = brushsvg.jobs.batch(["in"], "out", executor=executor)
+        done = brushsvg.batch(["in"], "out", executor=executor)
         removed = ("pictures/1.png", "pictures/2.png", "programs/1.ngc")
         assert tuple(sorted(done.removed)) == removed
         there = contents()
@@ -194,7 +194,7 @@ def test_nothing_outdated_stays_under_a_refused_row(desk, capsys):
         assert {"programs/0.ngc", "pictures/0.png"} <= there.keys()
         refused_once = Path("out/manifest.jsonl").read_bytes()
         Path("in/1.svg").write_text(drawing(1))
-        brushsvg.jobs.batch(["in"], "out", executor=executor)
+        brushsvg.batch(["in"], "out", executor=executor)
         with open("out/manifest.jsonl", "ab") as file:  # as a run that was ended left it
             file.writelines(refused_once.splitlines(keepends=True)[1:])
     Path("in/1.svg").write_text(drawing(1, width=30))
@@ -206,16 +206,16 @@ def test_a_drawing_of_the_same_name_is_not_written_over_another(desk, monkeypatc
     Path("more").mkdir()
     Path("more/1.svg").write_text(drawing(9))
     with threads() as executor:
-        brushsvg.jobs.batch(["in"], "out", executor=executor)
+        brushsvg.batch(["in"], "out", executor=executor)
         before = contents()
         with refused("name-taken in/1.svg more/1.svg programs/1.ngc"):
-            brushsvg.jobs.batch(["more"], "out", executor=executor)
+            brushsvg.batch(["more"], "out", executor=executor)
         assert contents() == before
         monkeypatch.chdir("in")  # typed from elsewhere it is the same drawing
         Path("1.svg").write_text(drawing(5))
-        assert not brushsvg.jobs.batch(["1.svg"], "../out", executor=executor).refused
+        assert not brushsvg.batch(["1.svg"], "../out", executor=executor).refused
         Path("1.svg").unlink()
-        assert not brushsvg.jobs.batch(["../more"], "../out", executor=executor).refused
+        assert not brushsvg.batch(["../more"], "../out", executor=executor).refused
 
 
 def test_two_of_one_name_say_the_way_out(desk):
@@ -231,7 +231,7 @@ def test_two_of_one_name_say_the_way_out(desk):
         (["more", "more/below"], ["more/below/1.svg", "below/1", "1"]),
     ):
         with refused("name-taken") as caught:
-            brushsvg.jobs.batch(items, "out", jobs=1)
+            brushsvg.batch(items, "out", jobs=1)
         assert gives(caught.value.advice, *parts)
         advised.add(caught.value.advice)
     assert len(advised) == 4 and "" not in advised
@@ -254,20 +254,20 @@ def test_a_name_that_cannot_be_printed_is_a_row(desk, capsys, name):
 def test_another_batch_into_the_folder_leaves_what_is_known_of_the_first(desk, monkeypatch):
     """Its rows were lost: all was done again, and a drawing of the same name written over another."""
     first, second = ["in/0.svg", "in/below/wide.svg"], ["in/1.svg", "in/2.svg"]
-    brushsvg.jobs.batch(first, "out", jobs=1, wide="refuse")
-    brushsvg.jobs.batch(second, "out", jobs=1, wide="refuse")
+    brushsvg.batch(first, "out", jobs=1, wide="refuse")
+    brushsvg.batch(second, "out", jobs=1, wide="refuse")
     rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
     assert [row["name"] for row in rows] == ["1", "2", "0", "wide"], "its own first"
     assert "0.svg" not in Path("out/table.csv").read_text()
     names = done_again(monkeypatch)
-    assert brushsvg.jobs.batch(first, "out", jobs=1, wide="refuse").resumed == 1 and names == ["wide"]
+    assert brushsvg.batch(first, "out", jobs=1, wide="refuse").resumed == 1 and names == ["wide"]
     Path("other").mkdir()
     Path("other/1.svg").write_text(drawing(3))
     with refused("name-taken 1.svg --out"):
-        brushsvg.jobs.batch(["other/1.svg"], "out", jobs=1)
+        brushsvg.batch(["other/1.svg"], "out", jobs=1)
     for name in ("in/below/wide.svg", "out/programs/2.ngc", "out/pictures/2.png"):
         Path(name).unlink()
-    brushsvg.jobs.batch(["in/1.svg"], "out", jobs=1, wide="refuse")
+    brushsvg.batch(["in/1.svg"], "out", jobs=1, wide="refuse")
     rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
     assert [row["name"] for row in rows] == ["1", "0"], "of what lies there no more nothing is kept"
 
@@ -275,25 +275,25 @@ def test_another_batch_into_the_folder_leaves_what_is_known_of_the_first(desk, m
 def test_equal_drawings_are_each_done_once(desk, monkeypatch):
     Path("in/also.svg").write_text(drawing(1))
     with threads() as executor:
-        brushsvg.jobs.batch(["in"], "out", executor=executor)
+        brushsvg.batch(["in"], "out", executor=executor)
         names, before = done_again(monkeypatch), contents()
-        done = brushsvg.jobs.batch(["in"], "out", executor=executor)
+        done = brushsvg.batch(["in"], "out", executor=executor)
     assert names == ["below/wide"] and done.resumed == 4 and contents() == before
     Path("words.txt").write_text("T\nT\nTT\n")
     with threads() as executor:
         for _ in range(2):
-            done = brushsvg.jobs.batch(words("words.txt", FONT.encode()), "set", executor=executor)
+            done = brushsvg.batch(words("words.txt", FONT.encode()), "set", executor=executor)
     assert done.resumed == 3 and not done.refused
 
 
 def test_two_runs_do_not_write_to_one_folder(desk):
     first = run.Manifest(Path("out"))
     with refused("file-unwritable"), threads() as executor:
-        brushsvg.jobs.batch(["in"], "out", executor=executor)
+        brushsvg.batch(["in"], "out", executor=executor)
     first.close()
     Path("out/manifest.jsonl").write_text("mine\n")
     with refused("format-unknown brushsvg/batch 1"), threads() as executor:
-        brushsvg.jobs.batch(["in"], "out", executor=executor)
+        brushsvg.batch(["in"], "out", executor=executor)
 
 
 def test_words_are_set_as_the_command_text_sets_them(desk, capsys):
@@ -326,7 +326,7 @@ def test_lists_patterns_and_documents_in_memory(desk):
     Path("list.txt").write_text("in/1.svg\nin/2.svg\n")
     with threads() as executor:
         items = ["list.txt", "in/0*.svg", ("mine", drawing(7)), ("bytes", drawing(8).encode())]
-        done = brushsvg.jobs.batch(items, "out", executor=executor)
+        done = brushsvg.batch(items, "out", executor=executor)
     assert [row.name for row in done.rows] == ["1", "2", "0", "mine", "bytes"]
     assert (
         Path("out/programs/mine.ngc").read_text()
@@ -352,8 +352,8 @@ def test_nonsense_is_a_row(desk, data):
     Path("words.txt").write_bytes(b"T\n" + data.replace(b"\xc3", b"").decode("latin-1").encode())
     with threads() as executor:
         items = [*words("words.txt", FONT.encode()), "in/1.svg", "x.svg", ("d", data)]
-        done = brushsvg.jobs.batch(items, "out", executor=executor)
-        assert brushsvg.jobs.batch(["x.dxf"], "out", executor=executor).refused
+        done = brushsvg.batch(items, "out", executor=executor)
+        assert brushsvg.batch(["x.dxf"], "out", executor=executor).refused
     assert [row.code for row in done.rows if row.name in ("T", "1")] == ["", ""]
     assert all(row.code and row.code != "unexpected" for row in done.rows if row.name not in ("T", "1"))
 
@@ -383,18 +383,18 @@ def test_nonsense_is_a_row(desk, data):
 def test_what_concerns_all_is_refused_in_one_sentence(desk, items, choices, said):
     choices = {"jobs": 1} | choices
     with refused(said):
-        brushsvg.jobs.batch(items, "out", **choices)
+        brushsvg.batch(items, "out", **choices)
     assert not Path("out/table.csv").exists()
 
 
 def test_a_missing_drawing_is_a_row_and_tried_again(desk, monkeypatch):
     with threads() as executor:
-        done = brushsvg.jobs.batch(["in/1.svg", "gone.svg", "odd.pdf", "folder"], "out", executor=executor)
+        done = brushsvg.batch(["in/1.svg", "gone.svg", "odd.pdf", "folder"], "out", executor=executor)
         missing = ["", "file-unreadable", "drawing-format", "file-unreadable"]
         assert [row.code for row in done.rows] == missing
         Path("gone.svg").write_text(drawing(4))
         names = done_again(monkeypatch)
-        done = brushsvg.jobs.batch(["in/1.svg", "gone.svg", "odd.pdf"], "out", executor=executor)
+        done = brushsvg.batch(["in/1.svg", "gone.svg", "odd.pdf"], "out", executor=executor)
     assert [row.code for row in done.rows] == ["", "", "drawing-format"] and "1" not in names
 
 
@@ -402,9 +402,9 @@ def test_a_refused_drawing_is_tried_again_once_its_cause_is_gone(desk, monkeypat
     """A worker without a package, or a mistake of ours that was fixed: the drawing itself did not change."""
     with threads() as executor, monkeypatch.context() as broken:
         broken.setattr(one.outputs, "overlap_picture", lambda *_: 1 / 0)
-        assert brushsvg.jobs.batch(["in/1.svg"], "out", executor=executor).refused
+        assert brushsvg.batch(["in/1.svg"], "out", executor=executor).refused
     with threads() as executor:
-        assert not brushsvg.jobs.batch(["in/1.svg"], "out", executor=executor).refused
+        assert not brushsvg.batch(["in/1.svg"], "out", executor=executor).refused
     assert Path("out/programs/1.ngc").exists()
 
 
@@ -416,11 +416,11 @@ def test_an_edited_post_makes_all_programs_anew(desk, edited):
     cell = replace(find_cell("kr6-r900"), name="mine", language="robodk", robodk=RoboDK("post.py"), arm=None)
     Path("mine.toml").write_text(write_cell(cell))
     with threads() as executor:
-        assert brushsvg.jobs.batch(["in/1.svg"], "out", executor=executor, cell="mine.toml").resumed == 0
-        assert brushsvg.jobs.batch(["in/1.svg"], "out", executor=executor, cell="mine.toml").resumed == 1
+        assert brushsvg.batch(["in/1.svg"], "out", executor=executor, cell="mine.toml").resumed == 0
+        assert brushsvg.batch(["in/1.svg"], "out", executor=executor, cell="mine.toml").resumed == 1
         Path(edited).write_text(Path(edited).read_text() + "# edited\n")
-        assert brushsvg.jobs.batch(["in/1.svg"], "out", executor=executor, cell="mine.toml").resumed == 0
-        assert brushsvg.jobs.batch(["in/1.svg"], "out", executor=executor, cell="mine.toml").resumed == 1
+        assert brushsvg.batch(["in/1.svg"], "out", executor=executor, cell="mine.toml").resumed == 0
+        assert brushsvg.batch(["in/1.svg"], "out", executor=executor, cell="mine.toml").resumed == 1
 
 
 @pytest.mark.parametrize("small", ["a/a.svg", "A/a.svg", "a/A.svg"])
@@ -432,18 +432,16 @@ def test_a_program_in_several_files_does_not_replace_that_of_another_drawing(des
     Path("two", small).write_text(drawing(0))
     monkeypatch.setitem(MOST_POINTS, "fanuc", 40)
     with threads() as executor:
-        done = brushsvg.jobs.batch(["two"], "out", executor=executor, cell="lrmate200id", width=3)
+        done = brushsvg.batch(["two"], "out", executor=executor, cell="lrmate200id", width=3)
         (row,) = done.refused
         assert (row.name, row.code) == ("a", "name-taken")
         assert contents().keys() >= {f"programs/{small[:-4]}.ls"}
         alone = brushsvg.convert(Path("two", small), cell="lrmate200id", width=3)
         assert Path("out/programs", f"{small[:-4]}.ls").read_bytes() == alone.text.encode()
-        assert not brushsvg.jobs.batch(
+        assert not brushsvg.batch(
             ["two/a.svg"], "own", executor=executor, cell="lrmate200id", width=3
         ).refused
-        again = brushsvg.jobs.batch(
-            [("a/a", drawing(0))], "own", executor=executor, cell="lrmate200id", width=3
-        )
+        again = brushsvg.batch([("a/a", drawing(0))], "own", executor=executor, cell="lrmate200id", width=3)
     assert [each.code for each in again.refused] == ["name-taken"]
 
 
@@ -453,12 +451,12 @@ def test_parts_of_a_long_job_go_on_and_go_when_it_gets_shorter(desk, monkeypatch
     Path("word.svg").write_text(PAGE.format("", many))
     monkeypatch.setitem(MOST_LINES, find_cell(cell).language, 60)
     with threads() as executor:
-        first = brushsvg.jobs.batch(["word.svg"], "out", executor=executor, cell=cell, width=3)
+        first = brushsvg.batch(["word.svg"], "out", executor=executor, cell=cell, width=3)
         (main,) = Path("out/programs/word").glob("word.s*[!0-9]")
         assert not first.refused and len(list(main.parent.iterdir())) > 2
         assert not brushsvg.check(main, "word.svg", width=3).problems
         Path("word.svg").write_text(PAGE.format("", LINE.format("s", 20, 90, "#203060", 3)))
-        second = brushsvg.jobs.batch(["word.svg"], "out", executor=executor, cell=cell, width=3)
+        second = brushsvg.batch(["word.svg"], "out", executor=executor, cell=cell, width=3)
     assert list(Path("out/programs").rglob("*.s*")) == [Path("out/programs") / main.name]
     assert len(second.removed) > 2
 
@@ -467,13 +465,13 @@ def test_a_program_is_not_written_where_another_drawing_needs_a_folder(desk):
     Path("in/1.ngc").mkdir()
     Path("in/1.ngc/x.svg").write_text(drawing(4))
     with threads() as executor:
-        done = brushsvg.jobs.batch(["in/1.svg", ("1.ngc/x", drawing(4))], "out", executor=executor)
+        done = brushsvg.batch(["in/1.svg", ("1.ngc/x", drawing(4))], "out", executor=executor)
     assert [(row.name, row.code) for row in done.rows] == [("1", "name-taken"), ("1.ngc/x", "")]
 
 
 def test_names_that_macos_holds_for_one_are_refused(desk):
     with refused("name-taken"):
-        brushsvg.jobs.batch([("\u00e9", drawing(0)), ("e\u0301", drawing(1))], "out", jobs=1)
+        brushsvg.batch([("\u00e9", drawing(0)), ("e\u0301", drawing(1))], "out", jobs=1)
 
 
 @pytest.mark.parametrize(
@@ -488,30 +486,30 @@ def test_a_manifest_of_others_names_no_file_outside_of_its_folder(desk, way):
     row = run.Row("wide", "in/below/wide.svg", "", None, "not-xml", files=files)
     Path("out/manifest.jsonl").write_text(json.dumps(FORMAT) + "\n" + as_line(row))
     with refused("path-outside wide"), threads() as executor:
-        brushsvg.jobs.batch(["in/below"], "out", executor=executor)
+        brushsvg.batch(["in/below"], "out", executor=executor)
     assert Path("victim.txt").read_text() == "mine"
 
 
 def test_what_is_a_mistake_of_ours_is_a_row_too(desk, monkeypatch):
     monkeypatch.setattr(one.outputs, "overlap_picture", lambda *_: 1 / 0)
     with threads() as executor:
-        done = brushsvg.jobs.batch(["in/1.svg"], "out", executor=executor)
+        done = brushsvg.batch(["in/1.svg"], "out", executor=executor)
     assert [row.code for row in done.rows] == ["unexpected"]
 
 
 def test_a_worker_that_dies_is_said_and_what_is_done_is_kept(desk, monkeypatch):
     with threads() as executor:
-        brushsvg.jobs.batch(["in/1.svg"], "out", executor=executor)
+        brushsvg.batch(["in/1.svg"], "out", executor=executor)
     monkeypatch.setattr(run, "made", dies)
     with refused("worker-lost"):
-        brushsvg.jobs.batch(["in/1.svg", "in/2.svg"], "out", jobs=1)
+        brushsvg.batch(["in/1.svg", "in/2.svg"], "out", jobs=1)
     assert Path("out/programs/1.ngc").exists()
 
 
 def test_parquet_holds_the_same_table(desk, monkeypatch):
     pyarrow = pytest.importorskip("pyarrow.parquet")
     with threads() as executor:
-        brushsvg.jobs.batch(["in"], "out", executor=executor, parquet=True)
+        brushsvg.batch(["in"], "out", executor=executor, parquet=True)
     rows = pyarrow.read_table("out/table.parquet").to_pylist()
     table = list(csv.DictReader(Path("out/table.csv").read_text().splitlines()))
     for row, told in zip(rows, table, strict=True):
@@ -520,7 +518,7 @@ def test_parquet_holds_the_same_table(desk, monkeypatch):
             assert value == (type(value)(told[name]) if value is not None else told[name] or None), name
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     with refused("package-missing pyarrow"):
-        brushsvg.jobs.batch(["in"], "out", jobs=1, parquet=True)
+        brushsvg.batch(["in"], "out", jobs=1, parquet=True)
 
 
 def test_progress_tells_rate_and_time_left_and_cancel_is_heard(desk):
@@ -531,7 +529,7 @@ def test_progress_tells_rate_and_time_left_and_cancel_is_heard(desk):
         is_over.set()
 
     with threads() as executor, pytest.raises(CancelledError):
-        brushsvg.jobs.batch(["in"], "out", executor=executor, progress=progress, cancel=is_over)
+        brushsvg.batch(["in"], "out", executor=executor, progress=progress, cancel=is_over)
     assert gives(said[0], "4") and len(re.findall(r"\d+(?:\.\d+)?", said[0])) >= 3, (
         "how many, how fast, how long"
     )
@@ -571,7 +569,7 @@ def test_what_is_ended_half_way_goes_on_where_it_was(desk, monkeypatch, by):
     for k in range(24):
         Path(f"in/{k}.svg").write_text(drawing(k / 4))
     with threads() as executor:
-        brushsvg.jobs.batch(["in"], "whole", executor=executor)
+        brushsvg.batch(["in"], "whole", executor=executor)
     process = started("batch", "in", "--out", "out", "--jobs", "2")
     while len(rows_there()) < 5 and process.poll() is None:
         time.sleep(0.01)
@@ -594,7 +592,7 @@ def test_what_is_ended_half_way_goes_on_where_it_was(desk, monkeypatch, by):
     assert not Path("out/table.csv").exists()
     names = done_again(monkeypatch)
     with threads() as executor:
-        done = brushsvg.jobs.batch(["in"], "out", executor=executor)
+        done = brushsvg.batch(["in"], "out", executor=executor)
     assert len(names) == 25 - done.resumed and done.resumed >= len(kept) - 1
     assert contents() == contents("whole")
 

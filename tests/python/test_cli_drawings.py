@@ -70,7 +70,7 @@ def test_what_was_told_of_a_drawing_stands_before_its_refusal(desk, capsys):
     with pytest.raises(brushsvg.Error) as caught:
         brushsvg.convert("thick.dxf")
     assert agrees(caught.value.notices[0], "unit-doubtful metres")
-    (row,) = brushsvg.jobs.batch(["thick.dxf"], "painted", jobs=1).rows
+    (row,) = brushsvg.batch(["thick.dxf"], "painted", jobs=1).rows
     assert row.figures is None and agrees(row.notices[0], "unit-doubtful metres")
 
 

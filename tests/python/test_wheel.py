@@ -147,7 +147,7 @@ def test_what_is_missing_or_too_large_is_refused(wheel, monkeypatch):
 
 def test_the_path_of_the_builder_is_refused():
     assert not list(contents.problems_of_library(a_library()))
-    assert list(contents.problems_of_library(a_library() + b"/home/somebody/brushsvg/cpp/src/plan.cpp\0"))
+    assert list(contents.problems_of_library(a_library() + b"/home/somebody/brushsvg/cpp/values/plan.cpp\0"))
 
 
 def test_the_page_lists_what_is_inside(wheel):

@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "base/within.hpp"
 #include "brushsvg/error.hpp"
-#include "within.hpp"
 
 namespace brushsvg::fit {
 namespace {

@@ -7,11 +7,11 @@
 #include <set>
 #include <string>
 
+#include "base/within.hpp"
 #include "bernstein.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/student_t.hpp"
-#include "within.hpp"
 
 namespace brushsvg::fit {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/meanwhile.hpp"
 #include "brushsvg/student_t.hpp"
-#include "meanwhile.hpp"
 #include "noise_covariance.hpp"
 
 namespace brushsvg::fit {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include "base/within.hpp"
 #include "brushsvg/error.hpp"
 #include "identifiability.hpp"
 #include "lack_of_fit.hpp"
@@ -12,7 +13,6 @@
 #include "multistart.hpp"
 #include "no_brush.hpp"
 #include "noise_covariance.hpp"
-#include "within.hpp"
 
 namespace brushsvg::fit {
 namespace {

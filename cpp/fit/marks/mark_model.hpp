@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "mark_fit.hpp"
-#include "parallel.hpp"
 #include "swept_footprints.hpp"
 
 // Distances of painted edges from predicted ones, with their derivatives. Inside fit_marks.

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "base/meanwhile.hpp"
 #include "brushsvg/checkpoint.hpp"
-#include "meanwhile.hpp"
 #include "no_brush.hpp"
 
 namespace brushsvg::fit {

@@ -5,7 +5,7 @@
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/lag.hpp"
 #include "brushsvg/plan.hpp"
-#include "pass_walk.hpp"
+#include "marks/pass_walk.hpp"
 
 // What the patch does at chosen places of a pass, on any scalar: the simulator as a solver differentiates it.
 namespace brushsvg::fit {

@@ -7,12 +7,12 @@
 #include <memory>
 #include <string>
 
+#include "base/parallel.hpp"
+#include "base/within.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/student_t.hpp"
-#include "parallel.hpp"
 #include "trace.hpp"
-#include "within.hpp"
 
 namespace brushsvg::fit {
 namespace {

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal, Required, TypedDict, overload
+from collections.abc import Callable, Mapping
+from typing import Any, Literal
 
 import numpy as np
 
@@ -24,76 +24,8 @@ from .overlap.by_overlap import OverlapCalibration, by_overlap
 
 AIMS = ("edges", "overlap")
 
-Rows = Sequence[Mapping[str, object]]
 
-
-class Measured(TypedDict, total=False):
-    """Numbers, as a file has them; a dict that is written out in the call is held against this by type checkers."""
-
-    name: str
-    about: str
-    depth_range_mm: Sequence[float]
-    max_speed_mm_s: float
-    lag: Rows
-    tip_gap: Rows
-    tip_to_widest: Rows
-    half_width: Rows
-    width: Rows
-    angular: Rows
-    side_view: Rows
-    straight: Rows
-    angles: Rows
-    centre_line: Rows
-    video: Rows
-
-
-class PaintedMarks(TypedDict, total=False):
-    """The same of painted marks."""
-
-    name: str
-    about: str
-    depth_range_mm: Sequence[float]
-    max_speed_mm_s: float
-    plan: Required[_core.Plan | str | Mapping[str, object]]
-    marks: Required[_core.Marks | str | Rows]
-    expected: Mapping[str, float]
-
-
-@overload
-def calibrate(
-    measured: Measured, name: str = "", *, absolute: bool = False, total: bool = False
-) -> Calibration: ...
-@overload
-def calibrate(
-    measured: PaintedMarks,
-    name: str = "",
-    *,
-    machine: tuple[str, ...] = (),
-    paint: bool = False,
-    aim: Literal["edges"] = "edges",
-) -> MarkCalibration: ...
-@overload
-def calibrate(
-    measured: str | os.PathLike[str] | Mapping[str, Any],
-    name: str = "",
-    *,
-    machine: tuple[str, ...] = (),
-    aim: Literal["overlap"],
-    progress: Callable[[str], object] | None = None,
-) -> OverlapCalibration: ...
-@overload
-def calibrate(
-    measured: str | os.PathLike[str] | Mapping[str, Any],
-    name: str = "",
-    *,
-    absolute: bool = False,
-    total: bool = False,
-    machine: tuple[str, ...] = (),
-    paint: bool = False,
-    aim: Literal["edges"] = "edges",
-    progress: Callable[[str], object] | None = None,
-) -> Calibration | MarkCalibration: ...
-def calibrate(
+def fit_measurements(
     measured: str | os.PathLike[str] | Mapping[str, Any],
     name: str = "",
     *,
@@ -104,25 +36,15 @@ def calibrate(
     aim: Literal["edges", "overlap"] = "edges",
     progress: Callable[[str], object] | None = None,
 ) -> Calibration | MarkCalibration | OverlapCalibration:
-    """A brush of what was measured: numbers (.csv, .json) or painted marks (.json), as docs/calibration.md has them.
+    """Return the fit of a brush to numbers or painted marks; see jobs.calibrating.CalibrationOptions.
 
-    measured: the path, or what stands in such a .json, without format and version if you like, with a Plan and Marks
-    for their files, and arrays for lists. name: of the brush, where the measurements do not say one; else the file's
-    own. absolute: least absolute residuals instead of squares; total: total least squares for series of angles.
-    machine: of painted marks, what else to find: "lean", "axes", "tilt", "backlash", "field". paint: they were painted
-    in the plan's order with one load of paint: find how they narrow. aim: of painted marks, "edges" of the usual mark,
-    or from there to the "overlap" that predicts further marks best, without intervals and not with paint; progress: is
-    called with words that say how far that is. Returns what was found: brush, a Brush [mm] that save_brush writes; of
-    numbers laws and remarks, too, of marks what moved and what is left.
-
-    Raises Error for a file that cannot be read, and measurements that leave a law open or that no brush can have.
+    measured: a path, or the content of such a .json. Raises Error for a file that cannot be read, and for measurements
+    that leave a law undetermined or that no brush can have.
     """
     need(measured, (str, os.PathLike, dict), "a path, or a dict of measurements")
     need(name, str, "the name of a brush")
     need_one_of(aim, AIMS, "aim")
     refuse_unknown_parts(machine)
-    if progress is not None and not callable(progress):
-        need(progress, Callable, "a callable, which progress is")
     if isinstance(measured, dict):
         folder, stem = "", "measured"
         found = read_measurements(_json(measured), ".json")

@@ -1,1 +1,3 @@
 """A picture to marks in mm: markers, flattening, edges."""
+
+PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")  # extensions of pictures that are read

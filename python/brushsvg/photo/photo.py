@@ -12,8 +12,8 @@ import cv2
 import numpy as np
 
 from ..errors import Error
+from . import PHOTOS
 
-PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 HEIC = (b"heic", b"heix", b"hevc", b"heim", b"heis", b"mif1", b"msf1", b"avif")  # brands of such files
 BEGIN = re.compile(rb"\xff\xd8\xff|\x89PNG\r|II\*\0|MM\0\*|RIFF....WEBP", re.DOTALL)  # files of PHOTOS
 # what libjpeg, libpng and libtiff say of pixels that they make up; bytes before a JPEG's end are many cameras' habit

@@ -2,7 +2,7 @@
 #include "marks_json.hpp"
 
 #include "fuzzed_input.hpp"
-#include "refuse_unusable.hpp"
+#include "values/refuse_unusable.hpp"
 
 using namespace brushsvg;
 

@@ -316,7 +316,7 @@ def batches_differ(sources: list[Path], folder: Path) -> list[str]:
     made = {}
     for jobs in (1, 2):
         out = folder / f"jobs-{jobs}"
-        brushsvg.jobs.batch(sources, out, jobs=jobs)
+        brushsvg.batch(sources, out, jobs=jobs)
         programs = out / "programs"
         made[jobs] = {p.relative_to(programs): p.read_bytes() for p in programs.rglob("*") if p.is_file()}
     return [

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 
+from ...photo import PHOTOS
 from ...read import READERS
 from . import values
 from .flags import add_looks, add_writes, add_z_offset, plans_and_programs
-from .usage_checks import PHOTOS, PICTURES, PROGRAMS, check_files, check_job, suffix_of
+from .usage_checks import PICTURES, PROGRAMS, check_files, check_job, suffix_of
 
 
 def add_chart(commands) -> None:
@@ -175,53 +176,45 @@ def _add_photo(command, needed: bool) -> None:
 
 
 def _check_calibrate(args) -> None:
+    from ...jobs.calibration_options import contradiction
+
+    args.options = _options_of(args)
+
     args.input = args.inputs[0]
     args.photos = [path for path in args.inputs if suffix_of(path) in PHOTOS]
-    if args.cell is not None and not args.machine:
-        args.parser.error("--cell says what of --machine can be undone: give --machine")
-    if args.plan is not None or args.prior is not None:
-        _check_update(args)
-        return
-    if args.paint and args.brush is not None:
-        args.parser.error("--paint finds a brush of its own: --brush must go")
-    if args.paint and args.aim != "edges":
-        args.parser.error("--paint is found by edges: --aim overlap must go")
-    if args.photos:
-        if args.aim != "edges" and args.brush is not None:
-            args.parser.error("--aim overlap is not for a photograph with --brush, which keeps its outlines")
-        _check_photos(args, args.inputs, [(args.output, (".json",)), (args.plot, PICTURES)])
-        return
-    for flag, value in (
-        ("--mirrored", args.mirrored or None),
-        ("--chart", args.chart),
-        ("--bar", args.bar),
-        ("--dpi", args.dpi),
-        ("--picture", args.picture),
-        ("--brush", args.brush),
-        ("--spread", args.spread),
-        ("--height", args.height),
-    ):
-        if value is not None:
-            args.parser.error(f"{flag} is for photographs ({' '.join(PHOTOS)})")
-    if len(args.inputs) > 1:
-        args.parser.error("only photographs can be several")
-    check_files(args, [(args.input, (".json", ".csv"))], [(args.output, (".json",)), (args.plot, PICTURES)])
-
-
-def _check_update(args) -> None:
-    if args.plan is None or args.prior is None:
-        args.parser.error("--plan and --prior go together: what was painted, and by which brush")
-    for flag in ("chart", "bar", "dpi", "mirrored", "picture", "total", "brush", "plot", "height", "paint"):
-        if getattr(args, flag):
-            args.parser.error(f"--{flag} is not for a job (--plan)")
-    if args.norm != "squares":
-        args.parser.error("--norm is not for a job (--plan)")
-    if args.aim != "edges":
-        args.parser.error("--aim is not for a job (--plan): a brush is updated by edges")
     _refuse_heic(args, args.inputs)
-    read = [*((path, PHOTOS) for path in args.inputs), (args.plan, (".json",)), (args.prior, None)]
-    read.append((args.spread, (".json",)))
-    check_files(args, read, [(args.output, (".json",))])
+    if why := contradiction(args.inputs if len(args.inputs) > 1 else args.input, args.options):
+        args.parser.error(why)
+    for flag, value in (("--picture", args.picture), ("--plot", args.plot)):
+        if value and args.plan:
+            args.parser.error(f"{flag} is not for a job (--plan)")
+    if args.picture and not args.photos:
+        args.parser.error(f"--picture is for photographs ({' '.join(PHOTOS)})")
+    read = [(path, PHOTOS if args.photos else (".json", ".csv")) for path in args.inputs]
+    read += [(args.chart, (".json",)), (args.plan, (".json",)), (args.prior, None), (args.spread, (".json",))]
+    check_files(args, read, [(args.output, (".json",)), (args.plot, PICTURES), (args.picture, (".png",))])
+
+
+def _options_of(args):
+    from ...jobs.calibration_options import CalibrationOptions
+
+    return CalibrationOptions(
+        absolute=args.norm == "absolute",
+        total=args.total,
+        machine=args.machine,
+        cell=args.cell,
+        paint=args.paint,
+        aim=args.aim,
+        chart=args.chart,
+        bar_mm=args.bar,
+        dpi=args.dpi,
+        mirrored=args.mirrored,
+        height_mm=args.height,
+        spread=args.spread,
+        brush=args.brush,
+        plan=args.plan,
+        prior=args.prior,
+    )
 
 
 def add_scan(commands) -> None:
@@ -310,13 +303,6 @@ def add_brush(commands) -> None:
     plot.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
     add_writes(plot)
     plot.set_defaults(run="brush_plot", parser=plot, check=_check_brush_plot)
-
-
-def add_article(commands) -> None:
-    article = commands.add_parser("article", help="compute the article's figures and tables again, as a page")
-    article.add_argument("output", metavar="OUTDIR", help="a folder; gets article.md and article/*.png")
-    add_writes(article)
-    article.set_defaults(run="article_files", parser=article)
 
 
 def _check_brush_new(args) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ...photo import PHOTOS
 from ...read import READERS
 from . import values
 from .flags import (
@@ -20,7 +21,6 @@ from .flags import (
 )
 from .usage_checks import (
     DRAWINGS,
-    PHOTOS,
     PICTURES,
     PROGRAMS,
     check_drawing,

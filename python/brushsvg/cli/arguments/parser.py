@@ -95,7 +95,6 @@ def command_parser() -> argparse.ArgumentParser:
     brushes.add_calibrate(commands)
     brushes.add_brush(commands)
     drawings.add_compare(commands)
-    brushes.add_article(commands)
     drawings.add_simulate_photo(commands)
     installation.add_install_plugin(commands)
     installation.add_doctor(commands)

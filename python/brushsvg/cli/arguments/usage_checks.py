@@ -10,7 +10,6 @@ from ...read import READERS
 DRAWINGS = (*READERS, ".json")
 PROGRAMS = tuple(dict.fromkeys(extension for post in POSTS.values() for extension in post.extensions))
 PICTURES = (".png", ".svg")
-PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 
 
 def suffix_of(path: str) -> str:

@@ -7,7 +7,6 @@ import importlib
 
 _HOME = {
     "animate_file": "drawings.animate",
-    "article_files": "installation.article",
     "batch_files": "drawings.batch",
     "border_file": "machines.border",
     "brush_check": "brushes.brush",

@@ -13,9 +13,9 @@ def simulate_photo_file(args) -> None:
     from ....comparison.job_page import JobPage, job_page
     from ....jobs.choices import on_a_page
     from ....machine.paint_reload import fetched_mm
-    from ....photo.simulated.painting import low_enough, painted
-    from ....photo.simulated.photo import simulated_photo
-    from ....photo.simulated.studio import random_studio, read_studio, write_studio
+    from ....simulated.painting import low_enough, painted
+    from ....simulated.photo import simulated_photo
+    from ....simulated.studio import random_studio, read_studio, write_studio
 
     check_places(args, args.output)
     if args.studio is not None:

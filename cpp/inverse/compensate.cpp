@@ -1,0 +1,279 @@
+#include "brushsvg/compensate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/tolerance.hpp"
+#include "brushsvg/checkpoint.hpp"
+#include "brushsvg/error.hpp"
+#include "brushsvg/lag_arc.hpp"
+#include "brushsvg/simulate.hpp"
+#include "inverse/all_poses.hpp"
+#include "inverse/closed_form.hpp"
+#include "inverse/ends/select_ends.hpp"
+#include "inverse/middle_line.hpp"
+#include "inverse/thin_out_after_turn.hpp"
+#include "values/refuse_unusable.hpp"
+
+namespace brushsvg {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+/// TCP at m + r0 T: r0 = 0 is no compensation.
+PoseList offset(const Stroke& stroke, const Brush& brush, const Line& line, double r0, double step_tolerance) {
+    Samples samples;
+    if (line.length() > 0.0)
+        samples = line.coarse(0.0, line.length(), places_of_depths(stroke, brush, line.length(), {}));
+    if (samples.size() < 2) {
+        samples = {line.at(0.0)};
+        samples[0].heading = Vector2d(1.0, 0.0);
+        samples[0].contact = samples[0].middle;
+        samples[0].tcp = samples[0].middle + r0 * samples[0].heading;
+    } else {
+        refine_steps(line, samples, step_tolerance, [&](Samples& all) {
+            for (Sample& sample : all) {
+                sample.heading = line.tangent(sample);
+                sample.contact = sample.middle;
+                sample.tcp = sample.middle + r0 * sample.heading;
+            }
+        });
+    }
+    PoseList out;
+    out.add(samples.front().middle, 0.0);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (i > 0 && r0 > 0.0 && (samples[i].middle - samples[i - 1].middle).norm() <= 1e-9) {
+            const double angle = angle_between(samples[i - 1].heading, samples[i].heading);
+            const double sagitta = std::max(1e-3, 1.0 - step_tolerance / r0);
+            const int n = int(std::ceil(std::abs(angle) / std::min(kTurnStepRad, 2.0 * std::acos(sagitta))));
+            const std::int64_t before = out.last();
+            for (int k = 1; k < n; ++k)
+                out.add(samples[i].middle + r0 * turned_by<double>(samples[i - 1].heading, angle * k / n),
+                        samples[i].depth);
+            out.add(samples[i].tcp, samples[i].depth);
+            out.arc(before, samples[i].middle, angle);
+        } else {
+            out.add(samples[i].tcp, samples[i].depth);
+        }
+    }
+    out.add(samples.back().tcp, 0.0);
+    return out;
+}
+
+double median_depth(const Stroke& stroke, const Brush& brush) {
+    std::vector<double> depths;
+    for (int i = 0; i <= 200; ++i) depths.push_back(depth_of(stroke, brush, i / 200.0));
+    std::nth_element(depths.begin(), depths.begin() + 100, depths.end());
+    return depths[100];
+}
+
+/// From the least depth to the greatest.
+using Depths = std::array<double, 2>;
+
+Depths depths_of_widths(const Stroke& stroke, const Brush& brush) {
+    Depths found{std::numeric_limits<double>::infinity(), 0.0};
+    for (const WidthKnot& knot : stroke.half_width) {
+        const double depth = brush.depth_for_half_width(knot.half_width_mm, stroke.id);
+        found = {std::min(found[0], depth), std::max(found[1], depth)};
+    }
+    return found;
+}
+
+void warn(const Depths& depths, const std::string& stroke, const Brush& brush, std::vector<Warning>& warnings) {
+    const auto [least, greatest] = depths;
+    double lo = brush.depth_range_mm[0], hi = brush.depth_range_mm[1];
+    for (const Profile* profile : {&brush.lag, &brush.tip_gap, &brush.tip_to_widest, &brush.half_width}) {
+        if (!profile->calibrated_mm) continue;
+        lo = std::max(lo, (*profile->calibrated_mm)[0]);
+        hi = std::min(hi, (*profile->calibrated_mm)[1]);
+    }
+    if (least >= lo - 1e-9 && greatest <= hi + 1e-9) return;
+    char text[200];
+    std::snprintf(text, sizeof text, "depth %.2f mm is outside the range [%.1f, %.1f] mm in which brush ",
+                  least < lo - 1e-9 ? least : greatest, lo, hi);
+    warnings.push_back(Warning{"depth-not-measured", stroke, text + brush.name + " was measured"});
+}
+
+/// Depths at which the brush is turned on the spot, where a stroke begins with that alone: a dot.
+std::optional<Depths> depths_of_turns(const BrushMoves& moves) {
+    if (moves.front().line) return {};
+    const auto [least, greatest] = std::minmax(moves.front().turn->depth_mm, moves[moves.size() / 2].turn->depth_mm);
+    return Depths{least, greatest};
+}
+
+constexpr double kLongestLagMm = 1000.0;  // no brush is longer
+
+/// What the steps along the line use up of the tolerance where poses are thinned out afterwards: more leaves too little
+/// of it for that, less costs time, and poses where the brush is loose, which stay as they are.
+constexpr double kStepShare = 0.35;
+/// And no more of it than of the default one: the steps' own corners would show, and from the same steps a coarser
+/// tolerance has no more poses left than a finer one.
+constexpr double kMostStepToleranceMm = 0.00875;
+/// Below a tolerance those that are tried as well.
+constexpr double kFinerTolerancesMm[] = {0.5, 0.2, 0.1, 0.05};
+/// Shares of the tolerance: what thinning out may use up, and the miss that is accepted then. Rows of the check lie a
+/// little off the truth between them: at 0.95 a mark was 0.0002 mm off too far.
+constexpr double kThinShare = 0.9, kSurely = 0.9;
+/// And what fewer poses may add to a miss that is larger anyway: with none a cusp's poses were all kept for 1e-4 mm. A
+/// plainer beginning has to win more, for what is missed elsewhere is none of its.
+constexpr double kHairShare = 0.1;
+
+/// Replaces pass and miss where fewer poses miss the line by no more than the larger of the limit and of that miss.
+bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& stroke, const Brush& brush,
+              double tolerance_mm, Pass& pass, TrackingError& miss) {
+    const Pass fewer = thin_out_after_turn(from, brush, share * tolerance_mm);
+    const TrackingError remains = tracking_error_of(fewer, stroke, brush, tolerance_mm);
+    if (remains.largest_mm > limit_mm) return false;
+    pass = fewer;
+    miss = remains;
+    return true;
+}
+
+}  // namespace
+
+Terminal terminal_named(const std::string& name, const std::string& where) {
+    for (const auto& [known, value] : kTerminals)
+        if (name == known) return value;
+    throw Error("choice-unknown", "the end of a stroke is pointed, round, butt or auto, not \"" + name + "\"", where);
+}
+
+namespace {
+
+/// A pass by poses at all steps of the closed form, as fine as the tolerance asks for, or by few of them. `plain`: what
+/// it is called; `poses_by(step_tolerance, turns)`: the closed form.
+template <class PosesBy>
+CompensatedPass led(const Pass& plain, bool few_poses, const Stroke& stroke, const Brush& brush, double tolerance_mm,
+                    PosesBy&& poses_by) {
+    CompensatedPass result;
+    result.pass = plain;
+    double step_tolerance = 0.5 * tolerance_mm;
+    // the plan is simulated before it is handed over; finer steps as long as they help
+    if (few_poses) step_tolerance = std::min(kStepShare * step_tolerance, kMostStepToleranceMm);
+    for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {
+        bool turns = false;
+        Pass trial = plain;
+        auto poses = poses_by(step_tolerance, turns);
+        if (!poses) poses = poses_by(0.5 * tolerance_mm, turns);  // as it was tried
+        if (!poses) return result;
+        poses->into(trial);
+        if (few_poses && thin_out(trial, kThinShare, kSurely * tolerance_mm, stroke, brush, tolerance_mm, result.pass,
+                                  result.miss)) {
+            result.miss.has_turn_in_place = turns;
+            return result;
+        }
+        TrackingError miss = tracking_error_of(trial, stroke, brush, tolerance_mm);
+        miss.has_turn_in_place = turns;
+        const bool better = attempt == 0 || miss.largest_mm < 0.95 * result.miss.largest_mm;
+        if (better) {
+            result.miss = miss;
+            result.pass = trial;
+        }
+        // rows of the check lie a little off the truth between them; fewer poses need more to spare
+        const bool sure = !few_poses && miss.largest_mm <= 0.9 * tolerance_mm;
+        if (sure || ((turns || (few_poses && result.miss.within_tolerance)) && !better) ||
+            trial.poses_mm.rows() >= Index(kMostSamples))
+            break;
+    }
+    // a line that cannot be followed to the tolerance: as well as with all poses, then, but for a hair
+    const bool turns = result.miss.has_turn_in_place;
+    const double missed_mm = result.miss.largest_mm;
+    const double limit_mm = missed_mm <= tolerance_mm ? tolerance_mm : missed_mm + kHairShare * tolerance_mm;
+    if (few_poses) thin_out(result.pass, 0.5, limit_mm, stroke, brush, tolerance_mm, result.pass, result.miss);
+    result.miss.has_turn_in_place = turns;
+    return result;
+}
+
+/// `all_poses`: where to, if it is asked for.
+CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
+                                 Pass* all_poses = nullptr) {
+    check(stroke);
+    require_usable(brush);
+    require_tolerance(options.tolerance_mm, stroke.id);
+    if (options.lag_mm && !(*options.lag_mm >= 0.0 && *options.lag_mm <= kLongestLagMm))
+        throw Error("out-of-range", "the lag is not within [0, 1000] mm", stroke.id, options.lag_mm,
+                    std::array<double, 2>{0.0, kLongestLagMm});
+    if (!(options.speed_mm_s > 0.0) || std::isinf(options.speed_mm_s))
+        throw Error("out-of-range", "the speed must be finite and greater than 0 mm/s", stroke.id, options.speed_mm_s);
+    const Line line(stroke, brush);
+    CompensatedPass result;
+    const Depths depths = depths_of_widths(stroke, brush);  // refuses a width that the brush cannot paint
+    Pass& pass = result.pass;
+    pass.stroke = stroke.id;
+    pass.speed_mm_s = std::min(options.speed_mm_s, brush.max_speed_mm_s);
+    pass.layer = stroke.layer;
+    pass.colour = stroke.colour;
+    pass.settings = stroke.settings;
+
+    double step_tolerance = 0.5 * options.tolerance_mm;
+    if (options.method != Compensation::closed) {
+        warn(depths, stroke.id, brush, result.warnings);
+        double r0 = 0.0;
+        if (options.method == Compensation::constant)
+            r0 = options.lag_mm ? *options.lag_mm : brush.lag(median_depth(stroke, brush));
+        offset(stroke, brush, line, r0, step_tolerance).into(pass);
+        result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
+        return result;
+    }
+    const std::vector<BrushMoves> ways = select_ends(stroke, brush, options, step_tolerance);
+    warn(depths_of_turns(ways.front()).value_or(depths), stroke.id, brush, result.warnings);
+    const Pass plain = pass;
+    for (const BrushMoves& moves : ways) {
+        const bool is_first = &moves == &ways.front();
+        const bool few_poses =
+            options.few_poses && (moves.front().line || moves.back().line);  // a disc has none to spare
+        if (!is_first && result.miss.within_tolerance) break;
+        const auto poses_by = [&](double steps, bool& turns) { return closed_form(moves, brush, steps, turns); };
+        CompensatedPass done = led(plain, few_poses, stroke, brush, options.tolerance_mm, poses_by);
+        if (done.pass.poses_mm.rows() == 0) continue;
+        if (!is_first && !(done.miss.largest_mm < result.miss.largest_mm - kHairShare * options.tolerance_mm)) continue;
+        result.pass = std::move(done.pass);
+        result.miss = done.miss;
+        if (all_poses) *all_poses = led(plain, false, stroke, brush, options.tolerance_mm, poses_by).pass;
+    }
+    return result;
+}
+
+CompensatedPass compensated(const Stroke& given, const Brush& brush, const CompensateOptions& options,
+                            Pass* all_poses) {
+    Stroke stroke = given;
+    if (options.method == Compensation::closed && !stroke.settings.end && options.end == Terminal::pointed)
+        stroke.settings.end = "pointed";  // its tracking error is that of a point
+    CompensatedPass result = at_its_tolerance(stroke, brush, options, all_poses);
+    if (options.method != Compensation::closed || !options.few_poses) return result;
+    // who goes as far as he may in each move does not always get there in the fewest
+    for (const double finer_mm : kFinerTolerancesMm) {
+        if (finer_mm >= options.tolerance_mm) continue;
+        CompensateOptions finely = options;
+        finely.tolerance_mm = finer_mm;
+        CompensatedPass finer = at_its_tolerance(stroke, brush, finely);
+        if (finer.pass.poses_mm.rows() >= result.pass.poses_mm.rows()) continue;
+        // measured as the plan that it would replace
+        const bool turns = finer.miss.has_turn_in_place;
+        finer.miss = tracking_error_of(finer.pass, stroke, brush, options.tolerance_mm);
+        finer.miss.has_turn_in_place = turns;
+        if (finer.miss.largest_mm > std::max(options.tolerance_mm, result.miss.largest_mm)) continue;
+        result = finer;
+    }
+    return result;
+}
+
+}  // namespace
+
+CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
+    return compensated(stroke, brush, options, nullptr);
+}
+
+WithAllPoses compensate_with_all_poses(const Stroke& stroke, const Brush& brush, const CompensateOptions& options) {
+    WithAllPoses both;
+    both.plan = compensated(stroke, brush, options, &both.all_poses);
+    return both;
+}
+
+}  // namespace brushsvg

@@ -1,0 +1,430 @@
+#include "inverse/ends/end_styles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "brushsvg/footprint.hpp"
+#include "brushsvg/region.hpp"
+#include "inverse/landing.hpp"
+
+namespace brushsvg {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+/// Press depth at which a footprint that is turned on the spot reaches so far; none where that leaves a hole about P,
+/// or the least depth reaches further already; the greatest depth where none reaches so far.
+std::optional<double> depth_of_turn(const Stroke& stroke, const Brush& brush, double radius_mm) {
+    if (stroke.closed || brush.is_rigid() || !brush.width_follows_depth()) return {};
+    const double least = std::max(brush.depth_range_mm[0], 1e-3), most = brush.depth_range_mm[1];
+    const auto too_far = [&](double depth) { return reach_of_turn_mm(brush, depth) > radius_mm; };
+    if (too_far(least)) return {};
+    const double depth = too_far(most) ? bisect(least, most, too_far) : most;
+    if (-brush.tip_gap(depth) > kTuning.largest_hole * radius_mm) return {};
+    return depth;
+}
+
+/// The depth of a disc amid a round cap, less than the stroke's own. None where marks narrow as paint runs out: a patch
+/// that is pressed deeper for it, turned round, paints as large a disc as a wet one, a knob.
+std::optional<double> depth_in_cap(const Stroke& stroke, const Brush& brush, double at) {
+    const double full = depth_of(stroke, brush, at);
+    if (!(brush.lever_to_widest(full) > 0.0)) return {};
+    if (brush.paint && brush.paint->narrows_per_m > kTuning.wet_narrows_per_m) return {};
+    const auto depth = depth_of_turn(stroke, brush, half_width_at(stroke, at));
+    return depth && *depth < full ? depth : std::nullopt;
+}
+
+/// The stroke up to the middle of the cap in which it is drawn at one side: a line of a shape may end next to it.
+Stroke led_to_cap(const Stroke& stroke, const Brush& brush, Side side) {
+    const Line line(stroke, brush);
+    const PathEnd end = path_end(stroke, line, side);
+    const double ahead_mm = outline_ahead_mm(stroke.wanted_mm, end, 0.0) - end.half_mm;
+    if (!(std::abs(ahead_mm) < kTuning.cap_off * end.half_mm) || !(line.length() > end.half_mm)) return stroke;
+    const double inside_mm = std::max(0.0, -ahead_mm);
+    const Vector2d middle = end.place(std::max(0.0, ahead_mm), 0.0);
+    StrokePath path(middle, end.half_mm);
+    if (side == Side::start) {
+        if (ahead_mm > 0.0) path.line_to(end.at_mm, end.half_mm);
+        path.follow(stroke, line, inside_mm, line.length());
+        return path.like(stroke);
+    }
+    path = {};
+    path.follow(stroke, line, 0.0, line.length() - inside_mm);
+    if (ahead_mm > 0.0) path.line_to(middle, end.half_mm);
+    return path.like(stroke);
+}
+
+/// A stroke that is narrowed from an arc length on so that the rear of its footprint stays behind another, and from
+/// where on it has all its width. None where no depth does.
+struct Narrowed {
+    Stroke stroke;
+    double full_from_mm;
+};
+std::optional<Narrowed> narrowed(const Stroke& stroke, const Brush& brush, double length_mm, double from_mm,
+                                 double rear_mm) {
+    Stroke out = stroke;
+    out.half_width.clear();
+    const double step_mm = kTuning.narrowing_step * brush.tip_to_widest(depth_of(stroke, brush, 0.0));
+    for (double s = from_mm; s < length_mm; s += step_mm) {
+        const double at = s / length_mm, full = depth_of(stroke, brush, at), least = brush.depth_range_mm[0];
+        const auto sticks_out = [&](double depth) { return s - brush.tip_to_widest(depth) < rear_mm; };
+        if (sticks_out(full)) {
+            if (sticks_out(least)) return {};
+            out.half_width.push_back({at, brush.half_width(bisect(least, full, sticks_out))});
+            continue;
+        }
+        out.half_width.push_back({at, half_width_at(stroke, at)});
+        for (const WidthKnot& knot : stroke.half_width)
+            if (knot.at > at) out.half_width.push_back(knot);
+        return Narrowed{std::move(out), s};
+    }
+    return {};
+}
+
+/// Set down heading back along the line, drawn back until the widest section is at an arc length, less than 0 before
+/// the line; there turned over, or round at a depth, and on along the line, the rear of the mark behind a place.
+std::optional<BrushMoves> drawn_back(const Stroke& stroke, const Brush& brush, double until_mm, double rear_mm,
+                                     std::optional<double> turn_depth_mm = {}) {
+    const Line line(stroke, brush);
+    const auto onward = narrowed(stroke, brush, line.length(), std::max(until_mm, 0.0), rear_mm);
+    if (!onward) return {};
+    const double last_mm = painted_stretch(stroke, brush, line.length())[1];
+    const double lever = brush.lever_to_widest(depth_of(stroke, brush, 0.0));
+    const double narrow_lever = brush.lever_to_widest(depth_of(onward->stroke, brush, 0.0));
+    until_mm = std::max(until_mm, -0.999 * (lever + narrow_lever));  // or the line's first point is out of reach of P
+    const double from_mm = std::min(std::max(until_mm + 2.0 * lever, onward->full_from_mm), last_mm);
+    if (!(from_mm > std::max(until_mm, 0.0))) return {};
+    StrokePath path;
+    path.follow(stroke, line, from_mm, std::max(until_mm, 0.0));
+    const PathEnd start = path_end(stroke, line, Side::start);
+    if (until_mm < 0.0) path.line_to(start.place(-until_mm, 0.0), start.half_mm);
+    const Stroke back = path.like(stroke);
+    for (const WidthKnot& knot : back.half_width)
+        if (!(brush.lever_to_widest(brush.depth_for_half_width(knot.half_width_mm, stroke.id)) > 0.0)) return {};
+    std::optional<TurnRound> turn;
+    if (turn_depth_mm) turn = TurnRound{start.at_mm, *turn_depth_mm};
+    return BrushMoves{{{}, back, 0.0, 0.0, path.length_mm()},
+                      {turn, onward->stroke, turn ? 0.0 : std::max(0.0, until_mm + lever),
+                       std::min(until_mm + 4.0 * lever, last_mm), last_mm}};
+}
+
+/// The line with nothing before it.
+BrushMoves led_from_tip(Stroke stroke, const Brush& brush) {
+    const auto [s0, s1] = painted_stretch(stroke, brush, Line(stroke, brush).length());
+    return {{{}, std::move(stroke), s0, s0, s1}};
+}
+
+/// Pointed, as a footprint is behind.
+std::optional<BrushMoves> pointed_start(const Stroke& stroke, const Brush& brush, Caps) {
+    return led_from_tip(stroke, brush);
+}
+
+/// Drawn back until the round front of the footprint reaches the drawn beginning.
+std::optional<BrushMoves> round_start(const Stroke& stroke, const Brush& brush, Caps) {
+    const double depth = depth_of(stroke, brush, 0.0), half_mm = half_width_at(stroke, 0.0);
+    if (stroke.closed || brush.is_rigid() || !(brush.lever_to_widest(depth) > 0.0)) return {};
+    const double until_mm = reach_beyond_end_mm(brush, depth, half_mm);
+    return drawn_back(stroke, brush, until_mm, until_mm - kTuning.hiding * (until_mm + half_mm));
+}
+
+/// Drawn back at the full width into a round cap, and turned round in it.
+std::optional<BrushMoves> turned_in_cap(const Stroke& stroke, const Brush& brush, Caps) {
+    const auto depth = depth_in_cap(stroke, brush, 0.0);
+    if (!depth) return {};
+    return drawn_back(led_to_cap(stroke, brush, Side::start), brush, 0.0, -kTuning.hiding * half_width_at(stroke, 0.0),
+                      depth);
+}
+
+/// Set down and turned round where the line is widest near its beginning, as amid the ball of an f, or in a comma.
+std::optional<BrushMoves> turned_in_ball(const Stroke& stroke, const Brush& brush, Caps) {
+    const Line line(stroke, brush);
+    const double length_mm = line.length();
+    double at_mm = 0.0, radius_mm = half_width_at(stroke, 0.0);
+    const double within = kTuning.ball_within * radius_mm / length_mm;
+    for (const WidthKnot& knot : stroke.half_width)
+        if (knot.at > 0.0 && knot.at <= within && knot.half_width_mm > radius_mm) {
+            at_mm = knot.at * length_mm;
+            radius_mm = knot.half_width_mm;
+        }
+    const auto depth = depth_of_turn(stroke, brush, radius_mm);
+    if (!depth) return {};
+    const auto onward = narrowed(stroke, brush, length_mm, at_mm, at_mm - kTuning.hiding * radius_mm);
+    if (!onward) return {};
+    return BrushMoves{{TurnRound{line.at(at_mm).middle, *depth}, onward->stroke, at_mm,
+                       std::min(at_mm + 2.0 * radius_mm, length_mm), painted_stretch(stroke, brush, length_mm)[1]}};
+}
+
+std::optional<BrushMoves> butt_start(const Stroke& stroke, const Brush& brush, Caps caps) {
+    if (auto found = make_butt_end(stroke, brush, caps, Side::start))
+        return led_from_tip(std::move(found->stroke), brush);
+    return {};
+}
+
+/// Lifted while the patch rests: as the footprint is in front.
+std::optional<EndedStroke> lifted_end(const Stroke& stroke, const Brush& brush, Caps) {
+    return EndedStroke{up_to_drawn_end(stroke, brush), {}};
+}
+
+/// Half of how far an outline reaches across at a place along it.
+double half_across_mm(const Ring& outline, double x) {
+    double low = 0.0, high = 0.0;
+    for (Index i = 0, n = outline.rows(); i < n; ++i) {
+        const Vector2d a = outline.row(i), b = outline.row((i + 1) % n);
+        if ((a.x() > x) == (b.x() > x)) continue;
+        const double y = a.y() + (b.y() - a.y()) * (x - a.x()) / (b.x() - a.x());
+        low = std::min(low, y), high = std::max(high, y);
+    }
+    return 0.5 * (high - low);
+}
+
+std::optional<EndedStroke> butt_end(const Stroke& stroke, const Brush& brush, Caps caps) {
+    if (auto found = make_butt_end(stroke, brush, caps, Side::end)) return EndedStroke{std::move(found->stroke), {}};
+    return {};
+}
+
+std::optional<EndedStroke> turned_end(const Stroke& stroke, const Brush& brush, Caps) {
+    if (const auto depth = depth_in_cap(stroke, brush, 1.0))
+        return EndedStroke{led_to_cap(stroke, brush, Side::end), depth};
+    return {};
+}
+
+/// Half the width of the mark that runs along a cut, none where the brush is too coarse for one.
+std::optional<double> half_along_cut_mm(const Brush& brush, double half_mm) {
+    const double least = std::max(kTuning.narrowest * half_mm, brush.half_width_range_mm()[0]),
+                 most = std::min(kTuning.widest_narrow * half_mm, brush.half_width_range_mm()[1]);
+    const auto pulls = [&](double half) {
+        return brush.lever_to_widest(brush.depth_for_half_width(half, "")) > kTuning.least_lever_mm;
+    };
+    if (least > most || !pulls(most)) return {};
+    return pulls(least) ? least : bisect(least, most, pulls);
+}
+
+Vector2d corner(const Ring& ring, Index i) { return ring.row((i + ring.rows()) % ring.rows()).transpose(); }
+
+/// How far to the left of an edge a place is.
+double left_of_mm(const Vector2d& from, const Vector2d& to, const Vector2d& at) {
+    const Vector2d along = (to - from).normalized();
+    return along.x() * (at - from).y() - along.y() * (at - from).x();
+}
+
+/// A convex ring without the corners that stick out by less, the least first.
+Ring with_few_corners(Ring convex, double least_mm) {
+    while (convex.rows() > 3) {
+        Index least = 0;
+        double sticks_out_mm = least_mm;
+        for (Index i = 0; i < convex.rows(); ++i) {
+            const double out = -left_of_mm(corner(convex, i - 1), corner(convex, i + 1), corner(convex, i));
+            if (out < sticks_out_mm) {
+                sticks_out_mm = out;
+                least = i;
+            }
+        }
+        if (!(sticks_out_mm < least_mm)) break;
+        const Index after = convex.rows() - least - 1;
+        convex.middleRows(least, after) = convex.bottomRows(after).eval();
+        convex.conservativeResize(convex.rows() - 1, Eigen::NoChange);
+    }
+    return convex;
+}
+
+/// The part of a convex ring, counter-clockwise, that is so far within all its edges.
+Ring within_edges(const Ring& convex, double by_mm) {
+    Ring left = convex;
+    for (Index i = 0; i < convex.rows(); ++i) {
+        std::vector<Vector2d> kept;
+        for (Index k = 0; k < left.rows(); ++k) {
+            const Vector2d a = corner(left, k), b = corner(left, k + 1);
+            const double at_a = left_of_mm(corner(convex, i), corner(convex, i + 1), a) - by_mm,
+                         at_b = left_of_mm(corner(convex, i), corner(convex, i + 1), b) - by_mm;
+            if (at_a >= 0.0) kept.push_back(a);
+            if ((at_a < 0.0) != (at_b < 0.0)) kept.push_back(a + at_a / (at_a - at_b) * (b - a));
+        }
+        left.resize(Index(kept.size()), 2);
+        for (std::size_t k = 0; k < kept.size(); ++k) left.row(Index(k)) = kept[k].transpose();
+    }
+    return left;
+}
+
+/// Whether all corners are within a disc that moves from one place to another.
+bool covered_by(const Vector2d& from, const Vector2d& to, double radius_mm, const Ring& corners) {
+    const Vector2d way = to - from;
+    for (Index i = 0; i < corners.rows(); ++i) {
+        const Vector2d off = corners.row(i).transpose() - from;
+        const double along = std::clamp(off.dot(way) / std::max(way.squaredNorm(), 1e-300), 0.0, 1.0);
+        if (!((off - along * way).norm() <= radius_mm)) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+const std::array<StartStyle, 5> kStartStyles{{{Terminal::pointed, pointed_start},
+                                              {Terminal::round, round_start},
+                                              {Terminal::round, turned_in_cap},
+                                              {Terminal::round, turned_in_ball},
+                                              {Terminal::butt, butt_start}}};
+const std::array<StartStyle, 3> kDotStyles{
+    {{Terminal::pointed, pointed_start}, {Terminal::round, turned_dot}, {Terminal::butt, dot_with_corners}}};
+const std::array<EndStyle, 4> kEndStyles{{{Terminal::round, lifted_end},
+                                          {Terminal::pointed, pointed_end},
+                                          {Terminal::butt, butt_end},
+                                          {Terminal::automatic, turned_end}}};
+
+double reach_of_turn_mm(const Brush& brush, double depth) {
+    const auto at = [&](double d) {
+        Ring outline = footprint_at(brush.footprints, d, 1.0);
+        outline.col(0).array() -= brush.tip_gap(d);
+        return outline.rowwise().norm().maxCoeff();
+    };
+    double farthest = at(depth);
+    for (const Footprint& measured : brush.footprints.dragged)
+        if (measured.depth_mm < depth) farthest = std::max(farthest, at(measured.depth_mm));
+    return farthest;
+}
+
+std::optional<ButtEnd> make_butt_end(const Stroke& stroke, const Brush& brush, Caps caps, Side side) {
+    if (stroke.closed || brush.is_rigid() || !brush.width_follows_depth()) return {};
+    const bool at_start = side == Side::start;
+    const Line line(stroke, brush);
+    const double length_mm = line.length();
+    const PathEnd end = path_end(stroke, line, side);
+    const double half_mm = end.half_mm, set_down_mm = kTuning.set_down * half_mm;
+    const auto narrow = half_along_cut_mm(brush, half_mm);
+    if (!narrow || length_mm < kTuning.joins * half_mm) return {};
+    const auto cut = find_cut(stroke, end, half_mm - *narrow, caps);
+    double from_mm = 0.0;
+    if (at_start) {  // the tip is set down there, and the widest section is as far before it
+        const double tip_mm = set_down_mm + brush.tip_to_widest(depth_of(stroke, brush, set_down_mm / length_mm));
+        from_mm = std::max(set_down_mm, tip_mm - half_width_at(stroke, std::min(1.0, tip_mm / length_mm)));
+    }
+    if (!cut || from_mm > length_mm) return {};
+    const Vector2d set_down_along = line.tangent(line.at(from_mm));
+    if (at_start && -set_down_along.dot(end.along) < kTuning.straight_back)
+        return {};  // P would be dragged past a corner
+
+    const double slant = std::min(1.0, std::abs(cut->slope)),
+                 leaves = kTuning.leaves_before_cut + kTuning.slanted * slant;
+    const double ahead_mm = cut->ahead_mm - leaves * half_mm, inside_mm = std::max(0.0, -ahead_mm);
+    StrokePath path;
+    path.follow(stroke, line, from_mm, at_start ? inside_mm : length_mm - inside_mm);
+    if (ahead_mm > 0.0) path.line_to(end.place(ahead_mm, 0.0), half_mm);
+    // the corner that is further ahead first
+    const double aside = std::copysign(half_mm - *narrow, -cut->slope);
+    const double steep_mm = *narrow * std::hypot(1.0, cut->slope);
+    const double first_mm = cut->ahead_mm - cut->slope * aside - steep_mm,
+                 second_mm = cut->ahead_mm + cut->slope * aside - steep_mm;
+    ButtEnd out{{}, end, end.place(-kTuning.back * half_mm, -aside), 0.0};
+    const double lever = brush.lever_to_widest(brush.depth_for_half_width(*narrow, stroke.id));
+    for (const Vector2d& place : {end.place(first_mm - kTuning.beside_before_corner * half_mm, aside),
+                                  end.place(first_mm, aside), end.place(second_mm, -aside), out.back_mm}) {
+        path.line_to(place, *narrow);
+        out.reach_mm = std::max(out.reach_mm, (place - end.at_mm).norm() + lever);
+    }
+    if (at_start) {
+        const Sample joins = line.at(kTuning.joins * half_mm);
+        out.reach_mm = std::max(out.reach_mm, (joins.middle - end.at_mm).norm() + lever);
+        path.line_to(joins.middle, half_width_at(stroke, joins.s / length_mm));
+        path.follow(stroke, line, joins.s, length_mm);
+    }
+    out.stroke = path.like(stroke);
+    return out;
+}
+
+std::optional<EndedStroke> pointed_end(const Stroke& stroke, const Brush& brush, Caps) {
+    if (stroke.closed || brush.is_rigid() || !brush.width_follows_depth()) return {};
+    const Line line(stroke, brush);
+    const double length_mm = line.length(), depth = depth_of(stroke, brush, 1.0);
+    const PathEnd end = path_end(stroke, line, Side::end);
+    const double finest = std::max(brush.depth_range_mm[0], kTurnOverDepthMm), finest_mm = brush.half_width(finest);
+    const double rear_mm = brush.tip_to_widest(depth);
+    const double tip_mm = length_mm + end.half_mm, from_mm = tip_mm - rear_mm;
+    const double last_mm = tip_mm - std::max(0.0, reach_beyond_end_mm(brush, finest, 0.0));
+    if (!(length_mm > 0.0 && depth > finest && from_mm > 0.0 && last_mm > from_mm)) return {};
+    StrokePath path;
+    path.follow(stroke, line, 0.0, std::min(length_mm, last_mm));
+    if (last_mm > length_mm) path.line_to(end.place(last_mm - length_mm, 0.0), end.half_mm);
+    Stroke out = path.like(stroke);
+    const Stroke whole = out;
+    const auto narrows = [&](const WidthKnot& knot) { return knot.at * last_mm > from_mm; };
+    out.half_width.erase(std::find_if(out.half_width.begin(), out.half_width.end(), narrows), out.half_width.end());
+    const Ring outline = footprint_at(brush.footprints, depth, 1.0);
+    const auto n = Index(std::ceil(1.0 / kTuning.narrowing_step));
+    for (Index k = 0; k <= n; ++k) {
+        const double s = from_mm + (last_mm - from_mm) * double(k) / double(n), at = s / last_mm;
+        const double half_mm = std::min(half_width_at(whole, at), half_across_mm(outline, tip_mm - s));
+        out.half_width.push_back({at, std::max(finest_mm, half_mm)});
+    }
+    return EndedStroke{std::move(out), {}};
+}
+
+std::optional<BrushMoves> turned_dot(const Stroke& stroke, const Brush& brush, Caps) {
+    const double half_mm[] = {half_width_at(stroke, 0.0), half_width_at(stroke, 1.0)};
+    if (Line(stroke, brush).length() > kTuning.longest_dot * std::min(half_mm[0], half_mm[1])) return {};
+    const auto from = depth_of_turn(stroke, brush, half_mm[0]), to = depth_of_turn(stroke, brush, half_mm[1]);
+    if (!from || !to) return {};
+    const Vector2d a = point_at(stroke.middle_mm, {0, 0.0});
+    const Vector2d b = point_at(stroke.middle_mm, {stroke.middle_mm.rows() - 1, 1.0});
+    if ((b - a).norm() <= 1e-6) return BrushMoves{{TurnRound{a, *from}}};
+    const Vector2d along = (b - a).normalized();
+    return BrushMoves{{TurnRound{a, *from, along}}, {TurnRound{b, *to, along}}};
+}
+
+std::optional<BrushMoves> dot_with_corners(const Stroke& stroke, const Brush& brush, Caps) {
+    std::optional<BrushMoves> dot = turned_dot(stroke, brush);
+    const double half_mm = std::min(half_width_at(stroke, 0.0), half_width_at(stroke, 1.0));
+    const auto narrow = half_along_cut_mm(brush, half_mm);
+    if (stroke.wanted_mm.empty() || !dot || !narrow) return {};
+    Ring points(0, 2);
+    for (const Ring& ring : stroke.wanted_mm) {
+        points.conservativeResize(points.rows() + ring.rows(), Eigen::NoChange);
+        points.bottomRows(ring.rows()) = ring;
+    }
+    const double least_mm = kTuning.corner_sticks_out * *narrow;
+    const Ring plain = with_few_corners(convex_hull(points), least_mm);
+    const Ring round = with_few_corners(within_edges(plain, *narrow), least_mm);
+    const Vector2d at = dot->back().turn->at_mm;
+    const double radius_mm = std::min(half_mm, brush.half_width_range_mm()[1]);
+    // or something stays bare between the disc and the narrow mark
+    if (round.rows() < 3 || !covered_by(dot->front().turn->at_mm, at, radius_mm, within_edges(plain, 2.0 * *narrow)))
+        return {};
+    const auto length_mm = [&](Index i) { return (corner(round, i + 1) - corner(round, i)).norm(); };
+    Index longest = 0;
+    for (Index i = 1; i < round.rows(); ++i)
+        if (length_mm(i) > length_mm(longest)) longest = i;
+    const Vector2d first =
+        corner(round, longest) + kTuning.on_side * (corner(round, longest + 1) - corner(round, longest));
+    StrokePath path(at, *narrow);
+    path.line_to(first, *narrow);
+    for (Index i = 1; i <= round.rows(); ++i) path.line_to(corner(round, longest + i), *narrow);
+    path.line_to(first, *narrow);
+    dot->push_back({{}, path.like(stroke), 0.0, (first - at).norm(), path.length_mm()});
+    return dot;
+}
+
+std::vector<Turned> turned_round(const PassMarks& marks) {
+    constexpr double round_rad = 6.0, rests_mm = 0.1;  // what counts as round, and how far P may creep meanwhile
+    std::vector<Turned> found;
+    double turned = 0.0, most = 0.0;
+    std::size_t from = 0;
+    for (std::size_t i = 1; i < marks.depth_mm.size(); ++i) {
+        const bool rests = marks.depth_mm[i] > 0.0 && marks.depth_mm[i - 1] > 0.0 &&
+                           (marks.contact_mm.row(Index(i)) - marks.contact_mm.row(Index(from))).norm() < rests_mm;
+        if (!rests) {
+            from = i;
+            turned = most = 0.0;
+            continue;
+        }
+        turned += std::remainder(marks.heading_rad[i] - marks.heading_rad[i - 1], 2.0 * EIGEN_PI);
+        if (!(std::abs(turned) > std::max(most, round_rad))) continue;
+        if (most > 0.0)
+            found.back().last = i;
+        else
+            found.push_back({from, i});
+        most = std::abs(turned);
+    }
+    return found;
+}
+
+}  // namespace brushsvg

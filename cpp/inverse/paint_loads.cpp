@@ -1,0 +1,191 @@
+#include "brushsvg/paint_loads.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brushsvg/checkpoint.hpp"
+#include "brushsvg/error.hpp"
+#include "brushsvg/lag_arc.hpp"
+#include "brushsvg/simulate.hpp"
+#include "inverse/landing.hpp"
+#include "values/refuse_unusable.hpp"
+
+namespace brushsvg {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+/// A brush that hardly touches has no patch to land in.
+constexpr double kLeastDepthMm = 0.05;
+
+/// Places on long straight moves, whose ends alone would not do: so many for one load of paint. Fewer would leave more
+/// of it unused, more only cost time.
+constexpr double kPlacesPerLoad = 200.0;
+
+constexpr double kMostLoads = 1000.0;  // of one stroke; with more the brush would only travel
+
+/// A brush that turns in place keeps its patch about so near to the arc's centre.
+constexpr double kRestsMm = 0.01;
+
+/// The pass with more poses along its moves. own[i]: whether it is one of the pass's.
+struct Fine {
+    Pass pass;
+    std::vector<bool> own;
+};
+
+/// The arc on which the pass goes on from a pose.
+const Arc* arc_of(const Pass& pass, Index pose) {
+    for (const Arc& arc : pass.arcs)
+        if (arc.first <= pose && pose < arc.last) return &arc;
+    return nullptr;
+}
+
+Eigen::RowVector3d on_arc(const Arc& arc, const Pass& pass, Index pose, double share) {
+    const Vector2d from = pass.poses_mm.row(pose).head<2>().transpose();
+    const Vector2d to = pass.poses_mm.row(pose + 1).head<2>().transpose();
+    const Vector2d spoke = from - arc.centre_mm;
+    const Vector2d at = arc.centre_mm + turned_by<double>(spoke, share * turn_between(arc, from, to));
+    return {at.x(), at.y(), pass.poses_mm(pose, 2)};
+}
+
+Fine refined(const Pass& pass, double between_mm) {
+    const Index count = pass.poses_mm.rows();
+    Fine out{pass, {}};
+    out.pass.tool_axes.resize(0, 3);  // upright, as are all that are parted
+    std::vector<Eigen::RowVector3d> poses;
+    std::vector<Index> at;
+    for (Index i = 0; i < count; ++i) {
+        at.push_back(Index(poses.size()));
+        poses.push_back(pass.poses_mm.row(i));
+        out.own.push_back(true);
+        if (i + 1 == count) continue;
+        const Eigen::RowVector3d way = pass.poses_mm.row(i + 1) - pass.poses_mm.row(i);
+        const Arc* arc = arc_of(pass, i);
+        const auto parts = Index(std::ceil(way.norm() / between_mm));
+        for (Index k = 1; k < parts; ++k) {
+            const double share = double(k) / double(parts);
+            poses.push_back(arc ? on_arc(*arc, pass, i, share) : pass.poses_mm.row(i) + way * share);
+            out.own.push_back(false);
+        }
+    }
+    out.pass.poses_mm.resize(Index(poses.size()), 3);
+    for (std::size_t i = 0; i < poses.size(); ++i) out.pass.poses_mm.row(Index(i)) = poses[i];
+    for (Arc& arc : out.pass.arcs) {
+        arc.first = at[std::size_t(arc.first)];
+        arc.last = at[std::size_t(arc.last)];
+    }
+    return out;
+}
+
+/// Where the pass may be cut: poses that the brush passes taut and pressed, and not while it turns in place.
+struct Place {
+    Index pose;
+    double along_mm;  ///< path of the TCP up to it
+    Stance stance;
+};
+
+std::vector<double> path_lengths(const Poses& poses) {
+    std::vector<double> along{0.0};
+    for (Index i = 1; i < poses.rows(); ++i) along.push_back(along.back() + (poses.row(i) - poses.row(i - 1)).norm());
+    return along;
+}
+
+bool turns_in_place(const Pass& pass, Index pose, const Vector2d& contact) {
+    for (const Arc& arc : pass.arcs)
+        if (arc.first <= pose && pose <= arc.last) return (contact - arc.centre_mm).norm() < kRestsMm;
+    return false;
+}
+
+std::vector<Place> places(const Pass& pass, const Brush& brush, const std::vector<double>& along) {
+    const PassMarks marks = simulate(pass, brush, 0.05, false);
+    std::vector<Place> out;
+    for (std::size_t row = 0; row < marks.pose.size(); ++row) {
+        const double pose = marks.pose[row];
+        const Index i = Index(std::lround(pose));
+        if (pose != double(i) || (!marks.taut[row] && !brush.is_rigid()) || marks.depth_mm[row] < kLeastDepthMm)
+            continue;
+        const Vector2d contact = marks.contact_mm.row(Index(row)).transpose();
+        if (i == 0 || i + 1 >= pass.poses_mm.rows() || turns_in_place(pass, i, contact)) continue;
+        if (!out.empty() && out.back().pose == i) out.pop_back();  // the last row of a pose is what goes on
+        const double u = marks.heading_rad[row];
+        out.push_back({i, along[i], {contact, {std::cos(u), std::sin(u)}, marks.depth_mm[row]}});
+    }
+    return out;
+}
+
+/// Poses of the pass from one to another with its arcs, between a landing and a lift.
+Pass part(const Fine& fine, const Brush& brush, const Place* from, const Place* to, int number) {
+    const Pass& pass = fine.pass;
+    PoseList list;
+    if (from) land(from->stance, brush, list);
+    const Index first = from ? from->pose : 0, last = to ? to->pose : pass.poses_mm.rows() - 1;
+    std::vector<std::int64_t> at;
+    for (Index i = first; i <= last; ++i) {
+        if (fine.own[std::size_t(i)] || i == first || i == last)
+            list.add(pass.poses_mm.row(i).head<2>().transpose(), -pass.poses_mm(i, 2));
+        at.push_back(list.last());
+    }
+    if (to) lift(to->stance, brush, list);
+    Pass out = pass;
+    list.into(out);
+    out.arcs.clear();
+    for (const Arc& arc : pass.arcs) {
+        const Index begins = std::max<Index>(arc.first, first), ends = std::min<Index>(arc.last, last);
+        if (begins < ends) out.arcs.push_back({at[begins - first], at[ends - first], arc.centre_mm, arc.direction});
+    }
+    out.stroke.load = out.load = number;
+    return out;
+}
+
+}  // namespace
+
+std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const PaintLoadOptions& options) {
+    if (!(options.first_mm >= 0.0 && options.backtrack_mm >= 0.0 && options.every_mm > 2.0 * options.backtrack_mm))
+        throw Error("load-too-short", "paint must last for more than twice the backtrack", pass.stroke,
+                    options.every_mm);
+    require_usable(brush);
+    refuse_tilted(pass, "strokes are parted into loads of paint for an upright brush");
+    if (!(path_lengths(pass.poses_mm).back() > options.first_mm) || !pass.poses_mm.allFinite()) return {pass};
+    for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, pass.stroke);
+    const auto refuse_often = [&](double loads) {
+        if (!(loads <= kMostLoads))
+            throw Error("load-too-short",
+                        "paint that lasts so short would have to be fetched more than 1000 times in one stroke",
+                        pass.stroke, options.every_mm);
+    };
+    refuse_often(path_lengths(pass.poses_mm).back() / options.every_mm);
+    const Fine fine = refined(pass, options.every_mm / kPlacesPerLoad);
+    const std::vector<double> along = path_lengths(fine.pass.poses_mm);
+    const std::vector<Place> all = places(fine.pass, brush, along);
+    std::vector<Pass> parts;
+    const Place* from = nullptr;
+    double lasts_to = options.first_mm;
+    while (along.back() > lasts_to) {
+        checkpoint(int(all.size()));
+        refuse_often(double(parts.size()) + 1.0);
+        // the last place that the paint reaches, else the first after it; in both cases one that gets on
+        const double least = from ? from->along_mm + options.backtrack_mm : 0.0;
+        const Place *cut = nullptr, *back = nullptr;
+        for (const Place& place : all) {
+            if (place.along_mm <= least || (cut && place.along_mm > lasts_to)) continue;
+            cut = &place;
+            if (place.along_mm > lasts_to) break;
+        }
+        if (!cut) break;
+        for (const Place& place : all) {
+            if (place.pose >= cut->pose || (from && place.pose <= from->pose)) continue;  // a part must get on
+            if (!back || place.along_mm <= cut->along_mm - options.backtrack_mm) back = &place;
+        }
+        if (!back) back = cut;
+        parts.push_back(part(fine, brush, from, cut, int(parts.size()) + 1));
+        from = back;
+        const double landing = brush.lag(back->stance.depth_mm);
+        lasts_to = back->along_mm + options.every_mm - landing;
+    }
+    if (parts.empty()) return {pass};
+    parts.push_back(part(fine, brush, from, nullptr, int(parts.size()) + 1));
+    return parts;
+}
+
+}  // namespace brushsvg

@@ -1,0 +1,395 @@
+#include "brushsvg/thin_out.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/tolerance.hpp"
+#include "brushsvg/checkpoint.hpp"
+#include "brushsvg/lag.hpp"
+#include "brushsvg/lag_arc.hpp"
+#include "brushsvg/simulate.hpp"
+#include "inverse/traced_pass.hpp"
+#include "regions/nearest_on_polyline.hpp"
+
+namespace brushsvg {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// Places of a move that are looked at, at most: more find the same error, fewer miss a kink of the path.
+constexpr Index kLooks = 10;
+/// Less is not pressed any more.
+constexpr double kLeastDepthMm = 1e-3;
+/// A move shorter than this has no direction to speak of.
+constexpr double kLeastMoveMm = 1e-6;
+/// From one move to the next the tool turns by no more, up and down counted: or it would have to stop there. Bends this
+/// tight slow it down anyway: 0.6 needs 8 % more poses and takes as long.
+constexpr double kMostTurnRad = 1.0;
+/// How far beside the path a move may end, in second differences over half its length: a third for an even curve. More
+/// of them win less than 1 % of the poses, none but the third loses a tenth.
+constexpr double kBeside[] = {1.0 / 3.0, 0.25, 0.45, 0.15, 0.0};
+/// And how much of that in depth, which the brush does not smooth: half the sagitta at a third.
+constexpr double kDeeper = 0.75;
+/// The mark's middle may be so many tolerances ahead of or behind where it was after the same share of the way. Where
+/// poses lie far apart, on straight lines, a mark beside the line is what else it would be next to: other sides of a
+/// triangle, a there with no back.
+constexpr double kSlipShare = 10.0;
+/// The edges of the mark turn by no more where two moves meet, eight degrees less a margin for what is rounded; and at
+/// the end of each they go where they went by so much: with less of it there is less left for the next one, with more
+/// that one cannot be as long.
+constexpr double kMostCornerRad = 0.125, kMostOffRad = 0.07;
+/// Of the tolerance, what a move may use up where it ends: with nothing left the next one could only jump back.
+constexpr double kEndShare = 0.5;
+/// Steps that are tried where none keeps its direction.
+constexpr Index kTries = 6;
+/// Arcs: flatter ones are lines, and what is nearly a whole circle is told by no two places; far centres hold too few
+/// digits in a program. Between two of its poses an arc turns by no more, for who only knows the chords.
+constexpr double kLeastTurnRad = 0.05, kMostArcRad = 5.0, kArcStepRad = 0.4;
+constexpr double kLeastRadiusMm = 2.0 * kArcRadiusMm[0], kMostRadiusMm = 1000.0;
+constexpr double kSameDepthMm = 1e-9;
+constexpr double kPi = 3.14159265358979323846;
+/// The footprint's tip may be off by so many tolerances: it lies inside the mark, its sides are what shows.
+constexpr double kTipShare = 3.0;
+
+/// Poses that lead on, and the circles that some of them lie on.
+struct Way {
+    std::vector<Vector3d> poses;
+    std::vector<Arc> arcs;
+};
+
+/// A circle from one place to another, about a centre.
+struct Circle {
+    Vector2d centre;
+    double radius, turn;
+
+    /// Through three places; none where they lie on a line, or where no plan has such a circle.
+    static std::optional<Circle> through(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
+        const Vector2d ab = b - a, ac = c - a;
+        const double cross = ab.x() * ac.y() - ab.y() * ac.x();
+        if (!(std::abs(cross) > 1e-9 * ac.squaredNorm())) return {};
+        const double s = ab.squaredNorm() / (2.0 * cross), t = ac.squaredNorm() / (2.0 * cross);
+        const Vector2d out(s * ac.y() - t * ab.y(), t * ab.x() - s * ac.x());
+        // the angle at the middle one is that of the inscribed triangle
+        const Vector2d ba = a - b, bc = c - b;
+        const double within = std::atan2(std::abs(ba.x() * bc.y() - ba.y() * bc.x()), ba.dot(bc));
+        const Circle found{a + out, out.norm(), std::copysign(2.0 * (kPi - within), cross)};
+        const double turn = std::abs(found.turn);
+        const bool fits = found.radius >= kLeastRadiusMm && found.radius <= kMostRadiusMm;
+        return fits && turn >= kLeastTurnRad && turn <= kMostArcRad ? std::optional(found) : std::nullopt;
+    }
+    Vector2d along(const Vector2d& at) const {
+        const Vector2d spoke = (at - centre) / radius;
+        return turn > 0.0 ? Vector2d(-spoke.y(), spoke.x()) : Vector2d(spoke.y(), -spoke.x());
+    }
+    /// Poses on it, beside the one that it begins at: a robot is told a pose on its way.
+    int poses() const { return std::max(2, int(std::ceil(std::abs(turn) / kArcStepRad))); }
+};
+
+/// One stretch of dragged moves, walked from its beginning: as far as possible in each move.
+class Walk {
+ public:
+    Walk(const TracedPass& was, const Brush& brush, const LagLaw<double>& law, double tolerance_mm)
+        : was_(was), brush_(brush), law_(law), tolerance_(tolerance_mm) {}
+
+    /// Poses that lead from pose `first` to pose `last`, that one included.
+    Way operator()(Index first, Index last) {
+        first_ = first;
+        last_ = last;
+        Way out;
+        state_.taut = state_.heading_known = true;
+        state_.contact = was_.contact[first];
+        state_.heading = was_.heading[first];
+        at_ = was_.pose(first);
+        way_ = Vector3d::Zero();
+        edges_ = was_.leaving[first];
+        Index i = first, stride = 4;
+        while (i < last) {
+            auto [j, step] = farthest(i, stride);
+            const auto [k, round] = farthest_round(i, j);
+            if (round.circle && double(k - i) >= double(round.circle->poses()) * double(j - i)) {
+                j = k;
+                step = round;
+            }
+            stride = std::max<Index>(2, j - i);
+            take(step, out);
+            i = j;
+        }
+        return out;
+    }
+
+ private:
+    struct Step {
+        Vector3d to;  ///< x, y, depth
+        LagState<double> state;
+        std::optional<Circle> circle;  ///< none: straight
+        Edges edges;                   ///< at its end; of one that is not near, nothing is known
+        bool near = false;             ///< the mark is where it was
+        double corner = 0.0;           ///< of the edges, as a share of what it may be
+
+        bool good() const { return near && corner <= 1.0; }
+    };
+
+    void take(const Step& step, Way& out) {
+        const auto begin = Index(out.poses.size());
+        if (step.circle) {
+            const Circle& circle = *step.circle;
+            const int n = circle.poses();
+            for (int k = 1; k < n; ++k) {
+                const Vector2d on =
+                    circle.centre + turned_by<double>(Vector2d(at_.head<2>() - circle.centre), circle.turn * k / n);
+                out.poses.emplace_back(on.x(), on.y(), -at_.z());
+            }
+            out.arcs.push_back({begin, begin + n, circle.centre, circle.turn > 0.0 ? 1 : -1});
+            way_ << circle.along(step.to.head<2>()), 0.0;
+        } else {
+            way_ = step.to - at_;
+        }
+        out.poses.emplace_back(step.to.x(), step.to.y(), -step.to.z());
+        at_ = step.to;
+        state_ = step.state;
+        edges_ = step.edges;
+    }
+
+    /// How far one move goes: to a pose, or beside it. Chords lie inside a curve, and the brush follows their mean. Out
+    /// by q'' L^2 / 12 their error has none, and what is left goes back and forth too quickly for the brush. Where the
+    /// curve changes on the way, more or less than that is better.
+    std::pair<Index, Step> farthest(Index i, Index stride) const {
+        Index good = i;
+        Step best;
+        for (double share : kBeside) {
+            const auto trial = [&](Index j) { return straight(i, j, beside(i, j, share)); };
+            search(i, last_, good == i ? stride : 1, trial, good, best);
+        }
+        if (good > i) return {good, best};
+        // none keeps its direction: the one that bends least
+        good = i + 1;
+        best = straight(i, good, was_.pose(good));
+        for (Index j = i + 1; j <= std::min(i + kTries, last_); ++j)
+            for (double share : kBeside) {
+                const Step trial = straight(i, j, beside(i, j, share));
+                if (!trial.near || (best.near && trial.corner >= best.corner)) continue;
+                good = j;
+                best = trial;
+            }
+        return {good, best};
+    }
+    /// How far one arc goes, through three places of the path.
+    std::pair<Index, Step> farthest_round(Index i, Index straight_to) const {
+        Index good = i;
+        Step best;
+        if (std::abs(at_.z() - was_.depth[i]) > kSameDepthMm) return {good, best};
+        const auto trial = [&](Index j) { return round(i, j); };
+        const Index level = std::min(last_, was_.level[i]);
+        if (level > i) search(i, level, std::max<Index>(4, 2 * (straight_to - i)), trial, good, best);
+        return {good, best};
+    }
+
+    /// The farthest good step beyond the one known, ever more at a time, and between the last good and the first bad
+    /// one by halves.
+    template <class Trial>
+    void search(Index i, Index last, Index step, Trial&& trial, Index& good, Step& best) const {
+        Index bad = last + 1;
+        const auto is_good = [&](Index j) {
+            const Step found = trial(j);
+            if (!found.good()) {
+                bad = j;
+                return false;
+            }
+            good = j;
+            best = found;
+            return true;
+        };
+        for (Index j = std::min(good + step, last); j > good && is_good(j); j = std::min(good + step, last)) step *= 2;
+        if (good == i)
+            while (bad - i > 1 && bad <= last && !is_good(i + (bad - i) / 2)) {
+            }
+        while (good > i && bad - good > 1 && good < last) is_good(good + (bad - good) / 2);
+    }
+
+    Vector3d beside(Index i, Index j, double share) const {
+        const Vector3d here = was_.pose(j);
+        const double h = std::min(0.5 * (was_.along[j] - was_.along[i]), was_.along[last_] - was_.along[j]);
+        if (!(h > 0.0)) return here;
+        const Vector3d bends = was_.at(was_.along[j] - h, j) - 2.0 * here + was_.at(was_.along[j] + h, j);
+        Vector3d to = here - share * Vector3d(bends.x(), bends.y(), kDeeper * bends.z());
+        to.z() = std::clamp(to.z(), std::min(here.z(), kLeastDepthMm), was_.deepest);
+        return to;
+    }
+
+    Step straight(Index i, Index j, const Vector3d& to) const {
+        Step step;
+        step.to = to;
+        const Move<double> move(at_.head<2>(), to.head<2>(), at_.z(), to.z());
+        if (!(move.length > kLeastMoveMm)) return step;
+        if (j > i + 1 && turn_to(to - at_) > kMostTurnRad) return step;
+        follow(move, i, j, move.depth_by / move.length, step);
+        return step;
+    }
+    Step round(Index i, Index j) const {
+        Step step;
+        step.to = was_.pose(j);
+        const Vector2d from = at_.head<2>(), to = step.to.head<2>();
+        const Vector2d middle = was_.at(0.5 * (was_.along[i] + was_.along[j]), (i + j) / 2).head<2>();
+        step.circle = Circle::through(from, middle, to);
+        if (!step.circle) return step;
+        const Vector2d along = step.circle->along(from);
+        if (turn_to({along.x(), along.y(), 0.0}) > kMostTurnRad) return step;
+        follow(ArcMove<double>(from, along, step.circle->radius, step.circle->turn, at_.z()), i, j, 0.0, step);
+        return step;
+    }
+    double turn_to(const Vector3d& along) const { return std::atan2(way_.cross(along).norm(), way_.dot(along)); }
+
+    /// What the brush does in a move in place of those from pose i to pose j.
+    template <class Motion>
+    void follow(const Motion& move, Index i, Index j, double deeper, Step& step) const {
+        checkpoint(10);
+        step.state = state_;
+        bool good = true;
+        // a pen smooths nothing: every pose may be a spike of its own
+        const Index stride = law_.rigid ? 1 : std::max<Index>(1, (j - i) / kLooks);
+        Index k = i + 1;
+        const double from = was_.along[i], length = was_.along[j] - from;
+        advance(law_, move, step.state,
+                [&](const auto& piece, const auto& mv, const auto& start, double begin, double end) {
+                    good = good && start.taut;
+                    while (good && k <= j) {
+                        const double t = (was_.along[k] - from) / length;
+                        if (t > end + 1e-12) break;
+                        const double at = std::min(t, end);
+                        const LagState<double> now =
+                            law_.rigid ? rigid(mv, at) : within_phase(piece, mv, start, begin, at);
+                        good = is_near(now, mv.depth(at), k, k < j ? tolerance_ : kEndShare * tolerance_);
+                        k = k < j ? std::min(k + stride, j) : j + 1;
+                    }
+                });
+        step.near = good && step.state.taut;
+        if (!step.near) return;
+        const LagState<double> begins = law_.rigid ? rigid(move, 0.0) : state_;
+        if (law_.rigid) step.state = rigid(move, 1.0);
+        const Edges leaving = edges_of(brush_, law_, begins, move.direction(0.0), at_.z(), deeper);
+        step.edges = edges_of(brush_, law_, step.state, move.direction(1.0), step.to.z(), deeper);
+        step.corner = std::max(corner_between(edges_, leaving) / kMostCornerRad,
+                               corner_between(step.edges, was_.reaching[j]) / kMostOffRad);
+    }
+    template <class Motion>
+    static LagState<double> rigid(const Motion& move, double t) {
+        LagState<double> state;
+        state.taut = state.heading_known = true;
+        state.contact = move.tcp(t);
+        state.heading = move.direction(t);
+        return state;
+    }
+
+    /// Whether the footprint is where it was about pose k, to the tolerance.
+    bool is_near(const LagState<double>& now, double depth, Index k, double tolerance_mm) const {
+        const Vector2d middle = now.contact + brush_.lever_to_widest(depth) * now.heading;
+        const double most_slip = kSlipShare * tolerance_;
+        if ((middle - was_.middle.row(k).transpose()).squaredNorm() > most_slip * most_slip) return false;
+        double least = 1e300;
+        for (Index i = std::max(first_, k - 2); i < std::min(last_, k + 2); ++i) {
+            const Vector2d a = was_.middle.row(i).transpose(), d = was_.middle.row(i + 1).transpose() - a;
+            const double squared = d.squaredNorm();
+            const double t = squared > 0.0 ? std::clamp((middle - a).dot(d) / squared, 0.0, 1.0) : 0.0;
+            least = std::min(least, (middle - a - t * d).squaredNorm());
+        }
+        if (least > tolerance_mm * tolerance_mm) return false;
+        if (std::abs(brush_.half_width(depth) - brush_.half_width(was_.depth[k])) > tolerance_mm) return false;
+        if (law_.rigid) return true;
+        const Vector2d& u = was_.heading[k];
+        const double turned = std::abs(u.x() * now.heading.y() - u.y() * now.heading.x());
+        return turned * brush_.tip_to_widest(depth) <= kTipShare * tolerance_ && u.dot(now.heading) > 0.0;
+    }
+
+    const TracedPass& was_;
+    const Brush& brush_;
+    const LagLaw<double>& law_;
+    double tolerance_;
+    Index first_ = 0, last_ = 0;
+    LagState<double> state_;
+    Vector3d at_, way_;  ///< where the walk is, and the way that led there
+    Edges edges_;        ///< of the mark there
+};
+
+Pass thinned(const Pass& pass, const Brush& brush, const LagLaw<double>& law, const TracedPass& was,
+             double tolerance_mm) {
+    const Index n = pass.poses_mm.rows();
+    std::vector<Vector3d> poses;
+    std::vector<Index> now(n, 0);  // where the poses that stay are
+    const auto keep = [&](Index i) {
+        now[i] = Index(poses.size());
+        poses.push_back(pass.poses_mm.row(i).transpose());
+    };
+    Pass out = pass;
+    out.tool_axes.resize(0, 3);  // upright, as are all that are thinned out
+    out.arcs.clear();
+    Walk walk(was, brush, law, tolerance_mm);
+    for (Index i = 0; i < n;) {
+        keep(i);
+        Index end = i;
+        if (was.taut[i] || brush.is_rigid())
+            while (was.dragged[end]) ++end;
+        if (end < i + 2) {
+            ++i;
+            continue;
+        }
+        Way way = walk(i, end);
+        for (Arc& arc : way.arcs) {
+            arc.first += now[i];
+            arc.last += now[i];
+            out.arcs.push_back(arc);
+        }
+        poses.insert(poses.end(), way.poses.begin(), way.poses.end() - 1);
+        i = end;
+    }
+    out.poses_mm.resize(Index(poses.size()), 3);
+    for (Index i = 0; i < out.poses_mm.rows(); ++i) out.poses_mm.row(i) = poses[i].transpose();
+    for (Arc arc : pass.arcs) {
+        arc.first = now[arc.first];
+        arc.last = now[arc.last];
+        out.arcs.push_back(arc);
+    }
+    std::sort(out.arcs.begin(), out.arcs.end(), [](const Arc& a, const Arc& b) { return a.first < b.first; });
+    return out;
+}
+
+/// Farthest that the middle of a mark, its widest points, lies from that of another, from the first taut row to the
+/// last.
+double apart(const PassMarks& marks, const Ring& widest, const Ring& middle) {
+    Nearest<Ring> nearest(middle);
+    const Index n = Index(marks.taut.size());
+    Index begin = 0, end = n;
+    while (begin < end && !marks.taut[begin]) ++begin;
+    while (end > begin && !marks.taut[end - 1]) --end;
+    double largest = 0.0;
+    along(widest, begin, end, 0.5,
+          [&](const Vector2d& point) { largest = std::max(largest, nearest.distance(point)); });
+    return largest;
+}
+
+}  // namespace
+
+Pass thin_out(const Pass& pass, const Brush& brush, double tolerance_mm) {
+    refuse_tilted(pass, "poses are thinned out for an upright brush");
+    require_tolerance(tolerance_mm, pass.stroke);
+    const double exact_mm = std::min(0.02, 0.1 * tolerance_mm);
+    const PassMarks marks = simulate(pass, brush, exact_mm, false);
+    if (pass.poses_mm.rows() < 4) return pass;
+    const Ring middle = widest_points(marks, brush);
+    const LagLaw<double> law = make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
+    const TracedPass was(pass, brush, law, marks, middle);
+    // what is found move by move adds up over a bend and at the ends; smaller steps where it was too much
+    for (const double share : {0.95, 0.7, 0.4, 0.2, 0.1}) {
+        const Pass trial = thinned(pass, brush, law, was, share * tolerance_mm);
+        const PassMarks now = simulate(trial, brush, exact_mm, false);
+        const Ring there = widest_points(now, brush);
+        // both ways: a mark that lacks a part is nowhere beside what it should be
+        if (apart(now, there, middle) <= tolerance_mm && apart(marks, middle, there) <= tolerance_mm) return trial;
+    }
+    return pass;
+}
+
+}  // namespace brushsvg

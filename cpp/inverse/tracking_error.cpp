@@ -1,0 +1,132 @@
+#include "brushsvg/tracking_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/tolerance.hpp"
+#include "brushsvg/simulate.hpp"
+#include "inverse/ends/end_styles.hpp"
+#include "regions/nearest_on_polyline.hpp"
+
+namespace brushsvg {
+
+using Eigen::Index;
+
+/// Where the mark is looked at between rows: it passes a corner of the line within 0.2 mm, and at 0.5 a fifth of the
+/// miss there slipped through.
+constexpr double kLookEveryMm = 0.1;
+
+namespace {
+
+/// Discs round which the brush is turned, and places about a butt end: there the mark is judged and not its middle,
+/// which swings in corners.
+struct Disc {
+    Eigen::Vector2d middle_mm;
+    double radius_mm;
+    double distance(const Eigen::Vector2d& point) const {
+        return std::max(0.0, (point - middle_mm).norm() - radius_mm);
+    }
+};
+
+/// The direction in which a path begins, and not that of its first chord: half a width before it those are 0.05 mm
+/// apart on an arc of 10 mm.
+Eigen::RowVector2d begins_along(const Cubics& middle_mm) {
+    Place first{0, 0.0};
+    while (first.cubic + 1 < middle_mm.rows() && tangent_at(middle_mm, first).isZero()) ++first.cubic;
+    return tangent_at(middle_mm, first).transpose();
+}
+
+/// Whether a mark comes near the place where the way of a butt end goes back along the side. A mark on the path is
+/// as far from it as the path is.
+bool is_butt(const Ring& widest, const ButtEnd& end) {
+    constexpr double kThere = 0.25;
+    const double off_path_mm = std::abs(end.end.left.dot(end.back_mm - end.end.at_mm));
+    return (widest.rowwise() - end.back_mm.transpose()).rowwise().norm().minCoeff() < kThere * off_path_mm;
+}
+
+TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, const Stroke& stroke, double tolerance_mm,
+                                const std::vector<Disc>& discs) {
+    const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
+    // on its way back to a round beginning a blunt front goes beyond the path's
+    MiddlePolyline longer(line.rows() + 1, 4);
+    longer << line.row(0), line;
+    longer.row(0).head<2>() -= line(0, 3) * begins_along(stroke.middle_mm);
+    Nearest nearest(line), before_turn(longer);
+    // from the first taut row to the last: the landing and a slack lift do not count, a turn in place does, and where
+    // the brush turns over it hardly touches
+    std::size_t begin = 0, end = marks.taut.size();
+    while (begin < end && !marks.taut[begin]) ++begin;
+    while (end > begin && !marks.taut[end - 1]) --end;
+    TrackingError miss;
+    double before = 0.0, travelled = 0.0;  // by length and not by rows, which lie closer where a tolerance asks for it
+    const auto look = [&](std::size_t from, std::size_t to, auto& path) {
+        std::optional<Eigen::Vector2d> last;
+        along(widest, Index(from), Index(to), kLookEveryMm, [&](const Eigen::Vector2d& point) {
+            double d = path.distance(point);
+            for (const Disc& disc : discs) d = std::min(d, disc.distance(point));
+            if (d > miss.largest_mm) {
+                miss.largest_mm = d;
+                miss.at_mm = {point.x(), point.y()};
+            }
+            const double step = last ? (point - *last).norm() : 0.0;
+            miss.mean_mm += 0.5 * (before + d) * step;
+            travelled += step;
+            before = d;
+            last = point;
+        });
+    };
+    for (const TurnOver& turn : turns_over(marks)) {
+        look(begin, turn.first, before_turn);
+        begin = turn.last;
+    }
+    look(begin, end, nearest);
+    miss.mean_mm = travelled > 0.0 ? miss.mean_mm / travelled : miss.largest_mm;
+    miss.within_tolerance = miss.largest_mm <= tolerance_mm;
+    return miss;
+}
+
+}  // namespace
+
+TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Brush& brush, double tolerance_mm) {
+    check(stroke);
+    require_tolerance(tolerance_mm, stroke.id);
+    const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm), false);
+    const std::vector<Turned> all_turned = turned_round(marks);  // a dot, or a stroke that begins or ends with one
+    const auto is_taut_within = [&](std::size_t from, std::size_t to) {
+        return std::any_of(marks.taut.begin() + Index(from), marks.taut.begin() + Index(to),
+                           [](bool taut) { return taut; });
+    };
+    const bool is_dot =
+        !all_turned.empty() && turns_over(marks).empty() && !is_taut_within(0, all_turned.front().first);
+    const Ring widest = is_dot ? marks.contact_mm : widest_points(marks, brush);
+    std::vector<Disc> discs;
+    if (!is_dot)
+        for (const Turned& turned : all_turned) {
+            const auto depth = marks.depth_mm.begin();
+            discs.push_back({marks.contact_mm.row(Index(turned.last)).transpose(),
+                             reach_of_turn_mm(brush, *std::max_element(depth + Index(turned.first),
+                                                                       depth + Index(turned.last) + 1))});
+        }
+    const Stroke painted = as_wide_as_painted(stroke, brush);
+    Stroke whole = up_to_drawn_end(painted, brush);  // a blunt front goes beyond the path's end, and so does a point
+    if (stroke.settings.end == "pointed")
+        if (auto pointed = pointed_end(painted, brush, Caps::round)) whole = std::move(pointed->stroke);
+    const TrackingError miss = tracking_error_of(marks, widest, whole, tolerance_mm, discs);
+    if (miss.within_tolerance) return miss;
+    if (const auto dot = discs.empty() ? std::nullopt : dot_with_corners(painted, brush)) {
+        const Stroke& way = *dot->back().line;
+        for (Index i = 0; i < way.middle_mm.rows(); ++i)
+            discs[0].radius_mm =
+                std::max(discs[0].radius_mm, (way.middle_mm.row(i).tail<2>().transpose() - discs[0].middle_mm).norm() +
+                                                 brush.lever_to_widest(depth_of(way, brush, 0.0)));
+        return tracking_error_of(marks, widest, whole, tolerance_mm, discs);
+    }
+    const std::size_t before = discs.size();
+    for (const Side side : {Side::start, Side::end})
+        if (const auto found = make_butt_end(painted, brush, Caps::straight, side); found && is_butt(widest, *found))
+            discs.push_back({found->end.at_mm, found->reach_mm});
+    return discs.size() == before ? miss : tracking_error_of(marks, widest, whole, tolerance_mm, discs);
+}
+
+}  // namespace brushsvg

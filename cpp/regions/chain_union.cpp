@@ -1,0 +1,321 @@
+#include "regions/chain_union.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "brushsvg/checkpoint.hpp"
+
+namespace brushsvg {
+namespace {
+
+using Unit = std::int64_t;
+struct Corner {
+    Unit x, y;
+    bool operator==(const Corner& other) const { return x == other.x && y == other.y; }
+    Corner operator-(const Corner& other) const { return {x - other.x, y - other.y}; }
+};
+using Corners = std::vector<Corner>;
+
+constexpr double kFarthest = 5e8;  // units: products of two lengths are exact
+constexpr double kLeastMm2 = 1e-6;
+constexpr std::size_t kMostPairs = 1 << 22;  // of edges: beyond, a sweep is quicker
+
+Unit cross(const Corner& a, const Corner& b) { return a.x * b.y - a.y * b.x; }
+int sign(Unit value) { return (value > 0) - (value < 0); }
+
+bool is_left_of(const Corner& a, const Corner& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; }
+
+Corners corners_of(const Ring& ring, double units_per_mm) {
+    Corners corners;
+    for (Eigen::Index i = 0; i < ring.rows(); ++i) {
+        const Corner corner{std::lround(ring(i, 0) * units_per_mm), std::lround(ring(i, 1) * units_per_mm)};
+        if (corners.empty() || !(corner == corners.back())) corners.push_back(corner);
+    }
+    while (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
+    return corners;
+}
+
+/// On which side of the edge from `from` to `to` a corner of the second shape lies, 1 left, -1 right. No corner lies on
+/// an edge of the other shape: the second one counts as shifted by (e, e^2) for an e that is less than any length.
+int side_of_second(const Corner& from, const Corner& to, const Corner& corner) {
+    const Corner edge = to - from;
+    const Unit twice = cross(edge, corner - from);
+    return twice != 0 ? sign(twice) : edge.y != 0 ? -sign(edge.y) : sign(edge.x);
+}
+/// The same of a corner of the first shape beside an edge of the second.
+int side_of_first(const Corner& from, const Corner& to, const Corner& corner) {
+    const Corner edge = to - from;
+    const Unit twice = cross(edge, corner - from);
+    return twice != 0 ? sign(twice) : edge.y != 0 ? sign(edge.y) : -sign(edge.x);
+}
+
+/// Where an edge of the first shape crosses one of the second: their numbers, and how far along them, as exact
+/// fractions with the slant of both. `ways`: of the first shape's edge and of the second's.
+struct Crossing {
+    std::size_t edge[2];
+    Corner ways[2];
+    Unit along[2], slant;
+    bool first_enters;
+    Corner place;
+
+    /// Whether it comes before another one on the same edge of a shape; where they are at one place the shift tells.
+    bool comes_before(const Crossing& other, int of) const {
+        __extension__ using Exact = __int128;
+        const Exact mine = Exact(along[of]) * other.slant, others = Exact(other.along[of]) * slant;
+        const int order = sign(slant) * sign(other.slant);
+        if (mine != others) return (mine < others) == (order > 0);
+        // the shift moves it along: by e y - e^2 x of the other edge, over the slant
+        const Corner &way = ways[1 - of], &way_there = other.ways[1 - of];
+        const auto farther = [&](Unit here, Unit there) {
+            return order * sign(Unit((Exact(there) * slant > Exact(here) * other.slant) -
+                                     (Exact(there) * slant < Exact(here) * other.slant)));
+        };
+        const int first = farther(way.y, way_there.y);
+        return first != 0 ? first > 0 : farther(-way.x, -way_there.x) > 0;
+    }
+};
+
+struct Box {
+    Unit left, bottom, right, top;
+    bool meets(const Box& other) const {
+        return left <= other.right && right >= other.left && bottom <= other.top && top >= other.bottom;
+    }
+};
+Box box_of(const Corner& a, const Corner& b) {
+    return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
+}
+Box box_of(const Corners& corners) {
+    Box box = box_of(corners[0], corners[0]);
+    for (const Corner& c : corners)
+        box = {std::min(box.left, c.x), std::min(box.bottom, c.y), std::max(box.right, c.x), std::max(box.top, c.y)};
+    return box;
+}
+
+struct Edge {
+    std::size_t number;
+    Box box;
+};
+std::vector<Edge> edges_in(const Corners& corners, const Box& window) {
+    std::vector<Edge> edges;
+    for (std::size_t i = 0, n = corners.size(); i < n; ++i) {
+        const Box box = box_of(corners[i], corners[i + 1 == n ? 0 : i + 1]);
+        if (box.meets(window)) edges.push_back({i, box});
+    }
+    return edges;
+}
+
+/// All of them; nothing where too many edges would have to be held against each other.
+std::optional<std::vector<Crossing>> crossings(const Corners& first, const Corners& second) {
+    const Box of_second = box_of(second), of_first = box_of(first);
+    const Box window{std::max(of_first.left, of_second.left), std::max(of_first.bottom, of_second.bottom),
+                     std::min(of_first.right, of_second.right), std::min(of_first.top, of_second.top)};
+    const std::vector<Edge> near = edges_in(first, window);
+    std::vector<Edge> others = edges_in(second, window);
+    if (near.size() * others.size() > kMostPairs) return std::nullopt;
+    const auto is_lower = [](const Edge& a, const Edge& b) { return a.box.bottom < b.box.bottom; };
+    std::sort(others.begin(), others.end(), is_lower);
+    Unit tallest = 0;
+    for (const Edge& edge : others) tallest = std::max(tallest, edge.box.top - edge.box.bottom);
+    std::vector<Crossing> found;
+    for (const Edge& edge : near) {
+        checkpoint();
+        const Corner &a = first[edge.number], &b = first[edge.number + 1 == first.size() ? 0 : edge.number + 1];
+        auto other = std::lower_bound(others.begin(), others.end(), edge.box.bottom - tallest,
+                                      [](const Edge& e, Unit bottom) { return e.box.bottom < bottom; });
+        for (; other != others.end() && other->box.bottom <= edge.box.top; ++other) {
+            if (!other->box.meets(edge.box)) continue;
+            const Corner &c = second[other->number],
+                         &d = second[other->number + 1 == second.size() ? 0 : other->number + 1];
+            if (side_of_second(a, b, c) == side_of_second(a, b, d)) continue;
+            const int before = side_of_first(c, d, a);
+            if (before == side_of_first(c, d, b)) continue;
+            const Corner along = b - a, across = d - c, between = c - a;
+            Crossing crossing{
+                {edge.number, other->number}, {along, across}, {cross(between, across), cross(between, along)},
+                cross(along, across),         before < 0,      {}};
+            const double share = double(crossing.along[0]) / double(crossing.slant);
+            crossing.place = {a.x + Unit(std::floor(share * double(along.x))),  // down, as `region` has it
+                              a.y + Unit(std::floor(share * double(along.y)))};
+            found.push_back(crossing);
+        }
+    }
+    return found;
+}
+
+/// Crossings in the order in which an outline meets them. False where it does not enter and leave by turns, which
+/// shapes that cross themselves do not.
+bool in_turn(const std::vector<Crossing>& all, int of, std::vector<std::size_t>& order) {
+    order.resize(all.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        const Crossing &one = all[a], &other = all[b];
+        return one.edge[of] != other.edge[of] ? one.edge[of] < other.edge[of] : one.comes_before(other, of);
+    });
+    for (std::size_t k = 1; k < order.size(); ++k)
+        if (all[order[k]].first_enters == all[order[k - 1]].first_enters) return false;
+    return order.size() % 2 == 0;
+}
+
+/// 1 where a place lies inside of an outline, -1 outside, 0 on it.
+int depth_in(const Corners& corners, const Corner& place) {
+    bool inside = false;
+    for (std::size_t i = 0, n = corners.size(); i < n; ++i) {
+        const Corner &a = corners[i], &b = corners[i + 1 == n ? 0 : i + 1];
+        if ((a.y > place.y && b.y > place.y) || (a.y < place.y && b.y < place.y)) continue;
+        const Unit twice = cross(b - a, place - a);
+        if (twice == 0 && box_of(a, b).meets(box_of(place, place))) return 0;
+        if ((a.y > place.y) != (b.y > place.y) && (twice > 0) == (b.y > a.y)) inside = !inside;
+    }
+    return inside ? 1 : -1;
+}
+
+/// Whether the first corner of an outline's part that lies on neither side of the other one by chance lies where its
+/// crossings say: they are wrong where rounding has made a shape cross itself.
+bool lies(const Corners& corners, std::size_t after, std::size_t last, int depth, const Corners& other) {
+    for (std::size_t i = after, n = corners.size(); i != last;) {
+        i = i + 1 == n ? 0 : i + 1;
+        if (const int found = depth_in(other, corners[i]); found != 0) return found == depth;
+    }
+    return true;
+}
+
+double area_of(const Corners& corners) {
+    double twice = 0.0;
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+        twice += double(cross(corners[i] - corners[0], corners[i + 1] - corners[0]));
+    return 0.5 * twice;
+}
+double length_around(const Corners& corners) {
+    double length = 0.0;
+    for (std::size_t i = 0, n = corners.size(); i < n; ++i) {
+        const Corner edge = corners[i + 1 == n ? 0 : i + 1] - corners[i];
+        length += std::hypot(double(edge.x), double(edge.y));
+    }
+    return length;
+}
+
+bool is_straight(const Corner& a, const Corner& b, const Corner& c) { return cross(b - a, c - b) == 0; }
+
+/// Without corners where nothing turns, and without ways there and back.
+void straighten(Corners& corners) {
+    Corners kept;
+    for (const Corner& corner : corners) {
+        while (kept.size() > 1 && is_straight(kept[kept.size() - 2], kept.back(), corner)) kept.pop_back();
+        if (kept.empty() || !(corner == kept.back())) kept.push_back(corner);
+    }
+    std::size_t first = 0;
+    while (kept.size() - first > 2) {
+        if (is_straight(kept[kept.size() - 2], kept.back(), kept[first]))
+            kept.pop_back();
+        else if (is_straight(kept.back(), kept[first], kept[first + 1]))
+            ++first;
+        else
+            break;
+    }
+    corners.assign(kept.begin() + std::ptrdiff_t(first), kept.end());
+}
+
+bool touches_itself(Corners corners) {
+    std::sort(corners.begin(), corners.end(), is_left_of);
+    return std::adjacent_find(corners.begin(), corners.end()) != corners.end();
+}
+
+/// The outline of both together if it is one ring: `first` becomes it.
+bool grow(Corners& first, const Corners& second, double least_area) {
+    const std::optional<std::vector<Crossing>> found = crossings(first, second);
+    if (!found) return false;
+    const std::vector<Crossing>& all = *found;
+    if (all.empty()) {
+        if (depth_in(first, second[0]) > 0) return true;
+        if (depth_in(second, first[0]) < 1) return false;
+        first = second;
+        return true;
+    }
+    const Corners* shapes[2] = {&first, &second};
+    std::vector<std::size_t> order[2], at[2];
+    for (int of : {0, 1}) {
+        if (!in_turn(all, of, order[of])) return false;
+        at[of].resize(all.size());
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            const Crossing &here = all[order[of][k]], &next = all[order[of][k + 1 == all.size() ? 0 : k + 1]];
+            const int depth = here.first_enters == (of == 0) ? 1 : -1;
+            if (!lies(*shapes[of], here.edge[of], next.edge[of], depth, *shapes[1 - of])) return false;
+            at[of][order[of][k]] = k;
+        }
+    }
+    // From where the first shape comes out of the second along it, until it enters: there the second comes out.
+    std::vector<bool> is_done(all.size(), false);
+    Corners outline, cycle;
+    for (std::size_t begin = 0; begin < all.size(); ++begin) {
+        if (all[begin].first_enters || is_done[begin]) continue;
+        cycle.clear();
+        std::size_t k = begin;
+        do {
+            is_done[k] = true;
+            for (int of : {0, 1}) {
+                const Corners& shape = *shapes[of];
+                const std::size_t n = shape.size(), place = at[of][k];
+                const std::size_t next = order[of][place + 1 == all.size() ? 0 : place + 1];
+                cycle.push_back(all[k].place);
+                const bool is_same_edge = all[next].edge[of] == all[k].edge[of] && place + 1 != all.size();
+                if (!is_same_edge)
+                    for (std::size_t i = all[k].edge[of];;) {
+                        i = i + 1 == n ? 0 : i + 1;
+                        cycle.push_back(shape[i]);
+                        if (i == all[next].edge[of]) break;
+                    }
+                k = next;
+            }
+        } while (!is_done[k]);
+        if (k != begin) return false;
+        const double area = area_of(cycle);
+        if (std::abs(area) <= std::max(least_area, length_around(cycle))) continue;  // what rounding leaves
+        if (area < 0.0 || !outline.empty()) return false;
+        outline = cycle;
+    }
+    if (area_of(outline) + length_around(outline) < std::max(area_of(first), area_of(second))) return false;
+    straighten(outline);
+    if (touches_itself(outline)) return false;
+    first = std::move(outline);
+    return true;
+}
+
+}  // namespace
+
+std::optional<Rings> united_in_chain(const Rings& rings, double units_per_mm) {
+    std::vector<Corners> level;
+    const double least_area = kLeastMm2 * units_per_mm * units_per_mm;
+    for (const Ring& ring : rings) {
+        if (!(ring.rows() > 0 && (ring * units_per_mm).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < kFarthest))
+            return std::nullopt;
+        if (Corners corners = corners_of(ring, units_per_mm); corners.size() > 2) level.push_back(std::move(corners));
+    }
+    for (std::size_t before = 0; before != level.size();) {  // by halves: each corner is looked at a few times
+        before = level.size();
+        std::vector<Corners> next;
+        for (std::size_t k = 0; k < before; ++k) {
+            next.push_back(std::move(level[k]));
+            if (k + 1 < before && grow(next.back(), level[k + 1], least_area)) ++k;
+        }
+        level = std::move(next);
+    }
+    Rings out;
+    for (Corners& corners : level) {
+        std::rotate(corners.begin(), std::max_element(corners.begin(), corners.end(), is_left_of), corners.end());
+        straighten(corners);
+        Ring& ring = out.emplace_back(Eigen::Index(corners.size()), 2);
+        for (Eigen::Index i = 0; i < ring.rows(); ++i) {
+            const Corner& corner = corners[std::size_t(i)];
+            ring.row(i) << double(corner.x) / units_per_mm, double(corner.y) / units_per_mm;
+        }
+    }
+    return out;
+}
+
+}  // namespace brushsvg

@@ -1,0 +1,167 @@
+#include "regions/skeleton_pruning.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "brushsvg/checkpoint.hpp"
+
+namespace brushsvg {
+namespace {
+
+// area over r^2 that an outer corner leaves of a disc in it: tan(a/2) - a/2 for a turn by a, here 45 degrees
+constexpr double kLeastCorner = 0.02;
+// A corner that adds as much to the disc at a line's end, one of 68 degrees, is where the line ends, if no other adds
+// nearly as much. Lines to corners that are blunter end in hooks, of which the eye sees more than of what is left
+// blank.
+constexpr double kLeastEnd = 0.5, kEndStandsOut = 1.4;
+// What the end of a stem adds, beside or beyond what leaves it there, over what any branch must: its two corners
+// together, 0.43 if they are right-angled, are too much to be left blank, and a line to where they part leaves little
+// of them.
+constexpr double kStemEnd = 0.5;
+
+bool stands_out(double share, double other) { return share > kLeastEnd && share > kEndStandsOut * other; }
+
+template <typename T>
+void sort_and_thin(std::vector<T>& values) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+}  // namespace
+
+KeptBranches::KeptBranches(VoronoiAxis& axis)
+    : axis_(axis),
+      mate_(axis.from.size()),
+      corner_(axis.points.size(), 0.0),
+      radius_(corner_),
+      closes_(axis.points.size(), false),
+      is_end_(closes_) {
+    for (std::size_t h = 0; h < mate_.size(); ++h) mate_[h] = h ^ 1;
+    for (std::size_t p = 0; p < axis_.points.size(); ++p)
+        if (axis_.out[p].size() == 2) join(p);
+}
+
+bool KeptBranches::is_node(std::size_t p) const {
+    const std::size_t n = axis_.out[p].size();
+    return n > 2 || n == 1 || closes_[p] || (n == 2 && corner_[p] >= kLeastCorner && !is_end_[p]);
+}
+
+void KeptBranches::drop(double least_share, double least_limb) {
+    std::vector<std::size_t> looked_at(axis_.points.size());
+    for (std::size_t p = 0; p < looked_at.size(); ++p) looked_at[p] = p;
+    while (!looked_at.empty()) {
+        checkpoint(int(looked_at.size()));
+        std::vector<Drop> drops = judged(looked_at, least_share, least_limb);  // all before any goes
+        keep_ends(drops);
+        std::vector<std::size_t> junctions;
+        for (const Drop& each : drops) {
+            take_out(each);
+            junctions.push_back(each.junction);
+        }
+        sort_and_thin(junctions);
+        looked_at.clear();
+        for (std::size_t p : junctions) {
+            looked_at.push_back(p);
+            if (axis_.out[p].empty()) dabs_.emplace_back(p, radius_[p]);
+            if (axis_.out[p].size() != 2) continue;
+            join(p);
+            for (std::size_t h : axis_.out[p]) looked_at.push_back(axis_.from[mate_[h]]);
+        }
+    }
+    for (std::size_t p = 0; p < axis_.points.size(); ++p)
+        if (axis_.out[p].size() == 1) drop_late_corner(p, least_share, least_limb);
+}
+
+/// A corner whose sides bend is left by branches of its own, which go first. Meanwhile the other corner of the cut may
+/// have gone, and the way to this one counts as the line's.
+void KeptBranches::drop_late_corner(std::size_t end, double least_share, double least_limb) {
+    for (std::size_t h = axis_.out[end][0]; h != VoronoiAxis::none; h = axis_.next[h]) {
+        const std::size_t p = axis_.to(h), back = h ^ 1;
+        if (axis_.out[p].size() != 2 || closes_[p]) return;
+        if (corner_[p] < kLeastCorner || is_end_[p]) continue;
+        const double share = axis_.share(back);
+        if (share >= least_share || is_limb(back, least_share, least_limb) || stands_out(share, corner_[p])) return;
+        take_out({p, share, back, false});
+        return drop_late_corner(p, least_share, least_limb);
+    }
+}
+
+std::vector<KeptBranches::Drop> KeptBranches::judged(const std::vector<std::size_t>& ends, double least_share,
+                                                     double least_limb) const {
+    std::vector<Drop> drops;
+    for (std::size_t p : ends) {
+        if (axis_.out[p].size() != 1) continue;
+        const std::size_t h = mate_[axis_.out[p][0]], junction = axis_.from[h];
+        if (axis_.out[junction].size() < 3) continue;
+        const double share = axis_.share(h);
+        if (share < least_share && !is_limb(h, least_share, least_limb))
+            drops.push_back({junction, share, h, share >= kStemEnd * least_share && is_blunt(h)});
+    }
+    sort_and_thin(drops);
+    return drops;
+}
+
+/// Whether a corner was dropped at the end of a branch: of both of a square end, or of the one that stands out less.
+bool KeptBranches::is_blunt(std::size_t half) const {
+    for (std::size_t h = half; h != VoronoiAxis::none; h = axis_.next[h]) {
+        const std::size_t p = axis_.to(h);
+        if (is_end_[p] || (axis_.next[h] == VoronoiAxis::none && corner_[p] >= kLeastCorner)) return true;
+    }
+    return false;
+}
+
+/// A corner looks the same from all places on its branch; a bar on a thick stem adds little to the stem's disc, but
+/// much to one of its own width.
+bool KeptBranches::is_limb(std::size_t half, double least_share, double least_limb) const {
+    if (axis_.share(half) < least_limb) return false;
+    const double least_area = least_limb * axis_.radius(half) * axis_.radius(half);
+    for (std::size_t h = axis_.next[half]; h != VoronoiAxis::none; h = axis_.next[h]) {
+        const double share = axis_.share(h), area = share * axis_.radius(h) * axis_.radius(h);
+        if (area < least_area) return false;  // it only falls
+        if (share >= least_share) return true;
+    }
+    return false;
+}
+
+void KeptBranches::keep_ends(std::vector<Drop>& drops) {
+    std::vector<Drop> kept;
+    for (std::size_t i = 0; i < drops.size();) {
+        std::size_t j = i;
+        while (j < drops.size() && drops[j].junction == drops[i].junction) ++j;
+        const std::size_t p = drops[i].junction;
+        if (axis_.out[p].size() > j - i + 1) {
+            std::copy_if(drops.begin() + std::ptrdiff_t(i), drops.begin() + std::ptrdiff_t(j), std::back_inserter(kept),
+                         [](const Drop& each) { return !each.is_stem; });
+            i = j;
+            continue;
+        }
+        const double most = drops[j - 1].share, next = j - i > 1 ? drops[j - 2].share : 0.0;
+        const bool is_end = axis_.out[p].size() == j - i + 1 && stands_out(most, next);
+        if (is_end) is_end_[p] = true;
+        kept.insert(kept.end(), drops.begin() + std::ptrdiff_t(i), drops.begin() + std::ptrdiff_t(is_end ? j - 1 : j));
+        i = j;
+    }
+    drops = std::move(kept);
+}
+
+void KeptBranches::take_out(const Drop& each) {
+    corner_[each.junction] = std::max(corner_[each.junction], each.share);
+    radius_[each.junction] = axis_.radius(each.half);
+    auto& leaving = axis_.out[each.junction];
+    leaving.erase(std::find(leaving.begin(), leaving.end(), each.half));
+    for (std::size_t k = each.half; k != VoronoiAxis::none; k = axis_.next[k]) axis_.out[axis_.to(k)].clear();
+}
+
+void KeptBranches::join(std::size_t p) {
+    const std::size_t a = axis_.out[p][0], b = axis_.out[p][1], far_a = mate_[a], far_b = mate_[b];
+    if (far_a == b) {
+        closes_[p] = true;
+        return;
+    }
+    axis_.next[a ^ 1] = b;
+    axis_.next[b ^ 1] = a;
+    mate_[far_a] = far_b;
+    mate_[far_b] = far_a;
+}
+
+}  // namespace brushsvg

@@ -1,0 +1,515 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "base/parallel.hpp"
+#include "brushsvg/checkpoint.hpp"
+#include "brushsvg/compensate.hpp"
+#include "brushsvg/error.hpp"
+#include "brushsvg/excess_turning.hpp"
+#include "brushsvg/region.hpp"
+#include "brushsvg/stroke_search.hpp"
+#include "inverse/closed_form.hpp"
+#include "inverse/ends/end_styles.hpp"
+#include "inverse/ends/select_ends.hpp"
+#include "marks/half_painted.hpp"
+#include "strokes/candidates.hpp"
+#include "strokes/canvas.hpp"
+#include "strokes/variants.hpp"
+
+namespace brushsvg {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+constexpr std::size_t kMostAreas = 200;  // of one shape that are looked at: bounds the work
+constexpr double kStepMm = 0.01;         // of the poses of a trial: coarser ones paint thorns that plans have not
+constexpr double kSmoothed = 0.03;       // of its half width, how far a line may be off its curve
+constexpr double kBesideHalves =
+    2.0;                           // of the brush's greatest half width round a shape: no paint that counts is further
+constexpr double kMiddleMm = 0.1;  // of middle lines, to which the nearest place is looked for
+// Of strokes that are led otherwise: narrower by so much, cut so many half widths short.
+constexpr std::array<double, 2> kNarrower{0.95, 0.88};
+constexpr std::array<double, 4> kCuts{0.1, 0.4, 0.8, 1.5};
+constexpr double kNoiseMm2 = 0.4;         // what sticks out of a shape, as it is counted: less is a pixel's noise
+constexpr double kWorthMm2 = 0.05;        // won by another way: less is not worth to differ from what was asked for
+constexpr double kBesideStroke = 3.0;     // half widths of a stroke: no way to lead it paints further out
+constexpr std::size_t kMostLedBack = 40;  // of one shape
+constexpr float kBare = 0.4f;  // share of a pixel without paint from which it is bare: of strips, at their edges
+constexpr int kTurnedPx = 3;   // round a change, in which the outline's turning is compared
+
+/// The search for strokes into what the others leave of one shape.
+class Search {
+ public:
+    Search(const PaintedShape& shape, const Brush& brush, const ObjectiveWeights& weights)
+        : brush_(brush),
+          weights_(weights),
+          half_mm_(brush.half_width_range_mm()),
+          canvas_(shape.target_mm, weights, kBesideHalves * half_mm_[1]),
+          outline_(shape.target_mm, canvas_),
+          paint_(Coverage::Zero(canvas_.whole().rows, canvas_.whole().columns)),
+          refused_(Mask::Zero(paint_.rows(), paint_.cols())) {
+        half_mm_[0] = std::max(half_mm_[0], 1e-3);
+        for (const Pass& pass : shape.passes) tiles_.push_back(canvas_.paint(pass, brush));
+        for (const Tile& tile : tiles_) paint_over(paint_, canvas_.whole(), tile);
+    }
+
+    /// What the strokes leave bare, areas from a share of the shape on.
+    std::vector<UncoveredArea> uncovered(double least_mm2) const {
+        std::vector<UncoveredArea> found;
+        each_bare([&](Pixels&& pixels, std::size_t) {
+            Rings outline = bare_rings(pixels);
+            const double mm2 = area(outline);
+            if (mm2 >= least_mm2) found.push_back({std::move(outline), deepest_of(pixels), mm2});
+        });
+        std::stable_sort(found.begin(), found.end(),
+                         [](const UncoveredArea& a, const UncoveredArea& b) { return a.mm2 > b.mm2; });
+        return found;
+    }
+
+    /// are_free: whether strokes may be led otherwise, and not only added.
+    SearchedShape run(const std::vector<Stroke>& strokes, bool are_free) {
+        SearchedShape found;
+        for (const Stroke& stroke : strokes) found.strokes.push_back({stroke});
+        found.changed.assign(strokes.size(), false);
+        if (are_free) lead_back(found);
+        for (const std::vector<Stroke>& parts : found.strokes) middles_.push_back(middle_of(parts));
+        found.added = add();
+        return found;
+    }
+
+ private:
+    /// Strokes that stick out of the shape, the worst first.
+    void lead_back(SearchedShape& found) {
+        std::vector<std::pair<double, std::size_t>> beyond;
+        for (std::size_t k = 0; k < tiles_.size(); ++k)
+            if (sticks_out(tiles_[k])) beyond.push_back({-canvas_.bulge_mm2(tiles_[k]), k});
+        std::sort(beyond.begin(), beyond.end());
+        if (beyond.size() > kMostLedBack) beyond.resize(kMostLedBack);
+        for (const auto& [mm2, k] : beyond) {
+            const Stroke given = found.strokes[k].front();
+            if (is_set(given.settings.start) || is_set(given.settings.end)) continue;  // by the artist
+            const bool fills = given.start_covered && given.end_covered;
+            Led led{{given}, tiles_[k]};
+            if (!lead_back(led, k, fills, true, fills && k > 0)) continue;
+            found.strokes[k] = std::move(led.strokes);
+            found.changed[k] = true;
+        }
+    }
+
+    static bool is_set(const std::optional<std::string>& end) { return end && *end != "auto"; }
+
+    bool sticks_out(const Tile& tile) const { return weights_.bulge * canvas_.bulge_mm2(tile) > kNoiseMm2; }
+
+    /// What becomes of a stroke, and what that paints.
+    struct Led {
+        std::vector<Stroke> strokes;
+        Tile tile;
+    };
+
+    /// Leads a stroke, of the tile k, so that it costs less; false where nothing does.
+    bool lead_back(Led& led, std::size_t k, bool may_be_reversed, bool may_be_cut, bool may_be_left_out) {
+        const Stroke given = led.strokes.front();
+        const PixelBox box = about(given);
+        if (box.is_empty()) return false;
+        Coverage rest = Coverage::Zero(box.rows, box.columns);
+        for (std::size_t other = 0; other < tiles_.size(); ++other)
+            if (other != k) paint_over(rest, box, tiles_[other]);
+        // what this leaves bare may be painted by another stroke
+        const auto picture_with = [&](const Led& now) {
+            Coverage both = rest;
+            paint_over(both, box, now.tile);
+            return both;
+        };
+        const auto area_cost = [&](const Led& now, const Coverage& both) {
+            return canvas_.cost_mm2(box, both, false) + (double(now.strokes.size()) - 1.0) * stroke_mm2();
+        };
+        const double own_turns = target_turns(box);
+        const auto excess = [&](const Coverage& both) { return std::max(0.0, turns(both, box) - own_turns); };
+        const Coverage given_picture = picture_with(led);
+        double least_area = area_cost(led, given_picture) - kWorthMm2;
+        double least = least_area + turn_mm2() * excess(given_picture);
+        bool is_changed = false;
+        const auto keep_better = [&](Led other) {
+            const Coverage both = picture_with(other);
+            const double area_mm2 = area_cost(other, both);
+            if (area_mm2 >= least_area + turn_mm2()) return false;  // a turn less is more than can be won
+            const double cost = area_mm2 + turn_mm2() * excess(both);
+            if (cost >= least) return false;
+            least = cost;
+            least_area = area_mm2;
+            led = std::move(other);
+            return is_changed = true;
+        };
+        Variant best;
+        const auto look = [&](const Variant& variant) {
+            checkpoint(100);
+            const std::optional<Stroke> stroke = varied(given, variant, half_mm_);
+            const std::optional<Tile> tile = stroke ? painted({*stroke}, box) : std::nullopt;
+            if (tile && keep_better({{*stroke}, *tile})) best = variant;
+        };
+        // one choice after the other: each way round, what its ends look like, how wide, how short
+        for (const bool reversed : {false, true}) {
+            if (reversed && !may_be_reversed) break;
+            Variant from;
+            from.is_reversed = reversed;
+            if (reversed) look(from);
+            for (const auto& [square, pointed] : {std::pair{true, true}, {false, false}, {false, true}}) {
+                if (square != given.wanted_mm.empty()) continue;  // without a shape no end is square
+                Variant variant = from;
+                variant.is_square = square;
+                variant.is_pointed = pointed;
+                look(variant);
+            }
+        }
+        const auto try_each = [&](const auto& values, auto&& set) {
+            const Variant so_far = best;
+            for (const double value : values) {
+                Variant variant = so_far;
+                set(variant, value);
+                look(variant);
+            }
+        };
+        try_each(kNarrower, [](Variant& variant, double width) { variant.width = width; });
+        for (const std::size_t end : {0u, 1u})
+            if (!given.closed) try_each(kCuts, [&](Variant& variant, double cut) { variant.cut[end] = cut; });
+        const Stroke whole = led.strokes.front();
+        std::vector<Gap> gaps;
+        for (bool is_better = may_be_cut; is_better;) {
+            is_better = false;
+            std::vector<Gap> best_gaps;
+            for (const Gap& gap : gaps_of(whole)) {
+                std::vector<Gap> all = gaps;
+                const auto meets = [&](const Gap& other) { return gap[0] <= other[1] && other[0] <= gap[1]; };
+                if (std::any_of(all.begin(), all.end(), meets)) continue;
+                all.insert(std::upper_bound(all.begin(), all.end(), gap), gap);
+                const std::vector<Stroke> parts = brushsvg::cut(whole, all);
+                const std::optional<Tile> tile = painted(parts, box);
+                if (!tile || !keep_better({parts, *tile})) continue;
+                best_gaps = all;
+                is_better = true;
+            }
+            if (is_better) gaps = best_gaps;
+        }
+        if (may_be_left_out) keep_better({{}, Tile{}});
+        if (!is_changed) return false;
+        tiles_[k] = led.tile;
+        paint_.block(box.row, box.column, box.rows, box.columns) = rest;
+        paint_over(paint_, canvas_.whole(), tiles_[k]);
+        return true;
+    }
+
+    static MiddlePolyline middle_of(const std::vector<Stroke>& parts) {
+        MiddlePolyline all(0, 4);
+        for (const Stroke& part : parts) {
+            const MiddlePolyline line = flatten(part, kMiddleMm);
+            const Index rows = all.rows();
+            all.conservativeResize(rows + line.rows(), 4);
+            all.bottomRows(line.rows()) = line;
+        }
+        return all;
+    }
+
+    PixelBox about(const Stroke& stroke) const {
+        const MiddlePolyline line = flatten(stroke, kMiddleMm);
+        const double beside = kBesideStroke * line.col(3).maxCoeff();
+        const Vector2d low = line.leftCols<2>().colwise().minCoeff().transpose().array() - beside;
+        const Vector2d high = line.leftCols<2>().colwise().maxCoeff().transpose().array() + beside;
+        return canvas_.box_of(low, high);
+    }
+
+    /// What strokes paint of a box as a plan would; none where one of them cannot be painted.
+    std::optional<Tile> painted(const std::vector<Stroke>& strokes, const PixelBox& box) const {
+        CompensateOptions options;
+        options.start = Terminal::automatic;
+        options.end = Terminal::automatic;
+        Tile all{box, Coverage::Zero(box.rows, box.columns)};
+        for (const Stroke& stroke : strokes) try {
+                checkpoint(100);
+                bool turns = false;
+                const auto poses =
+                    closed_form(select_ends(stroke, brush_, options, kStepMm).front(), brush_, kStepMm, turns);
+                if (!poses) return std::nullopt;
+                Pass pass;
+                poses->into(pass);
+                paint_over(all.share, box, canvas_.paint(pass, brush_));
+            } catch (const Error&) {
+                return std::nullopt;
+            }
+        return all;
+    }
+
+    std::vector<AddedStroke> add() {
+        std::vector<AddedStroke> added;
+        for (std::size_t k = 0; k < kMostAreas; ++k) {
+            const std::optional<BareArea> area = largest_bare();
+            if (!area) break;
+            std::optional<AddedStroke> best = best_into(*area);
+            if (best) {
+                middles_.push_back(flatten(best->stroke, kMiddleMm));
+                added.push_back(std::move(*best));
+            } else {
+                refuse();
+            }
+        }
+        return added;
+    }
+
+    using Mask = Eigen::Matrix<unsigned char, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+    double stroke_mm2() const { return weights_.stroke * half_mm_[1] * half_mm_[1]; }
+    double turn_mm2() const { return weights_.turn * half_mm_[1] * half_mm_[1]; }
+
+    /// How much the outlines in a picture of a box turn, in full turns.
+    double turns(const Coverage& picture, const PixelBox& box) const {
+        return excess_turning(half_painted(picture, canvas_.window_of(box), canvas_.px_per_mm()), {});
+    }
+
+    /// The shape's own turning in a box. What a mark turns less than that is not won.
+    double target_turns(const PixelBox& box) const {
+        return turns(canvas_.target().block(box.row, box.column, box.rows, box.columns), box);
+    }
+
+    bool is_bare(Index row, Index column) const {
+        return !refused_(row, column) && canvas_.inner()(row, column) - paint_(row, column) > kBare;
+    }
+
+    using Pixels = std::vector<std::array<Index, 2>>;
+
+    /// Calls with the pixels of each bare area, and how much of each has an edge.
+    template <class Visit>
+    void each_bare(Visit&& visit) const {
+        Mask seen = Mask::Zero(paint_.rows(), paint_.cols());
+        for (Index row = 1; row + 1 < paint_.rows(); ++row) {
+            checkpoint(1);
+            if ((canvas_.inner().row(row) - paint_.row(row)).maxCoeff() <= kBare) continue;
+            for (Index column = 1; column + 1 < paint_.cols(); ++column) {
+                if (seen(row, column) || !is_bare(row, column)) continue;
+                Pixels pixels{{row, column}};
+                seen(row, column) = 1;
+                std::size_t edges = 0;
+                for (std::size_t k = 0; k < pixels.size(); ++k)
+                    for (Index r = pixels[k][0] - 1; r <= pixels[k][0] + 1; ++r)
+                        for (Index c = pixels[k][1] - 1; c <= pixels[k][1] + 1; ++c) {
+                            if (r < 1 || c < 1 || r + 1 >= paint_.rows() || c + 1 >= paint_.cols()) continue;
+                            if (!is_bare(r, c)) {
+                                ++edges;
+                            } else if (!seen(r, c)) {
+                                seen(r, c) = 1;
+                                pixels.push_back({r, c});
+                            }
+                        }
+                visit(std::move(pixels), edges);
+            }
+        }
+    }
+
+    /// The largest of the areas that are worth a stroke if one paints all of them.
+    std::optional<BareArea> largest_bare() const {
+        const double px_mm = 1.0 / canvas_.px_per_mm();
+        Pixels largest;
+        double most = stroke_mm2();
+        each_bare([&](Pixels&& pixels, std::size_t edges) {
+            const double worth = px_mm * (px_mm * double(pixels.size()) * (weights_.missing + weights_.notch) +
+                                          double(edges) / 3.0 * weights_.seen_mm * weights_.missing);
+            if (worth <= most) return;
+            most = worth;
+            largest = std::move(pixels);
+        });
+        if (largest.empty()) return std::nullopt;
+        BareArea area;
+        for (const auto& [row, column] : largest) area.places.push_back(canvas_.place(row, column));
+        area.deepest = deepest_of(largest);
+        pixels_ = std::move(largest);
+        return area;
+    }
+
+    /// The place farthest from the edge of an area, by rings of pixels taken off.
+    Vector2d deepest_of(const Pixels& pixels) const {
+        Index top = pixels[0][0], left = pixels[0][1], bottom = top, right = left;
+        for (const auto& [row, column] : pixels) {
+            top = std::min(top, row), bottom = std::max(bottom, row);
+            left = std::min(left, column), right = std::max(right, column);
+        }
+        Mask in = Mask::Zero(bottom - top + 3, right - left + 3);
+        for (const auto& [row, column] : pixels) in(row - top + 1, column - left + 1) = 1;
+        Pixels left_over = pixels;
+        std::array<Index, 2> last = pixels[pixels.size() / 2];
+        while (!left_over.empty()) {
+            last = left_over[left_over.size() / 2];
+            Pixels inner, rim;
+            for (const auto& each : left_over) {
+                const Index r = each[0] - top + 1, c = each[1] - left + 1;
+                (in.block<3, 3>(r - 1, c - 1).cast<int>().sum() == 9 ? inner : rim).push_back(each);
+            }
+            for (const auto& each : rim) in(each[0] - top + 1, each[1] - left + 1) = 0;
+            left_over = std::move(inner);
+        }
+        return canvas_.place(last[0], last[1]);
+    }
+
+    void refuse() {
+        for (const auto& [row, column] : pixels_) refused_(row, column) = 1;
+    }
+
+    Candidates candidates_into(const BareArea& area) {
+        Candidates all = straight_out(area, middles_, outline_, half_mm_);
+        const auto take = [&](Candidates&& more) { all.insert(all.end(), more.begin(), more.end()); };
+        take(along_edges(area, outline_, half_mm_));
+        take(from_corners(area, outline_, half_mm_));
+        double edge_mm = std::numeric_limits<double>::infinity();
+        for (const Vector2d& place : area.places) edge_mm = std::min(edge_mm, outline_.edge_mm(place));
+        if (edge_mm > 2.0 * weights_.seen_mm) take(across(area, outline_, half_mm_));
+        return all;
+    }
+
+    struct Trial {
+        Stroke stroke;
+        Tile tile;
+        double won_mm2;
+    };
+
+    std::optional<Trial> tried(const WideLine& line) const {
+        Trial trial;
+        FittedLine fitted = fit_curve(line, kSmoothed * line.col(2).mean(), false);
+        trial.stroke.middle_mm = std::move(fitted.middle_mm);
+        trial.stroke.half_width = std::move(fitted.half_width);
+        for (WidthKnot& knot : trial.stroke.half_width)
+            knot.half_width_mm = std::clamp(knot.half_width_mm, half_mm_[0], half_mm_[1]);
+        try {
+            bool turns = false;
+            const auto moves = kStartStyles.front().moves(up_to_drawn_end(trial.stroke, brush_), brush_, Caps::round);
+            const auto poses = moves ? closed_form(*moves, brush_, kStepMm, turns) : std::nullopt;
+            if (!poses) return std::nullopt;
+            Pass pass;
+            poses->into(pass);
+            trial.tile = canvas_.paint(pass, brush_);
+        } catch (const Error&) {
+            return std::nullopt;
+        }
+        if (trial.tile.box.is_empty()) return std::nullopt;
+        const PixelBox& box = trial.tile.box;
+        const Coverage before = paint_.block(box.row, box.column, box.rows, box.columns);
+        trial.won_mm2 =
+            canvas_.cost_mm2(box, before) - canvas_.cost_mm2(box, before.cwiseMax(trial.tile.share)) - stroke_mm2();
+        return trial;
+    }
+
+    /// How much more the outline of the paint turns with a tile, in full turns.
+    double turned(const Tile& tile) const {
+        PixelBox box{std::max<Index>(tile.box.row - kTurnedPx, 0), std::max<Index>(tile.box.column - kTurnedPx, 0), 0,
+                     0};
+        box.rows = std::min(tile.box.row + tile.box.rows + kTurnedPx, paint_.rows()) - box.row;
+        box.columns = std::min(tile.box.column + tile.box.columns + kTurnedPx, paint_.cols()) - box.column;
+        const Coverage before = paint_.block(box.row, box.column, box.rows, box.columns);
+        Coverage after = before;
+        paint_over(after, box, tile);
+        const double own = target_turns(box);
+        return std::max(own, turns(after, box)) - std::max(own, turns(before, box));
+    }
+
+    std::optional<AddedStroke> best_into(const BareArea& area) {
+        std::optional<Trial> best;
+        for (const WideLine& line : candidates_into(area)) {
+            checkpoint(50);
+            std::optional<Trial> trial = tried(line);
+            if (!trial || trial->won_mm2 + turn_mm2() <= (best ? best->won_mm2 : 0.0)) continue;
+            trial->won_mm2 -= turn_mm2() * turned(trial->tile);
+            if (trial->won_mm2 > (best ? best->won_mm2 : 0.0)) best = std::move(trial);
+        }
+        if (!best) return std::nullopt;
+        const Rings area_mm = bare_rings(pixels_);
+        best->stroke.settings.start = "pointed";  // under the paint of others
+        best->stroke.settings.end = "round";
+        Led led{{best->stroke}, best->tile};
+        tiles_.push_back(best->tile);
+        paint_over(paint_, canvas_.whole(), best->tile);
+        if (weights_.bulge * canvas_.bulge_mm2(best->tile) > kWorthMm2)
+            lead_back(led, tiles_.size() - 1, true, false, false);
+        AddedStroke added;
+        added.stroke = std::move(led.strokes.front());
+        added.mark_mm = half_painted(led.tile.share, canvas_.window_of(led.tile.box), canvas_.px_per_mm());
+        added.neighbour = nearest_middle(area.deepest);
+        added.area_mm = area_mm;
+        return added;
+    }
+
+    std::size_t nearest_middle(const Vector2d& place) const {
+        std::size_t which = 0;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < middles_.size(); ++k)
+            for (Index i = 0; i < middles_[k].rows(); ++i)
+                if (const double off = (middles_[k].block<1, 2>(i, 0).transpose() - place).squaredNorm(); off < least) {
+                    least = off;
+                    which = k;
+                }
+        return which;
+    }
+
+    /// The outline of a bare area, up to the edges of shape and paint.
+    Rings bare_rings(const Pixels& pixels) const {
+        const int steps = 1 + int(std::ceil(weights_.seen_mm * canvas_.px_per_mm()));
+        Index top = pixels[0][0], left = pixels[0][1], bottom = top, right = left;
+        for (const auto& [row, column] : pixels) {
+            top = std::min(top, row), bottom = std::max(bottom, row);
+            left = std::min(left, column), right = std::max(right, column);
+        }
+        PixelBox box{std::max<Index>(top - steps, 0), std::max<Index>(left - steps, 0), 0, 0};
+        box.rows = std::min(bottom + steps + 1, paint_.rows()) - box.row;
+        box.columns = std::min(right + steps + 1, paint_.cols()) - box.column;
+        Coverage picture = Coverage::Zero(box.rows, box.columns);
+        Pixels rim;
+        for (const auto& [row, column] : pixels) rim.push_back({row - box.row, column - box.column});
+        for (const auto& [row, column] : rim) picture(row, column) = 1.0f;
+        const Coverage bare = (canvas_.target() - paint_).block(box.row, box.column, box.rows, box.columns);
+        for (int step = 0; step < steps; ++step) {
+            Pixels next;
+            for (const auto& [row, column] : rim)
+                for (Index r = std::max<Index>(row - 1, 0); r <= std::min(row + 1, box.rows - 1); ++r)
+                    for (Index c = std::max<Index>(column - 1, 0); c <= std::min(column + 1, box.columns - 1); ++c)
+                        if (picture(r, c) == 0.0f && bare(r, c) > kBare) {
+                            picture(r, c) = 1.0f;
+                            next.push_back({r, c});
+                        }
+            rim = std::move(next);
+        }
+        return half_painted(picture, canvas_.window_of(box), canvas_.px_per_mm());
+    }
+
+    const Brush& brush_;
+    const ObjectiveWeights& weights_;
+    std::array<double, 2> half_mm_;
+    Canvas canvas_;
+    Outline outline_;
+    Coverage paint_;
+    Mask refused_;
+    std::vector<Tile> tiles_;  ///< of the given strokes, as they are led now
+    std::vector<MiddlePolyline> middles_;
+    mutable Pixels pixels_;  ///< of the area that is looked at
+};
+
+}  // namespace
+
+std::vector<SearchedShape> search_strokes(const std::vector<PaintedShape>& shapes, const Brush& brush,
+                                          const ObjectiveWeights& weights, bool are_free) {
+    std::vector<SearchedShape> found(shapes.size());
+    on_all_processors(0, shapes.size(), [&](std::size_t k) {
+        found[k] = Search(shapes[k], brush, weights).run(shapes[k].strokes, are_free);
+    });
+    return found;
+}
+
+std::vector<std::vector<UncoveredArea>> uncovered_areas(const std::vector<PaintedShape>& shapes, const Brush& brush,
+                                                        double least_share) {
+    std::vector<std::vector<UncoveredArea>> found(shapes.size());
+    const ObjectiveWeights weights;
+    on_all_processors(0, shapes.size(), [&](std::size_t k) {
+        found[k] = Search(shapes[k], brush, weights).uncovered(least_share * area(shapes[k].target_mm));
+    });
+    return found;
+}
+
+}  // namespace brushsvg

@@ -1,0 +1,112 @@
+#include "values/refuse_unusable.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "brushsvg/error.hpp"
+
+namespace brushsvg {
+namespace {
+
+constexpr double kDeepestMm = 1000.0, kLargestLawMm = 1000.0;  // as check(brush) has it
+constexpr int kLooks = 16;                                     // at a law over the depth range
+
+template <class... Numbers>
+std::string format(const char* pattern, Numbers... numbers) {
+    char text[256];
+    std::snprintf(text, sizeof text, pattern, numbers...);
+    return text;
+}
+
+void require_law(const Profile& law, double lo, double hi, bool is_length, const char* where) {
+    if (int(law.coefficients.size()) > kMaxLawDegree + 1)
+        throw Error("law-terms",
+                    format("the law has %.0f coefficients; at most %.0f are read", double(law.coefficients.size()),
+                           kMaxLawDegree + 1.0),
+                    where);
+    for (double c : law.coefficients)
+        if (!std::isfinite(c)) throw Error("not-finite", "a coefficient is not finite", where, c);
+    if (std::isnan(law.floor) || law.floor > kLargestLawMm || !std::isfinite(law.floor_slope))
+        throw Error("not-finite", "the floor of the law is not finite", where, law.floor);
+    for (int i = 0; i <= kLooks; ++i) {
+        const double d = lo + (hi - lo) * i / kLooks, value = law(d);
+        if (!(std::abs(value) <= kLargestLawMm) || (is_length && value < -1e-9))
+            throw Error("out-of-range",
+                        format("the law says %.4g mm at depth %.2f mm, outside the range [%.0f, %.0f] mm", value, d,
+                               is_length ? 0.0 : -kLargestLawMm, kLargestLawMm),
+                        where, value, std::array<double, 2>{is_length ? 0.0 : -kLargestLawMm, kLargestLawMm});
+    }
+}
+
+void require_outlines(const std::vector<Footprint>& shapes, Eigen::Index vertices, const char* where) {
+    double depth = 0.0;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const Ring& outline = shapes[i].outline_mm;
+        const auto here = [&] { return where + ("[" + std::to_string(i) + "]"); };
+        if (!(shapes[i].depth_mm > depth && shapes[i].depth_mm <= kLargestLawMm))
+            throw Error("not-ascending",
+                        format("depth %.3f mm is not greater than the one before, %.3f mm, and at most 1000 mm",
+                               shapes[i].depth_mm, depth),
+                        here(), shapes[i].depth_mm);
+        depth = shapes[i].depth_mm;
+        if (outline.rows() < 3 || outline.rows() != vertices)
+            throw Error("footprint-invalid",
+                        format("the outline has %.0f vertices; all need as many as the first one, at least 3",
+                               double(outline.rows())),
+                        here());
+        const double largest = outline.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+        if (!(largest <= kLargestLawMm))
+            throw Error("out-of-range",
+                        format("the outline reaches %.4g mm from the tip; no brush is larger than %.0f mm", largest,
+                               kLargestLawMm),
+                        here(), largest, std::array<double, 2>{0.0, kLargestLawMm});
+    }
+}
+
+}  // namespace
+
+void require_usable(const Brush& brush) {
+    require_known_kind(brush);
+    const auto [lo, hi] = brush.depth_range_mm;
+    if (!(lo >= 0.0 && hi > lo && hi <= kDeepestMm))
+        throw Error("out-of-range",
+                    format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kDeepestMm),
+                    "depth_range_mm");
+    require_law(brush.lag, lo, hi, true, "lag");
+    require_law(brush.tip_gap, lo, hi, false, "tip_gap");
+    require_law(brush.tip_to_widest, lo, hi, false, "tip_to_widest");
+    require_law(brush.half_width, lo, hi, true, "half_width");
+    if (!(std::abs(brush.paint_depth_mm) <= kDeepestMm))
+        throw Error("out-of-range", "the painting depth is not within [0, 1000] mm", "paint_depth_mm",
+                    brush.paint_depth_mm);
+    if (brush.footprints.dragged.empty()) throw Error("footprint-invalid", "there is no outline", "footprints.dragged");
+    const Eigen::Index vertices = brush.footprints.vertex_count();
+    require_outlines(brush.footprints.dragged, vertices, "footprints.dragged");
+    require_outlines(brush.footprints.pressed, vertices, "footprints.pressed");
+}
+
+void require_usable(const PassMarks& marks) {
+    const std::size_t rows = marks.pose.size();
+    const auto parallel = [rows](auto count) { return std::size_t(count) == rows; };
+    if (!parallel(marks.contact_mm.rows()) || !parallel(marks.heading_rad.size()) || !parallel(marks.depth_mm.size()) ||
+        !parallel(marks.taut.size()) || !parallel(marks.pull.size()) ||
+        (marks.lean_mm_per_mm.rows() > 0 && !parallel(marks.lean_mm_per_mm.rows())) ||
+        !(marks.width_share.empty() || parallel(marks.width_share.size())))
+        throw Error("sizes-differ", "the rows of the marks are not parallel: some columns are shorter than others",
+                    marks.stroke);
+    for (const double share : marks.width_share)
+        if (!(share >= 0.0 && share <= 1.0))
+            throw Error("out-of-range", "a share of the width is outside the range [0, 1]", marks.stroke, share,
+                        std::array<double, 2>{0.0, 1.0});
+    const auto sound = [](double x) { return std::abs(x) <= kFarthestPaintedMm; };
+    if ((rows > 0 && !(marks.contact_mm.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthestPaintedMm)) ||
+        (marks.lean_mm_per_mm.rows() > 0 && !marks.lean_mm_per_mm.allFinite()) ||
+        !std::all_of(marks.heading_rad.begin(), marks.heading_rad.end(), sound) ||
+        !std::all_of(marks.depth_mm.begin(), marks.depth_mm.end(), sound) ||
+        !std::all_of(marks.pull.begin(), marks.pull.end(), sound))
+        throw Error("geometry-out-of-range", "a number of the marks is not finite, or beyond 1e7", marks.stroke);
+}
+
+}  // namespace brushsvg

@@ -1,0 +1,297 @@
+"""Measurements or photographs to a brush: the steps of `brushsvg calibrate`, also called from Python."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from .. import _core
+from ..calibration.chart.dabs import dabs_of, is_of_dabs
+from ..calibration.chart.file import read_chart
+from ..calibration.chart.photograph import Read, edge_mm, expected, marks_of, read_chart_photos, remarks
+from ..calibration.chart.photograph import told as reading_in_words
+from ..calibration.dabs import dab_report
+from ..calibration.dabs.from_dabs import calibrate_dabs
+from ..calibration.from_file import fit_measurements
+from ..calibration.marks import mark_report, photo_report
+from ..calibration.marks.from_marks import MarkCalibration, calibrate_marks, options_for
+from ..calibration.marks.machine_found import ask_for, doubts
+from ..calibration.marks.mark_input import read_painted
+from ..calibration.marks.paint_found import calibrate_paint
+from ..calibration.numbers import law_report
+from ..calibration.overlap import by_overlap_report, lag_by_outlines_report
+from ..calibration.overlap.by_overlap import OverlapCalibration, by_overlap
+from ..calibration.overlap.lag_by_outlines import lag_by_outlines, refuse_assumed
+from ..calibration.prior import update_report
+from ..calibration.prior.from_prior import other_brush, refuse_learned, with_lineage
+from ..comparison.learning import learn
+from ..comparison.repeats import read_displacement_mm
+from ..errors import Error, Notice, need, need_number, need_one_of, need_truth
+from ..files import read_bytes
+from ..model.plot import brush_picture
+from .calibration_options import AIMS, CalibrationOptions, contradiction, is_photograph
+from .choices import brush_of, cell_of, concerning
+from .json_files import read_plan
+from .machine_parts import undoable_parts
+
+Report = Callable[[str, Iterable[Notice]], object]  # called with a file and the warnings about it
+
+
+@dataclass(frozen=True)
+class BrushCalibration:
+    """A brush and how it was found.
+
+    brush: a Brush [mm], which save_brush writes. fit: the details of the fit; what it holds depends on the source
+    (numbers: laws and remarks; marks: predicted marks and the machine's faults). text: the report that the command
+    prints. reading: how well photographs were read, in words. notices: warnings.
+    """
+
+    brush: _core.Brush
+    fit: Any = field(repr=False)
+    text: str = field(repr=False)
+    reading: str = ""
+    notices: tuple[Notice, ...] = ()
+    _plot: Callable[[str], bytes] | None = field(default=None, repr=False, compare=False)
+    _overlay: Callable[[], bytes] | None = field(default=None, repr=False, compare=False)
+
+    def plot(self, suffix: str = ".png") -> bytes:
+        """Return a picture of the laws with their data and residuals. suffix: ".png" or ".svg"."""
+        if self._plot is None:
+            raise Error("a brush that a job updated has no picture of its fit", code="nothing-to-show")
+        return self._plot(suffix)
+
+    def picture(self) -> bytes:
+        """Return a PNG of the flattened photograph with the outlines that were read and those predicted."""
+        if self._overlay is None:
+            raise Error("it was not made of photographs of a chart", code="nothing-to-show")
+        return self._overlay()
+
+
+def calibrate(
+    source: str | os.PathLike[str] | Mapping[str, Any] | Sequence[str | os.PathLike[str]],
+    name: str = "",
+    *,
+    progress: Callable[[str], object] | None = None,
+    **options: Any,
+) -> BrushCalibration:
+    """Measured numbers, painted marks or photographs to a brush, as `brushsvg calibrate` does.
+
+    source: the path of measurements (.csv .json) or what such a .json holds as a dict, with a Plan and Marks for their
+    files and arrays for lists; or the path, or a list of paths, of photographs of one painted chart or job. name: of
+    the brush, by default that of the measurements or of the first file. progress: called with words on what is done.
+    options: see CalibrationOptions.
+
+    Raises Error for a file that cannot be read, options that contradict each other, and measurements that leave a law
+    undetermined or that no brush can have.
+    """
+    if isinstance(source, (tuple, list)):
+        need(source, (tuple, list), "a list of paths")
+        for each in source:
+            need(each, (str, os.PathLike), "the path of a photograph")
+        if not source:
+            raise Error("there is no photograph", "source", code="wrong-type")
+        given = [os.fspath(each) for each in source]
+    else:
+        need(source, (str, os.PathLike, dict), "a path, a list of paths, or a dict of measurements")
+        given = source if isinstance(source, dict) else os.fspath(source)
+    need(name, str, "the name of a brush")
+    if progress is not None and not callable(progress):
+        need(progress, Callable, "a callable, which progress is")
+    notices: list[Notice] = []
+    made = calibrated(
+        given,
+        name,
+        checked_options(options),
+        progress or (lambda text: None),
+        lambda _, found: notices.extend(found),
+    )
+    return replace(made, notices=tuple(notices))
+
+
+def checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
+    """Return options by their names. TypeError for an unknown name, Error for a wrong value."""
+    known = CalibrationOptions.__dataclass_fields__
+    for name in options:
+        if name not in known:
+            raise TypeError(f"{name!r} is no option of calibrate; known are {', '.join(known)}")
+    options = {name: value for name, value in options.items() if value is not None}
+    for name in ("absolute", "total", "paint", "mirrored"):
+        need_truth(options.get(name, False), name)
+    for name, least, most in (("bar_mm", 0.001, 1e3), ("dpi", 1.0, 1e5), ("height_mm", 0.001, 10.0)):
+        if name in options:
+            options[name] = need_number(options[name], name, least, most)
+    for name in ("chart", "spread", "plan"):
+        if name in options:
+            need(options[name], (str, os.PathLike), f"a path, which {name} is")
+            options[name] = os.fspath(options[name])
+    need_one_of(options.get("aim", "edges"), AIMS, "aim")
+    return CalibrationOptions(**options)
+
+
+def calibrated(
+    source: str | Mapping | Sequence[str], name: str, options: CalibrationOptions, stage, warn: Report
+) -> BrushCalibration:
+    """Return a brush with its report; see calibrate. warn: called with a file and the warnings about it."""
+    if why := contradiction(source, options):
+        raise Error(why, code="options-contradict")
+    if options.cell is not None:
+        cell = cell_of(options.cell)
+        machine, left_out = undoable_parts(options.machine, cell)
+        options = replace(options, machine=machine)
+        warn(cell.name, left_out)
+    photos = [source] if is_photograph(source) else source if isinstance(source, (tuple, list)) else None
+    if not photos:
+        return _from_measurements(source, name, options, stage, warn)
+    name = name or os.path.splitext(os.path.basename(photos[0]))[0]
+    if options.plan is not None:
+        return _from_job(photos, name, options, stage, warn)
+    read = read_photographs(photos, options, stage, warn)
+    if is_of_dabs(read.chart):
+        return _from_dabs(photos, read, name, options, warn)
+    if options.brush is not None:
+        return _lag_from_strokes(photos, read, name, options, stage, warn)
+    return _from_strokes(photos, read, name, options, stage, warn)
+
+
+def read_photographs(photos: Sequence[str], options: CalibrationOptions, stage, warn: Report) -> Read:
+    """Return what photographs of one painted chart show; warns of missing strokes."""
+    with concerning(options.chart):
+        chart = read_chart(read_bytes(options.chart))
+    with concerning(photos[0]):
+        stage("reading the photographs")
+        read = read_chart_photos(
+            chart,
+            [(path, read_bytes(path)) for path in photos],
+            options.bar_mm,
+            options.dpi,
+            options.mirrored,
+        )
+    warn(photos[0], remarks(read))
+    return read
+
+
+def _from_measurements(source, name, options, stage, warn) -> BrushCalibration:
+    file = "" if isinstance(source, Mapping) else source
+    with concerning(file):
+        made = fit_measurements(
+            source,
+            name,
+            absolute=options.absolute,
+            total=options.total,
+            machine=options.machine,
+            paint=options.paint,
+            aim=options.aim,
+            progress=stage,
+        )
+    if isinstance(made, OverlapCalibration):
+        warn(file, doubts(made.by_edges.painted, made.by_edges.expected))
+        words = by_overlap_report
+    elif isinstance(made, MarkCalibration):
+        warn(file, doubts(made.painted, made.expected))
+        words = mark_report
+    else:
+        warn(file, made.doubts)
+        words = law_report
+    return BrushCalibration(
+        made.brush, made, words.report(made), _plot=lambda suffix: words.report_picture(made, suffix)
+    )
+
+
+def _from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
+    """Return a brush from painted strokes of a chart."""
+    with concerning(photos[0]):
+        by_edges = made = _fit_strokes(read, name, options, stage)
+        words = mark_report
+        if options.aim == "overlap":
+            made, words = by_overlap(by_edges, stage), by_overlap_report
+    warn(photos[0], mark_report.strays_told(by_edges) + doubts(by_edges.painted, by_edges.expected))
+    shown = made.made if options.aim == "overlap" else made
+    return BrushCalibration(
+        made.brush,
+        made,
+        words.report(made, of_photo=True),
+        reading_in_words(read),
+        _plot=lambda suffix: words.report_picture(made, suffix),
+        _overlay=lambda: photo_report.read_picture(read, shown),
+    )
+
+
+def _fit_strokes(read: Read, name, options, stage) -> MarkCalibration:
+    stage("fitting the brush")
+    painted = read_painted(json.loads(_core.write_plan(read.chart.plan)), marks_of(read), read_bytes)
+    known = {"displacement_mm": read_displacement_mm(options.spread)} if options.spread else {}
+    known |= {"height_mm": options.height_mm} if options.height_mm is not None else {}
+    fit_options = options_for(expected(read) | known)
+    ask_for(fit_options, options.machine)
+    fit = calibrate_paint if options.paint else calibrate_marks
+    return fit(painted, name, options=fit_options, edge_mm=edge_mm(read), leave_out_strays=True)
+
+
+def _from_dabs(photos, read: Read, name, options, warn) -> BrushCalibration:
+    """Return a brush of known lag with outlines from dabs."""
+    for broken, why in (
+        (
+            options.brush is None,
+            f"{options.chart} is a chart of dabs: give the brush whose lag is known, --brush FILE",
+        ),
+        (bool(options.machine), "--machine needs strokes: dabs say nothing about the machine"),
+        (options.height_mm is not None, "--height is for strokes: dabs count as deep as they were requested"),
+    ):
+        if broken:
+            raise Error(why, code="options-contradict")
+    before = brush_of(options.brush)
+    joined = tuple(stroke for pair in read.marks.joined for stroke in pair)
+    with concerning(photos[0]):
+        made = calibrate_dabs(dabs_of(read), before, name, edge_mm(read), joined)
+    warn(photos[0], made.remarks)
+    return BrushCalibration(
+        made.brush,
+        made,
+        dab_report.report(made),
+        reading_in_words(read),
+        _plot=lambda suffix: dab_report.report_picture(made, suffix),
+        _overlay=lambda: photo_report.dabs_picture(read, made),
+    )
+
+
+def _lag_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
+    """Return a brush of known outlines with the lag of painted strokes."""
+    own = brush_of(options.brush)
+    with concerning("" if isinstance(options.brush, _core.Brush) else options.brush):
+        refuse_assumed(own)
+    with concerning(photos[0]):
+        made = _fit_strokes(read, name, options, stage)
+        found = lag_by_outlines(made, own, name)
+    warn(photos[0], mark_report.strays_told(made))
+    return BrushCalibration(
+        found.brush,
+        found,
+        lag_by_outlines_report.report(found),
+        reading_in_words(read),
+        _plot=lambda suffix: brush_picture(found.brush, suffix),
+        _overlay=lambda: photo_report.read_picture(read, found.made),
+    )
+
+
+def _from_job(photos, name, options, stage, warn) -> BrushCalibration:
+    """Return a known brush, updated by photographs of a painted job."""
+    before = brush_of(options.prior)
+    with concerning(options.plan):
+        plan = read_plan(options.plan)
+    with concerning(options.spread or ""):
+        spread_mm = read_displacement_mm(options.spread) if options.spread else None
+    pictures = [(path, read_bytes(path)) for path in photos]
+    digests = [hashlib.sha256(data).hexdigest() for _, data in pictures]
+    with concerning("" if isinstance(options.prior, _core.Brush) else options.prior):
+        refuse_learned(before, digests)
+    warn(options.plan, other_brush(plan, before))
+    with concerning(photos[0]):
+        stage("reading the photographs and fitting the brush")
+        learnt = learn(plan, before, pictures, name, options.machine, spread_mm)
+    with_lineage(learnt.updated.brush, before, digests)
+    warn(photos[0], list(learnt.notices))
+    return BrushCalibration(learnt.updated.brush, learnt.updated, update_report.report(learnt.updated))

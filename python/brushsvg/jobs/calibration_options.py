@@ -1,0 +1,95 @@
+"""Options of a calibration, and which of them go together. It imports nothing heavy: usage errors are instant."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..photo import PHOTOS
+
+if TYPE_CHECKING:
+    from .. import _core
+    from ..machine.cells.cell import Cell
+
+AIMS = ("edges", "overlap")
+
+
+@dataclass(frozen=True, kw_only=True)
+class CalibrationOptions:
+    """The options of `brushsvg calibrate`. Paths are None where nothing is given.
+
+    For measured numbers: absolute, least absolute residuals instead of squares; total, total least squares for series
+    of angles. For painted marks and photographs: machine, parts of "lean", "axes", "tilt", "backlash", "field" to
+    estimate as well, of which a cell keeps those that it can undo; paint, estimate how marks narrow along the way; aim,
+    "edges" or "overlap". For photographs of a chart: chart, its chart.json; bar_mm, measured length of the printed bar;
+    dpi, of a flatbed scan without a printed page; mirrored, taken through a clear sheet; height_mm, standard deviation
+    of the paper's height; spread, a .json of `compare --sheets`. brush: whose lag (for dabs) or outlines (for strokes)
+    are known. For photographs of a job: plan, the painted plan.json; prior, the brush that painted it.
+    """
+
+    absolute: bool = False
+    total: bool = False
+    machine: tuple[str, ...] = ()
+    cell: str | Cell | None = None
+    paint: bool = False
+    aim: str = "edges"
+    chart: str | None = None
+    bar_mm: float | None = None
+    dpi: float | None = None
+    mirrored: bool = False
+    height_mm: float | None = None
+    spread: str | None = None
+    brush: str | _core.Brush | None = None
+    plan: str | None = None
+    prior: str | _core.Brush | None = None
+
+
+def is_photograph(path) -> bool:
+    return not isinstance(path, Mapping) and os.path.splitext(os.fspath(path))[1].lower() in PHOTOS
+
+
+def contradiction(source, options: CalibrationOptions) -> str:
+    """Return why options do not go together, in a sentence that names the command's flags; "" if they do."""
+    photos = [source] if isinstance(source, (str, Mapping)) else list(source)
+    is_photo = all(map(is_photograph, photos))
+    rules = [
+        (options.cell is not None and not options.machine, "--cell limits --machine: give --machine"),
+        (len(photos) > 1 and not is_photo, "only photographs can be several"),
+    ]
+    if options.plan is not None or options.prior is not None:
+        one_missing = options.plan is None or options.prior is None
+        rules.append(
+            (one_missing, "--plan and --prior go together: the painted plan, and the brush that painted it")
+        )
+        for flag in ("chart", "bar_mm", "dpi", "mirrored", "total", "brush", "height_mm", "paint"):
+            word = flag.removesuffix("_mm")
+            rules.append((bool(getattr(options, flag)), f"--{word} is not for a job (--plan)"))
+        rules.append((options.absolute, "--norm is not for a job (--plan)"))
+        rules.append((options.aim != "edges", "--aim is not for a job (--plan): a brush is updated by edges"))
+        rules.append((not is_photo, "--plan needs photographs of the painted job"))
+        return next((why for broken, why in rules if broken), "")
+    rules += [
+        (options.paint and options.brush is not None, "--paint finds a brush of its own: leave --brush out"),
+        (options.paint and options.aim != "edges", "--paint is found by edges: leave --aim overlap out"),
+    ]
+    if is_photo:
+        several = options.dpi is not None and (len(photos) > 1 or options.bar_mm is not None)
+        rules += [
+            (
+                options.aim != "edges" and options.brush is not None,
+                "--aim overlap is not for a photograph with --brush, which keeps its outlines",
+            ),
+            (
+                options.chart is None,
+                "photographs need --chart, the chart.json that was written with the page",
+            ),
+            (several, "--dpi is for one scan, and without --bar: it shows no printed page"),
+        ]
+    else:
+        for flag in ("mirrored", "chart", "bar_mm", "dpi", "brush", "spread", "height_mm"):
+            given = getattr(options, flag) not in (None, False)
+            word = flag.removesuffix("_mm")
+            rules.append((given, f"--{word} is for photographs ({' '.join(PHOTOS)})"))
+    return next((why for broken, why in rules if broken), "")
