@@ -20,11 +20,8 @@ DOTS_PER_INCH = 90  # 720 pixels wide: read on a page without zooming, some 30 k
 TOP = """# The article, figure by figure
 
 "Physically Motivated Model of a Painting Brush for Robotic Painting and Calligraphy" (Robotics 2024, 13(6), 94),
-computed anew by the public names of brushsvg. This page is written by
-
-    python examples/article docs
-
-and by nothing else; it needs matplotlib. Each script below runs as it stands and leaves `figure`, a picture
+computed again by the public functions of brushsvg. `python examples/article docs` writes this page; it needs matplotlib.
+Each script below runs as it stands and leaves `figure`, a picture
 (`figure.savefig("it.png")` writes it), and `rows`, the table under it: what the text prints, what we compute, and the
 difference. An empty cell was not printed. Lengths are in mm, z is the press depth. Where the print is wrong:
 [equations.md](equations.md).

@@ -18,6 +18,7 @@ core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
+import brushsvg  # noqa: E402
 from brushsvg import find_brush  # noqa: E402
 from brushsvg.calibration.chart.file import write_chart  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
@@ -68,6 +69,15 @@ def desk(tmp_path_factory):
     (folder / "photo.jpg").write_bytes(photo_of(marks()))
     (folder / "chart.json").write_text(write_chart(printed()))
     return folder
+
+
+def test_python_gives_the_brush_of_the_command(desk, tmp_path, capsys):
+    photo, printed_chart, out = desk / "photo.jpg", desk / "chart.json", tmp_path / "own.json"
+    assert main(["calibrate", str(photo), "--chart", str(printed_chart), "-o", str(out), "--quiet"]) == 0
+    made = brushsvg.calibrate(photo, "own", chart=printed_chart)
+    assert core.write_brush(made.brush) == out.read_text()
+    assert made.text == capsys.readouterr().out
+    assert made.picture().startswith(b"\x89PNG")
 
 
 def test_one_photograph_gives_the_brush_back(desk, capsys):

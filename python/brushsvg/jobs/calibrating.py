@@ -19,7 +19,7 @@ from ..calibration.dabs.from_dabs import calibrate_dabs
 from ..calibration.from_file import fit_measurements
 from ..calibration.marks import mark_report, photo_report
 from ..calibration.marks.from_marks import MarkCalibration, calibrate_marks, options_for
-from ..calibration.marks.machine_found import ask_for, doubts
+from ..calibration.marks.machine_found import ask_for, doubts, refuse_unknown_parts
 from ..calibration.marks.mark_input import read_painted
 from ..calibration.marks.paint_found import calibrate_paint
 from ..calibration.numbers import law_report
@@ -118,7 +118,10 @@ def checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
     for name in options:
         if name not in known:
             raise TypeError(f"{name!r} is no option of calibrate; known are {', '.join(known)}")
-    options = {name: value for name, value in options.items() if value is not None}
+    options = {
+        name: value for name, value in options.items() if value is not None or known[name].default is not None
+    }
+    refuse_unknown_parts(options.get("machine", ()))
     for name in ("absolute", "total", "paint", "mirrored"):
         need_truth(options.get(name, False), name)
     for name, least, most in (("bar_mm", 0.001, 1e3), ("dpi", 1.0, 1e5), ("height_mm", 0.001, 10.0)):

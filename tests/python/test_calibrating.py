@@ -1,0 +1,68 @@
+"""brushsvg.calibrate and `brushsvg calibrate` are one job: same brush, same report, same refusals."""
+
+import pytest
+from diagnostics import refused
+
+import brushsvg
+from brushsvg.cli import main
+from brushsvg.jobs.calibration_options import CalibrationOptions, contradiction
+
+NUMBERS = "kind,depth_mm,value_mm\nlag,1,1.9\nlag,2,2.4\nlag,3,3.1\nwidth,1,2.2\nwidth,2,4.1\nwidth,3,6.2\n"
+
+
+@pytest.fixture
+def table(tmp_path):
+    path = tmp_path / "mine.csv"
+    path.write_text(NUMBERS)
+    return path
+
+
+def test_python_gives_the_bytes_and_the_report_of_the_command(table, tmp_path, capsys):
+    out = tmp_path / "brush.json"
+    assert main(["calibrate", str(table), "-o", str(out), "--quiet"]) == 0
+    said = capsys.readouterr().out
+    made = brushsvg.calibrate(table, "brush")
+    assert isinstance(made, brushsvg.BrushCalibration)
+    assert brushsvg._core.write_brush(made.brush) == out.read_text()
+    assert made.text == said
+
+
+def test_names_come_from_the_call_or_the_file(table):
+    assert brushsvg.calibrate(table).brush.name == "mine"
+    assert brushsvg.calibrate(table, "other").brush.name == "other"
+
+
+def test_a_calibration_of_numbers_has_no_photograph(table):
+    with refused("nothing-to-show"):
+        brushsvg.calibrate(table).picture()
+
+
+CONTRADICTIONS = [
+    ("marks.json", {"chart": "chart.json"}),
+    ("marks.json", {"cell": "ur5e"}),
+    ("marks.json", {"plan": "plan.json", "prior": "round-6"}),
+    ("photo.jpg", {}),
+    ("photo.jpg", {"chart": "chart.json", "paint": True, "aim": "overlap"}),
+    ("photo.jpg", {"chart": "chart.json", "brush": "round-6", "aim": "overlap"}),
+    ("photo.jpg", {"chart": "chart.json", "dpi": 300.0, "bar_mm": 100.0}),
+    ("photo.jpg", {"plan": "plan.json"}),
+    ("photo.jpg", {"plan": "plan.json", "prior": "round-6", "aim": "overlap"}),
+    (["photo.jpg", "marks.json"], {"chart": "chart.json"}),
+]
+
+
+@pytest.mark.parametrize(("source", "options"), CONTRADICTIONS)
+def test_options_that_contradict_are_refused_before_any_file_is_read(source, options):
+    assert contradiction(source, CalibrationOptions(**options))
+    with refused("options-contradict"):
+        brushsvg.calibrate(source, **options)
+
+
+def test_the_command_refuses_the_same_as_wrong_usage(table, capsys):
+    assert main(["calibrate", str(table), "-o", "b.json", "--chart", "chart.json"]) == 2
+    assert contradiction(str(table), CalibrationOptions(chart="chart.json")) in capsys.readouterr().err
+
+
+def test_an_unknown_option_is_a_type_error(table):
+    with pytest.raises(TypeError, match="known are"):
+        brushsvg.calibrate(table, colour="red")
