@@ -11,6 +11,7 @@ from typing import TypedDict
 from .. import _core
 from ..brush.library import brush_names, find_brush
 from ..drawing import BACKGROUNDS, PENS, SIZE_MM, UNITS, ReadOptions, settings_in
+from ..drawing.design import SCRIPTS
 from ..drawing.layout import Layout
 from ..errors import Error, Notice, as_listed, need, need_number, need_one_of, need_truth
 from ..machine.cell import Cell
@@ -40,6 +41,7 @@ MADE_FLAGS = (
     "wide",
     "corners",
     "detail",
+    "script",
     "join",
     "compensation",
     "lag",
@@ -65,6 +67,7 @@ ONE_OF = {
     "wide": ("auto", "clamp", "passes", "refuse"),
     "corners": ("auto", "turn"),
     "detail": ("draft", "normal", "fine"),
+    "script": SCRIPTS,
     "compensation": ("none", "constant", "closed", "refined"),
     "start": ("exposed", "hidden", "squared", "auto"),
     "end": ("lifted", "squared", "auto"),
@@ -100,6 +103,7 @@ class Choices:
     wide: str | None = None
     corners: str | None = None
     detail: str | None = None
+    script: str | None = None
     join: bool | None = None
     compensation: str | None = None
     lag: float | None = None
@@ -135,6 +139,7 @@ class Given(TypedDict, total=False):
     wide: str | None
     corners: str | None
     detail: str | None
+    script: str | None
     join: bool | None
     compensation: str | None
     lag: float | None
@@ -337,6 +342,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options
         wide=chosen.wide or Options.wide,
         corners=chosen.corners or Options.corners,
         detail=chosen.detail or Options.detail,
+        script=chosen.script or Options.script,
         colour=chosen.colour,
         join=bool(chosen.join),
         margin_strokes=chosen.margin_strokes or Options.margin_strokes,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from ...drawing import BACKGROUNDS, PENS, READERS
+from ...drawing.design import SCRIPTS
 from ...machine.posts import POSTS
 from . import values
 
@@ -108,6 +109,7 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add_wide(command)
     add_corners(command)
     add_detail(command)
+    add_script(command)
     add_join(command)
     add(
         "--compensation",
@@ -182,6 +184,15 @@ def add_detail(command: argparse.ArgumentParser) -> None:
         "--detail",
         choices=("draft", "normal", "fine"),
         help="filled shapes: how small a corner gets a stroke of its own; default: normal",
+    )
+
+
+def add_script(command: argparse.ArgumentParser, what: str = "filled shapes: how they are written") -> None:
+    command.add_argument(
+        "--script",
+        choices=SCRIPTS,
+        help=f"{what}; arabic: from right to left, bodies before dots; devanagari: the headline last; default: auto, "
+        "as the characters of a text say",
     )
 
 

@@ -7,6 +7,7 @@ import re
 
 from ...errors import Error
 from ...units import length_mm, number
+from ..design import SCRIPTS
 
 PREFIX = "data-brushsvg-"
 
@@ -111,6 +112,7 @@ _KNOWN = {
     "brush": ("brush", _name),
     "start": ("start", _one_of("exposed", "hidden", "squared", "auto")),
     "end": ("end", _one_of("lifted", "squared", "auto")),
+    "script": ("script", _one_of(*SCRIPTS)),
 }
 _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
     "cell": ("cell", _name),

@@ -19,7 +19,7 @@ from fontTools.ttLib import TTFont
 from ...errors import Error
 from ...geometry.rings import signed_area
 from ..design import Notice, SubPath
-from .setting import Placed, Setting, is_seen
+from .setting import Placed, Setting, find_script, is_seen
 
 _UNPACKED = 200_000_000  # bytes: the largest fonts there are, of all Chinese characters, take a fifth of it
 _UNITS = (16, 16384)  # to the em, of the format
@@ -107,7 +107,7 @@ class _Setter:
         infos, positions = buffer.glyph_infos or (), buffer.glyph_positions or ()
         clusters = sorted({info.cluster for info in infos})
         ends = dict(zip(clusters, [*clusters[1:], len(line)], strict=True))
-        placed, inked = [], set()
+        placed, inked, places = [], set(), []
         x = y = 0
         for info, position in zip(infos, positions, strict=True):
             characters = line[info.cluster : ends[info.cluster]]
@@ -119,12 +119,15 @@ class _Setter:
             if subpaths := self._shape(info.codepoint):
                 inked.add(info.cluster)
                 origin = x + position.x_offset, -(y + position.y_offset)
-                placed.append(Placed(characters, subpaths, *(value * self.mm_per_unit for value in origin)))
+                at_mm = (value * self.mm_per_unit for value in origin)
+                placed.append(Placed(characters, subpaths, *at_mm, find_script(characters)))
+                word = len(line[: info.cluster].split(" "))
+                places.append((word, position.x_advance == 0, info.cluster))
             x, y = x + position.x_advance, y + position.y_advance
         for cluster in clusters:
             if cluster not in inked:
                 self.blank.update(dict.fromkeys(filter(is_seen, line[cluster : ends[cluster]])))
-        return tuple(placed)
+        return tuple(_in_writing_order(placed, places))
 
     def is_of_lines(self) -> bool:
         """Whether it is a single-line font: TrueType knows no open lines, so these go back as they came, or are two
@@ -142,6 +145,29 @@ class _Setter:
             contours = (np.array(contour).reshape(-1, 4, 2) * to_mm for contour in pen.contours if contour)
             self.shapes[glyph] = tuple(SubPath(cubics, closed=True) for cubics in contours)
         return self.shapes[glyph]
+
+
+def _in_writing_order(placed: list[Placed], places: list[tuple[int, bool, int]]) -> list[Placed]:
+    """Return the glyphs of a line as they are written. places: word, whether it is a mark, and character of each.
+
+    Arabic words from the right, bodies before dots. A Devanagari word is one shape, since one headline joins it.
+    """
+    scripts = {glyph.script for glyph in placed}
+    order = list(range(len(placed)))
+    if "arabic" in scripts:
+        order.sort(key=places.__getitem__)
+    if "devanagari" not in scripts:
+        return [placed[k] for k in order]
+    words: dict[int, Placed] = {}
+    for k in order:
+        glyph, (word, _, _) = placed[k], places[k]
+        first = words.setdefault(word, replace(glyph, subpaths=(), label=""))
+        shift = np.array([glyph.x_mm - first.x_mm, glyph.y_mm - first.y_mm])
+        moved = tuple(SubPath(each.cubics + shift, each.closed) for each in glyph.subpaths)
+        label = first.label + glyph.label
+        script = "devanagari" if "devanagari" in (first.script, glyph.script) else first.script
+        words[word] = replace(first, label=label, subpaths=first.subpaths + moved, script=script)
+    return list(words.values())
 
 
 def _is_flat(contour: SubPath) -> bool:
