@@ -9,8 +9,6 @@ import numpy as np
 from ..array_values import ArrayValue
 from ..errors import Notice
 
-SCRIPTS = ("auto", "latin", "arabic", "devanagari", "cjk")  # how filled shapes are written
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SubPath(ArrayValue):

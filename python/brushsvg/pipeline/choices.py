@@ -10,8 +10,7 @@ from typing import TypedDict
 
 from .. import _core
 from ..brush.library import brush_names, find_brush
-from ..drawing import BACKGROUNDS, PENS, SIZE_MM, UNITS, ReadOptions, settings_in
-from ..drawing.design import SCRIPTS
+from ..drawing import BACKGROUNDS, PENS, SCRIPTS, SIZE_MM, UNITS, ReadOptions, settings_in
 from ..drawing.layout import Layout
 from ..errors import Error, Notice, as_listed, need, need_number, need_one_of, need_truth
 from ..machine.cell import Cell

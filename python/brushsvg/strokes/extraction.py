@@ -6,7 +6,8 @@ import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ..drawing.design import SCRIPTS, Design, Element, Notice, SubPath
+from ..drawing import SCRIPTS
+from ..drawing.design import Design, Element, Notice, SubPath
 from ..errors import Error, need, need_one_of
 from .corners import begun_amid_a_side
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from ...drawing import BACKGROUNDS, PENS, READERS
-from ...drawing.design import SCRIPTS
+from ...drawing import BACKGROUNDS, PENS, READERS, SCRIPTS
 from ...machine.posts import POSTS
 from . import values
 

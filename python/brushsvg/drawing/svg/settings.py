@@ -7,7 +7,7 @@ import re
 
 from ...errors import Error
 from ...units import length_mm, number
-from ..design import SCRIPTS
+from .. import SCRIPTS
 
 PREFIX = "data-brushsvg-"
 

@@ -26,6 +26,7 @@ _UNITS = (16, 16384)  # to the em, of the format
 _COLOURS = ("COLR", "CBDT", "sbix", "SVG ")  # tables of glyphs in colours or as pictures
 _LETTERS = "AEFHIKLMNTVWXYZilt"  # straight ones: in a font of lines, contours of many of them have no area
 _LINES_NOTICE = "it is a single-line font: its contours are read as lines"
+_JOINED = ("arabic", "devanagari")  # scripts of which a word is one shape
 _CLOSED = 8  # cubics of a contour from which its last one may be as short as the others: an O, and no V
 _NOTICE = "its letters are outlines, which become strokes as filled shapes do"
 
@@ -107,7 +108,7 @@ class _Setter:
         infos, positions = buffer.glyph_infos or (), buffer.glyph_positions or ()
         clusters = sorted({info.cluster for info in infos})
         ends = dict(zip(clusters, [*clusters[1:], len(line)], strict=True))
-        placed, inked, places = [], set(), []
+        placed, inked, words = [], set(), []
         x = y = 0
         for info, position in zip(infos, positions, strict=True):
             characters = line[info.cluster : ends[info.cluster]]
@@ -121,13 +122,12 @@ class _Setter:
                 origin = x + position.x_offset, -(y + position.y_offset)
                 at_mm = (value * self.mm_per_unit for value in origin)
                 placed.append(Placed(characters, subpaths, *at_mm, find_script(characters)))
-                word = len(line[: info.cluster].split(" "))
-                places.append((word, position.x_advance == 0, info.cluster))
+                words.append(line[: info.cluster].count(" "))
             x, y = x + position.x_advance, y + position.y_advance
         for cluster in clusters:
             if cluster not in inked:
                 self.blank.update(dict.fromkeys(filter(is_seen, line[cluster : ends[cluster]])))
-        return tuple(_in_writing_order(placed, places))
+        return tuple(_in_writing_order(placed, words, line.split(" ")))
 
     def is_of_lines(self) -> bool:
         """Whether it is a single-line font: TrueType knows no open lines, so these go back as they came, or are two
@@ -147,27 +147,24 @@ class _Setter:
         return self.shapes[glyph]
 
 
-def _in_writing_order(placed: list[Placed], places: list[tuple[int, bool, int]]) -> list[Placed]:
-    """Return the glyphs of a line as they are written. places: word, whether it is a mark, and character of each.
+def _in_writing_order(placed: list[Placed], words: list[int], texts: list[str]) -> list[Placed]:
+    """Return the glyphs of a line, from the first word on; words whose letters are joined become one shape each.
 
-    Arabic words from the right, bodies before dots. A Devanagari word is one shape, since one headline joins it.
+    words: of which word each glyph is; texts: of all words. One line runs through the letters of a joined word, and its
+    dots come after all of them.
     """
-    scripts = {glyph.script for glyph in placed}
-    order = list(range(len(placed)))
-    if "arabic" in scripts:
-        order.sort(key=places.__getitem__)
-    if "devanagari" not in scripts:
-        return [placed[k] for k in order]
-    words: dict[int, Placed] = {}
-    for k in order:
-        glyph, (word, _, _) = placed[k], places[k]
-        first = words.setdefault(word, replace(glyph, subpaths=(), label=""))
+    joined: dict[object, Placed] = {}
+    for k in sorted(range(len(placed)), key=words.__getitem__):
+        glyph = placed[k]
+        key = words[k] if glyph.script in _JOINED else -1 - k
+        if key not in joined:
+            joined[key] = glyph
+            continue
+        first = joined[key]
         shift = np.array([glyph.x_mm - first.x_mm, glyph.y_mm - first.y_mm])
         moved = tuple(SubPath(each.cubics + shift, each.closed) for each in glyph.subpaths)
-        label = first.label + glyph.label
-        script = "devanagari" if "devanagari" in (first.script, glyph.script) else first.script
-        words[word] = replace(first, label=label, subpaths=first.subpaths + moved, script=script)
-    return list(words.values())
+        joined[key] = replace(first, label=texts[words[k]], subpaths=first.subpaths + moved)
+    return list(joined.values())
 
 
 def _is_flat(contour: SubPath) -> bool:

@@ -17,7 +17,7 @@ class Placed:
     """One glyph with ink. x_mm, y_mm: its origin from where its line of text begins, y down.
 
     label: the characters it stands for; subpaths: from its origin, in mm, y down; script: how it is written, one of
-    drawing.design.SCRIPTS.
+    drawing.SCRIPTS.
     """
 
     label: str

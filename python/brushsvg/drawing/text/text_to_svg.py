@@ -6,7 +6,8 @@ import math
 import unicodedata
 
 from ...errors import Error, lacking, need, need_one_of
-from ..design import SCRIPTS, Notice
+from .. import SCRIPTS
+from ..design import Notice
 from . import svg_font
 from .page import document
 

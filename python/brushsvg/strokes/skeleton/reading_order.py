@@ -46,7 +46,7 @@ def group_areas(boxes: np.ndarray, script: str = "auto") -> list[list[int]]:
 
 
 def _rows(boxes: np.ndarray) -> list[list[int]]:
-    """Return the areas of each row from the top; low rows, of dots and accents, belong to the nearer row."""
+    """Return the areas of each row from the top; rows of dots and accents belong to the nearer row."""
     rows: list[list[int]] = []
     floor = np.inf
     for k in (-boxes[:, 3]).argsort(kind="stable").tolist():
@@ -55,6 +55,7 @@ def _rows(boxes: np.ndarray) -> list[list[int]]:
             floor = boxes[k, 1]
         rows[-1].append(k)
         floor = min(floor, boxes[k, 1])
+    sizes = [(boxes[row, 2:] - boxes[row, :2]).max() for row in rows]
     bottoms = np.array([boxes[row, 1].min() for row in rows])
     tops = np.array([boxes[row, 3].max() for row in rows])
     gaps = np.concatenate([[np.inf], bottoms[:-1] - tops[1:], [np.inf]])  # above each row, and below the last
@@ -62,7 +63,7 @@ def _rows(boxes: np.ndarray) -> list[list[int]]:
     joins = False
     for k, row in enumerate(rows):
         nearer = k - 1 if gaps[k] < gaps[k + 1] else min(k + 1, len(rows) - 1)
-        is_low = tops[k] - bottoms[k] < SMALL_SHARE * (tops[nearer] - bottoms[nearer])
+        is_low = sizes[k] < SMALL_SHARE * sizes[nearer]
         if joins or (is_low and nearer < k):
             merged[-1] += row
         else:
@@ -123,11 +124,11 @@ def _headline_last(order: list[int], lines: list[np.ndarray]) -> list[int]:
     """Return the order with the headline of a word last: flat lines on the level of the longest flat one on top."""
     every = np.vstack(lines)
     middle = every[:, 1].min() + HEADLINE_TOP * np.ptp(every[:, 1])
-    chords = np.array([np.abs(line[-1, :2] - line[0, :2]) for line in lines])
+    extents = np.array([np.ptp(line[:, :2], axis=0) for line in lines])
     levels = np.array([line[:, 1].mean() for line in lines])
-    flat = (chords[:, 1] < HEADLINE_SLOPE * chords[:, 0]) & (levels > middle)
+    flat = (extents[:, 1] < HEADLINE_SLOPE * extents[:, 0]) & (levels > middle)
     if not flat.any():
         return order
-    longest = int(np.argmax(np.where(flat, chords[:, 0], -1)))
+    longest = int(np.argmax(np.where(flat, extents[:, 0], -1)))
     flat &= np.abs(levels - levels[longest]) < 2 * lines[longest][:, 2].max()
     return sorted(order, key=lambda k: bool(flat[k]))

@@ -26,7 +26,7 @@ TOUCH_SHARE, NEAR_SHARE = (
     0.1,
 )  # of the size of the group: distances at which strokes touch, and are near
 SOFT_CUT, SOFT_CUT_WIDTH = 0.12, 0.05  # overlap of two halves at which a cut counts half, and its scale
-SCRIPT_FLAGS = {"latin": -1.0, "arabic": -1.0, "devanagari": -1.0, "cjk": 1.0}  # 0.0: unknown
+SCRIPT_FLAGS = {"latin": -1.0, "devanagari": -1.0, "cjk": 1.0}  # 0.0: unknown
 
 
 def find_writing_order(lines: list[np.ndarray], script: str = "auto") -> list[int]:
@@ -34,14 +34,15 @@ def find_writing_order(lines: list[np.ndarray], script: str = "auto") -> list[in
 
     lines: (k, 2) or wider, x and y up, each in the direction of writing.
     """
+    if script == "arabic":  # no data were fitted: the stroke that reaches farthest to the right comes first
+        return sorted(range(len(lines)), key=lambda k: -lines[k][:, 0].max())
     if len(lines) < 2:
         return list(range(len(lines)))
     if len(lines) > MAX_TOGETHER:
         middles = [line[:, 0].min() + line[:, 0].max() for line in lines]
         parts = np.array_split(np.argsort(middles, kind="stable"), -(-len(lines) // MAX_TOGETHER))
         return [int(part[k]) for part in parts for k in find_writing_order([lines[j] for j in part], script)]
-    sign = np.array([-1.0 if script == "arabic" else 1.0, 1.0])
-    features = pair_features([line[:, :2] * sign for line in lines], SCRIPT_FLAGS.get(script, 0.0))
+    features = pair_features([line[:, :2] for line in lines], SCRIPT_FLAGS.get(script, 0.0))
     hidden, bias, output = _weights()
     before, follows = np.moveaxis(np.tanh(features @ hidden + bias) @ output, 2, 0)
     precedence = -np.logaddexp(0.0, before.T - before)
