@@ -11,6 +11,7 @@ STACKED_SHARE = 0.5  # areas that share more of their width are one letter
 HIGHER_FIRST = (
     0.5  # weight of height against place in a row: an upper part comes before a lower one that begins left
 )
+MOST_PARTS, SQUARE_RATIO = 16, 1.5  # connected areas of a character, and its sides
 CELL_SIDE = 1.25  # a character is at most so many row heights wide
 HEADLINE_SLOPE, HEADLINE_TOP = 0.2, 0.5  # a headline is flatter, and higher in its word than this share
 
@@ -34,6 +35,8 @@ def order_strokes(
 
 def group_areas(boxes: np.ndarray, script: str = "auto") -> list[list[int]]:
     """Return the areas of each letter or character, in reading order."""
+    if script == "cjk" and _is_one_character(boxes):
+        return [list(range(len(boxes)))]
     groups = []
     for row in _rows(boxes):
         if script == "arabic":
@@ -43,6 +46,14 @@ def group_areas(boxes: np.ndarray, script: str = "auto") -> list[list[int]]:
         else:
             groups += _letters(row, boxes)
     return groups
+
+
+def _is_one_character(boxes: np.ndarray) -> bool:
+    """Return whether areas are as high as wide, more or less, and few enough: not a page of text."""
+    if not 0 < len(boxes) <= MOST_PARTS:
+        return False
+    width, height = boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
+    return bool(max(width, height) < SQUARE_RATIO * min(width, height))
 
 
 def _rows(boxes: np.ndarray) -> list[list[int]]:
