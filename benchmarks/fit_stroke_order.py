@@ -8,8 +8,11 @@ are joined and parted as brushsvg finds them, and as their own middle lines. The
 by KanjiVG are left out. No registry has the stroke order of Latin letters apart from KanjiVG, which is the judge. So
 LETTERS is a table of our own. It is laid over the letters of each font; words of two to four letters are made of them.
 
-The fit maximises the probability of the next stroke, given those that are written (see stroke_order.py), by Adam. It
-takes about 20 minutes on one core for 4,000 characters and 16 fonts.
+The weights that are shipped were fitted in stages by an earlier form of this script: with 31 fonts, letters stretched
+and slanted at random, and the lines of the table themselves. A run of this script gives other weights; none of full
+size was made yet.
+
+The fit maximises the probability of the next stroke, given those that are written (see stroke_order.py), by Adam.
 """
 
 from __future__ import annotations

@@ -15,7 +15,8 @@ from .junctions import Crossing
 
 # Weights of the direction of writing: of the unit vector from start to end, x to the right and y up, and of the taper,
 # (first third - last third) / wider of the two. A line is written the way that makes their sum positive. Those of cjk
-# are fitted to hanzi-writer-data, the others to letters (benchmarks/fit_stroke_order.py) and to both.
+# are fitted to hanzi-writer-data, those of auto to that and letters of ours. Those of the others are not fitted: a fit
+# to letters was no better than these.
 DIRECTION_WEIGHTS = {
     "latin": np.array([0.5, -0.866, 0.27]),
     "devanagari": np.array([0.5, -0.866, 0.27]),
