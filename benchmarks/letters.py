@@ -1,5 +1,5 @@
-"""Whether letters are painted whole: the 62 letters and digits of each font, each painted alone, its mark held against
-its shape.
+"""Whether letters are painted whole: the 62 letters and digits of each font, or --glyphs, each painted alone, and its
+mark compared with its shape.
 
   lost      connected pieces of the shape that neither paint nor a disc of any stroke's width reaches, of more than 3 %
             of it and wide enough for the brush: limbs without a stroke
@@ -14,14 +14,19 @@ its shape.
   bulges    how much paint lies farther out of the shape than that
   turning   how much the mark's outline turns more than the shape's, full turns per glyph; rings below 0.01 mm2 are
             pinholes, and left out
+  torn      glyphs whose mark has more pieces than their shape
+  closed    counters wider than the brush's finest line that are painted over
+  outside   places where a mark is more than 0.3 mm outside of its shape
 
 Each font is painted so large that the stem of its l is nearly as wide as the brush paints, at most 100 mm to the em.
-FONT is a file, TrueType, OpenType or WOFF; --pictures writes a page of all glyphs per font.
+FONT is a file, TrueType, OpenType or WOFF; --pictures writes a page of all glyphs per font. --against runs the same
+with the Python of another environment, an earlier brushsvg for example, and prints its row first.
 """
 
 from __future__ import annotations
 
 import argparse
+import subprocess
 import sys
 import tempfile
 from concurrent.futures import ProcessPoolExecutor
@@ -70,10 +75,13 @@ class Painted:
     turns: float
     notches_mm2: float
     bulges_mm2: float
+    is_torn: bool
+    closed: int
+    outside: int
 
 
-def fitting_mm(font: bytes, brush) -> float:
-    stem = region(filled(_drawn("l", font, LARGEST_MM)))
+def fitting_mm(font: bytes, brush, stem_of: str = "l") -> float:
+    stem = region(filled(_drawn(stem_of, font, LARGEST_MM)))
     wide = 2 * shapely.maximum_inscribed_circle(stem, 0.01).length
     return float(min(np.floor(LARGEST_MM * STEM * 2 * brush.half_width_range_mm()[1] / wide), LARGEST_MM))
 
@@ -109,7 +117,24 @@ def painted(text: str, font: bytes, size_mm: float, brush_name: str, compensatio
         (_turned(mark_rings) - _turned(rings)) / (2 * np.pi),
         shape.buffer(-SEEN_MM).difference(mark).area,
         mark.difference(shape.buffer(SEEN_MM)).area,
+        len(_large(mark)) > len(_large(shape)),
+        sum(_is_closed(hole, mark, finest) for hole in _holes(shape)),
+        len(_large(mark.difference(shape.buffer(EDGE_MM)))),
     )
+
+
+def _large(shape) -> list:
+    return [piece for piece in shapely.get_parts(shape) if piece.area > PINHOLE_MM2]
+
+
+def _holes(shape) -> list:
+    return [shapely.Polygon(ring) for piece in shapely.get_parts(shape) for ring in piece.interiors]
+
+
+def _is_closed(hole, mark, finest: float) -> bool:
+    """Whether a counter that a finest line would fit into is painted over."""
+    wide = shapely.maximum_inscribed_circle(hole, 0.01).length > finest
+    return bool(wide and not _large(hole.difference(mark)))
 
 
 def _pieces(left, shape, finest: float) -> list[tuple[float, float]]:
@@ -186,7 +211,9 @@ def row(name: str, size_mm: float, compensation: str, done: list[Painted]) -> st
         f"{sum(not each.named for each in losing):>8}{np.mean(overlaps):>9.4f}{min(overlaps):>7.3f}"
         f"{sum(each.notices for each in done):>9}{sum(each.thorns for each in done):>8}"
         f"{np.mean([each.turns for each in done]):>9.2f}{np.mean([each.notches_mm2 for each in done]):>9.2f}"
-        f"{np.mean([each.bulges_mm2 for each in done]):>8.2f}  {''.join(each.text for each in losing)}"
+        f"{np.mean([each.bulges_mm2 for each in done]):>8.2f}{sum(each.is_torn for each in done):>6}"
+        f"{sum(each.closed for each in done):>8}{sum(each.outside for each in done):>9}"
+        f"  {''.join(each.text for each in losing)}"
     )
 
 
@@ -199,16 +226,22 @@ def main() -> None:
     parser.add_argument("--compensation", nargs="+", default=["closed", "refined"])
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--pictures", type=Path, metavar="FOLDER")
+    parser.add_argument("--glyphs", default=GLYPHS)
+    parser.add_argument("--stem", default="l", help="the glyph whose stem gives the size")
+    parser.add_argument("--against", type=Path, metavar="PYTHON")
     options = parser.parse_args()
     brush = find_brush(options.brush)
     print(
         f"{'font':<24}{'em':>4}  {'':<8}{'lost':>5}{'bare':>6}{'glyphs':>8}{'silent':>8}{'overlap':>9}{'least':>7}"
-        f"{'notices':>9}{'thorns':>8}{'turning':>9}{'notches':>9}{'bulges':>8}  which glyphs"
+        f"{'notices':>9}{'thorns':>8}{'turning':>9}{'notches':>9}{'bulges':>8}"
+        f"{'torn':>6}{'closed':>8}{'outside':>9}  which glyphs"
     )
     with ProcessPoolExecutor(options.processes) as pool:
         for file in options.font:
             font = file.read_bytes()
-            size_mm = fitting_mm(font, brush)
+            size_mm = fitting_mm(font, brush, options.stem)
+            if options.against:
+                _print_rows_of(options.against, file, options)
             for compensation in options.compensation:
                 work = partial(
                     painted,
@@ -217,12 +250,20 @@ def main() -> None:
                     brush_name=options.brush,
                     compensation=compensation,
                 )
-                done = list(pool.map(work, GLYPHS))
+                done = list(pool.map(work, options.glyphs))
                 print(row(file.stem, size_mm, compensation, done), flush=True)
                 if options.pictures:
                     options.pictures.mkdir(parents=True, exist_ok=True)
                     picture = options.pictures / f"{file.stem}-{compensation}.png"
                     cv2.imwrite(str(picture), page(done, 1.05 * size_mm))
+
+
+def _print_rows_of(python: Path, file: Path, options) -> None:
+    """The rows of a font with another environment's brushsvg."""
+    same = ["--brush", options.brush, "--compensation", *options.compensation, "--glyphs", options.glyphs]
+    command = [python, __file__, file, *same, "--stem", options.stem, "--processes", str(options.processes)]
+    printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    print("\n".join(printed.splitlines()[1:]), flush=True)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Draws docs/ends.png: how strokes begin, exposed, hidden and squared, and below how they end, lifted and squared.
+"""Draws docs/ends.png: how strokes begin, pointed, round and butt, and below how they end, round, butt and pointed.
 
 Grey is painted and wanted, red wanted and not painted, blue painted and not wanted; the tool's path on the paper is
 green. Needs nothing but the package.
@@ -20,11 +20,12 @@ AT_MM = (7.5, 6.5)  # of the ends that are looked at, from the lower left of a c
 COLOURS = {"both": (0xB8, 0xB4, 0xB0), "wanted": (0x3C, 0x46, 0xD0), "painted": (0xD0, 0x80, 0x40)}  # BGR
 PATH = (0x50, 0x90, 0x30)
 ROWS = (
-    ("start", "exposed"),
-    ("start", "hidden"),
-    ("start", "squared"),
-    ("end", "lifted"),
-    ("end", "squared"),
+    ("start", "pointed"),
+    ("start", "round"),
+    ("start", "butt"),
+    ("end", "round"),
+    ("end", "butt"),
+    ("end", "pointed"),
 )
 
 

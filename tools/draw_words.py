@@ -1,5 +1,5 @@
 """Draws docs/words.png: a word in each of the fonts given, as the font has it, as round-6 paints it when strokes simply
-begin, end and turn (--start exposed --end lifted --corners turn), and as it paints it unless said otherwise.
+begin, end and turn (--start pointed --end round --corners turn), and as it paints it unless said otherwise.
 
 FONT WORD, in pairs; each is painted as large as benchmarks/letters.py has it.
 """
@@ -24,7 +24,7 @@ from brushsvg.strokes.skeleton import filled
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from letters import fitting_mm
 
-WAYS = ({"start": "exposed", "end": "lifted", "corners": "turn"}, {})
+WAYS = ({"start": "pointed", "end": "round", "corners": "turn"}, {})
 EM_PX, FINE, MARGIN_PX = 84, 4, 12
 PAPER, INK, PAINT = 255, (40, 40, 40), (150, 70, 30)  # BGR
 

@@ -122,8 +122,8 @@ too sharp for the lever.)");
             options.lag_mm = lag_mm;
             options.speed_mm_s = speed_mm_s;
             options.few_poses = few_poses;
-            options.start = beginning_named(start, "");
-            options.end = ending_named(end, "");
+            options.start = terminal_named(start, "");
+            options.end = terminal_named(end, "");
             check(brush);
             if (sheet) check_sheet(*sheet);
             const std::array<double, 2> sheet_mm = sheet.value_or(std::array<double, 2>{0.0, 0.0});
@@ -147,8 +147,8 @@ too sharp for the lever.)");
         },
         py::arg("strokes"), py::arg("brush"), py::arg("sheet_mm"), py::arg("method") = "closed",
         py::arg("tolerance_mm") = 0.05, py::arg("lag_mm") = py::none(), py::arg("speed_mm_s") = 20.0,
-        py::arg("progress") = py::none(), py::arg("few_poses") = true, py::arg("start") = "exposed",
-        py::arg("end") = "lifted",
+        py::arg("progress") = py::none(), py::arg("few_poses") = true, py::arg("start") = "pointed",
+        py::arg("end") = "round",
         R"(Where the TCP must go for the paint to land on the strokes' middle lines: a Compensated.
 
 sheet_mm: (w, h), kept in the plan; None: of no sheet, to look at. method: "none", the TCP on the line; "constant",
@@ -157,13 +157,28 @@ the outline of the mark lies best on the wanted one, kept where it overlaps bett
 point of the mark may be off the middle line once the brush is taut, between poses too; each pass is simulated and its
 miss returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most
 the brush's. progress: called with (strokes done, strokes). few_poses: closed only, no more poses than the tolerance
-asks for. start: closed and refined, how strokes begin that do not say it themselves: "exposed", pointed; "hidden",
-round, set down inside the stroke, back to its beginning and turned over; "squared", straight, a narrower mark goes into
-one corner on its way back, along the cut into the other and turns there; "auto", what suits the drawn beginning better.
-end: the same of ends: "lifted", as the footprint is in front; "squared", a narrower mark goes on into one corner, along
-the cut and back into the other; "auto", what suits the drawn end better.
+asks for. start, end: closed and refined, the terminals of strokes that do not set them: "pointed", as the footprint is
+behind; "round", as it is in front, where a start is set down inside of the stroke, goes back to its beginning and turns
+over; "butt", straight, a narrower mark goes into one corner, along the cut and into the other; "auto", the one that
+suits the drawn end best.
 
 Error, naming the stroke, for widths or depths out of the brush's reach.)");
+    m.def(
+        "match_alike_ends",
+        [](std::vector<Stroke> strokes, const Brush& brush, const std::string& start, const std::string& end) {
+            CompensateOptions options;
+            options.start = terminal_named(start, "");
+            options.end = terminal_named(end, "");
+            check(brush);
+            match_alike_ends(strokes, brush, options);
+            return strokes;
+        },
+        py::arg("strokes"), py::arg("brush"), py::arg("start") = "auto", py::arg("end") = "auto",
+        py::call_guard<Unlocked>(),
+        R"(The strokes of a drawing with alike_start and alike_end set, so that ends drawn alike get the same terminal.
+
+It is the one that costs those ends least together, of those that each has room for. start, end: as of compensate; what
+is not "auto" there, or in a stroke's settings, is kept.)");
     m.def("miss_of", &tracking_error_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"),
           py::arg("tolerance_mm") = 0.05, py::call_guard<Unlocked>(),
           "Miss of one pass against the stroke it should paint, by simulating it.");

@@ -5,7 +5,7 @@ namespace {
 
 using Shape = std::tuple<brushsvg::Rings, std::vector<brushsvg::Stroke>, std::vector<brushsvg::Pass>>;
 using Point = std::array<double, 2>;
-using Added = std::tuple<brushsvg::Stroke, std::size_t, brushsvg::Rings, brushsvg::Rings, double>;
+using Added = std::tuple<brushsvg::Stroke, std::size_t, brushsvg::Rings, brushsvg::Rings>;
 using Searched = std::tuple<std::vector<std::vector<brushsvg::Stroke>>, std::vector<bool>, std::vector<Added>>;
 using Uncovered = std::tuple<brushsvg::Rings, Point, double>;
 
@@ -29,7 +29,7 @@ void bind_stroke_search(py::module_& m) {
                 std::vector<Added> added;
                 for (AddedStroke& each : found.added)
                     added.emplace_back(std::move(each.stroke), each.neighbour, std::move(each.area_mm),
-                                       std::move(each.mark_mm), each.won_mm2);
+                                       std::move(each.mark_mm));
                 out.emplace_back(std::move(found.strokes), std::move(found.changed), std::move(added));
             }
             return out;
@@ -40,7 +40,7 @@ void bind_stroke_search(py::module_& m) {
 shapes: (rings of the shape, strokes, the passes that paint them). detail: "draft", "normal" or "fine", how small an area
 gets a stroke of its own. are_free: whether strokes may be led otherwise, and not only added. strokes: for each that was
 given what it is best painted as, [] for not at all; changed: whether that differs; added: (stroke, number of the stroke
-that is nearest, rings of the area that it is for, rings of what it paints, cost that it wins [mm2]).)");
+that is nearest, rings of the area that it is for, rings of what it paints).)");
     m.def(
         "uncovered_areas",
         [](const std::vector<Shape>& shapes, const Brush& brush, double least_share) {

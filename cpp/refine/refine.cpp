@@ -117,15 +117,15 @@ struct Tried {
     std::array<double, 4> painted_bounds, tool_bounds;
     double overlap, turning;  ///< the latter of the mark's outline beyond the wanted one [full turns]
     int thorns;
-    Tried(const Pass& pass, const Target& target, const Brush& brush, Beginning start) {
+    Tried(const Pass& pass, const Target& target, const Brush& brush, Terminal start) {
         const PassMarks marks = simulate(pass, brush);
         painted_bounds = brushsvg::painted_bounds(marks, brush);
         tool_bounds = box_of(pass.poses_mm);
         const Rings mark = outline(marks, brush);
         overlap = target.overlap_with(mark);
         turning = excess_turning(mark, target.outline);
-        // the point of a beginning that is to be exposed was asked for
-        thorns = std::max(0, brushsvg::thorns(mark, target.outline) - (start == Beginning::exposed ? 1 : 0));
+        // the point of a beginning that is to be pointed was asked for
+        thorns = std::max(0, brushsvg::thorns(mark, target.outline) - (start == Terminal::pointed ? 1 : 0));
     }
     /// Turning counts below none as well: the pieces of a letter that strokes are to paint are ragged where others were
     /// cut from them, so that every mark turns less.
@@ -162,6 +162,8 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
     };
     const bool anywhere = options.sheet_mm == std::array<double, 2>{0.0, 0.0};
     if (!turned_round(simulate(dense, brush, 0.02, false)).empty()) return closed;  // round already
+    const Terminal end = stroke.settings.end ? terminal_named(*stroke.settings.end, stroke.id) : options.end;
+    if (end == Terminal::pointed) return closed;  // it would be filled as far as the drawing goes
     const Target target(wanted, half_width);
     const Tried before(closed.plan.pass, target, brush, options.start);
     closed.overlap = closed.overlap_closed = before.overlap;

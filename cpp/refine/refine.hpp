@@ -15,8 +15,8 @@ struct RefineOptions {
     /// Width and height. No paint leaves the sheet, and the TCP goes at most 30 mm beyond it, or as far as the closed
     /// form's. Zero: anywhere.
     std::array<double, 2> sheet_mm{0.0, 0.0};
-    Beginning start = Beginning::exposed;  ///< of the closed form; how a stroke begins stays
-    Ending end = Ending::lifted;           ///< and how it ends
+    Terminal start = Terminal::pointed;  ///< of the closed form; how a stroke begins stays
+    Terminal end = Terminal::round;      ///< and how it ends
     int iterations = 12;  ///< of the solver: forty win 0.0005 of overlap more and take half as long again
 };
 

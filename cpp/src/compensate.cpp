@@ -138,16 +138,10 @@ bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& str
 
 }  // namespace
 
-Beginning beginning_named(const std::string& name, const std::string& where) {
-    for (const auto& [known, value] : kBeginnings)
+Terminal terminal_named(const std::string& name, const std::string& where) {
+    for (const auto& [known, value] : kTerminals)
         if (name == known) return value;
-    throw Error("choice-unknown", "a stroke's start is exposed, hidden, squared or auto, not \"" + name + "\"", where);
-}
-
-Ending ending_named(const std::string& name, const std::string& where) {
-    for (const auto& [known, value] : kEndings)
-        if (name == known) return value;
-    throw Error("choice-unknown", "a stroke's end is lifted, squared or auto, not \"" + name + "\"", where);
+    throw Error("choice-unknown", "the end of a stroke is pointed, round, butt or auto, not \"" + name + "\"", where);
 }
 
 namespace {
@@ -227,7 +221,7 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
         return result;
     }
-    const std::vector<BrushMoves> ways = select_ends(stroke, brush, options, step_tolerance);
+    const std::vector<BrushMoves> ways = select_ends(stroke, brush, options, step_tolerance).ways;
     warn(depths_of_turns(ways.front()).value_or(depths), stroke.id, brush, result.warnings);
     const Pass plain = pass;
     for (const BrushMoves& moves : ways) {

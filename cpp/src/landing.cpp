@@ -18,9 +18,6 @@ constexpr double kLiftSlackMm = 0.05;
 constexpr double kLiftBandMm = 0.8 * kLiftSlackMm;
 /// Steps of the depth, 128 in all, in which a lift comes as far inside: sooner it would need a move of its own.
 constexpr double kLiftEases = 8.0;
-/// What is left of the depth while the brush turns over. Its footprint is so small then that the way it goes round does
-/// not show, in a mark as fine as 1 mm; a paper that lies lower by half as much is touched still.
-constexpr double kTurnOverDepthMm = 0.5;
 /// While the TCP runs up from P to P + r u the patch rests as long as r(d)/d falls with depth; else press down first.
 bool may_press_while_running(const Brush& brush, double from, double depth) {
     const double reach = brush.lag(depth);

@@ -5,6 +5,11 @@
 
 namespace brushsvg {
 
+/// What is left of the depth while the brush turns over, and where a mark ends in a point. Its footprint is so small
+/// then that the way it goes round does not show, in a mark as fine as 1 mm; a paper that lies lower by half as much is
+/// touched still.
+inline constexpr double kTurnOverDepthMm = 0.5;
+
 /// A taut brush at one instant: all that a landing leads to and a lift begins with.
 struct Stance {
     Eigen::Vector2d contact_mm;  ///< P

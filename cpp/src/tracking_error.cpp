@@ -6,6 +6,7 @@
 
 #include "brushsvg/simulate.hpp"
 #include "ends/end_styles.hpp"
+#include "landing.hpp"
 #include "nearest_on_polyline.hpp"
 #include "tolerance.hpp"
 
@@ -19,7 +20,7 @@ constexpr double kLookEveryMm = 0.1;
 
 namespace {
 
-/// Discs round which the brush is turned, and places about a squared end: there the mark is judged and not its middle,
+/// Discs round which the brush is turned, and places about a butt end: there the mark is judged and not its middle,
 /// which swings in corners.
 struct Disc {
     Eigen::Vector2d middle_mm;
@@ -37,18 +38,29 @@ Eigen::RowVector2d begins_along(const Cubics& middle_mm) {
     return tangent_at(middle_mm, first).transpose();
 }
 
-/// Whether a mark comes near the place where the way of a squared end goes back along the side. A mark on the path is
+/// Whether a mark comes near the place where the way of a butt end goes back along the side. A mark on the path is
 /// as far from it as the path is.
-bool is_squared(const Ring& widest, const Squared& squared) {
+bool is_butt(const Ring& widest, const ButtEnd& end) {
     constexpr double kThere = 0.25;
-    const double off_path_mm = std::abs(squared.end.left.dot(squared.back_mm - squared.end.at_mm));
-    return (widest.rowwise() - squared.back_mm.transpose()).rowwise().norm().minCoeff() < kThere * off_path_mm;
+    const double off_path_mm = std::abs(end.end.left.dot(end.back_mm - end.end.at_mm));
+    return (widest.rowwise() - end.back_mm.transpose()).rowwise().norm().minCoeff() < kThere * off_path_mm;
+}
+
+/// Whether a mark is narrow a little before its end: where P rests while the brush is lifted it is not.
+bool is_pointed(const PassMarks& marks, const Brush& brush, double half_mm) {
+    constexpr double kBefore = 0.25;  // of the half width
+    const double finest_mm = brush.half_width(std::max(brush.depth_range_mm[0], kTurnOverDepthMm));
+    Index row = marks.contact_mm.rows() - 1;
+    if (row < 0) return false;
+    const Eigen::RowVector2d last = marks.contact_mm.row(row);
+    while (row > 0 && (marks.contact_mm.row(row) - last).norm() < kBefore * half_mm) --row;
+    return brush.half_width(std::max(0.0, marks.depth_mm[std::size_t(row)])) < 0.5 * (finest_mm + half_mm);
 }
 
 TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, const Stroke& stroke, double tolerance_mm,
                                 const std::vector<Disc>& discs) {
     const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
-    // on its way back to a hidden beginning a blunt front goes beyond the path's
+    // on its way back to a round beginning a blunt front goes beyond the path's
     MiddlePolyline longer(line.rows() + 1, 4);
     longer << line.row(0), line;
     longer.row(0).head<2>() -= line(0, 3) * begins_along(stroke.middle_mm);
@@ -109,10 +121,12 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
                                                                        depth + Index(turned.last) + 1))});
         }
     const Stroke painted = as_wide_as_painted(stroke, brush);
-    const Stroke whole = up_to_drawn_end(painted, brush);  // a blunt front goes beyond the path's end
+    Stroke whole = up_to_drawn_end(painted, brush);  // a blunt front goes beyond the path's end, and so does a point
+    if (is_pointed(marks, brush, half_width_at(painted, 1.0)))
+        if (auto pointed = pointed_end(painted, brush, Caps::round)) whole = std::move(pointed->stroke);
     const TrackingError miss = tracking_error_of(marks, widest, whole, tolerance_mm, discs);
     if (miss.within_tolerance) return miss;
-    if (const auto dot = discs.empty() ? std::nullopt : squared_dot(painted, brush)) {
+    if (const auto dot = discs.empty() ? std::nullopt : dot_with_corners(painted, brush)) {
         const Stroke& way = *dot->back().line;
         for (Index i = 0; i < way.middle_mm.rows(); ++i)
             discs[0].radius_mm =
@@ -122,7 +136,7 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     }
     const std::size_t before = discs.size();
     for (const Side side : {Side::start, Side::end})
-        if (const auto found = squared(painted, brush, Caps::straight, side); found && is_squared(widest, *found))
+        if (const auto found = make_butt_end(painted, brush, Caps::straight, side); found && is_butt(widest, *found))
             discs.push_back({found->end.at_mm, found->reach_mm});
     return discs.size() == before ? miss : tracking_error_of(marks, widest, whole, tolerance_mm, discs);
 }

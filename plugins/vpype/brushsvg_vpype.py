@@ -31,8 +31,8 @@ def choices(command):
             "--compensation", type=click.Choice(("none", "constant", "closed", "refined")), default="closed"
         ),
         click.option("--tolerance", type=click.FloatRange(1e-5, 10), default=0.05, help="mm; default: 0.05"),
-        click.option("--start", type=click.Choice(("exposed", "hidden", "squared", "auto")), default="auto"),
-        click.option("--end", type=click.Choice(("lifted", "squared", "auto")), default="auto"),
+        click.option("--start", type=click.Choice(("pointed", "round", "butt", "auto")), default="auto"),
+        click.option("--end", type=click.Choice(("pointed", "round", "butt", "auto")), default="auto"),
         click.option(
             "--width", type=vpype_cli.LengthType(), help="of all marks; default: the layers' pen widths"
         ),

@@ -245,15 +245,15 @@ TEST_CASE("a line of very many short cubics is followed as one of few") {
     CHECK(bow(15000).largest_mm < 0.05);
 }
 
-TEST_CASE("a hidden beginning turns over where its patch rests") {
+TEST_CASE("a round beginning turns over where its patch rests") {
     const Brush brush = shipped("round-6");
     const double h = brush.half_width(4.0);
     const Stroke s = stroke_of(polyline({V(30, 20), V(70, 20)}), {{0.0, h}});
     CompensateOptions options;
-    options.start = Beginning::hidden;
-    const CompensatedPass hidden = compensate(s, brush, options);
-    CHECK(hidden.miss.within_tolerance);
-    const PassMarks marks = simulate(hidden.pass, brush);
+    options.start = Terminal::round;
+    const CompensatedPass begun = compensate(s, brush, options);
+    CHECK(begun.miss.within_tolerance);
+    const PassMarks marks = simulate(begun.pass, brush);
     const auto turns = turns_over(marks);
     REQUIRE(turns.size() == 1);
     const auto contact = [&](std::size_t row) { return V(marks.contact_mm.row(Eigen::Index(row)).transpose()); };
@@ -262,7 +262,7 @@ TEST_CASE("a hidden beginning turns over where its patch rests") {
     CHECK(std::abs(marks.heading_rad[turns[0].last]) < 1e-6);
     const auto bounds = painted_bounds(marks, brush);
     CHECK(bounds[0] == doctest::Approx(30.0 - h).epsilon(1e-3));  // the front, where round caps begin
-    CHECK(overlap_of(s, hidden.pass, brush) > 0.99);
+    CHECK(overlap_of(s, begun.pass, brush) > 0.99);
     CHECK(overlap_of(s, compensate(s, brush).pass, brush) < 0.98);
     CHECK(turns_over(simulate(compensate(s, brush).pass, brush)).empty());
 
@@ -283,7 +283,7 @@ TEST_CASE("what the brush cannot paint is refused, what it was not measured for 
 namespace {
 
 /// A dot of this half width, and how deep its plan goes.
-std::pair<CompensatedPass, double> dot_of_half_width(double half_width_mm, Beginning start) {
+std::pair<CompensatedPass, double> dot_of_half_width(double half_width_mm, Terminal start) {
     CompensateOptions options;
     options.start = start;
     const Stroke stroke = stroke_of(polyline({V(20, 20), V(20, 20)}), {{0.0, half_width_mm}});
@@ -296,7 +296,7 @@ std::pair<CompensatedPass, double> dot_of_half_width(double half_width_mm, Begin
 
 TEST_CASE("a dot that is turned on the spot is warned of by its own depth, not by that of a line as wide") {
     int less = 0;
-    for (const Beginning start : {Beginning::hidden, Beginning::automatic, Beginning::exposed})
+    for (const Terminal start : {Terminal::round, Terminal::automatic, Terminal::pointed})
         for (double half_mm = 0.3; half_mm <= 4.2; half_mm += 0.02) {
             const auto [found, depth_mm] = dot_of_half_width(half_mm, start);
             const bool as_line = shipped("round-6").depth_for_half_width(half_mm, "") < 1.0;
@@ -340,6 +340,63 @@ TEST_CASE("steps round a cusp come to an end, however fine they are asked for") 
         CHECK(rounds <= 25);  // each parts a step in three, and a parameter in 1e9
         CHECK(most < 20000);
     }
+}
+
+namespace {
+
+/// A bar cut straight half a width beyond both ends of its line.
+Stroke bar(const std::string& id, double x, double y, double length_mm, double half_mm = 2.0) {
+    Stroke stroke = stroke_of(polyline({V(x, y), V(x + length_mm, y)}), {{0.0, half_mm}});
+    stroke.id = StrokeId(id);
+    Ring outline(4, 2);
+    outline << x - half_mm, y - half_mm, x + length_mm + half_mm, y - half_mm, x + length_mm + half_mm, y + half_mm,
+        x - half_mm, y + half_mm;
+    stroke.wanted_mm = {outline};
+    return stroke;
+}
+
+}  // namespace
+
+TEST_CASE("ends that are drawn alike get one terminal, which each of them has room for") {
+    const Brush brush = shipped("round-6");
+    CompensateOptions options;
+    options.start = options.end = Terminal::automatic;
+    const auto matched = [&](std::vector<Stroke> strokes) {
+        match_alike_ends(strokes, brush, options);
+        return strokes;
+    };
+    const Stroke whole = bar("a", 20, 20, 40), stub = bar("b", 20, 40, 4);
+    std::vector<Stroke> two = matched({whole, bar("b", 20, 40, 30)});
+    for (const Stroke& each : two) {
+        CHECK(each.alike_start == "butt");
+        CHECK(each.alike_end == "butt");
+    }
+    two = matched({whole, stub});  // where there is no room to run along the cut
+    for (const Stroke& each : two) {
+        CHECK(each.alike_start == "round");
+        CHECK(each.alike_end == "round");
+    }
+    CHECK(compensate(two[0], brush, options).pass.poses_mm.rows() <
+          compensate(whole, brush, options).pass.poses_mm.rows());
+    two = matched({whole, bar("b", 20, 40, 4, 1.5)});  // it is not as wide
+    CHECK(two[0].alike_start == "butt");
+    CHECK(two[1].alike_start == "round");
+    Stroke by_hand = stub;
+    by_hand.settings.start = by_hand.settings.end = "round";
+    two = matched({whole, by_hand});
+    CHECK(two[0].alike_start == "butt");
+    CHECK(!two[1].alike_start);
+    CHECK(!two[1].alike_end);
+    options.end = Terminal::round;  // is asked for
+    two = matched({whole, bar("b", 20, 40, 30)});
+    CHECK(two[0].alike_start == "butt");
+    CHECK(!two[0].alike_end);
+    options.end = Terminal::automatic;
+    Stroke in_other = bar("a", 24, 30, 30);  // an end inside of a shape is none
+    in_other.wanted_mm = whole.wanted_mm;
+    in_other.middle_mm.leftCols<8>() = polyline({V(40, 20), V(40, 20.5)});
+    two = matched({whole, in_other});
+    CHECK(!two[1].alike_start);
 }
 
 TEST_CASE("a hook has a plan of ordinary size") {

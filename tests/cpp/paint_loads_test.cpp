@@ -182,7 +182,7 @@ TEST_CASE("a brush that turns in place is not interrupted") {
     dot.middle_mm << 50, 50, 50, 50, 50, 50, 50, 50;
     dot.half_width = {{0.0, 3.0}};
     CompensateOptions options;
-    options.start = Beginning::hidden;
+    options.start = Terminal::round;
     const Pass whole = compensate(dot, brush, options).pass;
     REQUIRE(whole.arcs.size() == 1);
     REQUIRE(length(whole) > 30.0);

@@ -30,8 +30,8 @@ Stroke straight(Eigen::RowVector2d from, Eigen::RowVector2d to, double half) {
 
 Pass pass_of(const Stroke& stroke, const Brush& brush) {
     CompensateOptions options;
-    options.start = Beginning::automatic;
-    options.end = Ending::automatic;
+    options.start = Terminal::automatic;
+    options.end = Terminal::automatic;
     return compensate(stroke, brush, options).pass;
 }
 

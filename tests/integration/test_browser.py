@@ -161,7 +161,7 @@ def test_between_rows_far_apart_the_footprint_is_swept(tmp_path, browser, notch)
     )
     work = preparation.prepare(
         tmp_path / "a.svg",
-        Options(brush=package.find_brush(tmp_path / "brush.json"), start="exposed", end="lifted"),
+        Options(brush=package.find_brush(tmp_path / "brush.json"), start="pointed", end="round"),
     )
     marks = prediction.predict(work)
     step_mm = np.linalg.norm(np.diff(marks.passes[0].contact_mm, axis=0), axis=1)

@@ -43,9 +43,9 @@ def test_what_nobody_touches_stays_and_is_told(plugin, drawing):
         ("--brush=rigid", {"brush": "rigid"}, ("rigid", "mine")),
         ("--brush=default", {"brush": None}, ("round-6", "mine")),
         ("--compensation=none", {"compensation": "none"}, ("none",)),
-        ("--start=hidden", {"start": "hidden"}, ("hidden",)),
-        ("--start=squared", {"start": "squared"}, ("squared",)),
-        ("--end=squared", {"end": "squared"}, ("squared",)),
+        ("--start=round", {"start": "round"}, ("round",)),
+        ("--start=butt", {"start": "butt"}, ("butt",)),
+        ("--end=butt", {"end": "butt"}, ("butt",)),
         (
             "--cell=default",
             {"cell": None},

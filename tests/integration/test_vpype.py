@@ -79,7 +79,7 @@ def test_brush_shows_the_marks_that_predict_shows(vpype, desk):
 
 def test_refined_strokes_are_those_of_the_command_line(vpype, desk):
     """Of straight lines, since vpype flattens curves, begun as points: refined marks differ most there."""
-    pointed = ("--start", "exposed")
+    pointed = ("--start", "pointed")
     words = ("--compensation", "refined", *pointed)
     straight = re.sub('<path id="line".*?/>|<circle.*?/>', "", DRAWING).replace('width="3"', 'width="5"')
     straight = straight.replace("H60 V40", "H40")

@@ -51,7 +51,7 @@ def brush():
 
 @pytest.fixture(scope="module")
 def painted(brush):
-    work = preparation.prepare("examples/vincent.svg", Options(brush=brush, start="exposed"))
+    work = preparation.prepare("examples/vincent.svg", Options(brush=brush, start="pointed"))
     marks = prediction.predict(work)
     rng = np.random.default_rng(9)
     mean = np.concatenate([getattr(brush, law).coefficients for law in LAWS])

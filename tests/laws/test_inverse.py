@@ -10,6 +10,7 @@ import shapely
 from made_up_brushes import LAGS, WIDEST, make_brush, make_plan
 from sampling import sample
 from scipy.integrate import solve_ivp
+from shapely import affinity
 
 core = pytest.importorskip("brushsvg._core")
 Error = pytest.importorskip("brushsvg").Error
@@ -561,22 +562,22 @@ def beginning(middle, half_width, start):
 
 @pytest.mark.parametrize("half_width", [0.8, 1.4, 2.0])
 @pytest.mark.parametrize("middle", [line((20, 20), (60, 20)), arc(25.0, 1.2), arc(12.0, 1.5)])
-def test_a_hidden_beginning_is_round_and_stays_inside_of_the_stroke(middle, half_width):
-    exposed, _ = beginning(middle, half_width, "exposed")
-    hidden, beyond = beginning(middle, half_width, "hidden")
-    assert exposed < 0.85
-    assert hidden > 0.93
+def test_a_round_beginning_is_round_and_stays_inside_of_the_stroke(middle, half_width):
+    pointed, _ = beginning(middle, half_width, "pointed")
+    rounded, beyond = beginning(middle, half_width, "round")
+    assert pointed < 0.85
+    assert rounded > 0.93
     assert beyond < 0.05 + 0.1 * half_width
 
 
 @sample("half_width", [3.0, 3.5, 3.7, 4.2], keep=2)
-def test_the_rear_of_a_wide_footprint_is_hidden_too(half_width):
+def test_the_rear_of_a_wide_footprint_is_covered_too(half_width):
     middle = line((20, 20), (60, 20))
-    exposed, _ = beginning(middle, half_width, "exposed")
-    hidden, _ = beginning(middle, half_width, "hidden")
-    assert exposed < 0.8
-    assert hidden > 0.88  # its front is blunt
-    reaches = painted_region(poses_of(middle, [(0.0, half_width)], start="hidden")).bounds[0]
+    pointed, _ = beginning(middle, half_width, "pointed")
+    rounded, _ = beginning(middle, half_width, "round")
+    assert pointed < 0.8
+    assert rounded > 0.88  # its front is blunt
+    reaches = painted_region(poses_of(middle, [(0.0, half_width)], start="round")).bounds[0]
     assert reaches > 20.0 - half_width - 0.1  # a thorn of 1.9 mm where it went on as wide as it came
 
 
@@ -592,10 +593,10 @@ def poses_of(middle, half_width, **options):
         (line((20, 20), (60, 20)), [(0.0, 0.15), (0.5, 2.0), (1.0, 2.0)]),  # a taper
     ],
 )
-def test_what_cannot_be_hidden_is_exposed(middle, half_width):
-    exposed = poses_of(middle, half_width)
-    for start in ("hidden", "auto"):
-        np.testing.assert_array_equal(poses_of(middle, half_width, start=start), exposed)
+def test_what_cannot_be_round_is_pointed(middle, half_width):
+    pointed = poses_of(middle, half_width)
+    for start in ("round", "auto"):
+        np.testing.assert_array_equal(poses_of(middle, half_width, start=start), pointed)
 
 
 @sample(
@@ -611,7 +612,7 @@ def test_what_has_no_room_for_a_way_back_is_turned_round_first(middle, half_widt
     import shapely
 
     stroke = stroke_of(middle, half_width)
-    found = core.compensate([stroke], ROUND, (200.0, 200.0), start="hidden")
+    found = core.compensate([stroke], ROUND, (200.0, 200.0), start="round")
     assert found.misses[0].within_tolerance
     turned = np.asarray(found.plan.passes[0].poses_mm)
     assert turned[0, 2] == turned[-1, 2] == 0.0
@@ -643,14 +644,14 @@ def test_a_dot_is_round(half_width, length, least):
         return (mark & wanted).area / (mark | wanted).area
 
     stroke = stroke_of(line(*points), [(0.0, half_width)])
-    found = core.compensate([stroke], ROUND, (200.0, 200.0), start="hidden")
+    found = core.compensate([stroke], ROUND, (200.0, 200.0), start="round")
     assert found.misses[0].within_tolerance
-    hidden = np.asarray(found.plan.passes[0].poses_mm)
-    assert hidden[0, 2] == hidden[-1, 2] == 0.0
-    assert (hidden[1:-1, 2] < 0.0).all()  # one touch
+    rounded = np.asarray(found.plan.passes[0].poses_mm)
+    assert rounded[0, 2] == rounded[-1, 2] == 0.0
+    assert (rounded[1:-1, 2] < 0.0).all()  # one touch
     assert overlap(poses_of(line(*points), [(0.0, half_width)])) < 0.9
-    assert overlap(hidden) > least
-    np.testing.assert_array_equal(poses_of(line(*points), [(0.0, half_width)], start="auto"), hidden)
+    assert overlap(rounded) > least
+    np.testing.assert_array_equal(poses_of(line(*points), [(0.0, half_width)], start="auto"), rounded)
 
 
 @sample(
@@ -681,8 +682,8 @@ def test_a_dot_with_corners_is_square(sides, turned_rad, least):
         mark = painted_region(poses)
         return (mark & wanted).area / (mark | wanted).area, len(poses)
 
-    (squared, count), (said, _), (hidden, before) = map(overlap, ("auto", "squared", "hidden"))
-    assert squared == said > least > hidden + 0.1
+    (butt, count), (said, _), (rounded, before) = map(overlap, ("auto", "butt", "round"))
+    assert butt == said > least > rounded + 0.1
     assert count < before + 75
 
 
@@ -711,7 +712,7 @@ def test_dots_with_other_corners_have_them(corners, rounded_mm, least):
         mark = painted_region(found.plan.passes[0].poses_mm)
         return (mark & drawn).area / (mark | drawn).area
 
-    assert overlap("auto") > least > overlap("hidden") + 0.1
+    assert overlap("auto") > least > overlap("round") + 0.1
 
 
 @sample(("radius_mm", "least"), [(5.2, 0.97), (6.4, 0.97), (6.8, None), (8.0, None)], keep=2)
@@ -721,12 +722,12 @@ def test_a_disc_wider_than_the_brush_is_gone_round_where_nothing_stays_bare_betw
     drawn = shapely.Point(50, 50).buffer(radius_mm, 64)
     stroke = stroke_of(line((50, 50), (50, 50)), [(0.0, 4.2)])
     stroke.wanted_mm = [np.asarray(shapely.geometry.polygon.orient(drawn).exterior.coords)[:-1]]
-    said, hidden = (
+    said, rounded = (
         core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan.passes[0].poses_mm
-        for start in ("auto", "hidden")
+        for start in ("auto", "round")
     )
     if least is None:
-        np.testing.assert_array_equal(said, hidden)
+        np.testing.assert_array_equal(said, rounded)
     else:
         mark = painted_region(said)
         assert (mark & drawn).area / (mark | drawn).area > least
@@ -738,7 +739,7 @@ def test_a_dot_without_corners_stays_round(corners):
     stroke = stroke_of(line((50, 50), (50, 50)), [(0.0, 3.0)])
     stroke.wanted_mm = [np.column_stack([50 + 3 * np.cos(angles), 50 + 3 * np.sin(angles)])]
     plans = [
-        core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("auto", "hidden")
+        core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("auto", "round")
     ]
     np.testing.assert_array_equal(*(plan.passes[0].poses_mm for plan in plans))
 
@@ -765,7 +766,7 @@ def test_wide_lines_begin_round_however_they_bend(cubic, half_width):
         mark = shapely.union_all([shapely.Polygon(ring).buffer(0) for ring in marks.passes[0].outline_mm])
         return mark.intersection(drawn).area / mark.union(drawn).area
 
-    assert overlap("exposed") < 0.945
+    assert overlap("pointed") < 0.945
     assert overlap("auto") > 0.985
 
 
@@ -773,28 +774,39 @@ def test_wide_lines_begin_round_however_they_bend(cubic, half_width):
 def test_bars_of_all_widths_begin_alike(half_width):
     """Wide ones began pointed beside round ones: a roof on every stem of a sans."""
     bar = line((60, 90), (60, 40))
-    hidden = poses_of(bar, [(0.0, half_width)], start="hidden")
-    np.testing.assert_array_equal(poses_of(bar, [(0.0, half_width)], start="auto"), hidden)
+    rounded = poses_of(bar, [(0.0, half_width)], start="round")
+    np.testing.assert_array_equal(poses_of(bar, [(0.0, half_width)], start="auto"), rounded)
 
 
 def test_auto_takes_what_suits_and_a_stroke_may_say_it_itself():
     bar = line((20, 20), (60, 20))
-    exposed, hidden = poses_of(bar, [(0.0, 2.0)]), poses_of(bar, [(0.0, 2.0)], start="hidden")
-    assert len(hidden) > len(exposed)
-    np.testing.assert_array_equal(poses_of(bar, [(0.0, 2.0)], start="auto"), hidden)
+    pointed, rounded = poses_of(bar, [(0.0, 2.0)]), poses_of(bar, [(0.0, 2.0)], start="round")
+    assert len(rounded) > len(pointed)
+    np.testing.assert_array_equal(poses_of(bar, [(0.0, 2.0)], start="auto"), rounded)
     # drawn as the footprint is behind, pointed by 3.8 mm: nothing to hide
     points = [[18, 20], [21.8, 18], [60, 18], [60, 22], [21.8, 22]]
-    pointed = stroke_of(bar, [(0.0, 2.0)])
-    pointed.wanted_mm = [np.array(points, float)]
-    plan = core.compensate([pointed], ROUND, (99.0, 99.0), start="auto").plan
-    np.testing.assert_array_equal(plan.passes[0].poses_mm, exposed)
-    said = core.Stroke(id="s", middle_mm=bar, half_width=[(0.0, 2.0)], settings=core.Settings(start="hidden"))
-    plan = core.compensate([said], ROUND, (99.0, 99.0), start="exposed").plan
-    np.testing.assert_array_equal(plan.passes[0].poses_mm, hidden)
+    sharp = stroke_of(bar, [(0.0, 2.0)])
+    sharp.wanted_mm = [np.array(points, float)]
+    plan = core.compensate([sharp], ROUND, (99.0, 99.0), start="auto").plan
+    np.testing.assert_array_equal(plan.passes[0].poses_mm, pointed)
+    said = core.Stroke(id="s", middle_mm=bar, half_width=[(0.0, 2.0)], settings=core.Settings(start="round"))
+    plan = core.compensate([said], ROUND, (99.0, 99.0), start="pointed").plan
+    np.testing.assert_array_equal(plan.passes[0].poses_mm, rounded)
     wrong = core.Stroke(id="s", middle_mm=bar, half_width=[(0.0, 2.0)], settings=core.Settings(start="soft"))
     with pytest.raises(Error) as refused:
         core.compensate([wrong], ROUND, (99.0, 99.0))
     assert (refused.value.where, refused.value.code) == ("s", "choice-unknown")
+
+
+@pytest.mark.parametrize("half_width", [1.0, 2.0, 3.0, 4.0])
+@pytest.mark.parametrize("middle", [line((20, 20), (60, 20)), line((20, 20), (50, 20))])
+def test_a_pointed_end_is_a_pointed_beginning_mirrored(middle, half_width):
+    mark = painted_region(poses_of(middle, [(0.0, half_width)], start="pointed", end="pointed"))
+    _, low, right, high = mark.bounds
+    assert right == pytest.approx(middle[0, 6] + half_width, abs=0.05), "it ends where the drawing ends"
+    mirrored = affinity.scale(mark, -1, 1, origin=(middle[0, [0, 6]].mean(), 20))
+    assert mirrored.symmetric_difference(mark).area < 0.9 * half_width**2, "3 to 4 of a round end"
+    assert high - low == pytest.approx(2 * half_width, abs=0.02)
 
 
 # Ends, and beginnings that are cut ----------------------------------------------------------------
@@ -827,11 +839,11 @@ def end_of_bar(half_width, slope, **options):
 
 
 @sample(("half_width", "slope"), [(1.5, 0.0), (2.0, -0.6), (2.0, 1.0), (3.0, 0.3)], keep=2)
-def test_a_squared_end_is_as_straight_as_its_cut(half_width, slope):
-    lifted, _, _ = end_of_bar(half_width, slope)
-    squared, beyond, there = end_of_bar(half_width, slope, end="squared")
-    assert lifted < 0.9 - 0.05 * abs(slope)
-    assert squared > 0.94
+def test_a_butt_end_is_as_straight_as_its_cut(half_width, slope):
+    rounded, _, _ = end_of_bar(half_width, slope)
+    butt, beyond, there = end_of_bar(half_width, slope, end="butt")
+    assert rounded < 0.9 - 0.05 * abs(slope)
+    assert butt > 0.94
     assert beyond < 0.05 + 0.1 * half_width
     np.testing.assert_array_equal(end_of_bar(half_width, slope, end="auto")[2], there)
 
@@ -877,17 +889,17 @@ def beginning_of_bar(half_width, slope, poses):
     [(1.5, 0.0), (2.0, -0.6), (2.0, 1.0), (3.0, 0.3), (4.2, 0.0)],
     keep=2,
 )
-def test_a_squared_beginning_is_as_straight_as_its_cut(half_width, slope):
-    plans = {start: plan_of_bar(half_width, slope, start=start) for start in ("hidden", "squared", "auto")}
-    hidden, _ = beginning_of_bar(half_width, slope, plans["hidden"])
-    squared, beyond = beginning_of_bar(half_width, slope, plans["squared"])
-    assert hidden < 0.97 - 0.05 * abs(slope)
-    assert squared > 0.975 - 0.015 * abs(slope)
+def test_a_butt_beginning_is_as_straight_as_its_cut(half_width, slope):
+    plans = {start: plan_of_bar(half_width, slope, start=start) for start in ("round", "butt", "auto")}
+    rounded, _ = beginning_of_bar(half_width, slope, plans["round"])
+    butt, beyond = beginning_of_bar(half_width, slope, plans["butt"])
+    assert rounded < 0.97 - 0.05 * abs(slope)
+    assert butt > 0.975 - 0.015 * abs(slope)
     assert beyond < 0.05 + 0.1 * half_width
-    np.testing.assert_array_equal(plans["auto"], plans["squared"])
+    np.testing.assert_array_equal(plans["auto"], plans["butt"])
 
 
-def test_a_stroke_is_squared_where_it_begins_and_where_it_ends():
+def test_a_stroke_has_butt_ends_at_both_sides():
     import shapely
 
     middle = np.array([(20.0, 20.0, 35.0, 20.0, 45.0, 20.0, 60.0, 28.0)])
@@ -895,7 +907,7 @@ def test_a_stroke_is_squared_where_it_begins_and_where_it_ends():
     flat = shapely.LineString(points).buffer(2.0, cap_style="square")
     stroke = stroke_of(middle, [(0.0, 2.0)])
     stroke.wanted_mm = [np.array(flat.exterior.coords)[:-1]]
-    plain = core.compensate([stroke], ROUND, (200.0, 200.0), start="hidden", end="lifted")
+    plain = core.compensate([stroke], ROUND, (200.0, 200.0), start="round", end="round")
     found = core.compensate([stroke], ROUND, (200.0, 200.0), start="auto", end="auto")
     assert found.misses[0].within_tolerance
 
@@ -927,10 +939,10 @@ ROUND_CAP = [
         (2.0, [(20, 18), (70, 18), (70, 22), (20, 22)]),  # goes on in another stroke
     ],
 )
-def test_what_is_no_cut_is_lifted(half_width, wanted):
+def test_what_is_no_cut_ends_round(half_width, wanted):
     stroke = stroke_of(line((20, 20), (60, 20)), [(0.0, half_width)])
     stroke.wanted_mm = [np.array(wanted, float)]
-    plans = [core.compensate([stroke], ROUND, (200.0, 200.0), end=end).plan for end in ("lifted", "squared")]
+    plans = [core.compensate([stroke], ROUND, (200.0, 200.0), end=end).plan for end in ("round", "butt")]
     np.testing.assert_array_equal(*(plan.passes[0].poses_mm for plan in plans))
 
 
@@ -946,37 +958,35 @@ def test_what_is_no_cut_is_lifted(half_width, wanted):
         (2.0, [(10, 18), (60, 18), (60, 22), (10, 22)]),  # goes on in another stroke
     ],
 )
-def test_what_begins_with_no_cut_is_hidden(half_width, wanted):
+def test_what_begins_with_no_cut_is_round(half_width, wanted):
     stroke = stroke_of(line((20, 20), (60, 20)), [(0.0, half_width)])
     stroke.wanted_mm = [np.array(wanted, float)]
     plans = [
-        core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("hidden", "squared")
+        core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("round", "butt")
     ]
     np.testing.assert_array_equal(*(plan.passes[0].poses_mm for plan in plans))
 
 
 @pytest.mark.parametrize("middle", [line((20, 20), (28, 20)), line((20, 20), (25, 20), (25, 50))])
-def test_a_beginning_without_room_for_the_way_back_is_hidden(middle):
+def test_a_beginning_without_room_for_the_way_back_is_round(middle):
     """Too short for the tip that is set down inside, or it would come out beside a corner."""
-    hidden = poses_of(middle, [(0.0, 3.0)], start="hidden")
-    np.testing.assert_array_equal(poses_of(middle, [(0.0, 3.0)], start="squared"), hidden)
+    rounded = poses_of(middle, [(0.0, 3.0)], start="round")
+    np.testing.assert_array_equal(poses_of(middle, [(0.0, 3.0)], start="butt"), rounded)
 
 
-def test_round_caps_are_not_squared_where_beginnings_are_chosen():
+def test_round_caps_are_not_cut_where_beginnings_are_chosen():
     middle, half_width = line((20, 20), (60, 20)), [(0.0, 2.0)]
-    hidden = poses_of(middle, half_width, start="hidden")
-    np.testing.assert_array_equal(poses_of(middle, half_width, start="auto"), hidden)
-    squared = poses_of(middle, half_width, start="squared")
-    assert len(squared) > len(hidden)
-    said = core.Stroke(
-        id="s", middle_mm=middle, half_width=half_width, settings=core.Settings(start="squared")
-    )
-    plan = core.compensate([said], ROUND, (200.0, 200.0), start="exposed").plan
-    np.testing.assert_array_equal(plan.passes[0].poses_mm, squared)
+    rounded = poses_of(middle, half_width, start="round")
+    np.testing.assert_array_equal(poses_of(middle, half_width, start="auto"), rounded)
+    butt = poses_of(middle, half_width, start="butt")
+    assert len(butt) > len(rounded)
+    said = core.Stroke(id="s", middle_mm=middle, half_width=half_width, settings=core.Settings(start="butt"))
+    plan = core.compensate([said], ROUND, (200.0, 200.0), start="pointed").plan
+    np.testing.assert_array_equal(plan.passes[0].poses_mm, butt)
 
 
-def test_round_caps_are_lifted_where_ends_are_chosen():
+def test_round_caps_stay_round_where_ends_are_chosen():
     middle, half_width = line((20, 20), (60, 20)), [(0.0, 2.0)]
-    lifted = poses_of(middle, half_width)
-    np.testing.assert_array_equal(poses_of(middle, half_width, end="auto"), lifted)
-    assert len(poses_of(middle, half_width, end="squared")) > len(lifted)
+    rounded = poses_of(middle, half_width)
+    np.testing.assert_array_equal(poses_of(middle, half_width, end="auto"), rounded)
+    assert len(poses_of(middle, half_width, end="butt")) > len(rounded)

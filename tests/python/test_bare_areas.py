@@ -64,7 +64,7 @@ def test_a_corner_that_one_sees_is_painted_unless_strokes_shall_end_and_turn_pla
     assert [stroke.id for stroke in work.strokes][:2] == ["p", "p~2"]
     share, _ = blank(TAIL, predict(work))
     assert share < 0.005
-    for plain in ({"end": "lifted"}, {"start": "exposed"}, {"corners": "turn"}):
+    for plain in ({"end": "round"}, {"start": "pointed"}, {"corners": "turn"}):
         work = prepared(tmp_path, TAIL, **plain)
         assert [stroke.id for stroke in work.strokes] == ["p"]
     share, _ = blank(TAIL, predict(work))
@@ -112,7 +112,7 @@ def test_what_a_brush_is_too_narrow_for_is_painted_unless_its_width_is_to_be_the
     assert [(each.code, each.advice) for each in work.notices] == [("width-out-of-reach", "")]
     work = prepared(tmp_path, broad, wide="clamp")
     assert [stroke.id for stroke in work.strokes] == ["p"]
-    assert work.notices[0].advice
+    assert "width-out-of-reach" in [each.code for each in work.notices]
 
 
 def test_all_strokes_of_a_drawing_are_painted_wider_than_the_brush_or_none(tmp_path):

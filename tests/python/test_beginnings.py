@@ -55,7 +55,7 @@ def test_a_wide_stroke_that_bends_at_once_begins_round():
     ]
     stroke = _core.Stroke(middle_mm=middle, half_width=widths)
     brush = find_brush("round-6")
-    assert overlap(stroke, brush, "auto") > overlap(stroke, brush, "exposed") + 0.02
+    assert overlap(stroke, brush, "auto") > overlap(stroke, brush, "pointed") + 0.02
 
 
 def arc(radius_mm, half_mm, from_rad, sweep_rad):
@@ -84,7 +84,7 @@ def test_arcs_begin_and_end_as_the_best_of_all_that_can_be_asked_for():
             rng.uniform(0, 2 * np.pi),
             rng.uniform(1, 1.5 * np.pi) * rng.choice([-1, 1]),
         )
-        ways = product(("exposed", "hidden", "squared"), ("lifted", "squared"))
+        ways = product(("pointed", "round", "butt"), ("round", "butt"))
         lost = max(overlap(stroke, brush, *way) for way in ways) - overlap(stroke, brush, "auto")
         if lost > 0.005:
             worse.append((radius_mm, width_mm, lost))
@@ -102,7 +102,7 @@ def test_a_ball_at_the_beginning_is_turned_round_where_that_is_better_than_going
     brush = find_brush("round-6")
     for half_mm in (2.2, 2.8):
         stroke = ball(5.0, half_mm, 1.0)
-        for start in ("auto", "hidden", "squared"):  # there is no cut to square
+        for start in ("auto", "round", "butt"):  # there is no cut to square
             assert overlap(stroke, brush, start) > 0.972, "going back 0.959 and 0.962 were reached"
 
 

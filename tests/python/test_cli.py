@@ -735,7 +735,17 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
     status, out, _ = run(capsys, "convert", "--help")
     assert status == 0
     flags = set(re.findall(r"--[a-z-]+", out))
-    choices = {"--brush", "--cell", "--compensation", "--lag", "--tolerance", "--start", "--end", "--lenient"}
+    choices = {
+        "--brush",
+        "--cell",
+        "--compensation",
+        "--lag",
+        "--tolerance",
+        "--terminals",
+        "--start",
+        "--end",
+        "--lenient",
+    }
     choices |= {
         "--sheet",
         "--units",

@@ -365,7 +365,7 @@ def test_a_dot_is_warned_of_by_the_depth_that_it_is_turned_at(desk, capsys):
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">'
         f'<g stroke="#000" stroke-linecap="round">{dots}</g></svg>'
     )
-    for start, count in (("hidden", 1), ("exposed", 0)):
+    for start, count in (("round", 1), ("pointed", 0)):
         passes, told = plan(desk, capsys, "--start", start, drawing="dots.svg")
         thin = [each for each in told if each.code == "depth-not-measured"]
         depths = [-min(z for _, _, z in each["poses_mm"]) for each in passes]

@@ -60,13 +60,13 @@ def test_beginnings_are_said_of_the_job_and_of_strokes(desk, capsys):
         assert main(["convert", "s.svg", "s.json", *flags]) == 0
         return {each.stroke: each.poses_mm.tolist() for each in read_plan("s.json").passes}
 
-    exposed, hidden = poses(DRAWING, "--start", "exposed"), poses(DRAWING, "--start", "hidden")
-    assert all(len(hidden[name]) > len(exposed[name]) for name in "ab")
-    assert poses(DRAWING) == hidden  # what suits round ends
-    assert poses(on_root('start="exposed"')) == exposed
-    assert poses(on_root('start="exposed"'), "--start", "hidden") == hidden
-    of_one = DRAWING.replace('id="a"', 'id="a" data-brushsvg-start="exposed"')
-    assert poses(of_one, "--start", "hidden") == {"a": exposed["a"], "b": hidden["b"]}
+    pointed, rounded = poses(DRAWING, "--start", "pointed"), poses(DRAWING, "--start", "round")
+    assert all(len(rounded[name]) > len(pointed[name]) for name in "ab")
+    assert poses(DRAWING) == rounded  # what suits round ends
+    assert poses(on_root('start="pointed"')) == pointed
+    assert poses(on_root('start="pointed"'), "--start", "round") == rounded
+    of_one = DRAWING.replace('id="a"', 'id="a" data-brushsvg-start="pointed"')
+    assert poses(of_one, "--start", "round") == {"a": pointed["a"], "b": rounded["b"]}
 
 
 BAR = (
@@ -75,19 +75,19 @@ BAR = (
 )
 
 
-def test_a_cut_beginning_is_squared_where_it_is_chosen_and_where_it_is_said(desk, capsys):
+def test_a_cut_beginning_is_butt_where_it_is_chosen_and_where_it_is_said(desk, capsys):
     def poses(*flags):
         assert main(["convert", "s.svg", "s.json", *flags]) == 0
         return {each.stroke[:1]: each.poses_mm.tolist() for each in read_plan("s.json").passes}
 
     (desk / "s.svg").write_text(BAR)
-    hidden, squared = poses("--start", "hidden"), poses("--start", "squared")
-    assert all(len(squared[name]) > len(hidden[name]) for name in "ab")
-    assert poses() == squared  # what suits a straight cut
-    (desk / "s.svg").write_text(BAR.replace('id="a"', 'id="a" data-brushsvg-start="squared"'))
-    assert poses("--start", "hidden") == {"a": squared["a"], "b": hidden["b"]}
-    assert main(["convert", "s.svg", "s.ngc", "--start", "squared"]) == 0
-    assert ", start squared)" in (desk / "s.ngc").read_text()
+    rounded, butt = poses("--start", "round"), poses("--start", "butt")
+    assert all(len(butt[name]) > len(rounded[name]) for name in "ab")
+    assert poses() == butt  # what suits a straight cut
+    (desk / "s.svg").write_text(BAR.replace('id="a"', 'id="a" data-brushsvg-start="butt"'))
+    assert poses("--start", "round") == {"a": butt["a"], "b": rounded["b"]}
+    assert main(["convert", "s.svg", "s.ngc", "--start", "butt"]) == 0
+    assert ", start butt)" in (desk / "s.ngc").read_text()
     assert main(["check", "s.ngc", "s.svg"]) == 0
 
 
@@ -97,34 +97,62 @@ def test_ends_are_said_of_the_job_and_of_strokes(desk, capsys):
         assert main(["convert", "s.svg", "s.json", *flags]) == 0
         return {each.stroke[:1]: each.poses_mm.tolist() for each in read_plan("s.json").passes}
 
-    lifted, squared = poses(BAR, "--end", "lifted"), poses(BAR, "--end", "squared")
-    assert all(len(squared[name]) > len(lifted[name]) for name in "ab")
-    assert poses(BAR) == squared  # what suits a straight cut
-    said = BAR.replace("<svg ", '<svg data-brushsvg-end="lifted" ')
-    assert poses(said) == lifted
-    assert poses(said, "--end", "squared") == squared
-    of_one = BAR.replace('id="a"', 'id="a" data-brushsvg-end="lifted"')
-    assert poses(of_one) == {"a": lifted["a"], "b": squared["b"]}
+    rounded, butt = poses(BAR, "--end", "round"), poses(BAR, "--end", "butt")
+    assert all(len(butt[name]) > len(rounded[name]) for name in "ab")
+    assert poses(BAR) == butt  # what suits a straight cut
+    said = BAR.replace("<svg ", '<svg data-brushsvg-end="round" ')
+    assert poses(said) == rounded
+    assert poses(said, "--end", "butt") == butt
+    of_one = BAR.replace('id="a"', 'id="a" data-brushsvg-end="round"')
+    assert poses(of_one) == {"a": rounded["a"], "b": butt["b"]}
+
+
+def test_terminals_set_both_ends_and_one_end_may_differ(desk, capsys):
+    def poses(text, *flags):
+        (desk / "s.svg").write_text(text)
+        assert main(["convert", "s.svg", "s.json", *flags]) == 0
+        return {each.stroke[:1]: each.poses_mm.tolist() for each in read_plan("s.json").passes}
+
+    def both(start, end):
+        return poses(BAR, "--start", start, "--end", end)
+
+    for one, other in (("round", "butt"), ("butt", "pointed"), ("pointed", "round")):
+        assert poses(BAR, "--terminals", one) == both(one, one)
+        assert poses(BAR, "--terminals", one, "--end", other) == both(one, other)
+        on_svg = BAR.replace("<svg ", f'<svg data-brushsvg-terminals="{one}" ')
+        assert poses(on_svg) == both(one, one)
+        assert poses(on_svg, "--terminals", other) == both(other, other), "a flag counts more"
+        assert poses(on_svg, "--start", other) == both(other, one)
+        start = on_svg.replace("<svg ", f'<svg data-brushsvg-start="{other}" ')
+        assert poses(start) == both(other, one)
+        assert poses(start, "--terminals", one) == both(one, one), "a flag counts more"
+        of_one = BAR.replace('id="a"', f'id="a" data-brushsvg-terminals="{one}"')
+        assert poses(of_one, "--terminals", other) == {"a": both(one, one)["a"], "b": both(other, other)["b"]}
+        of_group = BAR.replace('<path id="a"', f'<g data-brushsvg-terminals="{one}"><path id="a"')
+        of_group = of_group.replace("</svg>", "</g></svg>")
+        assert poses(of_group, "--start", other) == both(one, one)
+        inside = of_group.replace('id="a"', f'id="a" data-brushsvg-end="{other}"')
+        assert poses(inside) == {"a": both(one, other)["a"], "b": both(one, one)["b"]}
 
 
 def test_a_program_tells_how_its_strokes_end_and_is_checked_by_it(desk, capsys):
     (desk / "d.svg").write_text(BAR)
-    assert main(["convert", "d.svg", "d.ngc", "--end", "lifted", "--start", "exposed"]) == 0
+    assert main(["convert", "d.svg", "d.ngc", "--end", "round", "--start", "pointed"]) == 0
     text = (desk / "d.ngc").read_text()
-    assert "(compensation: closed, tolerance 0.05 mm, start exposed, end lifted)" in text
+    assert "(compensation: closed, tolerance 0.05 mm, start pointed, end round)" in text
     assert main(["check", "d.ngc", "d.svg"]) == 0
-    (desk / "d.ngc").write_text(text.replace(", end lifted)", ")"))
+    (desk / "d.ngc").write_text(text.replace(", end round)", ")"))
     assert main(["check", "d.ngc", "d.svg"]) == 1
 
 
 def test_a_program_tells_how_its_strokes_begin_and_is_checked_by_it(desk, capsys):
-    assert main(["convert", "d.svg", "d.ngc", "--start", "exposed"]) == 0
+    assert main(["convert", "d.svg", "d.ngc", "--start", "pointed"]) == 0
     text = (desk / "d.ngc").read_text()
-    assert "(compensation: closed, tolerance 0.05 mm, start exposed)" in text
+    assert "(compensation: closed, tolerance 0.05 mm, start pointed)" in text
     assert main(["check", "d.ngc", "d.svg"]) == 0
-    (desk / "d.ngc").write_text(text.replace(", start exposed)", ")"))
+    (desk / "d.ngc").write_text(text.replace(", start pointed)", ")"))
     assert main(["check", "d.ngc", "d.svg"]) == 1
-    (desk / "d.ngc").write_text(text.replace(", start exposed)", ", start soft)"))
+    (desk / "d.ngc").write_text(text.replace(", start pointed)", ", start soft)"))
     capsys.readouterr()
     status, _, told = in_json(capsys, "check", "d.ngc", "d.svg")
     assert status == 1 and [notice.code for _, notice in told] == ["header-damaged"]

@@ -12,9 +12,9 @@ from svg_text import read
 from brushsvg import _core, find_brush
 from brushsvg.calibration.from_widths import new_brush
 from brushsvg.strokes.contour_fill import contour_passes
+from brushsvg.strokes.contour_rings import Line
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.fillings import fillings
-from brushsvg.strokes.offset_passes import Line
 from brushsvg.strokes.skeleton import shape_to_strokes
 from brushsvg.strokes.swept_areas import painted, region
 from brushsvg.strokes.wide_shapes import within_reach
@@ -95,12 +95,12 @@ def test_holes_belong_to_no_stroke_of_a_shape_too_large_to_be_cut(monkeypatch):
 
 
 @pytest.mark.parametrize("times", [1.1, 1.5, 2.0, 2.3])
-def test_a_disc_hardly_wider_than_the_brush_is_a_dot_and_a_ring_round_it(brush, times):
+def test_a_disc_hardly_wider_than_the_brush_is_a_dot_and_what_is_left_round_it(brush, times):
     """A ring of the full width would turn too sharply in it: 0.72 to 0.95 of such a disc was painted."""
     radius = times * HALF_MM
     made = of(f"M40 {30 - radius}A{radius} {radius} 0 1 1 39.99 {30 - radius}Z")
-    passes, _, _ = within_reach(made, brush, "passes")
-    assert [each.closed for each in passes] == [False, True]
+    passes = passes_of(made, brush)
+    assert [each.closed for each in passes][:2] == [False, True]
     paint, disc = paint_of(passes, brush), shapely.Point(40, 20).buffer(radius, quad_segs=64)
     disc = shapely.affinity.translate(disc, *(np.array(made[0].middle_mm[0, :2]) - (40, 20)))
     assert paint.intersection(disc).area / paint.union(disc).area > 0.985
@@ -118,21 +118,18 @@ def ways_of(shape, narrow=()):
     return contour_passes(shape, 0.0, HALF_MM)
 
 
-def test_sides_that_meet_at_right_angles_come_first_with_square_ends_then_the_rings_inside():
-    square = shapely.box(5, 5, 50, 50)
-    passes = ways_of(square)[0]
-    sides, rings = passes[:4], [each for each in passes if each.closed]
-    assert not any(each.closed for each in sides)
-    assert passes[4 : 4 + len(rings)] == rings
-    for each in sides:
-        assert way_of(each)[-1, 2] == pytest.approx(45 - 2 * HALF_MM, abs=0.02)
-        meant = region(list(each.wanted_mm))
-        corners = [
-            corner for corner in square.exterior.coords[1:] if meant.distance(shapely.Point(corner)) < 0.02
-        ]
-        assert len(corners) == 2
+def test_rings_come_from_the_outline_inwards_cut_at_sharp_corners_alone():
+    rings = contour_passes(shapely.box(5, 5, 50, 50), 0.0, HALF_MM)[0]
+    assert all(each.closed for each in rings)
     sizes = [np.ptp(way_of(each)[:, 0]) for each in rings]
+    assert sizes[0] == pytest.approx(45 - 2 * HALF_MM, abs=0.02)
     assert sizes == sorted(sizes, reverse=True)
+    sharp = contour_passes(shapely.Polygon([(5, 5), (55, 5), (30, 48.3)]), 0.0, HALF_MM)[0]
+    sides = [each for each in sharp if not each.closed]
+    assert len(sides) == 3
+    inside = 50 - 2 * np.sqrt(3) * HALF_MM  # the side of the triangle that discs run along
+    for each in sides:
+        assert way_of(each)[-1, 2] == pytest.approx(inside - 2 * 0.4 * HALF_MM, abs=0.2)
 
 
 def way_of(line):
@@ -202,32 +199,23 @@ def test_no_other_way_to_fill_a_shape_plainly_paints_more_of_it(brush, name):
     """Compared by the marks' outlines with shapely; discs would tell of the star's five square ends as the best."""
     made = of(SHAPES[name])
     wide = [k for k, each in enumerate(made) if max(half for _, half in each.half_width) > HALF_MM]
-    (ways,) = fillings(made, wide, *brush.half_width_range_mm())
-    assert len(ways) > 1
-    shape = region(ways[0].rings)
+    (filling,) = fillings(made, wide, *brush.half_width_range_mm())
+    assert filling.along
+    shape = region(filling.rings)
 
     def overlap(passes) -> float:
         paint = paint_of(passes, brush)
         return paint.intersection(shape).area / paint.union(shape).area
 
-    others = [
-        [
-            *way.narrow,
-            *(
-                made[k].replaced(
-                    middle_mm=line.middle_mm,
-                    closed=line.closed,
-                    half_width=line.half_width,
-                    wanted_mm=list(line.wanted_mm),
-                )
-                for k, lines in way.passes.items()
-                for line in lines
-            ),
-        ]
-        for way in ways
-    ]
+    ways = [[*filling.narrow, *(like(made[0], line) for line in lines)] for lines in filling.along]
     taken = overlap(passes_of(made, brush))
-    assert taken > max(map(overlap, others)) - 0.008
+    assert taken > max(map(overlap, [*ways, within_reach(made, brush, "clamp")[0]])) - 0.008
+
+
+def like(stroke, line):
+    return stroke.replaced(
+        middle_mm=line.middle_mm, closed=line.closed, half_width=line.half_width, wanted_mm=[]
+    )
 
 
 @pytest.mark.slow
@@ -237,8 +225,7 @@ def test_marks_of_passes_have_the_shape_s_straight_edges_up_to_its_corners(brush
     beside one that points inwards, where the brush turns."""
     made = of(d)
     shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm])).simplify(0.01)
-    passes, _, _ = within_reach(made, brush, "passes")
-    paint = paint_of(passes, brush)
+    paint = paint_of(passes_of(made, brush), brush)
     corners = [shapely.Point(each) for each in shape.exterior.coords]
     inward = [shape.intersection(each.buffer(1)).area > 2 for each in corners]
     near = [each.buffer(5 if turns else 2) for each, turns in zip(corners, inward, strict=True)]
@@ -253,14 +240,15 @@ def test_a_short_fat_stroke_is_a_ring_without_a_tip(brush):
     assert [each.closed for each in passes][:1] == [True]
 
 
-def test_a_stroke_that_its_own_passes_cover_keeps_them_and_its_direction(brush):
+def test_a_stroke_with_its_sides_keeps_its_direction(brush):
     (stroke,) = of("M10 40Q25 10 50 18T90 15Q70 36 48 28T10 40Z")
     passes, wanted, _ = within_reach([stroke], brush, "passes")
-    lanes = [(each.id, max(h for _, h in each.half_width) > 0.75 * HALF_MM) for each in passes]
-    assert lanes[:3] == [("p", True), ("p~2", True), ("p~3", True)]
-    assert not any(is_whole for _, is_whole in lanes[3:])  # narrow lines where an edge stayed bare
+    assert [each.id for each in passes] == ["p"]
     assert passes[0].middle_mm.tolist() == stroke.middle_mm.tolist()
     assert wanted[0].half_width == stroke.half_width
+    every = passes_of([stroke], brush)
+    assert len(every) > 2  # with its sides
+    assert every[0].middle_mm.tolist() == stroke.middle_mm.tolist()
 
 
 def test_narrow_strokes_of_a_shape_stay_as_they_are(brush):
@@ -341,8 +329,8 @@ def straight(name, start, end, half):
 def test_slits_between_the_parts_of_a_shape_s_strokes_are_no_edges(brush):
     """Rings led round them, by 2 mm beside an inner corner of this star."""
     made = of(SHAPES["star"])
-    (ways,) = fillings(made, list(range(len(made))), *brush.half_width_range_mm())
+    (filling,) = fillings(made, list(range(len(made))), *brush.half_width_range_mm())
     parts = _core.unite([ring for stroke in made for ring in stroke.wanted_mm])
-    corners = [len(shapely.LinearRing(ring).simplify(0.02).coords) - 1 for ring in ways[0].rings]
+    corners = [len(shapely.LinearRing(ring).simplify(0.02).coords) - 1 for ring in filling.rings]
     assert corners == [10]
-    assert region(ways[0].rings).symmetric_difference(region(parts)).area < 0.1
+    assert region(filling.rings).symmetric_difference(region(parts)).area < 0.1

@@ -87,7 +87,7 @@ def test_a_job_of_one_load_comes_out_as_wide_as_drawn(tmp_path, compensation):
 def test_beside_the_middle_marks_are_as_wide_as_drawn(tmp_path):
     """Half way along each stroke, by a cut through the mark; the last ones were half as wide else."""
     # ways round caps reach the middle of lines so short
-    work = prepared(tmp_path, 0.22, start="exposed", end="lifted")
+    work = prepared(tmp_path, 0.22, start="pointed", end="round")
     marks = marks_of(work.plan, brush_of(0.22), cell=ONE_LOAD)
     assert marks.passes[-1].width_share[-1] < 0.6
     for trace, stroke in zip(marks.passes[::3], work.strokes[::3], strict=True):  # the lines

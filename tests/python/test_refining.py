@@ -23,8 +23,8 @@ BARS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="90mm" vi
 def works(tmp_path, text, **how):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(text)
-    # hidden and squared, beginnings and ends leave nothing to refine
-    plain = {"start": "exposed", "end": "lifted"}
+    # round and butt terminals leave nothing to refine
+    plain = {"start": "pointed", "end": "round"}
     return [prepare(drawing, Options(compensation=each, **plain, **how)) for each in ("closed", "refined")]
 
 

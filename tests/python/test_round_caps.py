@@ -53,12 +53,12 @@ def test_both_ends_are_round(drawn, width_mm):
     painted, plan = mark(drawn(width_mm))
     assert strays_mm(painted, width_mm) < 0.1
     assert len(plan.passes[0].poses_mm) < 60
-    blunt, _ = mark(drawn(width_mm), "exposed", "lifted")
+    blunt, _ = mark(drawn(width_mm), "pointed", "round")
     assert strays_mm(blunt, width_mm) > 1.0
 
 
 def test_a_hidden_beginning_is_round_as_well():
-    painted, _ = mark(line(8), "hidden", "lifted")
+    painted, _ = mark(line(8), "round", "round")
     left = shapely.box(0, 0, 50, 50)
     beyond = painted.symmetric_difference(MIDDLE.buffer(4, quad_segs=64)).intersection(left)
     assert beyond.area < 1.0
@@ -72,7 +72,7 @@ def test_narrower_lines_need_no_turn(width_mm):
 
 
 def test_squared_ends_of_a_path_with_a_width_alone_are_straight():
-    painted, _ = mark(line(8), "squared", "squared")
+    painted, _ = mark(line(8), "butt", "butt")
     assert all(painted.contains(shapely.Point(x, y)) for x in (26.8, 78.2) for y in (21.8, 28.2))
 
 

@@ -7,19 +7,19 @@ from brushsvg import Error, Pass, Plan, Settings, _core, find_brush, write_plan
 
 ALL = {
     "brush": "b",
-    "end": "squared",
+    "end": "butt",
     "kind": "arc",
     "order": -3,
     "passes": 2,
     "reload": True,
     "skip": False,
     "speed_mm_s": 7.0,
-    "start": "hidden",
+    "start": "round",
     "width_mm": 0.1,
 }
 WRITTEN = (
-    '{"brush":"b","end":"squared","kind":"arc","order":-3,"passes":2,"reload":true,"skip":false,"speed_mm_s":7.0,'
-    '"start":"hidden","width_mm":0.1}'
+    '{"brush":"b","end":"butt","kind":"arc","order":-3,"passes":2,"reload":true,"skip":false,"speed_mm_s":7.0,'
+    '"start":"round","width_mm":0.1}'
 )
 
 

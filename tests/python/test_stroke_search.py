@@ -5,9 +5,11 @@ import pytest
 import shapely
 
 from brushsvg import _core, find_brush
+from brushsvg.drawing.svg import read_svg
 from brushsvg.pipeline.options import Options
 from brushsvg.pipeline.prediction import predict
 from brushsvg.pipeline.preparation import prepare
+from brushsvg.strokes.skeleton import filled
 from brushsvg.strokes.swept_areas import region
 
 FLAG = "M10 5H25V50H17V10H10Z"
@@ -32,8 +34,11 @@ def painted(tmp_path, d, **options):
         f'<path id="p" d="{d}"/></svg>'
     )
     work = prepare(file, Options(brush=find_brush("round-6"), **options))
-    rings = _core.unite([ring for stroke in work.strokes if stroke.wanted_mm for ring in stroke.wanted_mm])
-    return region(rings), region(predict(work).outline_mm), work.plan
+    return (
+        region(filled(read_svg(file.read_bytes()).elements[0])),
+        region(predict(work).outline_mm),
+        work.plan,
+    )
 
 
 @pytest.mark.parametrize("d", CORNERS.values(), ids=CORNERS)
@@ -54,10 +59,24 @@ def test_the_arms_of_a_k_stay_on_its_stem(tmp_path):
     assert len(shapely.get_parts(shape)) == len(shapely.get_parts(mark)) == 1
 
 
+def test_like_ends_stay_alike_where_strokes_are_searched(tmp_path):
+    """One of the five serif tips of an N was round, which the search preferred for the rest of its stroke."""
+    d = (
+        "M0 53.5342L0.5166 50.8164H4.8067L10.2871 22.7178H5.9971L6.5137 20H17.0029L32.6358 43.7412L36.7236 22.7178"
+        "H32.4561L32.9727 20H44.6973L44.1807 22.7178H39.8906L33.8936 53.5342H28.0088L12.1738 29.2988L7.9736 50.8164"
+        "H12.2412L11.7246 53.5342Z"
+    )
+    shape, mark, _ = painted(tmp_path, d)
+    tips = [(0.26, 52.2), (11.98, 52.2), (6.26, 21.4), (32.7, 21.4), (44.4, 21.4)]
+    bare = shape.difference(mark)
+    missing = [bare.intersection(shapely.Point(x, 60 - y).buffer(1.6)).area for x, y in tips]
+    assert max(missing) < 0.4, missing  # a round tip leaves 0.8 mm2
+
+
 def test_corners_are_bare_where_strokes_shall_turn_and_end_plainly(tmp_path):
     plans = [
         painted(tmp_path, CORNERS["an L"], **plain)[2]
-        for plain in ({}, {"corners": "turn"}, {"end": "lifted"})
+        for plain in ({}, {"corners": "turn"}, {"end": "round"})
     ]
     assert len(plans[0].passes) > len(plans[1].passes) == len(plans[2].passes) == 1
 
@@ -76,27 +95,20 @@ def test_the_detail_says_how_small_an_area_gets_a_stroke(detail, corners):
     square = np.array([(0.0, 0.0), (5.0, 0.0), (5.0, 5.0), (0.0, 5.0)])
     brush = find_brush("round-6")
     dot = _core.Stroke("p", np.full((1, 8), 2.5), half_width=[(0.0, 2.5)])
-    passes = _core.compensate([dot], brush, None, start="hidden").plan.passes
+    passes = _core.compensate([dot], brush, None, start="round").plan.passes
     ((_, _, added),) = _core.search_strokes([([square], [dot], list(passes))], brush, detail)
     assert len(added) == corners
 
 
-def test_the_cost_of_a_bare_square_is_its_area_and_that_of_its_inside():
-    """By the weights: 1 per mm2, and 3 more where it is deeper than 0.15 mm."""
-    square = np.array([(0.0, 0.0), (8.0, 0.0), (8.0, 8.0), (0.0, 8.0)])
-    ((_, _, added),) = _core.search_strokes([([square], [], [])], find_brush("round-6"))
-    assert 0.7 * (64 + 3 * 7.7**2) < sum(won for *_, won in added) < 64 + 3 * 7.7**2
-
-
 def test_a_stroke_whose_ends_the_artist_set_stays_as_it_is(tmp_path):
-    d, words = CORNERS["a slab on both sides"], 'data-brushsvg-end="lifted" data-brushsvg-start="exposed"'
+    d, words = CORNERS["a slab on both sides"], 'data-brushsvg-end="round" data-brushsvg-start="pointed"'
     file = tmp_path / "s.svg"
     file.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="60mm" viewBox="0 0 60 60">'
         f'<path id="p" d="{d}" {words}/></svg>'
     )
     work = prepare(file, Options(brush=find_brush("round-6")))
-    assert {stroke.settings.end for stroke in work.strokes} == {"lifted"}
+    assert {stroke.settings.end for stroke in work.strokes} == {"round"}
     assert len(work.strokes) == len(
         prepare(file, Options(brush=find_brush("round-6"), detail="draft")).strokes
     )

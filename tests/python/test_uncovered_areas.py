@@ -108,7 +108,7 @@ def test_what_the_mark_leaves_of_a_blunt_beginning_is_named_with_its_place_and_s
 
     from brushsvg.strokes.swept_areas import region
 
-    work = prepared(tmp_path, BLOCK, start="exposed")
+    work = prepared(tmp_path, BLOCK, start="pointed")
     assert work.unreached == ()
     blank = region(work.drawn[0].wanted_mm).difference(region(predict(work).outline_mm))
     assert shapely.area(blank) / (8 * 25) == pytest.approx(

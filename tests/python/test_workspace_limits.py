@@ -16,6 +16,8 @@ from brushsvg.machine.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.move_extents import ways
 from brushsvg.machine.setup_programs import border, paper_height
 from brushsvg.machine.workspace_limits import astray, astray_between
+from brushsvg.pipeline.options import Options
+from brushsvg.pipeline.preparation import prepare
 
 BRUSH = find_brush("round-6")
 SHEET = (600.0, 200.0)
@@ -315,28 +317,28 @@ EDGES = (
 
 
 def test_a_stroke_that_chooses_how_it_begins_chooses_what_the_cell_can_run(tmp_path, capsys):
-    """At the edge a hidden beginning was landed beyond the workspace, and the whole drawing refused."""
+    """At the edge a round beginning was landed beyond the workspace, and the whole drawing refused."""
     cell = find_cell()
     cell = replace(cell, name="tight", workspace=replace(cell.workspace, margin_mm=2.0))
     (tmp_path / "tight.toml").write_text(write_cell(cell), encoding="utf-8")
     (tmp_path / "a.svg").write_text(EDGES.format(own="auto"), encoding="utf-8")
     words = ("--cell", str(tmp_path / "tight.toml"))
     passes = {}
-    for start in ("auto", "exposed"):
+    for start in ("auto", "pointed"):
         plan = tmp_path / f"{start}.json"
         assert call(capsys, "convert", str(tmp_path / "a.svg"), str(plan), "--start", start, *words)[0] == 0
         passes[start] = _core.read_plan(plan.read_text(encoding="utf-8")).passes
     same = [
         np.array_equal(one.poses_mm, other.poses_mm)
-        for one, other in zip(passes["auto"], passes["exposed"], strict=True)
+        for one, other in zip(passes["auto"], passes["pointed"], strict=True)
     ]
-    assert same == [True, True, False], "amid the sheet it begins hidden, as it suits it"
+    assert same == [True, True, False], "amid the sheet it begins round, as it suits it"
     program = str(tmp_path / "a.ngc")
     assert call(capsys, "convert", str(tmp_path / "a.svg"), program, *words)[0] == 0
     assert call(capsys, "check", program, str(tmp_path / "a.svg"), *words)[0] == 0
-    (tmp_path / "a.svg").write_text(EDGES.format(own="hidden"), encoding="utf-8")
+    (tmp_path / "a.svg").write_text(EDGES.format(own="round"), encoding="utf-8")
     status, _, told = call(capsys, "convert", str(tmp_path / "a.svg"), program, *words)
-    assert status == 1 and "own" in told[-1], "who asks for a hidden beginning is told"
+    assert status == 1 and "own" in told[-1], "who asks for a round beginning is told"
 
 
 BARS = (
@@ -345,7 +347,7 @@ BARS = (
 )
 
 
-def test_a_cut_beginning_that_the_cell_cannot_square_is_hidden_or_exposed(tmp_path, capsys):
+def test_a_cut_beginning_that_the_cell_cannot_cut_is_round_or_pointed(tmp_path, capsys):
     cell = find_cell()
     cell = replace(cell, name="tight", workspace=replace(cell.workspace, margin_mm=2.0))
     (tmp_path / "tight.toml").write_text(write_cell(cell), encoding="utf-8")
@@ -354,12 +356,12 @@ def test_a_cut_beginning_that_the_cell_cannot_square_is_hidden_or_exposed(tmp_pa
 
     def passes(*more):
         plan = tmp_path / "a.json"
-        assert call(capsys, "convert", str(tmp_path / "a.svg"), str(plan), "--end", "lifted", *more)[0] == 0
+        assert call(capsys, "convert", str(tmp_path / "a.svg"), str(plan), "--end", "round", *more)[0] == 0
         return [one.poses_mm for one in _core.read_plan(plan.read_text(encoding="utf-8")).passes]
 
-    chosen, squared, hidden = passes(*words), passes("--start", "squared"), passes("--start", "hidden")
-    assert np.array_equal(chosen[1], squared[1]), "amid the sheet it begins squared, as it suits it"
-    assert np.array_equal(chosen[0], hidden[0]) and not np.array_equal(hidden[0], squared[0])
+    chosen, butt, rounded = passes(*words), passes("--start", "butt"), passes("--start", "round")
+    assert np.array_equal(chosen[1], butt[1]), "amid the sheet it begins butt, as it suits it"
+    assert np.array_equal(chosen[0], rounded[0]) and not np.array_equal(rounded[0], butt[0])
 
 
 def test_a_stroke_whose_round_beginning_is_too_wide_for_the_sheet_begins_pointed(tmp_path, capsys):
@@ -370,6 +372,19 @@ def test_a_stroke_whose_round_beginning_is_too_wide_for_the_sheet_begins_pointed
     )
     (tmp_path / "a.svg").write_text(drawn, encoding="utf-8")
     drawing, program = str(tmp_path / "a.svg"), str(tmp_path / "a.ngc")
-    assert call(capsys, "convert", drawing, program, "--start", "hidden")[0] == 1
+    assert call(capsys, "convert", drawing, program, "--start", "round")[0] == 1
     assert call(capsys, "convert", drawing, program)[0] == 0
     assert call(capsys, "check", program, drawing)[0] == 0
+
+
+@pytest.mark.parametrize(("margin_mm", "strokes"), [(8.0, 3), (3.0, 1)])
+def test_a_stroke_that_was_added_is_left_out_where_the_cell_has_no_room_for_it(tmp_path, margin_mm, strokes):
+    """The drawing was refused for the strokes into the corners of an L, 0.6 mm beyond the workspace."""
+    file = tmp_path / "l.svg"
+    file.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="46mm" height="50mm" viewBox="0 0 46 50">'
+        '<path id="p" d="M20 5H28V42H45V49H20Z"/></svg>'
+    )
+    work = prepare(file, Options(brush=BRUSH, cell=robot(margin_mm=margin_mm)))
+    assert len(work.strokes) == len(work.plan.passes) == strokes
+    assert work.strokes[0].id == "p"

@@ -20,44 +20,36 @@ enum class Compensation {
     closed     ///< q = m + (r - e) u, the article's law read backwards
 };
 
-/// How a stroke begins, in closed form. A stroke's own setting `start` says it by the same words.
-enum class Beginning {
-    exposed,  ///< pointed, as a footprint is behind
-    hidden,   ///< set down inside of the stroke, back to its beginning, turned over: round, as a footprint is in front
-              ///< (a dot: turned round on the spot)
-    squared,  ///< on its way back a narrower mark goes into one corner, along the cut into the other, and turns there
-    turned,   ///< turned round on the spot like a dot, then on along the line; `hidden` and `auto` take it, none asks
-              ///< for it
-    automatic,  ///< hidden, turned or squared, where the mark lies better on the wanted one there for it, by more than
-                ///< can hardly be seen
+/// The shape of an end of a stroke, in closed form. A stroke's own settings `start` and `end` use the same words.
+enum class Terminal {
+    pointed,    ///< a start as a footprint is behind; an end narrows as far
+    round,      ///< as a footprint is in front, or turned round on the spot where that is rounder. A start is set down
+                ///< inside of the stroke, goes back to its beginning and turns over there
+    butt,       ///< straight or slanted: a narrower mark goes into one corner, along the cut and into the other
+    automatic,  ///< the one of them whose mark is most like the drawn end, a plainer one where hardly more can be seen
 };
-inline constexpr std::array<std::pair<std::string_view, Beginning>, 4> kBeginnings{{{"exposed", Beginning::exposed},
-                                                                                    {"hidden", Beginning::hidden},
-                                                                                    {"squared", Beginning::squared},
-                                                                                    {"auto", Beginning::automatic}}};
+inline constexpr std::array<std::pair<std::string_view, Terminal>, 4> kTerminals{{{"pointed", Terminal::pointed},
+                                                                                  {"round", Terminal::round},
+                                                                                  {"butt", Terminal::butt},
+                                                                                  {"auto", Terminal::automatic}}};
 /// Error for another word.
-Beginning beginning_named(const std::string& name, const std::string& where);
-
-/// How a stroke ends, in closed form. A stroke's own setting `end` says it by the same words.
-enum class Ending {
-    lifted,     ///< while the patch rests: as the footprint is in front
-    squared,    ///< a narrower mark goes on into one corner, along the cut and back into the other: straight or slanted
-    automatic,  ///< squared where the mark lies better on the wanted one there for it, by more than can hardly be seen
-};
-inline constexpr std::array<std::pair<std::string_view, Ending>, 3> kEndings{
-    {{"lifted", Ending::lifted}, {"squared", Ending::squared}, {"auto", Ending::automatic}}};
-/// Error for another word.
-Ending ending_named(const std::string& name, const std::string& where);
+Terminal terminal_named(const std::string& name, const std::string& where);
 
 struct CompensateOptions {
     Compensation method = Compensation::closed;
-    double tolerance_mm = 0.05;            ///< of the widest point from the middle line, between poses too
-    std::optional<double> lag_mm;          ///< constant only; default the lag at the stroke's median depth
-    double speed_mm_s = 20.0;              ///< capped by the brush's own limit
-    bool few_poses = true;                 ///< closed only: no more than the tolerance asks for, see thin_out.hpp
-    Beginning start = Beginning::exposed;  ///< closed only; where there is no cut or room it is hidden, else exposed
-    Ending end = Ending::lifted;           ///< closed only; where there is no cut, or no room, it is lifted
+    double tolerance_mm = 0.05;    ///< of the widest point from the middle line, between poses too
+    std::optional<double> lag_mm;  ///< constant only; default the lag at the stroke's median depth
+    double speed_mm_s = 20.0;      ///< capped by the brush's own limit
+    bool few_poses = true;         ///< closed only: no more than the tolerance asks for, see thin_out.hpp
+    /// Closed only. Where there is no cut or no room for a butt terminal it is round, and where there is none for a
+    /// round start or a pointed end they are pointed and round.
+    Terminal start = Terminal::pointed, end = Terminal::round;
 };
+
+/// Let ends of strokes that are drawn alike have the same terminal: the one that costs them least together, of those
+/// that each has room for. Sets `alike_start` and `alike_end` of the strokes. Ends that are set by hand, covered by
+/// other strokes, or unlike all others keep their own choice. The strokes are those of one drawing.
+void match_alike_ends(std::vector<Stroke>& strokes, const Brush& brush, const CompensateOptions& options = {});
 
 struct CompensatedPass {
     Pass pass;

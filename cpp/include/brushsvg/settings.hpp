@@ -9,14 +9,14 @@ namespace [[gnu::visibility("default")]] brushsvg {
 /// does not say is empty.
 struct Settings {
     std::optional<std::string> brush;
-    std::optional<std::string> end;   ///< of the stroke: lifted, squared, auto
+    std::optional<std::string> end;   ///< of the stroke: pointed, round, butt, auto
     std::optional<std::string> kind;  ///< of a stroke of the calibration chart
     std::optional<int> order;
     std::optional<int> passes;  ///< how often it is painted
     std::optional<bool> reload;
     std::optional<bool> skip;
     std::optional<double> speed_mm_s;
-    std::optional<std::string> start;  ///< of the stroke: exposed, hidden, squared, auto
+    std::optional<std::string> start;  ///< of the stroke: the same
     std::optional<double> width_mm;
     std::string extra = "{}";  ///< JSON object of unknown keys, written back as read
 };

@@ -23,7 +23,6 @@ struct AddedStroke {
     std::size_t neighbour;  ///< which of the shape's strokes, those added before it too, runs nearest to that area
     Rings area_mm;          ///< the area, as deep as it is seen
     Rings mark_mm;          ///< what the stroke paints
-    double won_mm2;         ///< by how much the shape's mark costs less with it
 };
 
 /// How a shape is painted better.

@@ -15,12 +15,18 @@ namespace brushsvg {
 struct EndTuning {
     /// Half a side of the square about an end that trials look at. A pointed footprint reaches back by 2.
     double looked_at = 3.0;
-    double pixels = 8.0;  ///< of a trial's picture on one half width
+    double flat = 0.1;       ///< a path is flattened so to find what is near the square
+    double footprint = 3.0;  ///< further from the square no footprint paints in it: a pointed one reaches back by 2
+    double pixels = 8.0;     ///< of a trial's picture on one half width
     /// What a style must win over a plainer one, in squares of the half width. A pointed start lacks 1.5, two blunt
     /// corners lack 0.4, the shoulders of a blunt front 0.04. More leaves blunt ends, less costs poses that nobody
     /// sees.
     double worth = 0.02;
     double worth_covered = 0.2;  ///< the same where other strokes cover the end: less costs a quarter more poses
+    double alike_outline =
+        0.1;                    ///< mean distance between the outlines of two ends that are alike; round and butt: 0.18
+    double alike_width = 0.08;  ///< and how far their half widths may differ, as a share
+    double free_within = 1.3;   ///< beside an end that is free the outline is so near: more takes ends in other strokes
     double short_of_end = 0.05;  ///< what a blunt front may stay short of the drawn end: less costs a pose
 
     double longest_dot = 1.4;   ///< a longer line is no dot: turned on the spot it shows a waist
@@ -41,7 +47,7 @@ struct EndTuning {
     double straight_back = 0.5;          ///< cosine by which a way back may bend
     double beside_before_corner = 0.45;  ///< where the narrow mark has come to the edge: later it leaves a step
     double back = 0.3;                   ///< before the path's end: covers what the front of the full width leaves
-    double joins = 2.2;                  ///< a squared start is on the path again, its rear on what is painted
+    double joins = 2.2;                  ///< a butt start is on the path again, its rear on what is painted
     double set_down = 2.6;               ///< and was set down so far inside: less leaves a notch between both
 
     double corner_sticks_out = 0.1;  ///< of the narrow mark's half width: less is no corner of a dot

@@ -6,6 +6,7 @@
 
 #include "brushsvg/footprint.hpp"
 #include "brushsvg/region.hpp"
+#include "landing.hpp"
 
 namespace brushsvg {
 namespace {
@@ -116,12 +117,12 @@ BrushMoves led_from_tip(Stroke stroke, const Brush& brush) {
 }
 
 /// Pointed, as a footprint is behind.
-std::optional<BrushMoves> exposed_start(const Stroke& stroke, const Brush& brush, Caps) {
+std::optional<BrushMoves> pointed_start(const Stroke& stroke, const Brush& brush, Caps) {
     return led_from_tip(stroke, brush);
 }
 
 /// Drawn back until the round front of the footprint reaches the drawn beginning.
-std::optional<BrushMoves> hidden_start(const Stroke& stroke, const Brush& brush, Caps) {
+std::optional<BrushMoves> round_start(const Stroke& stroke, const Brush& brush, Caps) {
     const double depth = depth_of(stroke, brush, 0.0), half_mm = half_width_at(stroke, 0.0);
     if (stroke.closed || brush.is_rigid() || !(brush.lever_to_widest(depth) > 0.0)) return {};
     const double until_mm = reach_beyond_end_mm(brush, depth, half_mm);
@@ -155,8 +156,9 @@ std::optional<BrushMoves> turned_in_ball(const Stroke& stroke, const Brush& brus
                        std::min(at_mm + 2.0 * radius_mm, length_mm), painted_stretch(stroke, brush, length_mm)[1]}};
 }
 
-std::optional<BrushMoves> squared_start(const Stroke& stroke, const Brush& brush, Caps caps) {
-    if (auto found = squared(stroke, brush, caps, Side::start)) return led_from_tip(std::move(found->stroke), brush);
+std::optional<BrushMoves> butt_start(const Stroke& stroke, const Brush& brush, Caps caps) {
+    if (auto found = make_butt_end(stroke, brush, caps, Side::start))
+        return led_from_tip(std::move(found->stroke), brush);
     return {};
 }
 
@@ -165,8 +167,20 @@ std::optional<EndedStroke> lifted_end(const Stroke& stroke, const Brush& brush, 
     return EndedStroke{up_to_drawn_end(stroke, brush), {}};
 }
 
-std::optional<EndedStroke> squared_end(const Stroke& stroke, const Brush& brush, Caps caps) {
-    if (auto found = squared(stroke, brush, caps, Side::end)) return EndedStroke{std::move(found->stroke), {}};
+/// Half of how far an outline reaches across at a place along it.
+double half_across_mm(const Ring& outline, double x) {
+    double low = 0.0, high = 0.0;
+    for (Index i = 0, n = outline.rows(); i < n; ++i) {
+        const Vector2d a = outline.row(i), b = outline.row((i + 1) % n);
+        if ((a.x() > x) == (b.x() > x)) continue;
+        const double y = a.y() + (b.y() - a.y()) * (x - a.x()) / (b.x() - a.x());
+        low = std::min(low, y), high = std::max(high, y);
+    }
+    return 0.5 * (high - low);
+}
+
+std::optional<EndedStroke> butt_end(const Stroke& stroke, const Brush& brush, Caps caps) {
+    if (auto found = make_butt_end(stroke, brush, caps, Side::end)) return EndedStroke{std::move(found->stroke), {}};
     return {};
 }
 
@@ -246,15 +260,17 @@ bool covered_by(const Vector2d& from, const Vector2d& to, double radius_mm, cons
 
 }  // namespace
 
-const std::array<StartStyle, 5> kStartStyles{{{Beginning::exposed, exposed_start},
-                                              {Beginning::hidden, hidden_start},
-                                              {Beginning::turned, turned_in_cap},
-                                              {Beginning::turned, turned_in_ball},
-                                              {Beginning::squared, squared_start}}};
+const std::array<StartStyle, 5> kStartStyles{{{Terminal::pointed, pointed_start},
+                                              {Terminal::round, round_start},
+                                              {Terminal::round, turned_in_cap},
+                                              {Terminal::round, turned_in_ball},
+                                              {Terminal::butt, butt_start}}};
 const std::array<StartStyle, 3> kDotStyles{
-    {{Beginning::exposed, exposed_start}, {Beginning::hidden, turned_dot}, {Beginning::squared, squared_dot}}};
-const std::array<EndStyle, 3> kEndStyles{
-    {{Ending::lifted, lifted_end}, {Ending::squared, squared_end}, {Ending::automatic, turned_end}}};
+    {{Terminal::pointed, pointed_start}, {Terminal::round, turned_dot}, {Terminal::butt, dot_with_corners}}};
+const std::array<EndStyle, 4> kEndStyles{{{Terminal::round, lifted_end},
+                                          {Terminal::pointed, pointed_end},
+                                          {Terminal::butt, butt_end},
+                                          {Terminal::automatic, turned_end}}};
 
 double reach_of_turn_mm(const Brush& brush, double depth) {
     const auto at = [&](double d) {
@@ -268,7 +284,7 @@ double reach_of_turn_mm(const Brush& brush, double depth) {
     return farthest;
 }
 
-std::optional<Squared> squared(const Stroke& stroke, const Brush& brush, Caps caps, Side side) {
+std::optional<ButtEnd> make_butt_end(const Stroke& stroke, const Brush& brush, Caps caps, Side side) {
     if (stroke.closed || brush.is_rigid() || !brush.width_follows_depth()) return {};
     const bool at_start = side == Side::start;
     const Line line(stroke, brush);
@@ -299,7 +315,7 @@ std::optional<Squared> squared(const Stroke& stroke, const Brush& brush, Caps ca
     const double steep_mm = *narrow * std::hypot(1.0, cut->slope);
     const double first_mm = cut->ahead_mm - cut->slope * aside - steep_mm,
                  second_mm = cut->ahead_mm + cut->slope * aside - steep_mm;
-    Squared out{{}, end, end.place(-kTuning.back * half_mm, -aside), 0.0};
+    ButtEnd out{{}, end, end.place(-kTuning.back * half_mm, -aside), 0.0};
     const double lever = brush.lever_to_widest(brush.depth_for_half_width(*narrow, stroke.id));
     for (const Vector2d& place : {end.place(first_mm - kTuning.beside_before_corner * half_mm, aside),
                                   end.place(first_mm, aside), end.place(second_mm, -aside), out.back_mm}) {
@@ -316,6 +332,33 @@ std::optional<Squared> squared(const Stroke& stroke, const Brush& brush, Caps ca
     return out;
 }
 
+std::optional<EndedStroke> pointed_end(const Stroke& stroke, const Brush& brush, Caps) {
+    if (stroke.closed || brush.is_rigid() || !brush.width_follows_depth()) return {};
+    const Line line(stroke, brush);
+    const double length_mm = line.length(), depth = depth_of(stroke, brush, 1.0);
+    const PathEnd end = path_end(stroke, line, Side::end);
+    const double finest = std::max(brush.depth_range_mm[0], kTurnOverDepthMm), finest_mm = brush.half_width(finest);
+    const double rear_mm = brush.tip_to_widest(depth);
+    const double tip_mm = length_mm + end.half_mm, from_mm = tip_mm - rear_mm;
+    const double last_mm = tip_mm - std::max(0.0, reach_beyond_end_mm(brush, finest, 0.0));
+    if (!(length_mm > 0.0 && depth > finest && from_mm > 0.0 && last_mm > from_mm)) return {};
+    StrokePath path;
+    path.follow(stroke, line, 0.0, std::min(length_mm, last_mm));
+    if (last_mm > length_mm) path.line_to(end.place(last_mm - length_mm, 0.0), end.half_mm);
+    Stroke out = path.like(stroke);
+    const Stroke whole = out;
+    const auto narrows = [&](const WidthKnot& knot) { return knot.at * last_mm > from_mm; };
+    out.half_width.erase(std::find_if(out.half_width.begin(), out.half_width.end(), narrows), out.half_width.end());
+    const Ring outline = footprint_at(brush.footprints, depth, 1.0);
+    const auto n = Index(std::ceil(1.0 / kTuning.narrowing_step));
+    for (Index k = 0; k <= n; ++k) {
+        const double s = from_mm + (last_mm - from_mm) * double(k) / double(n), at = s / last_mm;
+        const double half_mm = std::min(half_width_at(whole, at), half_across_mm(outline, tip_mm - s));
+        out.half_width.push_back({at, std::max(finest_mm, half_mm)});
+    }
+    return EndedStroke{std::move(out), {}};
+}
+
 std::optional<BrushMoves> turned_dot(const Stroke& stroke, const Brush& brush, Caps) {
     const double half_mm[] = {half_width_at(stroke, 0.0), half_width_at(stroke, 1.0)};
     if (Line(stroke, brush).length() > kTuning.longest_dot * std::min(half_mm[0], half_mm[1])) return {};
@@ -328,7 +371,7 @@ std::optional<BrushMoves> turned_dot(const Stroke& stroke, const Brush& brush, C
     return BrushMoves{{TurnRound{a, *from, along}}, {TurnRound{b, *to, along}}};
 }
 
-std::optional<BrushMoves> squared_dot(const Stroke& stroke, const Brush& brush, Caps) {
+std::optional<BrushMoves> dot_with_corners(const Stroke& stroke, const Brush& brush, Caps) {
     std::optional<BrushMoves> dot = turned_dot(stroke, brush);
     const double half_mm = std::min(half_width_at(stroke, 0.0), half_width_at(stroke, 1.0));
     const auto narrow = half_along_cut_mm(brush, half_mm);

@@ -38,34 +38,38 @@ struct EndedStroke {
 /// A way to begin a stroke, or to end it. Each function finds the moves from the geometry alone; none where there is no
 /// room, or where the brush is too coarse.
 struct StartStyle {
-    Beginning name;
+    Terminal name;
     std::optional<BrushMoves> (*moves)(const Stroke& ended, const Brush& brush, Caps caps);
 };
 struct EndStyle {
-    Ending name;
+    Terminal name;  ///< automatic: round, and not taken where a round end is asked for
     std::optional<EndedStroke> (*ended)(const Stroke& stroke, const Brush& brush, Caps caps);
 };
 extern const std::array<StartStyle, 5> kStartStyles;  ///< the plainest first
 extern const std::array<StartStyle, 3> kDotStyles;    ///< of a stroke that is a dot: it has no end of its own
-extern const std::array<EndStyle, 3> kEndStyles;
+extern const std::array<EndStyle, 4> kEndStyles;
 
 /// A mark that is painted by turning the brush on the spot. A short bar is turned at both of its ends. None for a
 /// stroke longer than a dot, a ring, a rigid brush, and where a footprint of no depth reaches the drawn edge.
 std::optional<BrushMoves> turned_dot(const Stroke& stroke, const Brush& brush, Caps caps = Caps::round);
 
 /// A dot with corners, as of the i of a sans: turned round, then a narrow mark goes round its corners.
-std::optional<BrushMoves> squared_dot(const Stroke& stroke, const Brush& brush, Caps caps = Caps::round);
+std::optional<BrushMoves> dot_with_corners(const Stroke& stroke, const Brush& brush, Caps caps = Caps::round);
 
-/// A stroke that is squared at one side. Near its end it narrows and runs on into the corner that is further ahead, its
-/// outer edge on the stroke's own, then along the cut into the other corner, and a little way back. A squared start is
+/// Narrows to a point at the drawn end, as a pointed start widens: as the footprint is behind, mirrored. None where the
+/// stroke is shorter than that, or as fine as its point.
+std::optional<EndedStroke> pointed_end(const Stroke& stroke, const Brush& brush, Caps caps);
+
+/// A stroke with a butt end at one side. Near its end it narrows and runs on into the corner that is further ahead, its
+/// outer edge on the stroke's own, then along the cut into the other corner, and a little way back. A butt start is
 /// the same on the way back from where the brush was set down, inside of the stroke; then it is on the path again.
-struct Squared {
+struct ButtEnd {
     Stroke stroke;
     PathEnd end;
     Eigen::Vector2d back_mm;  ///< where the way back along the side ends
     double reach_mm;          ///< how far from the path's end its widest section goes
 };
-std::optional<Squared> squared(const Stroke& stroke, const Brush& brush, Caps caps, Side side);
+std::optional<ButtEnd> make_butt_end(const Stroke& stroke, const Brush& brush, Caps caps, Side side);
 
 /// How far from P the paint reaches when the brush is pressed to a depth and turned there [mm].
 double reach_of_turn_mm(const Brush& brush, double depth);

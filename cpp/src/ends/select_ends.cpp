@@ -1,6 +1,7 @@
 #include "ends/select_ends.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -16,9 +17,10 @@ namespace {
 class EndView {
  public:
     EndView(const Stroke& wanted, const Brush& brush, Side side, double step_tolerance)
-        : brush_(brush), step_tolerance_(step_tolerance) {
+        : brush_(brush), step_tolerance_(step_tolerance), side_(side) {
         const Line line(wanted, brush);
         const PathEnd end = path_end(wanted, line, side);
+        at_mm_ = end.at_mm;
         half_mm_ = std::min(end.half_mm, brush.half_width_range_mm()[1]);
         px_per_mm_ = kTuning.pixels / half_mm_;
         const double reach_mm = kTuning.looked_at * half_mm_;
@@ -27,7 +29,8 @@ class EndView {
     }
 
     /// Paint that is missing or too much, in squares of the half width. None where the moves cannot be made.
-    std::optional<double> score(const BrushMoves& moves) const {
+    std::optional<double> score(BrushMoves moves) const {
+        leave_out_far_part(moves);
         bool turns = false;
         const auto poses = closed_form(moves, brush_, step_tolerance_, turns);
         if (!poses) return {};
@@ -40,45 +43,69 @@ class EndView {
     }
 
  private:
+    /// Leave out the part of the path from which no paint reaches the window.
+    void leave_out_far_part(BrushMoves& moves) const {
+        const bool at_start = side_ == Side::start;
+        BrushMove& move = at_start ? moves.back() : moves.front();
+        if (!move.line || (!at_start && move.turn)) return;
+        const MiddlePolyline line = flatten(*move.line, kTuning.flat * half_mm_);
+        const double reach_mm =
+            std::sqrt(2.0) * kTuning.looked_at * half_mm_ + kTuning.footprint * line.col(3).maxCoeff();
+        double first = line(line.rows() - 1, 2), last = 0.0;
+        for (Eigen::Index i = 0; i + 1 < line.rows(); ++i) {
+            const Eigen::Vector2d a = line.block<1, 2>(i, 0).transpose() - at_mm_;
+            const Eigen::Vector2d way = (line.block<1, 2>(i + 1, 0) - line.block<1, 2>(i, 0)).transpose();
+            const double length = way.norm(), near = length > 0.0 ? std::clamp(-a.dot(way) / length, 0.0, length) : 0.0;
+            if (!(length > 0.0) || (a + near / length * way).norm() > reach_mm) continue;
+            first = std::min(first, line(i, 2) + std::max(0.0, near - 2.0 * reach_mm));
+            last = std::max(last, line(i, 2) + std::min(length, near + 2.0 * reach_mm));
+        }
+        if (at_start)
+            move.to_mm = std::min(move.to_mm, std::max(last, move.latest_mm + reach_mm));
+        else
+            move.from_mm = move.latest_mm =
+                std::min(std::max(move.from_mm, first), std::max(move.from_mm, move.to_mm - reach_mm));
+    }
+
     const Brush& brush_;
     double step_tolerance_, half_mm_, px_per_mm_;
+    Side side_;
+    Eigen::Vector2d at_mm_;
     Window window_;
     Coverage wanted_;
 };
 
-/// Names of styles to try together; the next ones where none of them has room.
-template <class Name>
-using Requests = std::vector<std::vector<Name>>;
+/// Terminals to try together; the next ones where none of them has room.
+using Requests = std::vector<std::vector<Terminal>>;
 
-Requests<Beginning> requested(Beginning asked) {
-    using B = Beginning;
-    if (asked == B::exposed) return {{B::exposed}};
-    if (asked == B::hidden) return {{B::hidden, B::turned}, {B::exposed}};
-    if (asked == B::squared) return {{B::squared}, {B::hidden, B::turned}, {B::exposed}};
-    return {{B::exposed, B::hidden, B::turned, B::squared}};
-}
-
-Requests<Ending> requested(Ending asked) {
-    using E = Ending;
-    if (asked == E::lifted) return {{E::lifted}};
-    if (asked == E::squared) return {{E::squared}, {E::lifted}};
-    return {{E::lifted, E::squared, E::automatic}};
+Requests requested(Terminal asked, const std::optional<std::string>& alike) {
+    using T = Terminal;
+    if (asked == T::pointed) return {{T::pointed}, {T::round}};
+    if (asked == T::round) return {{T::round}, {T::pointed}};
+    if (asked == T::butt) return {{T::butt}, {T::round}, {T::pointed}};
+    const std::vector<T> all{T::pointed, T::round, T::butt, T::automatic};
+    if (!alike) return {all};
+    const T first = terminal_named(*alike, "");
+    if (first == T::round) return {{T::round, T::automatic}, all};
+    return {{first}, all};
 }
 
 /// Try the styles that are asked for and keep those that are better than the ones before them, the best first.
 /// `worth`: what each must win. `moves_with`: the moves with a style; none where there is no room.
-template <class Styles, class Name, class MovesWith>
+template <class Styles, class MovesWith>
 std::vector<std::pair<typename Styles::value_type, BrushMoves>> best_styles(const Styles& styles,
-                                                                            const Requests<Name>& requests,
+                                                                            const Requests& requests,
                                                                             const EndView& view, double worth,
                                                                             MovesWith&& moves_with) {
     std::vector<std::pair<typename Styles::value_type, BrushMoves>> best;
-    for (const std::vector<Name>& names : requests) {
+    for (const std::vector<Terminal>& names : requests) {
         std::optional<double> least;
         for (const auto& style : styles) {
             if (std::find(names.begin(), names.end(), style.name) == names.end()) continue;
             const std::optional<BrushMoves> moves = moves_with(style);
-            const std::optional<double> score = moves ? view.score(*moves) : std::nullopt;
+            // the plainest style has room everywhere: where it is asked for, nothing else is tried
+            const bool is_plainest = names.size() == 1 && names.front() == styles.front().name;
+            const std::optional<double> score = !moves ? std::nullopt : is_plainest ? 0.0 : view.score(*moves);
             if (!score || (least && !(*score + worth < *least))) continue;
             least = score;
             best.insert(best.begin(), {style, *moves});
@@ -97,39 +124,73 @@ std::optional<BrushMoves> moves_with(const StartStyle& start, const EndedStroke&
     return moves;
 }
 
+/// What a style looks like.
+Terminal shown(Terminal style) { return style == Terminal::automatic ? Terminal::round : style; }
+
 }  // namespace
 
-std::vector<BrushMoves> select_ends(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
-                                    double step_tolerance) {
+TerminalCosts terminal_costs(const Stroke& stroke, const Brush& brush, Side side, bool with_same_start,
+                             double step_tolerance) {
+    const EndView view(stroke, brush, side, step_tolerance);
+    TerminalCosts costs;
+    const auto take = [&](Terminal terminal, const std::optional<BrushMoves>& moves) {
+        const std::optional<double> cost = moves ? view.score(*moves) : std::nullopt;
+        std::optional<double>& least = costs[std::size_t(shown(terminal))];
+        if (cost && !(least && *least <= *cost)) least = cost;
+    };
+    if (side == Side::start) {
+        const EndedStroke ended{up_to_drawn_end(stroke, brush), {}};
+        for (const StartStyle& style : kStartStyles) take(style.name, moves_with(style, ended, brush, Caps::round));
+    } else {
+        for (const EndStyle& style : kEndStyles) {
+            const auto ended = style.ended(stroke, brush, Caps::round);
+            if (!ended) continue;
+            for (const StartStyle& start : kStartStyles)
+                if (start.name == (with_same_start ? shown(style.name) : Terminal::pointed))
+                    take(style.name, moves_with(start, *ended, brush, Caps::round));
+        }
+    }
+    return costs;
+}
+
+SelectedEnds select_ends(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
+                         double step_tolerance) {
     const Settings& own = stroke.settings;
     const bool is_dot = turned_dot(stroke, brush).has_value();
-    Beginning start = own.start ? beginning_named(*own.start, stroke.id) : options.start;
-    if (is_dot && start == Beginning::squared) start = Beginning::automatic;  // where it has corners
-    const Ending end = own.end ? ending_named(*own.end, stroke.id) : options.end;
-    const Caps start_caps = start == Beginning::squared ? Caps::straight : Caps::round;
-    const Caps end_caps = end == Ending::squared ? Caps::straight : Caps::round;
+    Terminal start = own.start ? terminal_named(*own.start, stroke.id) : options.start;
+    if (is_dot && start == Terminal::butt) start = Terminal::automatic;  // where it has corners
+    const Terminal end = own.end ? terminal_named(*own.end, stroke.id) : options.end;
+    const Caps start_caps = start == Terminal::butt ? Caps::straight : Caps::round;
+    const Caps end_caps = end == Terminal::butt ? Caps::straight : Caps::round;
     const auto starts = [&](const auto& styles, const EndedStroke& ended) {
-        return best_styles(styles, requested(start), EndView(stroke, brush, Side::start, step_tolerance),
+        return best_styles(styles, requested(start, stroke.alike_start),
+                           EndView(stroke, brush, Side::start, step_tolerance),
                            stroke.start_covered ? kTuning.worth_covered : kTuning.worth,
                            [&](const StartStyle& style) { return moves_with(style, ended, brush, start_caps); });
     };
-    std::vector<BrushMoves> out;
+    SelectedEnds out{{}, Terminal::automatic, Terminal::automatic};
     if (is_dot) {
-        for (auto& [style, moves] : starts(kDotStyles, {stroke, {}})) out.push_back(std::move(moves));
+        for (auto& [style, moves] : starts(kDotStyles, {stroke, {}})) out.ways.push_back(std::move(moves));
         return out;
     }
-    const auto begun = starts(kStartStyles, {up_to_drawn_end(stroke, brush), {}});
-    const auto ended = best_styles(kEndStyles, requested(end), EndView(stroke, brush, Side::end, step_tolerance),
-                                   stroke.end_covered ? kTuning.worth_covered : kTuning.worth,
-                                   [&](const EndStyle& style) -> std::optional<BrushMoves> {
-                                       const auto with_end = style.ended(stroke, brush, end_caps);
-                                       if (!with_end) return {};
-                                       return moves_with(begun.front().first, *with_end, brush, start_caps);
-                                   });
-    out.push_back(ended.front().second);
+    auto begun = starts(kStartStyles, {up_to_drawn_end(stroke, brush), {}});
+    if (start == Terminal::automatic && begun.back().first.name != kStartStyles.front().name)
+        begun.push_back({kStartStyles.front(), {}});
+    const auto ended =
+        best_styles(kEndStyles, requested(end, stroke.alike_end), EndView(stroke, brush, Side::end, step_tolerance),
+                    stroke.end_covered ? kTuning.worth_covered : kTuning.worth,
+                    [&](const EndStyle& style) -> std::optional<BrushMoves> {
+                        const auto with_end = style.ended(stroke, brush, end_caps);
+                        if (!with_end) return {};
+                        return moves_with(begun.front().first, *with_end, brush, start_caps);
+                    });
+    out.start = shown(begun.front().first.name);
+    out.end = shown(ended.front().first.name);
+    out.ways.push_back(ended.front().second);
     const auto with_end = ended.front().first.ended(stroke, brush, end_caps);
     for (std::size_t i = 1; i < begun.size(); ++i)
-        if (auto moves = moves_with(begun[i].first, *with_end, brush, start_caps)) out.push_back(std::move(*moves));
+        if (auto moves = moves_with(begun[i].first, *with_end, brush, start_caps))
+            out.ways.push_back(std::move(*moves));
     return out;
 }
 

@@ -32,14 +32,14 @@ constexpr double kBesideHalves =
     2.0;                           // of the brush's greatest half width round a shape: no paint that counts is further
 constexpr double kMiddleMm = 0.1;  // of middle lines, to which the nearest place is looked for
 // Of strokes that are led otherwise: narrower by so much, cut so many half widths short.
-constexpr std::array<double, 3> kNarrower{1.0, 0.95, 0.88};
+constexpr std::array<double, 2> kNarrower{0.95, 0.88};
 constexpr std::array<double, 4> kCuts{0.1, 0.4, 0.8, 1.5};
 constexpr double kNoiseMm2 = 0.4;         // what sticks out of a shape, as it is counted: less is a pixel's noise
 constexpr double kWorthMm2 = 0.05;        // won by another way: less is not worth to differ from what was asked for
 constexpr double kBesideStroke = 3.0;     // half widths of a stroke: no way to lead it paints further out
 constexpr std::size_t kMostLedBack = 40;  // of one shape
-constexpr float kBare = 0.5f;             // share of a pixel without paint from which it is bare
-constexpr int kTurnedPx = 3;              // round a change, in which the outline's turning is compared
+constexpr float kBare = 0.4f;  // share of a pixel without paint from which it is bare: of strips, at their edges
+constexpr int kTurnedPx = 3;   // round a change, in which the outline's turning is compared
 
 /// The search for strokes into what the others leave of one shape.
 class Search {
@@ -112,7 +112,7 @@ class Search {
 
     /// Leads a stroke, of the tile k, so that it costs less; false where nothing does.
     bool lead_back(Led& led, std::size_t k, bool may_be_reversed, bool may_be_cut, bool may_be_left_out) {
-        const Stroke given = led.strokes.front();
+        Stroke given = led.strokes.front();
         const PixelBox box = about(given);
         if (box.is_empty()) return false;
         Coverage rest = Coverage::Zero(box.rows, box.columns);
@@ -127,15 +127,17 @@ class Search {
         const auto area_cost = [&](const Led& now, const Coverage& both) {
             return canvas_.cost_mm2(box, both, false) + (double(now.strokes.size()) - 1.0) * stroke_mm2();
         };
+        const double own_turns = target_turns(box);
+        const auto excess = [&](const Coverage& both) { return std::max(0.0, turns(both, box) - own_turns); };
         const Coverage given_picture = picture_with(led);
         double least_area = area_cost(led, given_picture) - kWorthMm2;
-        double least = least_area + turn_mm2() * excess_turns(given_picture, box);
+        double least = least_area + turn_mm2() * excess(given_picture);
         bool is_changed = false;
         const auto keep_better = [&](Led other) {
             const Coverage both = picture_with(other);
             const double area_mm2 = area_cost(other, both);
             if (area_mm2 >= least_area + turn_mm2()) return false;  // a turn less is more than can be won
-            const double cost = area_mm2 + turn_mm2() * excess_turns(both, box);
+            const double cost = area_mm2 + turn_mm2() * excess(both);
             if (cost >= least) return false;
             least = cost;
             least_area = area_mm2;
@@ -143,27 +145,47 @@ class Search {
             return is_changed = true;
         };
         Variant best;
+        std::array<Terminal, 2> best_ends{Terminal::automatic, Terminal::automatic};
         const auto look = [&](const Variant& variant) {
             checkpoint(100);
             const std::optional<Stroke> stroke = varied(given, variant, half_mm_);
-            const std::optional<Tile> tile = stroke ? painted({*stroke}, box) : std::nullopt;
-            if (tile && keep_better({{*stroke}, *tile})) best = variant;
+            std::array<Terminal, 2> ends{Terminal::automatic, Terminal::automatic};
+            const std::optional<Tile> tile = stroke ? painted({*stroke}, box, &ends) : std::nullopt;
+            if (!tile || !keep_better({{*stroke}, *tile})) return;
+            best = variant;
+            best_ends = ends;
         };
-        for (const bool reversed : {false, true})
-            for (const bool square : {true, false})
-                for (const bool exposed : {false, true})
-                    for (const double width : kNarrower)
-                        if ((may_be_reversed || !reversed) && (square || !given.wanted_mm.empty()) &&
-                            (!exposed || !square || given.wanted_mm.empty()))
-                            look({reversed, square, exposed, width, {0.0, 0.0}});
-        for (const std::size_t end : {0u, 1u}) {
-            const Variant so_far = best;
-            for (const double cut : kCuts) {
-                Variant variant = so_far;
-                variant.cut[end] = cut;
-                if (!given.closed) look(variant);
+        const bool is_matched = given.alike_start || given.alike_end;  // what ends drawn alike chose is kept
+        // one choice after the other: each way round, what its ends look like, how wide, how short
+        for (const bool reversed : {false, true}) {
+            if (reversed && !may_be_reversed) break;
+            Variant from;
+            from.is_reversed = reversed;
+            if (reversed) look(from);
+            for (const auto& [square, pointed] : {std::pair{true, true}, {false, false}, {false, true}}) {
+                if (is_matched || square != given.wanted_mm.empty()) continue;  // without a shape no end is square
+                Variant variant = from;
+                variant.is_square = square;
+                variant.is_pointed = pointed;
+                look(variant);
             }
         }
+        // from here on with the terminals of the best so far
+        if (best_ends[0] == Terminal::automatic) painted({given}, box, &best_ends);
+        if (best.is_reversed) std::swap(best_ends[0], best_ends[1]);
+        given.alike_start = name_of(best_ends[0]);
+        given.alike_end = name_of(best_ends[1]);
+        const auto try_each = [&](const auto& values, auto&& set) {
+            const Variant so_far = best;
+            for (const double value : values) {
+                Variant variant = so_far;
+                set(variant, value);
+                look(variant);
+            }
+        };
+        try_each(kNarrower, [](Variant& variant, double width) { variant.width = width; });
+        for (const std::size_t end : {0u, 1u})
+            if (!given.closed) try_each(kCuts, [&](Variant& variant, double cut) { variant.cut[end] = cut; });
         const Stroke whole = led.strokes.front();
         std::vector<Gap> gaps;
         for (bool is_better = may_be_cut; is_better;) {
@@ -209,17 +231,24 @@ class Search {
         return canvas_.box_of(low, high);
     }
 
-    /// What strokes paint of a box as a plan would; none where one of them cannot be painted.
-    std::optional<Tile> painted(const std::vector<Stroke>& strokes, const PixelBox& box) const {
+    static std::optional<std::string> name_of(Terminal terminal) {
+        if (terminal == Terminal::automatic) return std::nullopt;
+        return std::string(kTerminals[std::size_t(terminal)].first);
+    }
+
+    /// What strokes paint of a box as a plan would; none where one of them cannot be painted. terminals: of the last.
+    std::optional<Tile> painted(const std::vector<Stroke>& strokes, const PixelBox& box,
+                                std::array<Terminal, 2>* terminals = nullptr) const {
         CompensateOptions options;
-        options.start = Beginning::automatic;
-        options.end = Ending::automatic;
+        options.start = Terminal::automatic;
+        options.end = Terminal::automatic;
         Tile all{box, Coverage::Zero(box.rows, box.columns)};
         for (const Stroke& stroke : strokes) try {
                 checkpoint(100);
                 bool turns = false;
-                const auto poses =
-                    closed_form(select_ends(stroke, brush_, options, kStepMm).front(), brush_, kStepMm, turns);
+                const SelectedEnds ends = select_ends(stroke, brush_, options, kStepMm);
+                if (terminals) *terminals = {ends.start, ends.end};
+                const auto poses = closed_form(ends.ways.front(), brush_, kStepMm, turns);
                 if (!poses) return std::nullopt;
                 Pass pass;
                 poses->into(pass);
@@ -251,12 +280,14 @@ class Search {
     double stroke_mm2() const { return weights_.stroke * half_mm_[1] * half_mm_[1]; }
     double turn_mm2() const { return weights_.turn * half_mm_[1] * half_mm_[1]; }
 
-    /// How much the outlines of paint turn beyond the shape's in a box, in full turns.
-    double excess_turns(const Coverage& paint, const PixelBox& box) const {
-        const Window window = canvas_.window_of(box);
-        const Coverage target = canvas_.target().block(box.row, box.column, box.rows, box.columns);
-        return std::max(0.0, excess_turning(half_painted(paint, window, canvas_.px_per_mm()),
-                                            half_painted(target, window, canvas_.px_per_mm())));
+    /// How much the outlines in a picture of a box turn, in full turns.
+    double turns(const Coverage& picture, const PixelBox& box) const {
+        return excess_turning(half_painted(picture, canvas_.window_of(box), canvas_.px_per_mm()), {});
+    }
+
+    /// The shape's own turning in a box. What a mark turns less than that is not won.
+    double target_turns(const PixelBox& box) const {
+        return turns(canvas_.target().block(box.row, box.column, box.rows, box.columns), box);
     }
 
     bool is_bare(Index row, Index column) const {
@@ -393,7 +424,8 @@ class Search {
         const Coverage before = paint_.block(box.row, box.column, box.rows, box.columns);
         Coverage after = before;
         paint_over(after, box, tile);
-        return excess_turns(after, box) - excess_turns(before, box);
+        const double own = target_turns(box);
+        return std::max(own, turns(after, box)) - std::max(own, turns(before, box));
     }
 
     std::optional<AddedStroke> best_into(const BareArea& area) {
@@ -407,8 +439,8 @@ class Search {
         }
         if (!best) return std::nullopt;
         const Rings area_mm = bare_rings(pixels_);
-        best->stroke.settings.start = "exposed";  // under the paint of others
-        best->stroke.settings.end = "lifted";
+        best->stroke.settings.start = "pointed";  // under the paint of others
+        best->stroke.settings.end = "round";
         Led led{{best->stroke}, best->tile};
         tiles_.push_back(best->tile);
         paint_over(paint_, canvas_.whole(), best->tile);
@@ -417,7 +449,6 @@ class Search {
         AddedStroke added;
         added.stroke = std::move(led.strokes.front());
         added.mark_mm = half_painted(led.tile.share, canvas_.window_of(led.tile.box), canvas_.px_per_mm());
-        added.won_mm2 = best->won_mm2;
         added.neighbour = nearest_middle(area.deepest);
         added.area_mm = area_mm;
         return added;

@@ -34,6 +34,7 @@ Stroke reversed(Stroke stroke) {
     std::reverse(stroke.half_width.begin(), stroke.half_width.end());
     for (WidthKnot& knot : stroke.half_width) knot.at = 1.0 - knot.at;
     std::swap(stroke.start_covered, stroke.end_covered);
+    std::swap(stroke.alike_start, stroke.alike_end);
     return stroke;
 }
 
@@ -70,7 +71,7 @@ Stroke stretch(const Stroke& stroke, double from_mm, double to_mm) {
 std::optional<Stroke> varied(const Stroke& given, const Variant& way, const std::array<double, 2>& half_mm) {
     Stroke stroke = given;
     if (!way.is_square) stroke.wanted_mm.clear();
-    if (way.is_exposed) stroke.settings.start = "exposed";
+    if (way.is_pointed) stroke.settings.start = "pointed";
     if (way.cut[0] > 0.0 || way.cut[1] > 0.0) {
         const MiddlePolyline line = flatten(given, kMiddleMm);
         const double half = line.col(3).maxCoeff(), length = line(line.rows() - 1, 2);
@@ -122,9 +123,9 @@ std::vector<Stroke> cut(const Stroke& stroke, const std::vector<Gap>& gaps) {
     for (std::size_t k = 0; k <= gaps.size(); ++k) {
         const bool is_last = k == gaps.size();
         parts.push_back(stretch(stroke, from, is_last ? line(line.rows() - 1, 2) : gaps[k][0]));
-        if (k > 0) parts.back().settings.start = "exposed";
+        if (k > 0) parts.back().settings.start = "pointed";
         if (!is_last) {
-            parts.back().settings.end = "lifted";
+            parts.back().settings.end = "round";
             from = gaps[k][1];
         }
     }

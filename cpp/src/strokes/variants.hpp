@@ -12,7 +12,7 @@ namespace brushsvg {
 struct Variant {
     bool is_reversed = false;
     bool is_square = true;                ///< its ends go into the corners of its shape, where it has one
-    bool is_exposed = false;              ///< it begins pointed
+    bool is_pointed = false;              ///< it begins pointed
     double width = 1.0;                   ///< as a share of its own
     std::array<double, 2> cut{0.0, 0.0};  ///< off its ends, in its greatest half width
 };

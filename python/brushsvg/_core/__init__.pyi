@@ -73,6 +73,7 @@ __all__: list[str] = [
     "interrupted",
     "intersect",
     "lag",
+    "match_alike_ends",
     "medial_axis",
     "miss_of",
     "misses_of",
@@ -499,10 +500,13 @@ class Stroke:
     A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
 
     id: its name, made of origin, a StrokeId, and set by a name or one. middle_mm, half_width, wanted_mm, settings: to be
-    set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint lies over that end.
+    set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint lies over that end. alike_start,
+    alike_end: the terminal of all ends drawn like this one, tried first, see match_alike_ends.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    alike_end: str | None
+    alike_start: str | None
     closed: bool
     colour: str
     end_covered: bool
@@ -1484,8 +1488,8 @@ def compensate(
     speed_mm_s: float = 20.0,
     progress: collections.abc.Callable[[int, int], object] | None = None,
     few_poses: bool = True,
-    start: str = "exposed",
-    end: str = "lifted",
+    start: str = "pointed",
+    end: str = "round",
 ) -> Compensated:
     """
     Where the TCP must go for the paint to land on the strokes' middle lines: a Compensated.
@@ -1496,11 +1500,10 @@ def compensate(
     point of the mark may be off the middle line once the brush is taut, between poses too; each pass is simulated and its
     miss returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most
     the brush's. progress: called with (strokes done, strokes). few_poses: closed only, no more poses than the tolerance
-    asks for. start: closed and refined, how strokes begin that do not say it themselves: "exposed", pointed; "hidden",
-    round, set down inside the stroke, back to its beginning and turned over; "squared", straight, a narrower mark goes into
-    one corner on its way back, along the cut into the other and turns there; "auto", what suits the drawn beginning better.
-    end: the same of ends: "lifted", as the footprint is in front; "squared", a narrower mark goes on into one corner, along
-    the cut and back into the other; "auto", what suits the drawn end better.
+    asks for. start, end: closed and refined, the terminals of strokes that do not set them: "pointed", as the footprint is
+    behind; "round", as it is in front, where a start is set down inside of the stroke, goes back to its beginning and turns
+    over; "butt", straight, a narrower mark goes into one corner, along the cut and into the other; "auto", the one that
+    suits the drawn end best.
 
     Error, naming the stroke, for widths or depths out of the brush's reach.
     """
@@ -1680,6 +1683,19 @@ def intersect(
     What two shapes have in common, each given as for unite.
     """
 
+def match_alike_ends(
+    strokes: collections.abc.Sequence[Stroke],
+    brush: Brush,
+    start: str = "auto",
+    end: str = "auto",
+) -> list[Stroke]:
+    """
+    The strokes of a drawing with alike_start and alike_end set, so that ends drawn alike get the same terminal.
+
+    It is the one that costs those ends least together, of those that each has room for. start, end: as of compensate; what
+    is not "auto" there, or in a stroke's settings, is kept.
+    """
+
 def medial_axis(
     rings: collections.abc.Sequence[numpy.typing.ArrayLike],
     least_share: float,
@@ -1783,7 +1799,6 @@ def search_strokes(
                 int,
                 list[numpy.typing.NDArray[numpy.float64]],
                 list[numpy.typing.NDArray[numpy.float64]],
-                float,
             ]
         ],
     ]
@@ -1794,7 +1809,7 @@ def search_strokes(
     shapes: (rings of the shape, strokes, the passes that paint them). detail: "draft", "normal" or "fine", how small an area
     gets a stroke of its own. are_free: whether strokes may be led otherwise, and not only added. strokes: for each that was
     given what it is best painted as, [] for not at all; changed: whether that differs; added: (stroke, number of the stroke
-    that is nearest, rings of the area that it is for, rings of what it paints, cost that it wins [mm2]).
+    that is nearest, rings of the area that it is for, rings of what it paints).
     """
 
 def simulate(

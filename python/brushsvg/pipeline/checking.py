@@ -60,7 +60,7 @@ if TYPE_CHECKING:
 
 Told = Callable[[str, Iterable[Notice]], object]
 STRAY_MM = 0.02  # what a plan's rounding makes of where its paint ends
-SAID = ("compensation", "tolerance", "lag", "start", "end", "margin_strokes")  # by the program
+SAID = ("compensation", "tolerance", "lag", "terminals", "start", "end", "margin_strokes")  # by the program
 
 
 @dataclass(frozen=True)

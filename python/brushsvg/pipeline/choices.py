@@ -45,10 +45,12 @@ MADE_FLAGS = (
     "compensation",
     "lag",
     "tolerance",
+    "terminals",
     "start",
     "end",
     "margin-strokes",
 )
+TERMINALS = ("auto", "round", "butt", "pointed")
 RANGES = {  # the same as a flag's
     "width": (0.001, 1000.0),
     "scale": (1e-4, 1e4),
@@ -68,8 +70,9 @@ ONE_OF = {
     "detail": ("draft", "normal", "fine"),
     "script": SCRIPTS,
     "compensation": ("none", "constant", "closed", "refined"),
-    "start": ("exposed", "hidden", "squared", "auto"),
-    "end": ("lifted", "squared", "auto"),
+    "terminals": TERMINALS,
+    "start": TERMINALS,
+    "end": TERMINALS,
     "margin_strokes": ("auto", "on", "off"),
 }
 
@@ -108,6 +111,7 @@ class Choices:
     lag: float | None = None
     paint_speed: float | None = None
     tolerance: float | None = None
+    terminals: str | None = None
     start: str | None = None
     end: str | None = None
     z_offset: float | None = None
@@ -144,6 +148,7 @@ class Given(TypedDict, total=False):
     lag: float | None
     paint_speed: float | None
     tolerance: float | None
+    terminals: str | None
     start: str | None
     end: str | None
     z_offset: float | None
@@ -250,6 +255,8 @@ def settled(chosen: Choices, drawing, alone: bool = False) -> Choices:
     """What nobody chose is as the drawing says. It can only name what comes along: it reads no other file. alone:
     nothing else of the drawing is read."""
     said = settings_in(drawing, alone)
+    if chosen.terminals is not None:
+        said = {name: value for name, value in said.items() if name not in ("start", "end")}
     for kind, names in (("brush", brush_names()), ("cell", cell_names())):
         if getattr(chosen, kind) is None and said.get(kind, names[0]) not in names:
             raise Error(
@@ -335,8 +342,8 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options
         compensation=chosen.compensation or Options.compensation,
         lag_mm=chosen.lag,
         tolerance_mm=(suffix_of(chosen.input) != ".json" and chosen.tolerance) or Options.tolerance_mm,
-        start=chosen.start or Options.start,
-        end=chosen.end or Options.end,
+        start=chosen.start or chosen.terminals or Options.start,
+        end=chosen.end or chosen.terminals or Options.end,
         paths_as=chosen.paths_as,
         wide=chosen.wide or Options.wide,
         corners=chosen.corners or Options.corners,

@@ -33,13 +33,21 @@ def compensation_by(brush, sheet_mm, options: Options, stage=lambda text: None):
     return compensated
 
 
+def with_alike_ends(painted: list, brush, options: Options) -> list:
+    """The strokes of a drawing, whose ends get the same terminal where they are drawn alike."""
+    if options.compensation not in ("closed", "refined"):
+        return painted
+    return _core.match_alike_ends(painted, brush, options.start, options.end)
+
+
 def begun_within_reach(
-    painted: list, brush, plan, compensated, options: Options, stage
+    painted: list, brush, plan, compensated, options: Options, stage, added: frozenset[str] = frozenset()
 ) -> tuple[list, Known | None]:
-    """The strokes, those plain that choose how they begin or end, cannot be run as they chose, and can plain: lifted,
-    or hidden or exposed as well. A hidden beginning is landed on the far side, from where the tool may not be, and its
-    round front may be wider than what is wanted; at a squared beginning or end the tool runs aside. The list itself
-    where there are none. And what was found of the plan, where that was asked and is little enough to be kept.
+    """The strokes, with plainer terminals where "auto" chose some that the machine cannot run. A round start is landed
+    on the far side, where the tool may not be allowed, and its front may be wider than the drawing; at a butt terminal
+    the tool moves sideways. Added strokes, given by their ids, are left out where they cannot be run: their areas stay
+    unpainted. The list itself where all can be run. Also the simulated plan, if it was simulated and is
+    small enough to keep.
     """
 
     def tried(of) -> Known:
@@ -54,20 +62,26 @@ def begun_within_reach(
         return {problem.where for problem in of.walk.problems}
 
     choosing = [stroke for stroke in painted if "auto" in _ends(stroke, options)]
-    if not choosing:
+    if not choosing and not added:
         return painted, None
     whole = tried(plan)
     left = {stroke.id for stroke in choosing} & astray(whole)
     found = {}
-    lifted = {"end": "lifted"}
-    for plain in (lifted, {"start": "hidden"}, {**lifted, "start": "hidden"}, {**lifted, "start": "exposed"}):
+    for plain in (
+        {"end": "round"},
+        {"start": "round"},
+        {"start": "round", "end": "round"},
+        {"start": "pointed", "end": "round"},
+    ):
         some = {stroke.id: _plain(stroke, options, plain) for stroke in choosing if stroke.id in left}
         fits = some.keys() - astray(tried(compensated(list(some.values())).plan)) if some else set()
         found |= {name: some[name] for name in fits}
         left -= fits
     is_little = sum(len(run.poses_mm) for run in plan.passes) <= POSES_KEPT
-    fitting = [found.get(stroke.id, stroke) for stroke in painted] if found else painted
-    return fitting, whole if is_little and not found else None
+    no_room = added & astray(whole) - found.keys()
+    if not found and not no_room:
+        return painted, whole if is_little else None
+    return [found.get(stroke.id, stroke) for stroke in painted if stroke.id not in no_room], None
 
 
 def _ends(stroke, options: Options) -> tuple[str, str]:
@@ -75,7 +89,7 @@ def _ends(stroke, options: Options) -> tuple[str, str]:
 
 
 def _plain(stroke, options: Options, plain: dict[str, str]):
-    """The stroke as it is told to begin and end, where it would choose."""
+    """The stroke with these terminals, where it would choose."""
     said = {name: getattr(stroke.settings, name) or getattr(options, name) for name in plain}
     chosen = {name: plain[name] for name, value in said.items() if value == "auto"}
     return stroke.replaced(settings=stroke.settings.replaced(**chosen))

@@ -25,8 +25,8 @@ class Options:
     tolerance_mm: float = DEFAULT_TOLERANCE_MM
     speed_mm_s: float = 20.0  # of painting, where the drawing does not say; at most the brush's
     speed_of_all_mm_s: float | None = None  # whatever the drawing or the plan says
-    start: str = "auto"  # of strokes, where the drawing does not say: "exposed", "hidden", "squared", "auto"
-    end: str = "auto"  # the same: "lifted", "squared", "auto"
+    start: str = "auto"  # of strokes, where the drawing does not set it: "auto", "round", "butt", "pointed"
+    end: str = "auto"  # the same
     paths_as: str | None = None  # "stroke", "outline": what every path is, whatever the drawing says
     wide: str = "auto"  # outlines wider than the brush: "auto", "clamp", "passes", "refuse"
     corners: str = "auto"  # "auto": lifted at sharp corners where the mark is better; "turn": never

@@ -29,7 +29,7 @@ from ..strokes.stroke_search import searched
 from ..strokes.uncovered_areas import notices as blank_notices
 from ..strokes.uncovered_areas import uncovered_areas
 from ..strokes.wide_shapes import is_within_reach, within_reach
-from .compensated import begun_within_reach, compensation_by
+from .compensated import begun_within_reach, compensation_by, with_alike_ends
 from .json_files import read_plan
 from .margin_strokes import with_margin_strokes
 from .options import DEFAULT_BRUSH, DEFAULTS, Options
@@ -82,11 +82,12 @@ def _planned(design: Design, brush, options: Options, stage, partly: bool, notic
         _refuse_wide_lines(found, brush)
     lines = _within_reach(found, brush, options, partly)
     compensated = compensation_by(brush, design.sheet_mm, options, stage)
-    lines, done = _compensated(lines, compensated, partly)
+    lines, done = _compensated(lines, compensated, partly, lambda some: with_alike_ends(some, brush, options))
     if _leads(options):
         lines, done = _searched(lines, done, brush, compensated, options)
     notices += lines.notices
     way = _refined(_way(lines, done, brush, compensated, options, stage), brush, compensated, options)
+    lines = _without_left_out(lines, way)
     way.plan = _at_speed(_with_speeds(way.plan, lines.wanted), options)
     advised = compensated if options.layout.width_mm is None else None
     bare, blank, astray = _beside_shapes(lines, way, brush, options)
@@ -126,7 +127,7 @@ def _leads(options: Options) -> bool:
 @dataclass(frozen=True)
 class _Lines:
     """Strokes as they were found, as the brush will paint them, and what each of these should become; what is told of
-    them, why some were refused, and what those should have become."""
+    them, why some were refused, what those should have become, and which the search added."""
 
     drawn: list
     painted: list
@@ -134,6 +135,7 @@ class _Lines:
     notices: list[Notice]
     refused: list[Notice]
     left_out: list
+    added: frozenset[str] = frozenset()
 
 
 @dataclass
@@ -195,21 +197,14 @@ def _searched(lines: _Lines, done, brush, compensated, options: Options) -> tupl
         options.wide != "clamp",
         done,
     )
-    whole = {stroke.id for stroke in found.painted if stroke.origin.element in found.widened}
-    notices = [_painted_beside(each) if each.where in whole else each for each in lines.notices]
-    lines = replace(lines, drawn=found.drawn, painted=found.painted, wanted=found.wanted, notices=notices)
+    lines = replace(lines, drawn=found.drawn, painted=found.painted, wanted=found.wanted, added=found.added)
     return lines, found.done
 
 
-def _painted_beside(notice: Notice) -> Notice:
-    """What is told of a stroke that is wider than the brush, of one that others fill up."""
-    if notice.about != "wider":
-        return notice
-    return replace(notice, sentence=f"{notice.sentence}, and what is left by strokes of its own", advice="")
-
-
-def _compensated(lines: _Lines, compensated, partly: bool) -> tuple[_Lines, _core.Compensated]:
+def _compensated(lines: _Lines, compensated, partly: bool, alike) -> tuple[_Lines, _core.Compensated]:
+    """The lines with terminals that are alike where their ends are, and their plan."""
     try:
+        lines = replace(lines, painted=alike(lines.painted))
         return lines, compensated(lines.painted)
     except Error:
         if not partly:
@@ -217,20 +212,24 @@ def _compensated(lines: _Lines, compensated, partly: bool) -> tuple[_Lines, _cor
     painted, wanted, refused, left_out = _sorted_out(lines.painted, lines.wanted, compensated)
     lines = replace(
         lines,
-        painted=painted,
+        painted=alike(painted),
         wanted=wanted,
         refused=lines.refused + refused,
         left_out=lines.left_out + left_out,
     )
-    return lines, compensated(painted)
+    return lines, compensated(lines.painted)
 
 
 def _way(lines: _Lines, done, brush, compensated, options: Options, stage) -> _Way:
     """Begun where the tool may be, and pressed deeper as paint runs out."""
     painted, wanted, notices, known, cell = lines.painted, lines.wanted, [], None, options.cell
     if cell is not None and _leads(options):
-        fitting, known = begun_within_reach(painted, brush, done.plan, compensated, options, stage)
+        fitting, known = begun_within_reach(
+            painted, brush, done.plan, compensated, options, stage, lines.added
+        )
         if fitting is not painted:
+            kept = {stroke.id for stroke in fitting}
+            wanted = [meant for meant, stroke in zip(wanted, painted, strict=True) if stroke.id in kept]
             painted, done = fitting, compensated(fitting)
     if brush.paint and brush.width_follows_depth() and _leads(options):
         lowest_mm = cell.heights.lowest_mm if cell else -np.inf
@@ -242,6 +241,15 @@ def _way(lines: _Lines, done, brush, compensated, options: Options, stage) -> _W
         painted, wanted, done = pressed.painted, pressed.wanted, pressed.done
         notices = pressed.told
     return _Way(painted, wanted, done, done.plan, done.misses, [False] * len(painted), notices, known)
+
+
+def _without_left_out(lines: _Lines, way: _Way) -> _Lines:
+    """The lines without the added strokes for which the cell has no room."""
+    left_out = lines.added - {stroke.id for stroke in way.painted}
+    drawn, wanted = (
+        [each for each in some if each.id not in left_out] for some in (lines.drawn, lines.wanted)
+    )
+    return replace(lines, drawn=drawn, wanted=wanted)
 
 
 def _refined(way: _Way, brush, compensated, options: Options) -> _Way:

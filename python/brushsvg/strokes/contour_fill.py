@@ -11,11 +11,12 @@ import numpy as np
 import shapely
 
 from .. import _core
-from .contour_rings import cut, no_corners, ring_along, rings_inward, slanted_corners
-from .offset_passes import Line
+from .contour_rings import Line, cut, ring_along, rings_inward
 from .swept_areas import GRID_MM, QUARTER, unpainted
 
-_SQUARED = 0.4  # of the greatest width, the least of a brush whose marks can begin and end square
+_WIDE = (
+    1.5  # half widths of a disc in the shape: in a narrower one opposite sides of a ring paint the same place
+)
 _TURNED_IN = 2.0  # half widths round a ring that is all of a filling: in a smaller one the brush would turn on the spot
 _AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
 _AMID = 0.05  # squares of the half width that a dot and a ring round it may leave between them
@@ -26,8 +27,8 @@ _MOST_PAIRS = 10_000  # beyond, a shape is no lettering, and the middle lines ha
 
 
 def contour_passes(shape, least: float, half: float) -> list[list[Line]]:
-    """Ways to fill a shape, each as lines, outermost ring first: with sides that end square in right-angled corners,
-    where the brush can and the shape has some, and with rings that turn there; none for a shape that no lettering has.
+    """Ways to fill a shape, each as lines, outermost ring first: rings, and a dot with a ring round it; none for a
+    shape that no lettering has.
 
     shape: a polygon of shapely; least, half: the brush's half widths [mm].
     """
@@ -35,18 +36,13 @@ def contour_passes(shape, least: float, half: float) -> list[list[Line]]:
     shape = shape.simplify(_SIMPLER_MM)
     if _close_pairs(shape, half) > _MOST_PAIRS:
         return []
-    rings = rings_inward(shape, half)
-    if rings is None:
-        return []
-    kinds = (slanted_corners, no_corners) if least < _SQUARED * half else (no_corners,)
-    ways = [cut(rings, half, shape, squared_at) for squared_at in kinds]
-    counts = [sum(bool(line.wanted_mm) for line in lines) for lines in ways]
-    ways = [lines for k, lines in enumerate(ways) if counts[k] not in counts[k + 1 :]]
-    return [
-        lines
-        for lines in (*ways, _dot_and_ring(shape, least, half))
-        if lines and not _turns_on_the_spot(lines, half)
-    ]
+    ways = [_dot_and_ring(shape, least, half)]
+    radius = shapely.maximum_inscribed_circle(shape, 0.01 * half).length
+    is_pen = least == _AS_WIDE * half
+    rings = rings_inward(shape, half) if is_pen or radius > _WIDE * half else None
+    if rings is not None:
+        ways.insert(0, cut(rings, half))
+    return [lines for lines in ways if lines and not _turns_on_the_spot(lines, half)]
 
 
 def _dot_and_ring(shape, least: float, half: float) -> list[Line]:
@@ -60,7 +56,7 @@ def _dot_and_ring(shape, least: float, half: float) -> list[Line]:
     if len(rings) != 1:
         return []
     centre = np.array(circle.coords[0])
-    lines = [Line(np.tile(centre, 4).reshape(1, 8), [(0.0, half)]), *cut([rings], width, shape, no_corners)]
+    lines = [Line(np.tile(centre, 4).reshape(1, 8), [(0.0, half)]), *cut([rings], width)]
     dot = shapely.Point(centre).buffer((1 - _ON_DOT / 2) * half, quad_segs=QUARTER)
     amid = shapely.difference(unpainted(shape.buffer(-width), lines[1:]), dot, grid_size=GRID_MM)
     return lines if amid.area < _AMID * half**2 else []

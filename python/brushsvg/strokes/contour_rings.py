@@ -1,37 +1,39 @@
 """Rings along the outline of a shape and farther inside, and the lines that they are cut into: where the brush would
-turn too sharply, and at corners that lines end square in."""
+turn too sharply."""
 
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
 
 from .. import _core
-from ..geometry.polylines import length, lengths
-from .offset_passes import FITTED, Line
-from .swept_areas import GRID_MM, QUARTER
+from ..geometry.polylines import lengths
 
+FITTED = 0.03  # of a pass's half width, off its curve at most: as much is outside of the shape
 # From ring to ring at most, in half widths: at corners of 90 degrees a step of 1.7 leaves a gap, of 60 one of 1.5.
 _STEP = 1.5
 _INNERMOST = 0.9  # in half widths, from the innermost ring to the shape's middle: it covers that
 _HAIR = 0.05  # in half widths: no ring round a place narrower than that, a line along its middle covers it
 _UPPER_LEFT = (-0.3, 1.0)
 _CORNER_RAD, _SHARP_RAD = np.radians(30), np.radians(100)
-# Corners that turn by more than the first and less than the second end square in a slanted cut: in sharper ones the
-# mark that goes there swings out of the other edge, by 0.5 to 1.2 mm. Farthest ahead of a line's end, in half widths,
-# lies such a corner.
-_SLANTED_RAD, _POINTED_RAD, _REACH = np.radians(42), np.radians(122), 2.0
-_SET_DOWN = 3.6  # in half widths: on shorter lines is no room to be set down for a square beginning
-_AT_TIP = 0.2  # in half widths: so near to a corner of the shape a corner of 80 to 100 degrees points
 _OFF_CUSP = 0.4  # in half widths
 # How far a footprint reaches before and behind the place where a ring begins, in half widths; chords of that length
 # that differ by less are of bends alike.
 _FOOTPRINT, _AS_STRAIGHT = 1.5, 0.02
 _ROUND = 8  # edges of a quarter of a circle, off by 5e-3 of its radius
 _MOST_RINGS = 400  # with more, the middle lines have to do
+
+
+@dataclass(frozen=True)
+class Line:
+    """middle_mm: cubics (n, 8); half_width: [(fraction of arc length, mm)]."""
+
+    middle_mm: np.ndarray
+    half_width: list[tuple[float, float]]
+    closed: bool = False
 
 
 def ring_along(shape, half: float) -> list[np.ndarray]:
@@ -50,12 +52,13 @@ def rings_inward(shape, half: float) -> list[list[np.ndarray]] | None:
     return [_inward(shape, half + k * step, _HAIR * half) for k in range(steps + 1)]
 
 
-def cut(rings: list[list[np.ndarray]], half: float, shape, squared_at) -> list[Line]:
+def cut(rings: list[list[np.ndarray]], half: float) -> list[Line]:
+    """Rings as lines, the outermost ones cut where a brush would turn too sharply."""
     return [
         line
         for k, of_depth in enumerate(rings)
         for points in of_depth
-        for line in _passes(points, half, shape if k == 0 else None, squared_at)
+        for line in _passes(points, half, is_outermost=k == 0)
     ]
 
 
@@ -74,95 +77,41 @@ def _inward(shape, by_mm: float, hair_mm: float) -> list[np.ndarray]:
     ]
 
 
-def _passes(points: np.ndarray, half: float, shape, squared_at) -> list[Line]:
-    """A ring as lines: closed, from amid its longest stretch on, as the tip of a brush set down there lies on the ring;
-    the outermost, whose edge shows, given the shape, cut where it turns too sharply for a brush that turns in place, or
-    where marks with square ends meet in a corner."""
+def _passes(points: np.ndarray, half: float, is_outermost: bool) -> list[Line]:
+    """A ring as lines: closed, from amid its longest stretch on, as the tip of a brush set down there is on the ring.
+    The outermost, whose edge shows, is cut where it turns too sharply for a brush that turns in place."""
     ring = _with_sharp_tips(points[:-1], 3 * _HAIR * half)
     corners = _corners(ring, _CORNER_RAD)
     sharp = _corners(ring, _SHARP_RAD)
-    squared = no_corners() if shape is None else squared_at(ring, half, shape)
-    sharp = np.union1d(sharp, squared)
     if not len(corners):
         return [_line(np.roll(ring, -_straightest(ring, half), axis=0), [], half, True)]
-    if shape is None or not len(sharp):
+    if not is_outermost or not len(sharp):
         ring, corners = _amid_longest(ring, corners)
         return [_line(np.vstack([ring, ring[:1]]), corners, half, True)]
     first = sharp[(ring[sharp] @ _UPPER_LEFT).argmax()]
-    sharp, corners, squared = (np.sort((which - first) % len(ring)) for which in (sharp, corners, squared))
+    sharp, corners = (np.sort((which - first) % len(ring)) for which in (sharp, corners))
     ring = np.roll(ring, -first, axis=0)
     ring = np.vstack([ring, ring[:1]])
-    lines = []
-    for a, b in itertools.pairwise([*sharp, len(ring) - 1]):
-        square = [k % (len(ring) - 1) in squared for k in (a, b)]
-        square[0] = square[0] and length(ring[a : b + 1]) > _SET_DOWN * half
-        part, turns = _clear_of_cusps(
-            ring[a : b + 1], [int(k - a) for k in corners if a < k < b], half, square
+    return [
+        _line(
+            *_clear_of_cusps(ring[a : b + 1], [int(k - a) for k in corners if a < k < b], half), half, False
         )
-        line = _line(part, turns, half, False)
-        lines.append(_squared(line, half, shape, square) if any(square) else line)
-    return lines
+        for a, b in itertools.pairwise([*sharp, len(ring) - 1])
+    ]
 
 
-def _clear_of_cusps(
-    points: np.ndarray, corners: list[int], half: float, square: list[bool]
-) -> tuple[np.ndarray, list[int]]:
-    """A line of a ring and its corners, shorter at ends that are not square: there the shape is hardly wider than the
-    brush, and a mark that begins or ends beside one edge sticks out of the other."""
+def _clear_of_cusps(points: np.ndarray, corners: list[int], half: float) -> tuple[np.ndarray, list[int]]:
+    """A line of a ring and its corners, shorter at both ends: there the shape is hardly wider than the brush, and a
+    mark that begins or ends next to one edge sticks out of the other."""
     at = lengths(points)
-    first, last = (0.0 if is_square else _OFF_CUSP * half for is_square in square)
-    if at[-1] < first + last + 2 * half:
+    ends = [_OFF_CUSP * half, at[-1] - _OFF_CUSP * half]
+    if ends[1] < ends[0] + 2 * half:
         return points, corners
-    ends = [first, at[-1] - last]
     inner = np.flatnonzero((at > ends[0]) & (at < ends[1]))
     places = [[np.interp(end, at, points[:, k]) for k in (0, 1)] for end in ends]
     return np.vstack([places[0], points[inner], places[1]]), [
         int(k - inner[0]) + 1 for k in corners if ends[0] < at[k] < ends[1]
     ]
-
-
-def no_corners(*_) -> np.ndarray:
-    return np.zeros(0, int)
-
-
-def slanted_corners(ring: np.ndarray, half: float, shape) -> np.ndarray:
-    """Corners of a ring where its shape has one that a square end, cut slantwise, reaches into."""
-    some = np.setdiff1d(_corners(ring, _SLANTED_RAD), _corners(ring, _POINTED_RAD))
-    return _of_shape(some, ring, half, shape)
-
-
-def _of_shape(corners: np.ndarray, ring: np.ndarray, half: float, shape) -> np.ndarray:
-    """Those of the corners of a ring that lie half a width inside of a corner of the shape."""
-    here = ring[corners]
-    out = [here - ring[corners - 1], here - ring[(corners + 1) % len(ring)]]
-    u, v = (each / np.hypot(*each.T)[:, None] for each in out)
-    tips = here + half * (u + v) / np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])[:, None]
-    near = (
-        shapely.distance(shapely.points(tips), shapely.multipoints(shapely.get_coordinates(shape)))
-        < _AT_TIP * half
-    )
-    return corners[near]
-
-
-def _squared(line: Line, half: float, shape, ends: list[bool]) -> Line:
-    """The line, meant to paint into the corners of the shape at these of its ends as well, the first, the last."""
-    way = _core.flatten(_core.Stroke(middle_mm=line.middle_mm, half_width=line.half_width), 0.01)[:, :2]
-    whole = shapely.buffer(shapely.LineString(way), half, quad_segs=QUARTER)
-    for is_square, (end, inner) in zip(ends, (way[:2], way[:-3:-1]), strict=True):
-        if is_square:
-            along = _REACH * half * (end - inner) / np.hypot(*(end - inner))
-            cap = shapely.LineString([end, end + along]).buffer(half, cap_style="flat")
-            cap = _beside(shapely.intersection(cap, shape, grid_size=GRID_MM), end)
-            whole = shapely.union(whole, cap)
-    parts = shapely.get_parts(shapely.intersection(whole, shape, grid_size=GRID_MM))
-    part = shapely.orient_polygons(max(parts, key=shapely.area))
-    rings = [np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)]
-    return replace(line, wanted_mm=tuple(_core.unite(rings)))
-
-
-def _beside(parts, place: np.ndarray):
-    """The part that a place lies in."""
-    return min(shapely.get_parts(parts), key=lambda part: shapely.distance(part, shapely.Point(place)))
 
 
 def _corners(ring: np.ndarray, least_rad: float) -> np.ndarray:

@@ -1,5 +1,4 @@
-"""Shapes wider than the brush filled in several passes: beside the middle lines where that covers them, else along
-their outlines."""
+"""Shapes wider than the brush, and the ways to fill them in passes along their outlines."""
 
 from __future__ import annotations
 
@@ -10,7 +9,7 @@ import shapely
 
 from .. import _core
 from .contour_fill import contour_passes
-from .offset_passes import Line, clamped, offset_passes
+from .contour_rings import Line
 from .swept_areas import painted, region, rings_of, unpainted
 
 _MOST_STROKES = 500
@@ -18,54 +17,35 @@ _SLIT_MM = 0.01  # half as wide as slits between parts may be
 
 
 @dataclass(frozen=True)
-class Filling:
-    """What fills one shape. passes: for the number of each stroke that is wider than the brush, the lines to paint in
-    its place, none where those of another do; meant: of what they become, the first's line and rings; rings: of the
-    shape; narrow: its strokes that are not filled."""
+class WideShape:
+    """A shape wider than the brush. wide: the numbers of its strokes that are; narrow: its other strokes; rings: of the
+    shape; along: ways to fill it, each as lines."""
 
-    passes: dict[int, list[Line]]
-    meant: dict[int, tuple[Line, list[np.ndarray]]]
-    rings: list[np.ndarray]
+    wide: list[int]
     narrow: list
+    rings: list[np.ndarray]
+    along: list[list[Line]]
+    part: list[np.ndarray]
 
-    @property
-    def count(self) -> int:
-        return sum(map(len, self.passes.values()))
+    def first_share(self, first: list, lines: list) -> list[np.ndarray]:
+        """What the first of the lines is meant to paint: its own discs, and what those of all lines leave."""
+        whole = region(self.part)
+        share = shapely.union(shapely.intersection(painted(first), whole), unpainted(whole, lines))
+        return rings_of(share)
 
 
-def fillings(strokes: list, wider: list[int], least: float, greatest: float) -> list[list[Filling]]:
-    """The ways to fill each of the shapes that strokes wider than the brush, given by their numbers, are of: beside the
-    middle lines first, then along the outline. Shapes that no lettering has are left out."""
+def fillings(strokes: list, wider: list[int], least: float, greatest: float) -> list[WideShape]:
+    """The shapes that strokes wider than the brush, given by their numbers, are of, but for those that no lettering
+    has."""
     found, beyond = [], set(wider)
     for shape, members in _shapes(strokes, wider):
         if len(members) > _MOST_STROKES:
             continue
-        wide = {k: strokes[k] for k in members if k in beyond}
+        wide = [k for k in members if k in beyond]
         narrow = [strokes[k] for k in members if k not in beyond]
-        found.append(_ways(shape, wide, narrow, least, greatest))
+        part = _core.unite([ring for k in wide for ring in strokes[k].wanted_mm])
+        found.append(WideShape(wide, narrow, rings_of(shape), contour_passes(shape, least, greatest), part))
     return found
-
-
-def _ways(shape, wide: dict[int, object], narrow: list, least: float, greatest: float) -> list[Filling]:
-    beside = {
-        k: [clamped(stroke, least, greatest), *offset_passes(stroke, greatest)] for k, stroke in wide.items()
-    }
-    meant = {k: (Line(s.middle_mm, s.half_width, s.closed), s.wanted_mm) for k, s in wide.items()}
-    rings = rings_of(shape)
-    ways = [Filling(beside, meant, rings, narrow)]
-    first, *others = wide
-    part = _core.unite([ring for stroke in wide.values() for ring in stroke.wanted_mm])
-    for lines in contour_passes(shape, least, greatest):
-        passes = {first: lines, **{k: [] for k in others}}
-        ways.append(Filling(passes, {first: (lines[0], _first_share(part, lines))}, rings, narrow))
-    return ways
-
-
-def _first_share(part: list[np.ndarray], lines: list[Line]) -> list[np.ndarray]:
-    """What the first of the lines is meant to paint of a part: its own discs, and what those of all lines leave."""
-    whole = region(part)
-    share = shapely.union(shapely.intersection(painted(lines[:1]), whole), unpainted(whole, lines))
-    return rings_of(share)
 
 
 def _shapes(strokes: list, wider: list[int]) -> list[tuple]:

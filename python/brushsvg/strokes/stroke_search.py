@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,34 +13,28 @@ from .trial_mark import SEEN_MM
 from .uncovered_areas import MISSED_SHARE, discs, is_mostly
 
 _SWEPT_MM = 0.02
-# Of the area that a brush too narrow leaves beside strokes, what must be painted: else some stems of a word would be
-# painted wider than others.
-_SIDES = 0.7
 
 
 @dataclass(frozen=True)
 class _Added:
-    """A stroke into a bare area, rings of the area, of the shape; won_mm2: what the shape's mark costs less."""
+    """A stroke into a bare area, and rings of the area; is_rim: that is part of a found stroke's own discs."""
 
     stroke: object
     own_mm: list[np.ndarray]
     area_mm: list[np.ndarray]
-    won_mm2: float
-    is_side: bool
     is_rim: bool
 
 
 @dataclass(frozen=True)
 class Searched:
     """What a search made of drawn, painted and wanted strokes, those that it added behind the others of their element;
-    done: what compensation says of the painted ones; widened: elements that are wider than the brush, and painted as
-    wide by strokes along their sides."""
+    done: what compensation says of the painted ones; added: ids of the strokes that the search added."""
 
     drawn: list
     painted: list
     wanted: list
     done: _core.Compensated
-    widened: set[str] = field(default_factory=set)
+    added: frozenset[str] = frozenset()
 
 
 def searched(
@@ -59,8 +53,7 @@ def searched(
     drawn: strokes as they were found; painted: as the brush paints them; wanted: what each should become; compensated:
     makes a plan of strokes; done: that of the painted ones, where it is there already. detail: how small an area gets a
     stroke of its own: "draft", "normal", "fine". are_corners_filled: else only limbs without a stroke get one.
-    are_sides_painted: along what a stroke of the brush's greatest width leaves of a wider one, too, where that makes
-    most of such strokes as wide as they were drawn.
+    are_sides_painted: along what a stroke of the brush's greatest width leaves of a wider one, too.
     """
     done = compensated(painted) if done is None else done
     shapes = _shapes(drawn, painted, list(done.plan.passes), brush)
@@ -74,7 +67,8 @@ def searched(
     for shape, (strokes, changed, added), following in zip(shapes, found, lanes, strict=True):
         rows = _led_otherwise(rows, shape, strokes, changed, following)
         every += _named(shape, added, following, are_corners_filled)
-    every = _for_widths(every, drawn, painted, brush, are_sides_painted)
+    if not are_sides_painted:
+        every = _next_to_narrow(every, drawn, brush)
     for shape in shapes:
         some = [each for each in every if each.stroke.origin.element == shape.element]
         if some:
@@ -84,30 +78,26 @@ def searched(
     new = compensated([stroke for stroke, _, k in rows if k is None])
     numbers = iter(range(len(rows)))
     done = done.spliced(new, [(True, next(numbers)) if k is None else (False, k) for _, _, k in rows])
-    widened = {each.stroke.origin.element for each in every if each.is_rim}
-    return Searched(drawn, [row[0] for row in rows], [row[1] for row in rows], done, widened)
+    before = {stroke.id for stroke in painted}
+    found_now = {row[0].id for row in rows}
+    return Searched(
+        drawn, [row[0] for row in rows], [row[1] for row in rows], done, frozenset(found_now - before)
+    )
 
 
-def _for_widths(
-    added: list[_Added], drawn: list, painted: list, brush, are_sides_painted: bool
-) -> list[_Added]:
-    """The strokes without those beside others that are wider than the brush, where those stay as narrow as it is."""
+def _next_to_narrow(added: list[_Added], drawn: list, brush) -> list[_Added]:
+    """The strokes that do not run next to one that was drawn wider than the brush."""
     greatest = brush.half_width_range_mm()[1]
     wide = {
         (stroke.origin.element, stroke.origin.part)
         for stroke in drawn
         if max(half for _, half in stroke.half_width) > greatest + SEEN_MM
     }
-    if not are_sides_painted:
-        return [
-            each
-            for each in added
-            if not each.is_rim and (each.stroke.origin.element, each.stroke.origin.part) not in wide
-        ]
-    sides_mm2 = sum(each.won_mm2 for each in added if each.is_side)
-    if sides_mm2 < _SIDES * _sides_mm2(drawn, painted, brush):
-        return [each for each in added if not each.is_side]
-    return added
+    return [
+        each
+        for each in added
+        if not each.is_rim and (each.stroke.origin.element, each.stroke.origin.part) not in wide
+    ]
 
 
 def _with_added(
@@ -230,7 +220,7 @@ def _named(shape: _Shape, added: list, following, are_corners_filled: bool) -> I
     whole_mm2 = _core.area(rings)
     hosts = list(shape.strokes)
     by_found = discs(shape.found) if added and not shape.is_filled else []
-    for made, neighbour, area_mm, mark_mm, won_mm2 in added:
+    for made, neighbour, area_mm, mark_mm in added:
         like = hosts[neighbour]
         hosts.append(like)
         stroke = like.replaced(
@@ -252,7 +242,7 @@ def _named(shape: _Shape, added: list, following, are_corners_filled: bool) -> I
             own_mm = _core.unite([*_core.intersect(mark_mm, rings), *_core.intersect(area_mm, rings)])
         part = like.origin.part
         stroke = stroke.replaced(id=_core.StrokeId(element, part, 1, following(part)), wanted_mm=own_mm)
-        yield _Added(stroke, own_mm, area_mm, won_mm2, is_rim and share < MISSED_SHARE, is_rim)
+        yield _Added(stroke, own_mm, area_mm, is_rim)
 
 
 def _is_set(end: str | None) -> bool:
@@ -262,20 +252,6 @@ def _is_set(end: str | None) -> bool:
 def _repeated(stroke, repeat: int):
     of = stroke.origin
     return stroke.replaced(id=_core.StrokeId(of.element, of.part, repeat, of.lane))
-
-
-def _sides_mm2(drawn: list, painted: list, brush) -> float:
-    """Area of what strokes of the brush's greatest width leave of those that were found wider, by more than is seen."""
-    greatest, area_mm2 = brush.half_width_range_mm()[1], 0.0
-    in_passes = {stroke.origin.element for stroke in painted if not stroke.wanted_mm}
-    for stroke in drawn:
-        at, half_mm = np.array(stroke.half_width).T
-        if not stroke.wanted_mm or stroke.origin.element in in_passes or half_mm.max() < greatest + SEEN_MM:
-            continue
-        length_mm = _core.flatten(stroke, 0.1)[-1, 2]
-        beyond_mm = np.interp(np.linspace(0, 1, 200), at, half_mm) - greatest
-        area_mm2 += 2 * length_mm * float(np.mean(np.where(beyond_mm > SEEN_MM, beyond_mm, 0.0)))
-    return area_mm2
 
 
 def _behind(added: list, rows: list, stroke_of) -> list:

@@ -9,7 +9,6 @@ import shapely
 
 from .. import _core
 from ..geometry.rings import with_holes
-from .offset_passes import Line
 
 GRID_MM = 1e-4  # of differences: without one they may fail on edges that all but touch
 QUARTER = 24  # edges of a quarter of a circle, off by 1e-3 of its radius
@@ -32,13 +31,11 @@ def rings_of(shape) -> list[np.ndarray]:
 
 
 def painted(strokes: list):
-    """What discs of their widths paint along lines or strokes; what lines with square ends are meant to."""
+    """What discs of their widths paint along lines or strokes."""
     return shapely.union_all([part for each in strokes for part in swept(each)])
 
 
 def swept(stroke) -> list:
-    if isinstance(stroke, Line) and stroke.wanted_mm:
-        return [region(list(stroke.wanted_mm))]
     bare = _core.Stroke(middle_mm=stroke.middle_mm, half_width=stroke.half_width, closed=stroke.closed)
     line = _core.flatten(bare, 0.01)
     knots = np.array(stroke.half_width)

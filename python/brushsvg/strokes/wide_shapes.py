@@ -7,19 +7,11 @@ import numpy as np
 from .. import _core
 from ..drawing.design import Notice
 from ..errors import Error, need, need_one_of
-from .offset_passes import clamped
 from .trial_mark import trial_overlap
 
 WIDE = ("auto", "clamp", "passes", "refuse")
-# At the nearest width the mark overlaps with a shape by so much, or passes are taken for it.
-ENOUGH = 0.8
-BETTER = 0.01  # and passes by so much more
-# Or they are where all wide shapes of the drawing together gain so much of overlap. At 0.06 letters look alike both
-# ways, and passes take twice the poses; at 0.12 stems are a fifth too thin.
-CLEARLY = 0.1
 # Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
 _WORTH_PASSES = 1 / 0.95
-_ALIKE = 0.003  # of overlap: less is not worth the direction of writing, or more passes
 POINT_MM = 1e-3  # half the width of a line where it ends in a point
 UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge lies beside the shape's by more
 
@@ -32,13 +24,12 @@ def within_reach(
     A line that was drawn narrower than the brush is painted at the brush's least width; one drawn wider is refused when
     the plan is made. Other widths are changed only where strokes carry an outline. A stroke whose shape is less than
     half of the smallest mark of the brush is left out: its mark would paint more outside of the shape than inside.
-    wide: "clamp", the nearest width; "passes", several passes, called id, id~2, id~3 ..., which fill the shape that is
-    wider than the brush and stay in it; "auto", passes for all wider shapes that they paint better, if at the nearest
-    widths the mark of one of them overlaps with it by less than 0.8, or marks of all of them by 0.1 less than passes;
-    "refuse", Error naming stroke, width and range. Error if nothing is left to paint.
+    wide: "clamp", the nearest width; "passes", passes along the outline, called id, id~2, id~3 ..., for each wider
+    shape that they paint better than strokes at the nearest width do; "auto", the same for a brush, and the lines of a
+    pen as they are; "refuse", Error naming stroke, width and range. Error if nothing is left to paint.
     """
     need(brush, _core.Brush, "a brush")
-    need_one_of(wide, ("auto", "clamp", "passes", "refuse"), "what becomes of wide shapes")
+    need_one_of(wide, WIDE, "what becomes of wide shapes")
     for stroke in strokes:
         need(stroke, _core.Stroke, "a stroke")
     if not brush.width_follows_depth() and wide != "passes":
@@ -57,12 +48,14 @@ def within_reach(
             sentence = f"width {2 * worst:.3g} mm of its {whose} is outside the range {reach}"
             bounds = (2 * least, 2 * greatest)
             raise Error(sentence, stroke.id, 2 * worst, bounds, code="width-out-of-reach")
-    filled, fillable = _filled(strokes, _wide(strokes, beyond, greatest), brush, wide)
+    filled = _filled(strokes, _wide(strokes, beyond, greatest), brush) if wide in ("auto", "passes") else {}
     painted, wanted = [], []
     for k, stroke in enumerate(strokes):
         made, meant, how = filled.get(k) or ([stroke], [stroke], "")
         if beyond[k] and k not in filled:
             made, how = [_clamped(stroke, least, greatest)], "painted at the nearest width"
+            if wide != "clamp" and stroke.wanted_mm and beyond[k][1] > greatest:
+                how += ", and its sides by strokes of their own"
         if beyond[k] and (k in filled or _shows(beyond[k][1], least, greatest)):
             what, worst = beyond[k]
             notices.append(
@@ -71,7 +64,6 @@ def within_reach(
                     f"{what} {2 * worst:.3g} mm wide, outside the range {reach}: {how}",
                     code="width-out-of-reach",
                     about="in passes" if k in filled else "wider" if worst > greatest else "narrower",
-                    advice="--wide passes paints more of it" if k in fillable else "",
                 )
             )
         painted += made
@@ -135,80 +127,42 @@ def _wide(strokes: list, beyond: dict, greatest: float) -> list[int]:
     return [k for k in wider if strokes[k].origin.element in elements]
 
 
-def _filled(strokes: list, wider: list[int], brush, wide: str) -> tuple[dict[int, tuple], set[int]]:
-    """For each stroke to paint in passes (these, what they should become, how in words); and the strokes of which
-    passes would paint more, if they were asked for."""
+def _filled(strokes: list, wider: list[int], brush) -> dict[int, tuple]:
+    """For each stroke of a shape that is filled in passes: these, what they should become, how in words."""
     if not wider:
-        return {}, set()
+        return {}
     from .fillings import fillings  # with shapely, which is slow to load
 
     done: dict[int, tuple] = {}
-    found = fillings(strokes, wider, *brush.half_width_range_mm())
-    best = [_best(ways, strokes, brush) for ways in found]
-    chosen, fillable = ({}, set()) if wide == "passes" else _chosen(best, strokes, brush, wide)
-    for number, (filling, _) in enumerate(best):
-        if wide != "passes" and number not in chosen:
-            continue
-        for k in filling.passes:
-            passes = [_like(strokes[k], line, lane) for lane, line in enumerate(filling.passes[k], start=1)]
-            meant = []
+    for shape in fillings(strokes, wider, *brush.half_width_range_mm()):
+        filling = _best(shape, strokes, brush)
+        for k in shape.wide if filling else ():
+            passes = [_like(strokes[k], line, lane) for lane, line in enumerate(filling, start=1)]
+            how, filling = (
+                "painted in passes side by side",
+                [],
+            )  # the first stroke of the shape has all of them
             if passes:
-                line, rings = filling.meant[k]
-                meant = [_like(strokes[k], line), *passes[1:]]
-                meant[0].wanted_mm = rings
-            done[k] = (passes, meant, _how(passes) + chosen.get(number, ""))
-    return done, fillable
+                meant = [passes[0].replaced(wanted_mm=shape.first_share(passes[:1], passes)), *passes[1:]]
+            else:
+                meant, how = [], "painted in the passes of its shape's first stroke"
+            done[k] = (passes, meant, how)
+    return done
 
 
-def _best(ways: list, strokes: list, brush) -> tuple:
-    """Of the ways to fill a shape the one whose mark overlaps with it most, and how much: passes beside its middle
-    lines, which have the direction of writing, unless others are fewer or plainly better."""
-    beside, *along = [(each, _filled_overlap(each, strokes, brush)) for each in ways]
-    if not along:
-        return beside
-    best = max(along, key=lambda each: each[1])
-    if not brush.width_follows_depth():
-        return best  # a pen's edges are those of its outermost ring
-    worth = _ALIKE if best[0].count > beside[0].count else -_ALIKE if best[0].count < beside[0].count else 0
-    return best if best[1] > beside[1] + worth else beside
-
-
-def _filled_overlap(filling, strokes: list, brush) -> float:
-    passes = [_like(strokes[k], line) for k, lines in filling.passes.items() for line in lines]
-    return _mark_overlap([*passes, *filling.narrow], filling.rings, brush)
-
-
-def _chosen(best: list[tuple], strokes: list, brush, wide: str) -> tuple[dict[int, str], set[int]]:
-    """The fillings that are taken where nobody says which, by their numbers, and why in words: all that paint better,
-    if one of their shapes would be painted too badly without, or all of them clearly worse, for the stems of a word
-    are of one weight. And of the others, the strokes of shapes that passes paint better; none where all of them
-    together hardly win by it."""
-    found, filled = zip(*best, strict=True)
-    nearest = [_at_nearest(filling, strokes, brush) for filling in found]
-    better = [k for k in range(len(found)) if filled[k] > nearest[k] + BETTER]
-    areas = [_core.area(each.rings) for each in found]
-
-    def gained(some: list[int]) -> float:
-        won = sum(areas[k] * (filled[k] - nearest[k]) for k in some)
-        return won / sum(areas[k] for k in some) if some else 0.0
-
-    taken: dict[int, str] = {}
-    if wide == "auto":
-        words = ", since at the nearest width its mark would overlap with the shape by {:.2f}"
-        bad = [k for k in better if nearest[k] < ENOUGH]
-        if bad or gained(list(range(len(found)))) >= CLEARLY:
-            others = ", as others of the drawing" if bad else words + ", in passes by {:.2f}"
-            taken = {k: (words if k in bad else others).format(nearest[k], filled[k]) for k in better}
-    left = [k for k in range(len(found)) if k not in taken]
-    if gained(left) <= BETTER:
-        return taken, set()
-    return taken, {stroke for k in better if k in left for stroke in found[k].passes}
-
-
-def _at_nearest(filling, strokes: list, brush) -> float:
-    """How much the mark overlaps with a shape, its strokes painted at the nearest width."""
-    clamped = [_clamped(strokes[k], *brush.half_width_range_mm()) for k in filling.passes]
-    return _mark_overlap([*filling.narrow, *clamped], filling.rings, brush)
+def _best(shape, strokes: list, brush) -> list:
+    """The passes along an outline whose mark overlaps most with it; none where that of its strokes at the nearest
+    width does, which have the direction of writing. A pen's edges are those of its outermost ring."""
+    best, most = [], -1.0
+    if brush.width_follows_depth():
+        clamped_to_reach = [_clamped(strokes[k], *brush.half_width_range_mm()) for k in shape.wide]
+        most = _mark_overlap([*shape.narrow, *clamped_to_reach], shape.rings, brush)
+    for lines in shape.along:
+        passes = [_like(strokes[shape.wide[0]], line) for line in lines]
+        overlap = _mark_overlap([*passes, *shape.narrow], shape.rings, brush)
+        if overlap > most:
+            best, most = lines, overlap
+    return best
 
 
 def _mark_overlap(strokes: list, rings: list, brush) -> float:
@@ -219,12 +173,6 @@ def _mark_overlap(strokes: list, rings: list, brush) -> float:
         return 0.0
 
 
-def _how(passes: list) -> str:
-    if not passes:
-        return "painted in the passes of its shape's first stroke"
-    return "painted in passes side by side"
-
-
 def _like(stroke, line, lane: int = 1):
     of = stroke.origin
     return stroke.replaced(
@@ -232,13 +180,18 @@ def _like(stroke, line, lane: int = 1):
         middle_mm=line.middle_mm,
         closed=line.closed,
         half_width=line.half_width,
-        wanted_mm=list(line.wanted_mm),
-        start_covered=not line.wanted_mm,  # by other passes
-        end_covered=not line.wanted_mm,
-        settings=stroke.settings.replaced(start=line.start) if line.start else stroke.settings,
+        wanted_mm=[],
+        start_covered=True,  # by other passes
+        end_covered=True,
     )
 
 
 def _clamped(stroke, least: float, greatest: float):
-    """The stroke with its widths cut to the range."""
-    return stroke.replaced(half_width=clamped(stroke, least, greatest).half_width)
+    """The stroke with its widths cut to the range, a knot where they leave it."""
+    at, half = np.array(stroke.half_width).T
+    knots = [(at[0], half[0])]
+    for a0, h0, a1, h1 in zip(at[:-1], half[:-1], at[1:], half[1:], strict=True):
+        cuts = [(bound - h0) / (h1 - h0) for bound in (least, greatest) if (h0 - bound) * (h1 - bound) < 0]
+        knots += [(a0 + cut * (a1 - a0), h0 + cut * (h1 - h0)) for cut in sorted(cuts)]
+        knots.append((a1, h1))
+    return stroke.replaced(half_width=[(float(a), float(np.clip(h, least, greatest))) for a, h in knots])

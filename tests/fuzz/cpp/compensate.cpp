@@ -14,8 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         CompensateOptions options;
         options.method = Compensation(in.chance(4) ? in.integer(0, 1) : 2);
         options.tolerance_mm = in.coarse(0.03, 0.5);
-        options.start = Beginning(in.integer(0, 1) ? 0 : in.integer(0, 4));
-        options.end = Ending(in.integer(0, 1) ? 0 : in.integer(0, 2));
+        options.start = Terminal(in.integer(0, 3));
+        options.end = Terminal(in.integer(0, 3));
         options.few_poses = !in.chance(4);
         const bool twice = in.chance(4);
         const Brush brush = fuzz::brush_from(in);

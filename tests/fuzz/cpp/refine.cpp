@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         fit::RefineOptions options;
         options.iterations = in.integer(0, 3);
         options.tolerance_mm = in.coarse(0.05, 0.5);
-        options.start = Beginning(in.integer(0, 1) ? 0 : 1);
+        options.start = Terminal(in.integer(0, 1));
         if (in.chance(3)) options.sheet_mm = {100.0, 100.0};
         const Brush brush = fuzz::brush_from(in);
         Stroke stroke = fuzz::stroke_from(in, brush, 2);

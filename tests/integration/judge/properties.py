@@ -154,7 +154,7 @@ def more_flags(random, kind: str) -> tuple[str, ...]:
     if random.random() < 0.15:
         flags += ("--fit", f"{random.uniform(20, 60):.0f}x{random.uniform(15, 45):.0f}")
     if random.random() < 0.1:
-        flags += ("--end", str(random.choice(("lifted", "squared"))))
+        flags += ("--end", str(random.choice(("round", "butt"))))
     return flags
 
 
@@ -246,8 +246,8 @@ def stepped(source: Path, plan: dict, brush, toml: Path, flags) -> list[str]:
     """Marks off the sheet, and tracking errors that are reported too small."""
     wrong = []
     work = None
-    # squared ends, corners that are turned and refined strokes leave their line on purpose: their marks are judged
-    if said_of(flags, "--start")[1:] in (("exposed",), ("hidden",)) and not {"--corners", "refined"} & set(
+    # butt ends, corners that are turned and refined strokes leave their line on purpose: their marks are judged
+    if said_of(flags, "--start")[1:] in (("pointed",), ("round",)) and not {"--corners", "refined"} & set(
         flags
     ):
         work = preparation.prepare(

@@ -296,7 +296,7 @@ def random_flags(random, dialect: str) -> tuple[str, ...]:
         how = random.choice(("none", "constant", "refined"), p=chances)
         flags += ("--compensation", str(how))
     if random.random() < 0.3:
-        flags += ("--start", str(random.choice(("exposed", "hidden", "squared"))))
+        flags += ("--start", str(random.choice(("pointed", "round", "butt"))))
     if random.random() < 0.3:
         flags += ("--corners", "turn")
     if random.random() < 0.2:

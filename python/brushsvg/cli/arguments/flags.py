@@ -8,6 +8,8 @@ from ...drawing import BACKGROUNDS, PENS, READERS, SCRIPTS
 from ...machine.posts import POSTS
 from . import values
 
+TERMINALS = ("auto", "round", "butt", "pointed")
+
 
 def programs() -> str:
     """The extensions of programs, each with the language it stands for."""
@@ -128,17 +130,13 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
         help="largest tracking error of the painted middle line; default: 0.05",
     )
     add(
-        "--start",
-        choices=("exposed", "hidden", "squared", "auto"),
-        help="of strokes: pointed, round (set down inside, moved back, turned over), drawn along the cut from corner "
-        "to corner, or what suits each; default: auto",
-    )
-    add(
-        "--end",
-        choices=("lifted", "squared", "auto"),
-        help="of strokes: as the footprint is in front, drawn along the cut from corner to corner, or what suits each; "
+        "--terminals",
+        choices=TERMINALS,
+        help="both ends of all strokes: round, butt (cut straight), pointed, or what suits each, like ends alike; "
         "default: auto",
     )
+    add("--start", choices=TERMINALS, help="the start of strokes, where it differs from --terminals")
+    add("--end", choices=TERMINALS, help="the end of strokes, where it differs from --terminals")
     add("--lenient", action="store_true", help="paint what is sound of damaged geometry")
 
 
@@ -165,8 +163,8 @@ def add_wide(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--wide",
         choices=("auto", "clamp", "passes", "refuse"),
-        help="shapes wider than the brush: its greatest width, several passes, or refuse; default: auto, passes where "
-        "the mark of its greatest width overlaps with a shape by less than 0.8, or with all of them by 0.1 less",
+        help="shapes wider than the brush: fill them in passes, paint them as wide as it can, or refuse them; default: "
+        "auto, which fills them, except that a pen draws their middle lines",
     )
 
 

@@ -44,6 +44,8 @@ def _read(attributes: dict[str, str], known: dict) -> tuple[dict, list[str]]:
             settings[key] = read(text.strip())
         except (Error, ValueError) as problem:
             problems.append(f"{attribute}: {problem}")
+    if both := settings.pop("terminals", None):
+        settings = {"start": both, "end": both} | settings
     return settings, problems
 
 
@@ -102,6 +104,7 @@ def _in_range(value, least, greatest, unit: str = ""):
     return value
 
 
+_TERMINAL = _one_of("auto", "round", "butt", "pointed")
 _KNOWN = {
     "width": ("width_mm", _width_mm),
     "speed": ("speed_mm_s", _speed_mm_s),
@@ -110,8 +113,9 @@ _KNOWN = {
     "reload": ("reload", _yes),
     "skip": ("skip", _yes),
     "brush": ("brush", _name),
-    "start": ("start", _one_of("exposed", "hidden", "squared", "auto")),
-    "end": ("end", _one_of("lifted", "squared", "auto")),
+    "terminals": ("terminals", _TERMINAL),
+    "start": ("start", _TERMINAL),
+    "end": ("end", _TERMINAL),
     "script": ("script", _one_of(*SCRIPTS)),
 }
 _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
@@ -120,4 +124,4 @@ _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
     "tolerance": ("tolerance", _tolerance_mm),
     "wide": ("wide", _one_of("auto", "clamp", "passes", "refuse")),
 }
-_OF_JOB_ON_ROOT = {"start", "end"}  # of a stroke elsewhere; here a flag counts more
+_OF_JOB_ON_ROOT = {"terminals", "start", "end"}  # of a stroke elsewhere; here a flag counts more

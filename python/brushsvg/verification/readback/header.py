@@ -55,11 +55,11 @@ def made(text: str) -> Made:
     heights = _said(header, "heights", r"(\S+) to (\S+) mm, (\S+) mm apart", (-1000.0, 1000.0))
     first = _said(header, "first", r"heights (\S+) to (\S+) mm, (\S+) mm apart", (-1000.0, 1000.0))
     how = re.match(r"(none|constant|closed|refined), ", header.get("compensation", "closed, "))
-    ends = r"(?:, start (?:exposed|hidden|squared|auto))?(?:, end (?:lifted|squared|auto))?"
+    ends = r"(?:, start (?:auto|round|butt|pointed))?(?:, end (?:auto|round|butt|pointed))?"
     told = rf"\w+, tolerance (\S+) mm(?:, lag \S+ mm)?{ends}"
     tolerance = _said(header, "compensation", told, (1e-5, 10.0))
-    start = re.search(r", start (exposed|hidden|squared|auto)(?:, end \w+)?$", header.get("compensation", ""))
-    end = re.search(r", end (lifted|squared|auto)$", header.get("compensation", ""))
+    start = re.search(r", start (\w+)(?:, end \w+)?$", header.get("compensation", ""))
+    end = re.search(r", end (\w+)$", header.get("compensation", ""))
     has_lag = ", lag " in header.get("compensation", "")
     lag = _said(header, "compensation", r".*, lag (\S+) mm.*", (0.0, 1000.0)) if has_lag else None
     if how is None:
