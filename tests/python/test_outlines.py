@@ -95,7 +95,7 @@ def test_an_arm_of_a_round_c_ends_amid_its_cut(slant_deg):
 
 def test_a_bar_runs_on_through_its_stem_where_that_has_a_stub():
     """The left part of the bar of a bold f or t, too short for a branch of its own, was left blank."""
-    bar = max(painted(path("M20 5H28V18H36V25H28V45H20V25H16V18H20Z")), key=lambda each: ends(each)[1][0])
+    _, bar = painted(path("M20 5H28V18H36V25H28V45H20V25H16V18H20Z"))
     assert ends(bar) == [[19.5, 21.5], [32.5, 21.5]]
     flush, _ = sorted(painted(path("M20 5H28V18H36V25H28V45H20Z")), key=lambda each: -ends(each)[1][0])
     assert ends(flush)[0][0] > 23.5

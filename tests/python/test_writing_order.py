@@ -62,13 +62,7 @@ def lines_of(d: str, script: str = "latin") -> list[np.ndarray]:
     return [np.column_stack([np.interp(at * f[-1, 2], f[:, 2], f[:, k]) for k in (0, 1)]) for f in flat]
 
 
-# The fitted weights write the bar of a straight t before its stem, as that of a cross; a t with a foot is right.
-WRONG = {"t": [pytest.mark.xfail(strict=True, reason="a straight t is taken for a cross")]}
-
-
-@pytest.mark.parametrize(
-    "d, places", [pytest.param(*each, marks=WRONG.get(name, []), id=name) for name, each in LETTERS.items()]
-)
+@pytest.mark.parametrize("d, places", LETTERS.values(), ids=LETTERS)
 def test_lines_are_painted_in_the_order_of_writing(d, places):
     found = lines_of(d)
     off = np.array([[np.hypot(*(line - (x, 50 - y)).T).min() for line in found] for x, y in places])
@@ -171,3 +165,21 @@ def test_a_flat_line_of_arabic_runs_to_the_left():
     assert start > end
     start, end = start_and_end("latin")
     assert start < end
+
+
+@pytest.mark.parametrize("script", ["auto", "latin"])
+def test_the_stem_of_a_t_or_f_comes_before_its_crossbar(script):
+    t = LETTERS["t"][0]
+    f = "M38 5V11H32Q28 11 28 15V19H36V25H28V45H22V25H15V19H22V15Q22 5 32 5Z"
+    for letter in (t, f):
+        stem, bar = lines_of(letter, script)
+        assert np.ptp(stem[:, 1]) > 30
+        assert np.ptp(bar[:, 1]) < 2
+
+
+@pytest.mark.parametrize("script", ["auto", "cjk"])
+def test_the_bar_of_a_character_comes_before_the_line_that_crosses_it(script):
+    wide_and_high = "M22 5H28V16H44V22H28V45H22V22H6V16H22Z"  # 十 with a bar as high as that of a t
+    bar, stem = lines_of(wide_and_high, script)
+    assert np.ptp(bar[:, 0]) > 30
+    assert np.ptp(stem[:, 1]) > 30

@@ -7,7 +7,10 @@ Two numbers are computed for each pair of strokes by one small network (`stroke_
 
 The score of writing b after a, with the strokes R still to write, is h(a, b) + sum over r in R of log sigmoid(m(b, r)).
 The softmax over R of this score is the probability of the next stroke. A beam search finds the most probable order.
-`benchmarks/fit_stroke_order.py` fits the weights and names the data.
+`benchmarks/fit_stroke_order.py` describes how the weights were fitted, and names the data.
+
+One rule is explicit: the stem of a t or f is written before its crossbar (`find_crossbars`). The fitted weights cannot
+be trusted with it, because a straight t differs from a cross or a 十, whose bar comes first, by proportion alone.
 """
 
 from __future__ import annotations
@@ -26,6 +29,17 @@ TOUCH_SHARE, NEAR_SHARE = (
     0.1,
 )  # of the size of the group: distances at which strokes touch, and are near
 SOFT_CUT, SOFT_CUT_WIDTH = 0.12, 0.05  # overlap of two halves at which a cut counts half, and its scale
+# The crossbar of a t or f: slope of the bar at most, and of the stem at least; height of the crossing as a share of the
+# stem, above which the bar is that of a T and below which that of a plus sign; reach on both sides of the stem, as a
+# share of its height, below which the bar is a serif or an arm.
+MAX_BAR_SLOPE, MIN_STEM_SLOPE = 0.35, 1.7
+MIN_BAR_HEIGHT, MAX_BAR_HEIGHT = 0.53, 0.94
+MIN_BAR_REACH = 0.05
+CROSSBAR_LOG_ODDS = 6.0  # that the stem is written before its crossbar
+# Length of the bar as a share of the stem's height. In an unknown script a cross with a longer bar may be a character,
+# such as 十, and the letter has few strokes: all but the stem and the bar are serifs, shorter than a share of the stem.
+MAX_BAR_LENGTH = {"latin": 1.1, "auto": 0.75}
+MAX_LETTER_STROKES, MAX_SERIF_LENGTH = 3, 0.45
 SCRIPT_FLAGS = {"latin": -1.0, "devanagari": -1.0, "cjk": 1.0}  # 0.0: unknown
 
 
@@ -45,9 +59,35 @@ def find_writing_order(lines: list[np.ndarray], script: str = "auto") -> list[in
     features = pair_features([line[:, :2] for line in lines], SCRIPT_FLAGS.get(script, 0.0))
     hidden, bias, output = _weights()
     before, follows = np.moveaxis(np.tanh(features @ hidden + bias) @ output, 2, 0)
-    precedence = -np.logaddexp(0.0, before.T - before)
+    margin = before - before.T
+    if script in MAX_BAR_LENGTH:
+        is_crossbar = find_crossbars([line[:, :2] for line in lines], script)
+        margin[is_crossbar] = np.maximum(margin[is_crossbar], CROSSBAR_LOG_ODDS)
+        margin[is_crossbar.T] = -margin.T[is_crossbar.T]
+    precedence = -np.logaddexp(0.0, -margin)
     np.fill_diagonal(precedence, 0.0)
     return search_order(precedence, follows)
+
+
+def find_crossbars(lines: list[np.ndarray], script: str) -> np.ndarray:
+    """Return, (n, n), whether stroke b is the crossbar of stem a, as in a t or f. script: "latin" or "auto"."""
+    places = np.array([_resample(line) for line in lines])
+    x, y = np.moveaxis(places, 2, 0)
+    width, height = np.ptp(places, axis=1).T
+    level = y.mean(axis=1)  # of each stroke, if it is a bar
+    nearest = np.abs(y[:, None] - level[None, :, None]).argmin(axis=2)
+    crossing = np.take_along_axis(x, nearest, axis=1)  # x of each stem at the level of each bar
+    stem_height = np.maximum(height, 1e-9)[:, None]
+    crossing_height = (level - y.min(axis=1)[:, None]) / stem_height
+    reach = np.minimum(crossing - x.min(axis=1), x.max(axis=1) - crossing) / stem_height
+    is_crossbar = (height > MIN_STEM_SLOPE * width)[:, None] & (height < MAX_BAR_SLOPE * width)
+    is_crossbar &= (crossing_height > MIN_BAR_HEIGHT) & (crossing_height < MAX_BAR_HEIGHT)
+    is_crossbar &= (reach > MIN_BAR_REACH) & (width / stem_height < MAX_BAR_LENGTH[script])
+    if script == "auto":
+        is_long = np.maximum(width, height) > MAX_SERIF_LENGTH * stem_height
+        is_crossbar &= is_long.sum(axis=1)[:, None] - is_long <= 1  # the stem alone, not counting the bar
+        is_crossbar &= len(lines) <= MAX_LETTER_STROKES
+    return is_crossbar
 
 
 def search_order(precedence: np.ndarray, follows: np.ndarray) -> list[int]:
