@@ -8,9 +8,9 @@ are joined and parted as brushsvg finds them, and as their own middle lines. The
 by KanjiVG are left out. No registry has the stroke order of Latin letters apart from KanjiVG, which is the judge. So
 LETTERS is a table of our own. It is laid over the letters of each font; words of two to four letters are made of them.
 
-The weights that are shipped were fitted in stages by an earlier form of this script: with 31 fonts, letters stretched
-and slanted at random, and the lines of the table themselves. A run of this script gives other weights; none of full
-size was made yet.
+The weights in stroke_order.json were fitted in stages by earlier forms of this script, which does not reproduce them
+exactly. Those stages used 31 fonts, letters stretched and slanted at random, and the lines of the table themselves.
+This script has not yet been run in full.
 
 The fit maximises the probability of the next stroke, given those that are written (see stroke_order.py), by Adam.
 """
