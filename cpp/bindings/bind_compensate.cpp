@@ -163,22 +163,6 @@ over; "butt", straight, a narrower mark goes into one corner, along the cut and 
 suits the drawn end best.
 
 Error, naming the stroke, for widths or depths out of the brush's reach.)");
-    m.def(
-        "match_alike_ends",
-        [](std::vector<Stroke> strokes, const Brush& brush, const std::string& start, const std::string& end) {
-            CompensateOptions options;
-            options.start = terminal_named(start, "");
-            options.end = terminal_named(end, "");
-            check(brush);
-            match_alike_ends(strokes, brush, options);
-            return strokes;
-        },
-        py::arg("strokes"), py::arg("brush"), py::arg("start") = "auto", py::arg("end") = "auto",
-        py::call_guard<Unlocked>(),
-        R"(The strokes of a drawing with alike_start and alike_end set, so that ends drawn alike get the same terminal.
-
-It is the one that costs those ends least together, of those that each has room for. start, end: as of compensate; what
-is not "auto" there, or in a stroke's settings, is kept.)");
     m.def("miss_of", &tracking_error_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"),
           py::arg("tolerance_mm") = 0.05, py::call_guard<Unlocked>(),
           "Miss of one pass against the stroke it should paint, by simulating it.");

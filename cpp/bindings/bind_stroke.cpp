@@ -35,8 +35,7 @@ which of the passes that fill a shape wider than the brush; load: which of the l
                             R"(A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
 
 id: its name, made of origin, a StrokeId, and set by a name or one. middle_mm, half_width, wanted_mm, settings: to be
-set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint lies over that end. alike_start,
-alike_end: the terminal of all ends drawn like this one, tried first, see match_alike_ends.)");
+set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint lies over that end.)");
     type.def(py::init([set_knots](StrokeId id, const Cubics& middle_mm, bool closed, const Knots& half_width,
                                   std::string layer, std::string colour, Settings settings) {
                  Stroke s;
@@ -74,8 +73,6 @@ alike_end: the terminal of all ends drawn like this one, tried first, see match_
             [](Stroke& s, Settings settings) { s.settings = std::move(settings); })
         .def_readwrite("start_covered", &Stroke::start_covered)
         .def_readwrite("end_covered", &Stroke::end_covered)
-        .def_readwrite("alike_start", &Stroke::alike_start)
-        .def_readwrite("alike_end", &Stroke::alike_end)
         .def_static(
             "from_points",
             [](const Ring& points_mm, const Numbers& width_mm, const std::string& name,

@@ -69,11 +69,10 @@ inline constexpr auto members<brushsvg::WidthKnot> =
     std::tuple(&brushsvg::WidthKnot::at, &brushsvg::WidthKnot::half_width_mm);
 
 template <>
-inline constexpr auto members<brushsvg::Stroke> =
-    std::tuple(&brushsvg::Stroke::id, &brushsvg::Stroke::middle_mm, &brushsvg::Stroke::closed,
-               &brushsvg::Stroke::half_width, &brushsvg::Stroke::wanted_mm, &brushsvg::Stroke::layer,
-               &brushsvg::Stroke::colour, &brushsvg::Stroke::settings, &brushsvg::Stroke::start_covered,
-               &brushsvg::Stroke::end_covered, &brushsvg::Stroke::alike_start, &brushsvg::Stroke::alike_end);
+inline constexpr auto members<brushsvg::Stroke> = std::tuple(
+    &brushsvg::Stroke::id, &brushsvg::Stroke::middle_mm, &brushsvg::Stroke::closed, &brushsvg::Stroke::half_width,
+    &brushsvg::Stroke::wanted_mm, &brushsvg::Stroke::layer, &brushsvg::Stroke::colour, &brushsvg::Stroke::settings,
+    &brushsvg::Stroke::start_covered, &brushsvg::Stroke::end_covered);
 
 template <>
 inline constexpr auto members<brushsvg::Arc> =

@@ -221,7 +221,7 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
         return result;
     }
-    const std::vector<BrushMoves> ways = select_ends(stroke, brush, options, step_tolerance).ways;
+    const std::vector<BrushMoves> ways = select_ends(stroke, brush, options, step_tolerance);
     warn(depths_of_turns(ways.front()).value_or(depths), stroke.id, brush, result.warnings);
     const Pass plain = pass;
     for (const BrushMoves& moves : ways) {
@@ -240,8 +240,11 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
     return result;
 }
 
-CompensatedPass compensated(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
+CompensatedPass compensated(const Stroke& given, const Brush& brush, const CompensateOptions& options,
                             Pass* all_poses) {
+    Stroke stroke = given;
+    if (options.method == Compensation::closed && !stroke.settings.end && options.end == Terminal::pointed)
+        stroke.settings.end = "pointed";  // its tracking error is that of a point
     CompensatedPass result = at_its_tolerance(stroke, brush, options, all_poses);
     if (options.method != Compensation::closed || !options.few_poses) return result;
     // who goes as far as he may in each move does not always get there in the fewest

@@ -6,7 +6,6 @@
 
 #include "brushsvg/simulate.hpp"
 #include "ends/end_styles.hpp"
-#include "landing.hpp"
 #include "nearest_on_polyline.hpp"
 #include "tolerance.hpp"
 
@@ -44,17 +43,6 @@ bool is_butt(const Ring& widest, const ButtEnd& end) {
     constexpr double kThere = 0.25;
     const double off_path_mm = std::abs(end.end.left.dot(end.back_mm - end.end.at_mm));
     return (widest.rowwise() - end.back_mm.transpose()).rowwise().norm().minCoeff() < kThere * off_path_mm;
-}
-
-/// Whether a mark is narrow a little before its end: where P rests while the brush is lifted it is not.
-bool is_pointed(const PassMarks& marks, const Brush& brush, double half_mm) {
-    constexpr double kBefore = 0.25;  // of the half width
-    const double finest_mm = brush.half_width(std::max(brush.depth_range_mm[0], kTurnOverDepthMm));
-    Index row = marks.contact_mm.rows() - 1;
-    if (row < 0) return false;
-    const Eigen::RowVector2d last = marks.contact_mm.row(row);
-    while (row > 0 && (marks.contact_mm.row(row) - last).norm() < kBefore * half_mm) --row;
-    return brush.half_width(std::max(0.0, marks.depth_mm[std::size_t(row)])) < 0.5 * (finest_mm + half_mm);
 }
 
 TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, const Stroke& stroke, double tolerance_mm,
@@ -122,7 +110,7 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
         }
     const Stroke painted = as_wide_as_painted(stroke, brush);
     Stroke whole = up_to_drawn_end(painted, brush);  // a blunt front goes beyond the path's end, and so does a point
-    if (is_pointed(marks, brush, half_width_at(painted, 1.0)))
+    if (stroke.settings.end == "pointed")
         if (auto pointed = pointed_end(painted, brush, Caps::round)) whole = std::move(pointed->stroke);
     const TrackingError miss = tracking_error_of(marks, widest, whole, tolerance_mm, discs);
     if (miss.within_tolerance) return miss;

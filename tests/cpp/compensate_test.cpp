@@ -342,63 +342,6 @@ TEST_CASE("steps round a cusp come to an end, however fine they are asked for") 
     }
 }
 
-namespace {
-
-/// A bar cut straight half a width beyond both ends of its line.
-Stroke bar(const std::string& id, double x, double y, double length_mm, double half_mm = 2.0) {
-    Stroke stroke = stroke_of(polyline({V(x, y), V(x + length_mm, y)}), {{0.0, half_mm}});
-    stroke.id = StrokeId(id);
-    Ring outline(4, 2);
-    outline << x - half_mm, y - half_mm, x + length_mm + half_mm, y - half_mm, x + length_mm + half_mm, y + half_mm,
-        x - half_mm, y + half_mm;
-    stroke.wanted_mm = {outline};
-    return stroke;
-}
-
-}  // namespace
-
-TEST_CASE("ends that are drawn alike get one terminal, which each of them has room for") {
-    const Brush brush = shipped("round-6");
-    CompensateOptions options;
-    options.start = options.end = Terminal::automatic;
-    const auto matched = [&](std::vector<Stroke> strokes) {
-        match_alike_ends(strokes, brush, options);
-        return strokes;
-    };
-    const Stroke whole = bar("a", 20, 20, 40), stub = bar("b", 20, 40, 4);
-    std::vector<Stroke> two = matched({whole, bar("b", 20, 40, 30)});
-    for (const Stroke& each : two) {
-        CHECK(each.alike_start == "butt");
-        CHECK(each.alike_end == "butt");
-    }
-    two = matched({whole, stub});  // where there is no room to run along the cut
-    for (const Stroke& each : two) {
-        CHECK(each.alike_start == "round");
-        CHECK(each.alike_end == "round");
-    }
-    CHECK(compensate(two[0], brush, options).pass.poses_mm.rows() <
-          compensate(whole, brush, options).pass.poses_mm.rows());
-    two = matched({whole, bar("b", 20, 40, 4, 1.5)});  // it is not as wide
-    CHECK(two[0].alike_start == "butt");
-    CHECK(two[1].alike_start == "round");
-    Stroke by_hand = stub;
-    by_hand.settings.start = by_hand.settings.end = "round";
-    two = matched({whole, by_hand});
-    CHECK(two[0].alike_start == "butt");
-    CHECK(!two[1].alike_start);
-    CHECK(!two[1].alike_end);
-    options.end = Terminal::round;  // is asked for
-    two = matched({whole, bar("b", 20, 40, 30)});
-    CHECK(two[0].alike_start == "butt");
-    CHECK(!two[0].alike_end);
-    options.end = Terminal::automatic;
-    Stroke in_other = bar("a", 24, 30, 30);  // an end inside of a shape is none
-    in_other.wanted_mm = whole.wanted_mm;
-    in_other.middle_mm.leftCols<8>() = polyline({V(40, 20), V(40, 20.5)});
-    two = matched({whole, in_other});
-    CHECK(!two[1].alike_start);
-}
-
 TEST_CASE("a hook has a plan of ordinary size") {
     const CompensatedPass found = compensate(hook(), shipped("round-6"));
     CHECK(found.pass.poses_mm.rows() < 200);

@@ -173,8 +173,6 @@ VALUES_OF = {
                 "wanted_mm": [SQUARE],
                 "start_covered": True,
                 "end_covered": True,
-                "alike_start": "round",
-                "alike_end": "butt",
                 "layer": "x",
                 "colour": "#ffffff",
                 "settings": _core.Settings(skip=True),

@@ -338,7 +338,7 @@ def test_a_stroke_that_chooses_how_it_begins_chooses_what_the_cell_can_run(tmp_p
     assert call(capsys, "check", program, str(tmp_path / "a.svg"), *words)[0] == 0
     (tmp_path / "a.svg").write_text(EDGES.format(own="round"), encoding="utf-8")
     status, _, told = call(capsys, "convert", str(tmp_path / "a.svg"), program, *words)
-    assert status == 1 and "own" in told[-1], "who asks for a round beginning is told"
+    assert status == 1 and "own" in told[-1], "a round start that was requested is refused"
 
 
 BARS = (

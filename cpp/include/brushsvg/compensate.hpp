@@ -46,11 +46,6 @@ struct CompensateOptions {
     Terminal start = Terminal::pointed, end = Terminal::round;
 };
 
-/// Let ends of strokes that are drawn alike have the same terminal: the one that costs them least together, of those
-/// that each has room for. Sets `alike_start` and `alike_end` of the strokes. Ends that are set by hand, covered by
-/// other strokes, or unlike all others keep their own choice. The strokes are those of one drawing.
-void match_alike_ends(std::vector<Stroke>& strokes, const Brush& brush, const CompensateOptions& options = {});
-
 struct CompensatedPass {
     Pass pass;
     TrackingError miss;

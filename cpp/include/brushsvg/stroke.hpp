@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,8 +29,7 @@ struct Stroke {
     std::string layer;
     std::string colour;
     Settings settings;
-    bool start_covered = false, end_covered = false;    ///< where it meets others, whose paint lies over that end
-    std::optional<std::string> alike_start, alike_end;  ///< the terminal of all ends drawn like this one: tried first
+    bool start_covered = false, end_covered = false;  ///< where it meets others, whose paint lies over that end
 };
 
 /// A place on the middle line: cubic number and its parameter in [0, 1].

@@ -23,10 +23,6 @@ struct EndTuning {
     /// sees.
     double worth = 0.02;
     double worth_covered = 0.2;  ///< the same where other strokes cover the end: less costs a quarter more poses
-    double alike_outline =
-        0.1;                    ///< mean distance between the outlines of two ends that are alike; round and butt: 0.18
-    double alike_width = 0.08;  ///< and how far their half widths may differ, as a share
-    double free_within = 1.3;   ///< beside an end that is free the outline is so near: more takes ends in other strokes
     double short_of_end = 0.05;  ///< what a blunt front may stay short of the drawn end: less costs a pose
 
     double longest_dot = 1.4;   ///< a longer line is no dot: turned on the spot it shows a waist

@@ -78,16 +78,15 @@ class EndView {
 /// Terminals to try together; the next ones where none of them has room.
 using Requests = std::vector<std::vector<Terminal>>;
 
-Requests requested(Terminal asked, const std::optional<std::string>& alike) {
+Requests requested(Side side, Terminal asked) {
     using T = Terminal;
     if (asked == T::pointed) return {{T::pointed}, {T::round}};
     if (asked == T::round) return {{T::round}, {T::pointed}};
     if (asked == T::butt) return {{T::butt}, {T::round}, {T::pointed}};
-    const std::vector<T> all{T::pointed, T::round, T::butt, T::automatic};
-    if (!alike) return {all};
-    const T first = terminal_named(*alike, "");
-    if (first == T::round) return {{T::round, T::automatic}, all};
-    return {{first}, all};
+    // no end is drawn into a point unless that is asked for: it would be a thorn where the drawn end is blunt
+    std::vector<T> all{T::round, T::butt, T::automatic};
+    if (side == Side::start) all.push_back(T::pointed);
+    return {all};
 }
 
 /// Try the styles that are asked for and keep those that are better than the ones before them, the best first.
@@ -124,37 +123,10 @@ std::optional<BrushMoves> moves_with(const StartStyle& start, const EndedStroke&
     return moves;
 }
 
-/// What a style looks like.
-Terminal shown(Terminal style) { return style == Terminal::automatic ? Terminal::round : style; }
-
 }  // namespace
 
-TerminalCosts terminal_costs(const Stroke& stroke, const Brush& brush, Side side, bool with_same_start,
-                             double step_tolerance) {
-    const EndView view(stroke, brush, side, step_tolerance);
-    TerminalCosts costs;
-    const auto take = [&](Terminal terminal, const std::optional<BrushMoves>& moves) {
-        const std::optional<double> cost = moves ? view.score(*moves) : std::nullopt;
-        std::optional<double>& least = costs[std::size_t(shown(terminal))];
-        if (cost && !(least && *least <= *cost)) least = cost;
-    };
-    if (side == Side::start) {
-        const EndedStroke ended{up_to_drawn_end(stroke, brush), {}};
-        for (const StartStyle& style : kStartStyles) take(style.name, moves_with(style, ended, brush, Caps::round));
-    } else {
-        for (const EndStyle& style : kEndStyles) {
-            const auto ended = style.ended(stroke, brush, Caps::round);
-            if (!ended) continue;
-            for (const StartStyle& start : kStartStyles)
-                if (start.name == (with_same_start ? shown(style.name) : Terminal::pointed))
-                    take(style.name, moves_with(start, *ended, brush, Caps::round));
-        }
-    }
-    return costs;
-}
-
-SelectedEnds select_ends(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
-                         double step_tolerance) {
+std::vector<BrushMoves> select_ends(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
+                                    double step_tolerance) {
     const Settings& own = stroke.settings;
     const bool is_dot = turned_dot(stroke, brush).has_value();
     Terminal start = own.start ? terminal_named(*own.start, stroke.id) : options.start;
@@ -163,34 +135,28 @@ SelectedEnds select_ends(const Stroke& stroke, const Brush& brush, const Compens
     const Caps start_caps = start == Terminal::butt ? Caps::straight : Caps::round;
     const Caps end_caps = end == Terminal::butt ? Caps::straight : Caps::round;
     const auto starts = [&](const auto& styles, const EndedStroke& ended) {
-        return best_styles(styles, requested(start, stroke.alike_start),
-                           EndView(stroke, brush, Side::start, step_tolerance),
+        return best_styles(styles, requested(Side::start, start), EndView(stroke, brush, Side::start, step_tolerance),
                            stroke.start_covered ? kTuning.worth_covered : kTuning.worth,
                            [&](const StartStyle& style) { return moves_with(style, ended, brush, start_caps); });
     };
-    SelectedEnds out{{}, Terminal::automatic, Terminal::automatic};
+    std::vector<BrushMoves> out;
     if (is_dot) {
-        for (auto& [style, moves] : starts(kDotStyles, {stroke, {}})) out.ways.push_back(std::move(moves));
+        for (auto& [style, moves] : starts(kDotStyles, {stroke, {}})) out.push_back(std::move(moves));
         return out;
     }
-    auto begun = starts(kStartStyles, {up_to_drawn_end(stroke, brush), {}});
-    if (start == Terminal::automatic && begun.back().first.name != kStartStyles.front().name)
-        begun.push_back({kStartStyles.front(), {}});
+    const auto begun = starts(kStartStyles, {up_to_drawn_end(stroke, brush), {}});
     const auto ended =
-        best_styles(kEndStyles, requested(end, stroke.alike_end), EndView(stroke, brush, Side::end, step_tolerance),
+        best_styles(kEndStyles, requested(Side::end, end), EndView(stroke, brush, Side::end, step_tolerance),
                     stroke.end_covered ? kTuning.worth_covered : kTuning.worth,
                     [&](const EndStyle& style) -> std::optional<BrushMoves> {
                         const auto with_end = style.ended(stroke, brush, end_caps);
                         if (!with_end) return {};
                         return moves_with(begun.front().first, *with_end, brush, start_caps);
                     });
-    out.start = shown(begun.front().first.name);
-    out.end = shown(ended.front().first.name);
-    out.ways.push_back(ended.front().second);
+    out.push_back(ended.front().second);
     const auto with_end = ended.front().first.ended(stroke, brush, end_caps);
     for (std::size_t i = 1; i < begun.size(); ++i)
-        if (auto moves = moves_with(begun[i].first, *with_end, brush, start_caps))
-            out.ways.push_back(std::move(*moves));
+        if (auto moves = moves_with(begun[i].first, *with_end, brush, start_caps)) out.push_back(std::move(*moves));
     return out;
 }
 

@@ -112,7 +112,7 @@ class Search {
 
     /// Leads a stroke, of the tile k, so that it costs less; false where nothing does.
     bool lead_back(Led& led, std::size_t k, bool may_be_reversed, bool may_be_cut, bool may_be_left_out) {
-        Stroke given = led.strokes.front();
+        const Stroke given = led.strokes.front();
         const PixelBox box = about(given);
         if (box.is_empty()) return false;
         Coverage rest = Coverage::Zero(box.rows, box.columns);
@@ -145,17 +145,12 @@ class Search {
             return is_changed = true;
         };
         Variant best;
-        std::array<Terminal, 2> best_ends{Terminal::automatic, Terminal::automatic};
         const auto look = [&](const Variant& variant) {
             checkpoint(100);
             const std::optional<Stroke> stroke = varied(given, variant, half_mm_);
-            std::array<Terminal, 2> ends{Terminal::automatic, Terminal::automatic};
-            const std::optional<Tile> tile = stroke ? painted({*stroke}, box, &ends) : std::nullopt;
-            if (!tile || !keep_better({{*stroke}, *tile})) return;
-            best = variant;
-            best_ends = ends;
+            const std::optional<Tile> tile = stroke ? painted({*stroke}, box) : std::nullopt;
+            if (tile && keep_better({{*stroke}, *tile})) best = variant;
         };
-        const bool is_matched = given.alike_start || given.alike_end;  // what ends drawn alike chose is kept
         // one choice after the other: each way round, what its ends look like, how wide, how short
         for (const bool reversed : {false, true}) {
             if (reversed && !may_be_reversed) break;
@@ -163,18 +158,13 @@ class Search {
             from.is_reversed = reversed;
             if (reversed) look(from);
             for (const auto& [square, pointed] : {std::pair{true, true}, {false, false}, {false, true}}) {
-                if (is_matched || square != given.wanted_mm.empty()) continue;  // without a shape no end is square
+                if (square != given.wanted_mm.empty()) continue;  // without a shape no end is square
                 Variant variant = from;
                 variant.is_square = square;
                 variant.is_pointed = pointed;
                 look(variant);
             }
         }
-        // from here on with the terminals of the best so far
-        if (best_ends[0] == Terminal::automatic) painted({given}, box, &best_ends);
-        if (best.is_reversed) std::swap(best_ends[0], best_ends[1]);
-        given.alike_start = name_of(best_ends[0]);
-        given.alike_end = name_of(best_ends[1]);
         const auto try_each = [&](const auto& values, auto&& set) {
             const Variant so_far = best;
             for (const double value : values) {
@@ -231,14 +221,8 @@ class Search {
         return canvas_.box_of(low, high);
     }
 
-    static std::optional<std::string> name_of(Terminal terminal) {
-        if (terminal == Terminal::automatic) return std::nullopt;
-        return std::string(kTerminals[std::size_t(terminal)].first);
-    }
-
-    /// What strokes paint of a box as a plan would; none where one of them cannot be painted. terminals: of the last.
-    std::optional<Tile> painted(const std::vector<Stroke>& strokes, const PixelBox& box,
-                                std::array<Terminal, 2>* terminals = nullptr) const {
+    /// What strokes paint of a box as a plan would; none where one of them cannot be painted.
+    std::optional<Tile> painted(const std::vector<Stroke>& strokes, const PixelBox& box) const {
         CompensateOptions options;
         options.start = Terminal::automatic;
         options.end = Terminal::automatic;
@@ -246,9 +230,8 @@ class Search {
         for (const Stroke& stroke : strokes) try {
                 checkpoint(100);
                 bool turns = false;
-                const SelectedEnds ends = select_ends(stroke, brush_, options, kStepMm);
-                if (terminals) *terminals = {ends.start, ends.end};
-                const auto poses = closed_form(ends.ways.front(), brush_, kStepMm, turns);
+                const auto poses =
+                    closed_form(select_ends(stroke, brush_, options, kStepMm).front(), brush_, kStepMm, turns);
                 if (!poses) return std::nullopt;
                 Pass pass;
                 poses->into(pass);

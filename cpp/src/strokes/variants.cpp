@@ -34,7 +34,6 @@ Stroke reversed(Stroke stroke) {
     std::reverse(stroke.half_width.begin(), stroke.half_width.end());
     for (WidthKnot& knot : stroke.half_width) knot.at = 1.0 - knot.at;
     std::swap(stroke.start_covered, stroke.end_covered);
-    std::swap(stroke.alike_start, stroke.alike_end);
     return stroke;
 }
 

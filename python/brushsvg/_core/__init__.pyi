@@ -73,7 +73,6 @@ __all__: list[str] = [
     "interrupted",
     "intersect",
     "lag",
-    "match_alike_ends",
     "medial_axis",
     "miss_of",
     "misses_of",
@@ -500,13 +499,10 @@ class Stroke:
     A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
 
     id: its name, made of origin, a StrokeId, and set by a name or one. middle_mm, half_width, wanted_mm, settings: to be
-    set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint lies over that end. alike_start,
-    alike_end: the terminal of all ends drawn like this one, tried first, see match_alike_ends.
+    set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint lies over that end.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
-    alike_end: str | None
-    alike_start: str | None
     closed: bool
     colour: str
     end_covered: bool
@@ -1681,19 +1677,6 @@ def intersect(
 ) -> list[numpy.typing.NDArray[numpy.float64]]:
     """
     What two shapes have in common, each given as for unite.
-    """
-
-def match_alike_ends(
-    strokes: collections.abc.Sequence[Stroke],
-    brush: Brush,
-    start: str = "auto",
-    end: str = "auto",
-) -> list[Stroke]:
-    """
-    The strokes of a drawing with alike_start and alike_end set, so that ends drawn alike get the same terminal.
-
-    It is the one that costs those ends least together, of those that each has room for. start, end: as of compensate; what
-    is not "auto" there, or in a stroke's settings, is kept.
     """
 
 def medial_axis(

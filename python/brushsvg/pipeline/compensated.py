@@ -33,13 +33,6 @@ def compensation_by(brush, sheet_mm, options: Options, stage=lambda text: None):
     return compensated
 
 
-def with_alike_ends(painted: list, brush, options: Options) -> list:
-    """The strokes of a drawing, whose ends get the same terminal where they are drawn alike."""
-    if options.compensation not in ("closed", "refined"):
-        return painted
-    return _core.match_alike_ends(painted, brush, options.start, options.end)
-
-
 def begun_within_reach(
     painted: list, brush, plan, compensated, options: Options, stage, added: frozenset[str] = frozenset()
 ) -> tuple[list, Known | None]:

@@ -29,7 +29,7 @@ from ..strokes.stroke_search import searched
 from ..strokes.uncovered_areas import notices as blank_notices
 from ..strokes.uncovered_areas import uncovered_areas
 from ..strokes.wide_shapes import is_within_reach, within_reach
-from .compensated import begun_within_reach, compensation_by, with_alike_ends
+from .compensated import begun_within_reach, compensation_by
 from .json_files import read_plan
 from .margin_strokes import with_margin_strokes
 from .options import DEFAULT_BRUSH, DEFAULTS, Options
@@ -82,7 +82,7 @@ def _planned(design: Design, brush, options: Options, stage, partly: bool, notic
         _refuse_wide_lines(found, brush)
     lines = _within_reach(found, brush, options, partly)
     compensated = compensation_by(brush, design.sheet_mm, options, stage)
-    lines, done = _compensated(lines, compensated, partly, lambda some: with_alike_ends(some, brush, options))
+    lines, done = _compensated(lines, compensated, partly)
     if _leads(options):
         lines, done = _searched(lines, done, brush, compensated, options)
     notices += lines.notices
@@ -180,7 +180,7 @@ def _within_reach(found: list, brush, options: Options, partly: bool) -> _Lines:
         strokes, _, refused, left_out = _sorted_out(
             strokes, strokes, lambda some: within_reach(some, brush, options.wide)
         )
-    painted, wanted, notices = within_reach(strokes, brush, options.wide)
+    painted, wanted, notices = within_reach(strokes, brush, options.wide, _leads(options))
     return _Lines(list(found), painted, wanted, notices, refused, left_out)
 
 
@@ -201,10 +201,8 @@ def _searched(lines: _Lines, done, brush, compensated, options: Options) -> tupl
     return lines, found.done
 
 
-def _compensated(lines: _Lines, compensated, partly: bool, alike) -> tuple[_Lines, _core.Compensated]:
-    """The lines with terminals that are alike where their ends are, and their plan."""
+def _compensated(lines: _Lines, compensated, partly: bool) -> tuple[_Lines, _core.Compensated]:
     try:
-        lines = replace(lines, painted=alike(lines.painted))
         return lines, compensated(lines.painted)
     except Error:
         if not partly:
@@ -212,7 +210,7 @@ def _compensated(lines: _Lines, compensated, partly: bool, alike) -> tuple[_Line
     painted, wanted, refused, left_out = _sorted_out(lines.painted, lines.wanted, compensated)
     lines = replace(
         lines,
-        painted=alike(painted),
+        painted=painted,
         wanted=wanted,
         refused=lines.refused + refused,
         left_out=lines.left_out + left_out,

@@ -14,9 +14,8 @@ from .. import _core
 from .contour_rings import Line, cut, ring_along, rings_inward
 from .swept_areas import GRID_MM, QUARTER, unpainted
 
-_WIDE = (
-    1.5  # half widths of a disc in the shape: in a narrower one opposite sides of a ring paint the same place
-)
+# Half widths of a disc in the shape: in a narrower one opposite sides of a ring paint the same place.
+_WIDE = 1.5
 _TURNED_IN = 2.0  # half widths round a ring that is all of a filling: in a smaller one the brush would turn on the spot
 _AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
 _AMID = 0.05  # squares of the half width that a dot and a ring round it may leave between them

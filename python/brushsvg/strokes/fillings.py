@@ -19,7 +19,7 @@ _SLIT_MM = 0.01  # half as wide as slits between parts may be
 @dataclass(frozen=True)
 class WideShape:
     """A shape wider than the brush. wide: the numbers of its strokes that are; narrow: its other strokes; rings: of the
-    shape; along: ways to fill it, each as lines."""
+    shape; along: ways to fill it, each as lines; part: what its wide strokes should paint."""
 
     wide: list[int]
     narrow: list

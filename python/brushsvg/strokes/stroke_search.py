@@ -63,12 +63,13 @@ def searched(
     )
     rows = [(stroke, meant, k) for k, (stroke, meant) in enumerate(zip(painted, wanted, strict=True))]
     lanes = [_lanes(shape.strokes) for shape in shapes]
+    wide = _drawn_wider(drawn, brush)
     every: list[_Added] = []
     for shape, (strokes, changed, added), following in zip(shapes, found, lanes, strict=True):
         rows = _led_otherwise(rows, shape, strokes, changed, following)
         every += _named(shape, added, following, are_corners_filled)
-    if not are_sides_painted:
-        every = _next_to_narrow(every, drawn, brush)
+    if not are_sides_painted:  # nothing next to a stroke that was drawn wider
+        every = [each for each in every if not each.is_rim and _part(each.stroke) not in wide]
     for shape in shapes:
         some = [each for each in every if each.stroke.origin.element == shape.element]
         if some:
@@ -78,26 +79,24 @@ def searched(
     new = compensated([stroke for stroke, _, k in rows if k is None])
     numbers = iter(range(len(rows)))
     done = done.spliced(new, [(True, next(numbers)) if k is None else (False, k) for _, _, k in rows])
-    before = {stroke.id for stroke in painted}
-    found_now = {row[0].id for row in rows}
-    return Searched(
-        drawn, [row[0] for row in rows], [row[1] for row in rows], done, frozenset(found_now - before)
+    added = frozenset(
+        _repeated(each.stroke, repeat).id
+        for shape in shapes
+        for each in every
+        if each.stroke.origin.element == shape.element
+        for repeat in shape.repeats
     )
+    return Searched(drawn, [row[0] for row in rows], [row[1] for row in rows], done, added)
 
 
-def _next_to_narrow(added: list[_Added], drawn: list, brush) -> list[_Added]:
-    """The strokes that do not run next to one that was drawn wider than the brush."""
+def _drawn_wider(drawn: list, brush) -> set[tuple[str, int]]:
+    """The parts of elements that were drawn wider than the brush."""
     greatest = brush.half_width_range_mm()[1]
-    wide = {
+    return {
         (stroke.origin.element, stroke.origin.part)
         for stroke in drawn
         if max(half for _, half in stroke.half_width) > greatest + SEEN_MM
     }
-    return [
-        each
-        for each in added
-        if not each.is_rim and (each.stroke.origin.element, each.stroke.origin.part) not in wide
-    ]
 
 
 def _with_added(
@@ -214,12 +213,13 @@ def _lanes(strokes: list):
 
 
 def _named(shape: _Shape, added: list, following, are_corners_filled: bool) -> Iterator[_Added]:
-    """Added strokes, each called as the one that it runs next to, with a lane of its own. None beside a stroke whose
-    ends the artist set."""
+    """Added strokes, each called as the one that it runs next to, with a lane of its own. A stroke whose ends the
+    artist set gets none, except along sides that are wider than the brush."""
     element, rings = shape.element, shape.rings
     whole_mm2 = _core.area(rings)
     hosts = list(shape.strokes)
     by_found = discs(shape.found) if added and not shape.is_filled else []
+    by_painted = discs(shape.strokes) if added and not shape.is_filled else []
     for made, neighbour, area_mm, mark_mm in added:
         like = hosts[neighbour]
         hosts.append(like)
@@ -235,7 +235,8 @@ def _named(shape: _Shape, added: list, following, are_corners_filled: bool) -> I
         are_filled = are_corners_filled and not any(map(_is_set, (like.settings.start, like.settings.end)))
         is_rim = not shape.is_filled and is_mostly(area_mm, by_found)
         share = _core.area(area_mm) / whole_mm2
-        if not are_filled and (share < MISSED_SHARE or is_rim):
+        is_corner = share < MISSED_SHARE or (is_rim and is_mostly(area_mm, by_painted))
+        if is_corner and not are_filled:
             continue
         own_mm = []
         if not shape.is_filled:
@@ -243,6 +244,10 @@ def _named(shape: _Shape, added: list, following, are_corners_filled: bool) -> I
         part = like.origin.part
         stroke = stroke.replaced(id=_core.StrokeId(element, part, 1, following(part)), wanted_mm=own_mm)
         yield _Added(stroke, own_mm, area_mm, is_rim)
+
+
+def _part(stroke) -> tuple[str, int]:
+    return stroke.origin.element, stroke.origin.part
 
 
 def _is_set(end: str | None) -> bool:

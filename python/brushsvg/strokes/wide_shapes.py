@@ -17,7 +17,7 @@ UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge lies beside the s
 
 
 def within_reach(
-    strokes: list[_core.Stroke], brush: _core.Brush, wide: str = "auto"
+    strokes: list[_core.Stroke], brush: _core.Brush, wide: str = "auto", is_searched: bool = True
 ) -> tuple[list[_core.Stroke], list[_core.Stroke], list[Notice]]:
     """What to paint, stroke by stroke, and what each should become: (strokes to paint, strokes wanted, notices).
 
@@ -26,7 +26,8 @@ def within_reach(
     half of the smallest mark of the brush is left out: its mark would paint more outside of the shape than inside.
     wide: "clamp", the nearest width; "passes", passes along the outline, called id, id~2, id~3 ..., for each wider
     shape that they paint better than strokes at the nearest width do; "auto", the same for a brush, and the lines of a
-    pen as they are; "refuse", Error naming stroke, width and range. Error if nothing is left to paint.
+    pen as they are; "refuse", Error naming stroke, width and range. is_searched: whether a search paints the sides
+    that strokes at the nearest width leave. Error if nothing is left to paint.
     """
     need(brush, _core.Brush, "a brush")
     need_one_of(wide, WIDE, "what becomes of wide shapes")
@@ -54,7 +55,7 @@ def within_reach(
         made, meant, how = filled.get(k) or ([stroke], [stroke], "")
         if beyond[k] and k not in filled:
             made, how = [_clamped(stroke, least, greatest)], "painted at the nearest width"
-            if wide != "clamp" and stroke.wanted_mm and beyond[k][1] > greatest:
+            if is_searched and wide != "clamp" and stroke.wanted_mm and beyond[k][1] > greatest:
                 how += ", and its sides by strokes of their own"
         if beyond[k] and (k in filled or _shows(beyond[k][1], least, greatest)):
             what, worst = beyond[k]
@@ -64,6 +65,7 @@ def within_reach(
                     f"{what} {2 * worst:.3g} mm wide, outside the range {reach}: {how}",
                     code="width-out-of-reach",
                     about="in passes" if k in filled else "wider" if worst > greatest else "narrower",
+                    advice="--wide passes fills it" if wide == "clamp" and worst > greatest else "",
                 )
             )
         painted += made

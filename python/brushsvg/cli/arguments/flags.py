@@ -132,7 +132,7 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add(
         "--terminals",
         choices=TERMINALS,
-        help="both ends of all strokes: round, butt (cut straight), pointed, or what suits each, like ends alike; "
+        help="both ends of all strokes: round, butt (cut straight), pointed, or what suits each; "
         "default: auto",
     )
     add("--start", choices=TERMINALS, help="the start of strokes, where it differs from --terminals")
