@@ -1,18 +1,20 @@
 """Fit the weights of writing order (stroke_order.json) to stroke-order data, and print how well they do.
 
-    npm install --prefix DIR hanzi-writer-data @fontsource/roboto ...
-    python benchmarks/fit_stroke_order.py DIR/node_modules/hanzi-writer-data FONT.woff ... -o stroke_order.json
+    OMP_NUM_THREADS=1 python benchmarks/fit_stroke_order.py FOLDER -o stroke_order.json
 
-Characters come from hanzi-writer-data (npm; stroke order of Make Me a Hanzi), drawn as one shape each, so that strokes
-are joined and parted as brushsvg finds them, and as their own middle lines. The 200 characters that `ductus.py` judges
-by KanjiVG are left out. No registry has the stroke order of Latin letters apart from KanjiVG, which is the judge. So
-LETTERS is a table of our own. It is laid over the letters of each font; words of two to four letters are made of them.
+FOLDER is where npm puts PACKAGES; they are fetched if they are not there.
 
-The weights in stroke_order.json were fitted in stages by earlier forms of this script, which does not reproduce them
-exactly. Those stages used 31 fonts, letters stretched and slanted at random, and the lines of the table themselves.
-This script has not yet been run in full.
+Characters come from hanzi-writer-data (npm; stroke order of Make Me a Hanzi). Some are drawn as one shape each, so that
+strokes are joined and parted as brushsvg finds them; the others are given by their middle lines. The 200 characters
+that `ductus.py` judges by KanjiVG are left out. No registry has the stroke order of Latin letters apart from KanjiVG,
+which is the judge. So LETTERS is a table of our own. It is laid over the letters of each font; words of two to four
+letters are made of them. The fonts that `docs/letters.md` judges are not among them.
 
-The fit maximises the probability of the next stroke, given those that are written (see stroke_order.py), by Adam.
+The fit maximises the probability of the next stroke, given those that are written (see stroke_order.py), by Adam. Its
+seed is fixed. Another processor or library of linear algebra may round differently and find slightly other weights.
+
+The functions of this script made the weights in stroke_order.json, step by step: letters, characters, then the fit. The
+command as a whole has not been run yet, and nobody has compared its output with the file.
 """
 
 from __future__ import annotations
@@ -20,10 +22,12 @@ from __future__ import annotations
 import argparse
 import importlib
 import json
+import subprocess
+import time
 from pathlib import Path
 
 import numpy as np
-from ductus import CHARACTERS, SEED, boxed, evenly, lengths_of, serifs, timed, written
+from ductus import CHARACTERS, SEED, boxed, evenly, kanjivg_folder, lengths_of, serifs, timed
 
 from brushsvg.drawing.svg import read_svg
 from brushsvg.drawing.text import text_svg
@@ -33,6 +37,8 @@ shapes = importlib.import_module("brushsvg.strokes.skeleton.shape_to_strokes")
 extraction = importlib.import_module("brushsvg.strokes.extraction")
 
 # Strokes of letters as we write them: lines of places x,y in percent of the letter's box, y up.
+Sample = tuple[list[np.ndarray], float]  # strokes in order of writing, and the script flag
+
 LETTERS = {
     "A": "50,100 0,0|50,100 100,0|20,35 80,35",
     "B": "5,100 5,0|5,98 60,97 85,78 60,53 10,52|50,52 98,27 60,2 5,2",
@@ -105,8 +111,32 @@ LETTERS = {
 }
 SERIF_SHARE = 0.45  # of a letter's box: a longer stroke is no serif
 OTHER_FORM = 0.24  # mean distance between a letter and its table, in boxes: beyond, the font has another form
-BATCH, HIDDEN, UNKNOWN_SHARE = 32, 36, 0.15  # of samples, units, and samples whose script is not given
-LEARNING_RATE, DECAY, LETTER_COPIES, WORDS_PER_FONT = 4e-3, 2e-5, 5, 110
+SIZE = np.array([28.0, 40.0]) / 100  # mm per percent: the letters of the table themselves
+LETTER_COPIES, WORDS_PER_FONT = 5, 110
+BATCH, HIDDEN, UNKNOWN_SHARE = 32, 64, 0.25  # of samples, units, and samples whose script is not given
+LEARNING_RATE, DECAY = 6e-3, 2e-5
+KEPT_BACK = 300  # characters drawn as one shape that are not in the fit: choices were made by them
+FAMILIES = """bree-serif courgette crimson-text dancing-script jost kalam libre-baskerville merriweather montserrat
+nunito pacifico patrick-hand playfair-display poppins pt-serif roboto roboto-slab satisfy source-serif-4 zilla-slab"""
+VERSIONS = {"source-serif-4": "5.3.1"}  # others: 5.3.0
+PACKAGES = [
+    "hanzi-writer-data@2.0.1",
+    *(f"@fontsource/{family}@{VERSIONS.get(family, '5.3.0')}" for family in FAMILIES.split()),
+]
+SOURCE = (
+    "fitted by benchmarks/fit_stroke_order.py to hanzi-writer-data 2.0.1 (npm; stroke order of Make Me a Hanzi) and \
+to a table of letters of ours; no data of either is in here"
+)
+
+
+def fonts(modules: Path) -> list[bytes]:
+    """Return the fonts of FAMILIES: regular, and bold where there is a bold one."""
+    files = (
+        modules / "@fontsource" / family / "files" / f"{family}-latin-{weight}-normal.woff"
+        for family in FAMILIES.split()
+        for weight in (400, 700)
+    )
+    return [file.read_bytes() for file in files if file.exists()]
 
 
 def found_lines(document: str, script: str) -> list[np.ndarray]:
@@ -127,13 +157,16 @@ def found_lines(document: str, script: str) -> list[np.ndarray]:
     return kept
 
 
-def characters(folder: Path, count: int) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Return features of characters drawn as one shape, strokes in order, and of as many by their middle lines."""
+def characters(folder: Path, count: int) -> tuple[list[Sample], list[Sample]]:
+    """Return the strokes of characters drawn as one shape, in order, and of all others by their middle lines.
+
+    The characters that ductus.py judges are in neither.
+    """
     files = sorted(file for file in folder.glob("*.json") if len(file.stem) == 1)
     judged, merged, plain = 0, [], []
     for k in np.random.default_rng(SEED).permutation(len(files)):
         drawn = json.loads(files[k].read_text(encoding="utf-8"))
-        if judged < CHARACTERS and len(written(files[k].stem)) == len(drawn["strokes"]):
+        if judged < CHARACTERS and strokes_in_kanjivg(files[k].stem) == len(drawn["strokes"]):
             judged += 1
             continue
         medians = [(np.array(line) + np.array([0, 124])) * 100 / 1024 for line in drawn["medians"]]
@@ -143,17 +176,20 @@ def characters(folder: Path, count: int) -> tuple[list[np.ndarray], list[np.ndar
             lines = found_lines(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{path}</svg>', "cjk")
             reference = [evenly(line) / 100 for line in medians]
             _, middles, _ = timed([evenly(line[:, :2]) / 100 for line in lines], reference)
-            merged.append(pair_features([lines[i][:, :2] for i in np.argsort(middles, kind="stable")], 1.0))
-        elif len(plain) < count:
-            plain.append(pair_features(medians, 1.0))
+            merged.append(([lines[i][:, :2] for i in np.argsort(middles, kind="stable")], 1.0))
         else:
-            break
-    return [x for x in merged if len(x) > 1], [x for x in plain if len(x) > 1]
+            plain.append((medians, 1.0))
+    return [x for x in merged if len(x[0]) > 1], [x for x in plain if len(x[0]) > 1]
 
 
-def letters(font: bytes) -> list[list[np.ndarray]]:
+def strokes_in_kanjivg(character: str) -> int:
+    file = kanjivg_folder() / f"{ord(character):05x}.svg"
+    return file.read_text(encoding="utf-8").count("<path ") if file.exists() else 0
+
+
+def letters(font: bytes) -> dict[str, list[np.ndarray]]:
     """Return the lines of each letter in the order of its table; letters of another form are left out."""
-    result = []
+    result = {}
     for letter, table in LETTERS.items():
         document, _ = text_svg(letter, font, size_mm=50.0)
         lines = found_lines(document, "latin")
@@ -164,8 +200,10 @@ def letters(font: bytes) -> list[list[np.ndarray]]:
         known = serifs(flat, [line[:, 2].max() for line in lines if len(line) > 1])
         known = {k: stem for k, stem in known.items() if lengths_of([flat[k]])[0] < SERIF_SHARE * box}
         own = [k for k in range(len(flat)) if k not in known]
-        strokes = [np.array([[float(v) for v in p.split(",")] for p in s.split()]) for s in table.split("|")]
-        reference, main = boxed([evenly(each) for each in strokes]), boxed([evenly(flat[k]) for k in own])
+        reference, main = (
+            boxed([evenly(each) for each in table_strokes(table)]),
+            boxed([evenly(flat[k]) for k in own]),
+        )
         every, here = np.vstack(reference), np.vstack(main)
         off = np.hypot(*np.moveaxis(every[:, None] - here[None], 2, 0))
         if off.min(axis=0).mean() + off.min(axis=1).mean() > OTHER_FORM:
@@ -175,32 +213,37 @@ def letters(font: bytes) -> list[list[np.ndarray]]:
         begins = [evenly(line[: 2 * len(line) // 5]) for line in main]  # when a stroke begins, decides
         time = dict(zip(own, timed(begins, reference)[1], strict=True))
         for k in known:
-            stem = known[k]
-            time[k] = (
-                time.get(stem, len(strokes))
-                + 1e-3
-                - 1e-5 * float(flat[k][:, 1].mean() - flat[k][:, 0].mean())
-            )
-        result.append([flat[k] for k in sorted(time, key=time.__getitem__)])
+            leftmost_top = float(flat[k][:, 1].mean() - flat[k][:, 0].mean())
+            time[k] = time.get(known[k], len(reference)) + 1e-3 - 1e-5 * leftmost_top
+        result[letter] = [flat[k] for k in sorted(time, key=time.__getitem__)]
     return result
 
 
-def words(made: list[list[np.ndarray]], rng) -> list[np.ndarray]:
-    """Return features of letters, and of words of two to four of them side by side."""
-    result = [pair_features(each, -1.0) for each in made if len(each) > 1] * LETTER_COPIES
+def table_strokes(table: str) -> list[np.ndarray]:
+    return [np.array([[float(v) for v in p.split(",")] for p in s.split()]) for s in table.split("|")]
+
+
+def words(made: dict[str, list[np.ndarray]], rng) -> list[Sample]:
+    """Return the strokes of letters, and of words of two to four of them side by side."""
+    several = {letter: lines for letter, lines in made.items() if len(lines) > 1}
+    result = [(stretched(lines, rng), -1.0) for lines in several.values() for _ in range(LETTER_COPIES)]
+    names = list(made)
     for _ in range(WORDS_PER_FONT):
         at, lines = 0.0, []
-        for k in rng.integers(0, len(made), rng.integers(2, 5)):
-            every = np.vstack(made[k])
-            lines += [line + np.array([at - every[:, 0].min(), 0.0]) for line in made[k]]
-            at += np.ptp(every[:, 0]) + rng.uniform(2, 10)
-        result.append(pair_features(lines, -1.0))
+        for k in rng.integers(0, len(names), rng.integers(2, 5)):
+            letter = stretched(made[names[k]], rng)
+            left, right = np.vstack(letter)[:, 0].min(), np.vstack(letter)[:, 0].max()
+            lines += [line + np.array([at - left, 0.0]) for line in letter]
+            at += right - left + rng.uniform(2, 10)
+        if len(lines) > 1:
+            result.append((lines, -1.0))
     return result
 
 
-def network(weights: list[np.ndarray], features: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    hidden = np.tanh(features @ weights[0] + weights[1])
-    return hidden, hidden @ weights[2]
+def stretched(lines: list[np.ndarray], rng) -> list[np.ndarray]:
+    """Return lines stretched and slanted at random."""
+    stretch, slant = rng.uniform(0.75, 1.3), rng.uniform(-0.1, 0.2)
+    return [line @ np.array([[stretch, 0.0], [slant, 1.0]]) for line in lines]
 
 
 def gradient(output: np.ndarray, count: int) -> np.ndarray:
@@ -211,81 +254,98 @@ def gradient(output: np.ndarray, count: int) -> np.ndarray:
     np.fill_diagonal(cost, 0)
     score = np.cumsum(cost[:, ::-1], axis=1)[:, ::-1].T.copy()  # step, candidate
     score[1:] += follows[:-1]
-    written_before = np.tril(np.ones((count, count), bool), -1)
-    score[written_before] = -1e9
+    score[np.tril(np.ones((count, count), bool), -1)] = -1e9  # written before
     chance = np.exp(score - score.max(axis=1, keepdims=True))
     chance /= chance.sum(axis=1, keepdims=True)
-    by_score = chance - np.eye(count)
+    by_score = chance - np.eye(count, dtype=output.dtype)
     by_margin = np.cumsum(by_score.T, axis=1) / (1 + np.exp(np.clip(margin, -40, 40)))
     np.fill_diagonal(by_margin, 0)
     by_follows = np.vstack([by_score[1:], np.zeros(count)])
     return np.stack([(by_margin - by_margin.T).ravel(), by_follows.ravel()], axis=1)
 
 
-def fit(samples: list[np.ndarray], epochs: int, rng) -> list[np.ndarray]:
-    """Return the weights: hidden, bias, output."""
+def fit(samples: list[np.ndarray], epochs: int, rng: np.random.Generator) -> list[np.ndarray]:
+    """Return the weights: hidden, bias, output. samples: features (n, n, f), single precision."""
     count = samples[0].shape[2]
-    scale = np.concatenate([x.reshape(-1, count) for x in samples[::12]]).std(axis=0) + 1e-3
+    scale = np.concatenate([x.reshape(-1, count) for x in samples[::7]]).std(axis=0) + 1e-3
     scale[-1] = 1.0
+    samples = [x.reshape(-1, count) / scale for x in samples]
     weights = [rng.normal(0, size[0] ** -0.5, size) for size in ((count, HIDDEN), (HIDDEN, 2))]
     weights.insert(1, np.zeros(HIDDEN))
+    weights = [each.astype(np.float32) for each in weights]
     mean, square = [0 * each for each in weights], [0 * each for each in weights]
-    step = 0
-    for epoch in range(epochs):
-        rate = LEARNING_RATE / 3 ** sum(epoch >= share * epochs for share in (0.55, 0.75, 0.9))
-        shuffled = rng.permutation(len(samples))
-        for batch in np.split(shuffled, range(BATCH, len(samples), BATCH)):
-            features = [samples[k].reshape(-1, count) / scale for k in batch]
-            for each in features:
-                each[:, -1] *= rng.random() > UNKNOWN_SHARE
-            stacked = np.vstack(features)
-            hidden, output = network(weights, stacked)
-            parts = np.split(output, np.cumsum([len(each) for each in features])[:-1])
-            by_output = np.vstack([gradient(part, round(len(part) ** 0.5)) for part in parts]) / len(batch)
+    steps, step = epochs * -(-len(samples) // BATCH), 0
+    for _ in range(epochs):
+        for batch in np.split(rng.permutation(len(samples)), range(BATCH, len(samples), BATCH)):
+            sizes = [len(samples[k]) for k in batch]
+            features = np.concatenate([samples[k] for k in batch])
+            features[:, -1] *= np.repeat(rng.random(len(batch)) > UNKNOWN_SHARE, sizes)
+            hidden = np.tanh(features @ weights[0] + weights[1])
+            parts = np.split(hidden @ weights[2], np.cumsum(sizes)[:-1])
+            by_output = np.concatenate([gradient(part, round(len(part) ** 0.5)) for part in parts])
+            by_output = (by_output / len(batch)).astype(np.float32)
             by_hidden = (by_output @ weights[2].T) * (1 - hidden**2)
             step += 1
-            for k, slope in enumerate((stacked.T @ by_hidden, by_hidden.sum(axis=0), hidden.T @ by_output)):
-                slope = slope + DECAY * weights[k]
-                mean[k], square[k] = 0.9 * mean[k] + 0.1 * slope, 0.999 * square[k] + 0.001 * slope**2
-                root = np.sqrt(square[k] / (1 - 0.999**step)) + 1e-8
-                weights[k] = weights[k] - rate * mean[k] / (1 - 0.9**step) / root
+            rate = np.float32(LEARNING_RATE * 0.5 * (1 + np.cos(np.pi * step / steps)))
+            for k, slope in enumerate((features.T @ by_hidden, by_hidden.sum(axis=0), hidden.T @ by_output)):
+                slope = slope + np.float32(DECAY) * weights[k]
+                mean[k] += np.float32(0.1) * (slope - mean[k])
+                square[k] += np.float32(0.001) * (slope**2 - square[k])
+                root = np.sqrt(square[k] / np.float32(1 - 0.999**step)) + np.float32(1e-8)
+                weights[k] = weights[k] - rate * mean[k] / np.float32(1 - 0.9**step) / root
     return [weights[0] / scale[:, None], *weights[1:]]
 
 
-def in_order(weights: list[np.ndarray], samples: list[np.ndarray]) -> float:
-    """Return the share of samples whose strokes are all in order."""
-    right = 0
+def in_order(weights: list[np.ndarray], samples: list[np.ndarray]) -> tuple[float, float]:
+    """Return the share of pairs in order, and of samples whose strokes are all in order."""
+    pairs, whole = [], []
     for sample in samples:
-        before, follows = np.moveaxis(network(weights, sample)[1], 2, 0)
+        before, follows = np.moveaxis(np.tanh(sample @ weights[0] + weights[1]) @ weights[2], 2, 0)
         precedence = -np.logaddexp(0.0, before.T - before)
         np.fill_diagonal(precedence, 0)
-        right += search_order(precedence, follows) == list(range(len(sample)))
-    return right / len(samples)
+        place = np.argsort(search_order(precedence, follows))
+        right = [place[i] < place[k] for k in range(len(place)) for i in range(k)]
+        pairs += right
+        whole.append(all(right))
+    return float(np.mean(pairs)), float(np.mean(whole))
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("characters", type=Path, help="the folder of hanzi-writer-data")
-    parser.add_argument("fonts", nargs="+", type=Path)
+    parser.add_argument("folder", type=Path, help="where npm puts PACKAGES")
     parser.add_argument("-o", "--output", type=Path, required=True)
-    parser.add_argument(
-        "--count", type=int, default=4000, help="characters drawn as one shape, and by middle lines"
-    )
-    parser.add_argument("--epochs", type=int, default=50)
+    parser.add_argument("--count", type=int, default=3600, help="characters drawn as one shape")
+    parser.add_argument("--epochs", type=int, default=40)
     options = parser.parse_args()
     rng = np.random.default_rng(0)
-    merged, plain = characters(options.characters, options.count)
-    kept_back = max(1, len(merged) // 20)
-    latin = [sample for font in options.fonts for sample in words(letters(font.read_bytes()), rng)]
-    weights = fit([*merged[kept_back:], *plain, *latin], options.epochs, rng)
-    print(f"{in_order(weights, merged[:kept_back]):.3f} of {kept_back} characters kept back are in order")
-    source = "fitted by benchmarks/fit_stroke_order.py to hanzi-writer-data 2.0.1 (npm) and to a table of our letters"
-    table = {"source": f"{source}; no data of either is in here"}
+    modules = options.folder / "node_modules"
+    if not all((modules / package.rsplit("@", 1)[0]).exists() for package in PACKAGES):
+        subprocess.run(["npm", "install", "--prefix", options.folder, "--no-save", *PACKAGES], check=True)
+    began = time.monotonic()
+    merged, plain = characters(modules / "hanzi-writer-data", options.count)
+    table = {letter: [line * SIZE for line in table_strokes(lines)] for letter, lines in LETTERS.items()}
+    lettering = [*(letters(font) for font in fonts(modules)), table]
+    latin = [sample for each in lettering for sample in words(each, rng)]
+    print(
+        f"{len(merged)} characters drawn as one shape, {len(plain)} by middle lines, {len(latin)} words and letters"
+    )
+    known, others, latin = (
+        [pair_features(*sample).astype(np.float32) for sample in samples]
+        for samples in (merged, plain, latin)
+    )
+    print(f"read in {time.monotonic() - began:.0f} s", flush=True)
+    weights = fit([*known[KEPT_BACK:], *others, *latin], options.epochs, rng)
+    pairs, whole = in_order(weights, known[:KEPT_BACK])
+    print(
+        f"{pairs:.4f} of the pairs of {KEPT_BACK} characters kept back are in order, {whole:.3f} of the characters"
+    )
+    print(f"done in {time.monotonic() - began:.0f} s")
+    table = {"source": SOURCE}
     for name, each in zip(("hidden", "bias", "output"), weights, strict=True):
         table[name] = json.loads(
-            json.dumps(each.tolist()), parse_float=lambda text: float(f"{float(text):.3g}")
+            json.dumps(each.tolist()), parse_float=lambda text: float(f"{float(text):.4g}")
         )
     text = json.dumps(table).replace("], [", "],\n[").replace(', "', ',\n"')
     options.output.write_text(text + "\n", encoding="utf-8")
