@@ -20,11 +20,18 @@ from brushsvg.read.svg import read_svg
 from brushsvg.read.text import text_svg
 from brushsvg.strokes.skeleton import filled
 from brushsvg.strokes.skeleton.graph import skeleton
-from brushsvg.strokes.skeleton.shape_to_strokes import LEAST_LIMB, LEAST_SHARE, _strokes, outline_strokes
-from brushsvg.strokes.skeleton.writing_order import joined, ordered
+from brushsvg.strokes.skeleton.reading_order import order_strokes
+from brushsvg.strokes.skeleton.shape_to_strokes import (
+    LEAST_LIMB,
+    LEAST_SHARE,
+    _strokes,
+    outline_strokes,
+)
+from brushsvg.strokes.skeleton.writing_order import joined
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"
 PX_PER_MM = 20
+SCRIPT = "latin"
 
 
 def glyphs(font: bytes, count: int, size_mm: float) -> list:
@@ -62,11 +69,16 @@ def main() -> None:
     axis, axes = ms_each(areas, lambda area: _core.medial_axis(area, LEAST_SHARE, LEAST_LIMB))
     joined_up = list(zip(areas, axes, strict=True))
     joining, found = ms_each(joined_up, lambda each: skeleton(each[0], *each[1]))
-    writing, _ = ms_each(
-        [each for each in found if each.pieces], lambda each: ordered(joined(each.pieces, each))
+    directing, chains = ms_each(found, lambda each: joined(each.pieces, each, SCRIPT) if each.pieces else [])
+    lines = [[np.vstack([piece.line for piece in chain]) for chain in each] for each in chains]
+    boxes = [np.array([[*area[0].min(axis=0), *area[0].max(axis=0)]]) for area in areas]
+    ordering, _ = ms_each(
+        [each for each in zip(boxes, lines, strict=True) if each[1]],
+        lambda each: order_strokes(each[0], [each[1]], SCRIPT),
     )
-    strokes, made = ms_each(joined_up, lambda each: _strokes(each[0], *each[1]))
-    whole, _ = ms_each(shapes, outline_strokes)
+    writing = directing + ordering
+    strokes, made = ms_each(joined_up, lambda each: _strokes(each[0], *each[1], SCRIPT))
+    whole, _ = ms_each(shapes, lambda rings: outline_strokes(rings, SCRIPT))
     edges = np.mean([sum(map(len, shape)) for shape in shapes])
     count = sum(len(each) for each in made)
     print(
@@ -77,7 +89,9 @@ def main() -> None:
     print(f"  {'medial axis':<46} {axis * per_glyph:7.2f} ms")
     print(f"  {'crossings, lines':<46} {joining * per_glyph:7.2f} ms")
     print(f"  {'direction, corners, order':<46} {writing * per_glyph:7.2f} ms")
-    print(f"  {'curves, widths, parts of the shape':<46} {(strokes - joining - writing) * per_glyph:7.2f} ms")
+    print(
+        f"  {'curves, widths, parts of the shape':<46} {(strokes - joining - directing) * per_glyph:7.2f} ms"
+    )
     print(f"  {'all (aim: 10 ms)':<46} {filling + whole:7.2f} ms")
     try:
         from skimage.morphology import medial_axis

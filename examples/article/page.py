@@ -21,8 +21,7 @@ TOP = """# The article, figure by figure
 
 "Physically Motivated Model of a Painting Brush for Robotic Painting and Calligraphy" (Robotics 2024, 13(6), 94),
 computed again by the public functions of brushsvg. `python examples/article docs` writes this page; it needs matplotlib.
-Each script below runs as it stands and leaves `figure`, a picture
-(`figure.savefig("it.png")` writes it), and `rows`, the table under it: what the text prints, what we compute, and the
+Each script below runs as it stands. It leaves `figure`, a picture, and `rows`, the table under it: the printed value, ours and the
 difference. An empty cell was not printed. Lengths are in mm, z is the press depth. Where the print is wrong:
 [equations.md](equations.md).
 

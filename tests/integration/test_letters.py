@@ -89,14 +89,14 @@ def test_a_character_drawn_as_one_shape_is_painted_in_its_order(characters):
     for _, each in characters:
         subpaths = [s for path_data in each["strokes"] for s in outline("s", path_data).subpaths]
         whole = Element("c", tuple(subpaths), 0.0, fill_rule="nonzero")
-        made, _ = strokes(Design((CHARACTER_MM, CHARACTER_MM), (whole,)))
+        made, _ = strokes(Design((CHARACTER_MM, CHARACTER_MM), (whole,)), script="cjk")
         given = [evenly(np.array(middle) * MM_PER_UNIT) for middle in each["medians"]]
         order = np.array([follows(evenly(_core.flatten(stroke, 0.05)), given) for stroke in made])
         before, after = np.triu_indices(len(order), 1)
         right += np.sum(order[before] < order[after])
         pairs += np.sum(order[before] != order[after])
     print(f"{pairs} pairs of lines, painted in the order of writing: {right / pairs:.4f}")
-    assert right / pairs >= 0.9  # 0.920
+    assert right / pairs >= 0.96  # 0.97
 
 
 def follows(line, given) -> int:

@@ -34,6 +34,7 @@ OPTIONS = {
     "--wide": ["", "clamp", "passes", "refuse"],
     "--corners": ["", "turn"],
     "--detail": ["", "draft", "fine"],
+    "--script": ["", "latin", "arabic", "devanagari", "cjk"],
     "--join": ["", True],
     "--compensation": ["", "none", "constant", "closed", "refined"],
     "--tolerance": ["", "0.1"],
@@ -124,7 +125,7 @@ def test_each_pair_of_options_of_convert_works(desk, capsys, options):
 
 CHECKED = (
     *("--brush", "--cell", "--sheet", "--layer", "--select", "--background", "--width", "--as", "--placed"),
-    *("--colour", "--wide", "--corners", "--detail", "--join", "--speed", "--lenient"),
+    *("--colour", "--wide", "--corners", "--detail", "--script", "--join", "--speed", "--lenient"),
 )
 
 
@@ -160,6 +161,7 @@ OF_PAINTED = {  # those that a photograph is planned and compared with; one line
             "--placed",
             "--corners",
             "--detail",
+            "--script",
             "--join",
             "--compensation",
             "--terminals",

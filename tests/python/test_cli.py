@@ -765,6 +765,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
         "--wide",
         "--corners",
         "--detail",
+        "--script",
         "--join",
         "--speed",
     }

@@ -37,7 +37,7 @@ HELD = {
 KINDS_OF_PAGES = {
     "README.md": "commands make python",
     "animation.md": "commands",
-    "article.md": "commands python",
+    "article.md": "python",
     "batch.md": "commands python",
     "brush.md": "json",
     "calibration.md": "commands csv json",

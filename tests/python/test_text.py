@@ -414,6 +414,7 @@ def test_an_outline_is_filled_and_lies_exactly(ttf):
         "fill": "#000000",
         "fill-rule": "nonzero",
         "stroke": "none",
+        "data-brushsvg-script": "latin",
         "d": "M 20.0000,27.0000 L 23.0000,20.0000 L 26.0000,27.0000 Z",
     }
 

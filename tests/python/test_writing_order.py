@@ -6,7 +6,7 @@ from svg_text import read
 
 from brushsvg import _core
 from brushsvg.strokes.extraction import strokes
-from brushsvg.strokes.skeleton.writing_order import in_rows, side_by_side
+from brushsvg.strokes.skeleton.reading_order import group_areas, stand_side_by_side
 
 # outline, and a place on each line in the order of writing; y down as in the drawing
 LETTERS = {
@@ -32,7 +32,6 @@ LETTERS = {
     "A": ("M22 5H28L44 45H37L33 34H17L13 45H6ZM25 12L19 28H31Z", [(12, 38), (38, 38), (25, 31)]),
     "i": ("M22 20H28V45H22ZM21 5H29V12H21Z", [(25, 35), (25, 8)]),
     "j": ("M22 20H28V42A10 10 0 0 1 18 50L17 44A5 5 0 0 0 22 40ZM21 5H29V12H21Z", [(25, 35), (25, 8)]),
-    "a dot above a bar": ("M5 20H45V26H5ZM21 5H29V12H21Z", [(25, 8), (15, 23)]),
     "4": ("M30 5H36V30H42V36H36V45H30V36H8V30ZM30 14L16 30H30Z", [(20, 22), (33, 42)]),
     "bold 4": ("M22 5H36V30H42V36H36V45H26V36H8V29ZM26 14L16 30H26Z", [(15, 27), (31, 42)]),
     "d": ("M34 3H40V45H34V42A14 14 0 1 1 34 20ZM34 31A8 8 0 1 0 18 31A8 8 0 1 0 34 31Z", [(12, 31), (37, 8)]),
@@ -56,8 +55,8 @@ LETTERS = {
 }
 
 
-def lines_of(d: str) -> list[np.ndarray]:
-    made = strokes(read(f'<path d="{d}" fill="red" stroke="none"/>'))[0]
+def lines_of(d: str, script: str = "latin") -> list[np.ndarray]:
+    made = strokes(script=script, design=read(f'<path d="{d}" fill="red" stroke="none"/>'))[0]
     flat = [_core.flatten(stroke, 0.02) for stroke in made]
     at = np.linspace(0, 1, 200)
     return [np.column_stack([np.interp(at * f[-1, 2], f[:, 2], f[:, k]) for k in (0, 1)]) for f in flat]
@@ -73,6 +72,11 @@ def test_lines_are_painted_in_the_order_of_writing(d, places):
     assert len(set(order.tolist())) == len(places)
 
 
+def test_a_dot_above_a_bar_comes_first_in_a_character():  # after it in a letter, as that of an i
+    dot, bar = lines_of("M5 20H45V26H5ZM21 5H29V12H21Z", "cjk")
+    assert dot[:, 1].mean() > bar[:, 1].mean()
+
+
 @pytest.mark.parametrize(
     ("d", "first", "last"),
     [
@@ -82,13 +86,13 @@ def test_lines_are_painted_in_the_order_of_writing(d, places):
     ids=["r", "7"],
 )
 def test_an_arm_that_leaves_its_stem_in_an_arch_is_written_from_there(d, first, last):
-    line = lines_of(d)[-1]
+    line = max(lines_of(d), key=lambda line: line[:, 0].max())
     assert np.hypot(*(line[0] - (first[0], 50 - first[1]))) < 2
     assert np.hypot(*(line[-1] - (last[0], 50 - last[1]))) < 2
 
 
 def test_a_hairline_between_two_stems_is_written_upwards():
-    _, hairline, _ = lines_of("M8 5H14V31L32 8V5H38V45H32V16L14 39V45H8Z")
+    hairline = max(lines_of("M8 5H14V31L32 8V5H38V45H32V16L14 39V45H8Z"), key=lambda line: np.ptp(line[:, 0]))
     assert np.ptp(hairline[:, 0]) > 10
     assert hairline[0, 1] < hairline[-1, 1]
 
@@ -100,9 +104,9 @@ def test_a_hairline_from_one_stem_down_to_the_next_stays():  # of an N
 
 def test_letters_stand_side_by_side_with_dots_and_accents_above_and_parts_of_characters_do_not():
     stem, dot, letter = (0, 0, 6, 30), (0, 36, 6, 42), (12, 0, 30, 30)
-    assert side_by_side(np.array([stem, dot, letter])) == [True, False, True]
+    assert stand_side_by_side(np.array([stem, dot, letter]))
     roof, below = (0, 30, 30, 36), (2, 0, 28, 25)
-    assert side_by_side(np.array([roof, below])) == [False, False]
+    assert not stand_side_by_side(np.array([roof, below]))
 
 
 def test_the_stem_of_a_bold_4_is_no_flick_of_its_slant():
@@ -111,9 +115,70 @@ def test_the_stem_of_a_bold_4_is_no_flick_of_its_slant():
     assert stem[0, 1] > 38 > 12 > stem[-1, 1]
 
 
-def test_parts_in_a_row_are_read_from_the_left_and_what_stands_above_comes_before_what_is_below():
-    # a roof with two parts below it, and a part to the right; then a second line
+def test_a_roof_is_one_letter_with_what_stands_below_it_and_lines_of_text_follow_each_other():
     roof, left, right, beside = (0, 30, 20, 40), (0, 5, 8, 31), (12, 5, 20, 31), (25, 5, 40, 40)
-    assert in_rows(np.array([right, beside, left, roof])) == [3, 2, 0, 1]
+    assert [set(each) for each in group_areas(np.array([right, beside, left, roof]), "latin")] == [
+        {0, 2, 3},
+        {1},
+    ]
     letters = np.array([[30 * k, 0, 30 * k + 20, 20 + 10 * (k % 2)] for k in range(6)])
-    assert in_rows(np.vstack([letters - (0, 100, 0, 100), letters])) == [*range(6, 12), *range(6)]
+    two_lines = np.vstack([letters - (0, 100, 0, 100), letters])
+    assert group_areas(two_lines, "auto") == [[k] for k in (*range(6, 12), *range(6))]
+
+
+def test_arabic_is_written_from_the_right_with_bodies_before_dots():
+    first, second, dot_of_second, dot_of_first = (
+        (30, 0, 60, 20),
+        (0, 0, 28, 20),
+        (10, 26, 14, 30),
+        (40, -8, 44, -4),
+    )
+    boxes = np.array([dot_of_first, second, dot_of_second, first])
+    assert group_areas(boxes, "arabic") == [[3], [1], [0], [2]]
+
+
+def test_characters_of_a_line_are_cut_at_gaps_and_each_is_one_group():
+    # two characters of two parts each, side by side
+    parts = np.array([(0, 0, 8, 20), (10, 0, 20, 20), (24, 0, 32, 20), (34, 0, 44, 20)])
+    assert group_areas(parts, "cjk") == [[0, 1], [2, 3]]
+    assert group_areas(parts, "latin") == [[0], [1], [2], [3]]
+
+
+def test_the_headline_of_a_word_is_written_last():
+    headline, stem, bowl = "M5 5H45V11H5Z", "M36 8H42V45H36Z", "M10 18H16V30H38V36H10Z"
+    made = strokes(read(f'<path d="{headline}{stem}{bowl}" fill="red" stroke="none"/>'), script="devanagari")[
+        0
+    ]
+    line = _core.flatten(made[-1], 0.02)
+    assert np.ptp(line[:, 0]) > 30
+    assert np.allclose(line[:, 1], 50 - 8, atol=1)
+
+
+def test_a_flat_line_of_arabic_runs_to_the_left():
+    def start_and_end(script):
+        line = _core.flatten(
+            strokes(read('<path d="M5 20H45V26H5Z" fill="red"/>'), script=script)[0][0], 0.02
+        )
+        return line[0, 0], line[-1, 0]
+
+    start, end = start_and_end("arabic")
+    assert start > end
+    start, end = start_and_end("latin")
+    assert start < end
+
+
+@pytest.mark.parametrize("script", ["auto", "latin"])
+def test_the_stem_of_a_t_or_f_comes_before_its_crossbar(script):
+    t = LETTERS["t"][0]
+    f = "M38 5V11H32Q28 11 28 15V19H36V25H28V45H22V25H15V19H22V15Q22 5 32 5Z"
+    for letter in (t, f):
+        stem, bar = lines_of(letter, script)
+        assert np.ptp(stem[:, 1]) > 30
+        assert np.ptp(bar[:, 1]) < 2
+
+
+def test_the_bar_of_a_character_comes_before_the_line_that_crosses_it():  # in auto, this form is read as a t
+    wide_and_high = "M22 5H28V16H44V22H28V45H22V22H6V16H22Z"  # 十 with a bar as high as that of a t
+    bar, stem = lines_of(wide_and_high, "cjk")
+    assert np.ptp(bar[:, 0]) > 30
+    assert np.ptp(stem[:, 1]) > 30

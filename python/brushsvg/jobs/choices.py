@@ -15,7 +15,7 @@ from ..machine.cells.cell import Cell
 from ..machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from ..machine.posts import GCODE
 from ..model.library import brush_names, find_brush
-from ..read import BACKGROUNDS, PENS, SIZE_MM, UNITS, ReadOptions, settings_in
+from ..read import BACKGROUNDS, PENS, SCRIPTS, SIZE_MM, UNITS, ReadOptions, settings_in
 from ..read.layout import Layout
 from .options import Options
 
@@ -40,6 +40,7 @@ MADE_FLAGS = (
     "wide",
     "corners",
     "detail",
+    "script",
     "join",
     "compensation",
     "lag",
@@ -67,6 +68,7 @@ ONE_OF = {
     "wide": ("auto", "clamp", "passes", "refuse"),
     "corners": ("auto", "turn"),
     "detail": ("draft", "normal", "fine"),
+    "script": SCRIPTS,
     "compensation": ("none", "constant", "closed", "refined"),
     "terminals": TERMINALS,
     "start": TERMINALS,
@@ -103,6 +105,7 @@ class Choices:
     wide: str | None = None
     corners: str | None = None
     detail: str | None = None
+    script: str | None = None
     join: bool | None = None
     compensation: str | None = None
     lag: float | None = None
@@ -139,6 +142,7 @@ class Given(TypedDict, total=False):
     wide: str | None
     corners: str | None
     detail: str | None
+    script: str | None
     join: bool | None
     compensation: str | None
     lag: float | None
@@ -344,6 +348,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options
         wide=chosen.wide or Options.wide,
         corners=chosen.corners or Options.corners,
         detail=chosen.detail or Options.detail,
+        script=chosen.script or Options.script,
         colour=chosen.colour,
         join=bool(chosen.join),
         margin_strokes=chosen.margin_strokes or Options.margin_strokes,

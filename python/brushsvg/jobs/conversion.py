@@ -108,9 +108,9 @@ def convert(
     choices, by default what the drawing says: brush, cell: a name, path, Brush or Cell; sheet, fit (w, h),
     origin (x, y), width, lag, tolerance, z_offset: mm; paint_speed: mm/s; scale: a factor; units: "mm", "in";
     layer: a list of names; select: CSS; paths_as: "stroke", "outline"; wide: "auto", "clamp", "passes", "refuse";
-    corners: "auto", "turn"; detail: "draft", "normal", "fine"; join: bool; compensation: "none", "constant", "closed",
-    "refined"; terminals, start, end: "auto", "round", "butt", "pointed"; corrections: the path of what
-    compare wrote; margin_strokes: "auto", "on", "off".
+    corners: "auto", "turn"; detail: "draft", "normal", "fine"; script: "auto", "latin", "arabic", "devanagari", "cjk";
+    join: bool; compensation: "none", "constant", "closed", "refined"; terminals, start, end: "auto", "round", "butt",
+    "pointed"; corrections: the path of what compare wrote; margin_strokes: "auto", "on", "off".
     docs/python.md has them in a table.
 
     Raises Error, with a code of docs/diagnostics.md, for what cannot be read, painted or run; of several reasons it

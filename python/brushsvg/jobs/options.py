@@ -31,6 +31,7 @@ class Options:
     wide: str = "auto"  # outlines wider than the brush: "auto", "clamp", "passes", "refuse"
     corners: str = "auto"  # "auto": lifted at sharp corners where the mark is better; "turn": never
     detail: str = "normal"  # how small an area of a shape gets a stroke of its own: "draft", "normal", "fine"
+    script: str = "auto"  # how shapes are written: "auto", "latin", "arabic", "devanagari", "cjk"
     margin_strokes: str = "off"  # "auto": where the brush is not calibrated, "on", "off"
     colour: str | None = None  # "#rrggbb": paint the strokes of this colour
     join: bool = False  # lines that meet end to end are one stroke

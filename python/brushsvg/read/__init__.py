@@ -45,6 +45,7 @@ AS_DRAWN = ReadOptions()
 SIZE_MM = (0.001, 1e6)  # of a sheet's sides
 UNITS = ("mm", "in")
 BACKGROUNDS = ("auto", "keep")
+SCRIPTS = ("auto", "latin", "arabic", "devanagari", "cjk")  # how filled shapes are written
 PENS = ("z", "servo")  # what moves the pen of a program
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..errors import Error, need, need_one_of
+from ..read import SCRIPTS
 from ..read.design import Design, Element, Notice, SubPath
 from .corners import begun_amid_a_side
 
@@ -29,7 +30,9 @@ class _Line:
     covered: tuple[bool, bool] = (False, False)
 
 
-def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], list[Notice]]:
+def strokes(
+    design: Design, paths_as: str | None = None, script: str = "auto"
+) -> tuple[list[Stroke], list[Notice]]:
     """Strokes in document order, [mm], paper frame, and what was noticed on the way.
 
     A path with a stroke alone is the line drawn, in its direction. A filled path is a shape, with a stroke around it
@@ -37,6 +40,8 @@ def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], 
     the shape. Where the stroke has a colour of its own, the shape is painted as far as it is filled, and then the line.
     paths_as: "stroke", fills count as none; "outline", strokes count as none and every path is the outline
     of a shape; None: as drawn.
+    script: "auto", "latin", "arabic", "devanagari" or "cjk": how filled shapes are written, where an element does not
+    say so itself.
 
     A stroke is called by its element's id, id/1, id/2 ... if there are several, strokeN if there is no id, N counting
     the elements without one from 1. The setting `order` moves strokes, smaller ones first; `passes` repeats a stroke as
@@ -46,10 +51,11 @@ def strokes(design: Design, paths_as: str | None = None) -> tuple[list[Stroke], 
     """
     need(design, Design, "a drawing, as read_drawing returns it")
     need_one_of(paths_as, ("stroke", "outline", None), "what paths are painted as")
+    need_one_of(script, SCRIPTS, "script")
     found, empty, notices = [], [], []
     for element in (part for each in design.elements for part in _in_colours(each, paths_as)):
         try:
-            lines = _lines(element, paths_as)
+            lines = _lines(element, paths_as, script)
         except Error as beyond:
             notices.append(Notice(element.id or "filled", f"{beyond}: left out", code=beyond.code))
             continue
@@ -98,17 +104,17 @@ def _in_colours(element: Element, paths_as: str | None) -> tuple[Element, ...]:
     return (replace(line, id=element.id),) if _grown(element) is None else (shape, line)
 
 
-def _lines(element: Element, paths_as: str | None) -> list[_Line]:
+def _lines(element: Element, paths_as: str | None, script: str) -> list[_Line]:
     """What becomes of an element; nothing if it leaves no mark."""
     if paths_as == "stroke" and not element.is_stroked:
         return []
     if paths_as == "stroke" or (paths_as is None and not element.fill_rule):
         return [_drawn(element, subpath) for subpath in element.subpaths]
-    lines = _of_shape(element, grown=paths_as is None)
+    lines = _of_shape(element, paths_as is None, element.settings.get("script", script))
     return [_drawn(element, subpath) for subpath in element.subpaths] if lines is None else lines
 
 
-def _of_shape(element: Element, grown: bool) -> list[_Line] | None:
+def _of_shape(element: Element, grown: bool, script: str) -> list[_Line] | None:
     """Lines of a filled shape; None where its stroke alone shows."""
     from .skeleton import filled, outline_strokes
 
@@ -117,7 +123,7 @@ def _of_shape(element: Element, grown: bool) -> list[_Line] | None:
         return None
     return [
         _Line(each.middle_mm, each.half_width, each.closed, each.wanted_mm, each.covered)
-        for each in outline_strokes(rings)
+        for each in outline_strokes(rings, script)
     ]
 
 
@@ -153,7 +159,7 @@ def _drawn(element: Element, subpath: SubPath) -> _Line:
 def _of_element(element: Element, name: str, lines: list[_Line]):
     from .._core import Settings, Stroke, StrokeId
 
-    settings = Settings(**element.settings)
+    settings = Settings(**{name: value for name, value in element.settings.items() if name != "script"})
     for part, line in zip(_parts(len(lines)), lines, strict=True):
         for repeat in range(1, element.settings.get("passes", 1) + 1):
             stroke = Stroke(

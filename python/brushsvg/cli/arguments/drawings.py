@@ -14,6 +14,7 @@ from .flags import (
     add_margin_strokes,
     add_order,
     add_quiet,
+    add_script,
     add_speed,
     add_writes,
     add_z_offset,
@@ -297,6 +298,7 @@ def add_import(commands) -> None:
     look.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)})")
     look.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
     add_layout(look)
+    add_script(look)
     look.add_argument(
         "--editable",
         action="store_true",
@@ -330,6 +332,7 @@ def add_text(commands) -> None:
     text.add_argument(
         "--sheet", metavar="WxH", type=values.sheet, help="the sheet; default: the text and 20 mm around it"
     )
+    add_script(text, "how the letters are written")
     add_writes(text)
     text.set_defaults(run="text_file", parser=text, check=_check_text)
 

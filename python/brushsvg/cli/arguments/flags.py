@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from ...machine.posts import POSTS
-from ...read import BACKGROUNDS, PENS, READERS
+from ...read import BACKGROUNDS, PENS, READERS, SCRIPTS
 from . import values
 
 TERMINALS = ("auto", "round", "butt", "pointed")
@@ -110,6 +110,7 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add_wide(command)
     add_corners(command)
     add_detail(command)
+    add_script(command)
     add_join(command)
     add(
         "--compensation",
@@ -180,6 +181,15 @@ def add_detail(command: argparse.ArgumentParser) -> None:
         "--detail",
         choices=("draft", "normal", "fine"),
         help="filled shapes: how small a corner gets a stroke of its own; default: normal",
+    )
+
+
+def add_script(command: argparse.ArgumentParser, what: str = "filled shapes: how they are written") -> None:
+    command.add_argument(
+        "--script",
+        choices=SCRIPTS,
+        help=f"{what}; arabic: from right to left, bodies before dots; devanagari: the headline last; default: auto, "
+        "as the characters of a text say",
     )
 
 

@@ -14,6 +14,7 @@ from .flags import (
     add_layout,
     add_looks,
     add_margin_strokes,
+    add_script,
     add_speed,
     add_wide,
     add_writes,
@@ -105,6 +106,7 @@ def add_check(commands) -> None:
     add_wide(check)
     add_corners(check)
     add_detail(check)
+    add_script(check)
     add_join(check)
     add_speed(check)
     add_corrections(check)

@@ -158,7 +158,7 @@ def _found(design: Design, brush, options: Options) -> tuple[list, list[Notice]]
     thin: list[Notice] = []
     if options.paths_as is None:
         design, thin = without_thin_outlines(design, brush)
-    strokes, notices = strokes_of(design, options.paths_as)
+    strokes, notices = strokes_of(design, options.paths_as, options.script)
     notices += thin
     if options.join:
         strokes, joints = joined(strokes)

@@ -7,6 +7,7 @@ import re
 
 from ...errors import Error
 from ...units import length_mm, number
+from .. import SCRIPTS
 
 PREFIX = "data-brushsvg-"
 
@@ -115,6 +116,7 @@ _KNOWN = {
     "terminals": ("terminals", _TERMINAL),
     "start": ("start", _TERMINAL),
     "end": ("end", _TERMINAL),
+    "script": ("script", _one_of(*SCRIPTS)),
 }
 _OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
     "cell": ("cell", _name),

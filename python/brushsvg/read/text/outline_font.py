@@ -19,13 +19,14 @@ from fontTools.ttLib import TTFont
 from ...errors import Error
 from ...geometry.rings import signed_area
 from ..design import Notice, SubPath
-from .setting import Placed, Setting, is_seen
+from .setting import Placed, Setting, find_script, is_seen
 
 _UNPACKED = 200_000_000  # bytes: the largest fonts there are, of all Chinese characters, take a fifth of it
 _UNITS = (16, 16384)  # to the em, of the format
 _COLOURS = ("COLR", "CBDT", "sbix", "SVG ")  # tables of glyphs in colours or as pictures
 _LETTERS = "AEFHIKLMNTVWXYZilt"  # straight ones: in a font of lines, contours of many of them have no area
 _LINES_NOTICE = "it is a single-line font: its contours are read as lines"
+_JOINED = ("arabic", "devanagari")  # scripts of which a word is one shape
 _CLOSED = 8  # cubics of a contour from which its last one may be as short as the others: an O, and no V
 _NOTICE = "its letters are outlines, which become strokes as filled shapes do"
 
@@ -107,7 +108,7 @@ class _Setter:
         infos, positions = buffer.glyph_infos or (), buffer.glyph_positions or ()
         clusters = sorted({info.cluster for info in infos})
         ends = dict(zip(clusters, [*clusters[1:], len(line)], strict=True))
-        placed, inked = [], set()
+        placed, inked, words = [], set(), []
         x = y = 0
         for info, position in zip(infos, positions, strict=True):
             characters = line[info.cluster : ends[info.cluster]]
@@ -119,12 +120,14 @@ class _Setter:
             if subpaths := self._shape(info.codepoint):
                 inked.add(info.cluster)
                 origin = x + position.x_offset, -(y + position.y_offset)
-                placed.append(Placed(characters, subpaths, *(value * self.mm_per_unit for value in origin)))
+                at_mm = (value * self.mm_per_unit for value in origin)
+                placed.append(Placed(characters, subpaths, *at_mm, find_script(characters)))
+                words.append(line[: info.cluster].count(" "))
             x, y = x + position.x_advance, y + position.y_advance
         for cluster in clusters:
             if cluster not in inked:
                 self.blank.update(dict.fromkeys(filter(is_seen, line[cluster : ends[cluster]])))
-        return tuple(placed)
+        return tuple(_in_writing_order(placed, words, line.split(" ")))
 
     def is_of_lines(self) -> bool:
         """Whether it is a single-line font: TrueType knows no open lines, so these go back as they came, or are two
@@ -142,6 +145,26 @@ class _Setter:
             contours = (np.array(contour).reshape(-1, 4, 2) * to_mm for contour in pen.contours if contour)
             self.shapes[glyph] = tuple(SubPath(cubics, closed=True) for cubics in contours)
         return self.shapes[glyph]
+
+
+def _in_writing_order(placed: list[Placed], words: list[int], texts: list[str]) -> list[Placed]:
+    """Return the glyphs of a line, from the first word on; words whose letters are joined become one shape each.
+
+    words: of which word each glyph is; texts: of all words. One line runs through the letters of a joined word, and its
+    dots come after all of them.
+    """
+    joined: dict[object, Placed] = {}
+    for k in sorted(range(len(placed)), key=words.__getitem__):
+        glyph = placed[k]
+        key = words[k] if glyph.script in _JOINED else -1 - k
+        if key not in joined:
+            joined[key] = glyph
+            continue
+        first = joined[key]
+        shift = np.array([glyph.x_mm - first.x_mm, glyph.y_mm - first.y_mm])
+        moved = tuple(SubPath(each.cubics + shift, each.closed) for each in glyph.subpaths)
+        joined[key] = replace(first, label=texts[words[k]], subpaths=first.subpaths + moved)
+    return list(joined.values())
 
 
 def _is_flat(contour: SubPath) -> bool:

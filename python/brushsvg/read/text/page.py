@@ -18,12 +18,18 @@ _STRAIGHT_MM = 1e-6  # handles this close to the thirds of a line: rounding erro
 
 
 def document(
-    setting: Setting, title: str, leading_mm: float, width_mm: float, sheet_mm: tuple[float, float] | None
+    setting: Setting,
+    title: str,
+    leading_mm: float,
+    width_mm: float,
+    sheet_mm: tuple[float, float] | None,
+    script: str = "auto",
 ) -> str:
     """The SVG document: one path a glyph, the ink in the middle of the sheet.
 
     leading_mm: from line to line; width_mm: of strokes, 0 for filled shapes; sheet_mm: None for the ink and
-    20 mm around it. Error if there is no ink, too much of it, or more than the sheet takes.
+    20 mm around it; script: of all glyphs, "auto": each of its own. Error if there is no ink, too much of it, or more
+    than the sheet takes.
     """
     placed = [
         (glyph, np.array([glyph.x_mm, glyph.y_mm + row * leading_mm]))
@@ -73,13 +79,18 @@ def document(
             f'viewBox="0 0 {width} {height}">',
             f"  <title>{escape(title)}</title>",
             *(
-                f'  <path id="glyph-{number}-{_label(glyph.label)}" {style} '
+                f'  <path id="glyph-{number}-{_label(glyph.label)}" {style} {_script(glyph, script)}'
                 f'd="{_path(glyph.subpaths, origin + shift)}"/>'
                 for number, (glyph, origin) in enumerate(placed, 1)
             ),
             "</svg>\n",
         )
     )
+
+
+def _script(glyph: Placed, script: str) -> str:
+    said = glyph.script if script == "auto" else script
+    return "" if said == "auto" else f'data-brushsvg-script="{said}" '
 
 
 def _extents(placed: list[tuple[Placed, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:

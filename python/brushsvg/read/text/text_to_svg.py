@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import unicodedata
 
-from ...errors import Error, lacking, need
+from ...errors import Error, lacking, need, need_one_of
+from .. import SCRIPTS
 from ..design import Notice
 from . import svg_font
 from .page import document
@@ -23,17 +24,20 @@ def text_svg(
     width_mm: float | None = None,
     sheet_mm: tuple[float, float] | None = None,
     line_spacing: float = 1.4,
+    script: str = "auto",
 ) -> tuple[str, list[Notice]]:
     """The SVG document of a text and what was noticed while setting it.
 
     font: what a font file holds, an SVG font (its lines are stroked with width_mm, 1 if None) or TrueType or OpenType
     (outlines, filled); size_mm: its em; sheet_mm: (w, h), None for the ink and 20 mm around it;
-    line_spacing: from line to line, in ems. A newline starts a line; lines begin at the same x.
+    line_spacing: from line to line, in ems; script: how the letters are written, "latin", "arabic", "devanagari",
+    "cjk", or "auto": as their characters say. A newline starts a line; lines begin at the same x.
 
     Error if a number is out of range, the font cannot be read, or nothing of the text can be painted.
     """
     need(text, str, "a text")
     need(font, bytes, "what a font file holds, as bytes")
+    need_one_of(script, SCRIPTS, "script")
     _in_range("size", size_mm, 1000, " mm")
     _in_range("width", 1.0 if width_mm is None else width_mm, 1000, " mm")
     _in_range("line spacing", line_spacing, 100)
@@ -71,7 +75,7 @@ def text_svg(
         sentence = f"the width {width_mm:g} mm has no effect: the font has outlines, not single lines"
         notices.append(Notice("font", sentence, code="width-without-effect"))
     stroke_mm = 0.0 if setting.filled else width_mm or 1.0
-    return document(setting, text, line_spacing * size_mm, stroke_mm, sheet_mm), notices
+    return document(setting, text, line_spacing * size_mm, stroke_mm, sheet_mm, script), notices
 
 
 def _in_range(name: str, value: float, most: float, unit: str = "") -> None:

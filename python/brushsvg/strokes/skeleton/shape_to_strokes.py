@@ -1,7 +1,7 @@
 """Filled outlines to the strokes that a brush would paint them with.
 
 The medial axis of the shape (C++), its branches joined to lines (graph), lines in the direction and order of writing
-(writing_order), each as few cubics with a smooth width (C++).
+(writing_order, reading_order), each as few cubics with a smooth width (C++).
 """
 
 from __future__ import annotations
@@ -16,10 +16,11 @@ from ...geometry.rings import with_holes, without_slivers
 from ...geometry.rotation import rotation
 from .cut_ends import run_to_cuts
 from .graph import Skeleton, skeleton
+from .reading_order import order_strokes
 from .rough_outlines import smooth_rough_outlines
 from .shared_corners import with_shared_corners
 from .touching_dots import touching_dots
-from .writing_order import in_rows, joined, ordered, side_by_side
+from .writing_order import joined
 
 # How far a middle line may leave the medial axis to be smooth, of the half width: less follows every dent of the
 # outline, more shows in the overlap.
@@ -56,9 +57,9 @@ class OutlineStroke:
     covered: tuple[bool, bool] = (False, False)
 
 
-def outline_strokes(rings: list[np.ndarray]) -> list[OutlineStroke]:
-    """Strokes of a shape, in the order and direction of writing; rings as _core.fill returns them. Error if it has more
-    branches than any lettering."""
+def outline_strokes(rings: list[np.ndarray], script: str = "auto") -> list[OutlineStroke]:
+    """Strokes of a shape, in the order and direction of writing; rings as _core.fill returns them; script: as in
+    DIRECTION_WEIGHTS. Error if it has more branches than any lettering."""
     areas = [
         [without_slivers(ring, SLIVER_MM) for ring in area]
         for area in with_holes(smooth_rough_outlines(rings))
@@ -68,27 +69,33 @@ def outline_strokes(rings: list[np.ndarray]) -> list[OutlineStroke]:
         raise Error(
             f"its shape branches into {count} lines, more than {MOST_BRANCHES}", code="outline-too-complex"
         )
+    made = [_strokes(area, *axis, script) for area, axis in zip(areas, axes, strict=True)]
     boxes = np.array([[*area[0].min(axis=0), *area[0].max(axis=0)] for area in areas]).reshape(-1, 4)
-    alone = side_by_side(boxes)
-    found = [stroke for k in in_rows(boxes) for stroke in _strokes(areas[k], *axes[k], alone[k])]
+    order = order_strokes(boxes, [[line for line, _ in each] for each in made], script)
+    found = [made[area][k][1] for area, k in order]
     return [stroke for stroke in found if 2 * max(half for _, half in stroke.half_width) > SLIVER_MM]
 
 
 def _strokes(
-    area: list[np.ndarray], nodes: np.ndarray, branches: list, is_alone: bool
-) -> list[OutlineStroke]:
+    area: list[np.ndarray], nodes: np.ndarray, branches: list, script: str
+) -> list[tuple[np.ndarray, OutlineStroke]]:
+    """Each with its middle line (k, 3)."""
     found = skeleton(area, nodes, branches)
     if not found.pieces:  # all of it is one disc, more or less
-        return [_dab(disc, area) for disc in found.dabs[:1]]
+        return [(disc[None, :3], _dab(disc, area)) for disc in found.dabs[:1]]
     if dots := touching_dots(found.pieces, area):
-        return [_dab(disc, part) for disc, part in dots]
-    chains = [run_to_cuts(chain, area) for chain in ordered(joined(found.pieces, found), is_alone)]
+        return [(disc[None, :3], _dab(disc, part)) for disc, part in dots]
+    chains = [run_to_cuts(chain, area) for chain in joined(found.pieces, found, script)]
+    lines = [np.vstack([piece.line for piece in chain]) for chain in chains]
     if len(chains) == 1:
-        return [_stroke(chains[0], area, area)]
+        return [(lines[0], _stroke(chains[0], area, area))]
     cuts = len(chains) * sum(map(len, area)) < MOST_CUT
     parts = [_part(chain, found, area if cuts else None) for chain in chains]
-    strokes = [_stroke(chain, part, area) for chain, part in zip(chains, parts, strict=True) if part]
-    return with_shared_corners(strokes, area) if cuts else strokes
+    kept = [k for k, part in enumerate(parts) if part]
+    strokes = [_stroke(chains[k], parts[k], area) for k in kept]
+    return list(
+        zip([lines[k] for k in kept], with_shared_corners(strokes, area) if cuts else strokes, strict=True)
+    )
 
 
 def _dab(disc: np.ndarray, wanted_mm: list[np.ndarray]) -> OutlineStroke:

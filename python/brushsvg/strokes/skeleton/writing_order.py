@@ -1,24 +1,29 @@
-"""How one writes: which way a line runs, which lines are one stroke, what comes first."""
+"""Writing direction: which way a line runs, and which lines that meet at a corner are one stroke."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
-from heapq import heappop, heappush
-from itertools import combinations, pairwise, permutations, product
 
 import numpy as np
 
-from ...geometry.polylines import length, lengths, steps
+from ...geometry.polylines import length
 from ...geometry.rings import signed_area
 from .bridges import STEPS, straight
 from .graph import Piece, Skeleton
 from .junctions import Crossing
 
-# Lines run towards this direction: down, and to the right where they lie flatter than 30 degrees.
-TOWARDS = np.array([np.cos(np.radians(-60)), np.sin(np.radians(-60))])
-# Strokes are set down wide and lifted thin: what a taper counts for beside the direction.
-TAPER = 0.27
+# Weights of the direction of writing: of the unit vector from start to end, x to the right and y up, and of the taper,
+# (first third - last third) / wider of the two. A line is written the way that makes their sum positive. Those of cjk
+# are fitted to hanzi-writer-data, those of auto to that and letters of ours. Those of the others are not fitted: a fit
+# to letters was no better than these.
+DIRECTION_WEIGHTS = {
+    "latin": np.array([0.5, -0.866, 0.27]),
+    "devanagari": np.array([0.5, -0.866, 0.27]),
+    "arabic": np.array([-0.5, -0.866, 0.27]),
+    "cjk": np.array([0.67, -0.71, 0.88]),
+    "auto": np.array([0.62, -0.78, 0.63]),
+}
 # So far an arm bends that is written from its stem on; straight ones, as of a K, are written towards it.
 ARCH_RAD = np.radians(15)
 # A piece shorter than this many of its half widths, and than this share of what it meets at a corner, has no direction
@@ -26,36 +31,17 @@ ARCH_RAD = np.radians(15)
 FLICK, FLICK_SHARE = 7.0, 0.6
 FLICK_WIDER = 1.15  # nor is what is so much wider than that: the stem of a bold 4
 
-# Which comes first.
-UPPER_LEFT_FIRST = np.array([1.0, -1.0])
-# Of parts in a line of writing: with more a dot would come before the letter left of it, with less the roof of a
-# Chinese character after what stands below.
-HIGHER = 0.5
-# A dot is hardly longer than wide, hardly farther above its stem than it is high, and so many times lower than that at
-# least, and narrower at most.
-DOT, STEM = 1.3, 2.5
-ACCENT = 0.4  # of its letter's size
-LONG_DOT = 1.8  # where there are but a dot and a stem
-SLENDER = 1.5  # or so many times as high as wide: a j
 RIGHT = 0.3  # of what it rises, how far a hairline leads to the right at least
-# Lines of which one is so much flatter are a bar and what crosses it.
-FLATTER_RAD = np.radians(30)
-# A serif is so much shorter than its stem, and than so many of its half widths.
-SERIF, SERIF_HALVES = 0.7, 7.0
-# A bar is an arm of a stem below it if it sticks out to its left by so little of its length, and of half widths. The
-# stem is as steep as this sine: one that falls to the left is written after its roof.
-STUB, STUB_HALVES, STEEP = 0.3, 4.0, 0.87
-MOST_LINES = 4  # of a letter, serifs aside: of an E, an M
-SHORT_BAR = 0.8  # of its stem: a t's; a cross has two lines of like length
-PLACES = 60  # along a line, to find where it crosses another
+# A line is steep whose sine is more than this: one that falls to the left is written after its roof.
+STEEP = 0.87
 STRAIGHT = 0.8  # of its length, the chord of a line of an x
 
 
-def directed(piece: Piece) -> Piece:
-    """The piece as one would paint it."""
+def directed(piece: Piece, script: str = "auto") -> Piece:
+    """Return the piece in the direction of writing."""
     if piece.closed:
         return _ring(piece)
-    return piece if willing(piece.line) >= 0 else reversed_(piece)
+    return piece if direction_score(piece.line, script) >= 0 else reversed_(piece)
 
 
 def _outwards(chain: list[Piece]) -> list[Piece]:
@@ -77,13 +63,13 @@ def _is_arch(line: np.ndarray) -> bool:
     return bool(right > up > 0 and bends > ARCH_RAD)
 
 
-def willing(line: np.ndarray) -> float:
-    """How gladly one paints it this way, in [-1, 1]; negative: the other way round."""
+def direction_score(line: np.ndarray, script: str = "auto") -> float:
+    """Return how well a line runs in the direction of writing; negative: it is written the other way."""
     chord = line[-1, :2] - line[0, :2]
-    length = max(np.hypot(*chord), 1e-9)
     n = max(len(line) // 3, 1)
     head, tail = line[:n, 2].mean(), line[-n:, 2].mean()
-    return float(chord @ TOWARDS / length + TAPER * (head - tail) / max(head, tail, 1e-9))
+    along = chord / max(np.hypot(*chord), 1e-9)
+    return float(DIRECTION_WEIGHTS[script] @ [*along, (head - tail) / max(head, tail, 1e-9)])
 
 
 def reversed_(piece: Piece) -> Piece:
@@ -100,10 +86,10 @@ def _ring(piece: Piece) -> Piece:
     return replace(piece, line=np.vstack([line, line[:1]]))
 
 
-def joined(pieces: list[Piece], skeleton: Skeleton) -> list[list[Piece]]:
+def joined(pieces: list[Piece], skeleton: Skeleton, script: str = "auto") -> list[list[Piece]]:
     """Pieces in their directions, those that a corner joins in one list: where one ends and the next begins there, or
     where one is but a flick."""
-    chains = {k: [piece] for k, piece in enumerate(_upwards([directed(piece) for piece in pieces]))}
+    chains = {k: [piece] for k, piece in enumerate(_upwards([directed(piece, script) for piece in pieces]))}
     long = [_length(piece, skeleton) for piece in pieces]
     at_crossing: dict[int | None, set[int]] = {}
     for k, piece in enumerate(pieces):
@@ -205,202 +191,5 @@ def _is_steep(line: np.ndarray) -> bool:
     return bool(abs(down[1]) > STEEP * np.hypot(*down))
 
 
-def ordered(chains: list[list[Piece]], may_be_letter: bool = True) -> list[list[Piece]]:
-    """From the upper left to the lower right by their centres; but see _earlier. may_be_letter: see side_by_side."""
-    lines = [np.vstack([piece.line[:, :2] for piece in chain]) for chain in chains]
-    centres = np.array([_centre(line) for line in lines])
-    by_centre = (centres @ UPPER_LEFT_FIRST).argsort(kind="stable").tolist()
-    place = {k: place for place, k in enumerate(by_centre)}
-    earlier = _earlier(chains, lines, centres, may_be_letter)
-    later: dict[int, list[int]] = {}
-    for k, before in enumerate(earlier):
-        for other in before:
-            later.setdefault(other, []).append(k)
-    ready = [place[k] for k in by_centre if not earlier[k]]
-    painted: dict[int, None] = {}
-    rest = iter(by_centre)
-    while len(painted) < len(chains):
-        # where each waits for another, the first of them
-        k = by_centre[heappop(ready)] if ready else next(k for k in rest if k not in painted)
-        if k in painted:
-            continue
-        painted[k] = None
-        for other in later.get(k, ()):
-            earlier[other].discard(k)
-            if not earlier[other]:
-                heappush(ready, place[other])
-    return [chains[k] for k in painted]
-
-
-def _earlier(
-    chains: list[list[Piece]], lines: list[np.ndarray], centres: np.ndarray, may_be_letter: bool
-) -> list[set[int]]:
-    """For each chain those that are painted before it: of two that begin at one place the one that leads farther to the
-    left, a stem before its bowl; of two that cross as _which_first says; and what it begins on, unless that lies to its
-    right, a bowl before the stem behind it, or hardly sticks out to its left, a stem before its arms; a bar from one
-    line to another after both; serifs after their stems."""
-    begin, pass_ = defaultdict(list), defaultdict(list)
-    for k, chain in enumerate(chains):
-        begin[chain[0].ends[0]].append(k)
-        for crossing in _through(chain):
-            pass_[crossing].append(k)
-    begin.pop(None, None)
-    end = [chain[-1].ends[1] for chain in chains]
-    steep = [float(np.arctan2(*np.abs(line[-1] - line[0])[::-1])) for line in lines]
-    to_right = [
-        float(np.arctan2(c[0] - line[0, 0], line[0, 1] - c[1]))
-        for c, line in zip(centres, lines, strict=True)
-    ]
-    ending = defaultdict(list)
-    for k, crossing in enumerate(end):
-        ending[crossing].append(k)
-    serifs = {
-        host: guest
-        for crossing, hosts in pass_.items()
-        for host, guest in product(hosts, [*begin[crossing], *ending[crossing]])
-        if _is_serif(chains[host], chains[guest]) and not _ends(chains[host]) & _through(chains[guest])
-    }
-    serifs |= {
-        host: guest
-        for crossing in begin.keys() | ending.keys()
-        if crossing is not None and not pass_[crossing]
-        for host, guest in permutations([*begin[crossing], *ending[crossing]], 2)
-        if None in _ends(chains[host])
-        and _is_serif(chains[host], chains[guest])
-        and steep[host] < FLATTER_RAD
-        and _is_steep(lines[guest])
-    }
-    met = [sum(len(pass_[crossing]) > 1 for crossing in _through(chain)) for chain in chains]
-    is_letter = may_be_letter and len(chains) - len(serifs) <= MOST_LINES
-    earlier: list[set[int]] = [set() for _ in chains]
-    if not is_letter:
-        serifs = {}
-    for serif, stem in serifs.items():
-        earlier[serif].add(stem)
-    for crossing in sorted(begin.keys() | pass_.keys()):
-        fanned = sorted(begin[crossing], key=to_right.__getitem__)
-        for one, two in pairwise(fanned):
-            earlier[two].add(one)
-        for one, two in combinations(pass_[crossing], 2):
-            bar, stem = sorted((one, two), key=steep.__getitem__)
-            is_bar = steep[bar] < steep[stem] - FLATTER_RAD
-            across = set(pass_.get(end[bar], ())) - {bar, stem}  # as that of a script's A
-            is_alone = met[bar] == met[stem] == 1
-            if is_bar and is_letter and (across or (is_alone and _is_short(lines[bar], lines[stem]))):
-                earlier[bar] |= {stem, *across}
-            elif is_bar:
-                earlier[stem].add(bar)
-            elif len(chains) - len(serifs) == 2 and all(_is_straight(lines[k]) for k in (one, two)):
-                left, right = sorted((one, two), key=lambda k: lines[k][0, 0])  # an x
-                earlier[right].add(left)
-        for host, guest in product(pass_[crossing], begin[crossing]):
-            if host == guest or serifs.get(host) == guest:
-                continue
-            if end[guest] is not None and end[guest] == chains[host][0].ends[0]:
-                earlier[host].add(guest)  # the bar of an e that leads to where its bowl begins
-            elif is_letter and _is_arm(lines[host], chains[guest], lines[guest]):
-                earlier[host].add(guest)
-            elif centres[host, 0] <= centres[guest, 0]:
-                earlier[guest].add(host)
-            for other in pass_.get(end[guest], ()):
-                bar = steep[guest] < min(FLATTER_RAD, steep[host] - FLATTER_RAD, steep[other] - FLATTER_RAD)
-                if bar and other not in (host, guest):
-                    earlier[guest] |= {host, other}
-    return earlier
-
-
-def _through(chain: list[Piece]) -> set[int]:
-    return {crossing for piece in chain for crossing in piece.through}
-
-
-def _ends(chain: list[Piece]) -> set[int | None]:
-    return {chain[0].ends[0], chain[-1].ends[1]}
-
-
-def _is_serif(chain: list[Piece], stem: list[Piece]) -> bool:
-    """Whether a line across the end of another is its serif: short beside it, and beside its width."""
-    long, stem_long = (sum(length(piece.line[:, :2]) for piece in each) for each in (chain, stem))
-    half = max(piece.line[:, 2].max() for piece in stem)
-    return bool(long < min(SERIF * stem_long, SERIF_HALVES * half))
-
-
-def _is_arm(bar: np.ndarray, chain: list[Piece], stem: np.ndarray) -> bool:
-    """Whether a line from the left is the arm of a stem that begins on it, as of an E, and no bar on top of it, as of a
-    T: it hardly sticks out beyond the stem."""
-    places = _places(bar)
-    at = int(np.hypot(*(places - stem[0]).T).argmin())
-    way = places[min(2 * at + 3, PLACES - 1)] - bar[0]
-    if not _is_steep(stem) or abs(way[1]) > way[0]:
-        return False
-    half = np.median(np.concatenate([piece.line[:, 2] for piece in chain]))
-    return bool(at / PLACES * length(bar) < min(STUB * length(bar), STUB_HALVES * half))
-
-
-def _is_short(bar: np.ndarray, stem: np.ndarray) -> bool:
-    """Whether a bar is that of a t or f, and not the longer one of a cross or one farther down its stem."""
-    middle = (stem[:, 1].min() + stem[:, 1].max()) / 2
-    return bool(bar[:, 1].mean() > middle and length(bar) < SHORT_BAR * length(stem))
-
-
-def _places(line: np.ndarray) -> np.ndarray:
-    """Evenly along a line."""
-    at = np.linspace(0, length(line), PLACES)
-    return np.column_stack([np.interp(at, lengths(line), line[:, k]) for k in (0, 1)])
-
-
 def _is_straight(line: np.ndarray) -> bool:
     return bool(np.hypot(*(line[-1] - line[0])) > STRAIGHT * length(line))
-
-
-def _centre(line: np.ndarray) -> np.ndarray:
-    weights = steps(line)
-    return np.average((line[1:] + line[:-1]) / 2, axis=0, weights=weights) if weights.sum() > 0 else line[0]
-
-
-def side_by_side(boxes: np.ndarray) -> list[bool]:
-    """Of things with bounds (n, 4) x0, y0, x1, y1 which stand in a line of writing: nothing but dots and accents above
-    or below them. Letters do, parts of Chinese characters rarely."""
-    low, high = boxes[:, :2], boxes[:, 2:]
-    sizes = (high - low).max(axis=1)
-
-    def is_alone(k: int) -> bool:
-        shared = np.minimum(high[:, 0], high[k, 0]) - np.maximum(low[:, 0], low[k, 0])
-        stacked = shared > 0.5 * np.minimum(high[:, 0] - low[:, 0], high[k, 0] - low[k, 0])
-        stacked[k] = False
-        return not (stacked & (sizes > ACCENT * sizes[k])).any()
-
-    return [is_alone(k) for k in range(len(boxes))]
-
-
-def in_rows(boxes: np.ndarray) -> list[int]:
-    """Order of things with bounds (n, 4) x0, y0, x1, y1: as lines of text are read, in a line from the left, what lies
-    higher rather first."""
-    rows: list[list[int]] = []
-    floor = np.inf
-    for k in (-boxes[:, 3]).argsort(kind="stable").tolist():
-        if boxes[k, 3] <= floor:
-            rows.append([])
-            floor = boxes[k, 1]
-        rows[-1].append(k)
-        floor = min(floor, boxes[k, 1])
-    across = (boxes[:, 0] + boxes[:, 2]) - HIGHER * (boxes[:, 1] + boxes[:, 3])
-    return _dots_last([k for row in rows for k in sorted(row, key=lambda k: across[k])], boxes)
-
-
-def _dots_last(order: list[int], boxes: np.ndarray) -> list[int]:
-    """The dots of i and j after their stems. Those of Chinese characters, over what is wider, stay before it."""
-    sizes = boxes[:, 2:] - boxes[:, :2]
-    most = DOT if len(order) > 2 else LONG_DOT
-    for dot in [k for k in order if sizes[k].max() < most * sizes[k].min()]:
-        stems = [
-            k
-            for k in order
-            if 0 <= boxes[dot, 1] - boxes[k, 3] < DOT * sizes[dot, 1]
-            and min(boxes[k, 2], boxes[dot, 2]) > max(boxes[k, 0], boxes[dot, 0])
-            and (sizes[k, 0] < STEM * sizes[dot, 0] or sizes[k, 1] > SLENDER * sizes[k, 0])
-            and sizes[k, 1] > STEM * sizes[dot, 1]
-        ]
-        if stems:
-            order.remove(dot)
-            order.insert(order.index(max(stems, key=lambda k: boxes[k, 3])) + 1, dot)
-    return order

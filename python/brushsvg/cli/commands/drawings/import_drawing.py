@@ -20,7 +20,7 @@ def import_file(args) -> None:
         stage("reading")
         design = arrange(read_drawing(args.input, reading_of(chosen)), layout_of(chosen))
         try:
-            strokes, notices = strokes_of(design, args.paths_as)
+            strokes, notices = strokes_of(design, args.paths_as, args.script or "auto")
         except Error as nothing:  # a drawing with nothing to paint is worth looking at, too
             if args.editable:
                 raise

@@ -24,6 +24,7 @@ def text_file(args) -> None:
             size_mm=args.size,
             width_mm=args.width,
             sheet_mm=args.sheet,
+            script=args.script or "auto",
         )
     warn(args.font, notices)
     write(args, {args.output: drawing.encode()}, sources=[args.output])
