@@ -20,9 +20,10 @@ DOTS_PER_INCH = 90  # 720 pixels wide: read on a page without zooming, some 30 k
 TOP = """# The article, figure by figure
 
 "Physically Motivated Model of a Painting Brush for Robotic Painting and Calligraphy" (Robotics 2024, 13(6), 94),
-computed again by the public functions of brushsvg. `python examples/article docs` writes this page; it needs matplotlib.
-Each script below runs as it stands. It leaves `figure`, a picture, and `rows`, the table under it: the printed value, ours and the
-difference. An empty cell was not printed. Lengths are in mm, z is the press depth. Where the print is wrong:
+computed again by the public functions of brushsvg. `python examples/article docs` writes this page; it needs
+matplotlib. Each script below runs as it stands. It leaves `figure`, a picture, and `rows`, the table under it: the
+printed value, ours and the difference. An empty cell was not printed. Lengths are in mm, z is the press depth. Where
+the print is wrong:
 [equations.md](equations.md).
 
 Not drawn: figures 5 (a flow chart) and 8 (photographs of a set-up and of the brush).
