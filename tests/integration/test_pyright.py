@@ -45,7 +45,7 @@ print(done.plan.passes[0].poses_mm[:, 2].min(), brush.lag(5.0) + 1.0, notices[0]
 made = brushsvg.convert("a.svg", "a.ngc", brush=brush, width=3.0, figures=True)
 overlap = made.figures.total.overlap if made.figures else None
 measured = brushsvg.calibrate({"lag": [], "width": [], "name": "mine"})
-fits = [law.fit.r_squared for law in measured.laws if law.fit]
+fits = [law.fit.r_squared for law in measured.fit.laws if law.fit]
 alpha_rad = laws.alpha_after(0.5, [1.0, 2.0], 3.0)
 """
 # (what stands there, what is written instead, what pyright calls it)

@@ -65,7 +65,7 @@ def painted(aside_mm, lean=(0.0, 0.0), by_map=((0.0, 0.0), (0.0, 0.0)), **faults
 @cache
 def calibrated():
     told = []
-    return brushsvg.calibrate(sheet()[1], "b", aim="overlap", progress=told.append), told
+    return brushsvg.calibrate(sheet()[1], "b", aim="overlap", progress=told.append).fit, told
 
 
 @pytest.mark.thorough
@@ -90,7 +90,7 @@ def test_marks_overlap_no_less_than_by_edges_and_no_interval_is_claimed():
 def test_lean_that_edges_did_not_look_for_comes_back():
     # a simplex alone held lean for lag: 0.06 and -0.18
     _, marks = painted(ASIDE_LITTLE_MM, lean=(0.3, -0.2), turn=0.0, height=0.1)
-    led = machine_beside(brushsvg.calibrate(marks, "b")).led
+    led = machine_beside(brushsvg.calibrate(marks, "b").fit).led
     assert led.lean_mm_per_mm == pytest.approx((0.3, -0.2), abs=0.08)
     assert led.map == pytest.approx(np.zeros((2, 2)), abs=0.006)
 
@@ -99,7 +99,7 @@ def test_lean_that_edges_did_not_look_for_comes_back():
 def test_a_map_that_edges_did_not_look_for_comes_back_with_the_turn():
     by_map = np.array([[0.01, -0.03], [0.05, 0.012]])
     _, marks = painted(ASIDE_LITTLE_MM, by_map=by_map, turn=0.0, height=0.1)
-    made = brushsvg.calibrate(marks, "b")
+    made = brushsvg.calibrate(marks, "b").fit
     untold = SimpleNamespace(
         laws=made.fit.laws, turn_rad=0.0, shift_mm=(0.0, 0.0), centre_mm=made.fit.centre_mm
     )
@@ -123,7 +123,7 @@ def machine_beside(made, fit=None):
 def test_the_report_says_lean_and_map_of_edges_and_overlap_together():
     lean, by_map = (0.3, -0.2), ((0.02, 0.01), (0.0, -0.02))
     _, marks = painted(ASIDE_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
-    made = brushsvg.calibrate(marks, "b", machine=("lean", "axes"))
+    made = brushsvg.calibrate(marks, "b", machine=("lean", "axes")).fit
     text = report(by_overlap._calibrated(made, machine_beside(made)))
     said = {line.split(":")[0]: NUMBER.findall(line) for line in text.splitlines()}
     assert np.array(said["lean"][:2], float) == pytest.approx(lean, abs=0.08)
@@ -134,7 +134,7 @@ def test_the_report_says_lean_and_map_of_edges_and_overlap_together():
 def test_edges_that_know_the_machine_predict_best_and_keep_their_intervals():
     lean, by_map = (0.3, -0.2), ((0.02, 0.01), (0.0, -0.02))
     _, marks = painted(ASIDE_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
-    made = brushsvg.calibrate(marks, "b", aim="overlap", machine=("lean", "axes"))
+    made = brushsvg.calibrate(marks, "b", aim="overlap", machine=("lean", "axes")).fit
     assert made.found.kind == "edges"
     assert all(made.brush.lag.half_interval_95)
     assert np.array(made.brush.covariance).size

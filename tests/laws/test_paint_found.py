@@ -15,7 +15,7 @@ if not hasattr(core, "fit_marks"):
     pytest.skip("built without Ceres", allow_module_level=True)
 
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
-from brushsvg.calibration.from_file import calibrate  # noqa: E402
+from brushsvg.calibration.from_file import fit_measurements as calibrate  # noqa: E402
 from brushsvg.calibration.marks.from_marks import brush_of, calibrate_marks, expected_marks  # noqa: E402
 from brushsvg.calibration.marks.mark_input import read_painted  # noqa: E402
 from brushsvg.calibration.marks.mark_report import report  # noqa: E402

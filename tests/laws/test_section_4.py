@@ -149,7 +149,7 @@ def test_pictures_stand_beside_their_file(picture, tmp_path):
     head = {"format": "brushsvg/measurements", "version": 1}
     (tmp_path / "m.json").write_text(json.dumps(head | rows))
     made = brushsvg.calibrate(tmp_path / "m.json")
-    assert "centre_line[4]" in [point.where for point in made.laws[0].points]
+    assert "centre_line[4]" in [point.where for point in made.fit.laws[0].points]
     assert made.brush.lag(6) == pytest.approx(lag(6.0), abs=0.3)
     (tmp_path / "six.png").write_bytes(picture[:2000])
     with refused("photo-damaged"):

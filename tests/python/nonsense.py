@@ -246,6 +246,7 @@ ARGUMENTS = {
     "Compensated": [],
     "Conversion": [],
     "Check": [],
+    "BrushCalibration": [],
     "PaintedJob": [],
     "Error": [["a sentence", *TEXTS], ["", *NUMBERS], [None, *NUMBERS], [None, *NUMBERS]],
     "Footprint": [[3.0, *NUMBERS], [[[0, 0], [4, -2], [6, 0], [4, 2]], [], [[NAN, 0]] * 3, [[1e300, 0]] * 3]],

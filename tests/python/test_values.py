@@ -321,7 +321,8 @@ VALUES_OF = {
         brushsvg.PaintedJob(*painted, CELL, False, (), "", "") for painted in PAINTED_JOBS
     ],
     "Batch": lambda _: [brushsvg.Batch((), 0, ()), brushsvg.Batch((), 1, ("a.csv",))],
-    "Calibration": lambda folder: [calibrated(folder), calibrated(folder, 0.1)],
+    "BrushCalibration": lambda folder: [calibrated(folder), calibrated(folder, 0.1)],
+    "Calibration": lambda folder: [calibrated(folder).fit, calibrated(folder, 0.1).fit],
 }
 CELL = brushsvg.find_cell()
 PAINTED_JOBS = [("word", overlap, (), {}, None, {}) for overlap in (0.8, 0.9)]

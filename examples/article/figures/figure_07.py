@@ -34,7 +34,7 @@ for f, t in zip(ferrule, tip, strict=True):
 left.plot(*ferrule.T, "ks", ms=4, label="ferrule")
 left.plot(*seen.T, "ro", ms=4, label="tip, as read")
 left.set(xlabel="x, mm", ylabel="z, mm", ylim=(-2, 48))
-gap = made.laws[1]
+gap = made.fit.laws[1]
 right.plot([p.depth_mm for p in gap.points], [p.value_mm for p in gap.points], "rs", ms=4, label="d - r")
 right.plot(z, made.brush.tip_gap(z), color="#2b3a67", label="b, fitted")
 right.plot(z, brush.tip_gap(z), "k--", lw=0.8, label="b of the brush")

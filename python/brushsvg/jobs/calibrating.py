@@ -7,7 +7,7 @@ import json
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Generic, Literal, Required, TypedDict, TypeVar, Unpack, overload
 
 from .. import _core
 from ..calibration.chart.dabs import dabs_of, is_of_dabs
@@ -23,6 +23,7 @@ from ..calibration.marks.machine_found import ask_for, doubts, refuse_unknown_pa
 from ..calibration.marks.mark_input import read_painted
 from ..calibration.marks.paint_found import calibrate_paint
 from ..calibration.numbers import law_report
+from ..calibration.numbers.from_measurements import Calibration
 from ..calibration.overlap import by_overlap_report, lag_by_outlines_report
 from ..calibration.overlap.by_overlap import OverlapCalibration, by_overlap
 from ..calibration.overlap.lag_by_outlines import lag_by_outlines, refuse_assumed
@@ -32,6 +33,7 @@ from ..comparison.learning import learn
 from ..comparison.repeats import read_displacement_mm
 from ..errors import Error, Notice, need, need_number, need_one_of, need_truth
 from ..files import read_bytes
+from ..machine.cells.cell import Cell
 from ..model.plot import brush_picture
 from .calibration_options import AIMS, CalibrationOptions, contradiction, is_photograph
 from .choices import brush_of, cell_of, concerning
@@ -41,43 +43,122 @@ from .machine_parts import undoable_parts
 Report = Callable[[str, Iterable[Notice]], object]  # called with a file and the warnings about it
 
 
+Fit = TypeVar("Fit")
+Rows = Sequence[Mapping[str, object]]
+
+
+class MeasuredNumbers(TypedDict, total=False):
+    """Measured numbers, as a file has them; type checkers compare a dict in a call with this."""
+
+    name: str
+    about: str
+    depth_range_mm: Sequence[float]
+    max_speed_mm_s: float
+    lag: Rows
+    tip_gap: Rows
+    tip_to_widest: Rows
+    half_width: Rows
+    width: Rows
+    angular: Rows
+    side_view: Rows
+    straight: Rows
+    angles: Rows
+    centre_line: Rows
+    video: Rows
+
+
+class PaintedMarks(TypedDict, total=False):
+    """Painted marks with their plan, as a file has them."""
+
+    name: str
+    about: str
+    depth_range_mm: Sequence[float]
+    max_speed_mm_s: float
+    plan: Required[_core.Plan | str | Mapping[str, object]]
+    marks: Required[_core.Marks | str | Rows]
+    expected: Mapping[str, float]
+
+
+class GivenOptions(TypedDict, total=False):
+    """The fields of CalibrationOptions as keyword arguments."""
+
+    absolute: bool
+    total: bool
+    machine: tuple[str, ...]
+    cell: str | Cell
+    paint: bool
+    aim: Literal["edges", "overlap"]
+    chart: str | os.PathLike[str]
+    bar_mm: float
+    dpi: float
+    mirrored: bool
+    height_mm: float
+    spread: str | os.PathLike[str]
+    brush: str | _core.Brush
+    plan: str | os.PathLike[str]
+    prior: str | _core.Brush
+
+
 @dataclass(frozen=True)
-class BrushCalibration:
+class BrushCalibration(Generic[Fit]):
     """A brush and how it was found.
 
-    brush: a Brush [mm], which save_brush writes. fit: the details of the fit; what it holds depends on the source
-    (numbers: laws and remarks; marks: predicted marks and the machine's faults). text: the report that the command
-    prints. reading: how well photographs were read, in words. notices: warnings.
+    brush: a Brush [mm], which save_brush writes. kind: "numbers", "marks", "overlap", "dabs", "lag" or "job". fit: the
+    details of that kind of fit; of numbers its laws and remarks, of marks the predicted marks and the machine's faults.
+    text: the report that the command prints. reading: how well photographs were read, in words. notices: warnings.
     """
 
     brush: _core.Brush
-    fit: Any = field(repr=False)
+    kind: str
+    fit: Fit = field(repr=False, compare=False)
     text: str = field(repr=False)
     reading: str = ""
     notices: tuple[Notice, ...] = ()
-    _plot: Callable[[str], bytes] | None = field(default=None, repr=False, compare=False)
-    _overlay: Callable[[], bytes] | None = field(default=None, repr=False, compare=False)
+    _read: Read | None = field(default=None, repr=False, compare=False)
 
     def plot(self, suffix: str = ".png") -> bytes:
         """Return a picture of the laws with their data and residuals. suffix: ".png" or ".svg"."""
-        if self._plot is None:
+        if self.kind == "job":
             raise Error("a brush that a job updated has no picture of its fit", code="nothing-to-show")
-        return self._plot(suffix)
+        if self.kind == "lag":
+            return brush_picture(self.brush, suffix)
+        return _REPORTS[self.kind].report_picture(self.fit, suffix)
 
     def picture(self) -> bytes:
         """Return a PNG of the flattened photograph with the outlines that were read and those predicted."""
-        if self._overlay is None:
+        if self._read is None:
             raise Error("it was not made of photographs of a chart", code="nothing-to-show")
-        return self._overlay()
+        if self.kind == "dabs":
+            return photo_report.dabs_picture(self._read, self.fit)
+        return photo_report.read_picture(self._read, self.fit if self.kind == "marks" else self.fit.made)
 
 
+_REPORTS = {"numbers": law_report, "marks": mark_report, "overlap": by_overlap_report, "dabs": dab_report}
+
+
+@overload
+def calibrate(
+    source: MeasuredNumbers, name: str = "", *, absolute: bool = False, total: bool = False
+) -> BrushCalibration[Calibration]: ...
+@overload
+def calibrate(
+    source: PaintedMarks, name: str = "", *, machine: tuple[str, ...] = (), paint: bool = False
+) -> BrushCalibration[MarkCalibration]: ...
+@overload
 def calibrate(
     source: str | os.PathLike[str] | Mapping[str, Any] | Sequence[str | os.PathLike[str]],
     name: str = "",
     *,
     progress: Callable[[str], object] | None = None,
+    **options: Unpack[GivenOptions],
+) -> BrushCalibration[Any]: ...
+def calibrate(
+    source: Any,
+    name: str = "",
+    *,
+    progress: Callable[[str], object] | None = None,
     **options: Any,
-) -> BrushCalibration:
+) -> BrushCalibration[Any]:
     """Measured numbers, painted marks or photographs to a brush, as `brushsvg calibrate` does.
 
     source: the path of measurements (.csv .json) or what such a .json holds as a dict, with a Plan and Marks for their
@@ -146,7 +227,8 @@ def calibrated(
         machine, left_out = undoable_parts(options.machine, cell)
         options = replace(options, machine=machine)
         warn(cell.name, left_out)
-    photos = [source] if is_photograph(source) else source if isinstance(source, (tuple, list)) else None
+    several = isinstance(source, (tuple, list))
+    photos = source if several else [source] if is_photograph(source) else None
     if not photos:
         return _from_measurements(source, name, options, stage, warn)
     name = name or os.path.splitext(os.path.basename(photos[0]))[0]
@@ -192,35 +274,26 @@ def _from_measurements(source, name, options, stage, warn) -> BrushCalibration:
         )
     if isinstance(made, OverlapCalibration):
         warn(file, doubts(made.by_edges.painted, made.by_edges.expected))
-        words = by_overlap_report
+        kind = "overlap"
     elif isinstance(made, MarkCalibration):
         warn(file, doubts(made.painted, made.expected))
-        words = mark_report
+        kind = "marks"
     else:
         warn(file, made.doubts)
-        words = law_report
-    return BrushCalibration(
-        made.brush, made, words.report(made), _plot=lambda suffix: words.report_picture(made, suffix)
-    )
+        kind = "numbers"
+    return BrushCalibration(made.brush, kind, made, _REPORTS[kind].report(made))
 
 
 def _from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
     """Return a brush from painted strokes of a chart."""
     with concerning(photos[0]):
         by_edges = made = _fit_strokes(read, name, options, stage)
-        words = mark_report
         if options.aim == "overlap":
-            made, words = by_overlap(by_edges, stage), by_overlap_report
+            made = by_overlap(by_edges, stage)
     warn(photos[0], mark_report.strays_told(by_edges) + doubts(by_edges.painted, by_edges.expected))
-    shown = made.made if options.aim == "overlap" else made
-    return BrushCalibration(
-        made.brush,
-        made,
-        words.report(made, of_photo=True),
-        reading_in_words(read),
-        _plot=lambda suffix: words.report_picture(made, suffix),
-        _overlay=lambda: photo_report.read_picture(read, shown),
-    )
+    kind = "overlap" if options.aim == "overlap" else "marks"
+    text = _REPORTS[kind].report(made, of_photo=True)
+    return BrushCalibration(made.brush, kind, made, text, reading_in_words(read), _read=read)
 
 
 def _fit_strokes(read: Read, name, options, stage) -> MarkCalibration:
@@ -251,14 +324,8 @@ def _from_dabs(photos, read: Read, name, options, warn) -> BrushCalibration:
     with concerning(photos[0]):
         made = calibrate_dabs(dabs_of(read), before, name, edge_mm(read), joined)
     warn(photos[0], made.remarks)
-    return BrushCalibration(
-        made.brush,
-        made,
-        dab_report.report(made),
-        reading_in_words(read),
-        _plot=lambda suffix: dab_report.report_picture(made, suffix),
-        _overlay=lambda: photo_report.dabs_picture(read, made),
-    )
+    text = dab_report.report(made)
+    return BrushCalibration(made.brush, "dabs", made, text, reading_in_words(read), _read=read)
 
 
 def _lag_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
@@ -270,14 +337,8 @@ def _lag_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCa
         made = _fit_strokes(read, name, options, stage)
         found = lag_by_outlines(made, own, name)
     warn(photos[0], mark_report.strays_told(made))
-    return BrushCalibration(
-        found.brush,
-        found,
-        lag_by_outlines_report.report(found),
-        reading_in_words(read),
-        _plot=lambda suffix: brush_picture(found.brush, suffix),
-        _overlay=lambda: photo_report.read_picture(read, found.made),
-    )
+    text = lag_by_outlines_report.report(found)
+    return BrushCalibration(found.brush, "lag", found, text, reading_in_words(read), _read=read)
 
 
 def _from_job(photos, name, options, stage, warn) -> BrushCalibration:
@@ -297,4 +358,4 @@ def _from_job(photos, name, options, stage, warn) -> BrushCalibration:
         learnt = learn(plan, before, pictures, name, options.machine, spread_mm)
     with_lineage(learnt.updated.brush, before, digests)
     warn(photos[0], list(learnt.notices))
-    return BrushCalibration(learnt.updated.brush, learnt.updated, update_report.report(learnt.updated))
+    return BrushCalibration(learnt.updated.brush, "job", learnt.updated, update_report.report(learnt.updated))

@@ -323,12 +323,12 @@ def _brush(brush) -> None:
 
 def _read_measurements(suffix: str) -> Callable[[bytes], None]:
     def read(data: bytes) -> None:
-        from brushsvg.calibration.from_file import calibrate
+        from brushsvg.calibration.from_file import fit_measurements
 
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, f"measured{suffix}")
             Path(path).write_bytes(data)
-            found = calibrate(path)
+            found = fit_measurements(path)
         _brush(found.brush)
 
     return read
