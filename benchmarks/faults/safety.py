@@ -7,12 +7,16 @@ from pathlib import PurePosixPath
 from fault import Fault
 
 PARTS = {
-    "workspace limits": ("machine/workspace_limits.py", "machine/tilt.py", "machine/preflight.py"),
-    "move extents": ("machine/move_extents.py", "machine/corner_blending.py"),
-    "check": ("verification/*.py", "pipeline/checking.py"),
+    "workspace limits": ("machine/workspace_limits.py", "machine/realised/tilt.py", "machine/preflight.py"),
+    "move extents": ("machine/move_extents.py", "machine/realised/corner_blending.py"),
+    "check": ("verify/*.py", "jobs/checking.py"),
     "posts": ("machine/posts/*.py", "machine/writer.py", "cpp/posts/*.cpp"),
-    "readback": ("verification/readback/*.py",),
-    "bounds of corrections": ("painted/corrections.py", "painted/next_time.py", "painted/mended_cell.py"),
+    "readback": ("verify/readback/*.py",),
+    "bounds of corrections": (
+        "comparison/corrections.py",
+        "comparison/next_corrections.py",
+        "comparison/attribution/corrected_cell.py",
+    ),
     "paint loads": ("machine/paint_reload.py", "cpp/inverse/paint_loads.cpp"),
 }
 

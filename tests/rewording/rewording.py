@@ -18,9 +18,7 @@ KEPT = re.compile(
 NO_SENTENCE = re.compile(  # addresses, markup, programs, patterns, lines of a header, names of faults
     r"://|</?[a-z]|=>|;\n|[{}];|\)\s*\{|\\[sdwb]|\w\(\w*\)| = |^order: | in [xy]$"
 )
-PROGRAMS = re.compile(
-    r"machine/(posts/|header_lines|program|setup_programs)|verification/readback/|pipeline/outputs"
-)
+PROGRAMS = re.compile(r"machine/(posts/|header_lines|program|setup_programs)|verify/readback/|jobs/outputs")
 SAID = {
     "Error",
     "Notice",
