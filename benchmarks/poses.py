@@ -55,7 +55,7 @@ def errors_mm(a_pass, stroke, brush) -> tuple[float, float]:
     line = np.column_stack([np.interp(at, line[:, 2], line[:, k]) for k in (0, 1, 3)])
     (marks,) = _core.simulate(plan_of(a_pass, brush), brush, for_outlines=False).passes
     rows = np.flatnonzero(marks.taut)
-    middle_mm = _core.miss_of(a_pass, stroke, brush, TOLERANCE_MM).largest_mm
+    middle_mm = _core.tracking_error_of(a_pass, stroke, brush, TOLERANCE_MM).largest_mm
     if not len(rows):
         return middle_mm, 0.0
     taut = slice(rows[0], rows[-1] + 1)
@@ -139,7 +139,7 @@ def compared(title: str, strokes, brush) -> None:
     sampled = np.array([math.ceil(length_mm(each.poses_mm) / EVERY_MM) + 1 for each in ours.plan.passes])
     pairs = zip(strokes, ours.plan.passes, strict=True)
     thinned = np.array([by_simplifying(stroke, brush, a_pass) for stroke, a_pass in pairs])
-    within = np.array([miss.within_tolerance for miss in ours.misses])
+    within = np.array([miss.within_tolerance for miss in ours.tracking_errors])
     print(
         f"{title}: {len(strokes)} strokes, of them {within.sum()} within {TOLERANCE_MM} mm, which are compared"
     )

@@ -26,6 +26,7 @@ int main() {
     const CompensatedPass done = compensate(stroke, brush);
     const Rings painted = brushsvg::outline(simulate(done.pass, brush), brush);
     std::printf("%ld poses, at most %.3f mm off the line, overlap with the drawing %.3f\n",
-                long(done.pass.poses_mm.rows()), done.miss.largest_mm, overlap(painted, wanted_outline(stroke)));
-    return done.miss.within_tolerance ? 0 : 1;
+                long(done.pass.poses_mm.rows()), done.tracking_error.largest_mm,
+                overlap(painted, wanted_outline(stroke)));
+    return done.tracking_error.within_tolerance ? 0 : 1;
 }

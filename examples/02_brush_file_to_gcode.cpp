@@ -25,7 +25,8 @@ int main(int count, char** words) try {
     std::ofstream program(words[2]);
     program << posts::linuxcnc(plan, brush, {}, "wave");
     if (!program.flush()) return std::fprintf(stderr, "%s: the file cannot be written\n", words[2]), 1;
-    std::printf("%ld poses, at most %.3f mm off the line\n", long(done.pass.poses_mm.rows()), done.miss.largest_mm);
+    std::printf("%ld poses, at most %.3f mm off the line\n", long(done.pass.poses_mm.rows()),
+                done.tracking_error.largest_mm);
     return 0;
 } catch (const Error& refused) {  // where: a key of the brush file, or the stroke
     const std::string where = refused.where().empty() ? "" : refused.where() + ": ";

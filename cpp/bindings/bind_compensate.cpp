@@ -44,7 +44,7 @@ Way way_of(const std::string& method, const brushsvg::Brush& brush, brushsvg::Co
 
 struct Compensated {
     brushsvg::Plan plan;
-    std::vector<brushsvg::TrackingError> misses;
+    std::vector<brushsvg::TrackingError> tracking_errors;
     std::vector<brushsvg::Warning> warnings;
 };
 
@@ -52,17 +52,17 @@ struct Compensated {
 
 template <>
 inline constexpr auto members<Compensated> =
-    std::tuple(&Compensated::plan, &Compensated::misses, &Compensated::warnings);
+    std::tuple(&Compensated::plan, &Compensated::tracking_errors, &Compensated::warnings);
 
 void bind_compensate(py::module_& m) {
     using namespace brushsvg;
-    py::class_<TrackingError> miss(
-        m, "Miss",
+    py::class_<TrackingError> error(
+        m, "TrackingError",
         R"(Distance of the widest point from the middle line [mm], from the first taut row to the last.
 
 largest_mm, where at_mm (x, y) it is; mean_mm over the length painted; within_tolerance; has_turn_in_place: at a corner
 too sharp for the lever.)");
-    miss.def_readonly("largest_mm", &TrackingError::largest_mm)
+    error.def_readonly("largest_mm", &TrackingError::largest_mm)
         .def_property_readonly("at_mm", frozen_copy(&TrackingError::at_mm))
         .def_readonly("mean_mm", &TrackingError::mean_mm)
         .def_readonly("within_tolerance", &TrackingError::within_tolerance)
@@ -72,11 +72,11 @@ too sharp for the lever.)");
                    ") mm, " + told(e.mean_mm) + " mm on average" +
                    (e.within_tolerance ? ", within the tolerance>" : ">");
         });
-    as_fixed_value(miss);
+    as_fixed_value(error);
     py::class_<Compensated> type(m, "Compensated",
-                                 "A plan, what each pass still misses, and warnings, notices about strokes.");
+                                 "A plan, the tracking error of each pass, and warnings, notices about strokes.");
     type.def_readonly("plan", &Compensated::plan)
-        .def_property_readonly("misses", parts(&Compensated::misses))
+        .def_property_readonly("tracking_errors", parts(&Compensated::tracking_errors))
         .def_property_readonly("warnings",
                                [](const Compensated& done) {
                                    py::tuple out(done.warnings.size());
@@ -94,7 +94,7 @@ too sharp for the lever.)");
                 for (const auto& [is_other, k] : passes) {
                     const Compensated& from = is_other ? other : done;
                     out.plan.passes.push_back(from.plan.passes.at(k));
-                    out.misses.push_back(from.misses.at(k));
+                    out.tracking_errors.push_back(from.tracking_errors.at(k));
                     if (is_other) names.insert(out.plan.passes.back().stroke.name());
                 }
                 for (const brushsvg::Warning& each : done.warnings)
@@ -107,7 +107,7 @@ too sharp for the lever.)");
             "One plan of passes of both: (whether it is the other's, its number), in order.")
         .def("__repr__", [](const Compensated& done) {
             double largest = 0.0;
-            for (const TrackingError& each : done.misses) largest = std::max(largest, each.largest_mm);
+            for (const TrackingError& each : done.tracking_errors) largest = std::max(largest, each.largest_mm);
             return "<Compensated: " + counted(done.plan.passes.size(), "pass") + ", at most " + told(largest) +
                    " mm off the middle line, " + counted(done.warnings.size(), "warning") + ">";
         });
@@ -140,7 +140,7 @@ too sharp for the lever.)");
             in_parallel_chunks(strokes.size(), at_once, progress, [&](std::size_t i) { done[i] = way(strokes[i]); });
             for (CompensatedPass& one : done) {
                 out.plan.passes.push_back(std::move(one.pass));
-                out.misses.push_back(one.miss);
+                out.tracking_errors.push_back(one.tracking_error);
                 for (Warning& each : one.warnings) out.warnings.push_back(std::move(each));
             }
             return out;
@@ -155,7 +155,7 @@ sheet_mm: (w, h), kept in the plan; None: of no sheet, to look at. method: "none
 ahead by lag_mm (None: the lag at each stroke's median depth); "closed", the inverse of the brush's law; "refined", from there on by least squares until
 the outline of the mark lies best on the wanted one, kept where it overlaps better. tolerance_mm: how far the widest
 point of the mark may be off the middle line once the brush is taut, between poses too; each pass is simulated and its
-miss returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most
+tracking error returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most
 the brush's. progress: called with (strokes done, strokes). few_poses: closed only, no more poses than the tolerance
 asks for. start, end: closed and refined, the terminals of strokes that do not set them: "pointed", as the footprint is
 behind; "round", as it is in front, where a start is set down inside of the stroke, goes back to its beginning and turns
@@ -163,11 +163,11 @@ over; "butt", straight, a narrower mark goes into one corner, along the cut and 
 suits the drawn end best.
 
 Error, naming the stroke, for widths or depths out of the brush's reach.)");
-    m.def("miss_of", &tracking_error_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"),
+    m.def("tracking_error_of", &tracking_error_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"),
           py::arg("tolerance_mm") = 0.05, py::call_guard<Unlocked>(),
           "Miss of one pass against the stroke it should paint, by simulating it.");
     m.def(
-        "misses_of",
+        "tracking_errors_of",
         [](const std::vector<Pass>& passes, const std::vector<Stroke>& strokes, const Brush& brush,
            double tolerance_mm) {
             if (passes.size() != strokes.size()) throw Error("sizes-differ", "a stroke is needed for each pass");

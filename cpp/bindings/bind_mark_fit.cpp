@@ -55,10 +55,10 @@ inline constexpr auto members<brushsvg::fit::MarkOptions> =
                &brushsvg::fit::MarkOptions::noise_length_mm, &brushsvg::fit::MarkOptions::most_iterations);
 
 template <>
-inline constexpr auto members<brushsvg::fit::MarkMiss> =
-    std::tuple(&brushsvg::fit::MarkMiss::point_mm, &brushsvg::fit::MarkMiss::distance_mm,
-               &brushsvg::fit::MarkMiss::displacement_mm, &brushsvg::fit::MarkMiss::way_mm,
-               &brushsvg::fit::MarkMiss::rms_mm, &brushsvg::fit::MarkMiss::outlier);
+inline constexpr auto members<brushsvg::fit::MarkResidual> =
+    std::tuple(&brushsvg::fit::MarkResidual::point_mm, &brushsvg::fit::MarkResidual::distance_mm,
+               &brushsvg::fit::MarkResidual::displacement_mm, &brushsvg::fit::MarkResidual::way_mm,
+               &brushsvg::fit::MarkResidual::rms_mm, &brushsvg::fit::MarkResidual::outlier);
 
 template <>
 inline constexpr auto members<brushsvg::fit::MarkFit> =
@@ -242,15 +242,15 @@ nothing, say what to expect of such edges.)");
             return "<MarkOptions: to depth " + told(v.deepest_mm) + " mm, a point every " + told(v.spacing_mm) + " mm>";
         });
     as_value(mark_options);
-    py::class_<MarkMiss> mark_miss(m, "MarkMiss", "One painted mark against its prediction.");
-    mark_miss.def_readonly("point_mm", &MarkMiss::point_mm)
-        .def_property_readonly("distance_mm", frozen_copy(&MarkMiss::distance_mm))
-        .def_property_readonly("displacement_mm", frozen_copy(&MarkMiss::displacement_mm))
-        .def_readonly("way_mm", &MarkMiss::way_mm)
-        .def_readonly("rms_mm", &MarkMiss::rms_mm)
-        .def_readonly("outlier", &MarkMiss::outlier)
-        .def("__repr__", [](const MarkMiss& v) {
-            return "<MarkMiss: rms " + told(v.rms_mm) + " mm over " + counted(v.distance_mm.size(), "point") + ">";
+    py::class_<MarkResidual> mark_miss(m, "MarkResidual", "One painted mark against its prediction.");
+    mark_miss.def_readonly("point_mm", &MarkResidual::point_mm)
+        .def_property_readonly("distance_mm", frozen_copy(&MarkResidual::distance_mm))
+        .def_property_readonly("displacement_mm", frozen_copy(&MarkResidual::displacement_mm))
+        .def_readonly("way_mm", &MarkResidual::way_mm)
+        .def_readonly("rms_mm", &MarkResidual::rms_mm)
+        .def_readonly("outlier", &MarkResidual::outlier)
+        .def("__repr__", [](const MarkResidual& v) {
+            return "<MarkResidual: rms " + told(v.rms_mm) + " mm over " + counted(v.distance_mm.size(), "point") + ">";
         });
     as_fixed_value(mark_miss);
     py::class_<MarkFit> mark_fit(m, "MarkFit", R"(A brush fitted to marks.

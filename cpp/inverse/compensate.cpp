@@ -118,21 +118,21 @@ constexpr double kStepShare = 0.35;
 constexpr double kMostStepToleranceMm = 0.00875;
 /// Below a tolerance those that are tried as well.
 constexpr double kFinerTolerancesMm[] = {0.5, 0.2, 0.1, 0.05};
-/// Shares of the tolerance: what thinning out may use up, and the miss that is accepted then. Rows of the check lie a
-/// little off the truth between them: at 0.95 a mark was 0.0002 mm off too far.
+/// Shares of the tolerance: what thinning out may use up, and the tracking error that is accepted then. Rows of the
+/// check lie a little off the truth between them: at 0.95 a mark was 0.0002 mm off too far.
 constexpr double kThinShare = 0.9, kSurely = 0.9;
-/// And what fewer poses may add to a miss that is larger anyway: with none a cusp's poses were all kept for 1e-4 mm. A
-/// plainer beginning has to win more, for what is missed elsewhere is none of its.
+/// And what fewer poses may add to a tracking error that is larger anyway: with none a cusp's poses were all kept for
+/// 1e-4 mm. A plainer beginning has to win more, for what is missed elsewhere is none of its.
 constexpr double kHairShare = 0.1;
 
-/// Replaces pass and miss where fewer poses miss the line by no more than the larger of the limit and of that miss.
+/// Replaces pass and error where fewer poses miss the line by no more than the larger of the limit and of that error.
 bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& stroke, const Brush& brush,
-              double tolerance_mm, Pass& pass, TrackingError& miss) {
+              double tolerance_mm, Pass& pass, TrackingError& error) {
     const Pass fewer = thin_out_after_turn(from, brush, share * tolerance_mm);
     const TrackingError remains = tracking_error_of(fewer, stroke, brush, tolerance_mm);
     if (remains.largest_mm > limit_mm) return false;
     pass = fewer;
-    miss = remains;
+    error = remains;
     return true;
 }
 
@@ -164,29 +164,30 @@ CompensatedPass led(const Pass& plain, bool few_poses, const Stroke& stroke, con
         if (!poses) return result;
         poses->into(trial);
         if (few_poses && thin_out(trial, kThinShare, kSurely * tolerance_mm, stroke, brush, tolerance_mm, result.pass,
-                                  result.miss)) {
-            result.miss.has_turn_in_place = turns;
+                                  result.tracking_error)) {
+            result.tracking_error.has_turn_in_place = turns;
             return result;
         }
-        TrackingError miss = tracking_error_of(trial, stroke, brush, tolerance_mm);
-        miss.has_turn_in_place = turns;
-        const bool better = attempt == 0 || miss.largest_mm < 0.95 * result.miss.largest_mm;
+        TrackingError error = tracking_error_of(trial, stroke, brush, tolerance_mm);
+        error.has_turn_in_place = turns;
+        const bool better = attempt == 0 || error.largest_mm < 0.95 * result.tracking_error.largest_mm;
         if (better) {
-            result.miss = miss;
+            result.tracking_error = error;
             result.pass = trial;
         }
         // rows of the check lie a little off the truth between them; fewer poses need more to spare
-        const bool sure = !few_poses && miss.largest_mm <= 0.9 * tolerance_mm;
-        if (sure || ((turns || (few_poses && result.miss.within_tolerance)) && !better) ||
+        const bool sure = !few_poses && error.largest_mm <= 0.9 * tolerance_mm;
+        if (sure || ((turns || (few_poses && result.tracking_error.within_tolerance)) && !better) ||
             trial.poses_mm.rows() >= Index(kMostSamples))
             break;
     }
     // a line that cannot be followed to the tolerance: as well as with all poses, then, but for a hair
-    const bool turns = result.miss.has_turn_in_place;
-    const double missed_mm = result.miss.largest_mm;
+    const bool turns = result.tracking_error.has_turn_in_place;
+    const double missed_mm = result.tracking_error.largest_mm;
     const double limit_mm = missed_mm <= tolerance_mm ? tolerance_mm : missed_mm + kHairShare * tolerance_mm;
-    if (few_poses) thin_out(result.pass, 0.5, limit_mm, stroke, brush, tolerance_mm, result.pass, result.miss);
-    result.miss.has_turn_in_place = turns;
+    if (few_poses)
+        thin_out(result.pass, 0.5, limit_mm, stroke, brush, tolerance_mm, result.pass, result.tracking_error);
+    result.tracking_error.has_turn_in_place = turns;
     return result;
 }
 
@@ -218,7 +219,7 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         if (options.method == Compensation::constant)
             r0 = options.lag_mm ? *options.lag_mm : brush.lag(median_depth(stroke, brush));
         offset(stroke, brush, line, r0, step_tolerance).into(pass);
-        result.miss = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
+        result.tracking_error = tracking_error_of(pass, stroke, brush, options.tolerance_mm);
         return result;
     }
     const std::vector<BrushMoves> ways = select_ends(stroke, brush, options, step_tolerance);
@@ -228,13 +229,15 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         const bool is_first = &moves == &ways.front();
         const bool few_poses =
             options.few_poses && (moves.front().line || moves.back().line);  // a disc has none to spare
-        if (!is_first && result.miss.within_tolerance) break;
+        if (!is_first && result.tracking_error.within_tolerance) break;
         const auto poses_by = [&](double steps, bool& turns) { return closed_form(moves, brush, steps, turns); };
         CompensatedPass done = led(plain, few_poses, stroke, brush, options.tolerance_mm, poses_by);
         if (done.pass.poses_mm.rows() == 0) continue;
-        if (!is_first && !(done.miss.largest_mm < result.miss.largest_mm - kHairShare * options.tolerance_mm)) continue;
+        if (!is_first &&
+            !(done.tracking_error.largest_mm < result.tracking_error.largest_mm - kHairShare * options.tolerance_mm))
+            continue;
         result.pass = std::move(done.pass);
-        result.miss = done.miss;
+        result.tracking_error = done.tracking_error;
         if (all_poses) *all_poses = led(plain, false, stroke, brush, options.tolerance_mm, poses_by).pass;
     }
     return result;
@@ -255,10 +258,11 @@ CompensatedPass compensated(const Stroke& given, const Brush& brush, const Compe
         CompensatedPass finer = at_its_tolerance(stroke, brush, finely);
         if (finer.pass.poses_mm.rows() >= result.pass.poses_mm.rows()) continue;
         // measured as the plan that it would replace
-        const bool turns = finer.miss.has_turn_in_place;
-        finer.miss = tracking_error_of(finer.pass, stroke, brush, options.tolerance_mm);
-        finer.miss.has_turn_in_place = turns;
-        if (finer.miss.largest_mm > std::max(options.tolerance_mm, result.miss.largest_mm)) continue;
+        const bool turns = finer.tracking_error.has_turn_in_place;
+        finer.tracking_error = tracking_error_of(finer.pass, stroke, brush, options.tolerance_mm);
+        finer.tracking_error.has_turn_in_place = turns;
+        if (finer.tracking_error.largest_mm > std::max(options.tolerance_mm, result.tracking_error.largest_mm))
+            continue;
         result = finer;
     }
     return result;

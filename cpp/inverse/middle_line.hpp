@@ -16,7 +16,7 @@ constexpr double kTurnStepRad = 0.2;
 /// cosine.
 constexpr double kTurnChordRad = 0.4;
 /// Beyond those it begins with. Where a line asks for more (a taper far too steep for the lever), finer steps no longer
-/// help: the miss is reported.
+/// help: the tracking error is reported.
 constexpr std::size_t kMostSamples = 20000;
 
 /// Of a cubic's parameter between two samples. At a cusp the lengths of a cubic's parts do not add up to its own, by

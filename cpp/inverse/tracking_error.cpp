@@ -58,19 +58,19 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
     std::size_t begin = 0, end = marks.taut.size();
     while (begin < end && !marks.taut[begin]) ++begin;
     while (end > begin && !marks.taut[end - 1]) --end;
-    TrackingError miss;
+    TrackingError error;
     double before = 0.0, travelled = 0.0;  // by length and not by rows, which lie closer where a tolerance asks for it
     const auto look = [&](std::size_t from, std::size_t to, auto& path) {
         std::optional<Eigen::Vector2d> last;
         along(widest, Index(from), Index(to), kLookEveryMm, [&](const Eigen::Vector2d& point) {
             double d = path.distance(point);
             for (const Disc& disc : discs) d = std::min(d, disc.distance(point));
-            if (d > miss.largest_mm) {
-                miss.largest_mm = d;
-                miss.at_mm = {point.x(), point.y()};
+            if (d > error.largest_mm) {
+                error.largest_mm = d;
+                error.at_mm = {point.x(), point.y()};
             }
             const double step = last ? (point - *last).norm() : 0.0;
-            miss.mean_mm += 0.5 * (before + d) * step;
+            error.mean_mm += 0.5 * (before + d) * step;
             travelled += step;
             before = d;
             last = point;
@@ -81,9 +81,9 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
         begin = turn.last;
     }
     look(begin, end, nearest);
-    miss.mean_mm = travelled > 0.0 ? miss.mean_mm / travelled : miss.largest_mm;
-    miss.within_tolerance = miss.largest_mm <= tolerance_mm;
-    return miss;
+    error.mean_mm = travelled > 0.0 ? error.mean_mm / travelled : error.largest_mm;
+    error.within_tolerance = error.largest_mm <= tolerance_mm;
+    return error;
 }
 
 }  // namespace
@@ -112,8 +112,8 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     Stroke whole = up_to_drawn_end(painted, brush);  // a blunt front goes beyond the path's end, and so does a point
     if (stroke.settings.end == "pointed")
         if (auto pointed = pointed_end(painted, brush, Caps::round)) whole = std::move(pointed->stroke);
-    const TrackingError miss = tracking_error_of(marks, widest, whole, tolerance_mm, discs);
-    if (miss.within_tolerance) return miss;
+    const TrackingError error = tracking_error_of(marks, widest, whole, tolerance_mm, discs);
+    if (error.within_tolerance) return error;
     if (const auto dot = discs.empty() ? std::nullopt : dot_with_corners(painted, brush)) {
         const Stroke& way = *dot->back().line;
         for (Index i = 0; i < way.middle_mm.rows(); ++i)
@@ -126,7 +126,7 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     for (const Side side : {Side::start, Side::end})
         if (const auto found = make_butt_end(painted, brush, Caps::straight, side); found && is_butt(widest, *found))
             discs.push_back({found->end.at_mm, found->reach_mm});
-    return discs.size() == before ? miss : tracking_error_of(marks, widest, whole, tolerance_mm, discs);
+    return discs.size() == before ? error : tracking_error_of(marks, widest, whole, tolerance_mm, discs);
 }
 
 }  // namespace brushsvg

@@ -206,7 +206,7 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
         return closed;
     RefinedPass done = closed;
     done.plan.pass = std::move(best);
-    done.plan.miss = tracking_error_of(done.plan.pass, stroke, brush, options.tolerance_mm);
+    done.plan.tracking_error = tracking_error_of(done.plan.pass, stroke, brush, options.tolerance_mm);
     done.overlap = overlap;
     done.bettered = true;
     return done;

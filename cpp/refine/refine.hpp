@@ -36,7 +36,7 @@ struct RefinedPass {
 /// plan is simulated, and kept only where its mark overlaps better by the report's own measure, stays in bounds, and
 /// does not pay for it with an outline that turns more or has thorns: a full turn is worth 0.1 of overlap, a thorn
 /// 0.02. Where the whole step is not calm, parts of it are tried as well, and where none of them is, smaller steps. Its
-/// miss is that from the drawn middle line, which it leaves on purpose. Throws Error as compensate() does.
+/// tracking error is that from the drawn middle line, which it leaves on purpose. Throws Error as compensate() does.
 RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions& options = {});
 
 }  // namespace brushsvg::fit

@@ -72,7 +72,7 @@ def remove_layer(root, name: str) -> None:
 
 def _layer(etree, marks, root, warnings: list[str], save_refuses: list[str]):
     paths = marks.findall(f"{SVG}path")
-    missed = {path for path in paths if path.get("data-missed") == "yes"}
+    missed = {path for path in paths if path.get("data-off-line") == "yes"}
     if root.get("transform"):
         warnings = [*warnings, MOVED]
     label = _label(paths, len(missed), marks, len(warnings), save_refuses)
@@ -116,9 +116,11 @@ def _label(paths, missed: int, marks, warnings: int, save_refuses: list[str]) ->
         return f"Brush preview: saving a program will be refused: {save_refuses[0]}{more}"
     count = len(paths)
     parts = [f"{count} stroke{'s' * (count != 1)}"]
-    misses_mm = [float(path.get("data-miss-mm")) for path in paths if path.get("data-miss-mm")]
-    if misses_mm:
-        parts.append(f"tracking error at most {max(misses_mm):.2f} mm")
+    errors_mm = [
+        float(path.get("data-tracking-error-mm")) for path in paths if path.get("data-tracking-error-mm")
+    ]
+    if errors_mm:
+        parts.append(f"tracking error at most {max(errors_mm):.2f} mm")
     if missed:
         parts.append(f"{missed} painted elsewhere than drawn")
     if warnings:

@@ -43,9 +43,9 @@ TEST_CASE("turns up to 90 degrees are exact, beyond them what remains is what ge
         for (double tolerance : {0.5, 0.05, 1e-3, 1e-5}) {
             const CompensatedPass c = compensate(s, brush, {Compensation::closed, tolerance});
             const double remains = degrees > 90.0 ? e * (1.0 - std::cos(a - kPi / 2)) : 0.0;
-            CHECK(c.miss.largest_mm <= remains + tolerance);
-            CHECK(c.miss.largest_mm >= remains - tolerance);
-            CHECK(c.miss.has_turn_in_place == (degrees > 90.0));
+            CHECK(c.tracking_error.largest_mm <= remains + tolerance);
+            CHECK(c.tracking_error.largest_mm >= remains - tolerance);
+            CHECK(c.tracking_error.has_turn_in_place == (degrees > 90.0));
         }
     }
 }
@@ -99,9 +99,9 @@ TEST_CASE("tapers across the depth where the lever changes its sign, and a 0.5 m
     wave << 20, 40, 40, 75, 50, 70, 60, 45, 60, 45, 70, 20, 90, 15, 110, 40;
     for (double tolerance : {0.5, 0.05, 1e-3, 1e-5}) {
         const Stroke taper = stroke_of(wave, {{0.0, 0.125}, {0.3, 2.0}, {0.6, 0.125}, {1.0, 2.0}});
-        CHECK(compensate(taper, brush, {Compensation::closed, tolerance}).miss.largest_mm <= tolerance);
+        CHECK(compensate(taper, brush, {Compensation::closed, tolerance}).tracking_error.largest_mm <= tolerance);
         const Stroke hair = stroke_of(wave, {{0.0, 0.25}});
-        CHECK(compensate(hair, brush, {Compensation::closed, tolerance}).miss.largest_mm <= tolerance);
+        CHECK(compensate(hair, brush, {Compensation::closed, tolerance}).tracking_error.largest_mm <= tolerance);
     }
 }
 
@@ -163,11 +163,11 @@ TEST_CASE("a dot and a mark shorter than a footprint are one landing") {
     const Brush brush = shipped("round-6");
     const Stroke dot = stroke_of(polyline({V(50, 50), V(50, 50)}), {{0.0, 2.0}});
     const CompensatedPass c = compensate(dot, brush, {});
-    CHECK(c.miss.largest_mm < 1e-9);
+    CHECK(c.tracking_error.largest_mm < 1e-9);
     CHECK(overlap_of(dot, c.pass, brush) > 0.7);
     const Stroke dash = stroke_of(polyline({V(50, 50), V(51, 50)}), {{0.0, 2.0}});
     const CompensatedPass short_one = compensate(dash, brush, {});
-    CHECK(short_one.miss.largest_mm < 1e-9);
+    CHECK(short_one.tracking_error.largest_mm < 1e-9);
     CHECK(std::abs(painted_bounds(simulate(short_one.pass, brush, 0.01), brush)[2] - 53.0) < 0.02);
 }
 
@@ -175,7 +175,7 @@ TEST_CASE("a rigid pen stays on the line at its own depth") {
     const Brush pen = shipped("rigid");
     const Stroke s = stroke_of(polyline({V(20, 20), V(60, 20), V(20, 21)}), {{0.0, 3.0}});
     const CompensatedPass c = compensate(s, pen, {});
-    CHECK(c.miss.largest_mm < 1e-9);
+    CHECK(c.tracking_error.largest_mm < 1e-9);
     CHECK(c.pass.poses_mm.rows() == 5);
     CHECK(c.pass.poses_mm(2, 2) == -pen.paint_depth_mm);
 }
@@ -185,7 +185,7 @@ TEST_CASE("a brush whose lag grows as fast as its depth is pressed before it run
     brush.lag.coefficients = {0.5, 0.0, 0.2};
     const Stroke s = stroke_of(polyline({V(30, 30), V(80, 30)}), {{0.0, brush.half_width(5.0)}});
     const CompensatedPass c = compensate(s, brush, {});
-    CHECK(c.miss.within_tolerance);
+    CHECK(c.tracking_error.within_tolerance);
     const PassMarks m = simulate(c.pass, brush, 0.01);
     std::size_t first = 0;
     while (!m.taut[first]) ++first;
@@ -223,7 +223,8 @@ TEST_CASE("random smooth strokes: closed form within tolerance, contact at rest 
         const Stroke s = stroke_of(c, widths);
         for (double tolerance : {0.05, 1e-3}) {
             const CompensatedPass out = compensate(s, brush, {Compensation::closed, tolerance});
-            CHECK_MESSAGE(out.miss.largest_mm <= tolerance, "stroke " << k << " misses by " << out.miss.largest_mm);
+            CHECK_MESSAGE(out.tracking_error.largest_mm <= tolerance,
+                          "stroke " << k << " misses by " << out.tracking_error.largest_mm);
         }
         const PassMarks m = simulate(compensate(s, brush, {}).pass, brush, 0.01);
         std::size_t last = m.taut.size() - 1;
@@ -239,7 +240,7 @@ TEST_CASE("a line of very many short cubics is followed as one of few") {
         std::vector<V> points;
         for (int k = 0; k <= n; ++k)
             points.emplace_back(60 - 40 * std::cos(2.0 * k / n), 40 + 40 * std::sin(2.0 * k / n));
-        return compensate(stroke_of(polyline(points), {{0.0, brush.half_width(4.0)}}), brush).miss;
+        return compensate(stroke_of(polyline(points), {{0.0, brush.half_width(4.0)}}), brush).tracking_error;
     };
     CHECK(bow(200).largest_mm < 0.05);
     CHECK(bow(15000).largest_mm < 0.05);
@@ -252,7 +253,7 @@ TEST_CASE("a round beginning turns over where its patch rests") {
     CompensateOptions options;
     options.start = Terminal::round;
     const CompensatedPass begun = compensate(s, brush, options);
-    CHECK(begun.miss.within_tolerance);
+    CHECK(begun.tracking_error.within_tolerance);
     const PassMarks marks = simulate(begun.pass, brush);
     const auto turns = turns_over(marks);
     REQUIRE(turns.size() == 1);
@@ -345,7 +346,7 @@ TEST_CASE("steps round a cusp come to an end, however fine they are asked for") 
 TEST_CASE("a hook has a plan of ordinary size") {
     const CompensatedPass found = compensate(hook(), shipped("round-6"));
     CHECK(found.pass.poses_mm.rows() < 200);
-    CHECK(found.miss.largest_mm < 0.1);
+    CHECK(found.tracking_error.largest_mm < 0.1);
 }
 
 TEST_CASE("an error is reported as it is measured, of plans that were made for a finer tolerance too") {
@@ -368,6 +369,6 @@ TEST_CASE("an error is reported as it is measured, of plans that were made for a
     for (const double tolerance_mm : {0.05, 0.15, 0.25, 0.367, 0.6}) {
         const CompensatedPass made = compensate(stroke, pen, {Compensation::closed, tolerance_mm});
         const TrackingError seen = tracking_error_of(made.pass, stroke, pen, tolerance_mm);
-        CHECK_MESSAGE(std::abs(seen.largest_mm - made.miss.largest_mm) < 1e-9, "at " << tolerance_mm);
+        CHECK_MESSAGE(std::abs(seen.largest_mm - made.tracking_error.largest_mm) < 1e-9, "at " << tolerance_mm);
     }
 }

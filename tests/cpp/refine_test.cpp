@@ -245,7 +245,7 @@ TEST_CASE("a line, a taper, a corner, a hook, a curve and a blunt head are paint
         CHECK(refined >= each.at_least);
         CHECK(std::abs(r.overlap - refined) < 0.003);
         CHECK(std::abs(r.overlap_closed - closed) < 0.003);
-        CHECK(r.plan.miss.largest_mm > 0.0);
+        CHECK(r.plan.tracking_error.largest_mm > 0.0);
     }
 }
 

@@ -63,9 +63,9 @@ TEST_CASE("fewer poses leave the mark within the tolerance, its ends and its dep
         options.few_poses = false;
         const CompensatedPass many = compensate(stroke, brush, options);
         CAPTURE(k);
-        const double missed = many.miss.largest_mm;
-        CHECK(few.miss.largest_mm <= (missed <= tolerance ? tolerance : missed + 0.1 * tolerance));
-        CHECK(few.miss.has_turn_in_place == many.miss.has_turn_in_place);
+        const double missed = many.tracking_error.largest_mm;
+        CHECK(few.tracking_error.largest_mm <= (missed <= tolerance ? tolerance : missed + 0.1 * tolerance));
+        CHECK(few.tracking_error.has_turn_in_place == many.tracking_error.has_turn_in_place);
         CHECK(deepest(few.pass) <= deepest(many.pass) + 1e-9);
         CHECK((few.pass.poses_mm.row(0) - many.pass.poses_mm.row(0)).norm() < tolerance);
         CHECK((few.pass.poses_mm.bottomRows(1) - many.pass.poses_mm.bottomRows(1)).norm() < tolerance);

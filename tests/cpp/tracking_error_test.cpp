@@ -22,10 +22,10 @@ TEST_CASE("a pass beside its stroke misses by what lies between them") {
     Pass pass;
     pass.poses_mm.resize(4, 3);
     pass.poses_mm << 20, 20.3, 0, 20, 20.3, -4, 85, 20.3, -4, 85, 20.3, 0;
-    const TrackingError miss = tracking_error_of(pass, stroke, brush, 0.05);
-    CHECK(miss.largest_mm == doctest::Approx(0.3).epsilon(1e-6));
-    CHECK(miss.mean_mm == doctest::Approx(0.3).epsilon(1e-6));
-    CHECK_FALSE(miss.within_tolerance);
+    const TrackingError error = tracking_error_of(pass, stroke, brush, 0.05);
+    CHECK(error.largest_mm == doctest::Approx(0.3).epsilon(1e-6));
+    CHECK(error.mean_mm == doctest::Approx(0.3).epsilon(1e-6));
+    CHECK_FALSE(error.within_tolerance);
     CHECK(tracking_error_of(pass, stroke, brush, 0.4).within_tolerance);
 }
 
@@ -50,13 +50,13 @@ TEST_CASE("a turned line is missed by the same mean, where a landing leaves the 
     const Stroke along_x = stroke_of(polyline({V(0, 0), V(80, 0)}), {{0.0, 2.5}});
     CompensateOptions options;
     options.method = Compensation::constant;
-    const double mean = compensate(along_x, brush, options).miss.mean_mm;
+    const double mean = compensate(along_x, brush, options).tracking_error.mean_mm;
     CHECK(mean < 0.5);
     for (int k = 1; k < 40; ++k) {
         CAPTURE(k);
         const V to(80.0 * std::cos(0.1 * k), 80.0 * std::sin(0.1 * k));
         const Stroke turned = stroke_of(polyline({V(120, 90), V(120, 90) + to}), {{0.0, 2.5}});
-        CHECK(compensate(turned, brush, options).miss.mean_mm == doctest::Approx(mean).epsilon(0.02));
+        CHECK(compensate(turned, brush, options).tracking_error.mean_mm == doctest::Approx(mean).epsilon(0.02));
     }
 }
 

@@ -112,7 +112,7 @@ class Painted:
     def __init__(self, stroke, tolerance_mm, brush=ROUND, parts=6, step=0.25, **options):
         found = core.compensate([stroke], brush, (200.0, 200.0), tolerance_mm=tolerance_mm, **options)
         (planned,) = found.plan.passes
-        self.miss, self.warnings = found.misses[0], found.warnings
+        self.tracking_error, self.warnings = found.tracking_errors[0], found.warnings
         self.poses = oracle.chords(planned.poses_mm, planned.arcs)
         plan = make_plan(oracle.subdivide(self.poses, parts, step))
         self.rows = core.simulate(plan, brush, max(tolerance_mm, 2e-3)).passes[0]
@@ -129,14 +129,14 @@ class Painted:
 
 def assert_follows(painted, tolerance_mm):
     assert painted.distance[painted.taut].max() <= tolerance_mm
-    assert painted.miss.largest_mm <= tolerance_mm
-    assert painted.miss.within_tolerance
+    assert painted.tracking_error.largest_mm <= tolerance_mm
+    assert painted.tracking_error.within_tolerance
     measured = painted.distance[painted.taut].max()
     assert (
-        painted.miss.largest_mm
+        painted.tracking_error.largest_mm
         >= (0.85 if measured > 0.4 * tolerance_mm else 0.5) * measured - 1e-3 * tolerance_mm
     )
-    assert painted.miss.mean_mm <= painted.miss.largest_mm
+    assert painted.tracking_error.mean_mm <= painted.tracking_error.largest_mm
     forward = np.maximum.accumulate(painted.s[painted.taut]) - painted.s[painted.taut]
     assert forward.max() <= max(tolerance_mm, 1e-6)  # the way it was drawn
     poses = painted.poses
@@ -229,7 +229,9 @@ def test_any_lag_law(name):
 
 def _compensated_in_a_process(half_width, results):
     painted = Painted(stroke_of(line((0, 0), (30, 0)), half_width), 0.05)
-    results.put((np.isfinite(painted.poses).all(), painted.miss.largest_mm, painted.once_taut().max()))
+    results.put(
+        (np.isfinite(painted.poses).all(), painted.tracking_error.largest_mm, painted.once_taut().max())
+    )
 
 
 @pytest.mark.parametrize("thick", [2.0, 2.5, 3.0])
@@ -258,10 +260,10 @@ def test_a_taper_too_steep_for_the_lever_comes_to_an_end(thick):
 def test_sharper_turns_report_what_remains(degrees, remains, tolerance):
     painted = Painted(stroke_of(corner(degrees), [(0.0, 1.68)]), tolerance, step=0.04, few_poses=False)
     measured = painted.once_taut().max()
-    assert painted.miss.largest_mm == pytest.approx(measured, rel=0.02, abs=0.05 * tolerance)
-    assert painted.miss.largest_mm == pytest.approx(remains, abs=0.01)
-    assert painted.miss.has_turn_in_place
-    assert painted.miss.within_tolerance == (measured <= tolerance)
+    assert painted.tracking_error.largest_mm == pytest.approx(measured, rel=0.02, abs=0.05 * tolerance)
+    assert painted.tracking_error.largest_mm == pytest.approx(remains, abs=0.01)
+    assert painted.tracking_error.has_turn_in_place
+    assert painted.tracking_error.within_tolerance == (measured <= tolerance)
 
 
 # P ------------------------------------------------------------------------------------------------
@@ -493,7 +495,7 @@ def test_strokes_keep_their_order_and_names():
     ]
     found = core.compensate(strokes, ROUND, (99.0, 99.0))
     assert [p.stroke for p in found.plan.passes] == [f"n{k}" for k in range(5)]
-    assert len(found.misses) == 5
+    assert len(found.tracking_errors) == 5
     assert all(p.speed_mm_s <= 25 for p in found.plan.passes)
 
 
@@ -547,7 +549,7 @@ def beginning(middle, half_width, start):
     import shapely
 
     found = core.compensate([stroke_of(middle, [(0.0, half_width)])], ROUND, (200.0, 200.0), start=start)
-    assert found.misses[0].within_tolerance
+    assert found.tracking_errors[0].within_tolerance
     poses = np.asarray(found.plan.passes[0].poses_mm)
     assert poses[0, 2] == poses[-1, 2] == 0.0
     assert (poses[1:-1, 2] < 0.0).all()  # one touch
@@ -613,7 +615,7 @@ def test_what_has_no_room_for_a_way_back_is_turned_round_first(middle, half_widt
 
     stroke = stroke_of(middle, half_width)
     found = core.compensate([stroke], ROUND, (200.0, 200.0), start="round")
-    assert found.misses[0].within_tolerance
+    assert found.tracking_errors[0].within_tolerance
     turned = np.asarray(found.plan.passes[0].poses_mm)
     assert turned[0, 2] == turned[-1, 2] == 0.0
     assert (turned[1:-1, 2] < 0.0).all()  # one touch
@@ -645,7 +647,7 @@ def test_a_dot_is_round(half_width, length, least):
 
     stroke = stroke_of(line(*points), [(0.0, half_width)])
     found = core.compensate([stroke], ROUND, (200.0, 200.0), start="round")
-    assert found.misses[0].within_tolerance
+    assert found.tracking_errors[0].within_tolerance
     rounded = np.asarray(found.plan.passes[0].poses_mm)
     assert rounded[0, 2] == rounded[-1, 2] == 0.0
     assert (rounded[1:-1, 2] < 0.0).all()  # one touch
@@ -675,7 +677,7 @@ def test_a_dot_with_corners_is_square(sides, turned_rad, least):
 
     def overlap(start):
         found = core.compensate([stroke], ROUND, (200.0, 200.0), start=start)
-        assert found.misses[0].within_tolerance
+        assert found.tracking_errors[0].within_tolerance
         poses = np.asarray(found.plan.passes[0].poses_mm)
         assert poses[0, 2] == poses[-1, 2] == 0.0
         assert (poses[1:-1, 2] < 0.0).all()  # one touch
@@ -708,7 +710,7 @@ def test_dots_with_other_corners_have_them(corners, rounded_mm, least):
 
     def overlap(start):
         found = core.compensate([stroke], ROUND, (200.0, 200.0), start=start)
-        assert found.misses[0].within_tolerance
+        assert found.tracking_errors[0].within_tolerance
         mark = painted_region(found.plan.passes[0].poses_mm)
         return (mark & drawn).area / (mark | drawn).area
 
@@ -760,7 +762,7 @@ def test_wide_lines_begin_round_however_they_bend(cubic, half_width):
 
     def overlap(start):
         done = core.compensate([stroke], ROUND, (200.0, 200.0), start=start)
-        assert done.misses[0].within_tolerance
+        assert done.tracking_errors[0].within_tolerance
         marks = core.simulate(done.plan, ROUND)
         core.trace_outlines(marks, ROUND)
         mark = shapely.union_all([shapely.Polygon(ring).buffer(0) for ring in marks.passes[0].outline_mm])
@@ -827,8 +829,11 @@ def end_of_bar(half_width, slope, **options):
     stroke.wanted_mm = [np.array(cut_bar(half_width, slope))]
     found = core.compensate([stroke], ROUND, (200.0, 200.0), **options)
     poses = np.asarray(found.plan.passes[0].poses_mm)
-    assert found.misses[0].within_tolerance
-    assert core.miss_of(found.plan.passes[0], stroke, ROUND).largest_mm == found.misses[0].largest_mm
+    assert found.tracking_errors[0].within_tolerance
+    assert (
+        core.tracking_error_of(found.plan.passes[0], stroke, ROUND).largest_mm
+        == found.tracking_errors[0].largest_mm
+    )
     assert poses[0, 2] == poses[-1, 2] == 0.0
     assert (poses[1:-1, 2] < 0.0).all()  # one touch
     wanted = shapely.Polygon(cut_bar(half_width, slope))
@@ -864,8 +869,11 @@ def plan_of_bar(half_width, slope, **options):
     stroke.wanted_mm = [np.array(begun_bar(half_width, slope))]
     found = core.compensate([stroke], ROUND, (200.0, 200.0), **options)
     poses = np.asarray(found.plan.passes[0].poses_mm)
-    assert found.misses[0].within_tolerance
-    assert core.miss_of(found.plan.passes[0], stroke, ROUND).largest_mm == found.misses[0].largest_mm
+    assert found.tracking_errors[0].within_tolerance
+    assert (
+        core.tracking_error_of(found.plan.passes[0], stroke, ROUND).largest_mm
+        == found.tracking_errors[0].largest_mm
+    )
     assert poses[0, 2] == poses[-1, 2] == 0.0
     assert (poses[1:-1, 2] < 0.0).all()
     assert -poses[:, 2].min() < ROUND.depth_for_half_width(half_width) + 1e-9
@@ -909,7 +917,7 @@ def test_a_stroke_has_butt_ends_at_both_sides():
     stroke.wanted_mm = [np.array(flat.exterior.coords)[:-1]]
     plain = core.compensate([stroke], ROUND, (200.0, 200.0), start="round", end="round")
     found = core.compensate([stroke], ROUND, (200.0, 200.0), start="auto", end="auto")
-    assert found.misses[0].within_tolerance
+    assert found.tracking_errors[0].within_tolerance
 
     def overlap(plan):
         mark = painted_region(with_chords(plan.passes[0]).poses_mm)

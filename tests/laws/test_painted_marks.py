@@ -118,7 +118,7 @@ def test_a_sheet_scanned_at_another_scale_is_refused():
 
 def test_displacements_come_back():
     _, painted, made = calibrated(3)
-    found = np.array([miss.displacement_mm for miss in made.fit.marks])
+    found = np.array([residual.displacement_mm for residual in made.fit.marks])
     off = found - np.array(painted.displacements)
     off -= off.mean(axis=0)  # which the sheet's own shift may take
     assert np.sqrt(np.mean(off**2)) < 0.15 < np.sqrt(np.mean(np.square(painted.displacements)))

@@ -262,7 +262,7 @@ def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsy
     assert main(["predict", "d.svg", "x.svg", "--corners", "turn"]) == 0
     text = (desk / "x.svg").read_text()
     assert 'data-made="round-6, closed"' in text
-    missed = re.findall(r'data-stroke="(.)" data-miss-mm="([0-9.]+)"( data-missed="yes")?', text)
+    missed = re.findall(r'data-stroke="(.)" data-tracking-error-mm="([0-9.]+)"( data-off-line="yes")?', text)
     assert [(name, bool(is_missed)) for name, _, is_missed in missed] == [("a", False), ("b", True)]
     assert float(missed[0][1]) < 0.05 < float(missed[1][1])
 
@@ -274,7 +274,9 @@ def test_no_stroke_is_marked_for_less_than_the_brush_itself_is_off(desk, capsys,
     assert main(["predict", "d.svg", "x.svg", "--corners", "turn"]) == 0
     assert ("d.svg: b: " in capsys.readouterr().err) == is_marked
     text = (desk / "x.svg").read_text()
-    ((miss, marked),) = re.findall(r'data-stroke="b" data-miss-mm="([0-9.]+)"( data-missed="yes")?', text)
+    ((miss, marked),) = re.findall(
+        r'data-stroke="b" data-tracking-error-mm="([0-9.]+)"( data-off-line="yes")?', text
+    )
     assert float(miss) > 0.05
     assert bool(marked) == is_marked
 
@@ -286,7 +288,7 @@ def test_a_brush_that_is_known_exactly_is_warned_of_less(desk, capsys):
     (desk / "exact.json").write_text(text.replace('"rmse_mm": 0.58', '"rmse_mm": 0.01'))
     assert main(["predict", "d.svg", "x.svg", "--brush", "exact.json"]) == 0
     assert "d.svg: b: " in capsys.readouterr().err
-    assert 'data-missed="yes"' in (desk / "x.svg").read_text()
+    assert 'data-off-line="yes"' in (desk / "x.svg").read_text()
 
 
 def test_a_width_is_advised_only_for_lines(desk, capsys):

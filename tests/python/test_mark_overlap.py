@@ -76,10 +76,10 @@ def test_misses_are_those_of_each_pass():
     strokes = [straight(f"s{k}", (10, 10 + 9 * k), (40, 12 + 6 * k), 1.0 + 0.2 * k) for k in range(3)]
     passes = compensate(strokes, brush, (100, 100)).plan.passes
     passes[1].poses_mm = passes[1].poses_mm + np.array([0, 0.4, 0])
-    found = _core.misses_of(passes, strokes, brush, 0.2)
+    found = _core.tracking_errors_of(passes, strokes, brush, 0.2)
     pairs = zip(passes, strokes, strict=True)
-    assert found == [_core.miss_of(one, stroke, brush, 0.2) for one, stroke in pairs]
+    assert found == [_core.tracking_error_of(one, stroke, brush, 0.2) for one, stroke in pairs]
     assert [miss.within_tolerance for miss in found] == [True, False, True]
     with pytest.raises(Error) as told:
-        _core.misses_of(passes, strokes[:2], brush)
+        _core.tracking_errors_of(passes, strokes[:2], brush)
     assert told.value.code == "sizes-differ"

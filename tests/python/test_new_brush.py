@@ -223,7 +223,7 @@ def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
     )
     read = read_drawing(drawing)
     done = compensate(strokes(read)[0], find_brush(tmp_path / "mine.json"), read.sheet_mm)
-    assert done.misses[0].largest_mm < 0.05
+    assert done.tracking_errors[0].largest_mm < 0.05
 
 
 def test_a_brush_like_another_paints_the_same_and_claims_nothing(tmp_path, monkeypatch, capsys):

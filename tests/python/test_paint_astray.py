@@ -44,6 +44,6 @@ def test_a_tracking_error_is_told_where_the_brush_is_known_better(brush):
     """The lag of round-6 is known to 0.58 mm as standard deviation: 0.1 mm beside the line are lost in it."""
     for aside_mm, is_told in ((0.1, False), (0.4, True)):
         run = _core.compensate([bar("a", 30.0 + aside_mm)], brush, (100.0, 60.0)).plan.passes[0]
-        error = _core.miss_of(run, bar("a", 30.0), brush, 0.05)
+        error = _core.tracking_error_of(run, bar("a", 30.0), brush, 0.05)
         assert error.largest_mm == pytest.approx(aside_mm, abs=0.045) and not error.within_tolerance
         assert bool(off_middle_line([bar("a", 30.0)], [error], brush, 0.05)) == is_told

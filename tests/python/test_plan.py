@@ -86,7 +86,7 @@ def test_nothing_is_added_to_a_copy_without_a_word():
         "intervals": brush.lag.half_interval_95,
         "knots": stroke.half_width,
         "wanted": stroke.wanted_mm,
-        "misses": _core.compensate([], brush, (9, 9)).misses,
+        "tracking_errors": _core.compensate([], brush, (9, 9)).tracking_errors,
         "fit": fit.covariance[0],
         "residuals": fit.residual_mm,
     }

@@ -94,11 +94,11 @@ def test_a_corner_on_a_knife_s_edge_stays_as_it_was():
 def test_side_by_side_gives_what_each_alone_does():
     strokes = curves(19)
     together = _core.compensate(strokes, BRUSH, SHEET, "refined")
-    for stroke, a_pass, miss in zip(strokes, together.plan.passes, together.misses, strict=True):
+    for stroke, a_pass, miss in zip(strokes, together.plan.passes, together.tracking_errors, strict=True):
         alone = _core.compensate([stroke], BRUSH, SHEET, "refined")
         assert a_pass.stroke == stroke.id
         assert np.array_equal(a_pass.poses_mm, alone.plan.passes[0].poses_mm)
-        assert miss.largest_mm == alone.misses[0].largest_mm
+        assert miss.largest_mm == alone.tracking_errors[0].largest_mm
 
 
 def test_progress_counts_strokes():

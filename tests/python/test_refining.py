@@ -71,7 +71,7 @@ def test_a_refined_mark_beside_its_stroke_is_told_of(away_mm, is_told):
     stroke = bar(2.0, wanted=False)
     a_pass = compensate([stroke], BRUSH, (120, 90)).plan.passes[0]
     a_pass.poses_mm = a_pass.poses_mm + np.array([0, away_mm, 0])
-    miss = _core.miss_of(a_pass, stroke, BRUSH)
+    miss = _core.tracking_error_of(a_pass, stroke, BRUSH)
     in_closed_form = off_middle_line([stroke], [miss], BRUSH, 0.05)
     assert [bool(in_closed_form), bool(outside([stroke], [a_pass], BRUSH))] == is_told
 

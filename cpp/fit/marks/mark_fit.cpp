@@ -263,19 +263,19 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
         VectorXd distance;
         if (!fit.model.distances(i, fit.shared.data(), own.data(), distance, nullptr, nullptr))
             throw no_brush_paints(marks[std::size_t(i)].stroke);
-        MarkMiss miss;
-        miss.point_mm = fit.model.placed(i, fit.shared.data(), own.data());
-        miss.distance_mm.assign(distance.data(), distance.data() + distance.size());
-        miss.displacement_mm = {own.x(), own.y()};
-        miss.way_mm = fit.model.run(i, fit.shared);
-        miss.rms_mm = std::sqrt(distance.squaredNorm() / double(std::max<Index>(1, distance.size())));
+        MarkResidual residual;
+        residual.point_mm = fit.model.placed(i, fit.shared.data(), own.data());
+        residual.distance_mm.assign(distance.data(), distance.data() + distance.size());
+        residual.displacement_mm = {own.x(), own.y()};
+        residual.way_mm = fit.model.run(i, fit.shared);
+        residual.rms_mm = std::sqrt(distance.squaredNorm() / double(std::max<Index>(1, distance.size())));
         const Eigen::ArrayXd wild = (distance.array().abs() > kTukey * out.noise_mm).cast<double>();
         const Eigen::ArrayXd says = fit.says[std::size_t(i)].array();
-        miss.outlier = wild.sum() > 0.5 * double(distance.size());
+        residual.outlier = wild.sum() > 0.5 * double(distance.size());
         aside += (says * wild).sum();
         slim += (1.0 - says).sum();
         out.samples += double(distance.size());
-        out.marks.push_back(std::move(miss));
+        out.marks.push_back(std::move(residual));
     }
     if (!options.noise_mm) refuse_unlike_any(marks, out);
     out.left_aside = aside / std::max(1.0, out.samples);

@@ -83,7 +83,7 @@ struct MarkOptions {
 };
 
 /// One mark against its prediction at the solution.
-struct MarkMiss {
+struct MarkResidual {
     Ring point_mm;                    ///< of the painted outline, in the frame of the plan, displacement taken away
     std::vector<double> distance_mm;  ///< from the predicted mark's edge, negative inside
     std::array<double, 2> displacement_mm{0.0, 0.0};
@@ -103,7 +103,7 @@ struct MarkFit {
     std::array<double, 2> shift_mm{0.0, 0.0};
     std::array<double, 2> centre_mm{0.0, 0.0};  ///< about which the sheet is turned
     Machine machine;
-    std::vector<MarkMiss> marks;
+    std::vector<MarkResidual> marks;
     double noise_mm = 0.0;             ///< robust standard deviation of the distances
     double samples = 0.0;              ///< points compared
     double effective_samples = 0.0;    ///< as many independent ones tell as much

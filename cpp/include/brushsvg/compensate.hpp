@@ -48,7 +48,7 @@ struct CompensateOptions {
 
 struct CompensatedPass {
     Pass pass;
-    TrackingError miss;
+    TrackingError tracking_error;
     std::vector<Warning> warnings;
 };
 

@@ -55,9 +55,9 @@ def refined(painted: list, wanted: list, brush, closed, compensated, forbidden=N
     """
     aims = [towards_reach(*pair, brush) for pair in zip(painted, wanted, strict=True)]
     done = compensated(aims, "refined")
-    passes, tracking_errors, moved = list(done.plan.passes), list(done.misses), [True] * len(painted)
+    passes, tracking_errors, moved = list(done.plan.passes), list(done.tracking_errors), [True] * len(painted)
     kept = [""] * len(painted)
-    fallback = list(zip(closed.plan.passes, closed.misses, strict=True))
+    fallback = list(zip(closed.plan.passes, closed.tracking_errors, strict=True))
 
     def keep_closed(numbers, why):
         for k in numbers:

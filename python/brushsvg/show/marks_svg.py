@@ -53,11 +53,11 @@ def marks_svg(
         f"<title>{escape(printable(title), quote=False)}</title>",
     ]
     tracking_errors = tracking_errors or [None] * len(colours)
-    for trace, colour, miss in zip(marks.passes, colours, tracking_errors, strict=True):
+    for trace, colour, error in zip(marks.passes, colours, tracking_errors, strict=True):
         if trace.outline_mm:
             stroke = quoted(trace.stroke)
             lines.append(
-                f'<path data-stroke={stroke}{_missed(miss, trace.stroke in astray)} fill="{known_colour(colour)}" d="'
+                f'<path data-stroke={stroke}{_missed(error, trace.stroke in astray)} fill="{known_colour(colour)}" d="'
             )
             lines += [path_data(ring, height) for ring in trace.outline_mm]
             lines[-1] += '"/>'
@@ -105,10 +105,10 @@ def _band(band, width: float, height: float) -> list[str]:
     return [*lines, f'<text {text} fill="#22252b">{escape(band.words)}</text>']
 
 
-def _missed(miss, is_astray: bool) -> str:
-    if miss is None:
+def _missed(error, is_astray: bool) -> str:
+    if error is None:
         return ""
-    return f' data-miss-mm="{miss.largest_mm:.3f}"' + ' data-missed="yes"' * is_astray
+    return f' data-tracking-error-mm="{error.largest_mm:.3f}"' + ' data-off-line="yes"' * is_astray
 
 
 def known_colour(colour: str) -> str:

@@ -25,12 +25,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         fuzz::require(poses.rows() > 0 && poses.allFinite(), "poses are finite");
         fuzz::require(poses.col(2).maxCoeff() <= 0.0, "no pose is above the paper", poses.col(2).maxCoeff());
         fuzz::require(-poses.col(2).minCoeff() <= brush.depth_range_mm[1] + 1e-9, "no pose is deeper than the brush");
-        fuzz::require(std::isfinite(made.miss.largest_mm) && made.miss.mean_mm <= made.miss.largest_mm + 1e-9,
-                      "the tracking error is finite", made.miss.mean_mm);
+        fuzz::require(std::isfinite(made.tracking_error.largest_mm) &&
+                          made.tracking_error.mean_mm <= made.tracking_error.largest_mm + 1e-9,
+                      "the tracking error is finite", made.tracking_error.mean_mm);
         const TrackingError seen = tracking_error_of(made.pass, stroke, brush, options.tolerance_mm);
-        fuzz::require(std::abs(seen.largest_mm - made.miss.largest_mm) <= 1e-9,
-                      "the reported tracking error is that of the simulation", seen.largest_mm - made.miss.largest_mm);
-        fuzz::require(made.miss.within_tolerance == (made.miss.largest_mm <= options.tolerance_mm),
+        fuzz::require(std::abs(seen.largest_mm - made.tracking_error.largest_mm) <= 1e-9,
+                      "the reported tracking error is that of the simulation",
+                      seen.largest_mm - made.tracking_error.largest_mm);
+        fuzz::require(made.tracking_error.within_tolerance == (made.tracking_error.largest_mm <= options.tolerance_mm),
                       "the verdict agrees with the number");
         Plan plan;
         plan.sheet_mm = {100.0, 100.0};
@@ -41,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                       "a plan that is written reads back the same");
         if (!twice) return;
         const CompensatedPass again = compensate(stroke, brush, options);
-        fuzz::require(again.pass.poses_mm == poses && again.miss.largest_mm == made.miss.largest_mm,
+        fuzz::require(again.pass.poses_mm == poses && again.tracking_error.largest_mm == made.tracking_error.largest_mm,
                       "the same stroke has the same plan");
     });
 }

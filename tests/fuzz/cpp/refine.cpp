@@ -25,10 +25,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         fuzz::require(made.overlap >= 0.0 && made.overlap <= 1.0 + 1e-9 && made.overlap_closed >= 0.0 &&
                           made.overlap_closed <= 1.0 + 1e-9,
                       "an overlap is a share", made.overlap);
-        fuzz::require(std::isfinite(made.plan.miss.largest_mm), "the tracking error is finite");
+        fuzz::require(std::isfinite(made.plan.tracking_error.largest_mm), "the tracking error is finite");
         if (!made.bettered) return;
         const TrackingError seen = tracking_error_of(made.plan.pass, stroke, brush, options.tolerance_mm);
-        fuzz::require(std::abs(seen.largest_mm - made.plan.miss.largest_mm) <= 1e-9,
+        fuzz::require(std::abs(seen.largest_mm - made.plan.tracking_error.largest_mm) <= 1e-9,
                       "the reported tracking error is that of the simulation");
         CompensateOptions closed_form;
         closed_form.tolerance_mm = options.tolerance_mm;

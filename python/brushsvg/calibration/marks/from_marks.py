@@ -281,7 +281,10 @@ def _likelier_tail(marks: list, options: _core.MarkOptions, start=None) -> tuple
 def simulated(made: MarkCalibration, marks: list):
     """The brush that was found, as deep as marks ask for, and its traces along their ways, in the frame of the plan."""
     brush = made.brush
-    run = {mark.stroke: miss.way_mm for mark, miss in zip(made.painted.marks, made.fit.marks, strict=True)}
+    run = {
+        mark.stroke: residual.way_mm
+        for mark, residual in zip(made.painted.marks, made.fit.marks, strict=True)
+    }
     ways = [np.array(run.get(mark.stroke, mark.poses_mm)) for mark in marks]
     reach = max(brush.depth_range_mm[1], max(-way[:, 2].min() for way in ways) + made.fit.height_mm)
     brush = _core.read_brush(_core.write_brush(brush))
@@ -466,9 +469,9 @@ def _outline(brush: _core.Brush, depth: float, laws) -> _core.Footprint:
 def _scale(fit, painted: Painted) -> SheetScale | None:
     """Of the sheet, by the displacements of the marks that are any of this brush."""
     like = [
-        (middle(np.array(mark.poses_mm)[:, :2]), miss.displacement_mm)
-        for mark, miss in zip(painted.marks, fit.marks, strict=True)
-        if not miss.outlier
+        (middle(np.array(mark.poses_mm)[:, :2]), residual.displacement_mm)
+        for mark, residual in zip(painted.marks, fit.marks, strict=True)
+        if not residual.outlier
     ]
     return sheet_scale(*map(np.array, zip(*like, strict=True))) if like else None
 

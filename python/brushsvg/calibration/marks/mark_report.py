@@ -136,8 +136,8 @@ def _unexpected(made, of_photo: bool = False) -> list[str]:
     fit, expected = made.fit, made.expected
     astray = {stray.mark.stroke for stray in made.strays}
     aside = [
-        miss.displacement_mm
-        for mark, miss in zip(made.painted.marks, fit.marks, strict=True)
+        residual.displacement_mm
+        for mark, residual in zip(made.painted.marks, fit.marks, strict=True)
         if mark.stroke not in astray
     ]
     turn_deg, turn_sigma_deg = math.degrees(abs(fit.turn_rad)), math.degrees(expected.turn_rad)
@@ -283,7 +283,7 @@ def _moved(made) -> list[str]:
         half_intervals[first + 3],
     )
     way = "higher" if fit.height_mm >= 0 else "lower"
-    sizes = [math.hypot(*miss.displacement_mm) for miss in fit.marks]
+    sizes = [math.hypot(*residual.displacement_mm) for residual in fit.marks]
     far = int(np.argmax(sizes))
     lines = [
         f"the paper lies {abs(fit.height_mm):.2f} +- {height:.2f} mm {way} than the plan took it to be",
@@ -301,7 +301,7 @@ def _moved(made) -> list[str]:
 def _stays(made, lying: float, moved: float) -> list[str]:
     """lying, moved: overlap with and without the displacements."""
     fit = made.fit
-    worst = int(np.argmax([miss.rms_mm for miss in fit.marks]))
+    worst = int(np.argmax([residual.rms_mm for residual in fit.marks]))
     lines = [
         f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, worth "
         f"{fit.effective_samples:.0f} independent ones",
@@ -336,9 +336,9 @@ def overlaps(made) -> tuple[float, float]:
     the brush says where paint will be, which is more than the confidence of its laws."""
     marks, lying, moved = made.painted.marks, [], []
     predicted = predicted_marks(made, marks)
-    for mark, miss, rings in zip(marks, made.fit.marks, predicted, strict=True):
+    for mark, residual, rings in zip(marks, made.fit.marks, predicted, strict=True):
         lying.append(_core.overlap(_home(made, mark.outline_mm, (0.0, 0.0)), rings))
-        moved.append(_core.overlap(_home(made, mark.outline_mm, miss.displacement_mm), rings))
+        moved.append(_core.overlap(_home(made, mark.outline_mm, residual.displacement_mm), rings))
     return float(np.mean(lying)), float(np.mean(moved))
 
 
@@ -347,17 +347,17 @@ def report_picture(made, suffix: str) -> bytes:
     figure = new_figure((11, 11))
     laws, marks = figure.subfigures(2, 1, height_ratios=(1.6, 1))
     brush_picture_on(laws, made.brush)
-    order = np.argsort([miss.rms_mm for miss in made.fit.marks])
+    order = np.argsort([residual.rms_mm for residual in made.fit.marks])
     chosen = [("best", order[0]), ("median", order[len(order) // 2]), ("worst", order[-1])]
     predicted = predicted_marks(made, [made.painted.marks[int(k)] for _, k in chosen])
     for axes, (what, k), rings in zip(marks.subplots(1, 3), chosen, predicted, strict=True):
-        mark, miss = made.painted.marks[int(k)], made.fit.marks[int(k)]
-        fill_rings(axes, _home(made, mark.outline_mm, miss.displacement_mm), PAINT)
+        mark, residual = made.painted.marks[int(k)], made.fit.marks[int(k)]
+        fill_rings(axes, _home(made, mark.outline_mm, residual.displacement_mm), PAINT)
         for ring in rings:
             axes.plot(*np.vstack([ring, ring[:1]]).T, color=PREDICTED, linewidth=1)
         axes.plot(*mark.poses_mm[:, :2].T, color=WAY, linewidth=0.8)
         axes.set_aspect("equal")
-        title = f"{what}: {mark.stroke}, {miss.rms_mm:.2f} mm (rms)".replace("$", r"\$")
+        title = f"{what}: {mark.stroke}, {residual.rms_mm:.2f} mm (rms)".replace("$", r"\$")
         axes.set_title(title, fontsize=9, color=INK)
         axes.tick_params(labelsize=7)
     marks.suptitle("grey: painted; red: predicted; blue: the tool's way", fontsize=8)

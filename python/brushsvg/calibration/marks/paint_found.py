@@ -225,14 +225,14 @@ def _flanks(made: MarkCalibration) -> Flanks:
     brush, traces = simulated(made, made.painted.marks)
     astray = {each.mark.stroke for each in made.strays}
     found = []
-    for number, (miss, trace) in enumerate(zip(made.fit.marks, traces, strict=True)):
-        if trace.stroke in astray or miss.outlier:
+    for number, (residual, trace) in enumerate(zip(made.fit.marks, traces, strict=True)):
+        if trace.stroke in astray or residual.outlier:
             continue
-        at = Sides(brush, trace, made.painted.before_mm[trace.stroke]).beside(np.asarray(miss.point_mm))
+        at = Sides(brush, trace, made.painted.before_mm[trace.stroke]).beside(np.asarray(residual.point_mm))
         half = np.array([brush.half_width(d) for d in at.depth_mm])
         long = np.array([brush.tip_to_widest(d) for d in at.depth_mm]) + half
         share = np.abs(at.across_mm) / np.maximum(half, 1e-6)
-        distance = np.asarray(miss.distance_mm)
+        distance = np.asarray(residual.distance_mm)
         told = (share > ACROSS[0]) & (share < ACROSS[1]) & (at.ends_mm > long)
         told &= np.abs(distance) < OUTLYING * made.fit.noise_mm
         powers = at.depth_mm[:, None] ** np.arange(3 if made.painted.depths > 1 else 1)

@@ -64,11 +64,11 @@ def _compared(picture, flat, read, made) -> dict[str, list[str]]:
         words[stray.mark.stroke] = [f"{stray.mark.stroke}: LEFT OUT", "LEFT OUT", "OUT"]
     marks = made.painted.marks
     predicted = predicted_marks(made, marks)
-    for mark, miss, rings in zip(marks, made.fit.marks, predicted, strict=True):
-        lying = on_sheet(made, [ring + np.array(miss.displacement_mm) for ring in rings])
+    for mark, residual, rings in zip(marks, made.fit.marks, predicted, strict=True):
+        lying = on_sheet(made, [ring + np.array(residual.displacement_mm) for ring in rings])
         _draw(picture, flat, lying, PREDICTED, PREDICTED_MM)
         overlap = _core.overlap([np.array(ring) for ring in mark.outline_mm], lying)
-        aside = np.hypot(*miss.displacement_mm)
+        aside = np.hypot(*residual.displacement_mm)
         words[mark.stroke] = [
             f"{mark.stroke}: overlap {overlap:.3f}, {aside:.2f} mm aside",
             f"{mark.stroke}: {overlap:.3f}, {aside:.2f} mm",

@@ -175,12 +175,12 @@ def _lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
         shape = _core.LawShape((0.0, deepest), degree, positive=True, smoothing=smoothing)
         fit = _core.fit_law(depths, values, shape)
         worst = max(range(len(depths)), key=lambda i: abs(fit.residual_mm[i]))
-        miss = abs(fit.residual_mm[worst])
-        if miss <= LAG_CLOSE_MM:
+        off_mm = abs(fit.residual_mm[worst])
+        if off_mm <= LAG_CLOSE_MM:
             break
-    if miss > LAG_FAR_MM:
+    if off_mm > LAG_FAR_MM:
         raise Error(
-            f"no brush fits these lags: a law over depth differs by {miss:.1f} mm from the lag {values[worst]:g} mm at "
+            f"no brush fits these lags: a law over depth differs by {off_mm:.1f} mm from the lag {values[worst]:g} mm at "
             f"depth {depths[worst]:g} mm, outside the range [0, {LAG_FAR_MM:g}] mm: are they in the right order?",
             "lag",
             values[worst],
@@ -191,7 +191,7 @@ def _lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
     return _core.Profile(
         fit.law.coefficients,
         calibrated_mm=fit.law.calibrated_mm,
-        source=f"Lags as typed in: {told}{more}; met to {miss:.2f} mm.",
+        source=f"Lags as typed in: {told}{more}; met to {off_mm:.2f} mm.",
         assumed=places == 1,
         half_interval_95=fit.law.half_interval_95,
         rmse_mm=fit.law.rmse_mm,
@@ -218,12 +218,12 @@ def _half_width(widths: list[tuple[float, float]], deepest: float) -> _core.Prof
         )
         fit = _core.fit_law(depths, halves, shape)
         worst = max(range(len(depths)), key=lambda i: abs(fit.residual_mm[i]))
-        miss = abs(fit.residual_mm[worst])
-        if miss <= CLOSE_MM:
+        off_mm = abs(fit.residual_mm[worst])
+        if off_mm <= CLOSE_MM:
             break
-    if miss > FAR_MM:
+    if off_mm > FAR_MM:
         raise Error(
-            f"no brush fits these widths: a law that never falls differs by {2 * miss:.2f} mm from the width "
+            f"no brush fits these widths: a law that never falls differs by {2 * off_mm:.2f} mm from the width "
             f"{2 * halves[worst]:g} mm at depth {depths[worst]:g} mm, outside the range [0, {2 * FAR_MM:g}] mm: are "
             "they in the right order?",
             "width",
@@ -235,7 +235,7 @@ def _half_width(widths: list[tuple[float, float]], deepest: float) -> _core.Prof
     return _core.Profile(
         fit.law.coefficients,
         calibrated_mm=fit.law.calibrated_mm,
-        source=f"Widths as typed in: {told}{more}; met to {2 * miss:.2f} mm. That the brush touches with no width at "
+        source=f"Widths as typed in: {told}{more}; met to {2 * off_mm:.2f} mm. That the brush touches with no width at "
         "depth 0 is assumed.",
         assumed=places == 1,
         half_interval_95=fit.law.half_interval_95,

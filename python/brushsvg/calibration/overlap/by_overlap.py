@@ -50,9 +50,9 @@ def by_overlap(
     fit, options = made.fit, copy(made.expected)
     options.deepest_mm = made.brush.depth_range_mm[1]
     seen = [
-        _seen(mark, miss, made)
-        for mark, miss in zip(made.painted.marks, fit.marks, strict=True)
-        if not miss.outlier
+        _seen(mark, residual, made)
+        for mark, residual in zip(made.painted.marks, fit.marks, strict=True)
+        if not residual.outlier
     ]
     targets = [_target(mark, made) for mark in seen]
     found = best_predicting(
@@ -69,7 +69,7 @@ def _calibrated(made: MarkCalibration, found: Predicting) -> OverlapCalibration:
     """Where edges are chosen, their brush with its intervals."""
     if found.kind == "edges":
         return OverlapCalibration(made, made, found)
-    fit, count = made.fit, sum(not miss.outlier for miss in made.fit.marks)
+    fit, count = made.fit, sum(not residual.outlier for residual in made.fit.marks)
     brush = brush_of(found.laws, made.brush.name, made.brush.depth_range_mm)
     brush.max_speed_mm_s = made.brush.max_speed_mm_s
     for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
@@ -90,21 +90,21 @@ def _calibrated(made: MarkCalibration, found: Predicting) -> OverlapCalibration:
         found.height_mm,
         tuple(
             PlacedMark(
-                found.led.way(np.array(miss.way_mm), found.height_mm),
-                tuple((miss.displacement_mm - found.shift_mm).tolist()),
+                found.led.way(np.array(residual.way_mm), found.height_mm),
+                tuple((residual.displacement_mm - found.shift_mm).tolist()),
             )
-            for miss in fit.marks
+            for residual in fit.marks
         ),
     )
     return OverlapCalibration(replace(made, brush=brush, fit=placed, covariance=None), made, found)
 
 
-def _seen(mark, miss, made: MarkCalibration) -> _core.PaintedMark:
+def _seen(mark, residual, made: MarkCalibration) -> _core.PaintedMark:
     """A painted mark in the plan's frame, of the way as the machine ran it."""
     fit = made.fit
     centre, back = np.array(fit.centre_mm), rotation(-fit.turn_rad)
     rings = [(np.array(ring) - fit.shift_mm - centre) @ back + centre for ring in mark.outline_mm]
-    return _core.PaintedMark(mark.stroke, np.array(miss.way_mm), rings)
+    return _core.PaintedMark(mark.stroke, np.array(residual.way_mm), rings)
 
 
 def _target(mark: _core.PaintedMark, made: MarkCalibration) -> Target:

@@ -59,7 +59,7 @@ def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagBy
     at = np.linspace(0.0, made.painted.deepest_mm, terms + 1)[1:]
     to_law = np.linalg.inv(np.vander(at, terms, increasing=True))
     more = np.zeros(terms)
-    height, aside = made.fit.height_mm, np.array([miss.displacement_mm for miss in made.fit.marks])
+    height, aside = made.fit.height_mm, np.array([residual.displacement_mm for residual in made.fit.marks])
     for _ in range(ROUNDS):
         off, slopes = edges.looked_at(_raised(told, to_law @ more), to_law, height, aside)
         change, covariance, noise = edges.solved(off, slopes, height, aside)
@@ -96,8 +96,8 @@ def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagBy
     _core.check(brush)
     fit = made.fit
     marks = [
-        PlacedMark(np.array(miss.way_mm), tuple(by.tolist()))
-        for miss, by in zip(fit.marks, aside, strict=True)
+        PlacedMark(np.array(residual.way_mm), tuple(by.tolist()))
+        for residual, by in zip(fit.marks, aside, strict=True)
     ]
     placed = Placed(fit.turn_rad, fit.shift_mm, fit.centre_mm, float(height), tuple(marks))
     return LagByOutlines(replace(made, brush=brush, fit=placed), made, own, float(height), noise)
@@ -127,7 +127,9 @@ class _Edges:
 
     def __init__(self, made: MarkCalibration, own: _core.Brush):
         self.made, self.own = made, own
-        self.points = [np.array(miss.point_mm) + np.array(miss.displacement_mm) for miss in made.fit.marks]
+        self.points = [
+            np.array(residual.point_mm) + np.array(residual.displacement_mm) for residual in made.fit.marks
+        ]
         self.of = np.repeat(np.arange(len(self.points)), [len(each) for each in self.points])
 
     def looked_at(self, lag, to_law, height, aside) -> tuple[np.ndarray, np.ndarray]:
@@ -170,8 +172,8 @@ class _Edges:
     def _painted(self, lag, height: float) -> list:
         brush = _with_lag(self.own, lag, self.own.name)
         passes = []
-        for mark, miss in zip(self.made.painted.marks, self.made.fit.marks, strict=True):
-            poses = np.array(miss.way_mm)
+        for mark, residual in zip(self.made.painted.marks, self.made.fit.marks, strict=True):
+            poses = np.array(residual.way_mm)
             depth = np.clip(height - poses[:, 2], 0.0, brush.depth_range_mm[1])
             passes.append(_core.Pass(mark.stroke, np.column_stack([poses[:, :2], -depth])))
         painted = _core.simulate(_core.Plan(brush.name, "", (1.0, 1.0), passes), brush)

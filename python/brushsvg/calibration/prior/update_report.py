@@ -86,7 +86,7 @@ def _cell(made, law: str, depths: np.ndarray, i: int) -> str:
 def _stays(made) -> list[str]:
     fit = made.fit
     height, half = found_height(made)
-    rms = math.sqrt(np.mean([np.square(miss.displacement_mm).sum() for miss in fit.marks]))
+    rms = math.sqrt(np.mean([np.square(residual.displacement_mm).sum() for residual in fit.marks]))
     lines = [
         f"the paper lies {abs(height):.2f} +- {half:.2f} mm {'higher' if height >= 0 else 'lower'} than the plan took "
         "it to be",

@@ -39,7 +39,7 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
         overlap = np.minimum(painted, wanted).sum() / np.maximum(painted, wanted).sum()
         if overlap > most:
             best, most = (
-                replace(work, plan=done.plan, tracking_errors=tuple(done.misses), options=options),
+                replace(work, plan=done.plan, tracking_errors=tuple(done.tracking_errors), options=options),
                 overlap,
             )
     return best

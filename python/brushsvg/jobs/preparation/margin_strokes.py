@@ -61,12 +61,12 @@ def with_margin_strokes(work: Work) -> Work:
         return _left_out(work, f"the cell cannot paint them: {where}: {why}")
     plan = _core.Plan(was.brush, was.brush_sha256, sheet_mm, [*was.passes, *passes], was.extra)
     drawn = _as_drawn(alone, brush)
-    misses = _core.misses_of(passes, drawn, brush, work.options.tolerance_mm)
+    tracking_errors = _core.tracking_errors_of(passes, drawn, brush, work.options.tolerance_mm)
     return replace(
         work,
         plan=plan,
         strokes=[*work.strokes, *drawn],
-        tracking_errors=(*work.tracking_errors, *misses),
+        tracking_errors=(*work.tracking_errors, *tracking_errors),
     )
 
 

@@ -18,17 +18,17 @@ def off_middle_line(painted, tracking_errors, brush, tolerance_mm: float) -> lis
     painted: strokes, None for those that leave their middle lines on purpose.
     """
     found = []
-    for stroke, miss in zip(painted, tracking_errors, strict=True):
-        if stroke is None or miss.within_tolerance:
+    for stroke, error in zip(painted, tracking_errors, strict=True):
+        if stroke is None or error.within_tolerance:
             continue
-        if miss.largest_mm <= unseen_mm(brush, _depth(stroke, brush)):
+        if error.largest_mm <= unseen_mm(brush, _depth(stroke, brush)):
             continue
         sentence = (
-            f"tracking error {miss.largest_mm:.3g} mm near {_place(miss.at_mm)}, above the tolerance of "
+            f"tracking error {error.largest_mm:.3g} mm near {_place(error.at_mm)}, above the tolerance of "
             f"{tolerance_mm:g} mm"
         )
         turns = ": it turns too sharply there for the brush"
-        found.append(Notice(stroke.id, sentence + turns * miss.has_turn_in_place, code="off-middle-line"))
+        found.append(Notice(stroke.id, sentence + turns * error.has_turn_in_place, code="off-middle-line"))
     return found
 
 

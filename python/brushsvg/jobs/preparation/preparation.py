@@ -238,7 +238,9 @@ def _way(lines: _Lines, done, brush, compensated, options: Options, stage) -> _W
         pressed = pressed_deeper(painted, wanted, brush, done, compensated, fetched, lowest_mm)
         painted, wanted, done = pressed.painted, pressed.wanted, pressed.done
         notices = pressed.told
-    return _Way(painted, wanted, done, done.plan, done.misses, [False] * len(painted), notices, known)
+    return _Way(
+        painted, wanted, done, done.plan, done.tracking_errors, [False] * len(painted), notices, known
+    )
 
 
 def _without_left_out(lines: _Lines, way: _Way) -> _Lines:
@@ -374,7 +376,7 @@ def _astray(way: _Way, brush, options: Options) -> list[Notice]:
         for stroke, is_moved in zip(way.wanted, way.moved, strict=True)
     ]
     lines = [None if by else stroke for stroke, by in zip(way.painted, by_paint, strict=True)]
-    off = [by and not miss.within_tolerance for by, miss in zip(by_paint, way.tracking_errors, strict=True)]
+    off = [by and not error.within_tolerance for by, error in zip(by_paint, way.tracking_errors, strict=True)]
     runs = [run if is_off else None for run, is_off in zip(way.plan.passes, off, strict=True)]
     return [
         *off_middle_line(lines, way.tracking_errors, brush, options.tolerance_mm),

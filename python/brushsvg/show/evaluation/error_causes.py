@@ -32,7 +32,7 @@ def cause(
     place,
     size_mm: float,
     where: str,
-    miss,
+    tracking_error,
     tolerance_mm: float,
     compensation: str = "closed",
 ) -> Cause:
@@ -40,21 +40,21 @@ def cause(
 
     stroke: as it was wanted; line: its middle, flattened, (n, 4) rows x, y, arc length, half width; place: of the
     stroke's verdict, size_mm: side of its square; where: "bare" where no stroke reaches, "rim" where one that is wider
-    than the brush would, "corner" where discs of this one's widths do not, else ""; miss: of the pass.
+    than the brush would, "corner" where discs of this one's widths do not, else ""; tracking_error: of the pass.
     """
     at = int(np.hypot(line[:, 0] - place.at_mm[0], line[:, 1] - place.at_mm[1]).argmin())
     here = _Here(stroke, line, brush, at, place.is_missing)
-    off = f"tracking error up to {miss.largest_mm:.2g} mm"
+    off = f"tracking error up to {tracking_error.largest_mm:.2g} mm"
     return (
         (
             _of_width(here, place.area_mm2, size_mm, where)
             if brush.width_follows_depth()
             else _of_one_width(here)
         )
-        or _of_compensation(here, miss.largest_mm, tolerance_mm, compensation, off)
+        or _of_compensation(here, tracking_error.largest_mm, tolerance_mm, compensation, off)
         or _of_length(here)
         or _of_way(here)
-        or _of_rest(here, miss.largest_mm > tolerance_mm, compensation, off)
+        or _of_rest(here, tracking_error.largest_mm > tolerance_mm, compensation, off)
     )
 
 

@@ -121,8 +121,8 @@ def measure(
     known = [k for k, stroke in enumerate(strokes) if stroke is not None]
     alone = [strokes[k] for k in known]
     verdicts = _core.verdicts([traces[k] for k in known], alone, brush)
-    misses = _core.misses_of([runs[k] for k in known], alone, brush, tolerance_mm)
-    found = iter(zip(verdicts, misses, strict=True))
+    tracking_errors = _core.tracking_errors_of([runs[k] for k in known], alone, brush, tolerance_mm)
+    found = iter(zip(verdicts, tracking_errors, strict=True))
     rows = tuple(
         _bare_figures(a_pass)
         if stroke is None
@@ -134,7 +134,9 @@ def measure(
     return rows, _in_all(rows, overlap)
 
 
-def _figures(a_pass, stroke, verdict, miss, brush, tolerance_mm, compensation: str, unreached) -> Figures:
+def _figures(
+    a_pass, stroke, verdict, tracking_error, brush, tolerance_mm, compensation: str, unreached
+) -> Figures:
     line = _core.flatten(stroke, RING_TOLERANCE_MM)
     worst, place = None, verdict.worst
     if place.area_mm2 >= SMALL_MM2:
@@ -148,13 +150,13 @@ def _figures(a_pass, stroke, verdict, miss, brush, tolerance_mm, compensation: s
         is_rim = place.is_missing and bool(here)
         is_corner = place.is_missing and _beside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
         where = "bare" if is_bare else "rim" if is_rim else "corner" if is_corner else ""
-        why = cause(stroke, line, brush, place, size_mm, where, miss, tolerance_mm, compensation)
+        why = cause(stroke, line, brush, place, size_mm, where, tracking_error, tolerance_mm, compensation)
         worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why.words, why.code)
     return replace(
         _bare_figures(a_pass),
         overlap=verdict.overlap,
-        centre_mean_mm=miss.mean_mm,
-        centre_largest_mm=miss.largest_mm,
+        centre_mean_mm=tracking_error.mean_mm,
+        centre_largest_mm=tracking_error.largest_mm,
         width_error_mm=verdict.width_error_mm,
         excess_turning=verdict.excess_turning,
         widths_out_of_reach=_out_of_reach(stroke, brush),
