@@ -28,7 +28,8 @@ from walkthrough_pictures import photo_of  # noqa: E402
 from brushsvg.calibration.chart.file import write_chart  # noqa: E402
 from brushsvg.cli.arguments.parser import parse  # noqa: E402
 
-ELSEWHERE = ("README.md", "walkthrough.md")  # tests/python/test_doc_code.py, test_walkthrough.py
+# tests/python/test_doc_code.py, test_walkthrough.py; FOLLOWED: test_pages_followed.py
+ELSEWHERE = ("README.md", "walkthrough.md")
 LONGEST_S = 900
 ROBOT = (HOUSE / "examples" / "robot.svg").read_text()
 FOREIGN = "G21\nG90\nG0 Z5\nG0 X30 Y40\nG1 Z-3 F600\nG1 X80 Y60 F1200\nG1 X120 Y30\nG0 Z5\nG0 X0 Y0\nM2\n"
@@ -42,7 +43,8 @@ chart_photo = cache(photo_of)
 def to_run() -> list[Block]:
     """Blocks of pages whose commands are held here, in the pages' order."""
     of_inkscape = ("shell", "plugins.md")
-    found = [block for page in PAGES for block in blocks(page) if page.name not in ELSEWHERE]
+    pages = [page for page in PAGES if page not in FOLLOWED and page.name not in ELSEWHERE]
+    found = [block for page in pages for block in blocks(page)]
     found = [block for block in found if block.kind == "commands" or (block.kind, block.page) == of_inkscape]
     return [
         block for block in found if not all(why_not_run(block.page, line) for line in block.code.splitlines())
@@ -98,7 +100,8 @@ class Desk:
             words = shlex.split(re.sub(" > .*", "", command), comments=True)
             if words and words[0] == "brushsvg":
                 written = _written(words[1:])
-                for name in filter(None, written if replace else ()):  # commands replace no file that might be somebody's own
+                # commands replace no file that might be somebody's own
+                for name in filter(None, written if replace else ()):
                     if (self.folder / name).is_file():
                         (self.folder / name).unlink()
                 for word in words:

@@ -70,9 +70,7 @@ NEEDS_PARTS = {
     "import pathlib, re, socket": "a robot",
 }  # begins of blocks that are compiled alone
 OF_PYTHON = {
-    name_of(page): [
-        block.code for block in BLOCKS if (block.page, block.kind) == (name_of(page), "python")
-    ]
+    name_of(page): [block.code for block in BLOCKS if (block.page, block.kind) == (name_of(page), "python")]
     for page in PAGES
     if name_of(page) != MADE
 }
