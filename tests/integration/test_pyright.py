@@ -16,7 +16,7 @@ from operator import attrgetter
 from pathlib import Path
 
 import pytest
-from shown_code import HOUSE, NOTEBOOKS, PAGES, blocks, cells
+from shown_code import HOUSE, NOTEBOOKS, PAGES, blocks, cells, name_of
 
 import brushsvg
 
@@ -74,8 +74,9 @@ def shown() -> dict[str, str]:
     found |= {f"notebook {path.stem}": "\n".join(cells(path)) for path in NOTEBOOKS}
     for page in PAGES:
         code = [block.code for block in blocks(page) if block.kind == "python"]
-        if code and page.name not in OTHERS:
-            found[f"page {page.stem}"] = "\n".join([GIVEN.get(page.name, ""), *code])
+        if code and name_of(page) not in OTHERS:
+            stem = name_of(page).removesuffix(".md").replace("/", " ")
+            found[f"page {stem}"] = "\n".join([GIVEN.get(name_of(page), ""), *code])
     return found
 
 

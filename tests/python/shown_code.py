@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 HOUSE = Path(__file__).parents[2]
-PAGES = [HOUSE / "README.md", *sorted((HOUSE / "docs").glob("*.md"))]
+DOCS = HOUSE / "docs"
+FOLLOWED = [page for folder in ("start", "howto") for page in sorted((DOCS / folder).glob("*.md"))]
+PAGES = [HOUSE / "README.md", *sorted(DOCS.glob("*.md")), *FOLLOWED]
 NOTEBOOKS = sorted((HOUSE / "examples" / "notebooks").glob("*.ipynb"))
 # fenced, or indented behind an empty line: what goes on with a list has a line of it right above
 BLOCK = re.compile(
@@ -29,6 +31,19 @@ KINDS = (
 )
 
 
+FOLLOWED_NOT_RUN = {  # beginnings of lines of followed pages that no test types, and why
+    "git clone ": "the address of the project",
+    "make ": "sets up a machine, or takes minutes",
+    ". ": "the environment of the one who installs",
+    "pipx ": "vpype in an environment of its own: integration/test_vpype.py",
+    "vpype ": "vpype in an environment of its own: integration/test_vpype.py",
+    "cmake ": "tests/consumer/run.sh",
+    "c++ ": "tests/consumer/run.sh",
+    "02_brush_file_to_gcode ": "tests/consumer/run.sh",
+    "brushsvg check wave.ngc ": "tests/consumer/run.sh",
+}
+
+
 @dataclass(frozen=True)
 class Block:
     """A block of code of a page: its line there, what it is ("" if nobody knows), and its text without indent."""
@@ -39,14 +54,21 @@ class Block:
     code: str
 
 
+def name_of(page: Path) -> str:
+    """The name of a page below docs/, with its folder; of README.md its own."""
+    return page.relative_to(DOCS).as_posix() if page.is_relative_to(DOCS) else page.name
+
+
 def blocks(page: Path) -> list[Block]:
     """The blocks of code of a page, from top to bottom."""
     text = page.read_text(encoding="utf-8")
     found = []
     for block in BLOCK.finditer(text):
         code = textwrap.dedent(block["plain"] or block["fenced"])
-        kind = block["fence"] or next((name for name, begin in KINDS if re.match(begin, code)), "")
-        found.append(Block(page.name, text[: block.start()].count("\n") + 1, kind, code))
+        kind = "" if block["fence"] == "sh" else block["fence"]
+        other = "shell" if block["fence"] == "sh" else ""
+        kind = kind or next((name for name, begin in KINDS if re.match(begin, code)), other)
+        found.append(Block(name_of(page), text[: block.start()].count("\n") + 1, kind, code))
     return found
 
 
