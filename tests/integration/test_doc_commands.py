@@ -17,7 +17,7 @@ import cv2
 import ezdxf
 from command import COMMAND
 from sampling import sample
-from shown_code import HOUSE, PAGES, Block, blocks, why_not_run
+from shown_code import HOUSE, PAGES, Block, blocks, name_of, why_not_run
 
 for place in ("tools", "tests/laws"):
     sys.path.insert(0, str(HOUSE / place))
@@ -42,7 +42,7 @@ chart_photo = cache(photo_of)
 def to_run() -> list[Block]:
     """Blocks of pages whose commands are held here, in the pages' order."""
     of_inkscape = ("shell", "plugins.md")
-    found = [block for page in PAGES for block in blocks(page) if page.name not in ELSEWHERE]
+    found = [block for page in PAGES for block in blocks(page) if name_of(page) not in ELSEWHERE]
     found = [block for block in found if block.kind == "commands" or (block.kind, block.page) == of_inkscape]
     return [
         block for block in found if not all(why_not_run(block.page, line) for line in block.code.splitlines())

@@ -16,14 +16,14 @@ from operator import attrgetter
 from pathlib import Path
 
 import pytest
-from shown_code import HOUSE, NOTEBOOKS, PAGES, blocks, cells
+from shown_code import HOUSE, NOTEBOOKS, PAGES, blocks, cells, name_of
 
 import brushsvg
 
 PACKAGES = {"pyright": "1.1.414"}
 PACKAGE = HOUSE / "python" / "brushsvg"
 FIGURES = PACKAGE / "article" / "figures"
-OTHERS = "article.md", "machines.md"  # made of FIGURES; a program that imports no brushsvg
+OTHERS = "machines/ebb.md", "machines/ur.md"  # programs that import no brushsvg
 # what a page speaks of without saying where it is from
 GIVEN = {
     "batch.md": "from pathlib import Path\nsvg_text = Path('word.svg').read_text()\n",
@@ -74,7 +74,7 @@ def shown() -> dict[str, str]:
     found |= {f"notebook {path.stem}": "\n".join(cells(path)) for path in NOTEBOOKS}
     for page in PAGES:
         code = [block.code for block in blocks(page) if block.kind == "python"]
-        if code and page.name not in OTHERS:
+        if code and name_of(page) not in OTHERS:
             found[f"page {page.stem}"] = "\n".join([GIVEN.get(page.name, ""), *code])
     return found
 

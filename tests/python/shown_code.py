@@ -7,7 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 HOUSE = Path(__file__).parents[2]
-PAGES = [HOUSE / "README.md", *sorted((HOUSE / "docs").glob("*.md"))]
+DOCS = HOUSE / "docs"
+GENERATED = {
+    DOCS / "reference" / f"{name}.md" for name in ("commands", "python", "cells")
+}  # by made_pages.py
+PAGES = [
+    HOUSE / "README.md",
+    *sorted(page for page in DOCS.rglob("*.md") if page not in GENERATED and "_build" not in page.parts),
+]
 NOTEBOOKS = sorted((HOUSE / "examples" / "notebooks").glob("*.ipynb"))
 # fenced, or indented behind an empty line: what goes on with a list has a line of it right above
 BLOCK = re.compile(
@@ -33,10 +40,15 @@ KINDS = (
 class Block:
     """A block of code of a page: its line there, what it is ("" if nobody knows), and its text without indent."""
 
-    page: str
+    page: str  # README.md, or the path below docs/
     line: int
     kind: str
     code: str
+
+
+def name_of(page: Path) -> str:
+    """README.md, or the path of a page below docs/."""
+    return page.relative_to(DOCS).as_posix() if page.is_relative_to(DOCS) else page.name
 
 
 def blocks(page: Path) -> list[Block]:
@@ -46,7 +58,7 @@ def blocks(page: Path) -> list[Block]:
     for block in BLOCK.finditer(text):
         code = textwrap.dedent(block["plain"] or block["fenced"])
         kind = block["fence"] or next((name for name, begin in KINDS if re.match(begin, code)), "")
-        found.append(Block(page.name, text[: block.start()].count("\n") + 1, kind, code))
+        found.append(Block(name_of(page), text[: block.start()].count("\n") + 1, kind, code))
     return found
 
 
@@ -58,8 +70,14 @@ def cells(notebook: Path) -> list[str]:
 
 # Commands that no test types as they stand: (page, what the line begins with), and why.
 NOT_RUN = {
-    ("README.md", "brushsvg calibrate photo.jpg --chart"): "as in docs/photograph.md, where it runs",
-    ("article.md", "brushsvg article"): "test_article.py holds the page itself against what it writes",
+    (
+        "README.md",
+        "brushsvg calibrate photo.jpg --chart",
+    ): "as in docs/howto/calibrate-photograph.md, where it runs",
+    (
+        "explanation/article.md",
+        "brushsvg article",
+    ): "test_article.py holds the page itself against what it writes",
     (
         "batch.md",
         "brushsvg batch letters/ --out painted --cluster",

@@ -1,4 +1,4 @@
-"""docs/article.md is what `brushsvg article` makes; its scripts are short, and use public names only."""
+"""docs/explanation/article.md is what `brushsvg article` makes; its scripts are short, and use public names only."""
 
 import ast
 import re
@@ -12,7 +12,7 @@ import brushsvg
 from brushsvg.article import page
 from brushsvg.cli import main
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[2] / "docs" / "explanation"
 SCRIPTS = sorted(page.SCRIPTS.glob("*.py"))
 MOST_LINES = 40
 ONE_IN = 0.01  # as near as fits to noise agree from one compiler to the next
@@ -54,8 +54,9 @@ def test_the_page_is_that_of_the_command(tmp_path):
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 def test_a_script_can_be_copied(script):
     text = script.read_text()
-    assert len(page.code_of(text).splitlines()) <= MOST_LINES
-    assert page.code_of(text) in (DOCS / "article.md").read_text().replace("\n    ", "\n")
+    docstring = ast.parse(text).body[0]
+    assert len("\n".join(text.splitlines()[docstring.end_lineno :]).strip().splitlines()) <= MOST_LINES
+    assert f"`python/brushsvg/article/figures/{script.name}`" in (DOCS / "article.md").read_text()
     public = {*brushsvg.__all__, *(f"laws.{name}" for name in brushsvg.laws.__all__)}
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):

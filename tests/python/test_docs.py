@@ -2,17 +2,15 @@
 
 import re
 import shlex
-from pathlib import Path
 
 import pytest
+from shown_code import PAGES, name_of
 
 from brushsvg.cli.arguments.parser import parse
 
-HOUSE = Path(__file__).parents[2]
-PAGES = [HOUSE / "README.md", *sorted((HOUSE / "docs").glob("*.md"))]
 TYPED = re.compile(r"^ +brushsvg +(.*?)(?: +[#>].*)?$", re.MULTILINE)
 COMMANDS = [
-    pytest.param(command, id=f"{page.name}: {command}")
+    pytest.param(command, id=f"{name_of(page)}: {command}")
     for page in PAGES
     for command in TYPED.findall(page.read_text(encoding="utf-8"))
 ]
