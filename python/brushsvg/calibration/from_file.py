@@ -104,7 +104,7 @@ def calibrate(
     aim: Literal["edges", "overlap"] = "edges",
     progress: Callable[[str], object] | None = None,
 ) -> Calibration | MarkCalibration | OverlapCalibration:
-    """A brush of what was measured: numbers (.csv, .json) or painted marks (.json), as docs/calibration.md has them.
+    """Calibrate a brush from numbers (.csv, .json) or painted marks (.json): see docs/reference/measurements.md.
 
     measured: the path, or what stands in such a .json, without format and version if you like, with a Plan and Marks
     for their files, and arrays for lists. name: of the brush, where the measurements do not say one; else the file's
@@ -171,7 +171,7 @@ def _json(measured: dict) -> bytes:
         return json.dumps({"format": FORMAT, "version": 1} | measured, default=_plain).encode()
     except (TypeError, ValueError, RecursionError):
         raise Error(
-            "measurements are numbers, texts, lists and dicts, as docs/calibration.md has them",
+            "measurements are numbers, texts, lists and dicts, as docs/reference/measurements.md has them",
             code="wrong-type",
         ) from None
 
