@@ -1,5 +1,5 @@
 """Draws docs/evidence/words.png: a word in each of the fonts given, as the font has it, as round-6 paints it when
-strokes simply begin, end and turn (--start pointed --end round --corners turn), and as it paints it unless said otherwise.
+strokes simply begin, end and turn (--start pointed --end round --corners turn), and as it paints it by default.
 
 FONT WORD, in pairs; each is painted as large as benchmarks/letters.py has it.
 """

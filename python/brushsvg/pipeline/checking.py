@@ -108,8 +108,8 @@ def check(
     progress, cancel: as for `convert`.
 
     Raises Error, with a code of docs/reference/diagnostics.md, for a program that cannot be read or followed, such as
-    one that presses deeper than the brush's laws reach, and a drawing that cannot be painted. What else forbids to run it stands in
-    `problems`.
+    one that presses deeper than the brush's laws reach, and a drawing that cannot be painted. What else forbids
+    to run it stands in `problems`.
     """
     need(program, (str, os.PathLike), "a path, which program is")
     chosen = chosen_of(drawing, choices)
