@@ -66,12 +66,13 @@ def sentences(text: str) -> Iterator[tuple[int, str]]:
     start = 0
     for number, line in enumerate([*text.splitlines(), ""], 1):
         item = re.match(r" *([*-]|\d+\.) +", line)
-        ends = not line.strip() or line.startswith(("#", "|")) or item
+        is_row = line.lstrip().startswith(("#", "|"))
+        ends = not line.strip() or is_row or item
         if ends and block:
             for sentence in re.split(r"(?<=[.!?])[\"*)]* +(?=\S)", " ".join(block)):
                 yield start, sentence
             block = []
-        if line.strip() and not line.startswith(("#", "|")):
+        if line.strip() and not is_row:
             start = start if block else number
             block.append(line[item.end() :].strip() if item else line.strip())
 
