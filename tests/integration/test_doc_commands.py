@@ -17,7 +17,7 @@ import cv2
 import ezdxf
 from command import COMMAND
 from sampling import sample
-from shown_code import HOUSE, PAGES, Block, blocks, name_of, why_not_run
+from shown_code import FOLLOWED, HOUSE, PAGES, Block, blocks, name_of, why_not_run
 
 for place in ("tools", "tests/laws"):
     sys.path.insert(0, str(HOUSE / place))
@@ -28,8 +28,9 @@ from walkthrough_pictures import photo_of  # noqa: E402
 from brushsvg.calibration.chart.file import write_chart  # noqa: E402
 from brushsvg.cli.arguments.parser import parse  # noqa: E402
 
-ELSEWHERE = ("README.md", "walkthrough.md")  # tests/python/test_doc_code.py, test_walkthrough.py
-LONGEST_S = 300
+# tests/python/test_doc_code.py, test_walkthrough.py; FOLLOWED: test_pages_followed.py
+ELSEWHERE = ("README.md", "walkthrough.md")
+LONGEST_S = 900
 ROBOT = (HOUSE / "examples" / "robot.svg").read_text()
 FOREIGN = "G21\nG90\nG0 Z5\nG0 X30 Y40\nG1 Z-3 F600\nG1 X80 Y60 F1200\nG1 X120 Y30\nG0 Z5\nG0 X0 Y0\nM2\n"
 TABLE = [
@@ -42,7 +43,8 @@ chart_photo = cache(photo_of)
 def to_run() -> list[Block]:
     """Blocks of pages whose commands are held here, in the pages' order."""
     of_inkscape = ("shell", "plugins.md")
-    found = [block for page in PAGES for block in blocks(page) if name_of(page) not in ELSEWHERE]
+    pages = [page for page in PAGES if page not in FOLLOWED and name_of(page) not in ELSEWHERE]
+    found = [block for page in pages for block in blocks(page)]
     found = [block for block in found if block.kind == "commands" or (block.kind, block.page) == of_inkscape]
     return [
         block for block in found if not all(why_not_run(block.page, line) for line in block.code.splitlines())
@@ -80,7 +82,7 @@ class Desk:
     def make(self, name: str) -> None:
         """What a command speaks of, unless it is there."""
         path = self.folder / name
-        if any(self.folder.glob(name)) or name not in MADE:
+        if name not in MADE or any(self.folder.glob(name)):
             return
         made = MADE[name]
         if callable(made):
@@ -92,13 +94,14 @@ class Desk:
             path.write_text(made)
         assert any(self.folder.glob(name)), name
 
-    def make_all(self, line: str) -> None:
-        """What the commands of a line read."""
+    def make_all(self, line: str, *, replace: bool = True) -> None:
+        """What the commands of a line read; with replace, what they write is removed first."""
         for command in re.split(r" \| ", line):
             words = shlex.split(re.sub(" > .*", "", command), comments=True)
-            if words[0] == "brushsvg":
+            if words and words[0] == "brushsvg":
                 written = _written(words[1:])
-                for name in filter(None, written):  # commands replace no file that might be somebody's own
+                # commands replace no file that might be somebody's own
+                for name in filter(None, written if replace else ()):
                     if (self.folder / name).is_file():
                         (self.folder / name).unlink()
                 for word in words:
@@ -179,6 +182,8 @@ MADE = {
         "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", desk.folder / "Lora.ttf"
     ),
     "robot.svg": ROBOT,
+    "letters.svg": "brushsvg text Ro letters.svg --font Lora.ttf --size 60",
+    "word.ngc": "brushsvg convert word.svg word.ngc",
     "mine.json": "brushsvg brush new mine.json --like round-6",
     "my-brush.json": "brushsvg brush new my-brush.json --like round-6",
     "mine.toml": "brushsvg cell new mine.toml",

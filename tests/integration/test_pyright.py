@@ -75,7 +75,8 @@ def shown() -> dict[str, str]:
     for page in PAGES:
         code = [block.code for block in blocks(page) if block.kind == "python"]
         if code and name_of(page) not in OTHERS:
-            found[f"page {page.stem}"] = "\n".join([GIVEN.get(page.name, ""), *code])
+            stem = name_of(page).removesuffix(".md").replace("/", " ")
+            found[f"page {stem}"] = "\n".join([GIVEN.get(name_of(page), ""), *code])
     return found
 
 

@@ -11,6 +11,7 @@ DOCS = HOUSE / "docs"
 GENERATED = {
     DOCS / "reference" / f"{name}.md" for name in ("commands", "python", "cells")
 }  # by made_pages.py
+FOLLOWED = [page for folder in ("start", "howto") for page in sorted((DOCS / folder).glob("*.md"))]
 PAGES = [
     HOUSE / "README.md",
     *sorted(page for page in DOCS.rglob("*.md") if page not in GENERATED and "_build" not in page.parts),
@@ -36,6 +37,19 @@ KINDS = (
 )
 
 
+FOLLOWED_NOT_RUN = {  # beginnings of lines of followed pages that no test types, and why
+    "git clone ": "the address of the project",
+    "make ": "sets up a machine, or takes minutes",
+    ". ": "the environment of the one who installs",
+    "pipx ": "vpype in an environment of its own: integration/test_vpype.py",
+    "vpype ": "vpype in an environment of its own: integration/test_vpype.py",
+    "cmake ": "tests/consumer/run.sh",
+    "c++ ": "tests/consumer/run.sh",
+    "02_brush_file_to_gcode ": "tests/consumer/run.sh",
+    "brushsvg check wave.ngc ": "tests/consumer/run.sh",
+}
+
+
 @dataclass(frozen=True)
 class Block:
     """A block of code of a page: its line there, what it is ("" if nobody knows), and its text without indent."""
@@ -47,7 +61,7 @@ class Block:
 
 
 def name_of(page: Path) -> str:
-    """README.md, or the path of a page below docs/."""
+    """The name of a page below docs/, with its folder; of README.md its own."""
     return page.relative_to(DOCS).as_posix() if page.is_relative_to(DOCS) else page.name
 
 
@@ -57,7 +71,9 @@ def blocks(page: Path) -> list[Block]:
     found = []
     for block in BLOCK.finditer(text):
         code = textwrap.dedent(block["plain"] or block["fenced"])
-        kind = block["fence"] or next((name for name, begin in KINDS if re.match(begin, code)), "")
+        kind = "" if block["fence"] == "sh" else block["fence"]
+        other = "shell" if block["fence"] == "sh" else ""
+        kind = kind or next((name for name, begin in KINDS if re.match(begin, code)), other)
         found.append(Block(name_of(page), text[: block.start()].count("\n") + 1, kind, code))
     return found
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-from shown_code import HOUSE, PAGES, blocks, name_of, why_not_run
+from shown_code import FOLLOWED, HOUSE, PAGES, blocks, name_of, why_not_run
 
 import brushsvg
 from brushsvg.calibration.measurements import read_measurements
@@ -23,7 +23,8 @@ from brushsvg.machine.cell_file import parse_cell
 
 HELD = {
     "python": "here; types in integration/test_pyright.py",
-    "commands": "integration/test_doc_commands.py; of walkthrough.md in test_walkthrough.py, of README here",
+    "commands": "integration/test_doc_commands.py; of walkthrough.md in test_walkthrough.py, of README here, of start/"
+    " and howto/ in test_pages_followed.py",
     "make": "not run, because it sets up a machine, or takes minutes and more: its targets are held here",
     "shell": "tests/consumer/run.sh for C++; integration/test_doc_commands.py for Inkscape",
     "cpp": "the example, which tests/consumer/run.sh builds and runs",
@@ -32,6 +33,8 @@ HELD = {
     "toml": "here",
     "csv": "here",
     "flags": "here",
+    "xml": "integration/test_pages_followed.py",
+    "text": "integration/test_pages_followed.py",
     "{toctree}": "integration/test_docs_pages.py: Sphinx builds it",
 }
 KINDS_OF_PAGES = {
@@ -93,7 +96,13 @@ OF_PYTHON = {name: code for name, code in OF_PYTHON.items() if code}
 
 
 def of_kind(kind: str, page: str = "") -> list[str]:
-    return [block.code for block in BLOCKS if block.kind == kind and page in ("", block.page)]
+    """Of a page, or of all that nobody follows from top to bottom (integration/test_pages_followed.py)."""
+    followed = {name_of(each) for each in FOLLOWED}
+    return [
+        block.code
+        for block in BLOCKS
+        if block.kind == kind and (block.page == page if page else block.page not in followed)
+    ]
 
 
 def test_every_block_is_of_a_kind_that_is_held():
@@ -101,7 +110,10 @@ def test_every_block_is_of_a_kind_that_is_held():
     found: dict[str, set[str]] = {}
     for block in BLOCKS:
         found.setdefault(block.page, set()).add(block.kind)
-    assert {page: " ".join(sorted(kinds)) for page, kinds in found.items()} == KINDS_OF_PAGES
+    followed = {name_of(page) for page in FOLLOWED}
+    assert {
+        page: " ".join(sorted(kinds)) for page, kinds in found.items() if page not in followed
+    } == KINDS_OF_PAGES
 
 
 @pytest.fixture
@@ -141,9 +153,15 @@ def test_python_of_a_page_runs(page, folder, capsys):
             exec(compiled, names)
 
 
-def test_the_program_of_the_page_for_cpp_is_the_example():
+def test_the_program_of_the_pages_for_cpp_is_the_example():
     example = (HOUSE / "examples" / "02_brush_file_to_gcode.cpp").read_text().split("\n", 1)[1].strip()
-    assert [code.strip() for code in of_kind("cpp")] == [example]
+    for page in ("cpp.md", "howto/cpp.md"):
+        assert [code.strip() for code in of_kind("cpp", page)] == [example]
+
+
+def test_what_is_built_from_both_pages_for_cpp_is_the_same():
+    for kind in ("cmake", "shell"):  # tests/consumer/run.sh takes it from docs/cpp.md
+        assert set(of_kind(kind, "howto/cpp.md")) <= set(of_kind(kind, "cpp.md"))
 
 
 @pytest.mark.parametrize("code", of_kind("toml"))

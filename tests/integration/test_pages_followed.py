@@ -1,0 +1,56 @@
+"""Pages of docs/start and docs/howto, followed from top to bottom in one folder, as a reader does it.
+
+Commands are typed by a shell. A block of toml, csv, xml or text is a file: the last name in backticks before it is the
+name of the file. It is added to the file if it exists, else written. Python runs in tests/python/test_doc_code.py.
+"""
+
+import re
+
+import pytest
+from sampling import sample
+from shown_code import DOCS, FOLLOWED, FOLLOWED_NOT_RUN, blocks, name_of
+from test_doc_commands import Desk
+
+FILES = ("toml", "csv", "xml", "text")
+TYPED = ("commands", "shell", "make")
+NAME = re.compile(r"`([\w-]+\.(?:toml|csv|svg|txt))`")
+WRITES = re.compile(r"(?:-o|--picture|--plot|--page|--preview|--chart|--report|--mended-cell) +(\S+\.\w+)")
+
+
+def file_of(page, block) -> str:
+    """The file that a block is the text of."""
+    before = page.read_text(encoding="utf-8").splitlines()[: block.line - 1]
+    return NAME.findall("\n".join(before))[-1]
+
+
+@sample("page", FOLLOWED, keep=4, ids=name_of)
+def test_a_page_can_be_followed_from_top_to_bottom(page, tmp_path):
+    (tmp_path / "desk").mkdir()
+    desk = Desk(tmp_path / "desk")
+    for block in blocks(page):
+        if block.kind in FILES:
+            with (desk.folder / file_of(page, block)).open("a") as file:
+                file.write(block.code)
+        elif block.kind in TYPED:
+            for line in block.code.splitlines():
+                follow(desk, line)
+
+
+def follow(desk: Desk, line: str) -> None:
+    if not line or line.startswith(("#", *FOLLOWED_NOT_RUN)):
+        return
+    desk.make_all(line, replace=False)
+    desk.type(line)
+    for name in WRITES.findall(line):
+        assert (desk.folder / name).stat().st_size > 0, line
+
+
+@pytest.mark.parametrize("page", FOLLOWED, ids=name_of)
+def test_blocks_of_a_page_are_of_kinds_that_are_followed(page):
+    kinds = {block.kind for block in blocks(page)}
+    assert kinds <= {*FILES, *TYPED, "python", "cpp", "cmake"}
+
+
+def test_pages_to_follow_are_found():
+    assert {page.parent.name for page in FOLLOWED} == {"start", "howto"} and len(FOLLOWED) >= 19
+    assert all(page.is_relative_to(DOCS) for page in FOLLOWED)
