@@ -24,7 +24,7 @@ endif
 WERROR ?= OFF
 PIP_INSTALL := $(BIN)/pip install -q --no-build-isolation -C build-dir=$(BUILD) -C cmake.define.BRUSHSVG_WERROR=$(WERROR) -e
 
-.PHONY: wheel wheel-test wheel-docs sdist deb deb-test cross docs plugins help setup system test-system demo test lint format clang-headers clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan fuzz tsan tidy clean quick FORCE
+.PHONY: wheel wheel-test wheel-docs sdist deb deb-test cross docs docs-lint plugins help setup system test-system demo test lint format clang-headers clang-check test-variants cpp-test python-test test-wording wording integration thorough test-times integration-system bench bench-compare asan fuzz tsan tidy clean quick FORCE
 
 help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
@@ -44,6 +44,7 @@ help:
 	@echo "make deb-test     that package in a bare system: programs are compiled against it and run"
 	@echo "make cross        the C++ library compiled for aarch64 Linux and Windows"
 	@echo "make docs         the documentation as pages to read in a browser, with a search, in docs/_build"
+	@echo "make docs-lint    check the language of the documentation: long sentences, words to avoid, the first sentence"
 	@echo "make clang-headers  the public headers read by clang and g++ with all warnings as errors"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
 	@echo "make bench        our figures beside the peers' and the floor"
@@ -266,6 +267,10 @@ bench-compare: setup
 	done
 	$(BIN)/python benchmarks/table.py --against "$$that" $(TABLE)
 
+# Short sentences, modern words, a first sentence that says who a page is for. tools/banned_words.txt has the words.
+docs-lint:
+	@$(PYTHON) tools/docs_lint.py
+
 docs: setup
 	@$(PIP_INSTALL) ".[docs]"
 	$(BIN)/python -m sphinx -q -W -b html docs docs/_build
@@ -309,4 +314,4 @@ plugins:
 	$(PYTHON) tools/zip_plugin.py plugins/inkscape dist/brushsvg-inkscape.zip
 
 clean:
-	@rm -rf build demo docs/_build docs/reference $(VENV)
+	@rm -rf build demo docs/_build docs/reference/{commands,python,cells}.md $(VENV)

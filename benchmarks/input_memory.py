@@ -1,4 +1,5 @@
-"""Memory that each input format takes, as a process's peak, beside the size of the file: the table of docs/formats.md.
+"""Memory that each input format takes: the peak of a process and the size of the file, the table of
+docs/reference/formats.md.
 
 input_memory.py [--mb 8]: files of about so many MB, made as dense as the format allows.
 """

@@ -1,4 +1,4 @@
-"""A thousand damaged programs for every dialect and job, judged and checked: the table of docs/machines.md.
+"""A thousand damaged programs for every dialect and job, judged and checked: the table of docs/evidence/trust.md.
 
 python benchmarks/mutations.py [COUNT of each job [DIALECT ...]]
 """

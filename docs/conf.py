@@ -1,4 +1,4 @@
-"""The documentation as pages: `make docs`. What stands in the code is made from the code."""
+"""Sphinx configuration for `make docs`. The reference of commands, Python and cells is generated from the code."""
 
 import inspect
 import sys

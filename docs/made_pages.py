@@ -1,4 +1,4 @@
-"""Pages of the reference that are made from the code: commands, the public names of Python, the keys of a cell."""
+"""Write the reference pages that come from the code: commands, public names of Python, shipped cells."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ COLUMNS = 100  # of help texts, whatever the terminal is
 
 
 def write_pages(folder: Path) -> None:
-    """commands.md, python.md and cells.md into folder; a page that would say the same is left alone."""
+    """Write commands.md, python.md and cells.md into folder; an unchanged page keeps its time."""
     folder.mkdir(exist_ok=True)
     for name, lines in (("commands", _commands()), ("python", _python()), ("cells", _cells())):
         page, text = folder / f"{name}.md", "\n".join([*lines, ""])
@@ -26,7 +26,7 @@ def write_pages(folder: Path) -> None:
 def _commands() -> Iterator[str]:
     parser = command_parser()
     yield "# Commands\n"
-    yield "What `brushsvg COMMAND --help` prints, of every command.\n"
+    yield "This page is for everyone who looks up an option: it has the `--help` of every command.\n"
     for command, of_command in _of(parser).items():
         yield from _command(command, of_command, "##")
 
@@ -47,25 +47,27 @@ def _of(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
 
 def _python() -> Iterator[str]:
     yield "# Python\n"
-    yield "`import brushsvg`: all public names. Lengths are in mm, angles in rad, times in s, y up.\n"
-    yield "What is handed out is a value: it shows itself in a line, two with the same fields are equal, it can be"
-    yield "pickled, and `copy.copy` shares nothing with what it was made from. Arrays of a value are read-only: set the"
-    yield "field to another array instead. A notebook draws a Brush, a Plan, Marks and a Design.\n"
+    yield "This page is for everyone who programs with `import brushsvg`: it has all public names.\n"
+    yield "Lengths are in mm, angles in rad, times in s, and y points up. Results are values: two with the same fields"
+    yield "are equal, they can be pickled, and `copy.copy` shares nothing with the original. Arrays of a value are"
+    yield "read-only: set the field to another array. A notebook draws a Brush, a Plan, Marks and a Design.\n"
     for name in sorted(brushsvg.__all__, key=str.lower):
         if name.startswith("__"):
             continue
         named = getattr(brushsvg, name)
         kind = "module" if inspect.ismodule(named) else "class" if inspect.isclass(named) else "function"
         yield f"```{{eval-rst}}\n.. auto{kind}:: brushsvg.{name}"
-        told = "" if kind == "function" else "   :members:\n"
-        if kind == "module":  # what stands on this page by itself
-            told += f"   :exclude-members: {', '.join(sorted(set(named.__all__) & set(brushsvg.__all__)))}\n"
-        yield told + "```\n"
+        options = "" if kind == "function" else "   :members:\n"
+        if kind == "module":  # names that have their own entry
+            options += (
+                f"   :exclude-members: {', '.join(sorted(set(named.__all__) & set(brushsvg.__all__)))}\n"
+            )
+        yield options + "```\n"
 
 
 def _cells() -> Iterator[str]:
-    yield "# The keys of a cell\n"
-    yield "What `brushsvg cell new my.toml --like NAME` writes, of each cell that comes along. What a key is for stands"
-    yield "beside it; [machines.md](../machines.md) says how to find your values.\n"
+    yield "# Shipped cells\n"
+    yield "This page is for everyone who wants to read a cell before copying it: it has all shipped cells.\n"
+    yield "`brushsvg cell new my.toml --like NAME` writes each of them. [Cell files](cell.md) explains the keys.\n"
     for name in brushsvg.cell_names():
         yield f"## {name}\n\n```toml\n{write_cell(find_cell(name)).rstrip()}\n```\n"

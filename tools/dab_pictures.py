@@ -1,4 +1,4 @@
-"""The picture of docs/dabs.md: dabs of a lopsided brush, photographed, with what was read from them.
+"""The picture of docs/explanation/calibration.md: dabs of a lopsided brush, photographed, with what was read from them.
 
     dab_pictures.py [FOLDER]    keeps in FOLDER what the commands wrote
 
@@ -40,7 +40,7 @@ def main(folder: Path) -> None:
     tall, wide = (round(side * size) for side in DETAIL_MM[::-1])
     cv2.imwrite(str(folder / "detail.png"), read[:tall, :wide])
     both = side_by_side([folder / "dabs.jpg", folder / "detail.png"], TALL_PX)
-    cv2.imwrite(str(ROOT / "docs" / "dabs_read.jpg"), both, [cv2.IMWRITE_JPEG_QUALITY, 80])
+    cv2.imwrite(str(ROOT / "docs" / "explanation" / "dabs_read.jpg"), both, [cv2.IMWRITE_JPEG_QUALITY, 80])
 
 
 if __name__ == "__main__":

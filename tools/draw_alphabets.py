@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/letters.md: four alphabets as `brushsvg import` understands them.
+"""Draws the pictures of docs/explanation/letters.md: four alphabets as `brushsvg import` understands them.
 
 Needs the folder into which npm has put the fonts: npm install --prefix FOLDER --no-save @fontsource/open-sans
 @fontsource/lora @fontsource/kaushan-script @fontsource/caveat-brush
@@ -26,7 +26,10 @@ def without_list(image: np.ndarray) -> np.ndarray:
 
 
 def main() -> None:
-    modules, docs = Path(sys.argv[1]) / "node_modules" / "@fontsource", Path(__file__).parents[1] / "docs"
+    modules, docs = (
+        Path(sys.argv[1]) / "node_modules" / "@fontsource",
+        Path(__file__).parents[1] / "docs" / "explanation",
+    )
     command = Path(sys.executable).with_name("brushsvg")
     with tempfile.TemporaryDirectory() as folder:
         for kind, name in FONTS.items():

@@ -1,4 +1,4 @@
-"""Draws docs/ends.png: how strokes begin, pointed, round and butt, and below how they end, round, butt and pointed.
+"""Draws docs/explanation/ends.png: how strokes begin (pointed, round, butt), and below how they end.
 
 Grey is painted and wanted, red wanted and not painted, blue painted and not wanted; the tool's path on the paper is
 green. Needs nothing but the package.
@@ -76,7 +76,7 @@ def main() -> None:
         np.hstack([cell(each, brush, **{name: how}) for each in strokes(name == "end")]) for name, how in ROWS
     ]
     small = cv2.resize(np.vstack(rows), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
-    cv2.imwrite(str(Path(__file__).parents[1] / "docs" / "ends.png"), small)
+    cv2.imwrite(str(Path(__file__).parents[1] / "docs" / "explanation" / "ends.png"), small)
 
 
 if __name__ == "__main__":

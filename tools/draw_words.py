@@ -1,5 +1,5 @@
-"""Draws docs/words.png: a word in each of the fonts given, as the font has it, as round-6 paints it when strokes simply
-begin, end and turn (--start pointed --end round --corners turn), and as it paints it unless said otherwise.
+"""Draws docs/evidence/words.png: a word in each of the fonts given, as the font has it, as round-6 paints it when
+strokes simply begin, end and turn (--start pointed --end round --corners turn), and as it paints it by default.
 
 FONT WORD, in pairs; each is painted as large as benchmarks/letters.py has it.
 """
@@ -70,7 +70,9 @@ def main() -> None:
         )
         for cells in rows
     ]
-    cv2.imwrite(str(Path(__file__).parents[1] / "docs" / "words.png"), np.vstack(lines) // 16 * 16 + 15)
+    cv2.imwrite(
+        str(Path(__file__).parents[1] / "docs" / "evidence" / "words.png"), np.vstack(lines) // 16 * 16 + 15
+    )
 
 
 if __name__ == "__main__":

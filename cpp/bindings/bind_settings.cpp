@@ -21,7 +21,7 @@ void bind_settings(py::module_& m) {
     py::class_<Settings> type(m, "Settings",
                               R"(What a drawing says of an element to brushsvg itself; None where it says nothing.
 
-brush, end, order, passes, reload, skip, speed_mm_s, start, width_mm: see docs/drawings.md; kind: of a stroke of the calibration
+brush, end, order, passes, reload, skip, speed_mm_s, start, width_mm: see docs/reference/drawings.md; kind: of a stroke of the calibration
 chart; extra: unknown keys of a plan.json, as JSON. A value that cannot be changed.)");
     type.def(py::init([](std::optional<std::string> brush, std::optional<std::string> end,
                          std::optional<std::string> kind, std::optional<int> order, std::optional<int> passes,

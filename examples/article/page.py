@@ -7,7 +7,6 @@ be reproduced.
 
 from __future__ import annotations
 
-import ast
 import io
 import runpy
 from collections.abc import Callable
@@ -19,25 +18,27 @@ DOTS_PER_INCH = 90  # 720 pixels wide: read on a page without zooming, some 30 k
 
 TOP = """# The article, figure by figure
 
-"Physically Motivated Model of a Painting Brush for Robotic Painting and Calligraphy" (Robotics 2024, 13(6), 94),
-computed again by the public functions of brushsvg. `python examples/article docs` writes this page; it needs
-matplotlib. Each script below runs as it stands. It leaves `figure`, a picture, and `rows`, the table under it: the
-printed value, ours and the difference. An empty cell was not printed. Lengths are in mm, z is the press depth. Where
-the print is wrong:
-[equations.md](equations.md).
+This page is for everyone who knows the article and wants to compare its figures with those that brushsvg computes.
 
-Not drawn: figures 5 (a flow chart) and 8 (photographs of a set-up and of the brush).
+The article is "Physically Motivated Model of a Painting Brush for Robotic Painting and Calligraphy" (Robotics 2024,
+13(6), 94). `python examples/article docs/explanation` writes this page.
+
+It needs matplotlib. Below each figure is a table: the printed value, the computed value, and the difference. An empty
+cell was not printed. Lengths are in mm, and z is the press depth. Each figure is a short script, which uses
+the public names of brushsvg only and can be copied. [The equations](../reference/equations.md) say where the print
+is wrong.
+
+Figures 5 (a flow chart) and 8 (photographs of the set-up and the brush) are not drawn.
 """
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """One figure: name of its script, title, remarks, code, rows and picture (PNG)."""
+    """One figure: name of its script, title, remarks, rows and picture (PNG)."""
 
     name: str
     title: str
     remarks: str
-    code: str
     rows: list[tuple[str, float | None, float]]
     picture: bytes
 
@@ -57,18 +58,11 @@ def article_page(stage: Callable[[str], None] = lambda text: None) -> dict[str, 
 
 def run(path: Path) -> Drawn:
     """Run a script and draw its figure."""
-    text = path.read_text(encoding="utf-8")
     left = runpy.run_path(str(path))
     title, _, remarks = left["__doc__"].strip().partition("\n\n")
     out = io.BytesIO()
     left["figure"].savefig(out, format="png", dpi=DOTS_PER_INCH, metadata={"Software": None})
-    return Drawn(path.stem, title, remarks.strip(), code_of(text), left["rows"], out.getvalue())
-
-
-def code_of(text: str) -> str:
-    """Return a script without its docstring."""
-    lines = text.splitlines()
-    return "\n".join(lines[ast.parse(text).body[0].end_lineno :]).strip()
+    return Drawn(path.stem, title, remarks.strip(), left["rows"], out.getvalue())
 
 
 def _section(one: Drawn) -> str:
@@ -82,9 +76,15 @@ def _section(one: Drawn) -> str:
             _number(ours - printed) if known else "",
         ]
         table.append(f"| {' | '.join(cells)} |")
-    code = [f"    {line}".rstrip() for line in one.code.splitlines()]
-    parts = [f"## {one.title}", one.remarks, f"![{one.title}](article/{one.name}.png)", "\n".join(table)]
-    return "\n\n".join([*parts, "\n".join(code)]) + "\n"
+    script = f"Script: `examples/article/figures/{one.name}.py`"
+    parts = [
+        f"## {one.title}",
+        one.remarks,
+        f"![{one.title}](article/{one.name}.png)",
+        "\n".join(table),
+        script,
+    ]
+    return "\n\n".join(parts) + "\n"
 
 
 def _number(value: float) -> str:

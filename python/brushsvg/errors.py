@@ -1,7 +1,7 @@
 """What a person is told: the one error a user can cause (everything else is a bug), and notices, which stop nothing.
 
-Both have a code, which says of what kind they are: docs/diagnostics.md lists them. Decisions ask for the code, never
-for words of a sentence.
+Both have a code for their kind, listed in docs/reference/diagnostics.md. Decisions ask for the code, never for words
+of a sentence.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ import cv2
 import ezdxf
 from command import COMMAND
 from sampling import sample
-from shown_code import FOLLOWED, HOUSE, PAGES, Block, blocks, why_not_run
+from shown_code import FOLLOWED, HOUSE, PAGES, Block, blocks, name_of, why_not_run
 
 for place in ("tools", "tests/laws"):
     sys.path.insert(0, str(HOUSE / place))
@@ -43,7 +43,7 @@ chart_photo = cache(photo_of)
 def to_run() -> list[Block]:
     """Blocks of pages whose commands are held here, in the pages' order."""
     of_inkscape = ("shell", "plugins.md")
-    pages = [page for page in PAGES if page not in FOLLOWED and page.name not in ELSEWHERE]
+    pages = [page for page in PAGES if page not in FOLLOWED and name_of(page) not in ELSEWHERE]
     found = [block for page in pages for block in blocks(page)]
     found = [block for block in found if block.kind == "commands" or (block.kind, block.page) == of_inkscape]
     return [

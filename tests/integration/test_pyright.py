@@ -23,7 +23,7 @@ import brushsvg
 PACKAGES = {"pyright": "1.1.414"}
 PACKAGE = HOUSE / "python" / "brushsvg"
 FIGURES = HOUSE / "examples" / "article" / "figures"
-OTHERS = "article.md", "machines.md"  # made of FIGURES; a program that imports no brushsvg
+OTHERS = "machines/ebb.md", "machines/ur.md"  # programs that import no brushsvg
 # what a page speaks of without saying where it is from
 GIVEN = {
     "batch.md": "from pathlib import Path\nsvg_text = Path('word.svg').read_text()\n",

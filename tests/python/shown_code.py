@@ -8,8 +8,14 @@ from pathlib import Path
 
 HOUSE = Path(__file__).parents[2]
 DOCS = HOUSE / "docs"
+GENERATED = {
+    DOCS / "reference" / f"{name}.md" for name in ("commands", "python", "cells")
+}  # by made_pages.py
 FOLLOWED = [page for folder in ("start", "howto") for page in sorted((DOCS / folder).glob("*.md"))]
-PAGES = [HOUSE / "README.md", *sorted(DOCS.glob("*.md")), *FOLLOWED]
+PAGES = [
+    HOUSE / "README.md",
+    *sorted(page for page in DOCS.rglob("*.md") if page not in GENERATED and "_build" not in page.parts),
+]
 NOTEBOOKS = sorted((HOUSE / "examples" / "notebooks").glob("*.ipynb"))
 # fenced, or indented behind an empty line: what goes on with a list has a line of it right above
 BLOCK = re.compile(
@@ -48,7 +54,7 @@ FOLLOWED_NOT_RUN = {  # beginnings of lines of followed pages that no test types
 class Block:
     """A block of code of a page: its line there, what it is ("" if nobody knows), and its text without indent."""
 
-    page: str
+    page: str  # README.md, or the path below docs/
     line: int
     kind: str
     code: str
@@ -80,7 +86,10 @@ def cells(notebook: Path) -> list[str]:
 
 # Commands that no test types as they stand: (page, what the line begins with), and why.
 NOT_RUN = {
-    ("README.md", "brushsvg calibrate photo.jpg --chart"): "as in docs/photograph.md, where it runs",
+    (
+        "README.md",
+        "brushsvg calibrate photo.jpg --chart",
+    ): "as in docs/howto/calibrate-photograph.md, where it runs",
     (
         "batch.md",
         "brushsvg batch letters/ --out painted --cluster",

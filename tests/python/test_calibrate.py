@@ -298,7 +298,7 @@ def test_json_that_is_none(content, where):
 
 def test_the_example_of_the_documents_is_read():
     """Its angles are those of r = 7.4 and b = 1.5 mm, to the tenth of a degree that is printed."""
-    text = (ROOT / "docs" / "calibration.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "reference" / "measurements.md").read_text(encoding="utf-8")
     example = text[text.index('    {"format"') :].split("\n\n")[0].replace(", ...]", "]")
     measured = read_measurements(example.encode(), ".json")
     assert measured.name == "mine" and set(measured.rows) == {"width", "angles", "straight"}

@@ -1,4 +1,4 @@
-"""docs/diagnostics.md lists the codes of all that a person is told, and nothing else."""
+"""docs/reference/diagnostics.md lists the codes of all that a person is told, and nothing else."""
 
 import ast
 import re
@@ -71,7 +71,9 @@ def in_library() -> tuple[set[str], list[str]]:
 
 
 def in_docs() -> list[str]:
-    rows = re.findall(r"^\| (`.*?) \|", (ROOT / "docs" / "diagnostics.md").read_text(), re.MULTILINE)
+    rows = re.findall(
+        r"^\| (`.*?) \|", (ROOT / "docs" / "reference" / "diagnostics.md").read_text(), re.MULTILINE
+    )
     return re.findall("`([^`]+)`", " ".join(rows))
 
 

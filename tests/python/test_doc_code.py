@@ -22,7 +22,7 @@ from brushsvg.cli.arguments.parser import parse
 from brushsvg.machine.cells.cell_file import parse_cell
 
 HELD = {
-    "python": "here; of article.md, which is made of scripts, in test_article.py; types in integration/test_pyright.py",
+    "python": "here; types in integration/test_pyright.py",
     "commands": "integration/test_doc_commands.py; of walkthrough.md in test_walkthrough.py, of README here, of start/"
     " and howto/ in test_pages_followed.py",
     "make": "not run, because it sets up a machine, or takes minutes and more: its targets are held here",
@@ -40,29 +40,48 @@ HELD = {
 KINDS_OF_PAGES = {
     "README.md": "commands make python",
     "animation.md": "commands",
-    "article.md": "python",
     "batch.md": "commands python",
-    "brush.md": "json",
-    "calibration.md": "commands csv json",
-    "compare.md": "commands",
     "cpp.md": "cmake cpp shell",
-    "dabs.md": "commands",
-    "diagnostics.md": "json",
     "drawings.md": "flags",
+    "evidence/speed.md": "make",
+    "explanation/article.md": "commands",
+    "explanation/calibration.md": "commands",
+    "explanation/letters.md": "commands",
     "index.md": "{toctree}",
     "install.md": "commands make",
-    "letters.md": "commands",
-    "machines.md": "commands python toml",
-    "performance.md": "make",
+    "machines/abb.md": "commands",
+    "machines/arms.md": "commands toml",
+    "machines/doosan.md": "commands",
+    "machines/dobot.md": "commands",
+    "machines/ebb.md": "commands python",
+    "machines/fanuc.md": "commands",
+    "machines/fluidnc.md": "commands",
+    "machines/grbl.md": "commands",
+    "machines/hpgl.md": "commands",
+    "machines/index.md": "commands {toctree}",
+    "machines/jaka.md": "commands",
+    "machines/klipper.md": "commands",
+    "machines/kuka.md": "commands",
+    "machines/linuxcnc.md": "commands",
+    "machines/marlin.md": "commands",
+    "machines/robodk.md": "toml",
+    "machines/ros2.md": "commands",
+    "machines/servo-plotters.md": "commands toml",
+    "machines/ur.md": "commands python",
+    "machines/xarm.md": "commands",
     "photograph.md": "commands",
     "plugins.md": "commands shell",
     "python.md": "python",
-    "report.md": "commands",
+    "reference/brush.md": "json",
+    "reference/cell.md": "toml",
+    "reference/diagnostics.md": "json",
+    "reference/drawings.md": "commands flags",
+    "reference/measurements.md": "commands csv json",
+    "reference/report.md": "commands",
     "text.md": "commands python",
     "walkthrough.md": "commands",
     "wheels.md": "json",
 }
-MADE = "article.md"
 LAWS = {"lag": 1.2, "width": 0.8}  # of a brush that was measured, per mm of depth
 BLOCKS = [block for page in PAGES for block in blocks(page)]
 NEEDS_PARTS = {
@@ -70,9 +89,8 @@ NEEDS_PARTS = {
     "import pathlib, re, socket": "a robot",
 }  # begins of blocks that are compiled alone
 OF_PYTHON = {
-    name_of(page): [block.code for block in BLOCKS if (block.page, block.kind) == (name_of(page), "python")]
-    for page in PAGES
-    if name_of(page) != MADE
+    page: [block.code for block in BLOCKS if (block.page, block.kind) == (page, "python")]
+    for page in map(name_of, PAGES)
 }
 OF_PYTHON = {name: code for name, code in OF_PYTHON.items() if code}
 
@@ -151,6 +169,7 @@ def test_a_table_of_a_cell_is_read_where_that_table_stood(code):
     tables = list(tomllib.loads(code))
     language = 'language = "robodk"' if "robodk" in tables else 'language = "urscript"'
     name = "linuxcnc-3axis" if "backlash_mm" in code else "ur5e"  # whose joints are no axes
+    name = "grbl-servo" if "servo" in tables else name
     text = re.sub('language = "urscript"', language, brushsvg.write_cell(brushsvg.find_cell(name)))
     kept = [part for part in re.split(r"\n(?=\[)", text) if not re.match(rf"\[+({'|'.join(tables)})\b", part)]
     assert parse_cell("\n".join([*kept, code]))
@@ -158,7 +177,7 @@ def test_a_table_of_a_cell_is_read_where_that_table_stood(code):
 
 def test_measurements_are_read():
     tables = of_kind("csv")
-    files = [whole(code) for code in of_kind("json", "calibration.md")]
+    files = [whole(code) for code in of_kind("json", "reference/measurements.md")]
     assert len(tables) == 1 and len(files) == 3
     assert read_measurements(tables[0].encode(), ".csv").rows
     for file in files:
@@ -180,7 +199,7 @@ def test_files_of_brushes_plans_and_marks_have_what_the_page_shows(tmp_path):
     brushsvg.save_brush(brush, tmp_path / "shipped.json")
     brushsvg.save_brush(brushsvg.calibrate(rows).brush, tmp_path / "fitted.json")
     shipped, fitted = (json.loads((tmp_path / f"{name}.json").read_text()) for name in ("shipped", "fitted"))
-    of_brush, of_paint, of_plan, of_tilted, of_marks = map(whole, of_kind("json", "brush.md"))
+    of_brush, of_paint, of_plan, of_tilted, of_marks = map(whole, of_kind("json", "reference/brush.md"))
     assert set(unlike(of_brush, shipped)) & set(unlike(of_brush, fitted)) == set()
     (tmp_path / "painted.json").write_text(json.dumps(shipped | of_paint))
     brushsvg.save_brush(brushsvg.find_brush(tmp_path / "painted.json"), tmp_path / "painted.json")
@@ -220,7 +239,7 @@ def unlike(shown, real, where: str = "") -> list[str]:
 
 
 def test_warnings_for_programs_have_these_keys(folder, capsys):
-    (code,) = of_kind("json", "diagnostics.md")
+    (code,) = of_kind("json", "reference/diagnostics.md")
     main(["--messages", "json", "convert", "word.svg", "word.ngc", "--brush", "none"])
     assert set(json.loads(code)) == set(json.loads(capsys.readouterr().err.splitlines()[0]))
 
@@ -229,7 +248,7 @@ VALUES = {"NAME": "Ink", "CSS": "g", "MM": "3"}
 
 
 def test_flags_that_a_page_lists_are_understood():
-    (code,) = of_kind("flags")
+    (code,) = of_kind("flags", "reference/drawings.md")
     listed = re.findall(r"^--(\S+)(?: (\S+))?  ", code, re.M)
     assert len(listed) >= 11
     for flag, value in listed:

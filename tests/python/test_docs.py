@@ -2,19 +2,17 @@
 
 import re
 import shlex
-from pathlib import Path
 
 import pytest
-from shown_code import FOLLOWED, blocks, name_of
+from shown_code import DOCS, FOLLOWED, PAGES, blocks, name_of
 
 from brushsvg.cli.arguments.parser import parse
 
-HOUSE = Path(__file__).parents[2]
-PAGES = [HOUSE / "README.md", *sorted((HOUSE / "docs").glob("*.md"))]
 TYPED = re.compile(r"^ +brushsvg +(.*?)(?: +[#>].*)?$", re.MULTILINE)
 COMMANDS = [
-    pytest.param(command, id=f"{page.name}: {command}")
+    pytest.param(command, id=f"{name_of(page)}: {command}")
     for page in PAGES
+    if page not in FOLLOWED
     for command in TYPED.findall(page.read_text(encoding="utf-8"))
 ]
 COMMANDS += [
@@ -45,7 +43,7 @@ def test_what_pages_tell_one_to_type_is_understood(command):
 
 @pytest.mark.parametrize(("page", "link"), LINKS)
 def test_links_of_followed_pages_lead_somewhere(page, link):
-    docs = HOUSE / "docs"
+    docs = DOCS
     target = (page.parent / link).resolve()
     folder = docs / target.relative_to(docs).parts[0]
     is_planned = not folder.exists()  # pages that are not there yet

@@ -3,7 +3,6 @@ heights; read by a stub that is made from the board's own documentation."""
 
 import re
 import sys
-import textwrap
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,6 +12,7 @@ import pytest
 from diagnostics import in_json, is_told, refused
 from judge.ebb import run_ebb
 from programs import RUNNABLE, call, is_refused_when_damaged, program
+from shown_code import DOCS, blocks
 from test_urscript import BRUSH, STROKES, text_for
 
 from brushsvg import _core
@@ -206,8 +206,7 @@ def test_check_refuses_what_was_damaged(desk, capsys, old, new, told):
 
 def test_the_sender_of_the_docs_sends_commands_alone_and_stops_at_an_error(desk, capsys, monkeypatch):
     call(capsys, "convert", "a.svg", "a.ebb", "--cell", "axidraw-ebb")
-    docs = (Path(__file__).parents[2] / "docs" / "machines.md").read_text()
-    sender = textwrap.dedent(re.search(r"(?m)^      import sys, serial.*?\n\n(?=  \S)", docs, re.DOTALL)[0])
+    (sender,) = (block.code for block in blocks(DOCS / "machines" / "ebb.md") if block.kind == "python")
     sent = []
 
     class Serial:

@@ -24,7 +24,7 @@ from brushsvg.machine.posts.urscript import NEXT
 from brushsvg.model.library import find_brush
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-MOST = {"ur5e": 1000, "kr6-r900": 2500}  # lines, by the sources that docs/machines.md names
+MOST = {"ur5e": 1000, "kr6-r900": 2500}  # lines, by the sources that docs/machines/ur.md and kuka.md name
 NO_LIMIT = 10**9
 
 

@@ -8,9 +8,9 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// A refusal in one full sentence. `code` says of what kind it is (docs/diagnostics.md), `where` names the element (a
-/// stroke id, a key of a file), `value` and `range` carry the offending number and what is allowed, where there are
-/// such.
+/// A refusal in one full sentence. `code` says of what kind it is (docs/reference/diagnostics.md), `where` names the
+/// element (a stroke id, a key of a file), `value` and `range` carry the offending number and what is allowed, where
+/// there are such.
 class Error : public std::runtime_error {
  public:
     Error(std::string code, const std::string& sentence, std::string where = "",

@@ -5,8 +5,8 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// What a drawing says of an element to brushsvg itself (docs/drawings.md), carried from there to the plan. What it
-/// does not say is empty.
+/// What a drawing says of an element to brushsvg itself (docs/reference/drawings.md), carried from there to the plan.
+/// What it does not say is empty.
 struct Settings {
     std::optional<std::string> brush;
     std::optional<std::string> end;   ///< of the stroke: pointed, round, butt, auto

@@ -1,11 +1,10 @@
 """Figure 1: a bristle as a beam, clamped at its root and sliding on the paper (Lemma 1)
 
-Our own picture of the idea: the article draws the boundary conditions only. Left: its example (2), with the fourth
-condition as printed and with a tip free of shear. Right: bristles that soften towards the tip, EI = exp(k (1 - z)),
-under the same load. Lemma 1 says of one bristle that it has one shape, and holds for every EI > 0 where the tip is free
-of shear. As printed, w'''(1) = 0, it fails for some bristles that stiffen towards the tip. That the whole patch has one
-shape does not follow from it: the article takes that from the least energy of the bunch. (3) as printed is no solution:
-put into (2) it leaves a straight line where exp(1 - z) should stand.
+Our own illustration: the article gives the boundary conditions only. Left: its example (2), with the fourth
+condition as printed, and with a tip free of shear. Right: bristles that become softer towards the tip, EI =
+exp(k (1 - z)), under the same load. Lemma 1 holds for every EI > 0 if the tip is free of shear. With
+w'''(1) = 0, as printed, it fails for some bristles that become stiffer towards the tip. (3) as printed does
+not solve (2): it leaves a straight line where exp(1 - z) should be.
 """
 
 import numpy as np

@@ -1,8 +1,8 @@
 """Figure 2: the patch, its centre of friction, the handle and the tip
 
-Our own picture of the idea, with `round-6` at depth 5 mm. The lag r is the distance from the centre of friction p to
-the handle q, the gap b that from the tip to p. Right: dragged along x from across, every 2 mm. The outline of the patch
-is assumed: the article prints no shapes.
+Our own illustration, with `round-6` at a depth of 5 mm. The lag r is the distance from the centre of
+friction p to the handle q. The gap b is the distance from the tip to p. Right: the brush is dragged along
+x, shown every 2 mm. The outline of the patch is assumed, because the article prints no shapes.
 """
 
 import numpy as np

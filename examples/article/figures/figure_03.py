@@ -1,8 +1,8 @@
 """Figure 3: a brush turned by 90 degrees, r = 3, b = 1
 
-(a) the centre of friction and the tip while the handle goes along x, (5), (6), (15), (16). (b) alpha by (7) and beta by
-(11). Everything is determined by the text; no value of the curves is printed but where beta begins, one step of 0.3 mm
-from the start.
+(a) The centre of friction and the tip while the handle moves along x, by (5), (6), (15) and (16). (b) alpha
+by (7) and beta by (11). The text determines everything. Of the curves it prints only where beta begins, one
+step of 0.3 mm from the start.
 """
 
 import numpy as np

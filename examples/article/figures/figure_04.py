@@ -1,9 +1,9 @@
-"""Figure 4b: a turn beyond 90 degrees, and the brush goes loose
+"""Figure 4b: a turn beyond 90 degrees, and the brush becomes loose
 
-The handle comes from below and turns back by 135 degrees (r = 3). Pushed bristles do not push: the patch rests while
-the handle passes it (dashed levers), and is dragged on (solid) once it is r away again, after s* = -2 r cos(alpha0).
-The article prints no numbers here. Its rule compares r' with r - 0.01 at every step; finer steps than 0.01 mm would
-never go loose by it. Here the moments are roots.
+The handle comes from below and turns back by 135 degrees (r = 3). Bristles do not push, so the patch rests
+while the handle passes it (dashed levers). It is dragged on (solid) once the handle is r away again, after
+s* = -2 r cos(alpha0). The article prints no numbers here. It compares r' with r - 0.01 at every step, so
+steps finer than 0.01 mm would never become loose. Here the moments are exact roots.
 """
 
 import numpy as np

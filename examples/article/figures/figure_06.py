@@ -1,9 +1,9 @@
-"""Figure 6: strokes to calibrate a brush from, and what a ruler reads off them
+"""Figure 6: strokes to calibrate a brush from, and what a ruler reads from them
 
-Our own picture of the idea: both strokes simulated with `round-6` at depth 6 mm, read off as section 2.4 says.
-"Printed" is what the article's reading gives, "ours" the brush's own value. What turns at the corner is the middle of
-the mark, which follows the widest section: the reading is r - e, e = w - b. (17) as printed lacks the lag: it gives r
-+ b.
+Our own illustration: both strokes are simulated with `round-6` at a depth of 6 mm, and read as section 2.4
+says. "Printed" is the value that the article's reading gives, and "ours" is the brush's own value. The
+middle of the mark follows the widest section, so the corner shows r - e, with e = w - b. (17) as printed
+lacks the lag: it gives r + b.
 """
 
 import numpy as np

@@ -1,10 +1,10 @@
 """Figure 7: a brush that comes down while it sweeps, seen from the side
 
-The article shows frames of a video. Our own picture of the idea: where ferrule and tip are seen with `round-6`, 2 mm
-of way a frame, and the tip gap that section 2.5 gets of it by (18), with the article's scatter (its RMSE of b, 0.85
-mm). The lag comes from angular strokes with their scatter, 0.58 mm. z_i as printed has x coordinates and another sign:
-here it is how far the ferrule came down. What d_0 takes away is r(0) + b(0), and r(0) = 3.1 mm is not 0: it is put
-back. Our +- is wider than the printed one, which takes r, and r(0), for exact.
+The article shows frames of a video. Our own illustration shows ferrule and tip of `round-6`, 2 mm apart for
+each frame, and the tip gap by section 2.5 and (18). The noise is the article's: 0.85 mm for b, and 0.58 mm
+for the lag. As printed, z_i has x coordinates and another sign. Here it is how far the ferrule came down.
+d_0 contains r(0) + b(0), and r(0) = 3.1 mm is added back. Our +- is wider than the printed one, which takes
+r as exact.
 """
 
 import numpy as np

@@ -1,8 +1,9 @@
 """Figure 9: footprints
 
-Our own picture: the article prints photographs of footprints, no outlines and no widths. These are the outlines of
-`round-6`, assumed: straight flanks from the tip to the widest section, half an ellipse in front. Only where the widest
-section lies is the article's, (24). The paint reached 7 mm up the bristles, so the footprints should not be longer.
+Our own illustration: the article prints photographs of footprints, without outlines and widths. These are
+the assumed outlines of `round-6`, with straight flanks from the tip to the widest section, and half an
+ellipse in front. Only the place of the widest section is the article's, (24). The paint reached 7 mm up the
+bristles, so the footprints should not be longer.
 """
 
 import numpy as np

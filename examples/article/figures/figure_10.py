@@ -1,8 +1,9 @@
 """Figure 10: w, r and b against depth, from canvas and video, without their points
 
-The laws (24), (25), (26) as printed, the band their RMSE. The points are not printed. p1 of (25) is printed as 2.1e-4:
-so read, r turns negative from depth 9.2 on (dotted). 2.1e-3 gives 13.7 mm at depth 10, where section 3.4 works with
-13.0: the digits are rounded, which alone leaves 1.6 mm open there.
+The laws (24), (25) and (26) as printed, with a band of their RMSE. The points are not printed. p1 of (25)
+is printed as 2.1e-4, and r would then be negative from a depth of 9.2 mm on (dotted). 2.1e-3 gives 13.7 mm
+at a depth of 10, where section 3.4 works with 13.0. The printed digits are rounded, which alone allows 1.6
+mm there.
 """
 
 import numpy as np

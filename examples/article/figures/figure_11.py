@@ -1,8 +1,8 @@
 """Figure 11: r and b against depth, from angles, without their points
 
-The laws of section 3.3 as printed. Their b = 0.21 z contradicts the 0.52 z of the video: the intervals, 0.07 to 0.35
-and 0.43 to 0.61, do not touch. Noise of reading does not explain it: series made up with b = 0.52 z and angles off by
-7 degrees, which leave the RMSE that the article prints for r, come back by Theorems 3 and 4 as the last two rows say.
+The laws of section 3.3 as printed. Their b = 0.21 z contradicts the 0.52 z of the video: the intervals,
+0.07 to 0.35 and 0.43 to 0.61, do not overlap. Noise does not explain it. Simulated series with b = 0.52 z
+and angles that are 7 degrees off give the last two rows by Theorems 3 and 4.
 """
 
 import numpy as np

@@ -1,8 +1,8 @@
 """Figure 12: an angular stroke, the computed line
 
-(5) and (6) with alpha by (7), r = 13.0 mm, s from 0 to 80. The measured line is not printed, nor are its points: only
-that y is off by RMSE 0.05 and less than 2 %, which is 0.26 mm of 13. The last row says what it is worth to know r: the
-line for 13.7 mm, which (25) gives for this depth, lies so far from it.
+(5) and (6) with alpha by (7), r = 13.0 mm, and s from 0 to 80. The measured line is not printed. The text
+says only that y is off by an RMSE of 0.05 and less than 2 %, which is 0.26 mm of 13. The last row shows how
+much the lag matters: it is the distance to the line for 13.7 mm, which (25) gives for this depth.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """Figure 13b: two thin angular strokes at z = 3 mm, simulated
 
-The text gives the depth and that the strokes are angular; lengths are ours, and the outline of the patch is assumed.
-The paint is black, as there. The red line is the handle's.
+The text gives the depth and says that the strokes are angular. The lengths are ours, and the outline of the
+patch is assumed. The paint is black, as in the article. The red line is the handle's.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """Figure 14: a word that is written, and where the handle goes for it
 
-With our own drawing: the trajectory of the article's signature is not printed. (a) the handle's way, thin where it is
-in the air between strokes; (b) the paint, simulated, over the drawn lines.
+With our own drawing, because the trajectory of the article's signature is not printed. (a) The path of the
+handle, thin where it is in the air between strokes. (b) The simulated paint over the drawn lines.
 """
 
 import numpy as np

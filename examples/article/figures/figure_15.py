@@ -1,8 +1,8 @@
 """Figure 15: strokes along Bezier curves
 
-Curves of our own, widths in mm as numbers: the article prints neither its curves nor their coordinates. (a) the
-handle in grey, with all poses (a program has only those that the mark needs), the middle of the mark in colour. (b)
-in blue the simulated paint, in orange the outline that was wanted. All go from bottom to top, as there.
+Our own curves, with widths in mm as numbers: the article prints no coordinates. (a) The handle in grey with
+all poses, and the middle of the mark in colour. (b) The simulated paint in blue, and the target outline in
+orange. All strokes go from bottom to top, as in the article.
 """
 
 import numpy as np

@@ -1,9 +1,9 @@
 """Figure 16: width and lag of a liner brush
 
-Our own picture: of the liner only its size is printed, marks 1 to 2 mm wide and bristles of 20 mm, neither points nor
-laws. `liner-1` is a liner of that size, all of it assumed and marked so: a lag of half the bristles at touch, 1 mm more
-for each mm of depth. Beside it `round-6`: at the same width the liner lags more than twice as far, so its curves
-must be wider.
+Our own illustration. Of the liner only its size is printed: marks 1 to 2 mm wide, and bristles of 20 mm.
+`liner-1` is a liner of that size, and all of it is assumed: a lag of half the bristles at touch, and 1 mm
+more for each mm of depth. `round-6` is drawn for comparison. At the same width the liner lags more than
+twice as far, so its curves must be wider.
 """
 
 import numpy as np

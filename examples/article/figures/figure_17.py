@@ -1,7 +1,8 @@
 """Figure 17: "Robot", with the round brush of 6 mm
 
-With our own drawing, and the upper row only: of the liner brush no law is printed. (a) the handle's way in red, the
-skeleton of the mark, the path of the centre of friction by (4), in green; (b) the paint alone.
+With our own drawing, and the upper row only, because no law of the liner is printed. (a) The path of the
+handle in red, the skeleton of the mark, and in green the path of the centre of friction by (4). (b) The
+paint alone.
 """
 
 import numpy as np

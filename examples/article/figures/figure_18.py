@@ -1,11 +1,11 @@
 """Figure 18: four times the same letters, and a histogram of distances from the reference
 
-The article's photographs are not ours; of its distances only the greatest, 5 mm, is printed, and that their counts
-fall nearly as an exponential. Our own picture: "abcdo" with `liner-1`, four times. Each stroke finds the brush bent by
-the one before: its lag is drawn anew for each stroke (standard deviation 10 %, chosen, not measured; so
-our counts fall less evenly). (a) the paths of the centre of friction
-over the reference, (b) their distances from it, counted on a logarithmic scale. Of photographs, `brushsvg compare` says
-how far painted strokes lie off and how well they repeat.
+We do not have the article's photographs. Of its distances it prints only the greatest, 5 mm, and says that
+their counts fall almost exponentially. Our own illustration paints "abcdo" with `liner-1` four times. Each
+stroke finds the brush bent by the one before, so its lag is drawn at random for each stroke. The standard
+deviation of 10 % is chosen, not measured. (a) The paths of the centre of friction over the reference. (b)
+Their distances from it, counted on a logarithmic scale. For photographs, `brushsvg compare` reports how far
+painted strokes are off, and how well they repeat.
 """
 
 import numpy as np

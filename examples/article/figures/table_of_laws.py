@@ -1,10 +1,10 @@
 """Table: r, w and b with R^2, RMSE and 95 % intervals
 
-The article prints no points, so these are fits of made-up ones: the printed law at the depths named, with normal noise
-of the printed RMSE, the median of 300. How many values were fitted is not printed either; 17 values of r (0 to 10 once,
-every other depth twice), 12 of b from the video and 10 of all else give its intervals best. R^2 then is a check of the
-print by itself; from sheet to sheet it varies by what stands behind +-. What does not agree: of r from angles, the
-intervals of z^0 and z^1 are narrower than the other three, and the RMSE, allow with values at depths 1 to 10.
+The article prints no points, so these are fits to simulated ones: the printed law at the named depths, with
+normal noise of the printed RMSE, the median of 300. The number of values is not printed either. The printed
+intervals fit best with 17 values of r, 12 of b from the video, and 10 of all others. R^2 is then a check of
+its own; +- shows how much it varies from sheet to sheet. One thing does not agree. For r from angles, the
+intervals of z^0 and z^1 are narrower than the RMSE and the other intervals allow.
 """
 
 import numpy as np

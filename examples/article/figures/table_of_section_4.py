@@ -1,9 +1,10 @@
 """Table: section 4, one after the other and all in one fit
 
-The article recommends footprints, then angular strokes, then a video or straight strokes, each read with what came
-before. Made-up measurements of its brush with its scatter, the median of 20 sets: how sure b = k z is by each way of
-its own, as k +-, and by one fit to all of it. The printed +- take r and w for exact; ours hold what b inherits of them.
-On the right how far r is off, root mean square over depths 1 to 10.
+The article recommends footprints, then angular strokes, then a video or straight strokes. Each is read with
+the results of the one before. These are simulated measurements of its brush with its scatter, the median of
+20 sets. k +- says how well each way alone, and one fit to all of it, gives b = k z. The printed +- takes r
+and w as exact, and ours includes their uncertainty. On the right is the error of r, root mean square over
+depths 1 to 10.
 """
 
 import numpy as np

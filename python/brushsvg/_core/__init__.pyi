@@ -411,7 +411,7 @@ class Settings:
     """
     What a drawing says of an element to brushsvg itself; None where it says nothing.
 
-    brush, end, order, passes, reload, skip, speed_mm_s, start, width_mm: see docs/drawings.md; kind: of a stroke of the calibration
+    brush, end, order, passes, reload, skip, speed_mm_s, start, width_mm: see docs/reference/drawings.md; kind: of a stroke of the calibration
     chart; extra: unknown keys of a plan.json, as JSON. A value that cannot be changed.
     """
     def __copy__(self) -> Settings: ...

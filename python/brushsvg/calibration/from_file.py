@@ -93,7 +93,7 @@ def _json(measured: dict) -> bytes:
         return json.dumps({"format": FORMAT, "version": 1} | measured, default=_plain).encode()
     except (TypeError, ValueError, RecursionError):
         raise Error(
-            "measurements are numbers, texts, lists and dicts, as docs/calibration.md has them",
+            "measurements are numbers, texts, lists and dicts, as docs/reference/measurements.md has them",
             code="wrong-type",
         ) from None
 

@@ -108,9 +108,9 @@ def check(
     choices: as those of `convert`, by default what the program says; how strokes were compensated it says itself.
     progress, cancel: as for `convert`.
 
-    Raises Error, with a code of docs/diagnostics.md, for a program that cannot be read or followed, as one that presses
-    deeper than the brush's laws reach, and a drawing that cannot be painted. What else forbids to run it stands in
-    `problems`.
+    Raises Error, with a code of docs/reference/diagnostics.md, for a program that cannot be read or followed, such as
+    one that presses deeper than the brush's laws reach, and a drawing that cannot be painted. What else forbids
+    to run it stands in `problems`.
     """
     need(program, (str, os.PathLike), "a path, which program is")
     chosen = chosen_of(drawing, choices)

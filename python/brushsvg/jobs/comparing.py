@@ -130,7 +130,8 @@ def compare(
     that it was painted with. photos: the path of one, or a list of them, which are averaged. progress, cancel: as for
     `convert`.
 
-    Raises Error, with a code of docs/diagnostics.md, for a photograph that cannot be read or shows another job.
+    Raises Error, with a code of docs/reference/diagnostics.md, for a photograph that cannot be read or shows
+    another job.
     """
     single = isinstance(photos, (str, os.PathLike))
     need(photos, (str, os.PathLike, tuple, list), "a path or a list of paths, which photos are")

@@ -113,8 +113,8 @@ def convert(
     "pointed"; corrections: the path of what compare wrote; margin_strokes: "auto", "on", "off".
     docs/python.md has them in a table.
 
-    Raises Error, with a code of docs/diagnostics.md, for what cannot be read, painted or run; of several reasons it
-    tells the first, its notes the others, its notices what was to be warned of.
+    Raises Error, with a code of docs/reference/diagnostics.md, for what cannot be read, painted or run. Of several
+    reasons it gives the first, its notes the others, its notices what was to be warned of.
     """
     chosen = chosen_of(drawing, choices)
     beside = {"preview": preview, "report": report, "page": page}

@@ -15,7 +15,7 @@ from ..suggestions import nearest_name
 
 SHIPPED = Path(__file__).parents[1] / "data" / "brushes"
 _LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
-# what a brush file may hold, docs/brush.md
+# what a brush file may hold, docs/reference/brush.md
 _KEYS = (
     *(
         "format",

@@ -42,7 +42,7 @@ class Figures:
         )
 
     def table(self) -> str:
-        """As docs/machines.md has it."""
+        """As docs/evidence/trust.md has it."""
         lines = [
             "| dialect | damaged programs | dangerous | of them allowed | harmless | of them refused | neither |",
             "|---|---|---|---|---|---|---|",

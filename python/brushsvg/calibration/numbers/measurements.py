@@ -1,4 +1,4 @@
-"""Measurements of a brush, from JSON or a table: see docs/calibration.md. Lengths in mm, angles in degrees."""
+"""Measurements of a brush, from JSON or a table: docs/reference/measurements.md. Lengths in mm, angles in degrees."""
 
 from __future__ import annotations
 

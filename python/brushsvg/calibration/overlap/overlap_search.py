@@ -6,7 +6,7 @@ simplex of Nelder and Mead, on a part of the marks first.
 
 Where marks lie aside by chance, a wider brush overlaps more than the true one: its mark reaches all places at which
 paint may be. So half of the aim is the overlap where each mark may move by what displacements are expected to be: there
-the true width overlaps most. See docs/calibration.md.
+the true width overlaps most. See docs/reference/measurements.md.
 
 What the machine does is changed with the laws, in one search: found before or after them, lean is what lag makes of it.
 A simplex of so many numbers stops too early: pictures of predicted and painted marks are registered first, by least

@@ -1,6 +1,6 @@
 """The brush's laws, one function each: Lemma 1, Theorems 1 to 4, the loose rule, and laws fitted to what was measured.
 
-Numbers in brackets are equations of the article that docs/equations.md names; it also says where the print is wrong.
+Numbers in brackets are equations of the article: docs/reference/equations.md, which also says where the print is wrong.
 Lengths in mm, angles in rad. Where a shape is given as (...), arguments are numbers or arrays that broadcast as
 numpy's do.
 """

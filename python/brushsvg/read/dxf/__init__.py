@@ -1,4 +1,4 @@
-"""DXF to Design: the model space, in millimetres. How it is read: docs/dxf.md."""
+"""DXF to Design: the model space, in millimetres. How it is read: docs/reference/drawings.md."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A plotter's G-code to Design: where its pen is down, it drew a line. How it is read: docs/machines.md."""
+"""A plotter's G-code to Design: where its pen is down, it drew a line. How it is read: docs/reference/drawings.md."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""SVG to Design. What is not read is named in a notice. How it is read: docs/drawings.md."""
+"""SVG to Design. What is not read is named in a notice. How it is read: docs/reference/drawings.md."""
 
 from __future__ import annotations
 

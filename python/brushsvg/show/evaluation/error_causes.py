@@ -19,7 +19,7 @@ POINTED = 0.3  # of its greatest width, a tenth of the way there from its tip: a
 
 @dataclass(frozen=True)
 class Cause:
-    """In words, and as a code of docs/diagnostics.md."""
+    """In words, and as a code of docs/reference/diagnostics.md."""
 
     words: str
     code: str
