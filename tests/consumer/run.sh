@@ -16,10 +16,10 @@ consume() {  # NAME FLAGS: configure, build
   cmake -S "$source/tests/consumer" -B "$work/$1" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" "${@:2}" >/dev/null
   cmake --build "$work/$1" >/dev/null
 }
-consume consumer -DEXAMPLE="$source/examples/01_word_to_program.cpp"
+consume consumer -DEXAMPLE="$source/examples/12_embedding.cpp"
 "$work/consumer/consumer"
 version=$(sed -n 's/^project(brushsvg VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
-consume consumer -DEXAMPLE="$source/examples/02_brush_file_to_gcode.cpp" -DVERSION="$version"
+consume consumer -DEXAMPLE="$source/examples/01_first_word.cpp" -DVERSION="$version"
 libraries=$(dirname "$(find "$work/prefix" -name libbrushsvg_core.a)")
 brush=$source/python/brushsvg/data/brushes/round-6.json
 "$work/consumer/consumer" "$brush" "$work/one.ngc"
@@ -36,7 +36,7 @@ if cmake -S "$source/tests/consumer" -B "$work/newer" -G Ninja -DCMAKE_PREFIX_PA
 ln -s "$source" "$work/brushsvg"
 (cd "$work" && eval "$(documented "cmake -S" | head -n 1)" >/dev/null)  # what follows would take minutes
 mkdir "$work/documented" "$work/embedded"
-cp "$source/examples/02_brush_file_to_gcode.cpp" "$work/documented/program.cpp"
+cp "$source/examples/01_first_word.cpp" "$work/documented/program.cpp"
 { echo "cmake_minimum_required(VERSION 3.25)"; echo "project(program LANGUAGES CXX)"; echo "add_executable(program program.cpp)"; documented "find_package("; } >"$work/documented/CMakeLists.txt"
 cmake -S "$work/documented" -B "$work/documented/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
 cmake --build "$work/documented/build" >/dev/null
@@ -66,7 +66,7 @@ for how in add_subdirectory FetchContent; do
   cmp "$work/one.ngc" "$work/three.ngc"
 done
 if grep -q "^BRUSHSVG_SHARED:BOOL=ON" "$build/CMakeCache.txt"; then
-  consume shared -DSHARED=ON -DEXAMPLE="$source/examples/02_brush_file_to_gcode.cpp"
+  consume shared -DSHARED=ON -DEXAMPLE="$source/examples/01_first_word.cpp"
   "$work/shared/consumer" "$brush" "$work/four.ngc"
   cmp "$work/one.ngc" "$work/four.ngc"
   offered=$(nm -DC --defined-only "$libraries/libbrushsvg.so" | grep -v " A BRUSHSVG_${version%.*}$")

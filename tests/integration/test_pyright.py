@@ -137,7 +137,7 @@ def told(tmp_path_factory, npm):
 def test_all_that_is_shown_is_asked():
     kinds = [name.split()[0] for name in shown()]
     assert {"README", "python", "batch", "text"} <= {name.split()[-1] for name in shown()}
-    assert [kinds.count(kind) for kind in ("figure", "example", "notebook")] == [18, 2, 3]
+    assert [kinds.count(kind) for kind in ("figure", "example", "notebook")] == [18, 13, 3]
 
 
 def test_what_is_shown_has_no_error_of_types(told):

@@ -18,7 +18,7 @@ BLOCK = re.compile(
 KINDS = (
     ("commands", r"brushsvg "),
     ("make", r"make "),
-    ("shell", r"(cmake|c\+\+|inkscape|xvfb-run|02_brush_file_to_gcode) "),
+    ("shell", r"(cmake|c\+\+|inkscape|xvfb-run|01_first_word) "),
     ("cpp", r"#include "),
     ("cmake", r"(include|find_package)\("),
     ("python", r"(import |from \w|[\w, ]+ = brushsvg\.)"),

@@ -124,7 +124,7 @@ def test_python_of_a_page_runs(page, folder, capsys):
 
 
 def test_the_program_of_the_page_for_cpp_is_the_example():
-    example = (HOUSE / "examples" / "02_brush_file_to_gcode.cpp").read_text().split("\n", 1)[1].strip()
+    example = (HOUSE / "examples" / "01_first_word.cpp").read_text().split("\n", 1)[1].strip()
     assert [code.strip() for code in of_kind("cpp")] == [example]
 
 
