@@ -38,7 +38,7 @@ help:
 	@echo "make plugins      the Inkscape extension as a zip for its extension manager, in dist/"
 	@echo "make wheel        wheels for x86-64 Linux in dist/, from a compiler of PyPI and Ceres without GPL code (PYTHONS='python3.11 ...')"
 	@echo "make wheel-test   install the wheel in a bare system, run the demo and the fast tests there (needs root)"
-	@echo "make wheel-docs   write docs/wheels.md anew: licenses, auditwheel's report, bill of materials"
+	@echo "make wheel-docs   write docs/reference/wheels.md anew: licenses, auditwheel's report, bill of materials"
 	@echo "make sdist        the source as an archive in dist/, which builds without a network"
 	@echo "make deb          the C++ library as libbrushsvg-dev, a package for Debian, in dist/"
 	@echo "make deb-test     that package in a bare system: programs are compiled against it and run"
@@ -291,7 +291,7 @@ wheel-test:
 
 wheel-docs:
 	@test -n "$(WHEEL)" || { echo "there is no wheel in dist/: run  make wheel" >&2; exit 1; }
-	$(PYTHON) tools/wheel/contents.py page $(WHEEL) build/wheel/cp311/auditwheel.txt docs/wheels.md
+	$(PYTHON) tools/wheel/contents.py page $(WHEEL) build/wheel/cp311/auditwheel.txt docs/reference/wheels.md
 
 sdist: $(VENV)/.created
 	@mkdir -p dist

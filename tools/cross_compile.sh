@@ -31,14 +31,14 @@ for target in "${targets[@]}"; do
     -DEigen3_DIR=/usr/share/eigen3/cmake -DBoost_INCLUDE_DIR="$PWD/include" -DBoost_NO_BOOST_CMAKE=ON \
     -Dnlohmann_json_DIR=/usr/share/cmake/nlohmann_json -DBRUSHSVG_HIGHWAY=OFF -DBRUSHSVG_INSTALL=OFF >/dev/null
   cmake --build "$target/build" ${JOBS:+-j "$JOBS"} --target brushsvg_core brushsvg_io brushsvg_posts >/dev/null
-  for example in 01_word_to_program 02_brush_file_to_gcode; do
+  for example in 12_embedding 01_first_word; do
     "$target/c++" -std=c++17 -I"$tree/cpp/include" -I"$target/build/headers" -isystem /usr/include/eigen3 "$tree/examples/$example.cpp" \
       "$target"/build/{libbrushsvg_io.a,libbrushsvg_posts.a,libbrushsvg_core.a} -o "$target/$example$suffix"
   done
   echo "$target: compiled, with its examples"
   case $target in aarch64-linux*)
     if command -v qemu-aarch64 >/dev/null && [ -e /usr/aarch64-linux-gnu/lib/libc.so.6 ]; then
-      qemu-aarch64 -L /usr/aarch64-linux-gnu "$target/02_brush_file_to_gcode" "$tree/python/brushsvg/data/brushes/round-6.json" "$target/out.ngc"
+      qemu-aarch64 -L /usr/aarch64-linux-gnu "$target/01_first_word" "$tree/python/brushsvg/data/brushes/round-6.json" "$target/out.ngc"
       echo "$target: run, $(wc -l <"$target/out.ngc") lines of G-code"
     fi ;;
   esac

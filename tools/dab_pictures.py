@@ -13,11 +13,11 @@ import tempfile
 from pathlib import Path
 
 import cv2
+import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "laws"))
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "python"))
 from test_dabs import assumed, lopsided, painted, photo_of, printed
-from walkthrough_pictures import side_by_side
 
 from brushsvg.calibration.chart.file import write_chart
 from brushsvg.model.library import save_brush
@@ -25,6 +25,16 @@ from brushsvg.model.library import save_brush
 ROOT = Path(__file__).parents[1]
 TALL_PX = 900
 DETAIL_MM = (70.0, 45.0)  # of read.png, its upper left, at the picture's own size
+
+
+def side_by_side(names: list[Path], tall: int) -> np.ndarray:
+    pictures = [cv2.imread(str(name)) for name in names]
+    scaled = [
+        cv2.resize(each, (round(each.shape[1] * tall / each.shape[0]), tall), interpolation=cv2.INTER_AREA)
+        for each in pictures
+    ]
+    gap = np.full((tall, 12, 3), 255, np.uint8)
+    return np.hstack([part for each in scaled for part in (each, gap)][:-1])
 
 
 def main(folder: Path) -> None:

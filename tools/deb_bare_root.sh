@@ -29,15 +29,15 @@ build() { # NAME FLAGS
   cmake -S consumer -B "$name" -G Ninja "$@" >/dev/null
   cmake --build "$name" >/dev/null
 }
-build word -DEXAMPLE=/work/examples/01_word_to_program.cpp
+build word -DEXAMPLE=/work/examples/12_embedding.cpp
 word/consumer
-build brush -DEXAMPLE=/work/examples/02_brush_file_to_gcode.cpp
+build brush -DEXAMPLE=/work/examples/01_first_word.cpp
 brush/consumer round-6.json cmake.ngc
 build many -DMANY=ON
 many/many
 build fit -DFIT=ON
 fit/fit
-c++ -std=c++17 examples/02_brush_file_to_gcode.cpp $(pkg-config --cflags --libs brushsvg) -o by_pkg_config
+c++ -std=c++17 examples/01_first_word.cpp $(pkg-config --cflags --libs brushsvg) -o by_pkg_config
 ./by_pkg_config round-6.json pkg_config.ngc
 cmp cmake.ngc pkg_config.ngc
 dpkg --purge libbrushsvg-dev >/dev/null

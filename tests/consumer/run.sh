@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the build tree into a new folder and builds the examples against it alone, by find_package and pkg-config, and
 # what uses brushsvg::fit if it was built; then the sources as a part of another project: run.sh BUILD_DIR SOURCE_DIR
-# What docs/cpp.md tells one to write and to type is taken from there.
+# What docs/howto/cpp.md tells one to write and to type is taken from there.
 set -euo pipefail
 build=$1 source=$2
 work=$(mktemp -d)
@@ -9,22 +9,22 @@ trap 'rm -rf "$work"' EXIT
 cmake --install "$build" --component cpp --prefix "$work/prefix" >/dev/null
 if grep -rEl --include="*.hpp" --include="*.cmake" "boost|nlohmann|pybind" "$work/prefix"; then echo "the installed package needs more than Eigen" >&2; exit 1; fi
 if grep -rEil --include="*.hpp" "ceres" "$work/prefix"; then echo "an installed header needs Ceres" >&2; exit 1; fi
-documented() {  # BEGIN: the block of docs/cpp.md that begins so
-  awk -v begin="    $1" 'index($0, begin) == 1 { inside = 1 } inside && !/^    / { exit } inside { print substr($0, 5) }' "$source/docs/cpp.md" | grep .
+documented() {  # BEGIN: the block of docs/howto/cpp.md that begins so
+  awk -v begin="    $1" 'index($0, begin) == 1 { inside = 1 } inside && !/^    / { exit } inside { print substr($0, 5) }' "$source/docs/howto/cpp.md" | grep .
 }
 consume() {  # NAME FLAGS: configure, build
   cmake -S "$source/tests/consumer" -B "$work/$1" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" "${@:2}" >/dev/null
   cmake --build "$work/$1" >/dev/null
 }
-consume consumer -DEXAMPLE="$source/examples/01_word_to_program.cpp"
+consume consumer -DEXAMPLE="$source/examples/12_embedding.cpp"
 "$work/consumer/consumer"
 version=$(sed -n 's/^project(brushsvg VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
-consume consumer -DEXAMPLE="$source/examples/02_brush_file_to_gcode.cpp" -DVERSION="$version"
+consume consumer -DEXAMPLE="$source/examples/01_first_word.cpp" -DVERSION="$version"
 libraries=$(dirname "$(find "$work/prefix" -name libbrushsvg_core.a)")
 brush=$source/python/brushsvg/data/brushes/round-6.json
 "$work/consumer/consumer" "$brush" "$work/one.ngc"
 grep -q "^M2$" "$work/one.ngc"
-command=$source/.venv/bin/brushsvg  # the check that docs/cpp.md asks for, where the command is installed
+command=$source/.venv/bin/brushsvg  # the check that docs/howto/cpp.md asks for, where the command is installed
 if [ -x "$command" ]; then "$command" check "$work/one.ngc" >"$work/said" || { cat "$work/said"; echo "brushsvg check refuses the example's program" >&2; exit 1; }; fi
 if "$work/consumer/consumer" "$source/README.md" "$work/none.ngc" 2>"$work/said"; then echo "a README is read as a brush" >&2; exit 1; fi
 [ "$(wc -l <"$work/said")" = 1 ] && ! [ -e "$work/none.ngc" ] && grep -q "^$source/README.md: " "$work/said"
@@ -36,7 +36,7 @@ if cmake -S "$source/tests/consumer" -B "$work/newer" -G Ninja -DCMAKE_PREFIX_PA
 ln -s "$source" "$work/brushsvg"
 (cd "$work" && eval "$(documented "cmake -S" | head -n 1)" >/dev/null)  # what follows would take minutes
 mkdir "$work/documented" "$work/embedded"
-cp "$source/examples/02_brush_file_to_gcode.cpp" "$work/documented/program.cpp"
+cp "$source/examples/01_first_word.cpp" "$work/documented/program.cpp"
 { echo "cmake_minimum_required(VERSION 3.25)"; echo "project(program LANGUAGES CXX)"; echo "add_executable(program program.cpp)"; documented "find_package("; } >"$work/documented/CMakeLists.txt"
 cmake -S "$work/documented" -B "$work/documented/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
 cmake --build "$work/documented/build" >/dev/null
@@ -66,7 +66,7 @@ for how in add_subdirectory FetchContent; do
   cmp "$work/one.ngc" "$work/three.ngc"
 done
 if grep -q "^BRUSHSVG_SHARED:BOOL=ON" "$build/CMakeCache.txt"; then
-  consume shared -DSHARED=ON -DEXAMPLE="$source/examples/02_brush_file_to_gcode.cpp"
+  consume shared -DSHARED=ON -DEXAMPLE="$source/examples/01_first_word.cpp"
   "$work/shared/consumer" "$brush" "$work/four.ngc"
   cmp "$work/one.ngc" "$work/four.ngc"
   offered=$(nm -DC --defined-only "$libraries/libbrushsvg.so" | grep -v " A BRUSHSVG_${version%.*}$")

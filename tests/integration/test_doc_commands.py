@@ -23,13 +23,13 @@ for place in ("tools", "tests/laws"):
     sys.path.insert(0, str(HOUSE / place))
 import test_flatbed  # noqa: E402
 import test_paint_found  # noqa: E402
-from walkthrough_pictures import photo_of  # noqa: E402
+from painted_chart import photo_of  # noqa: E402
 
 from brushsvg.calibration.chart.file import write_chart  # noqa: E402
 from brushsvg.cli.arguments.parser import parse  # noqa: E402
 
-# tests/python/test_doc_code.py, test_walkthrough.py; FOLLOWED: test_pages_followed.py
-ELSEWHERE = ("README.md", "walkthrough.md")
+# tests/python/test_doc_code.py; FOLLOWED: test_pages_followed.py
+ELSEWHERE = ("README.md",)
 LONGEST_S = 900
 ROBOT = (HOUSE / "examples" / "robot.svg").read_text()
 FOREIGN = "G21\nG90\nG0 Z5\nG0 X30 Y40\nG1 Z-3 F600\nG1 X80 Y60 F1200\nG1 X120 Y30\nG0 Z5\nG0 X0 Y0\nM2\n"
@@ -42,10 +42,9 @@ chart_photo = cache(photo_of)
 
 def to_run() -> list[Block]:
     """Blocks of pages whose commands are held here, in the pages' order."""
-    of_inkscape = ("shell", "plugins.md")
     pages = [page for page in PAGES if page not in FOLLOWED and name_of(page) not in ELSEWHERE]
     found = [block for page in pages for block in blocks(page)]
-    found = [block for block in found if block.kind == "commands" or (block.kind, block.page) == of_inkscape]
+    found = [block for block in found if block.kind == "commands"]
     return [
         block for block in found if not all(why_not_run(block.page, line) for line in block.code.splitlines())
     ]

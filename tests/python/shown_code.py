@@ -26,7 +26,7 @@ BLOCK = re.compile(
 KINDS = (
     ("commands", r"brushsvg "),
     ("make", r"make "),
-    ("shell", r"(cmake|c\+\+|inkscape|xvfb-run|02_brush_file_to_gcode) "),
+    ("shell", r"(cmake|c\+\+|inkscape|xvfb-run|01_first_word) "),
     ("cpp", r"#include "),
     ("cmake", r"(include|find_package)\("),
     ("python", r"(import |from \w|[\w, ]+ = brushsvg\.)"),
@@ -45,7 +45,7 @@ FOLLOWED_NOT_RUN = {  # beginnings of lines of followed pages that no test types
     "vpype ": "vpype in an environment of its own: integration/test_vpype.py",
     "cmake ": "tests/consumer/run.sh",
     "c++ ": "tests/consumer/run.sh",
-    "02_brush_file_to_gcode ": "tests/consumer/run.sh",
+    "01_first_word ": "tests/consumer/run.sh",
     "brushsvg check wave.ngc ": "tests/consumer/run.sh",
 }
 
@@ -90,10 +90,6 @@ NOT_RUN = {
         "README.md",
         "brushsvg calibrate photo.jpg --chart",
     ): "as in docs/howto/calibrate-photograph.md, where it runs",
-    (
-        "batch.md",
-        "brushsvg batch letters/ --out painted --cluster",
-    ): "needs a scheduler at that address: test_batch.py",
 }
 
 

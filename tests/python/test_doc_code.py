@@ -23,7 +23,7 @@ from brushsvg.machine.cells.cell_file import parse_cell
 
 HELD = {
     "python": "here; types in integration/test_pyright.py",
-    "commands": "integration/test_doc_commands.py; of walkthrough.md in test_walkthrough.py, of README here, of start/"
+    "commands": "integration/test_doc_commands.py; of README here, of start/"
     " and howto/ in test_pages_followed.py",
     "make": "not run, because it sets up a machine, or takes minutes and more: its targets are held here",
     "shell": "tests/consumer/run.sh for C++; integration/test_doc_commands.py for Inkscape",
@@ -39,16 +39,11 @@ HELD = {
 }
 KINDS_OF_PAGES = {
     "README.md": "commands make python",
-    "animation.md": "commands",
-    "batch.md": "commands python",
-    "cpp.md": "cmake cpp shell",
-    "drawings.md": "flags",
     "evidence/speed.md": "make",
     "explanation/article.md": "commands",
     "explanation/calibration.md": "commands",
     "explanation/letters.md": "commands",
     "index.md": "{toctree}",
-    "install.md": "commands make",
     "machines/abb.md": "commands",
     "machines/arms.md": "commands toml",
     "machines/doosan.md": "commands",
@@ -69,18 +64,13 @@ KINDS_OF_PAGES = {
     "machines/servo-plotters.md": "commands toml",
     "machines/ur.md": "commands python",
     "machines/xarm.md": "commands",
-    "photograph.md": "commands",
-    "plugins.md": "commands shell",
-    "python.md": "python",
     "reference/brush.md": "json",
     "reference/cell.md": "toml",
     "reference/diagnostics.md": "json",
     "reference/drawings.md": "commands flags",
     "reference/measurements.md": "commands csv json",
     "reference/report.md": "commands",
-    "text.md": "commands python",
-    "walkthrough.md": "commands",
-    "wheels.md": "json",
+    "reference/wheels.md": "json",
 }
 LAWS = {"lag": 1.2, "width": 0.8}  # of a brush that was measured, per mm of depth
 BLOCKS = [block for page in PAGES for block in blocks(page)]
@@ -138,7 +128,7 @@ def folder(tmp_path, monkeypatch):
 
 
 def test_pages_with_python_are_found():
-    assert {"README.md", "python.md", "batch.md"} <= set(OF_PYTHON)
+    assert {"README.md", "howto/python.md"} <= set(OF_PYTHON)
 
 
 @pytest.mark.slow
@@ -153,15 +143,9 @@ def test_python_of_a_page_runs(page, folder, capsys):
             exec(compiled, names)
 
 
-def test_the_program_of_the_pages_for_cpp_is_the_example():
-    example = (HOUSE / "examples" / "02_brush_file_to_gcode.cpp").read_text().split("\n", 1)[1].strip()
-    for page in ("cpp.md", "howto/cpp.md"):
-        assert [code.strip() for code in of_kind("cpp", page)] == [example]
-
-
-def test_what_is_built_from_both_pages_for_cpp_is_the_same():
-    for kind in ("cmake", "shell"):  # tests/consumer/run.sh takes it from docs/cpp.md
-        assert set(of_kind(kind, "howto/cpp.md")) <= set(of_kind(kind, "cpp.md"))
+def test_the_program_of_the_page_for_cpp_is_the_example():
+    example = (HOUSE / "examples" / "01_first_word.cpp").read_text().split("\n", 1)[1].strip()
+    assert [code.strip() for code in of_kind("cpp", "howto/cpp.md")] == [example]
 
 
 @pytest.mark.parametrize("code", of_kind("toml"))

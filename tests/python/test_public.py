@@ -94,31 +94,6 @@ def test_importing_the_package_loads_nothing():
     assert not {"numpy", "cv2", "brushsvg._core", "argparse"} & set(loaded)
 
 
-def test_the_short_example(tmp_path):
-    out = python(EXAMPLES / "01_word_to_program.py", EXAMPLES / "vincent.svg", tmp_path / "v.ngc")
-    overlap = float(out.rsplit(":", 1)[1])
-    assert overlap > 0.9
-    assert "(title: Vincent)" in (tmp_path / "v.ngc").read_text()
-
-
-def test_the_short_example_refuses_in_a_sentence(tmp_path):
-    damaged = tmp_path / "d.svg"
-    damaged.write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="90mm"><path id="p" fill="none" '
-        'stroke="red" stroke-width="9" d="M99 99h99 X 9"/></svg>'
-    )
-    for words, sentence in (
-        ([], "python 01_word_to_program.py"),
-        ([tmp_path / "none.svg", tmp_path / "x.ngc"], "no such file"),
-        ([damaged, tmp_path / "x.ngc"], "p: d is damaged"),
-    ):
-        command = [sys.executable, EXAMPLES / "01_word_to_program.py", *words]
-        done = subprocess.run(command, capture_output=True, text=True)
-        assert done.returncode == 1
-        assert sentence in done.stderr and "Traceback" not in done.stderr
-    assert not (tmp_path / "x.ngc").exists()
-
-
 @pytest.mark.slow
 def test_the_demo_leaves_everything(tmp_path):
     out = python(EXAMPLES / "demo.py", EXAMPLES / "vincent.svg", tmp_path / "demo")

@@ -111,7 +111,7 @@ def convert(
     corners: "auto", "turn"; detail: "draft", "normal", "fine"; script: "auto", "latin", "arabic", "devanagari", "cjk";
     join: bool; compensation: "none", "constant", "closed", "refined"; terminals, start, end: "auto", "round", "butt",
     "pointed"; corrections: the path of what compare wrote; margin_strokes: "auto", "on", "off".
-    docs/python.md has them in a table.
+    docs/reference/options.md has them in a table.
 
     Raises Error, with a code of docs/reference/diagnostics.md, for what cannot be read, painted or run. Of several
     reasons it gives the first, its notes the others, its notices what was to be warned of.

@@ -181,7 +181,8 @@ def _lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
     if off_mm > LAG_FAR_MM:
         raise Error(
             f"no brush fits these lags: a law over depth differs by {off_mm:.1f} mm from the lag "
-            f"{values[worst]:g} mm at depth {depths[worst]:g} mm, outside the range [0, {LAG_FAR_MM:g}] mm: are they in the right order?",
+            f"{values[worst]:g} mm at depth {depths[worst]:g} mm, outside the range "
+            f"[0, {LAG_FAR_MM:g}] mm: are they in the right order?",
             "lag",
             values[worst],
             code="law-undetermined",

@@ -106,7 +106,7 @@ def _inkscape() -> Iterator[tuple[str, str]]:
     else:
         yield "program", f"{_version(program)}  {program}"
         if kind := sandbox(program):
-            yield "sandbox", f"{kind} Inkscape cannot start programs outside: see docs/plugins.md"
+            yield "sandbox", f"{kind} Inkscape cannot start programs outside: see docs/howto/inkscape.md"
     folder = extensions_folder() / FOLDER
     if not (folder / "brushsvg_program.py").is_file():
         zipped = "" if SOURCE.is_dir() else " brushsvg-inkscape.zip"  # a wheel does not hold it

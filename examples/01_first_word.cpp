@@ -1,4 +1,4 @@
-// A brush file and a stroke by hand become G-code: 02_brush_file_to_gcode BRUSH.json PROGRAM.ngc
+// Paint a stroke that you draw by hand, with a brush from a file, as G-code: 01_first_word BRUSH.json PROGRAM.ngc
 #include <brushsvg/brushsvg.hpp>
 #include <brushsvg/io/brush_json.hpp>
 #include <brushsvg/posts/linuxcnc.hpp>
@@ -9,7 +9,7 @@
 using namespace brushsvg;
 
 int main(int count, char** words) try {
-    if (count != 3) return std::fprintf(stderr, "02_brush_file_to_gcode BRUSH.json PROGRAM.ngc\n"), 2;
+    if (count != 3) return std::fprintf(stderr, "01_first_word BRUSH.json PROGRAM.ngc\n"), 2;
     std::stringstream text;
     if (!(text << std::ifstream(words[1]).rdbuf()))
         return std::fprintf(stderr, "%s: the file is empty or cannot be read\n", words[1]), 1;
