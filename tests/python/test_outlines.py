@@ -123,6 +123,20 @@ def test_a_last_step_aside_is_left_out():
     assert line[-1] == pytest.approx((40.3 - 3 * np.hypot(1, 0.1), 0, 3), abs=0.01)
 
 
+def test_a_hairline_that_ends_in_a_ball_keeps_its_way_from_the_stem():
+    """As the tail of a y: the stem's straight cut is far behind the end, and not the end's own."""
+    stem = [(0.0, 40.0 - k, 3.4) for k in range(28)]
+    tail = [(3.3 - 0.5 * k, 10.2 - k, 0.15) for k in range(20)]
+    ball = [(-6.8, -9.0, 3.9)]
+    line = np.array(stem + tail + ball)
+    hair = shapely.LineString([place[:2] for place in tail + ball]).buffer(0.15)
+    shape = shapely.unary_union(
+        [shapely.box(-3.4, 10, 3.4, 44), hair, shapely.Point(ball[0][:2]).buffer(3.9)]
+    )
+    ring = np.array(shapely.geometry.polygon.orient(shape).exterior.coords)[:-1]
+    assert run_to_cut(line, [ring]) is line
+
+
 def test_a_pointed_end_keeps_its_point():
     (leaf,) = painted(path("M10 30Q30 20 60 30Q30 40 10 30Z"))
     assert min(half for _, half in leaf.half_width) < 0.2

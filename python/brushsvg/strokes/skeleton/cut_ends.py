@@ -74,7 +74,7 @@ def run_to_cut(line: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(back[:, :2], axis=0).T))])
     befores = np.column_stack([np.interp(along + back[:, 2], along, column) for column in back.T])
     halves = back[:, 2]
-    is_over = (along > LOOKED_AT * halves) & (halves > halves[0]) | (along[-1] < along + halves)
+    is_over = (along > LOOKED_AT * np.maximum(halves, halves[0])) | (along[-1] < along + halves)
     ways_mm = back[:, :2] - befores[:, :2]
     is_level = (
         (halves > 0) & ways_mm.any(axis=1) & (befores[:, 2] <= (1 + LEVEL) * halves)
