@@ -27,10 +27,9 @@ __all__: list[str] = [
     "Machine",
     "MarkFit",
     "MarkLaws",
-    "MarkMiss",
     "MarkOptions",
+    "MarkResidual",
     "Marks",
-    "Miss",
     "Norm",
     "Paint",
     "PaintedMark",
@@ -44,6 +43,7 @@ __all__: list[str] = [
     "StrokeId",
     "Track",
     "TrackFit",
+    "TrackingError",
     "Verdict",
     "WorstPlace",
     "area",
@@ -74,8 +74,6 @@ __all__: list[str] = [
     "intersect",
     "lag",
     "medial_axis",
-    "miss_of",
-    "misses_of",
     "narrow",
     "overlap",
     "painted_bounds",
@@ -90,6 +88,8 @@ __all__: list[str] = [
     "thorns",
     "touching",
     "trace_outlines",
+    "tracking_error_of",
+    "tracking_errors_of",
     "uncovered_areas",
     "unite",
     "verdicts",
@@ -854,15 +854,15 @@ class Verdict:
     @property
     def worst(self) -> WorstPlace: ...
 
-class Miss:
+class TrackingError:
     """
     Distance of the widest point from the middle line [mm], from the first taut row to the last.
 
     largest_mm, where at_mm (x, y) it is; mean_mm over the length painted; within_tolerance; has_turn_in_place: at a corner
     too sharp for the lever.
     """
-    def __copy__(self) -> Miss: ...
-    def __deepcopy__(self, memo: dict) -> Miss: ...
+    def __copy__(self) -> TrackingError: ...
+    def __deepcopy__(self, memo: dict) -> TrackingError: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __getstate__(self) -> tuple: ...
     def __hash__(self) -> int: ...
@@ -881,7 +881,7 @@ class Miss:
 
 class Compensated:
     """
-    A plan, what each pass still misses, and warnings, notices about strokes.
+    A plan, the tracking error of each pass, and warnings, notices about strokes.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -898,9 +898,9 @@ class Compensated:
         One plan of passes of both: (whether it is the other's, its number), in order.
         """
     @property
-    def misses(self) -> tuple[Miss, ...]: ...
-    @property
     def plan(self) -> Plan: ...
+    @property
+    def tracking_errors(self) -> tuple[TrackingError, ...]: ...
     @property
     def warnings(self) -> tuple[Notice, ...]: ...
 
@@ -1348,12 +1348,12 @@ class MarkOptions:
     @turn_rad.setter
     def turn_rad(self, arg0: float) -> None: ...
 
-class MarkMiss:
+class MarkResidual:
     """
     One painted mark against its prediction.
     """
-    def __copy__(self) -> MarkMiss: ...
-    def __deepcopy__(self, memo: dict) -> MarkMiss: ...
+    def __copy__(self) -> MarkResidual: ...
+    def __deepcopy__(self, memo: dict) -> MarkResidual: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __getstate__(self) -> tuple: ...
     def __hash__(self) -> int: ...
@@ -1406,7 +1406,7 @@ class MarkFit:
     @property
     def machine(self) -> Machine: ...
     @property
-    def marks(self) -> tuple[MarkMiss, ...]: ...
+    def marks(self) -> tuple[MarkResidual, ...]: ...
     @property
     def noise_mm(self) -> float: ...
     @property
@@ -1494,7 +1494,7 @@ def compensate(
     ahead by lag_mm (None: the lag at each stroke's median depth); "closed", the inverse of the brush's law; "refined", from there on by least squares until
     the outline of the mark lies best on the wanted one, kept where it overlaps better. tolerance_mm: how far the widest
     point of the mark may be off the middle line once the brush is taut, between poses too; each pass is simulated and its
-    miss returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most
+    tracking error returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most
     the brush's. progress: called with (strokes done, strokes). few_poses: closed only, no more poses than the tolerance
     asks for. start, end: closed and refined, the terminals of strokes that do not set them: "pointed", as the footprint is
     behind; "round", as it is in front, where a start is set down inside of the stroke, goes back to its beginning and turns
@@ -1692,23 +1692,6 @@ def medial_axis(
     stays, too, if what lies beyond some place on it adds as much to the disc there, and least_limb to the disc it leaves.
     """
 
-def miss_of(
-    pass_: Pass, stroke: Stroke, brush: Brush, tolerance_mm: float = 0.05
-) -> Miss:
-    """
-    Miss of one pass against the stroke it should paint, by simulating it.
-    """
-
-def misses_of(
-    passes: collections.abc.Sequence[Pass],
-    strokes: collections.abc.Sequence[Stroke],
-    brush: Brush,
-    tolerance_mm: float = 0.05,
-) -> list[Miss]:
-    """
-    The same of passes and strokes in turn, on all processors: a Miss each.
-    """
-
 def narrow(
     marks: Marks,
     paint: Paint,
@@ -1842,6 +1825,23 @@ def trace_outlines(
 ) -> None:
     """
     Fills outline_mm of every pass and of the whole.
+    """
+
+def tracking_error_of(
+    pass_: Pass, stroke: Stroke, brush: Brush, tolerance_mm: float = 0.05
+) -> TrackingError:
+    """
+    Miss of one pass against the stroke it should paint, by simulating it.
+    """
+
+def tracking_errors_of(
+    passes: collections.abc.Sequence[Pass],
+    strokes: collections.abc.Sequence[Stroke],
+    brush: Brush,
+    tolerance_mm: float = 0.05,
+) -> list[TrackingError]:
+    """
+    The same of passes and strokes in turn, on all processors: a Miss each.
     """
 
 def uncovered_areas(
