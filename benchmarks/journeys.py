@@ -28,7 +28,7 @@ GROUPS = {
     "servo plotters: offsets, heights, steep strokes": ["tests/python/test_servo.py"],
     "arms: the highest elbow, joints above the table": ["tests/python/test_arm_reach.py"],
     "calibrate and compare write what a machine can undo": [
-        "tests/python/test_mended_cell.py",
+        "tests/python/test_corrected_cell.py",
         "tests/python/test_calibrate.py",
         "-k",
         "undo or every_cell or left_out or parts_of_a_machine",

@@ -98,7 +98,9 @@ def painted(text: str, font: bytes, size_mm: float, brush_name: str, compensatio
         file = Path(folder, "glyph.svg")
         file.write_text(document, encoding="utf-8")
         work = prepare(file, Options(brush=brush, compensation=compensation))
-    rings = [ring for element in read_svg(document.encode()).elements for ring in filled(element)]  # dots, too
+    rings = [
+        ring for element in read_svg(document.encode()).elements for ring in filled(element)
+    ]  # dots, too
     mark_rings = predict(work).outline_mm
     shape, mark = region(rings), region(mark_rings)
     finest = brush.half_width(brush.lag.calibrated_mm[0])

@@ -7,7 +7,7 @@ sheet, up to 0.5 mm of backlash and 1 % of scale, each stroke 0.1 mm elsewhere (
 100 to 300 mm; every sheet is laid anew, each stroke once more 0.1 mm elsewhere, the camera held another way. The paint
 is that of the slow stepping simulator of tests/laws, the pictures the renderer's. Three sheets are painted. After the
 first the brush learns from it (`calibrate --plan --prior --machine axes,tilt,backlash`), `compare` with this brush
-writes the cell (`--mended-cell`) and what is left of each stroke beside it (`convert --corrections`), and the brush is
+writes the cell (`--corrected-cell`) and the remaining corrections (`convert --corrections`), and the brush is
 dipped before each stroke, not before every other one, where paint is missing; after the second strokes are led once
 more by what `compare --corrections` says. Machines run the programs' text.
 
@@ -160,7 +160,7 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
             break
         text = run(
             f"compare photo-{sheet}.jpg word.svg --cell {cell} {flags} {led} -o seen-{sheet}.json "
-            + ("" if sheet else "--mended-cell cell-1.toml"),
+            + ("" if sheet else "--corrected-cell cell-1.toml"),
             folder,
         )
         (folder / f"seen-{sheet}.txt").write_text(text)
@@ -204,7 +204,7 @@ def follow(seen: dict, sheet: int, folder: Path, strokes_a_load: int) -> tuple[i
     words = (
         f"compare photo-{sheet}.jpg plan-{sheet}.json --brush mine-{sheet + 1}.json --cell cell-{sheet}.toml"
     )
-    told = run(f"{words} --quiet --mended-cell cell-{sheet + 1}.toml -o left-{sheet}.json", folder)
+    told = run(f"{words} --quiet --corrected-cell cell-{sheet + 1}.toml -o left-{sheet}.json", folder)
     (folder / f"mended-{sheet}.txt").write_text(told)
     left = json.loads((folder / f"left-{sheet}.json").read_text())
     rows = left.get("beside_machine", left)["strokes"]

@@ -23,13 +23,13 @@ IN_DIALOGS = {  # by the code of what brushsvg tells: what is done in Inkscape w
     "to strokes",
 }
 FLAG = re.compile(r"(?:^|[\s(`])(?:brushsvg [a-z]+ [^;]*)?--[a-z]")
-MEND = "mend or delete it, or draw it anew"  # what is damaged, whatever its code
+REPAIR = "repair or delete it, or draw it again"  # what is damaged, whatever its code
 
 
 def in_dialogs(notice: dict) -> str:
     """What brushsvg tells, with its advice worded for who has dialogs and no flags."""
     sentence, advice = notice["sentence"], notice["advice"]
-    done = IN_DIALOGS.get(notice["code"], MEND if notice["damaged"] else "") if advice else ""
+    done = IN_DIALOGS.get(notice["code"], REPAIR if notice["damaged"] else "") if advice else ""
     if done:
         sentence = sentence[: len(sentence) - len(advice)].removesuffix("; ")
     # what is left may name flags: who has dialogs cannot type them

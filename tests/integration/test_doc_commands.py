@@ -116,7 +116,7 @@ class Desk:
 def _written(words: list[str]) -> set[str | None]:
     """The files that a command writes."""
     args = parse(words)
-    names = ["output", "preview", "picture", "plot", "page", "report", "mended_cell"]
+    names = ["output", "preview", "picture", "plot", "page", "report", "corrected_cell"]
     names += {"chart": ["chart"], "brush": ["name"], "cell": ["name"]}.get(words[0], [])
     return {getattr(args, name, None) for name in names}
 

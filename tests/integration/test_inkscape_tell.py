@@ -114,7 +114,7 @@ def test_no_flag_is_shown_in_a_dialog(monkeypatch, sentence, advice, shown):
 def test_damage_is_to_be_mended_whatever_its_code(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(path("M20 30 H90 V"))
-    assert b"; mend or delete it, or draw it anew" in plugin.script("save", source).stderr
+    assert b"; repair or delete it, or draw it again" in plugin.script("save", source).stderr
 
 
 def test_a_cell_is_advised_by_name(plugin, tmp_path):

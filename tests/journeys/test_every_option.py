@@ -146,7 +146,7 @@ MORE = "".join(
 OF_COMPARE = {
     "-o": ["", "fit.json", "fit.txt"],
     "--picture": ["", "seen.png"],
-    "--mended-cell": ["", "mended.toml"],
+    "--corrected-cell": ["", "corrected.toml"],
     "--at-least": ["", "0.2"],
     "--json": ["", True],
     "--margin-strokes": ["", "on"],
@@ -179,7 +179,7 @@ def test_each_pair_of_options_of_compare_works(desk, capsys, options):
     run(capsys, "simulate-photo", "d.svg", "photo.jpg", "--studio", "studio.toml", *planned)
     run(capsys, "compare", "photo.jpg", "d.svg", *words_of(options))
     made = {each.name for each in desk.iterdir()}
-    assert {options[flag] for flag in ("-o", "--picture", "--mended-cell") if options[flag]} <= made
+    assert {options[flag] for flag in ("-o", "--picture", "--corrected-cell") if options[flag]} <= made
     if options["-o"] == "fit.json":
         suffix = {"ur5e": ".script", "grbl-servo": ".nc"}.get(options["--cell"], ".ngc")
         words = "convert", "d.svg", f"next{suffix}", "--corrections", "fit.json", *planned

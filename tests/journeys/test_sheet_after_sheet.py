@@ -81,7 +81,7 @@ def paint_three_sheets(desk: Desk) -> list[float]:
         )
         desk.run(
             f"compare photo-{sheet}.jpg plan-{sheet}.json --brush mine-{sheet + 1}.json --cell cell-{sheet}.toml "
-            f"--mended-cell cell-{sheet + 1}.toml -o left-{sheet}.json"
+            f"--corrected-cell cell-{sheet + 1}.toml -o left-{sheet}.json"
         )
         led = f"--corrections left-{sheet}.json"
     return overlaps

@@ -44,7 +44,7 @@ def goes_the_whole_way(user, name: str) -> None:
     user.types(f"check {program} word.svg {job} --cell {name}")
     user.types(f"simulate-photo word.svg photo.jpg {job} --cell {name} --studio studio.toml")
     user.types(
-        f"compare photo.jpg word.svg {job} --cell {name} -o corrections.json --mended-cell corrected.toml"
+        f"compare photo.jpg word.svg {job} --cell {name} -o corrections.json --corrected-cell corrected.toml"
     )
     assert find_cell(str(user.folder / "corrected.toml")).machine.scale == pytest.approx(
         (TOO_FAR, TOO_FAR), abs=0.002

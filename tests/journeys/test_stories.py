@@ -72,7 +72,7 @@ def test_a_servo_plotter_paints_three_colours(user):
     # The plotter moves 0.5 % too far. The page with all colours shows it, so the second page is corrected.
     user.saves("studio.toml", f"{STUDIO}[machine]\nscale = [1.005, 1.005]\n")
     user.types(f"simulate-photo colours.svg page.jpg {job} --studio studio.toml")
-    user.types(f"compare page.jpg colours.svg {job} -o page.json --mended-cell corrected.toml")
+    user.types(f"compare page.jpg colours.svg {job} -o page.json --corrected-cell corrected.toml")
     corrected = "--brush mine.json --cell corrected.toml --corrections page.json"
     user.types(f"convert colours.svg second.gcode {corrected}")
     user.types(f"check second.gcode colours.svg {corrected}")
@@ -100,7 +100,7 @@ def test_three_axes_go_from_a_chart_to_a_corrected_second_sheet(user_with_chart)
     user.types(f"convert word.svg word.ngc {first} --page page.svg")
     user.types(f"check word.ngc word.svg {first}")
     user.types(f"simulate-photo word.svg sheet-1.jpg {first} --studio studio.toml")
-    user.types(f"compare sheet-1.jpg word.svg {first} -o sheet-1.json --mended-cell corrected.toml")
+    user.types(f"compare sheet-1.jpg word.svg {first} -o sheet-1.json --corrected-cell corrected.toml")
 
     # Second sheet, by the corrected cell.
     second = "--brush mine.json --cell corrected.toml --corrections sheet-1.json"

@@ -70,7 +70,7 @@ ONE = {
 def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
     amiss, numbers = ONE[cause]
     folder, _ = job
-    found = compared(job, amiss, 1, "--mended-cell", str(folder / "mended.toml"))
+    found = compared(job, amiss, 1, "--corrected-cell", str(folder / "corrected.toml"))
     assert found["mend_first"] == cause, found["causes"]
     rows = {row["name"]: row for row in found["numbers"]}
     for name, truth in numbers.items():
@@ -83,7 +83,7 @@ def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
             for rows in (seen["strokes"], seen["beside_machine"]["strokes"])
         )
         assert beside_mended.mean() < 0.6 * beside_old.mean(), "the cell undoes what they lie aside"
-        mended = read_cell(folder / "mended.toml")
+        mended = read_cell(folder / "corrected.toml")
         assert mended.name not in cell_names(), (
             "a program that names it is not checked with the cell as it was"
         )

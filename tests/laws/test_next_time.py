@@ -365,12 +365,12 @@ def stretched(tmp_path_factory):
     studio.axes = np.diag([1.02, 0.985])
     plan = studio.plan()
     studio.own = {a_pass.stroke: studio.rng.normal(0, 0.12, 2) for a_pass in plan.passes}
-    mended = studio.folder / "mended.toml"
-    found = studio.compared(studio.photographed(plan), "--mended-cell", mended)
+    mended = studio.folder / "corrected.toml"
+    found = studio.compared(studio.photographed(plan), "--corrected-cell", mended)
     return studio, studio.rings(plan), found, mended
 
 
-def test_a_mended_cell_and_corrections_in_one_round(stretched):
+def test_a_corrected_cell_and_corrections_in_one_round(stretched):
     """Beside the mended cell strokes are led by what it leaves alone; either file alone is right for its own cell."""
     studio, wanted, found, mended = stretched
     plan = studio.plan()

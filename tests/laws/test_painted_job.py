@@ -313,14 +313,14 @@ def test_the_page_names_its_plan(job, tmp_path, capsys):
 
 def test_python_is_told_what_the_command_tells(job, capsys, tmp_path):
     folder, page, _, painted = job
-    named = tmp_path / "told.json", tmp_path / "told.png", tmp_path / "mended.toml"
-    flags = [f"--{flag}={path}" for flag, path in zip(("picture", "mended-cell"), named[1:], strict=True)]
+    named = tmp_path / "told.json", tmp_path / "told.png", tmp_path / "corrected.toml"
+    flags = [f"--{flag}={path}" for flag, path in zip(("picture", "corrected-cell"), named[1:], strict=True)]
     status, told = compare(folder, capsys, "photo.jpg", "-o", str(named[0]), *flags)
     stages = []
     found = brushsvg.compare(folder / "four.svg", folder / "photo.jpg", progress=stages.append)
     assert status == 0 and found.text == told.out and found.json == named[0].read_text()
     assert found.picture() == named[1].read_bytes()
-    assert brushsvg.write_cell(found.cell) == named[2].read_text() and not found.is_mended
+    assert brushsvg.write_cell(found.cell) == named[2].read_text() and not found.is_corrected
     assert round(found.overlap, 4) == json.loads(found.json)["overlap_wanted"] < 0.7
     assert [each.stroke for each in found.strokes] == list(painted) == list(found.corrections)
     assert len(set(stages)) > 3 and all(isinstance(words, str) for words in stages)

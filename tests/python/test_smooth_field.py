@@ -10,11 +10,11 @@ from diagnostics import are_told, refused
 from programs import LANGUAGES, RUNNABLE, call
 from sampling import sample
 from scipy.spatial import cKDTree
+from test_corrected_cell import MIDDLE, TRUE, found
 from test_distortion import DRAWING, GRID, cell_with, text_of, told_places
-from test_mended_cell import MIDDLE, TRUE, found
 
 from brushsvg import _core
-from brushsvg.comparison.attribution.corrected_cell import mended
+from brushsvg.comparison.attribution.corrected_cell import corrected_machine
 from brushsvg.comparison.corrections import machine_sha256
 from brushsvg.jobs.preparation import preparation
 from brushsvg.machine import writer
@@ -189,9 +189,9 @@ def test_the_table_is_written_as_it_is_read():
     assert parse_cell(write_cell(cell)) == cell
 
 
-def test_a_mended_cell_undoes_the_field_as_well():
+def test_a_corrected_cell_undoes_the_field_as_well():
     """What is amiss beyond the cell comes on top of where the cell took the tool."""
-    now = mended(found(replace(TRUE, lean_mm_per_mm=(0.0, 0.0))), MIDDLE, BENT)
+    now = corrected_machine(found(replace(TRUE, lean_mm_per_mm=(0.0, 0.0))), MIDDLE, BENT)
     told = np.random.default_rng(2).uniform((0, 0, 0), (120, 70, 0), (50, 3))
     once = goes(told, BENT)[:, :2]
     twice = np.column_stack([TRUE.scale[0] * once[:, 0] + TRUE.skew * once[:, 1], TRUE.scale[1] * once[:, 1]])

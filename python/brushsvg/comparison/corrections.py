@@ -20,7 +20,7 @@ from ..machine.realised.retimed import on_way
 from .offset_width import wider
 
 FORMAT = "brushsvg/comparison"
-BESIDE = "beside_machine"  # of the file: what is left of each stroke once the cell is mended
+BESIDE = "beside_machine"  # of the file: what is left of each stroke once the cell is corrected
 LEAST_MARKS = 3  # fewer do not tell a sheet's place from their own
 MARK = "corrections"  # key of a corrected plan: the corrections and the plan before
 KEYS = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm", "way_mm")
@@ -81,15 +81,14 @@ def machine_sha256(machine: Machine | None) -> str:
 
 
 def beside_machine(corrections: tuple[Correction, ...], machine: Machine | None) -> tuple[Correction, ...]:
-    """Those of them that are left beside this machine. Error where they are of other cells: what a mended cell undoes,
-    corrections made beside the old one would undo again."""
+    """Return the corrections that belong to this machine. Error if they belong to other cells: corrections made with the
+    old cell would correct again what the corrected cell undoes."""
     sha256 = machine_sha256(machine)
     found = tuple(each for each in corrections if each.machine_sha256 in ("", sha256))
     if corrections and not found:
         raise Error(
-            "the corrections say what is left beside another table [machine] than this cell's, which is neither that "
-            "of the cell that painted nor the mended one: use one of these, or compare the photograph again with the "
-            "cell that painted",
+            "the corrections were made for another table [machine] than this cell's: use the cell that painted or the "
+            "corrected one, or compare the photograph again with the cell that painted",
             "machine_sha256",
             code="corrections-of-another-cell",
         )
@@ -206,8 +205,8 @@ def read_sheet_before(path: str | os.PathLike[str]) -> SheetBefore:
         of_brush = {"brush_sha256": sha256, "replanned": bool(planned) and planned != sha256}
         found = _strokes(content, "", of_brush)
         if content.get(BESIDE) is not None:
-            (mended,) = json_fields.objects([content[BESIDE]], BESIDE)
-            found += _strokes(mended, f"{BESIDE}.", of_brush)
+            (corrected,) = json_fields.objects([content[BESIDE]], BESIDE)
+            found += _strokes(corrected, f"{BESIDE}.", of_brush)
         if not found:
             raise Error(_why_none(content["strokes"]), "strokes", code="corrections-missing")
     except Error as refusal:

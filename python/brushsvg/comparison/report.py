@@ -108,7 +108,7 @@ def as_json(
     beside: tuple[str, dict[str, Correction]] | None = None,
 ) -> str:
     """corrections: of the strokes that should be led elsewhere next time; faults: None where nothing is told; beside:
-    the fingerprint of the mended cell's machine, and the corrections that are left with it."""
+    the fingerprint of the corrected cell's machine, and the corrections that are left with it."""
     _, placed, each = found.overlaps
     made = {
         "format": FORMAT,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeVar, Unpack
 from .. import _core
 from ..calibration.prior.from_prior import has_learned
 from ..comparison import report
-from ..comparison.attribution.corrected_cell import certain_of, key_of, mended, sure
+from ..comparison.attribution.corrected_cell import certain_of, corrected_machine, key_of, sure
 from ..comparison.attribution.faults import Faults, whose_fault
 from ..comparison.attribution.model import BRUSH
 from ..comparison.attribution.residual import beside_machine as left_beside
@@ -90,7 +90,7 @@ class PaintedJob:
     overlap: of all paint with what was wanted, or predicted where there is no drawing, as it lies. strokes: each with
     its overlaps and where it lies; ends: by stroke, how much later than wanted it begins and ends. faults: whose it is,
     None where nothing can be told. corrections: by stroke, where it should be led next time. cell: with a [machine]
-    that undoes what is certain, besides what it undid; is_mended: whether anything is. notices: what is to be warned
+    that undoes what is certain, besides what it undid; is_corrected: whether anything is. notices: what is to be warned
     of. text, json: what the command prints and what `convert` takes as corrections.
     """
 
@@ -101,7 +101,7 @@ class PaintedJob:
     faults: Faults | None = field(repr=False)
     corrections: dict[str, Correction] = field(repr=False)
     cell: Cell = field(repr=False)
-    is_mended: bool
+    is_corrected: bool
     notices: tuple[Notice, ...] = field(repr=False)
     text: str = field(repr=False)
     json: str = field(repr=False)
@@ -262,7 +262,7 @@ def _undoable(faults: Faults, middle_mm, cell: Cell, along) -> tuple[Machine | N
     if printed := _printed_at(faults):
         left_out["scale"] = f"the page was probably printed at {100 * printed:.1f} %"
     while True:
-        machine = mended(faults, middle_mm, cell.machine, along, left_out)
+        machine = corrected_machine(faults, middle_mm, cell.machine, along, left_out)
         try:
             if machine:
                 parse_cell(write_cell(replace(cell, machine=machine)))

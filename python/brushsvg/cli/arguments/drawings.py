@@ -63,7 +63,7 @@ def _check_convert(args) -> None:
             "--per-colour writes all strokes of each colour: leave --colour and --from-stroke out"
         )
     if args.per_colour and args.margin_strokes == "on":
-        args.parser.error("strokes in the margin have one colour: leave --per-colour or --margin-strokes out")
+        args.parser.error("--margin-strokes on does not go with --per-colour: leave one of them out")
     written = [
         (args.output, (".json", *PROGRAMS)),
         (args.preview, PICTURES),
@@ -150,7 +150,7 @@ def add_compare(commands) -> None:
         help="also draw paint, wanted and predicted; of --sheets the spread (.png)",
     )
     compare.add_argument(
-        "--mended-cell",
+        "--corrected-cell",
         metavar="FILE",
         help="also write the cell whose table [machine] undoes what is certain, besides what it undid (.toml)",
     )
@@ -177,14 +177,14 @@ def _check_compare(args) -> None:
         )
     check_drawing(args)
     for flag, value in (
-        ("mended-cell", args.mended_cell),
+        ("corrected-cell", args.corrected_cell),
         ("at-least", args.at_least),
     ):
         if args.sheets and value is not None:
             args.parser.error(f"--{flag} is for one sheet, not for --sheets")
     read = [*((path, PHOTOS) for path in args.photos), (args.input, DRAWINGS), (args.brush, None)]
     read.append((args.corrections, (".json",)))
-    written = [(args.output, (".json", ".txt")), (args.picture, (".png",)), (args.mended_cell, (".toml",))]
+    written = [(args.output, (".json", ".txt")), (args.picture, (".png",)), (args.corrected_cell, (".toml",))]
     check_files(args, read, written)
 
 

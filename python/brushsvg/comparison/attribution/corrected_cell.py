@@ -52,7 +52,7 @@ def sure(
     return certain
 
 
-def mended(
+def corrected_machine(
     faults: Faults,
     middle_mm,
     before: Machine | None,

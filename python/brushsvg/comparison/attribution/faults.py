@@ -61,7 +61,7 @@ class Share:
 @dataclass(frozen=True)
 class Faults:
     """overlap: with what was wanted, of paint with these faults alone; own_mm: rms of the strokes' own places; rest_mm:
-    rms of edges beyond all that; alike: pairs of causes that these marks hardly tell apart; first: what to mend first,
+    rms of edges beyond all that; alike: pairs of causes that these marks hardly tell apart; first: what to fix first,
     None where no gain is certain."""
 
     found: tuple[Found, ...]
@@ -225,8 +225,8 @@ def _interval(outline, slopes, numbers, of_it, drawn) -> tuple[float, float]:
     """What the gain may be less or more than it is, by the area between edges: 2.5 and 97.5 % of the draws."""
 
     def gain(each):
-        edges, mended = slopes[:, :-1] @ each[:-1], slopes[:, :-1] @ np.where(of_it, 0.0, each)[:-1]
-        return _by_edges(mended, outline) - _by_edges(edges, outline)
+        edges, corrected = slopes[:, :-1] @ each[:-1], slopes[:, :-1] @ np.where(of_it, 0.0, each)[:-1]
+        return _by_edges(corrected, outline) - _by_edges(edges, outline)
 
     middle = gain(numbers)
     gains = [gain(numbers + each) - middle for each in drawn]

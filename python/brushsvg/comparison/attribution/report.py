@@ -10,8 +10,8 @@ from .model import BRUSH, MACHINE, PAPER, SHEET
 
 MEND = {
     SHEET: "teach the paper anew, or lay the sheet where it was taught",
-    MACHINE: "give convert the cell of --mended-cell, or mend the machine",
-    PAPER: "give convert the cell of --mended-cell, or level the paper",
+    MACHINE: "give convert the cell of --corrected-cell, or fix the machine",
+    PAPER: "give convert the cell of --corrected-cell, or level the paper",
     BRUSH: "update the brush: calibrate --plan --prior",
     OWN: "correct each stroke: convert --corrections; several sheets tell what of it repeats (compare --sheets)",
     DRY: "let the brush fetch paint earlier: [paint] of the cell",
@@ -52,11 +52,11 @@ def in_words(faults: Faults | None, machine: Machine | None, any_alone: bool = T
             f"Hard to tell apart on these marks: {one}, and {other}; their sum is surer than either."
         )
     if faults.first is None:
-        lines.append("Nothing is certain to gain anything when it is mended alone.")
+        lines.append("No single fix is certain to help: use the corrections.")
     else:
         gain = next(share.gain for share in faults.shares if share.cause == faults.first)
         how = MEND[faults.first] if any_alone or faults.first != BRUSH else NONE_ALONE
-        lines.append(f"Mend first: {faults.first}, which gains {gain:.3f}: {how}.")
+        lines.append(f"Fix first: {faults.first}, which gains {gain:.3f}: {how}.")
     if machine:
         lines += [
             "",

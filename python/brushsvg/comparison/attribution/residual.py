@@ -1,4 +1,4 @@
-"""What is left of where marks lie, and of how wide they are, once the machine is mended."""
+"""Displacements and widths of marks that remain after the machine is corrected."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ FINE_PX_PER_MM = 8.0
 def beside_machine(
     found: Comparison, certain: dict[str, float], plan, brush, strokes: list[Wanted]
 ) -> Comparison:
-    """The comparison, of each mark what the faults that go into a mended cell do to it left out, as read from what it
-    would be with these faults alone. certain: these, of `mended_cell.sure`; plan: as it was told; strokes: those that
-    were compared."""
+    """Return the comparison without the effect of the faults that a corrected cell undoes.
+
+    certain: these faults, from `corrected_cell.sure`; plan: as it was sent to the machine; strokes: those compared.
+    """
     names = tuple(stroke.stroke for stroke in strokes if stroke.predicted)
     model = FaultModel(plan, brush, names, found.middle_mm)
     amiss = np.array([certain.get(number.name, 0.0) for number in model.numbers])

@@ -13,7 +13,7 @@ def compare_files(args) -> None:
     from ....jobs.comparing import compared, painted_sheet
 
     sources = _sources(args)
-    check_places(args, args.output, args.picture, args.mended_cell, sources=sources)
+    check_places(args, args.output, args.picture, args.corrected_cell, sources=sources)
     with about(args.input):
         sheet = painted_sheet(typed(args), stage, warn)
     if args.sheets:
@@ -26,14 +26,14 @@ def compare_files(args) -> None:
         files[args.output] = job.json if suffix_of(args.output) == ".json" else job.text
     if args.picture:
         files[args.picture] = job.picture()
-    if args.mended_cell:
-        with about(args.mended_cell):
-            files[args.mended_cell] = _cell_text(job.cell)
-        if not job.is_mended:
+    if args.corrected_cell:
+        with about(args.corrected_cell):
+            files[args.corrected_cell] = _cell_text(job.cell)
+        if not job.is_corrected:
             sentence = (
                 "nothing is certain to be amiss of the machine or the paper's height: the cell is as it was"
             )
-            warn(args.mended_cell, [Notice("machine", sentence, code="cell-unchanged")])
+            warn(args.corrected_cell, [Notice("machine", sentence, code="cell-unchanged")])
     if files:
         write(args, files, sources=sources)
     tell(job.json if args.json else job.text)
@@ -46,7 +46,7 @@ def compare_files(args) -> None:
 def _sources(args) -> list[str]:
     """Corrections, or how well a studio repeats, and a cell: files that later commands read."""
     made = [args.output] if suffix_of(args.output) == ".json" else []
-    return [*made, *([args.mended_cell] if args.mended_cell else [])]
+    return [*made, *([args.corrected_cell] if args.corrected_cell else [])]
 
 
 def _cell_text(cell) -> str:

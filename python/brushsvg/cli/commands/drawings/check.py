@@ -14,7 +14,7 @@ from ...console import RefusedError, about, stage, tell, warn
 from ...steps.options import typed
 from ...steps.output_places import check_places, suffix_of, write
 
-RUNNABLE = "nothing forbids to run it"
+RUNNABLE = "OK to run: no problem found"
 
 
 def check_file(args) -> None:

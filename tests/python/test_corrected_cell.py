@@ -10,7 +10,7 @@ from diagnostics import agrees, are_told
 core = pytest.importorskip("brushsvg._core")
 
 from brushsvg import find_brush  # noqa: E402
-from brushsvg.comparison.attribution.corrected_cell import as_table, certain_of, mended  # noqa: E402
+from brushsvg.comparison.attribution.corrected_cell import as_table, certain_of, corrected_machine  # noqa: E402
 from brushsvg.comparison.attribution.model import BRUSH, MACHINE, PAPER, FaultModel  # noqa: E402
 from brushsvg.comparison.next_corrections import next_corrections  # noqa: E402
 from brushsvg.comparison.placing import Placed  # noqa: E402
@@ -64,7 +64,7 @@ def test_what_was_undone_before_stays_undone(undone):
     to_y = np.linalg.lstsq(np.column_stack([y, depth]), went[:, 1], rcond=None)[0]
     to_z = np.linalg.lstsq(np.column_stack([ones, x, y]), wanted[:, 2] - went[:, 2], rcond=None)[0]
     beyond = Machine((to_x[2], to_y[1]), (to_x[0], to_y[0]), to_x[1], to_z[0], (to_z[1], to_z[2]))
-    now = mended(found(beyond), MIDDLE, undone)
+    now = corrected_machine(found(beyond), MIDDLE, undone)
     off = true_mm(told_mm(wanted, now), TRUE) - wanted
     assert np.abs(off).max() < 0.01, np.abs(off).max(axis=0)
     before = true_mm(told_mm(wanted, undone), TRUE) - wanted
@@ -72,14 +72,14 @@ def test_what_was_undone_before_stays_undone(undone):
 
 
 def test_without_a_table_what_is_found_is_the_table():
-    now = mended(found(TRUE), MIDDLE, None)
+    now = corrected_machine(found(TRUE), MIDDLE, None)
     assert (now.scale, now.skew, now.lean_mm_per_mm) == (TRUE.scale, TRUE.skew, TRUE.lean_mm_per_mm)
     assert now.height_mm == pytest.approx(TRUE.height_mm) and now.tilt_mm_per_mm == TRUE.tilt_mm_per_mm
 
 
 def test_the_map_of_the_paper_stays():
     rows = ((0.0, 0.0, 0.1), (50.0, 0.0, 0.2), (0.0, 50.0, 0.0), (50.0, 50.0, -0.1))
-    now = mended(found(TRUE), MIDDLE, replace(UNDONE, map_mm=rows))
+    now = corrected_machine(found(TRUE), MIDDLE, replace(UNDONE, map_mm=rows))
     assert now.map_mm == rows
     cell = write_cell(replace(find_cell("linuxcnc-3axis"), machine=None))
     assert parse_cell("\n".join([cell, *as_table(now)])).machine == now, (
@@ -91,8 +91,8 @@ def test_the_map_of_the_paper_stays():
 def test_backlash_goes_into_the_cell_on_top_of_what_it_undid(along, wanted):
     """By which of the machine's axes go along x and y of the paper."""
     before = replace(UNDONE, backlash_mm=(0.1, 0.2))
-    assert mended(found(TRUE), MIDDLE, before, along).backlash_mm == pytest.approx(wanted)
-    assert mended(found(TRUE, half=10.0), MIDDLE, before, along) is None
+    assert corrected_machine(found(TRUE), MIDDLE, before, along).backlash_mm == pytest.approx(wanted)
+    assert corrected_machine(found(TRUE, half=10.0), MIDDLE, before, along) is None
 
 
 @pytest.mark.parametrize("name", cell_names())
@@ -141,7 +141,7 @@ def test_the_axes_along_the_paper(turned_deg, along):
 
 
 def test_what_is_not_certain_changes_nothing():
-    assert mended(found(TRUE, half=10.0), MIDDLE, UNDONE) is None
+    assert corrected_machine(found(TRUE, half=10.0), MIDDLE, UNDONE) is None
 
 
 def test_a_brush_that_learnt_from_these_marks_holds_its_laws():
