@@ -8,13 +8,13 @@ Characters come from hanzi-writer-data (npm; stroke order of Make Me a Hanzi). S
 strokes are joined and parted as brushsvg finds them; the others are given by their middle lines. The 200 characters
 that `ductus.py` judges by KanjiVG are left out. No registry has the stroke order of Latin letters apart from KanjiVG,
 which is the judge. So LETTERS is a table of our own. It is laid over the letters of each font; words of two to four
-letters are made of them. The fonts that `docs/letters.md` judges are not among them.
+letters are made of them. The fonts that `docs/evidence/letters.md` judges are not among them.
 
 The fit maximises the probability of the next stroke, given those that are written (see stroke_order.py), by Adam. Its
 seed is fixed. Another processor or library of linear algebra may round differently and find slightly other weights.
 
-The functions of this script made the weights in stroke_order.json, step by step: letters, characters, then the fit. The
-command as a whole has not been run yet, and nobody has compared its output with the file.
+The command as it stands above wrote stroke_order.json: run again in a new folder, it gave the same file, digit for digit.
+It takes about 15 minutes of one processor.
 """
 
 from __future__ import annotations

@@ -22,6 +22,8 @@ QUOTED = {  # file: how many texts of four plain words and more its tests expect
     "python/test_checking.py": 3,  # lines of a program's header and end
     "python/test_jaka.py": 1,
     "python/test_ros2.py": 1,  # the end of a table
+    "python/test_docs_lint.py": 2,  # sentences that the linter must find
+    "python/test_examples.py": 4,  # output of the examples
     "python/test_imports.py": 4,  # for developers
 }
 

@@ -81,8 +81,10 @@ def machine_sha256(machine: Machine | None) -> str:
 
 
 def beside_machine(corrections: tuple[Correction, ...], machine: Machine | None) -> tuple[Correction, ...]:
-    """Return the corrections that belong to this machine. Error if they belong to other cells: corrections made with the
-    old cell would correct again what the corrected cell undoes."""
+    """Return the corrections that belong to this machine.
+
+    Error if they belong to other cells: they would correct again what a corrected cell already undoes.
+    """
     sha256 = machine_sha256(machine)
     found = tuple(each for each in corrections if each.machine_sha256 in ("", sha256))
     if corrections and not found:
