@@ -68,7 +68,7 @@ too sharp for the lever.)");
         .def_readonly("within_tolerance", &TrackingError::within_tolerance)
         .def_readonly("has_turn_in_place", &TrackingError::has_turn_in_place)
         .def("__repr__", [](const TrackingError& e) {
-            return "<Miss of " + told(e.largest_mm) + " mm at (" + told(e.at_mm[0]) + ", " + told(e.at_mm[1]) +
+            return "<TrackingError of " + told(e.largest_mm) + " mm at (" + told(e.at_mm[0]) + ", " + told(e.at_mm[1]) +
                    ") mm, " + told(e.mean_mm) + " mm on average" +
                    (e.within_tolerance ? ", within the tolerance>" : ">");
         });

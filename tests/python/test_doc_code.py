@@ -40,7 +40,6 @@ HELD = {
 KINDS_OF_PAGES = {
     "README.md": "commands make python",
     "evidence/speed.md": "make",
-    "explanation/article.md": "commands",
     "explanation/calibration.md": "commands",
     "explanation/letters.md": "commands",
     "index.md": "{toctree}",

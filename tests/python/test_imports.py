@@ -251,7 +251,7 @@ def test_an_import_that_cannot_be_followed_is_refused():
         complaints(PACKAGE / "machine" / "writer.py", "import importlib\nimportlib.import_module(name)")
 
 
-DOCUMENTS = ("ARCHITECTURE.md", "docs/equations.md", "docs/brush.md")
+DOCUMENTS = ("ARCHITECTURE.md", "docs/reference/equations.md", "docs/reference/brush.md")
 
 
 @pytest.mark.parametrize("document", DOCUMENTS)
@@ -269,7 +269,7 @@ def test_documents_name_files_that_exist(document):
 def test_equations_name_code_and_tests_that_exist():
     """In a cell of a table, names in backquotes stand in a file that the same cell names."""
     rows = 0
-    for line in (ROOT / "docs" / "equations.md").read_text(encoding="utf-8").splitlines():
+    for line in (ROOT / "docs" / "reference" / "equations.md").read_text(encoding="utf-8").splitlines():
         for cell in line.split("|") if line.startswith("|") else ():
             words = re.findall("`([^`]+)`", cell)
             paths = [word for word in words if re.fullmatch(r"[\w./-]+\.(hpp|cpp|py|json)", word)]
@@ -277,7 +277,7 @@ def test_equations_name_code_and_tests_that_exist():
                 continue
             text = "".join((ROOT / path).read_text(encoding="utf-8") for path in paths)
             for name in set(words) - set(paths):
-                assert name in text, f"docs/equations.md: {name} is not in {' or '.join(paths)}"
+                assert name in text, f"docs/reference/equations.md: {name} is not in {' or '.join(paths)}"
                 rows += 1
     assert rows > 20
 
