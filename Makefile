@@ -117,7 +117,7 @@ lint: $(VENV)/.dev test-system
 	$(BIN)/clang-format --dry-run --Werror $$(git ls-files '*.cpp' '*.hpp')
 	cppcheck -q --std=c++17 --language=c++ --enable=warning,performance,portability --inline-suppr --error-exitcode=1 --suppress=missingIncludeSystem -I cpp/include -I cpp/io -I cpp/posts cpp examples benchmarks
 
-INCLUDES := $(patsubst %,-Icpp/%,include io posts fit/laws fit/marks fit/tracks many refine src) -isystem /usr/include/eigen3
+INCLUDES := $(patsubst %,-Icpp/%,include io posts fit/laws fit/marks fit/tracks many refine) -Icpp -isystem /usr/include/eigen3
 
 clang-headers: setup
 	@$(call install,clang)

@@ -13,8 +13,8 @@ letters are made of them. The fonts that `docs/evidence/letters.md` judges are n
 The fit maximises the probability of the next stroke, given those that are written (see stroke_order.py), by Adam. Its
 seed is fixed. Another processor or library of linear algebra may round differently and find slightly other weights.
 
-The command as it stands above wrote stroke_order.json: run again in a new folder, it gave the same file, digit for digit.
-It takes about 15 minutes of one processor.
+The command above wrote stroke_order.json: run again in a new folder, it gave the same file, digit for digit. It takes
+about 15 minutes of one processor.
 """
 
 from __future__ import annotations

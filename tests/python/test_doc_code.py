@@ -243,7 +243,7 @@ def test_flags_that_a_page_lists_are_understood():
 def test_targets_of_make_are_there():
     targets = re.search(r"^\.PHONY: (.*)$", (HOUSE / "Makefile").read_text(), re.M)[1].split()
     typed = [line.split()[1] for code in of_kind("make") for line in code.splitlines()]
-    assert len(typed) >= 5 and set(typed) <= set(targets)
+    assert len(typed) >= 4 and set(typed) <= set(targets)
 
 
 README = [

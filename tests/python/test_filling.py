@@ -260,7 +260,7 @@ def test_narrow_strokes_of_a_shape_stay_as_they_are(brush):
 
 
 def test_strokes_of_one_shape_are_filled_together_others_apart(brush):
-    made = of(SHAPES["heart"])
+    made = of("M5 5H75V30H53V80H27V30H5Z")  # a wide T
     assert len(made) > 1
     _, _, notices = within_reach(made, brush, "passes")
     assert [notice.where for notice in notices] == [each.id for each in made]

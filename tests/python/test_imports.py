@@ -251,7 +251,7 @@ def test_an_import_that_cannot_be_followed_is_refused():
         complaints(PACKAGE / "machine" / "writer.py", "import importlib\nimportlib.import_module(name)")
 
 
-DOCUMENTS = ("ARCHITECTURE.md", "docs/reference/equations.md", "docs/reference/brush.md")
+DOCUMENTS = ("ARCHITECTURE.md", "docs/reference/equations.md")
 
 
 @pytest.mark.parametrize("document", DOCUMENTS)
