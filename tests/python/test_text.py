@@ -392,10 +392,9 @@ def ttf():
 
 
 def filled(text, font, **options):
-    """(id, d) of each glyph, and the notices beyond the one that says outlines are filled."""
+    """(id, d) of each glyph, and the notices."""
     document, notices = text_svg(text, font, **{"size_mm": 10, **options})
-    assert notices[0].code == "font-of-outlines"
-    return [(path.get("id"), path.get("d")) for path in paths(document)], notices[1:]
+    return [(path.get("id"), path.get("d")) for path in paths(document)], notices
 
 
 def test_a_width_for_outlines_is_told_to_have_no_effect(ttf):
@@ -576,9 +575,9 @@ def test_composites_that_hold_each_other_end():
 
 
 def told_of(font, text="AV"):
-    """What is told of a text besides that its letters are outlines, and how many were drawn."""
+    """Return the notices about a text, and how many glyphs were drawn."""
     document, notices = text_svg(text, font)
-    return [each for each in notices if each.code != "font-of-outlines"], len(paths(document))
+    return notices, len(paths(document))
 
 
 def saved(font) -> bytes:

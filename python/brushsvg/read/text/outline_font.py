@@ -28,7 +28,6 @@ _LETTERS = "AEFHIKLMNTVWXYZilt"  # straight ones: in a font of lines, contours o
 _LINES_NOTICE = "it is a single-line font: its contours are read as lines"
 _JOINED = ("arabic", "devanagari")  # scripts of which a word is one shape
 _CLOSED = 8  # cubics of a contour from which its last one may be as short as the others: an O, and no V
-_NOTICE = "its letters are outlines, which become strokes as filled shapes do"
 
 
 def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
@@ -40,14 +39,12 @@ def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
     setter = _Setter(unpacked, size_mm)
     placed = tuple(map(setter.place, lines))
     is_filled = not setter.is_of_lines()
-    if is_filled:
-        kind = Notice("font", _NOTICE, code="font-of-outlines")
-    else:
-        kind = Notice("font", _LINES_NOTICE, code="font-of-lines")
+    told: tuple[Notice, ...] = tuple(_choices(unpacked, setter.face))
+    if not is_filled:
+        told = Notice("font", _LINES_NOTICE, code="font-of-lines"), *told
         placed = tuple(
             tuple(replace(each, subpaths=as_lines(each.subpaths)) for each in line) for line in placed
         )
-    told = kind, *_choices(unpacked, setter.face)
     return Setting(placed, is_filled, tuple(setter.missing), told, tuple(setter.blank))
 
 
