@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import brushsvg
+from brushsvg.cli.arguments.help_text import command_text
 from brushsvg.cli.arguments.parser import command_parser
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 
@@ -26,14 +27,14 @@ def write_pages(folder: Path) -> None:
 def _commands() -> Iterator[str]:
     parser = command_parser()
     yield "# Commands\n"
-    yield "This page is for everyone who looks up an option: it has the `--help` of every command.\n"
+    yield "This page is for everyone who looks up an option: it has the `--help-all` of every command.\n"
     for command, of_command in _of(parser).items():
         yield from _command(command, of_command, "##")
 
 
 def _command(name: str, parser: argparse.ArgumentParser, heading: str) -> Iterator[str]:
     parser.formatter_class = lambda prog: argparse.HelpFormatter(prog, width=COLUMNS)
-    yield f"{heading} {name}\n\n```text\n{parser.format_help().rstrip()}\n```\n"
+    yield f"{heading} {name}\n\n```text\n{command_text(parser, is_whole=True).rstrip()}\n```\n"
     for below, of_below in _of(parser).items():
         yield from _command(f"{name} {below}", of_below, heading + "#")
 

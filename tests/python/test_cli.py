@@ -732,7 +732,7 @@ def test_a_full_disk_under_stderr_changes_nothing(desk, words, status):
 
 
 def test_help_is_quick_and_promises_only_what_there_is(capsys):
-    status, out, _ = run(capsys, "convert", "--help")
+    status, out, _ = run(capsys, "convert", "--help-all")
     assert status == 0
     flags = set(re.findall(r"--[a-z-]+", out))
     choices = {
@@ -773,6 +773,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
     assert flags == choices | job | {
         "--corrections",
         "--help",
+        "--help-all",
         "--margin-strokes",
         "--page",
         "--preview",

@@ -7,13 +7,13 @@ import argparse
 from ...photo import PHOTOS
 from ...read import READERS
 from . import values
-from .flags import add_looks, add_writes, add_z_offset, plans_and_programs
+from .flags import A_PROGRAM, add_looks, add_writes, add_z_offset
 from .usage_checks import PICTURES, PROGRAMS, check_files, check_job, suffix_of
 
 
 def add_chart(commands) -> None:
     chart = commands.add_parser("chart", help="write a chart: the strokes to calibrate a brush with")
-    chart.add_argument("output", metavar="OUT", help=plans_and_programs())
+    chart.add_argument("output", metavar="OUT", help=f"a plan (.json) or {A_PROGRAM}")
     chart.add_argument(
         "--brush", metavar="NAME|FILE", help="the known brush most like yours; default: round-6"
     )

@@ -11,6 +11,9 @@ from . import values
 TERMINALS = ("auto", "round", "butt", "pointed")
 
 
+A_PROGRAM = "a program; its extension names the language (see convert --help)"
+
+
 def programs() -> str:
     """The extensions of programs, each with the language it stands for."""
     titles: dict[str, str] = {}

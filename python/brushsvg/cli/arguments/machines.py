@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from . import values
 from .flags import (
+    A_PROGRAM,
     add_choices,
     add_colour,
     add_corners,
@@ -19,7 +20,6 @@ from .flags import (
     add_wide,
     add_writes,
     add_z_offset,
-    programs,
 )
 from .usage_checks import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files
 
@@ -27,7 +27,7 @@ from .usage_checks import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_ext
 def add_first_run(commands) -> None:
     first = commands.add_parser("first-run", help="write a safe first program for a new machine")
     first.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml")
-    first.add_argument("-o", "--output", metavar="OUT", required=True, help=programs())
+    first.add_argument("-o", "--output", metavar="OUT", required=True, help=A_PROGRAM)
     first.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     first.add_argument(
         "--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100"
@@ -43,7 +43,7 @@ def _check_first_run(args) -> None:
 def add_border(commands) -> None:
     border = commands.add_parser("border", help="write a run around the job in the air, at safe height")
     add_input(border)
-    border.add_argument("output", metavar="OUT", help=programs())
+    border.add_argument("output", metavar="OUT", help=A_PROGRAM)
     add_choices(border)
     add_z_offset(border)
     add_margin_strokes(border)
@@ -58,7 +58,7 @@ def _check_border(args) -> None:
 
 def add_height(commands) -> None:
     height = commands.add_parser("height", help="write strokes that show how high the paper is")
-    height.add_argument("output", metavar="OUT", help=programs())
+    height.add_argument("output", metavar="OUT", help=A_PROGRAM)
     height.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     height.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     height.add_argument(
@@ -95,7 +95,7 @@ def add_check(commands) -> None:
     check = commands.add_parser(
         "check", help="read a program back, simulate it, and compare it with its drawing"
     )
-    check.add_argument("program", metavar="PROGRAM", help=programs())
+    check.add_argument("program", metavar="PROGRAM", help=A_PROGRAM)
     check.add_argument(
         "input", metavar="IN", nargs="?", help="the drawing, or plan (.json), that it should paint"
     )

@@ -8,7 +8,7 @@ import re
 
 from ...suggestions import did_you_mean
 from ..console import say, tell
-from . import brushes, drawings, installation, machines
+from . import brushes, drawings, help_text, installation, machines
 
 
 def parse(argv: list[str] | None = None) -> argparse.Namespace:
@@ -48,12 +48,26 @@ class _Parser(argparse.ArgumentParser):
             self.error(f"unrecognized arguments: {' '.join(others)}{meant.removesuffix('.')}")
         return found, others
 
+    def format_help(self) -> str:
+        commands = next(
+            (each for each in self._actions if isinstance(each, argparse._SubParsersAction)), None
+        )
+        if commands is not None and commands.metavar == "COMMAND":
+            return help_text.commands_text(self, commands)
+        return help_text.command_text(self, is_whole=False)
+
     def print_help(self, file=None) -> None:
         tell(self.format_help())
 
     def error(self, message: str):
         say(f"{message} (see {self.prog} --help)")
         raise SystemExit(2)
+
+
+class _HelpAll(argparse.Action):
+    def __call__(self, parser, *_):
+        tell(help_text.command_text(parser, is_whole=True))
+        parser.exit()
 
 
 class _Version(argparse.Action):
@@ -98,4 +112,8 @@ def command_parser() -> argparse.ArgumentParser:
     drawings.add_simulate_photo(commands)
     installation.add_install_plugin(commands)
     installation.add_doctor(commands)
+    for command in commands.choices.values():
+        if sum(bool(action.option_strings) for action in command._actions) > help_text.MANY:
+            command.add_argument("--help-all", action=_HelpAll, nargs=0, help="show all options and exit")
+        help_text.group_options(command)
     return parser

@@ -1,0 +1,109 @@
+"""Help in groups: commands by task, options by topic, with the common ones first and all of them by --help-all."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable
+
+COMMANDS = {
+    "Start": ("demo", "doctor", "install-plugin"),
+    "Drawings": ("text", "import", "predict", "convert", "report", "animate", "batch"),
+    "Machines": ("cell", "first-run", "height", "border", "check"),
+    "Brushes": ("brush", "chart", "scan", "calibrate", "compare", "simulate-photo"),
+}
+TOPICS = {
+    "brush and machine": "brush cell speed z-offset compensation lag tolerance corrections",
+    "size and place": "sheet fit scale origin units",
+    "what is painted": "layer select colour background width as lenient pen paper-z skip-region skip-comment",
+    "strokes": "wide detail terminals start end corners script join order from-stroke margin-strokes per-colour",
+}
+# Options that --help leaves to --help-all.
+RARE = {
+    f"--{name}"
+    for name in (
+        "z-offset compensation lag tolerance corrections origin units select colour background width as lenient pen "
+        "paper-z skip-region skip-comment start end corners script join order from-stroke margin-strokes norm total "
+        "spread height dpi mirrored prior noise aim paint"
+    ).split()
+}
+IN_CONVERT = {
+    "--wide",
+    "--detail",
+    "--terminals",
+    "--scale",
+    "--speed",
+}  # common there, rare in other commands
+MANY = 12  # options of a command from which on its rare ones are left to --help-all
+
+
+def commands_text(parser: argparse.ArgumentParser, commands: argparse._SubParsersAction) -> str:
+    """Return the help of the program itself."""
+    helps = {each.dest: each.help for each in commands._choices_actions}
+    lines = [f"usage: {parser.prog} COMMAND ...", "", parser.description or ""]
+    for title, names in COMMANDS.items():
+        lines += ["", f"{title}:", *(f"  {name:<16}{helps[name]}" for name in names)]
+    options = [
+        f"  {', '.join(action.option_strings):<16}{action.help}"
+        for action in parser._actions
+        if action.option_strings
+    ]
+    return "\n".join(
+        [*lines, "", "Options:", *options, "", f"{parser.prog} COMMAND --help explains a command.", ""]
+    )
+
+
+def group_options(parser: argparse.ArgumentParser) -> None:
+    """Sort the options of a command into the groups of its help; those of no topic stay with the output."""
+    own = parser._optionals
+    own.title = "output and more" if len(own._group_actions) > MANY else "options"
+    for title, names in TOPICS.items() if len(own._group_actions) > MANY else ():
+        flags = {f"--{name}" for name in names.split()}
+        found = [action for action in own._group_actions if flags & {*action.option_strings}]
+        if found:
+            found.sort(
+                key=lambda action: min(
+                    names.split().index(flag[2:]) for flag in flags & {*action.option_strings}
+                )
+            )
+            parser.add_argument_group(title)._group_actions.extend(found)
+            for action in found:
+                own._group_actions.remove(action)
+    parser._action_groups.remove(own)
+    parser._action_groups.append(own)
+
+
+def command_text(parser: argparse.ArgumentParser, is_whole: bool) -> str:
+    """Return the help of a command. is_whole: with its rare options."""
+    options = [action for action in parser._actions if action.option_strings]
+    rare = RARE if parser.prog.endswith(" convert") else RARE | IN_CONVERT
+    is_long = len(options) > MANY and not is_whole
+    hidden = [
+        action
+        for action in options
+        if is_long and rare & {*action.option_strings} and (action.dest != "speed")  # of an animation
+    ]
+    kept = {action: action.help for action in hidden}
+    for action in hidden:
+        action.help = argparse.SUPPRESS
+    parser.usage = " ".join([parser.prog, *_operands(parser._actions)])
+    text = argparse.ArgumentParser.format_help(parser)
+    parser.usage = None
+    for action, words in kept.items():
+        action.help = words
+    more = f"\n--help-all shows {len(hidden)} more options.\n"
+    return text + more * bool(hidden)
+
+
+def _operands(actions: Iterable[argparse.Action]) -> list[str]:
+    """Return what a command cannot do without, and [options]."""
+    found = ["[options]"]
+    for action in actions:
+        name = action.metavar if isinstance(action.metavar, str) else action.dest
+        if isinstance(action, argparse._SubParsersAction):
+            found.append(f"{name} ...")
+        elif action.option_strings and action.required:
+            found.append(f"{action.option_strings[0]} {name}")
+        elif not action.option_strings and action.help != argparse.SUPPRESS:
+            plain = {None: name, "?": f"[{name}]", "*": f"[{name} ...]", "+": f"{name} [{name} ...]"}
+            found.append(plain.get(action.nargs, name))
+    return found
