@@ -53,10 +53,11 @@ def is_photograph(path) -> bool:
 def contradiction(source, options: CalibrationOptions) -> str:
     """Return why options do not go together, in a sentence that names the command's flags; "" if they do."""
     photos = [source] if isinstance(source, (str, Mapping)) else list(source)
+    other = next((path for path in photos if not is_photograph(path)), "")
     is_photo = all(map(is_photograph, photos))
     rules = [
         (options.cell is not None and not options.machine, "--cell limits --machine: give --machine"),
-        (len(photos) > 1 and not is_photo, "only photographs can be several"),
+        (len(photos) > 1 and not is_photo, f"only photographs can be several: {other} is not one"),
     ]
     if options.plan is not None or options.prior is not None:
         one_missing = options.plan is None or options.prior is None
