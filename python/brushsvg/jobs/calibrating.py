@@ -146,7 +146,15 @@ def calibrate(
 ) -> BrushCalibration[MarkCalibration]: ...
 @overload
 def calibrate(
-    source: str | os.PathLike[str] | Mapping[str, Any] | Sequence[str | os.PathLike[str]],
+    source: Mapping[str, Any],
+    name: str = "",
+    *,
+    progress: Callable[[str], object] | None = None,
+    **options: Unpack[GivenOptions],
+) -> BrushCalibration[Calibration | MarkCalibration | OverlapCalibration]: ...
+@overload
+def calibrate(
+    source: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     name: str = "",
     *,
     progress: Callable[[str], object] | None = None,

@@ -33,7 +33,7 @@ def marks_svg(
     sheet_mm: tuple[float, float],
     colours: list[str],
     title: str = "",
-    tracking_errors: Sequence[_core.Miss | None] = (),
+    tracking_errors: Sequence[_core.TrackingError | None] = (),
     made: str = "",
     band: Band | None = None,
     blank: Iterable[np.ndarray] = (),
