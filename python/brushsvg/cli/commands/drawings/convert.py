@@ -6,6 +6,8 @@ import re
 from collections.abc import Collection
 from pathlib import Path
 
+import numpy  # noqa: F401  # before the core: where memory is short, numpy then fails with an exception and not by exit
+
 from ....errors import Notice
 from ....jobs import conversion, outputs, prediction
 from ....jobs.choices import on_a_page
