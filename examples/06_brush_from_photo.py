@@ -18,7 +18,7 @@ def command(*words: str) -> None:
     subprocess.run([sys.executable, "-m", "brushsvg", *words], check=True, capture_output=True)
 
 
-# The simulated brush trails 15 % farther than the file of round-6 says. The chart is laid out without knowing this.
+# The lag of the simulated brush is 15 % longer than that of round-6. The chart does not know this.
 LAG_FACTOR = 1.15
 Path("studio.toml").write_text(f'format = "brushsvg/studio"\nversion = 1\n[brush]\nlag = {LAG_FACTOR}\n')
 command("chart", "chart.ngc", "--page", "page.pdf", "--chart", "chart.json", "--strokes", "few", "--force")

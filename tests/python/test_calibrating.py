@@ -5,6 +5,7 @@ from diagnostics import refused
 
 import brushsvg
 from brushsvg.cli import main
+from brushsvg.jobs.calibrating import GivenOptions
 from brushsvg.jobs.calibration_options import CalibrationOptions, contradiction
 
 NUMBERS = "kind,depth_mm,value_mm\nlag,1,1.9\nlag,2,2.4\nlag,3,3.1\nwidth,1,2.2\nwidth,2,4.1\nwidth,3,6.2\n"
@@ -66,3 +67,16 @@ def test_the_command_refuses_the_same_as_wrong_usage(table, capsys):
 def test_an_unknown_option_is_a_type_error(table):
     with pytest.raises(TypeError, match="known are"):
         brushsvg.calibrate(table, colour="red")
+
+
+def test_type_checkers_know_every_option():
+    assert [*GivenOptions.__annotations__] == [*CalibrationOptions.__dataclass_fields__]
+
+
+def test_a_list_of_one_file_is_that_file(table):
+    assert brushsvg.calibrate([table]).brush == brushsvg.calibrate(table).brush
+
+
+def test_a_resolution_at_which_nothing_can_be_measured_is_refused():
+    with refused("out-of-range dpi"):
+        brushsvg.calibrate("scan.png", chart="chart.json", dpi=50)

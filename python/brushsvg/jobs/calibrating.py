@@ -35,7 +35,7 @@ from ..errors import Error, Notice, need, need_number, need_one_of, need_truth
 from ..files import read_bytes
 from ..machine.cells.cell import Cell
 from ..model.plot import brush_picture
-from .calibration_options import AIMS, CalibrationOptions, contradiction, is_photograph
+from .calibration_options import AIMS, LEAST_DPI, MOST_DPI, CalibrationOptions, contradiction, is_photograph
 from .choices import brush_of, cell_of, concerning
 from .json_files import read_plan
 from .machine_parts import undoable_parts
@@ -213,7 +213,11 @@ def checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
     refuse_unknown_parts(options.get("machine", ()))
     for name in ("absolute", "total", "paint", "mirrored"):
         need_truth(options.get(name, False), name)
-    for name, least, most in (("bar_mm", 0.001, 1e3), ("dpi", 1.0, 1e5), ("height_mm", 0.001, 10.0)):
+    for name, least, most in (
+        ("bar_mm", 0.001, 1e3),
+        ("dpi", LEAST_DPI, MOST_DPI),
+        ("height_mm", 0.001, 10.0),
+    ):
         if name in options:
             options[name] = need_number(options[name], name, least, most)
     for name in ("chart", "spread", "plan"):
@@ -235,6 +239,8 @@ def calibrated(
         machine, left_out = undoable_parts(options.machine, cell)
         options = replace(options, machine=machine)
         warn(cell.name, left_out)
+    if isinstance(source, (tuple, list)) and len(source) == 1:
+        source = source[0]
     several = isinstance(source, (tuple, list))
     photos = source if several else [source] if is_photograph(source) else None
     if not photos:

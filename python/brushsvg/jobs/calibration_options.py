@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from ..machine.cells.cell import Cell
 
 AIMS = ("edges", "overlap")
+LEAST_DPI, MOST_DPI = 102.0, 20000.0  # of a scan; the former is 4 pixels per mm
 
 
 @dataclass(frozen=True, kw_only=True)

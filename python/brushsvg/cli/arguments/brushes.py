@@ -236,7 +236,14 @@ def add_scan(commands) -> None:
 def _check_scan(args) -> None:
     if args.more:
         args.parser.error("scan takes one picture; calibrate takes several of one sheet")
-    _check_photos(args, [args.input], [(args.output, (".json",))])
+    from ...jobs.calibration_options import CalibrationOptions, contradiction
+
+    _refuse_heic(args, [args.input])
+    args.options = CalibrationOptions(chart=args.chart, bar_mm=args.bar, dpi=args.dpi, mirrored=args.mirrored)
+    read = [(args.input, PHOTOS), (args.chart, (".json",))]
+    check_files(args, read, [(args.output, (".json",)), (args.picture, (".png",))])
+    if why := contradiction(args.input, args.options):
+        args.parser.error(why)
 
 
 def _refuse_heic(args, photos: list[str]) -> None:
@@ -244,16 +251,6 @@ def _refuse_heic(args, photos: list[str]) -> None:
         args.parser.error(
             "HEIC pictures are not read: export them as JPEG (iPhone: Settings, Camera, Formats, Most Compatible)"
         )
-
-
-def _check_photos(args, photos: list[str], written) -> None:
-    _refuse_heic(args, photos)
-    if args.chart is None:
-        args.parser.error("photographs need --chart, the chart.json that was written with the page")
-    if args.dpi is not None and (len(photos) > 1 or args.bar is not None):
-        args.parser.error("--dpi is for one scan, and without --bar: it shows no printed page")
-    read = [*((path, PHOTOS) for path in photos), (args.chart, (".json",))]
-    check_files(args, read, [*written, (args.picture, (".png",))])
 
 
 def add_brush(commands) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import functools
 import re
+from collections.abc import Iterator
 
 from ...suggestions import did_you_mean
 from ..console import say, tell
@@ -112,8 +113,17 @@ def command_parser() -> argparse.ArgumentParser:
     drawings.add_simulate_photo(commands)
     installation.add_install_plugin(commands)
     installation.add_doctor(commands)
-    for command in commands.choices.values():
+    for command in _with_those_below(commands):
         if sum(bool(action.option_strings) for action in command._actions) > help_text.MANY:
             command.add_argument("--help-all", action=_HelpAll, nargs=0, help="show all options and exit")
         help_text.group_options(command)
     return parser
+
+
+def _with_those_below(commands: argparse._SubParsersAction) -> Iterator[argparse.ArgumentParser]:
+    """Yield the parsers of commands and of their commands, such as `cell place`."""
+    for command in commands.choices.values():
+        yield command
+        for action in command._actions:
+            if isinstance(action, argparse._SubParsersAction):
+                yield from _with_those_below(action)

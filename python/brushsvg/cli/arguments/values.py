@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from ...errors import Error
+from ...jobs.calibration_options import LEAST_DPI, MOST_DPI
 
 SHEETS_MM = {
     "a2": (420.0, 594.0),
@@ -127,9 +128,6 @@ def speed(text: str) -> float:
     if not 0.1 <= value <= 1000:
         raise argparse.ArgumentTypeError(f"{value:g} is outside the range [0.1, 1000]")
     return value
-
-
-LEAST_DPI, MOST_DPI = 102.0, 20000.0  # the former are 4 pixels per mm
 
 
 def resolution(text: str) -> float:

@@ -10,12 +10,10 @@ def scan_file(args) -> None:
     from ....calibration.chart.photograph import told, write_marks
     from ....calibration.marks.photo_report import read_picture
     from ....jobs.calibrating import read_photographs
-    from ....jobs.calibration_options import CalibrationOptions
 
     check_places(args, args.output, args.picture)
-    options = CalibrationOptions(chart=args.chart, bar_mm=args.bar, dpi=args.dpi, mirrored=args.mirrored)
     with about(""):  # errors name their file
-        read = read_photographs([args.input], options, stage, warn)
+        read = read_photographs([args.input], args.options, stage, warn)
     files = {args.output: write_marks(read)}
     if args.picture:
         files[args.picture] = read_picture(read)
