@@ -8,6 +8,7 @@ from . import values
 from .flags import (
     add_choices,
     add_corrections,
+    add_explain,
     add_input,
     add_job,
     add_layout,
@@ -105,6 +106,7 @@ def add_batch(commands) -> None:
     )
     batch.add_argument("--parquet", action="store_true", help="also write the table as table.parquet")
     add_choices(batch)
+    batch.set_defaults(project_near="inputs")
     add_speed(batch)
     add_z_offset(batch)
     add_order(batch)
@@ -299,6 +301,7 @@ def add_import(commands) -> None:
     look.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
     add_layout(look)
     add_script(look)
+    add_explain(look)
     look.add_argument(
         "--editable",
         action="store_true",

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Iterable
 
 COMMANDS = {
-    "Start": ("demo", "doctor", "install-plugin"),
+    "Start": ("demo", "init", "doctor", "install-plugin"),
     "Drawings": ("text", "import", "predict", "convert", "report", "animate", "batch"),
     "Machines": ("cell", "first-run", "height", "border", "check"),
     "Brushes": ("brush", "chart", "scan", "calibrate", "compare", "simulate-photo"),

@@ -28,6 +28,7 @@ _HOME = {
     "first_run_file": "machines.first_run",
     "height_file": "machines.height",
     "import_file": "drawings.import_drawing",
+    "init_project": "installation.init",
     "install_plugin": "installation.plugin",
     "list_installation": "installation.doctor",
     "predict_file": "drawings.predict",

@@ -13,8 +13,9 @@ from .output_places import suffix_of
 
 
 def typed(args, **instead) -> Choices:
-    """What was typed, but for what is known better."""
-    return Choices(**({name: getattr(args, name, None) for name in CHOICES} | instead))
+    """What was typed or comes from a project file, but for what is known better."""
+    given = {name: getattr(args, name, None) for name in CHOICES} | instead
+    return choices.without_overruled(Choices(**given, from_project=getattr(args, "from_project", ())))
 
 
 def settled(chosen: Choices, drawing: str, alone: bool = False) -> Choices:
