@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Any
 
 from ..errors import Error, need, need_number
 from ..files import read_bytes, toml_document
@@ -38,7 +39,7 @@ class Project:
         return Project, (self.path, dict(self.settings))
 
     @property
-    def choices(self) -> dict:
+    def choices(self) -> dict[str, Any]:
         """Keywords for `convert`, `check`, `compare` and `batch`; settings in a drawing take precedence over them."""
         return {**self.settings, "from_project": tuple(self.settings)}
 

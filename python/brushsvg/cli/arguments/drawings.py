@@ -81,7 +81,8 @@ def add_batch(commands) -> None:
         "inputs",
         metavar="IN",
         nargs="*",
-        help=f"drawings ({' '.join(READERS)}), folders of them, patterns with *, lists (.txt, a path on each line)",
+        help=f"drawings ({' '.join(READERS)}), folders of them, patterns with *, lists (.txt, a path on each line); "
+        "brushsvg.toml near the first one serves all",
     )
     batch.add_argument(
         "--out",

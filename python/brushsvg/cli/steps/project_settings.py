@@ -53,11 +53,12 @@ def _writes_plan(args) -> bool:
 
 
 def _near(args) -> str:
-    """Return the path near which the project file is searched: the first drawing, or the current folder."""
+    """Return the path near which the project file is searched: the first drawing, the program to check, or the current
+    folder."""
     given = getattr(args, args.project_near or "", None)
     if isinstance(given, list):
         given = given[0] if given else getattr(args, "words", None)
-    return given or os.curdir
+    return given or getattr(args, "program", None) or os.curdir
 
 
 def _offered(parser: argparse.ArgumentParser) -> dict[str, argparse.Action]:
