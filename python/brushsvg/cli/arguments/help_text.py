@@ -27,6 +27,7 @@ RARE = {
     ).split()
 }
 IN_CONVERT = {
+    "--explain",
     "--wide",
     "--detail",
     "--terminals",
