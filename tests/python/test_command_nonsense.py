@@ -22,6 +22,8 @@ SOUND = {  # the word that stands for a file, and what lies there when it is sou
     "ZIP": "extension.zip",
 }
 COMMANDS = [
+    "init --cell CELL",
+    "init --cell ur5e --brush BRUSH",
     "convert IN OUT.ngc",
     "convert IN OUT.json",
     "convert PLAN OUT.ngc",

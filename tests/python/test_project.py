@@ -316,6 +316,12 @@ def test_an_option_that_was_typed_sets_others_of_the_project_back(desk, capsys):
     (desk / "d.svg").write_text(said(terminals="round"))
     lines = explained(capsys, "convert", "d.svg", "p.ngc")
     assert gives(lines["start"], "round", "d.svg") and gives(lines["fit"], "60x40", NAME)
+    project('[defaults]\nterminals = "butt"')
+    (desk / "d.svg").write_text(said(start="pointed"))
+    lines = explained(capsys, "convert", "d.svg", "r.ngc")
+    assert gives(lines["start"], "pointed", "d.svg") and gives(lines["terminals"], "butt", NAME)
+    project('[defaults]\ncompensation = "constant"\nlag = 3')
+    assert gives(explained(capsys, "convert", "d.svg", "s.ngc")["lag"], "3", NAME)
     (desk / "d.svg").write_text(said(compensation="closed"))
     assert gives(explained(capsys, "convert", "d.svg", "q.ngc")["lag"], "default")
 
@@ -346,7 +352,9 @@ def test_what_does_not_suit_a_drawing_is_no_mistake(desk, capsys):
     status, _, told = in_json(capsys, "convert", "o.json", "again.ngc")
     assert status == 0 and not is_told(told, "flag-without-effect")
     project('[defaults]\ncolour = "#203060"\nmargin-strokes = "on"')
+    (desk / "d.svg").write_text(DRAWING.replace('id="b"', 'id="b" stroke="#c00000"'))
     assert main(["convert", "d.svg", "c.ngc", "--per-colour"]) == 0
+    assert {path.name for path in desk.glob("c-*")} == {"c-1-c00000.ngc", "c-2-203060.ngc"}
 
 
 @pytest.mark.slow
@@ -380,7 +388,7 @@ def test_a_program_made_under_a_project_file_is_checked_under_it(desk, capsys, m
     )
     assert main(["convert", "job/d.svg", "job/o.script", "--quiet"]) == 0
     assert main(["check", "job/o.script", "job/d.svg"]) == 0
-    desk.joinpath("elsewhere").mkdir()
+    (desk / "elsewhere/.git").mkdir(parents=True)  # nothing is found from here
     monkeypatch.chdir(desk / "elsewhere")
     assert main(["check", "../job/o.script"]) == 0
     monkeypatch.chdir(desk)
@@ -459,6 +467,10 @@ def test_a_comparison_of_brushes_has_the_one_of_the_project(desk, capsys):
     assert re.search(r"(?m)^mine ", capsys.readouterr().out)
     assert main(["report", "d.svg"]) == 0
     assert "mine" not in capsys.readouterr().out
+    (desk / "d.svg").write_text(
+        said(brush="unknown")
+    )  # a list of all brushes is of those, whatever the drawing says
+    assert main(["report", "d.svg", "--all-brushes"]) == 0
 
 
 def test_every_command_with_a_drawing_explains():
@@ -580,6 +592,25 @@ def test_a_misspelled_name_is_answered_with_the_nearest(desk, capsys, words, mea
     (desk / "said.svg").write_text(said(brush="rigd"))
     assert main(words.split()) in (1, 2)
     assert gives(capsys.readouterr().err, "did you mean", f"{meant}?")
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ('brushh = "rigid"', "brush"),
+        ('papr = "a4"', "paper"),
+        ("sped = 3", "speed"),
+        ("[defaults]\nsped = 3", "speed"),
+        ('[defaults]\nwide = "pases"', "passes"),
+        ('brush = "roun-6"', "round-6"),
+        ('cell = "grbl-3axs"', "grbl-3axis"),
+    ],
+)
+def test_a_misspelled_name_in_the_file_is_answered_with_the_nearest(desk, text, meant):
+    project(text)
+    with pytest.raises(brushsvg.Error) as told:
+        brushsvg.read_project(NAME)
+    assert gives(told.value.sentence, "did you mean", f"{meant}?")
 
 
 def completions(line: str) -> list[str]:
