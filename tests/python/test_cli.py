@@ -772,6 +772,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
     job = {"--z-offset", "--from-stroke", "--order", "--per-colour"}
     assert flags == choices | job | {
         "--corrections",
+        "--explain",
         "--help",
         "--help-all",
         "--margin-strokes",
