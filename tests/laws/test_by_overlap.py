@@ -84,7 +84,7 @@ def test_marks_overlap_no_less_than_by_edges_and_no_interval_is_claimed():
     assert made.found.overlap >= made.found.before
     assert not any(made.brush.half_width.half_interval_95)
     assert not len(made.brush.covariance)
-    assert told and not re.search(r"\+- \d", report(made))
+    assert told and not re.search(r"\+- \d", report(made).text(True))
 
 
 def test_lean_that_edges_did_not_look_for_comes_back():
@@ -138,7 +138,7 @@ def test_edges_that_know_the_machine_predict_best_and_keep_their_intervals():
     assert made.found.kind == "edges"
     assert all(made.brush.lag.half_interval_95)
     assert np.array(made.brush.covariance).size
-    assert re.search(r"\+- \d", report(made))
+    assert re.search(r"\+- \d", report(made).text(True))
 
 
 def targets_of(strokes, brush, aside=lambda k: np.zeros(2), leant=lambda k: 0.0):

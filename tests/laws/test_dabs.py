@@ -254,7 +254,7 @@ def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys
     off = np.array([found.brush.lag(depth) for depth in depths]) - true
     assert np.abs(off).max() < 0.15, off
     assert np.mean(np.abs(off) < law_band(found.brush, "lag", depths)[0]) > 0.7, off
-    told = report(found)
+    told = report(found).text(True)
     assert gives(told, found.own.name)
     assert ("\nnote: " in told) == (name == "egg"), told
 

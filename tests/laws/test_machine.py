@@ -133,7 +133,7 @@ def test_brush_and_machine_come_back(parts):
         assert abs(one.value - truth[one.name]) < 2 * one.half, one
         assert one.half < 0.6 * machine_found.PARTS[one.part][1], f"{one}: hardly more than the prior"
     assert lag_off(made, brush) < 0.03
-    text = report(made)
+    text = report(made).text(True)
     table = tomllib.loads(text[text.index("[machine]") :].partition("\n\n")[0])["machine"]
     if "lean" in parts:
         assert table["lean_mm_per_mm"] == pytest.approx(made.fit.machine.lean_mm_per_mm, abs=1e-4)
@@ -151,7 +151,7 @@ def test_without_a_field_none_is_said_to_be_certain(seed):
     found = machine_found.numbers(made.fit, made.covariance, made.expected)
     assert len(found) == 6 and not machine_found.has_field(found), found
     assert len(machine_found.told(found)) == 7, "and that none is certain"
-    assert "field_mm" not in report(made)
+    assert "field_mm" not in report(made).text(True)
 
 
 def test_without_the_machine_the_lag_is_off():

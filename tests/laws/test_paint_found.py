@@ -127,7 +127,7 @@ def test_paint_that_runs_out_by_another_law_is_told():
     assert brush.law("half_width")(brush.deepest) - made.brush.half_width(brush.deepest) > half
     _, _, usual = chart_sheet(3, lambda way, _: np.exp(-0.25 * way / 1000))
     assert usual.paint_bends < 2
-    assert len(report(made).splitlines()) > len(report(usual).splitlines()), "it is told"
+    assert len(report(made).details) > len(report(usual).details), "it is told"
 
 
 @pytest.mark.thorough
@@ -223,7 +223,7 @@ def test_marks_that_end_dry_tell_how_long_a_load_lasts(share):
     assert paint.lasts_mm == pytest.approx(whole) and made.dry.dry_mm == pytest.approx(dry)
     assert (made.dry.whole, made.dry.dry) == (strokes[-4], strokes[-3])
     assert paint.lasts_mm - 1e-6 <= lasts_mm <= made.dry.dry_mm
-    assert gives(report(made), f"{whole:.0f} mm", f"{dry:.0f} mm", strokes[-3])
+    assert gives(report(made).text(True), f"{whole:.0f} mm", f"{dry:.0f} mm", strokes[-3])
     assert paint.narrows_per_m == pytest.approx(0.8, abs=0.15)
     again = core.read_brush(core.write_brush(made.brush)).paint
     assert again.lasts_mm == paint.lasts_mm and len(again.covariance) == 2
@@ -234,4 +234,4 @@ def test_a_load_that_lasts_is_said_to():
     told, ends = run_dry(1e6)
     made = calibrate(told, "b", paint=True)
     assert made.dry is None and made.brush.paint.lasts_mm is None
-    assert gives(report(made), f"{max(ends.values()):.0f} mm")
+    assert gives(report(made).text(True), f"{max(ends.values()):.0f} mm")

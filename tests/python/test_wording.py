@@ -17,6 +17,7 @@ import pytest
 from brushsvg.cli import main
 from brushsvg.cli.arguments.parser import command_parser
 from brushsvg.errors import Notice
+from brushsvg.show.evaluation.places import Place
 from brushsvg.show.evaluation.report import Figures, Group, Report, Worst, comparison_text, to_text
 
 WORDING = Path(__file__).parents[1] / "golden" / "wording.txt"
@@ -77,10 +78,12 @@ def reports() -> Iterator[tuple[str, str]]:
     worst = Worst((12.34, 5.67), True, 0.5, "REASON", "shorter-than-footprint")
     odd = Figures("dab", None, None, None, None, None, None, 12.0, 7, worst)
     told = (Notice("line", "SENTENCE", advice="ADVICE"),)
-    made = Report("T", "round-6", "closed", 0.05, (row, odd), row, 75.0, told, told)
-    yield "a report", to_text(made)
+    place = Place(1, "dab", (12.34, 5.67), 0.5, 0.0, 0.3, "REASON", "shape-corner", "REMEDY", "SIZE")
+    made = Report("T", "round-6", "closed", 0.05, (row, odd), row, 75.0, told, told, places=(place,))
+    yield "a report", to_text(made, picture="picture.png")
+    yield "a report with details", to_text(made, details=True)
     made = Report("", "round-6", "", None, (row,), row, 5.0, groups=(Group(("line", "dab"), 0.9),))
-    yield "a report of strokes that touch", to_text(made)
+    yield "a report of strokes that touch", to_text(made, details=True)
     yield "compensations compared", comparison_text([("none", row), ("closed", row)])
 
 

@@ -13,6 +13,7 @@ from ..errors import Error
 from ..files import read_bytes
 from ..geometry.polylines import evenly
 from ..geometry.rotation import rotation
+from ..reporting.report_text import Report, plural, table, verdict
 from .corrections import LEAST_MARKS
 from .next_corrections import UNSEEN
 from .photographs import Comparison
@@ -26,6 +27,8 @@ LEAST_FREEDOM = 4  # values to spare for a spread: fewer say next to nothing
 ALIKE_MM = 1e-9  # no two sheets repeat so well
 BIN_SHARE = 0.25  # width of a column of the histogram over the spread
 BAR = 40
+GOOD_MM = 0.1  # of a displacement: it costs 0.06 of the overlap of a line of 3 mm
+MOST_WORST = 5
 
 
 @dataclass(frozen=True)
@@ -195,56 +198,70 @@ def bins_of(found: Repeats) -> tuple[np.ndarray, np.ndarray]:
     return edges, np.histogram(found.away_mm, np.concatenate([[0.0], edges[1:] + 1e-9]))[0]
 
 
-def as_text(title: str, found: Repeats) -> str:
-    width = max(6, *(len(row.stroke) for row in found.rows))
+def report(title: str, found: Repeats) -> Report:
+    """What `brushsvg compare --sheets` prints. Good: a stroke repeats to 0.1 mm, and every stroke was seen twice."""
+    count = len(found.once)
+    but = [
+        f"strokes repeat only to {found.displacement_mm:.2f} mm" if found.displacement_mm >= GOOD_MM else "",
+        f"{plural(count, 'stroke')} {'was' if count == 1 else 'were'} not seen twice" if count else "",
+    ]
     over = (
         f"{found.sheets} sheets" if found.over_sheets else "copies on one sheet, which their place moves, too"
     )
+    worst = sorted(found.rows, key=lambda row: -row.spread_mm)[:MOST_WORST]
     lines = [
-        f"{title}: {len(found.rows)} strokes on {over}",
-        "",
-        f"{'stroke'.ljust(width)}  seen  mean x  mean y  spread  farthest  wider",
+        f"{title}: {plural(len(found.rows), 'stroke')} on {over}: the same stroke is displaced by "
+        f"{found.displacement_mm:.3f} mm in x and in y (standard deviation, 95 % interval {found.low_mm:.3f} to "
+        f"{found.high_mm:.3f})",
+        *(
+            f"{row.stroke} spreads by {row.spread_mm:.3f} mm, {row.farthest_mm:.2f} mm at most"
+            for row in worst
+        ),
+        *(_approach_words(one) for one in found.approaches),
     ]
+    return Report(verdict([], but), tuple(lines), tuple(_details(found)))
+
+
+def _details(found: Repeats) -> list[str]:
+    head = ("stroke", "seen", "mean x", "mean y", "spread", "farthest", "wider")
+    rows = []
     for row in found.rows:
         x, y = row.mean_mm
-        lines.append(
-            f"{row.stroke.ljust(width)}  {row.count:4d}  {x:+6.2f}  {y:+6.2f}  {row.spread_mm:6.3f}  "
-            f"{row.farthest_mm:8.2f}  {row.wider_mm:5.3f}"
+        figures = (
+            f"{x:+.2f}",
+            f"{y:+.2f}",
+            f"{row.spread_mm:.3f}",
+            f"{row.farthest_mm:.2f}",
+            f"{row.wider_mm:.3f}",
         )
+        rows.append((row.stroke, str(row.count), *figures))
+    lines = table(head, rows)
     if found.once:
-        count = f"{len(found.once)} stroke{'s' * (len(found.once) != 1)}"
         lines += [
             "",
-            f"Not told, since not seen twice (not found, or more than {100 * UNSEEN:g} % of the mark without paint): "
-            f"{count}: {', '.join(found.once)}.",
+            f"Not seen twice (not found, or more than {100 * UNSEEN:g} % of the mark without paint): "
+            f"{', '.join(found.once)}.",
         ]
-    lines += [
-        "",
-        f"The same stroke lies {found.displacement_mm:.3f} mm aside in x and in y (standard deviation, 95 % interval "
-        f"{found.low_mm:.3f} to {found.high_mm:.3f}).",
-        *(_approach_words(one) for one in found.approaches),
-        "",
-        "How far from its mean each lies, mm:",
-    ]
+    lines += ["", "Distance of each from its mean, mm:"]
     bins = histogram(found)
     most, before = max(count for _, count in bins), 0.0
     for edge, count in bins:
         lines.append(f"  {before:5.2f} to {edge:5.2f}  {count:4d}  {'#' * round(BAR * count / most)}")
         before = edge
-    lines += [
+    return [
+        *lines,
         "",
         "Mean, spread, farthest: displacement beyond the sheet's place, mm; spread in x and in y; wider: how far edges",
-        "lie from their mean (standard deviation, mm).",
+        "are from their mean (standard deviation, mm).",
     ]
-    return "\n".join(lines) + "\n"
 
 
 def _approach_words(one: Approach) -> str:
     if one.value_mm is None:
-        return f"Too few strokes are approached from either side in {one.axis} to tell a hysteresis."
+        return f"Too few strokes are approached from either side in {one.axis} to show a hysteresis."
     certain = "" if abs(one.value_mm) > one.half_mm else ", which may be chance"
     return (
-        f"Strokes that are approached towards +{one.axis} lie {one.value_mm:+.3f} +- {one.half_mm:.3f} mm farther that "
+        f"Strokes that are approached towards +{one.axis} are {one.value_mm:+.3f} +- {one.half_mm:.3f} mm farther that "
         f"way than those approached towards -{one.axis}{certain}."
     )
 

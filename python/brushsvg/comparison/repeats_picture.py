@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.plot import BAND, INK, QUIET, encoded, new_figure
+from ..model.plot import BAND, INK, QUIET, encoded, new_figure, note, shortened
 from .edge_offsets import LEVEL
 from .photographs import Comparison, Wanted
 from .placing import NOWHERE
@@ -16,6 +16,12 @@ from .repeats import Repeats, bins_of
 
 PREDICTED = "#c0392b"
 FINE_PX_PER_MM = 4.0  # of the paint that is drawn
+BELOW = {
+    "fontsize": 7,
+    "loc": "upper center",
+    "bbox_to_anchor": (0.5, -0.1),
+    "ncols": 3,
+}  # of axes: off the bars
 MOST_BARS = 30  # strokes; of more those that spread most
 
 
@@ -24,7 +30,7 @@ def repeats_png(title: str, found: Repeats, sheets: list[Comparison], strokes: l
     missing."""
     figure = new_figure((12, 11))
     upper, lower = figure.subfigures(2, 1, height_ratios=(1.2, 1))
-    upper.suptitle(_plain(title))
+    upper.suptitle(shortened(title, 60))
     _overlay(upper.subplots(), sheets, strokes)
     spread, histogram, approach = lower.subplots(1, 3, width_ratios=(1.1, 1, 1))
     _spread(spread, found)
@@ -49,7 +55,7 @@ def _overlay(axes, sheets: list[Comparison], strokes: list[Wanted]) -> None:
             line = np.vstack([ring, ring[:1]])
             axes.plot(*line.T, color=PREDICTED, linewidth=0.6, label="" if number else "predicted")
     axes.set_aspect("equal")
-    axes.set_title("paint of all sheets, the place of each put right (mm)", fontsize=9, color=INK)
+    axes.set_title("paint of all sheets, the place of each corrected (mm)", fontsize=9, color=INK)
     axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5))
     axes.tick_params(labelsize=7)
 
@@ -67,12 +73,12 @@ def _spread(axes, found: Repeats) -> None:
     axes.plot(
         [row.farthest_mm for row in rows], places, "o", color=INK, markersize=4, label="farthest from mean"
     )
-    axes.set_yticks(places, [_plain(row.stroke[:18]) for row in rows], fontsize=7)
+    axes.set_yticks(places, [shortened(row.stroke, 18) for row in rows], fontsize=7)
     axes.axvline(found.displacement_mm, color=PREDICTED, linewidth=1, label="all strokes")
     left_out = len(found.rows) - len(rows)
     what = f"of each stroke (mm){f'; {left_out} that spread less left out' if left_out else ''}"
     axes.set_title(what, fontsize=9, color=INK)
-    axes.legend(fontsize=7, loc="lower right")
+    axes.legend(**BELOW)
     axes.tick_params(axis="x", labelsize=7)
 
 
@@ -89,7 +95,7 @@ def _histogram(axes, found: Repeats) -> None:
     axes.set_ylim(0.5, 2 * max(counts.max(), 1))
     axes.set_xlabel("from the mean of its stroke, mm", fontsize=8, color=QUIET)
     axes.set_title(f"displacement, {len(found.away_mm)} marks (count)", fontsize=9, color=INK)
-    axes.legend(fontsize=7)
+    axes.legend(**BELOW)
     axes.tick_params(labelsize=7)
 
 
@@ -104,17 +110,11 @@ def _approach(axes, found: Repeats) -> None:
                 axes.plot(np.full(len(values), place), values, "o", color=BAND, markersize=4, alpha=0.7)
                 axes.plot([place - 0.25, place + 0.25], [np.mean(values)] * 2, color=INK, linewidth=2)
         if one.value_mm is not None:
-            words = f"{one.value_mm:+.2f}\n$\\pm$ {one.half_mm:.2f} mm"
-            axes.annotate(
-                words, (2 * number + 0.5, 0.02), xycoords=("data", "axes fraction"), ha="center", fontsize=7
-            )
+            words = f"{one.value_mm:+.2f} $\\pm$ {one.half_mm:.2f} mm"
+            middle = (np.mean(one.minus_mm) + np.mean(one.plus_mm)) / 2
+            note(axes, (2 * number + 0.5, middle), words, fontsize=7)
     axes.axhline(0.0, color=QUIET, linewidth=0.6)
     axes.set_xticks(range(len(labels)), labels, fontsize=7)
     axes.margins(x=0.15, y=0.2)
-    axes.set_title("hysteresis: each stroke's mean, by its approach (mm)", fontsize=9, color=INK)
+    axes.set_title("hysteresis: mean of each stroke (mm)", fontsize=9, color=INK)
     axes.tick_params(axis="y", labelsize=7)
-
-
-def _plain(words: str) -> str:
-    """Without what matplotlib takes for formulas."""
-    return words.replace("$", r"\$")

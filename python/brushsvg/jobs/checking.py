@@ -240,7 +240,9 @@ def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:
         seconds, as_run_s = duration_s(again) if again else 0.0, time_as_run_s(read, cell)
         if as_run_s > 1.1 * seconds + 1.0:  # feeds were lowered
             seconds = as_run_s
-        figures = outputs.reported(shown, ran.marks, cell, drawn=drawn, seconds=seconds, as_run=ran.as_run)
+        figures = outputs.reported(
+            shown, ran.marks, cell, forbidden=problems, drawn=drawn, seconds=seconds, as_run=ran.as_run
+        )
     return Check(
         "painting",
         tuple(problems),
@@ -329,7 +331,7 @@ def _foreign(path: str, text: str, chosen: Choices, told: Told) -> Check:
     found = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z)
     told(path, found.warnings)
     shown = Work("", brush, found.plan, None, (), Options(cell=cell), ())
-    figures = outputs.reported(shown, found.marks, cell)
+    figures = outputs.reported(shown, found.marks, cell, forbidden=found.problems)
     return Check("painting", found.problems, is_foreign=True, work=shown, marks=found.marks, figures=figures)
 
 

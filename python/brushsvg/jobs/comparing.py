@@ -36,6 +36,7 @@ from ..errors import Error, Notice, need
 from ..files import read_bytes
 from ..machine.cells.cell import Cell, Machine, axes_along_paper, not_undone
 from ..machine.cells.cell_file import own_name, parse_cell, write_cell
+from ..reporting.report_text import Report
 from ..show.evaluation.report import wanted_rings
 from . import cancelling, prediction
 from .cancelling import Cancel
@@ -91,7 +92,8 @@ class PaintedJob:
     its overlaps and where it lies; ends: by stroke, how much later than wanted it begins and ends. faults: whose it is,
     None where nothing can be told. corrections: by stroke, where it should be led next time. cell: with a [machine]
     that undoes what is certain, besides what it undid; is_corrected: whether anything is. notices: what is to be warned
-    of. text, json: what the command prints and what `convert` takes as corrections.
+    of. report: its verdict, lines and details, as the command prints them; report.text(details=True) has all tables.
+    json: what `convert` takes as corrections.
     """
 
     title: str
@@ -103,14 +105,20 @@ class PaintedJob:
     cell: Cell = field(repr=False)
     is_corrected: bool
     notices: tuple[Notice, ...] = field(repr=False)
-    text: str = field(repr=False)
+    report: Report = field(repr=False)
     json: str = field(repr=False)
-    _shown: tuple[JobPage, list[Wanted], Comparison, str] | None = field(
+    _shown: tuple[JobPage, list[Wanted], Comparison, str, list] | None = field(
         default=None, repr=False, compare=False
     )
 
+    @property
+    def text(self) -> str:
+        """The report in at most ten lines, the verdict first."""
+        return self.report.text()
+
     def picture(self) -> bytes:
-        """A PNG: the paint as photographed over what was wanted, in grey, under a red line where it was predicted."""
+        """A PNG: the paint as photographed over what was wanted, in grey, under a red line where it was predicted, with
+        the numbers of the report's worst places."""
         if self._shown is None:
             raise Error("it was not made of photographs", code="nothing-to-show")
         return comparison_png(*self._shown, self.faults)
@@ -240,6 +248,7 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], tol
     ends = ends_of(found, strokes, work.strokes or ())
     made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_undone(work)))
     any_alone = faults is None or faults.first != BRUSH or bool(job_marks(*every).rings)
+    places = report.places_of(found, strokes)
     return PaintedJob(
         sheet.title,
         found.overlap_predicted if found.overlap_wanted is None else found.overlap_wanted,
@@ -250,9 +259,9 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], tol
         replace(cell, name=own_name(cell.name), machine=machine) if machine else cell,
         machine is not None,
         (),
-        report.as_text(sheet.title, found, faults, ends, machine, any_alone),
+        report.report(sheet.title, found, faults, ends, places, machine, any_alone),
         report.as_json(sheet.title, found, corrections, faults, ends, made_with, beside),
-        (sheet.page, strokes, found, sheet.title),
+        (sheet.page, strokes, found, sheet.title, places),
     )
 
 

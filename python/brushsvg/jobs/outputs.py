@@ -86,14 +86,22 @@ def page(suffix: str, work: Work) -> bytes:
     return chart_page(made.printed, made.ticks).encode()
 
 
-def overlap_picture(suffix: str, work: Work, marks: _core.Marks, long_side_px: int | None = None) -> bytes:
+def overlap_picture(
+    suffix: str,
+    work: Work,
+    marks: _core.Marks,
+    long_side_px: int | None = None,
+    places: Iterable[report.Place] = (),
+) -> bytes:
     """Where paint is missing and where there is too much of it, as the bytes of a .png or an .svg; the latter needs
-    outlines. long_side_px: of a small .png without legend. Error for a plan, which does not say what was wanted."""
+    outlines. long_side_px: of a small .png without legend; places: of the report, which are numbered. Error for a plan,
+    which does not say what was wanted."""
     if work.strokes is None:
         raise Error("a plan does not say what was wanted: give the drawing", code="plan-without-target")
     if suffix == ".svg":
         wanted = report.wanted_rings(work.strokes)
-        return overlap_svg(wanted, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
+        at_mm = {place.number: place.place_mm for place in places}
+        return overlap_svg(wanted, marks.outline_mm, work.plan.sheet_mm, work.title, at_mm).encode()
     from ..show.overlap_png import overlap_png
     from ..show.png_canvas import PNG_LONG_SIDE_PX
 
@@ -101,7 +109,12 @@ def overlap_picture(suffix: str, work: Work, marks: _core.Marks, long_side_px: i
     window = (0.0, 0.0, *work.plan.sheet_mm)
     wanted = _core.wanted_coverage(work.strokes, window, px_per_mm)
     painted = _core.coverage(marks, work.brush, window, px_per_mm)
-    return overlap_png(wanted, painted, legend=long_side_px is None)
+    height_mm = work.plan.sheet_mm[1]
+    at_px = {
+        place.number: (place.place_mm[0] * px_per_mm, (height_mm - place.place_mm[1]) * px_per_mm)
+        for place in places
+    }
+    return overlap_png(wanted, painted, long_side_px is None, at_px)
 
 
 def played(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed: float = 1.0) -> bytes:
@@ -135,7 +148,7 @@ def reported(
     work, marks, as_run = without_margin_strokes(work, marks, as_run)
     leans = any(map(is_tilted, work.plan.passes))
     is_drawing = work.strokes is not None
-    rows, total = report.measure(
+    looked_at = (
         work.plan,
         marks,
         work.brush,
@@ -145,6 +158,7 @@ def reported(
         work.options.compensation,
         work.unreached,
     )
+    rows, total = report.measure(*looked_at)
     return report.Report(
         title=work.title,
         brush=work.plan.brush,
@@ -160,4 +174,12 @@ def reported(
         is_tilted=leans,
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,
+        assumed=assumed(work.brush),
+        places=report.worst_places(*looked_at) if is_drawing else (),
     )
+
+
+def assumed(brush: _core.Brush) -> tuple[str, ...]:
+    """What of a brush was never measured, for people."""
+    names = {"lag": "lag", "half_width": "width"}
+    return tuple(name for law, name in names.items() if getattr(brush, law).assumed)

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from .overlap_png import write_legend
-from .png_canvas import TEXT, bgr, canvas, encoded, write
+from .png_canvas import TEXT, bgr, canvas, encoded, text_width, write
 
 ACROSS, DOWN = 5, 6
 CARD_W, PICTURE_H, WORDS_H, GAP, MARGIN, TOP = 360, 220, 64, 16, 40, 110  # px
@@ -76,7 +76,7 @@ def _write_lines(part: np.ndarray, text: str) -> None:
     lines, rest = [], text.split()
     while rest:
         line = rest.pop(0)
-        while rest and _width(f"{line} {rest[0]}", WORDS_PX, 400) <= CARD_W - 24:
+        while rest and text_width(f"{line} {rest[0]}", WORDS_PX, 400) <= CARD_W - 24:
             line += f" {rest.pop(0)}"
         lines.append(_fitting(line, WORDS_PX, 400))
     most = (PICTURE_H - 12) // LINE_PX
@@ -88,12 +88,7 @@ def _write_lines(part: np.ndarray, text: str) -> None:
 
 def _fitting(text: str, size: int, weight: int) -> str:
     short = text
-    while short and _width(short, size, weight) > CARD_W - 24:
+    while short and text_width(short, size, weight) > CARD_W - 24:
         text = text[:-1]
         short = f"{text}..."
     return short
-
-
-def _width(text: str, size: int, weight: int) -> int:
-    (x, _, width, _) = cv2.getTextSize((CARD_W, 100), text, (0, 0), cv2.FontFace("sans"), size, weight)
-    return x + width

@@ -17,8 +17,9 @@ from ..geometry import polylines
 from ..geometry.cubics import at
 from ..read.design import Design, Notice
 from ..read.layout import bounds_mm
+from ..reporting.label_space import LabelSpace
 from ..text_summary import summarized
-from .stroke_labels import Room, Run, ahead, runs_of, width_text
+from .stroke_labels import CELL_PX, Run, ahead, cells_of, runs_of, width_text
 
 PAPER, SHEET, EDGE, TEXT, QUIET, SHAPE = "#f3f1ec", "#ffffff", "#c9c7c0", "#22252b", "#6d717a", "#d9d7d0"
 WARNING = "#b3401f"
@@ -26,6 +27,7 @@ INKS = ("#2b3a67", "#b3401f", "#2f7d4f", "#8a3ffc", "#c07a00", "#0f7c8a", "#c218
 SHEET_PX, MARGIN_PX, LINE_PX, FONT_PX = 1500, 40, 30, 20
 LISTED = 120  # strokes in the list
 LETTER_PX = 10.0  # room for a letter of the lists, between those of OpenCV's font and of browsers
+REACH_PX = 22.0  # of a number from the start of its stroke
 APART_PX = 80.0  # between two numbers of one element's dashes
 TOLERANCE_MM = 0.02
 
@@ -92,7 +94,7 @@ def _picture(design: Design, strokes: list, notices: list[Notice]) -> _Canvas:
     lines = [place(_core.flatten(stroke, TOLERANCE_MM)) for stroke in strokes]
     for line, ink in zip(lines, inks, strict=True):
         _direction(canvas, line, ink)
-    _numbers(canvas, lines, inks, runs)
+    _numbers(canvas, lines, inks, runs, top + (y1 - y0) * px_per_mm + LINE_PX)
     y = top + (y1 - y0) * px_per_mm + 2 * LINE_PX
     y = _list_strokes(canvas, strokes, inks, runs, y)
     canvas.height = _list_notices(canvas, notices, y) + MARGIN_PX
@@ -135,9 +137,11 @@ def _direction(canvas: _Canvas, line: np.ndarray, ink: str) -> None:
     canvas.area([line[0] + 4.0 * np.column_stack([np.cos(dot), np.sin(dot)])], ink)
 
 
-def _numbers(canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: list[Run]) -> None:
-    """Numbers at the starts, where there is room for them; of many dashes some."""
-    room = Room(lines)
+def _numbers(
+    canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: list[Run], bottom: float
+) -> None:
+    """Numbers near the starts, behind them first, where there is room; of many dashes some."""
+    space = LabelSpace(cells_of(lines, (canvas.width, bottom)), CELL_PX, (0, 0, canvas.width, bottom))
     for run in runs:
         before = None
         for number in range(run.first, run.last + 1):
@@ -145,9 +149,10 @@ def _numbers(canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: li
             if run.is_one and before is not None and math.dist(before, start) < APART_PX:
                 continue
             label = str(number + 1)
-            corner = room.take(start, ahead(lines[number]), 11.0 * len(label), 16.0)
-            if corner is not None:
-                canvas.text(corner[0], corner[1] + 15, label, inks[number], 18)
+            size = (11.0 * len(label), 16.0)
+            placed = space.place(start, [size], -ahead(lines[number]), reach=REACH_PX, may_cover=False)
+            if placed is not None:
+                canvas.text(placed.left, placed.top + 15, label, inks[number], 18)
                 before = start
 
 

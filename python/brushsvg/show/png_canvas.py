@@ -30,5 +30,11 @@ def write(image, text: str, baseline: tuple[int, int], size: int, weight: int, c
     return int(end[0])
 
 
+def text_width(text: str, size: int, weight: int) -> int:
+    """How far a text reaches to the right of where it begins [px]."""
+    (x, _, width, _) = cv2.getTextSize((10000, 100), text, (0, 0), cv2.FontFace("sans"), size, weight)
+    return x + width
+
+
 def encoded(image: np.ndarray) -> bytes:
     return cv2.imencode(".png", image)[1].tobytes()

@@ -1,4 +1,4 @@
-"""What painted marks told of a brush: laws, confidence, what moved, residuals; in words and as a picture."""
+"""What painted marks show of a brush: a verdict, laws, confidence, residuals, what moved; and as a picture."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from ... import _core
 from ...errors import Notice
 from ...geometry.rotation import rotation
 from ...model.confidence import law_band, paint_interval_per_m
-from ...model.describe import LAWS, polynomial
-from ...model.plot import INK, brush_picture_on, encoded, fill_rings, new_figure
+from ...model.plot import INK, brush_picture_on, encoded, fill_rings, new_figure, shortened
+from ...reporting.report_text import Report, overlap_reasons, plural, verdict
+from ..law_text import coefficients, in_short, laws_table, name_and_depths, paper_height
 from . import machine_found
 from .from_marks import (
     GAP_TERMS,
@@ -25,47 +26,85 @@ from .from_marks import (
 )
 from .stray_marks import OUTLYING
 
-TABLE_ROWS = 6
 FOREIGN = 0.1  # of all points, masked: more than blots and gaps
-ALIKE = 0.5  # overlap of painted and predicted marks; photographs of hairy strokes have 0.6 to 0.8
+ALIKE, GOOD_FIT = (
+    0.5,
+    0.9,
+)  # overlap of painted and predicted marks; photographs of hairy strokes have 0.6 to 0.8
 UNLIKELY, UNLIKELY_RMS = 3.0, 1.5  # times what was expected, of one number and of the displacements' rms
+WORST_MARKS = 3
 PAINT, PREDICTED, WAY = "#c9ced8", "#c0392b", "#3f8fd9"
 
 
-def report(made, of_photo: bool = False) -> str:
-    """The text that `brushsvg calibrate` prints. made: a mark_calibrate.MarkCalibration; of_photo: of a photograph,
-    which has flags and no measurement file."""
-    brush, fit, painted = made.brush, made.fit, made.painted
-    lines = [
-        f"brush {brush.name}, depth {brush.depth_range_mm[0]:g} to {brush.depth_range_mm[1]:g} mm, from "
-        f"{len(painted.marks)} painted marks",
-        "",
+def report(made, of_photo: bool = False) -> Report:
+    """What `brushsvg calibrate` prints. made: a mark_calibrate.MarkCalibration; of_photo: of a photograph, which has
+    flags and no measurement file.
+
+    Do not use: the fit did not converge, or marks overlap with their predictions by 0.5 or less without displacements.
+    Usable, but: by less than 0.9; marks were left out or are astray; the sheet differs from what was expected; a tenth
+    of the edges is masked; too few depths were painted for the usual lag.
+    """
+    brush, fit = made.brush, made.fit
+    lying, moved = overlaps(made)
+    unexpected = _unexpected(made, of_photo)
+    against, low = coinciding(moved)
+    against += [] if fit.converged else ["the fit had not converged when it was stopped"]
+    but = [
+        *low,
+        f"{plural(len(made.strays), 'mark')} {'was left out' if made.strays_left_out else 'look wrong'}"
+        if made.strays
+        else "",
+        f"{plural(len(unexpected), 'value')} of the sheet {'differs' if len(unexpected) == 1 else 'differ'} from what "
+        "was expected"
+        if unexpected
+        else "",
+        f"{100 * fit.left_aside:.0f} % of the edges had to be masked" if fit.left_aside > FOREIGN else "",
+        f"only {made.painted.depths} depths were painted" if len(brush.lag.coefficients) < LAG_TERMS else "",
     ]
-    for name, _ in LAWS:
-        law = getattr(brush, name)
-        lines.append(f"{name} = {polynomial(law.coefficients)}")
-        halves = ", ".join(f"{half:.2g}" for half in law.half_interval_95)
-        lines.append(f"  95 % confidence intervals +- {halves} (ascending powers)")
-    overlap = overlaps(made)
-    lines += _paint(made) if brush.paint else []
-    lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
     found = machine_found.numbers(fit, made.covariance, made.expected)
-    if table := machine_found.cell_table(fit, made.expected, found):
-        lines += ["", "for the cell:", *table]
-    remarks = [
-        f"note: {sentence}"
-        for sentence in [
-            *_few_depths(made),
-            *_departing(made),
-            *_astray(made),
-            *_unexpected(made, of_photo),
-            *_unlike(fit, overlap[1]),
-            *fit.remarks,
-        ]
+    cell = machine_found.cell_table(fit, made.expected, found)
+    lines = [
+        f"{name_and_depths(brush)}: {in_short(brush)}, from {len(made.painted.marks)} painted marks",
+        f"painted and predicted marks overlap by {moved:.3f}, by {lying:.3f} with the displacements of marks (mean of "
+        "intersection over union)",
+        _displaced(made),
+        _worst(made),
+        *(
+            ["the machine differs from its cell: the details have the table [machine] for the cell"]
+            if cell
+            else []
+        ),
+        *_astray(made),
+        *unexpected,
+        *_unlike(fit, moved),
+        *_few_depths(made),
+        *fit.remarks,
     ]
-    if not fit.converged:
-        remarks.append("note: the fit had not converged when it was stopped: look at the picture")
-    return "\n".join([*lines, *([""] if remarks else []), *remarks, ""])
+    details = [*laws_table(brush), "", _tail(made), *(_paint(made) if brush.paint else []), *_departing(made)]
+    details += ["", *_moved(made), "", *_stays(made), *(["", "for the cell:", *cell] if cell else [])]
+    return Report(verdict(against, but), tuple(lines), (*details, "", *coefficients(brush)))
+
+
+def coinciding(moved: float) -> tuple[list[str], list[str]]:
+    """What the overlap of painted and predicted marks, without displacements, says of a brush."""
+    return overlap_reasons(moved, "painted and predicted marks", GOOD_FIT, ALIKE + 1e-9)
+
+
+def _displaced(made) -> str:
+    sizes = [math.hypot(*residual.displacement_mm) for residual in made.fit.marks]
+    far = int(np.argmax(sizes))
+    return (
+        f"marks are displaced by {_rms(sizes):.2f} mm (rms), {made.painted.marks[far].stroke} most, by "
+        f"{sizes[far]:.2f} mm"
+    )
+
+
+def _worst(made) -> str:
+    """The marks that fit worst."""
+    rms_mm = np.array([residual.rms_mm for residual in made.fit.marks])
+    worst = np.argsort(-rms_mm, kind="stable")[:WORST_MARKS]
+    told = ", ".join(f"{made.painted.marks[k].stroke} {rms_mm[k]:.2f} mm" for k in worst)
+    return f"worst marks, by the residual of their edges (rms): {told}"
 
 
 def _paint(made) -> list[str]:
@@ -258,20 +297,6 @@ def _rounded_up(size: float) -> float:
     return unit * math.ceil(size / unit)
 
 
-def _table(brush) -> list[str]:
-    lines = ["  depth" + "".join(name.rjust(18) for name, _ in LAWS)]
-    depths = np.linspace(*brush.depth_range_mm, TABLE_ROWS)
-    bands = {name: law_band(brush, name, depths) for name, _ in LAWS}
-    for i, depth in enumerate(depths):
-        cells = []
-        for name, _ in LAWS:
-            band = bands[name]
-            half = f" +- {band[0][i]:.2f}" if band else ""
-            cells.append(f"{getattr(brush, name)(depth):.2f}{half}".rjust(18))
-        lines.append(f"{depth:7.2f}" + "".join(cells))
-    return [*lines, "  +-: half the 95 % confidence interval of the law"]
-
-
 def _moved(made) -> list[str]:
     """Height of the paper, place of the sheet, displacement of the marks: found along with the laws."""
     fit = made.fit
@@ -282,15 +307,10 @@ def _moved(made) -> list[str]:
         half_intervals[first + 1 : first + 3],
         half_intervals[first + 3],
     )
-    way = "higher" if fit.height_mm >= 0 else "lower"
-    sizes = [math.hypot(*residual.displacement_mm) for residual in fit.marks]
-    far = int(np.argmax(sizes))
     lines = [
-        f"the paper lies {abs(fit.height_mm):.2f} +- {height:.2f} mm {way} than the plan took it to be",
+        paper_height(fit.height_mm, height),
         f"the sheet is shifted by {fit.shift_mm[0]:+.2f} +- {shift[0]:.2f}, {fit.shift_mm[1]:+.2f} +- {shift[1]:.2f} "
         f"mm and turned by {math.degrees(fit.turn_rad):+.2f} +- {math.degrees(turn):.2f} degrees",
-        f"marks are displaced by {np.sqrt(np.mean(np.square(sizes))):.2f} mm (rms), {made.painted.marks[far].stroke} "
-        f"most, by {sizes[far]:.2f} mm",
     ]
     lines += machine_found.told(machine_found.numbers(fit, made.covariance, made.expected))
     if made.scale:
@@ -298,16 +318,11 @@ def _moved(made) -> list[str]:
     return lines
 
 
-def _stays(made, lying: float, moved: float) -> list[str]:
-    """lying, moved: overlap with and without the displacements."""
+def _stays(made) -> list[str]:
     fit = made.fit
-    worst = int(np.argmax([residual.rms_mm for residual in fit.marks]))
     lines = [
         f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, worth "
         f"{fit.effective_samples:.0f} independent ones",
-        f"largest residuals: {made.painted.marks[worst].stroke}, {fit.marks[worst].rms_mm:.2f} mm (rms)",
-        f"painted and predicted marks overlap by {lying:.3f} where they lie, by {moved:.3f} with their displacements "
-        "taken away (mean of intersection over union)",
     ]
     if made.edge_mm > 0:
         lines.append(
@@ -357,7 +372,7 @@ def report_picture(made, suffix: str) -> bytes:
             axes.plot(*np.vstack([ring, ring[:1]]).T, color=PREDICTED, linewidth=1)
         axes.plot(*mark.poses_mm[:, :2].T, color=WAY, linewidth=0.8)
         axes.set_aspect("equal")
-        title = f"{what}: {mark.stroke}, {residual.rms_mm:.2f} mm (rms)".replace("$", r"\$")
+        title = f"{what}: {shortened(mark.stroke, 16)}, {residual.rms_mm:.2f} mm (rms)"
         axes.set_title(title, fontsize=9, color=INK)
         axes.tick_params(labelsize=7)
     marks.suptitle("grey: painted; red: predicted; blue: the tool's way", fontsize=8)

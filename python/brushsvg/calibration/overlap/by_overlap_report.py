@@ -1,53 +1,53 @@
-"""What the largest overlap made of a brush that edges told, in words and as a picture."""
+"""What the largest overlap made of a brush that edges showed, in words and as a picture."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from ...model.describe import LAWS, polynomial
+from ...model.describe import LAWS
 from ...model.plot import brush_picture
-from ..marks.mark_report import TABLE_ROWS, overlaps
+from ...reporting.report_text import Report, verdict
+from ..law_text import coefficients, depths_shown, in_short, law_table, name_and_depths, paper_height
+from ..marks.mark_report import coinciding, overlaps
 from ..marks.mark_report import report as of_edges
 from ..marks.mark_report import report_picture as picture_of_edges
 
 
-def report(made, of_photo: bool = False) -> str:
-    """The text that `brushsvg calibrate --aim overlap` prints. made: by_overlap.OverlapCalibration; of_photo: see
+def report(made, of_photo: bool = False) -> Report:
+    """What `brushsvg calibrate --aim overlap` prints. made: by_overlap.OverlapCalibration; of_photo: see
     mark_report.report."""
     brush, edges, found = made.brush, made.by_edges, made.found
     if found.kind == "edges":
-        return of_edges(edges, of_photo) + chosen_in_words(found) + "\n"
-    lines = [
-        f"brush {brush.name}, depth {brush.depth_range_mm[0]:g} to {brush.depth_range_mm[1]:g} mm, from "
-        f"{len(edges.painted.marks)} painted marks, to the largest overlap",
-        "",
-        *(f"{name} = {polynomial(getattr(brush, name).coefficients)}" for name, _ in LAWS),
-        "",
-        "  depth" + "".join(f"{name} (edges)".rjust(24) for name, _ in LAWS),
-    ]
-    for depth in np.linspace(*brush.depth_range_mm, TABLE_ROWS):
-        cells = [
-            f"{getattr(brush, name)(depth):.2f} ({getattr(edges.brush, name)(depth):.2f})" for name, _ in LAWS
-        ]
-        lines.append(f"{depth:7.2f}" + "".join(cell.rjust(24) for cell in cells))
-    way = "higher" if found.height_mm >= 0 else "lower"
+        by_edges = of_edges(edges, of_photo)
+        return replace(by_edges, lines=(chosen_in_words(found), *by_edges.lines))
     (lying, moved), (now_lying, now_moved) = overlaps(edges), overlaps(made.made)
-    lines += [
-        "  in brackets: by edges, which calibrate without --aim overlap writes, with intervals",
-        "",
+    lines = [
+        f"{name_and_depths(brush)}: {in_short(brush)}, from {len(edges.painted.marks)} painted marks, to the largest "
+        "overlap",
+        f"painted and predicted marks overlap by {now_lying:.3f} as painted, by {now_moved:.3f} without the "
+        f"displacements of the edges' fit; by edges {lying:.3f} and {moved:.3f}",
         chosen_in_words(found),
-        f"the paper lies {abs(found.height_mm):.2f} mm {way} than the plan took it to be "
-        f"({edges.fit.height_mm:+.2f} mm by edges)",
-        f"painted and predicted marks overlap by {now_lying:.3f} where they lie, by {now_moved:.3f} with the "
-        f"displacements of the edges' fit taken away; by edges {lying:.3f} and {moved:.3f}",
+        f"{paper_height(found.height_mm)} ({edges.fit.height_mm:+.2f} mm by edges)",
         *_machine(edges, found.led),
         "no intervals: those of the edges' fit do not hold for these laws",
     ]
-    return "\n".join([*lines, ""])
+    depths = depths_shown(brush)
+    columns = [
+        (
+            f"{law} (edges)",
+            [f"{getattr(brush, law)(at):.2f} ({getattr(edges.brush, law)(at):.2f})" for at in depths],
+        )
+        for law, _ in LAWS
+    ]
+    by_edges = "  in brackets: by edges, which calibrate without --aim overlap writes, with intervals"
+    details = [*law_table(depths, columns), by_edges, "", *coefficients(brush)]
+    return Report(verdict(*coinciding(now_moved)), tuple(lines), tuple(details))
 
 
 KINDS = {
-    "edges": "what edges told",
+    "edges": "what edges showed",
     "disc": "a dragged disc",
     "laws": "laws and footprint",
     "machine": "laws, footprint and machine",
@@ -85,7 +85,7 @@ def aside_in_words(aside) -> str:
 
 
 def _machine(edges, led) -> list[str]:
-    """What edges told of it and what came beside."""
+    """What edges showed of it, and what was found in addition."""
     lines, was = [], edges.fit.machine
     if led.lean_mm_per_mm.any():
         x, y = led.lean_mm_per_mm + was.lean_mm_per_mm

@@ -16,6 +16,35 @@ GRAVE = 0.25  # of half the width: a middle that is so far off the line is what 
 EXPLAINS = 0.3  # of what is missing at a place: a width out of reach that leaves less is not why
 POINTED = 0.3  # of its greatest width, a tenth of the way there from its tip: a disc has 0.44, a drop 0.1
 
+LARGER = "use a finer brush, or scale the drawing up"
+REMEDIES = {  # by code, where something helps
+    "wider-than-brush": "use a wider brush, or --wide passes",
+    "thinner-than-brush": "use a finer brush, or draw it wider",
+    "thinner-than-measured": "draw it wider, or calibrate the brush with thinner lines",
+    "one-width": "use another pen, or draw it as wide as this one",
+    "unreached": LARGER,
+    "shape-corner": LARGER,
+    "lag-not-compensated": "leave out --compensation",
+    "coarse-tolerance": "use a smaller --tolerance",
+    "shorter-than-footprint": LARGER,
+    "sharp-corner": LARGER,
+    "stroke-start": "try another --start",
+    "stroke-end": "try another --end",
+    "tighter-than-lag": "try --compensation refined, or scale the drawing up",
+    "tighter-than-width": "draw it thinner there, or bend it less",
+    "steep-width": "let its width change more slowly",
+    "off-middle-line": "use a smaller --tolerance",
+    "wider-on-bends": "try --compensation refined",
+}
+
+
+OF_LINES = ("stroke-start", "stroke-end", "off-middle-line")  # in a shape nobody drew the strokes
+
+
+def remedy(code: str, stroke) -> str:
+    """What helps against a cause, "" where nothing does."""
+    return LARGER if code in OF_LINES and stroke.wanted_mm else REMEDIES.get(code, "")
+
 
 @dataclass(frozen=True)
 class Cause:

@@ -24,4 +24,4 @@ def calibrate_file(args) -> None:
             files[args.picture] = made.picture()
     warn(args.output, remarks(made.brush))
     write(args, files, more=made.reading, sources=[args.output])
-    tell(made.text)
+    tell(made.report.text(getattr(args, "details", False), args.picture or args.plot or ""))

@@ -23,7 +23,7 @@ def compare_files(args) -> None:
         job = compared(sheet, args.photos, stage, warn)
     files = {}
     if args.output:
-        files[args.output] = job.json if suffix_of(args.output) == ".json" else job.text
+        files[args.output] = job.json if suffix_of(args.output) == ".json" else job.report.text(True)
     if args.picture:
         files[args.picture] = job.picture()
     if args.corrected_cell:
@@ -36,7 +36,7 @@ def compare_files(args) -> None:
             warn(args.corrected_cell, [Notice("machine", sentence, code="cell-unchanged")])
     if files:
         write(args, files, sources=sources)
-    tell(job.json if args.json else job.text)
+    tell(job.json if args.json else job.report.text(getattr(args, "details", False), args.picture or ""))
     if args.at_least is not None and job.overlap < args.at_least:
         sentence = f"the overlap {job.overlap:.3f} is below {args.at_least:g}"
         low = Error(sentence, value=job.overlap, code="overlap-low")
@@ -59,7 +59,7 @@ def _cell_text(cell) -> str:
 def _repeats(args, sheet) -> None:
     """How well the same strokes lie on several sheets, or copies of strokes on one."""
     from ....comparison.photographs import compare_sheets
-    from ....comparison.repeats import as_json, as_text, repeats
+    from ....comparison.repeats import as_json, repeats, report
     from ....comparison.repeats_picture import repeats_png
     from ....jobs.comparing import on_its_page, photographs
 
@@ -73,10 +73,11 @@ def _repeats(args, sheet) -> None:
         found = repeats(sheet.plan, sheets)
     files = {}
     if args.output:
-        makes = as_json if suffix_of(args.output) == ".json" else as_text
-        files[args.output] = makes(title, found)
+        is_json = suffix_of(args.output) == ".json"
+        files[args.output] = as_json(title, found) if is_json else report(title, found).text(True)
     if args.picture:
         files[args.picture] = repeats_png(title, found, sheets, strokes)
     if files:
         write(args, files, sources=_sources(args))
-    tell(as_json(title, found) if args.json else as_text(title, found))
+    details, picture = getattr(args, "details", False), args.picture or ""
+    tell(as_json(title, found) if args.json else report(title, found).text(details, picture))

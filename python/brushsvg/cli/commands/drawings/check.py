@@ -33,7 +33,8 @@ def check_file(args) -> None:
             overlap = None if done.is_foreign else done.figures.total.overlap
             write(args, {args.preview: picture}, len(done.plan.passes), done.time_s, overlap)
     if done.job == "painting":
-        tell(report.as_text(".json" if args.json else ".txt", done.figures))
+        details = getattr(args, "details", False)
+        tell(report.as_text(".json" if args.json else ".txt", done.figures, details))
     elif args.json:
         tell(json.dumps(_in_json(done)) + "\n")
     else:

@@ -36,9 +36,10 @@ def report_file(args) -> None:
             seconds=looked.seconds(),
             advice=advice,
         )
-        text = report.as_text(".json" if args.json else ".txt", figures)
+        details = getattr(args, "details", False)
+        text = report.as_text(".json" if args.json else ".txt", figures, details, args.preview or "")
         if args.preview:
-            picture = outputs.overlap_picture(suffix_of(args.preview), work, marks)
+            picture = outputs.overlap_picture(suffix_of(args.preview), work, marks, places=figures.places)
             write(args, {args.preview: picture}, len(figures.strokes), figures.time_s, figures.total.overlap)
     if work.plan.passes or args.json:
         tell(text)
