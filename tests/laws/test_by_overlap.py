@@ -124,7 +124,7 @@ def test_the_report_says_lean_and_map_of_edges_and_overlap_together():
     lean, by_map = (0.3, -0.2), ((0.02, 0.01), (0.0, -0.02))
     _, marks = painted(ASIDE_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
     made = brushsvg.calibrate(marks, "b", machine=("lean", "axes")).fit
-    text = report(by_overlap._calibrated(made, machine_beside(made)))
+    text = report(by_overlap._calibrated(made, machine_beside(made))).text(True)
     said = {line.split(":")[0]: NUMBER.findall(line) for line in text.splitlines()}
     assert np.array(said["lean"][:2], float) == pytest.approx(lean, abs=0.08)
     assert np.array(said["ways"][:4], float) == pytest.approx(np.ravel(by_map), abs=0.006)

@@ -33,6 +33,7 @@ from brushsvg.jobs.options import Options  # noqa: E402
 from brushsvg.jobs.preparation.preparation import prepare  # noqa: E402
 from brushsvg.model.confidence import law_band  # noqa: E402
 from brushsvg.model.library import save_brush  # noqa: E402
+from brushsvg.reporting.report_text import GOOD  # noqa: E402
 
 pytestmark = pytest.mark.long
 
@@ -254,9 +255,9 @@ def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys
     off = np.array([found.brush.lag(depth) for depth in depths]) - true
     assert np.abs(off).max() < 0.15, off
     assert np.mean(np.abs(off) < law_band(found.brush, "lag", depths)[0]) > 0.7, off
-    told = report(found).text(True)
-    assert gives(told, found.own.name)
-    assert ("\nnote: " in told) == (name == "egg"), told
+    told = report(found)
+    assert gives(told.text(True), found.own.name)
+    assert (told.verdict == GOOD) == (name != "egg"), told
 
 
 def test_the_same_from_below_through_glass(tmp_path, capsys):

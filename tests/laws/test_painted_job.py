@@ -318,7 +318,11 @@ def test_python_is_told_what_the_command_tells(job, capsys, tmp_path):
     status, told = compare(folder, capsys, "photo.jpg", "-o", str(named[0]), *flags)
     stages = []
     found = brushsvg.compare(folder / "four.svg", folder / "photo.jpg", progress=stages.append)
-    assert status == 0 and found.text == told.out and found.json == named[0].read_text()
+    assert (
+        status == 0
+        and found.report.text(picture=str(named[1])) == told.out
+        and found.json == named[0].read_text()
+    )
     assert found.picture() == named[1].read_bytes()
     assert brushsvg.write_cell(found.cell) == named[2].read_text() and not found.is_corrected
     assert round(found.overlap, 4) == json.loads(found.json)["overlap_wanted"] < 0.7

@@ -17,7 +17,7 @@ from brushsvg.reporting.report_text import (
 )
 from brushsvg.show.evaluation import report
 from brushsvg.show.evaluation.uncertainty import Confidence, PlanConfidence
-from brushsvg.show.evaluation.verdict import OFF_DRAWING, UNCERTAIN_MM
+from brushsvg.show.evaluation.verdict import UNCERTAIN_MM
 
 ROW = report.Figures("s", 0.97, 0.01, 0.04, 0.1, 0, 60.0, 81.5, 42)
 MADE = report.Report("T", "mine", "closed", 0.05, (ROW,), ROW, 5)
@@ -49,7 +49,7 @@ def known_to(middle_mm):
         (replace(MADE, warnings=(Notice("t", "SENTENCE", code="odd"),)), GOOD, ()),
         *(
             (replace(MADE, warnings=(Notice("t", "SENTENCE", code=code),)), BUT, ("1",))
-            for code in OFF_DRAWING
+            for code in ("off-middle-line", "paint-outside")
         ),
         (replace(MADE, assumed=("lag", "width")), BUT, ("lag", "width", "mine")),
         (known_to(UNCERTAIN_MM - 0.01), GOOD, ()),

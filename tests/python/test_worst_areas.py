@@ -5,15 +5,15 @@ import pytest
 
 from brushsvg.reporting.worst_areas import MIN_AREA_MM2, worst_areas
 
-PX = 10.0  # per mm
+PX = 20.0  # per mm
 LINES = [np.array([(1.0, 5.0), (9.0, 5.0)]), np.array([(1.0, 15.0), (9.0, 15.0)])]
 
 
 def sheet(*boxes):
-    """(200, 100) px, 10 x 20 mm; boxes: left, bottom, right, top in mm."""
-    out = np.zeros((200, 100), np.float32)
+    """10 x 20 mm; boxes: left, bottom, right, top in mm."""
+    out = np.zeros((round(20 * PX), round(10 * PX)), np.float32)
     for left, bottom, right, top in boxes:
-        out[round(200 - top * PX) : round(200 - bottom * PX), round(left * PX) : round(right * PX)] = 1.0
+        out[round((20 - top) * PX) : round((20 - bottom) * PX), round(left * PX) : round(right * PX)] = 1.0
     return out
 
 
@@ -43,7 +43,8 @@ def test_paint_that_is_displaced_is_one_place():
 
 def test_slivers_and_specks_are_no_places():
     target = sheet((1, 4, 9, 6))
-    assert found(target, sheet((1, 4, 9, 6.1))) == []
+    assert found(target, sheet((1, 4, 9, 6.15))) == []
+    assert len(found(target, sheet((1, 4, 9, 6.25)))) == 1
     side = 0.9 * MIN_AREA_MM2**0.5
     assert found(target, sheet((1, 4, 9, 6), (2, 7, 2 + side, 7 + side))) == []
     assert len(found(target, sheet((1, 4, 9, 6), (2, 7, 2.5, 7.5)))) == 1

@@ -47,7 +47,7 @@ ORDERS = ("drawn", "nearest")
 MOST_LOWERED_MM = 2.0  # by --z-offset, without a word: the strokes of `brushsvg height` try 1 mm
 FORMATS = {
     "preview": (".png", ".svg"),
-    "report": (".txt", ".json"),
+    "report": (".txt", ".json", ".csv"),
     "page": (".pdf", ".svg"),
 }  # of what is written beside a program
 
@@ -97,7 +97,7 @@ def convert(
 
     drawing: a path, whatever else read_drawing takes, a Design, or a Plan.
     out: a program in the cell's language, or a plan (.json); preview: what will be painted (.png .svg); report: the
-    figures (.txt .json); page: to print and paint on (.pdf .svg).
+    figures (.txt .json .csv); page: to print and paint on (.pdf .svg).
     formats: extensions of the texts to return, by default that of out, else the first of the cell's language.
     figures: whether to measure overlap and errors, too. from_stroke: resumes a job there. order: "drawn", "nearest".
     lenient: paint what is sound of damaged geometry.

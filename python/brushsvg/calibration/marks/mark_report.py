@@ -67,10 +67,11 @@ def report(made, of_photo: bool = False) -> Report:
         f"{name_and_depths(brush)}: {in_short(brush)}, from {len(made.painted.marks)} painted marks",
         f"painted and predicted marks overlap by {moved:.3f}, by {lying:.3f} with the displacements of marks (mean of "
         "intersection over union)",
+        *(_paint(made) if brush.paint else []),
         _displaced(made),
         _worst(made),
         *(
-            ["the machine differs from its cell: the details have the table [machine] for the cell"]
+            ["the machine has faults that its cell can undo: the details have a table for the cell file"]
             if cell
             else []
         ),
@@ -80,7 +81,7 @@ def report(made, of_photo: bool = False) -> Report:
         *_few_depths(made),
         *fit.remarks,
     ]
-    details = [*laws_table(brush), "", _tail(made), *(_paint(made) if brush.paint else []), *_departing(made)]
+    details = [*laws_table(brush), "", _tail(made), *_departing(made)]
     details += ["", *_moved(made), "", *_stays(made), *(["", "for the cell:", *cell] if cell else [])]
     return Report(verdict(against, but), tuple(lines), (*details, "", *coefficients(brush)))
 

@@ -21,9 +21,9 @@ def compare_files(args) -> None:
         return
     with about(args.photos[0]):
         job = compared(sheet, args.photos, stage, warn)
-    files = {}
+    files, details = {}, getattr(args, "details", False)
     if args.output:
-        files[args.output] = job.json if suffix_of(args.output) == ".json" else job.report.text(True)
+        files[args.output] = job.json if suffix_of(args.output) == ".json" else job.report.text(details)
     if args.picture:
         files[args.picture] = job.picture()
     if args.corrected_cell:
@@ -36,7 +36,7 @@ def compare_files(args) -> None:
             warn(args.corrected_cell, [Notice("machine", sentence, code="cell-unchanged")])
     if files:
         write(args, files, sources=sources)
-    tell(job.json if args.json else job.report.text(getattr(args, "details", False), args.picture or ""))
+    tell(job.json if args.json else job.report.text(details, args.picture or ""))
     if args.at_least is not None and job.overlap < args.at_least:
         sentence = f"the overlap {job.overlap:.3f} is below {args.at_least:g}"
         low = Error(sentence, value=job.overlap, code="overlap-low")
@@ -71,13 +71,12 @@ def _repeats(args, sheet) -> None:
         warn(path, list(each.notices))
     with about(args.photos[0]):
         found = repeats(sheet.plan, sheets)
-    files = {}
+    files, details, picture = {}, getattr(args, "details", False), args.picture or ""
     if args.output:
         is_json = suffix_of(args.output) == ".json"
-        files[args.output] = as_json(title, found) if is_json else report(title, found).text(True)
+        files[args.output] = as_json(title, found) if is_json else report(title, found).text(details)
     if args.picture:
         files[args.picture] = repeats_png(title, found, sheets, strokes)
     if files:
         write(args, files, sources=_sources(args))
-    details, picture = getattr(args, "details", False), args.picture or ""
     tell(as_json(title, found) if args.json else report(title, found).text(details, picture))
