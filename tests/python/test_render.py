@@ -18,6 +18,8 @@ from brushsvg import (
     simulate,
     trace_outlines,
 )
+from brushsvg.show.overlap_png import overlap_png
+from brushsvg.show.overlap_svg import overlap_svg
 from brushsvg.show.panels_png import Panel, panels_png
 
 SHEET = (60.0, 30.0)
@@ -150,3 +152,29 @@ def test_a_page_of_many_strokes_is_painted_by_several_processors_as_each_alone()
     assert np.abs(picture(marks, marks.passes) - alone).max() < 1e-5  # sums of a row in single precision
     marks = marks_of(crossing)
     assert (picture(marks, marks.passes) == picture(marks, marks.passes[::-1])).all()
+
+
+PLACES = {1: (16.0, 4.4), 2: (59.5, 29.5)}
+
+
+def test_numbers_of_places_stay_inside_and_off_the_paint(painted):
+    """The second place is in a corner of the sheet."""
+    marks, brush, _ = painted
+    scale = 20.0
+    paint = coverage(marks, brush, (0, 0, *SHEET), scale)
+    at_px = {number: (x * scale, (SHEET[1] - y) * scale) for number, (x, y) in PLACES.items()}
+    plain, numbered = (decode(overlap_png(paint, paint, places=places)) for places in ({}, at_px))
+    assert plain.shape == numbered.shape
+    changed = (plain != numbered).any(axis=2)[: len(paint)]
+    far = np.ones_like(changed)
+    for x, y in at_px.values():
+        cv2.circle(far.view(np.uint8), (round(x), round(y)), 16, 0, -1)
+    assert changed[far].sum() > 100 and not (changed & far & (paint > 0.05)).any()
+    tree = ET.fromstring(overlap_svg(marks.outline_mm, marks.outline_mm, SHEET, places=PLACES))
+    rings = [(float(each.get("cx")), float(each.get("cy"))) for each in tree.iter(f"{SVG}circle")]
+    assert rings == [(x, SHEET[1] - y) for x, y in PLACES.values()]
+    texts = [each for each in tree.iter(f"{SVG}text") if each.text in ("1", "2")]
+    assert len(texts) == 2
+    for text in texts:
+        x, y, size = (float(text.get(key)) for key in ("x", "y", "font-size"))
+        assert 0 <= x <= SHEET[0] - 0.65 * size and size <= y + 0.2 * size and y <= SHEET[1]

@@ -27,10 +27,7 @@ def report(made) -> Report:
     count = sum(len(shape.seen) for shape in shapes)
     shift, turn = outlines.shift_mm, math.degrees(outlines.turn_rad)
     hidden = _hidden_fronts(brush)
-    but = [
-        "" if outlines.is_even else "one side of the outlines is larger than the other, by more than chance",
-        f"the front is uncertain at {plural(len(hidden), 'depth')}" if hidden else "",
-    ]
+    but = [f"the front is uncertain at {plural(len(hidden), 'depth')}"] if hidden else []
     lines = [
         f"{name_and_depths(brush)}: outlines of {count} dabs at {len(shapes)} depths, the lag of brush "
         f"{made.before.name}",
