@@ -173,7 +173,7 @@ def test_check_predicts_what_a_brush_paints(desk, capsys):
     assert status == 0 and (desk / "p.png").exists()
     assert RUNNABLE not in out
     status, out, _ = call(capsys, "check", "servo.nc", "--cell", "grbl-servo", "--sheet", "120x100")
-    assert status == 0 and gives(out.splitlines()[0], "2")
+    assert status == 0 and gives(out.splitlines()[1], "2")
     status, _, said = in_json(capsys, "check", "servo.nc")
     assert status == 1 and is_told(said, "servo-unknown 7 M3")
 
@@ -220,7 +220,7 @@ def test_what_check_advises_works_when_it_is_typed(desk, capsys, program, typed,
     advised = re.search(r"--(cell|paper-z) [\w.-]+", said.advice)[0].split()
     status, out, _ = call(capsys, "check", "f.gcode", *advised)
     strokes = "1" if "Z5" in program else "2"
-    assert status == 0 and gives(out.splitlines()[0], strokes)
+    assert status == 0 and gives(out.splitlines()[1], strokes)
 
 
 def test_values_that_no_table_has_ask_for_a_table(desk, capsys):
@@ -317,7 +317,7 @@ def test_a_full_circle_is_drawn(desk, capsys, line):
     (circle,) = [way for way in ways(FULL.format(line)) if way.turn]
     assert np.ptp(circle.points_mm[:, :2], axis=0) == pytest.approx([20, 20], abs=0.02)
     assert call(capsys, "convert", "circle.gcode", "marks.json", "--width", "3")[0] == 0
-    status, out, _ = call(capsys, "check", "circle.gcode")
+    status, out, _ = call(capsys, "check", "circle.gcode", "--json")
     assert status == 0 and re.search(r"circle|line 4", out)
 
 
@@ -363,7 +363,7 @@ def test_a_pen_that_goes_down_and_up_again_draws_a_dot(desk, capsys, pen):
     assert [np.unique(place, axis=0).tolist() for place in places] == [[[60.0, 60.0]], [[70.0, 60.0]]]
     cell = ("--cell", "grbl-servo") if pen == "servo" else ()
     status, out, _ = call(capsys, "check", "dots.gcode", *cell)
-    assert status == 0 and gives(out.splitlines()[0], "2")
+    assert status == 0 and gives(out.splitlines()[1], "2")
 
 
 @pytest.mark.parametrize(
