@@ -36,8 +36,10 @@ def test_from_a_table_to_a_brush_with_a_report(tmp_path, capsys):
     out, picture = tmp_path / "own.json", tmp_path / "own.svg"
     assert main(["calibrate", str(tmp_path / "m.csv"), "-o", str(out), "--plot", str(picture)]) == 0
     told = capsys.readouterr().out
-    assert "tip_to_widest = " in told and gives(told, "1.8")
-    assert gives(told.splitlines()[-1], "tip_to_widest"), "what to measure next"
+    report = brushsvg.calibrate(tmp_path / "m.csv", "own").report
+    assert told == report.text(picture=str(picture)) and len(told.splitlines()) <= 10
+    assert "tip_to_widest = " in report.text(details=True) and gives(told, "1.8")
+    assert gives(report.lines[-1], "tip_to_widest"), "what to measure next"
     brush = find_brush(out)
     assert brush.name == "own" and picture.read_bytes().startswith(b"<?xml")
     assert [getattr(brush, law).assumed for law in ("lag", "tip_gap", "tip_to_widest", "half_width")] == [
@@ -403,11 +405,10 @@ def test_a_width_that_none_can_have_is_refused_with_its_line(line, column, said,
     assert (status, file) == (1, str(tmp_path / "w.csv")) and agrees(told, said, f"line 2, {column}"), told
 
 
-def test_of_exact_values_no_rounding_is_told(tmp_path, capsys):
+def test_of_exact_values_no_rounding_is_told(tmp_path):
     rows = {"lag": values(2 + 0.5 * DEPTHS), "width": values(DEPTHS)}
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
-    assert main(["calibrate", str(tmp_path / "m.json"), "-o", str(tmp_path / "b.json")]) == 0
-    assert "+- 0, 0, 0 " in capsys.readouterr().out
+    assert "+- 0, 0, 0 " in brushsvg.calibrate(tmp_path / "m.json").report.text(details=True)
 
 
 def test_few_values_give_a_law_that_does_not_follow_their_noise(tmp_path, capsys):

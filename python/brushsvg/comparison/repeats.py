@@ -219,6 +219,9 @@ def report(title: str, found: Repeats) -> Report:
         ),
         *(_approach_words(one) for one in found.approaches),
     ]
+    if count:
+        why = f"not found, or more than {100 * UNSEEN:g} % of the mark without paint"
+        lines.append(f"{plural(count, 'stroke')} not seen twice ({why}): {', '.join(found.once)}.")
     return Report(verdict([], but), tuple(lines), tuple(_details(found)))
 
 
@@ -236,12 +239,6 @@ def _details(found: Repeats) -> list[str]:
         )
         rows.append((row.stroke, str(row.count), *figures))
     lines = table(head, rows)
-    if found.once:
-        lines += [
-            "",
-            f"Not seen twice (not found, or more than {100 * UNSEEN:g} % of the mark without paint): "
-            f"{', '.join(found.once)}.",
-        ]
     lines += ["", "Distance of each from its mean, mm:"]
     bins = histogram(found)
     most, before = max(count for _, count in bins), 0.0

@@ -94,9 +94,12 @@ def coinciding(moved: float) -> tuple[list[str], list[str]]:
 def _displaced(made) -> str:
     sizes = [math.hypot(*residual.displacement_mm) for residual in made.fit.marks]
     far = int(np.argmax(sizes))
+    half = _core.deviations_of_95() * float(
+        np.sqrt(made.covariance[height_at(made.fit), height_at(made.fit)])
+    )
     return (
-        f"marks are displaced by {_rms(sizes):.2f} mm (rms), {made.painted.marks[far].stroke} most, by "
-        f"{sizes[far]:.2f} mm"
+        f"{paper_height(made.fit.height_mm, half)}; marks are displaced by {_rms(sizes):.2f} mm (rms), "
+        f"{made.painted.marks[far].stroke} most, by {sizes[far]:.2f} mm"
     )
 
 
@@ -299,17 +302,12 @@ def _rounded_up(size: float) -> float:
 
 
 def _moved(made) -> list[str]:
-    """Height of the paper, place of the sheet, displacement of the marks: found along with the laws."""
+    """Place of the sheet and errors of the machine: found along with the laws."""
     fit = made.fit
     half_intervals = _core.deviations_of_95() * np.sqrt(np.diag(made.covariance))
     first = height_at(fit)
-    height, shift, turn = (
-        half_intervals[first],
-        half_intervals[first + 1 : first + 3],
-        half_intervals[first + 3],
-    )
+    shift, turn = half_intervals[first + 1 : first + 3], half_intervals[first + 3]
     lines = [
-        paper_height(fit.height_mm, height),
         f"the sheet is shifted by {fit.shift_mm[0]:+.2f} +- {shift[0]:.2f}, {fit.shift_mm[1]:+.2f} +- {shift[1]:.2f} "
         f"mm and turned by {math.degrees(fit.turn_rad):+.2f} +- {math.degrees(turn):.2f} degrees",
     ]

@@ -30,10 +30,10 @@ def report(made) -> Report:
         f"{name_and_depths(brush)}: {in_short(brush)}",
         *(_how_known(brush, fitted) for fitted in made.laws),
     ]
-    lines += [f"{fitted.name}: {told}" for fitted in made.laws for told in fitted.outliers_told()]
+    for fitted in made.laws:
+        lines += [f"{fitted.name}: {told}" for told in (*fitted.outliers_told(), *fitted.remarks)]
     details = [
         *laws_table(brush),
-        *(f"{fitted.name}: {remark}" for fitted in made.laws for remark in fitted.remarks),
         *made.remarks,
         "",
         *coefficients(brush),
