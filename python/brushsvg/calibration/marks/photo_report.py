@@ -88,7 +88,7 @@ def _compared(picture, flat, read, made) -> dict[str, list[str]]:
         overlap = _core.overlap([np.array(ring) for ring in mark.outline_mm], lying)
         aside = np.hypot(*residual.displacement_mm)
         words[mark.stroke] = [
-            f"{mark.stroke}: overlap {overlap:.3f}, {aside:.2f} mm aside",
+            f"{mark.stroke}: overlap {overlap:.3f}, displaced {aside:.2f} mm",
             f"{mark.stroke}: {overlap:.3f}, {aside:.2f} mm",
             f"{overlap:.3f}, {aside:.2f} mm",
             f"{overlap:.2f}, {aside:.1f}",
@@ -101,7 +101,7 @@ def _dabs_compared(picture, flat, read, outlines) -> dict[str, list[str]]:
     for shape in outlines.shapes:
         for name, aside in ((each.dab.name, np.hypot(*each.aside_mm)) for each in shape.seen):
             _draw(picture, flat, [lying[name]], PREDICTED, PREDICTED_MM)
-            told = f"{shape.depth_mm:g} mm deep, {aside:.2f} mm aside"
+            told = f"{shape.depth_mm:g} mm deep, displaced {aside:.2f} mm"
             words[name] = [f"{name}: {told}", told, f"{shape.depth_mm:g} mm", f"{shape.depth_mm:g}"]
     for name, rings in read.marks.outlines_mm.items():
         if name not in lying:
