@@ -49,9 +49,10 @@ def report(made, of_photo: bool = False) -> Report:
     unexpected = _unexpected(made, of_photo)
     against, low = coinciding(moved)
     against += [] if fit.converged else ["the fit had not converged when it was stopped"]
+    strays = plural(len(made.strays), "mark")
     but = [
         *low,
-        f"{plural(len(made.strays), 'mark')} {'was left out' if made.strays_left_out else 'look wrong'}"
+        (f"{strays} had to be left out" if made.strays_left_out else f"the fit is unlike {strays}")
         if made.strays
         else "",
         f"{plural(len(unexpected), 'value')} of the sheet {'differs' if len(unexpected) == 1 else 'differ'} from what "
