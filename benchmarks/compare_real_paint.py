@@ -25,7 +25,7 @@ from real_paint import LEVEL
 from scipy.optimize import minimize
 
 from brushsvg import _core
-from brushsvg.comparison.photographs import Wanted, compare_paint
+from brushsvg.comparison.photographs import TargetStroke, compare_paint
 from brushsvg.comparison.placing import Canvas
 from brushsvg.errors import Error
 from brushsvg.geometry.rings import centroid
@@ -60,7 +60,7 @@ def compared(stroke, rings):
     rings = [ring - (left, bottom) for ring in rings]
     share = np.clip(np.float32(stroke.paint) / (2 * LEVEL), 0, 1)  # half the usual paint: LEVEL
     try:
-        found = compare_paint([Wanted("stroke", None, rings)], share, canvas, "stroke")
+        found = compare_paint([TargetStroke("stroke", None, rings)], share, canvas, "stroke")
     except Error as refusal:
         return refusal.code
     (row,) = found.strokes

@@ -61,7 +61,7 @@ def camera_of(rng, sheet_mm, is_bulging: bool) -> photograph.Camera:
         turn_deg=rng.uniform(-2, 2) + rng.choice([0.0, 180.0]),
         bend=rng.uniform(-0.04, 0.03),
         fill=0.88,
-        aside_mm=tuple(rng.uniform(-3, 3, 2)),
+        displacement_mm=tuple(rng.uniform(-3, 3, 2)),
         blur_px=rng.uniform(0.6, 1.2),
         noise=rng.uniform(0.004, 0.015),
         light=tuple(rng.uniform(-0.3, 0.3, 2)),

@@ -51,7 +51,7 @@ from scipy.optimize import minimize
 from brushsvg import _core
 from brushsvg.calibration.marks import machine_found
 from brushsvg.calibration.marks.from_marks import brush_of
-from brushsvg.calibration.overlap.by_overlap_report import aside_in_words, chosen_in_words
+from brushsvg.calibration.overlap.by_overlap_report import chosen_in_words, describe_displacement
 from brushsvg.calibration.overlap.overlap_choice import best_predicting
 from brushsvg.calibration.overlap.overlap_search import (
     Begin,
@@ -312,8 +312,8 @@ def by_overlap(strokes, fit, options):
     begin = Begin(fit.laws, fit.height_mm, fit.shift_mm)
     order = np.array([stroke.number for stroke in strokes])
     found = best_predicting(marks, targets, begin, options, order=order)
-    changed = {name: getattr(found, name) for name in ("laws", "height_mm", "shift_mm", "led")}
-    return _like(fit, **changed, field=found.aside.field if found.aside else None), found
+    changed = {name: getattr(found, name) for name in ("laws", "height_mm", "shift_mm", "offsets")}
+    return _like(fit, **changed, field=found.displacement.field if found.displacement else None), found
 
 
 def _like(fit, **changed):
@@ -361,7 +361,9 @@ def _as_run(stroke: Stroke, fit) -> np.ndarray:
     poses[:, :2] += depth * lean
     if getattr(fit, "field", None):
         poses[:, :2] += fit.field.at([stroke.number])
-    return fit.led.way(poses, fit.height_mm, np.tan(stroke.tilt_rad)) if hasattr(fit, "led") else poses
+    return (
+        fit.offsets.way(poses, fit.height_mm, np.tan(stroke.tilt_rad)) if hasattr(fit, "offsets") else poses
+    )
 
 
 def _moved(stroke: Stroke, fit) -> _core.Pass:
@@ -380,7 +382,7 @@ def our_marks(strokes, fit, options, led=_moved) -> list[np.ndarray]:
 
 
 def tilt_words(seen, unseen, fit, options):
-    fit = _like(fit, led=replace(fit.led, lever_mm=np.zeros(2)))
+    fit = _like(fit, offsets=replace(fit.offsets, lever_mm=np.zeros(2)))
 
     def leant(towards):
         def led(stroke, fit):
@@ -467,9 +469,9 @@ def laws_in_words(fit) -> str:
         f"{fit.height_mm:+.2f} mm; shift {fit.shift_mm[0]:+.2f} {fit.shift_mm[1]:+.2f} mm; lean {lean[0]:+.3f} "
         f"{lean[1]:+.3f} mm/mm; scale {1 + axes[0]:.4f} {1 + axes[1]:.4f}, skew {axes[2]:+.4f}"
         + (
-            f"; beside it {np.round(fit.led.lean_mm_per_mm, 3)}, {np.round(fit.led.map, 4)}, "
-            f"lever {np.round(fit.led.lever_mm, 1)}"
-            if hasattr(fit, "led")
+            f"; next to it {np.round(fit.offsets.lean_mm_per_mm, 3)}, {np.round(fit.offsets.map, 4)}, "
+            f"lever {np.round(fit.offsets.lever_mm, 1)}"
+            if hasattr(fit, "offsets")
             else ""
         )
     )
@@ -570,8 +572,8 @@ def main():
             flush=True,
         )
         print(f"    {chosen_in_words(found)}")
-        if found.aside:
-            print(f"    {aside_in_words(found.aside)}")
+        if found.displacement:
+            print(f"    {describe_displacement(found.displacement)}")
         if args.tilt and any(stroke.tilt_rad for stroke in strokes):
             for line in tilt_words(seen, unseen, best, options):
                 print(f"    {line}", flush=True)

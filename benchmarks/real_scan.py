@@ -17,7 +17,7 @@ import cv2
 import numpy as np
 
 from brushsvg.geometry.rings import signed_area
-from brushsvg.photo.edges import Room, find_marks
+from brushsvg.photo.edges import StrokeBox, find_marks
 from brushsvg.photo.flatten import Flat
 from brushsvg.photo.photo import read_photo
 
@@ -116,7 +116,7 @@ def main():
         left, top = k % columns * cell_mm, sheet[1] - k // columns * cell_mm
         right, bottom = left + cell_mm, top - cell_mm
         inset = (left + EDGE_MM, bottom + EDGE_MM, right - EDGE_MM, top - EDGE_MM)
-        rooms.append(Room(f"{k + 1:02d}", inset))
+        rooms.append(StrokeBox(f"{k + 1:02d}", inset))
         printed.append(box(right - NUMBER_MM[0], bottom, right, bottom + NUMBER_MM[1]))
     for j in range(columns + 1):
         printed.append(box(j * cell_mm - 0.6, 0, j * cell_mm + 0.6, sheet[1]))

@@ -97,7 +97,7 @@ def characters(out: Path, count: int | None, jobs: int) -> None:
     low = np.percentile(overlap, 5)
     print(f"  {len(done.refused)} refused, overlap {overlap.mean():.4f}, 5th percentile {low:.4f}")
     for row in done.refused[:5]:
-        print(f"    {row.name}: {row.told}")
+        print(f"    {row.name}: {row.text}")
     print(
         f"  memory: this process {_peak_mb(resource.RUSAGE_SELF):.0f} MB, the largest worker "
         f"{_peak_mb(resource.RUSAGE_CHILDREN):.0f} MB"

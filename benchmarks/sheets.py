@@ -44,7 +44,7 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.margin_strokes import is_margin
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.model.library import save_brush
-from brushsvg.show.evaluation.report import wanted_rings
+from brushsvg.show.evaluation.report import target_rings
 
 SHEETS, WIDEST_MM = 3, 4.0  # of the word
 WORD = re.sub(
@@ -136,23 +136,23 @@ def paint_sheets(job: tuple[int, str], folder: Path, margin: str, own_mm: float,
     run("convert word.svg plan-true.json --brush true.json", folder)
     ideal = read_plan(folder / "plan-true.json")
     drawn = studio.as_region(
-        wanted_rings(prepare(folder / "word.svg", Options(brush=find_brush(folder / "true.json"))).strokes)
+        target_rings(prepare(folder / "word.svg", Options(brush=find_brush(folder / "true.json"))).strokes)
     )
     perfect = swept(ideal, brush)
     rng = np.random.default_rng([51, number])
     own = {each.stroke: rng.normal(0, own_mm, 2) for each in ideal.passes}
-    amiss = studio.Amiss(own=own, random_mm=own_mm)
+    fault_values = studio.Amiss(own=own, random_mm=own_mm)
     result = {"number": number, "start": start, "overlap": [], "true": [], "notes": []}
     led = ""
     for sheet in range(1, SHEETS + 1):
         flags = f"--brush mine-{sheet}.json {led} --margin-strokes {margin}"
         run(f"convert word.svg plan-{sheet}.json {flags} --page page-{sheet}.svg", folder)
         plan = read_plan(folder / f"plan-{sheet}.json")
-        here = replace(amiss, shift=tuple(rng.normal(0, 0.2, 2)), turn=float(rng.normal(0, 0.1)))
+        here = replace(fault_values, shift=tuple(rng.normal(0, 0.2, 2)), turn=float(rng.normal(0, 0.1)))
         seed = 100 * number + sheet
         regions = swept(plan, brush)
-        result["overlap"].append(overlap(studio.laid(regions, plan, amiss, seed), plan, drawn))
-        result["true"].append(overlap(studio.laid(perfect, ideal, amiss, seed), ideal, drawn))
+        result["overlap"].append(overlap(studio.laid(regions, plan, fault_values, seed), plan, drawn))
+        result["true"].append(overlap(studio.laid(perfect, ideal, fault_values, seed), ideal, drawn))
         result["notes"].append(f"{sum(map(is_margin, plan.passes))} in the margin")
         if sheet == SHEETS:
             break

@@ -45,7 +45,7 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.model.library import save_brush
-from brushsvg.show.evaluation.report import wanted_rings
+from brushsvg.show.evaluation.report import target_rings
 
 STROKES_A_LOAD = 2
 SURE_GAIN = 0.005
@@ -77,7 +77,7 @@ def all_of(regions: dict):
 
 def all_wanted(folder: Path):
     work = prepare(folder / "word.svg", Options(brush=find_brush(folder / "mine-0.json")))
-    return studio.as_region(wanted_rings(work.strokes))
+    return studio.as_region(target_rings(work.strokes))
 
 
 def camera(rng, page_mm) -> Camera:
@@ -94,14 +94,14 @@ def camera(rng, page_mm) -> Camera:
     )
 
 
-def sheet_laid(amiss, rng):
-    return replace(amiss, shift=tuple(rng.normal(0, 0.2, 2)), turn=float(rng.normal(0, 0.1)))
+def sheet_laid(fault_values, rng):
+    return replace(fault_values, shift=tuple(rng.normal(0, 0.2, 2)), turn=float(rng.normal(0, 0.1)))
 
 
 def random_studio(number: int, plan):
     rng = np.random.default_rng([24, number])
-    amiss = studio.random_amiss(rng, [one.stroke for one in plan.passes], plan.sheet_mm)
-    return replace(amiss, lasts_mm=float(rng.uniform(100, 300))), rng
+    fault_values = studio.random_amiss(rng, [one.stroke for one in plan.passes], plan.sheet_mm)
+    return replace(fault_values, lasts_mm=float(rng.uniform(100, 300))), rng
 
 
 def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
@@ -128,21 +128,21 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
         run(f"convert word.svg plan-{sheet}.json --cell {cell} {flags} {led}", folder)
         plan = read_plan(folder / f"plan-{sheet}.json")
         if sheet == 0:
-            amiss, rng = random_studio(number, plan)
+            fault_values, rng = random_studio(number, plan)
             drawn = all_wanted(folder)
             # what a studio paints that knows its brush, and where all else is as it should be
-            save_brush(studio.known_brush(lag=amiss.lag, half=amiss.half), folder / "true.json")
+            save_brush(studio.known_brush(lag=fault_values.lag, half=fault_values.half), folder / "true.json")
             run("convert word.svg plan-true.json --brush true.json --quiet", folder)
-            ideal = studio.Amiss(lag=amiss.lag, half=amiss.half)
+            ideal = studio.Amiss(lag=fault_values.lag, half=fault_values.half)
             perfect = studio.swept(read_plan(folder / "plan-true.json"), ideal)
-            result["truth"] = truth_of(amiss)
-            result["lasts_mm"] = amiss.lasts_mm
+            result["truth"] = truth_of(fault_values)
+            result["lasts_mm"] = fault_values.lasts_mm
         run(f"convert word.svg told-{sheet}.ngc --cell {cell} {flags} {led}", folder)
         told = studio.told_by((folder / f"told-{sheet}.ngc").read_text(), plan.sheet_mm)
-        swept = studio.swept(told, amiss, strokes_a_load)
-        always = studio.laid(swept, told, replace(amiss, random_mm=0.0), 0)
+        swept = studio.swept(told, fault_values, strokes_a_load)
+        always = studio.laid(swept, told, replace(fault_values, random_mm=0.0), 0)
         seed = 100 * number + sheet
-        here = sheet_laid(amiss, rng)
+        here = sheet_laid(fault_values, rng)
         real = studio.laid(swept, told, here, seed)
         result["overlap"].append(over(all_of(real), drawn))
         result["gap"].append(1 - over(all_of(always), all_of(perfect)))
@@ -177,7 +177,7 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
         if sheets == 1:
             break
         strokes_a_load, corrections = follow(seen, sheet, folder, strokes_a_load)
-        result["brush"].append(brush_off(find_brush(folder / f"mine-{sheet + 1}.json"), amiss))
+        result["brush"].append(brush_off(find_brush(folder / f"mine-{sheet + 1}.json"), fault_values))
     result["seconds"] = time.process_time() - began
     return result
 
@@ -211,32 +211,37 @@ def follow(seen: dict, sheet: int, folder: Path, strokes_a_load: int) -> tuple[i
     return strokes_a_load, f"left-{sheet}.json" if any(row["correction"] for row in rows) else ""
 
 
-def truth_of(amiss) -> dict[str, float]:
+def truth_of(fault_values) -> dict[str, float]:
     """By the names that compare has for its numbers."""
-    pairs = {"scale": amiss.scale, "backlash": amiss.backlash, "tilt": amiss.tilt, "lean": amiss.lean}
+    pairs = {
+        "scale": fault_values.scale,
+        "backlash": fault_values.backlash,
+        "tilt": fault_values.tilt,
+        "lean": fault_values.lean,
+    }
     found = {
         f"{name} in {axis}": float(pair[k]) for name, pair in pairs.items() for k, axis in enumerate("xy")
     }
-    return found | {"lag": float(amiss.lag) - 1, "width": float(amiss.half) - 1}
+    return found | {"lag": float(fault_values.lag) - 1, "width": float(fault_values.half) - 1}
 
 
-def brush_off(brush, amiss) -> list[float]:
+def brush_off(brush, fault_values) -> list[float]:
     """By how much lag and half width are off between 1 and 6 mm, mean share."""
     depths = np.linspace(1, 6, 11)
     return [
         float(np.mean(np.abs([law(d) for d in depths] / (off * polyval(depths, truth)) - 1)))
         for law, off, truth in (
-            (brush.lag, amiss.lag, studio.LAG),
-            (brush.half_width, amiss.half, studio.HALF),
+            (brush.lag, fault_values.lag, studio.LAG),
+            (brush.half_width, fault_values.half, studio.HALF),
         )
     ]
 
 
-def gains_of(swept, told, amiss, seed: int, drawn, overlap: float) -> dict[str, float]:
+def gains_of(swept, told, fault_values, seed: int, drawn, overlap: float) -> dict[str, float]:
     """What of overlap each cause takes away: the same sheet painted without it."""
     found = {}
     for cause in CAUSES:
-        mended = amiss.mended(cause)
+        mended = fault_values.mended(cause)
         again = swept if cause in MOVES else studio.swept(told, mended, STROKES_A_LOAD)
         regions = studio.laid(again, told, mended, seed)
         found[cause] = over(all_of(regions), drawn) - overlap

@@ -38,7 +38,7 @@ class Error(ValueError):
         code: str = "",
         advice: str = "",
     ):
-        super().__init__(told(sentence, advice))
+        super().__init__(join_advice(sentence, advice))
         self.sentence = sentence
         self.where = where
         self.value = value
@@ -78,17 +78,17 @@ class Notice:
 
     def __iter__(self):
         """For `where, sentence = notice`."""
-        return iter((self.where, self.told))
+        return iter((self.where, self.text))
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         """The sentence with its advice."""
-        return told(self.sentence, self.advice)
+        return join_advice(self.sentence, self.advice)
 
     def as_json(self) -> dict[str, str | bool]:
         """For programs that read us: the sentence ends in the advice."""
-        told = {"where": self.where, "sentence": self.told, "code": self.code}
-        return told | {"advice": self.advice, "damaged": self.damaged, "refused": self.refused}
+        made = {"where": self.where, "sentence": self.text, "code": self.code}
+        return made | {"advice": self.advice, "damaged": self.damaged, "refused": self.refused}
 
     @property
     def kind(self) -> tuple[str, str, bool]:
@@ -96,7 +96,7 @@ class Notice:
         return (self.code, self.about, self.damaged) if self.code else ("", self.sentence, self.damaged)
 
 
-def told(sentence: str, advice: str) -> str:
+def join_advice(sentence: str, advice: str) -> str:
     return f"{sentence}; {advice}" if advice else sentence
 
 

@@ -108,7 +108,7 @@ def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[st
     """
     path: str | os.PathLike[str] = ""
     targets: dict[str | os.PathLike[str], str] = {}
-    beside: dict[str | os.PathLike[str], str] = {}
+    staged: dict[str | os.PathLike[str], str] = {}
     through = []
     held = ExitStack()
     try:
@@ -124,20 +124,20 @@ def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[st
             folder, name = os.path.split(target)
             prefix = f".{name.encode('utf-8', 'surrogateescape')[:80].decode('utf-8', 'ignore')}."
             _clear_left(folder, prefix)
-            handle, beside[path] = _new_part(folder, prefix, 0o666 if mode is None else mode & 0o777)
+            handle, staged[path] = _new_part(folder, prefix, 0o666 if mode is None else mode & 0o777)
             held.callback(os.close, os.dup(handle))  # keeps the lock until the file has its name
             with os.fdopen(handle, "wb") as file:
                 file.writelines(_pieces(files[path]))
                 file.flush()
                 os.fsync(file.fileno())
             if mode is not None:
-                os.chmod(beside[path], mode & 0o777)
+                os.chmod(staged[path], mode & 0o777)
         for path in through:  # must not be renamed over; a folder refuses
             with open(targets[path], "wb") as file:
                 file.writelines(_pieces(files[path]))
-        for path in list(beside):
-            os.replace(beside[path], targets[path])
-            del beside[path]
+        for path in list(staged):
+            os.replace(staged[path], targets[path])
+            del staged[path]
     except Error:  # of what is written, made while it is written
         raise
     except (OSError, ValueError) as problem:  # ValueError: a name that no file can have
@@ -145,7 +145,7 @@ def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[st
             f"the file cannot be written: {reason(problem)}", file=os.fspath(path), code="file-unwritable"
         ) from None
     finally:
-        for left in beside.values():
+        for left in staged.values():
             Path(left).unlink(missing_ok=True)
         held.close()
 

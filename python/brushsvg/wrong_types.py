@@ -61,12 +61,12 @@ def _in_words(function: Callable, words: str, is_method: bool = False) -> Callab
         except TypeError as wrong:
             if _MARK not in str(wrong):
                 raise
-            raise TypeError(_told(words, ways(), own, named)) from None
+            raise TypeError(_explain(words, ways(), own, named)) from None
 
     return called
 
 
-def _told(words: str, ways: list[dict[str, str]], given: tuple, named: dict) -> str:
+def _explain(words: str, ways: list[dict[str, str]], given: tuple, named: dict) -> str:
     shown = ", ".join([*map(_short, given), *(f"{name}={_short(value)}" for name, value in named.items())])
     if (
         len(ways) == 1

@@ -73,7 +73,7 @@ def test_a_bad_drawing_is_refused_by_every_command(desk, case):
     words = ["--preview", "out.png", "--report", "out.txt"]
     file, told = refusal(desk, "convert", "x.svg", "out.ngc", *words, **bounded())
     assert file == "x.svg" and agrees(told, said), told
-    line = ": ".join(part for part in (file, told.where, told.told) if part)
+    line = ": ".join(part for part in (file, told.where, told.text) if part)
     assert refused(desk, "convert", "x.svg", "old.ngc", "--force", **bounded()) == line
     if case not in ("NaN", "1e30", "beyond all numbers", "off the sheet"):  # there one may look at the rest
         assert refused(desk, "predict", "x.svg", "out.svg", **bounded()) == line

@@ -115,7 +115,7 @@ def told_by(program, sheet_mm):
     return SimpleNamespace(passes=found, sheet_mm=tuple(sheet_mm))
 
 
-def ran(plan, amiss):
+def ran(plan, fault_values):
     """[(stroke, poses)]: where the tool was, z over the true paper."""
     middle = 0.5 * np.array(plan.sheet_mm)
     play, last, out = np.zeros(2), None, []
@@ -124,14 +124,15 @@ def ran(plan, amiss):
         place = poses[:, :2].copy()
         for k, here in enumerate(poses[:, :2]):  # the slide stands still while the screw crosses its play
             play = np.clip(
-                play + (here - (here if last is None else last)), *np.outer([-0.5, 0.5], amiss.backlash)
+                play + (here - (here if last is None else last)),
+                *np.outer([-0.5, 0.5], fault_values.backlash),
             )
             place[k] -= play
             last = here
         at = place - middle
-        z = poses[:, 2] - amiss.height - at @ amiss.tilt
-        at = place + place * amiss.scale + np.outer(place[:, 1], [amiss.skew, 0.0])
-        at += np.outer(np.maximum(-z, 0), amiss.lean)
+        z = poses[:, 2] - fault_values.height - at @ fault_values.tilt
+        at = place + place * fault_values.scale + np.outer(place[:, 1], [fault_values.skew, 0.0])
+        at += np.outer(np.maximum(-z, 0), fault_values.lean)
         low = np.flatnonzero(
             z < AIR_MM
         )  # a program's way through the air moves the slides and paints nothing
@@ -141,32 +142,32 @@ def ran(plan, amiss):
     return out
 
 
-def painted(plan, amiss, seed=0, strokes_a_load=1):
+def painted(plan, fault_values, seed=0, strokes_a_load=1):
     """By stroke its region on the sheet."""
-    return laid(swept(plan, amiss, strokes_a_load), plan, amiss, seed)
+    return laid(swept(plan, fault_values, strokes_a_load), plan, fault_values, seed)
 
 
-def swept(plan, amiss, strokes_a_load=1):
+def swept(plan, fault_values, strokes_a_load=1):
     """By stroke its region, as the machine of such a studio paints it without anything of its own or at random."""
-    brush = painter.TrueBrush(DEEPEST, amiss.lag * LAG, GAP, amiss.half * HALF, WIDEST, FRONT)
-    ways, lasts, come = ran(plan, amiss), [], 0.0
+    brush = painter.TrueBrush(DEEPEST, fault_values.lag * LAG, GAP, fault_values.half * HALF, WIDEST, FRONT)
+    ways, lasts, come = ran(plan, fault_values), [], 0.0
     for k, (_, poses) in enumerate(ways):
         come = come if k % strokes_a_load else 0.0
-        lasts.append(max(amiss.lasts_mm - come, 2.0))
+        lasts.append(max(fault_values.lasts_mm - come, 2.0))
         come += float(np.hypot(*np.diff(poses[:, :2], axis=0).T).sum())
     regions = painter.swept(brush, ways, 0.0, lasts=lasts)
     return {name: region for (name, _), region in zip(ways, regions, strict=True) if region is not None}
 
 
-def laid(regions, plan, amiss, seed):
+def laid(regions, plan, fault_values, seed):
     """Where these lie on a sheet."""
     rng = np.random.default_rng(seed)
     middle = tuple(0.5 * np.array(plan.sheet_mm))
     out = {}
     for name, region in regions.items():
-        aside = amiss.own.get(name, np.zeros(2)) + rng.normal(0, amiss.random_mm, 2)
-        region = affinity.rotate(affinity.translate(region, *aside), amiss.turn, middle)
-        out[name] = affinity.translate(region, *amiss.shift)
+        aside = fault_values.own.get(name, np.zeros(2)) + rng.normal(0, fault_values.random_mm, 2)
+        region = affinity.rotate(affinity.translate(region, *aside), fault_values.turn, middle)
+        out[name] = affinity.translate(region, *fault_values.shift)
     return out
 
 

@@ -17,7 +17,7 @@ if not hasattr(core, "fit_marks"):
 import brushsvg  # noqa: E402
 from brushsvg.calibration.marks import machine_found  # noqa: E402
 from brushsvg.calibration.overlap import by_overlap, overlap_choice, overlap_field  # noqa: E402
-from brushsvg.calibration.overlap.by_overlap_report import aside_in_words, chosen_in_words, report  # noqa: E402
+from brushsvg.calibration.overlap.by_overlap_report import chosen_in_words, describe_displacement, report  # noqa: E402
 from brushsvg.calibration.overlap.overlap_search import Begin, Target  # noqa: E402
 
 pytestmark = pytest.mark.long
@@ -90,7 +90,7 @@ def test_marks_overlap_no_less_than_by_edges_and_no_interval_is_claimed():
 def test_lean_that_edges_did_not_look_for_comes_back():
     # a simplex alone held lean for lag: 0.06 and -0.18
     _, marks = painted(ASIDE_LITTLE_MM, lean=(0.3, -0.2), turn=0.0, height=0.1)
-    led = machine_beside(brushsvg.calibrate(marks, "b").fit).led
+    led = machine_beside(brushsvg.calibrate(marks, "b").fit).offsets
     assert led.lean_mm_per_mm == pytest.approx((0.3, -0.2), abs=0.08)
     assert led.map == pytest.approx(np.zeros((2, 2)), abs=0.006)
 
@@ -103,7 +103,7 @@ def test_a_map_that_edges_did_not_look_for_comes_back_with_the_turn():
     untold = SimpleNamespace(
         laws=made.fit.laws, turn_rad=0.0, shift_mm=(0.0, 0.0), centre_mm=made.fit.centre_mm
     )
-    assert machine_beside(made, untold).led.map == pytest.approx(by_map, abs=0.006)
+    assert machine_beside(made, untold).offsets.map == pytest.approx(by_map, abs=0.006)
 
 
 def machine_beside(made, fit=None):
@@ -199,7 +199,7 @@ def test_the_lever_of_a_tilted_tool_comes_back():
     targets = targets_of(strokes, brush, lambda k: leant[k] * lever, lambda k: leant[k])
     found = overlap_choice.largest_overlap(targets, Begin(laws(brush, [1.0, 1.0]), 0.0), told(brush))
     assert found.kind == "lever"
-    assert found.led.lever_mm == pytest.approx(lever, abs=1.5)
+    assert found.offsets.lever_mm == pytest.approx(lever, abs=1.5)
 
 
 @pytest.mark.thorough
@@ -223,7 +223,7 @@ def test_what_is_changed_is_what_predicts_marks_that_had_no_part_and_the_report_
     machine_found.ask_for(options, ("lean",))
     found = overlap_choice.best_predicting(marks, targets, Begin(laws(brush, [1.0, 1.0]), 0.0), options)
     assert found.kind == "machine"
-    assert found.led.lean_mm_per_mm == pytest.approx(lean, abs=0.15)
+    assert found.offsets.lean_mm_per_mm == pytest.approx(lean, abs=0.15)
     assert sum(found.left_out["machine"]) > sum(found.left_out["laws"]) + 0.02
     assert chosen_in_words(found)
 
@@ -242,7 +242,7 @@ def aside_of(strokes, brush, aside):
     begin, order = Begin(laws(brush, [1.0, 1.0]), 0.0), 2 * np.arange(len(strokes))
     search = overlap_choice.Search(begin, told(brush), targets, np.zeros(2))
     found = overlap_choice._predicting(search, "laws", search.begin, targets, lambda: None, order)
-    return found, found.aside.field.at(order) if found.aside.field else np.zeros_like(aside)
+    return found, found.displacement.field.at(order) if found.displacement.field else np.zeros_like(aside)
 
 
 @pytest.mark.thorough
@@ -253,18 +253,18 @@ def test_marks_aside_by_their_place_on_the_sheet_are_predicted_there_and_no_wide
     aside = np.column_stack([np.zeros(len(row)), 3.0 - 1.2 * row])
     found, told_aside = aside_of(strokes, brush, aside)
     left = aside - aside.mean(axis=0) - told_aside
-    assert found.aside.won > 3 * found.aside.error
+    assert found.displacement.won > 3 * found.displacement.error
     assert (left**2).sum() < 0.1 * ((aside - aside.mean(axis=0)) ** 2).sum()
     assert found.overlap > 0.85
     assert np.polynomial.Polynomial(found.laws.half_width)(4.0) == pytest.approx(0.6 * 4.0, rel=0.05)
-    assert aside_in_words(found.aside)
+    assert describe_displacement(found.displacement)
 
 
 def test_few_marks_tell_no_field():
     brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 1)
     found, _ = aside_of(strokes, brush, np.zeros((len(strokes), 2)))
-    assert found.aside.field is None
-    assert aside_in_words(found.aside)
+    assert found.displacement.field is None
+    assert describe_displacement(found.displacement)
 
 
 def test_of_few_marks_it_is_not_known_what_predicts():

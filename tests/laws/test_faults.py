@@ -32,9 +32,11 @@ def job(tmp_path_factory):
     return folder, read_plan(folder / "word.json")
 
 
-def compared(job, amiss, seed=1, *flags):
+def compared(job, fault_values, seed=1, *flags):
     folder, plan = job
-    (folder / "photo.jpg").write_bytes(studio.photographed(plan, studio.painted(plan, amiss, seed), "word"))
+    (folder / "photo.jpg").write_bytes(
+        studio.photographed(plan, studio.painted(plan, fault_values, seed), "word")
+    )
     words = ["compare", "--force", "photo.jpg", "word.svg", "--brush", "mine.json", "-o", "seen.json"]
     words = [str(folder / word) if "." in word else word for word in words]
     assert main([*words, "--quiet", *flags]) == 0
@@ -68,9 +70,9 @@ ONE = {
 
 @sample("cause", ONE, keep=2)
 def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
-    amiss, numbers = ONE[cause]
+    fault_values, numbers = ONE[cause]
     folder, _ = job
-    found = compared(job, amiss, 1, "--corrected-cell", str(folder / "corrected.toml"))
+    found = compared(job, fault_values, 1, "--corrected-cell", str(folder / "corrected.toml"))
     assert found["mend_first"] == cause, found["causes"]
     rows = {row["name"]: row for row in found["numbers"]}
     for name, truth in numbers.items():
@@ -91,7 +93,7 @@ def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
     gains = {row["cause"]: row["gain"] for row in found["causes"]}
     _, plan = job
     wanted = studio.painted(plan, studio.Amiss())
-    gap = 1 - studio.overlap(studio.painted(plan, amiss, 1), wanted)
+    gap = 1 - studio.overlap(studio.painted(plan, fault_values, 1), wanted)
     assert gains[cause] == pytest.approx(gap, abs=0.25 * gap + 0.01)
     assert all(gain < 0.4 * gap + 0.01 for other, gain in gains.items() if other != cause), gains
 
@@ -101,11 +103,13 @@ def test_all_of_it_at_once_lies_within_its_intervals(job, number, capsys):
     """Brush, paper and machine amiss together: height of the paper, lag and width look much alike."""
     _, plan = job
     rng = np.random.default_rng([24, number])
-    amiss = studio.random_amiss(rng, NAMES, plan.sheet_mm)
-    found = compared(job, amiss, number)
-    truth = {"lag": amiss.lag - 1, "width": amiss.half - 1}
+    fault_values = studio.random_amiss(rng, NAMES, plan.sheet_mm)
+    found = compared(job, fault_values, number)
+    truth = {"lag": fault_values.lag - 1, "width": fault_values.half - 1}
     for name in ("scale", "backlash", "tilt"):
-        truth |= {f"{name} in {axis}": value for axis, value in zip("xy", getattr(amiss, name), strict=True)}
+        truth |= {
+            f"{name} in {axis}": value for axis, value in zip("xy", getattr(fault_values, name), strict=True)
+        }
     rows = {row["name"]: row for row in found["numbers"]}
     off = {name: (rows[name]["value"] - value) / rows[name]["half_95"] for name, value in truth.items()}
     assert all(abs(each) < 1.2 for each in off.values()), off

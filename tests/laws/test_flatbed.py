@@ -17,7 +17,7 @@ from sampling import sample
 from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.file import write_chart
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.chart.photograph import read_chart_photos, remarks, told
+from brushsvg.calibration.chart.photograph import describe_reading, read_chart_photos, remarks
 from brushsvg.cli import main
 from brushsvg.errors import Error
 from brushsvg.photo.place_by_strokes import _along_ways
@@ -129,9 +129,11 @@ def test_marks_are_found_however_the_sheet_lies(turn_deg, dpi):
     turn, scale, shift, left = similarity_off(found)
     assert abs(turn) < 0.6 and shift < 0.7, (turn, shift)
     assert abs(scale - 1) < 5e-4 and left < 0.03, (scale, left)
-    degrees, right = re.search(r"turned by (\d+\.\d) degrees( to the right)?", told(found)).groups()
+    degrees, right = re.search(
+        r"turned by (\d+\.\d) degrees( to the right)?", describe_reading(found)
+    ).groups()
     shown = float(degrees) * (-1 if right else 1)
-    assert abs((shown - turn_deg + 180) % 360 - 180) < 0.6 and "24 strokes" in told(found)
+    assert abs((shown - turn_deg + 180) % 360 - 180) < 0.6 and "24 strokes" in describe_reading(found)
 
 
 @pytest.mark.parametrize("margin_mm", [0, 10, 20])
@@ -186,7 +188,7 @@ def test_who_forgets_the_resolution_of_a_scan_is_reminded(paper):
 
 @pytest.mark.parametrize(("turn_deg", "side"), [(2, "left"), (-3, "right"), (180, ""), (180.5, "")])
 def test_how_a_scan_is_turned_is_told_without_a_sign(turn_deg, side):
-    sentence = told(read(scanned(turn_deg=turn_deg)))
+    sentence = describe_reading(read(scanned(turn_deg=turn_deg)))
     degrees = re.search(r"turned by (\S+) degrees( to the )?(\w*)", sentence)
     assert float(degrees[1]) == pytest.approx(abs(turn_deg), abs=1.5) and degrees[3] == side, sentence
 

@@ -23,7 +23,7 @@ from brushsvg.comparison.job_page import job_page
 from brushsvg.jobs.json_files import read_plan
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.realised.arc_chords import with_chords
-from brushsvg.machine.realised.distortion import told_pass
+from brushsvg.machine.realised.distortion import commanded_pass
 from brushsvg.model.library import find_brush, save_brush
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="110mm" height="70mm" viewBox="0 0 110 70">
@@ -92,7 +92,7 @@ class Studio:
 
     def told(self, plan, cell):
         """What a machine is told that undoes what this cell says."""
-        passes = [told_pass(with_chords(each), find_cell(cell)) for each in plan.passes]
+        passes = [commanded_pass(with_chords(each), find_cell(cell)) for each in plan.passes]
         return _core.Plan("", "", plan.sheet_mm, passes)
 
     def compared(self, photo, *flags):

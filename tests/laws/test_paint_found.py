@@ -107,7 +107,7 @@ def rate_of(made):
 def test_a_chart_for_one_load_tells_laws_and_paint_at_once(seed, rate):
     brush, told, made = chart_sheet(seed, lambda way, _: np.exp(-rate * way / 1000))
     found, half = rate_of(made)
-    assert told.told_by_depth < 0.3
+    assert told.explained_by_depth < 0.3
     assert abs(found - rate) < half < 0.06
     assert 0.4 < half / told.half_per_m < 2.5, "as the chart told"
     depths = np.linspace(0.2, 1.0, 5) * brush.deepest

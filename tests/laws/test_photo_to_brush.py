@@ -187,9 +187,9 @@ def test_marks_that_are_covered_or_elsewhere_are_named_and_left_out(tmp_path, ca
     aside = re.search(r" (\d\.\d) mm [a-z]* ?\(\+(\d\.\d), \+(\d\.\d)\)", named[1].sentence)
     assert [float(number) for number in aside.groups()] == pytest.approx([2.2, 2.0, 1.0], abs=0.4)
     for notice, stroke in zip(named, ("straight-3", "arc-3"), strict=True):
-        corners = re.findall(r"-?\d+\.\d", notice.told.split(";")[1])
+        corners = re.findall(r"-?\d+\.\d", notice.text.split(";")[1])
         found, expected = np.array(corners, float).reshape(2, 4)
-        assert gives(notice.told, "2")
+        assert gives(notice.text, "2")
         assert 1.5 < np.abs(found - expected).max() < 3.5, stroke
     assert re.search(r"^note: .*: straight-3, arc-3", report, re.MULTILINE), report
     off = [abs(find_brush(out).lag(depth) / TRUTH.law("lag")(depth) - 1) for depth in DEPTHS]

@@ -22,7 +22,7 @@ from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import expected, marks_of, read_chart_photos
 from brushsvg.cli import main
-from brushsvg.photo.edges import Room, paint_seen, told_apart
+from brushsvg.photo.edges import StrokeBox, assign_marks, paint_seen
 from brushsvg.photo.flatten import Flat
 from brushsvg.photo.markers import Printed, find_view
 from brushsvg.photo.photo import read_photo
@@ -95,7 +95,9 @@ def off_mm(read_rings, rings):
     [
         SMALL,
         replace(SMALL, tilt_deg=(-12.0, 9.0), turn_deg=80.0, size_px=(1700, 1400), bend=0.02, fill=0.9),
-        replace(SMALL, turn_deg=181.0, bend=-0.05, fill=0.8, aside_mm=(8.0, 8.0), size_px=(1200, 1500)),
+        replace(
+            SMALL, turn_deg=181.0, bend=-0.05, fill=0.8, displacement_mm=(8.0, 8.0), size_px=(1200, 1500)
+        ),
     ],
     ids=["straight above", "tilted", "upside down"],
 )
@@ -165,7 +167,7 @@ def test_a_soft_shadow_over_few_narrow_marks_is_not_taken_for_paint(is_lighter):
     fine, size = 5.0, (210.0, 297.0)
     y, x = np.mgrid[0 : round(size[1] * fine), 0 : round(size[0] * fine)] / fine
     number = np.where(is_lighter, 0.35, 0.8) * (1 - 0.3 / (1 + np.exp(-(x / 210 - y / 297 + 0.1) * 25)))
-    lines = [Room(f"{k}", (20.0 + 25 * k, 220.0, 40.0 + 25 * k, 280.0)) for k in range(7)]
+    lines = [StrokeBox(f"{k}", (20.0 + 25 * k, 220.0, 40.0 + 25 * k, 280.0)) for k in range(7)]
     middles = [room.box_mm[0] + 10 for room in lines]
     for middle in middles:
         number[(np.abs(x - middle) < 0.5) & (y > 20) & (y < 70)] *= np.where(is_lighter, 2.0, 0.3)
@@ -215,14 +217,14 @@ def test_a_mark_that_is_displaced_into_the_next_room_stays_whole():
     """As by a tool that leans: a quarter of it lies where the next one should, which does so, too."""
     fine, sheet_mm = 5, (170, 50)
     lefts = {"a": 10, "b": 21} | {str(k): 30 + 15 * k for k in range(1, 9)}
-    rooms = [Room(name, (left, 10, left + 10, 40)) for name, left in lefts.items()]
+    stroke_boxes = [StrokeBox(name, (left, 10, left + 10, 40)) for name, left in lefts.items()]
     at = {name: left + 1 for name, left in lefts.items()} | {"a": 14.4, "b": 25.4}
     wanted = {name: np.array([[x, 12], [x + 8, 12], [x + 8, 38], [x, 38.0]]) for name, x in at.items()}
     paint = np.zeros((sheet_mm[1] * fine, sheet_mm[0] * fine), np.float32)
     for ring in wanted.values():
         (left, bottom), (right, top) = np.int32(ring.min(axis=0) * fine), np.int32(ring.max(axis=0) * fine)
         paint[len(paint) - top : len(paint) - bottom, left:right] = 1
-    found = told_apart(paint, Flat(np.zeros((*paint.shape, 3), np.uint8), fine, sheet_mm), rooms, [])
+    found = assign_marks(paint, Flat(np.zeros((*paint.shape, 3), np.uint8), fine, sheet_mm), stroke_boxes, [])
     assert not found.joined and not found.missing
     for name, ring in wanted.items():
         assert _core.overlap(found.outlines_mm[name], [ring]) > 0.9, name

@@ -224,7 +224,7 @@ def test_one_fit_survives_an_outlier_by_its_norm_and_names_it(absolute):
     rows = whole(np.random.default_rng(8))
     rows["side_view"][6]["value_mm"] += 12.0
     made = calibrate(from_dict(**rows), "b", absolute=absolute)
-    assert any("side_view[6]" in told for law in made.laws for told in law.outliers_told())
+    assert any("side_view[6]" in told for law in made.laws for told in law.list_outliers())
     off = abs(made.brush.tip_gap(7.0) - GAP * 7)
     assert off < (0.8 if absolute else 2.5)
 

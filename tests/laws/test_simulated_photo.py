@@ -190,12 +190,12 @@ def test_where_no_stroke_lies_alone_a_chart_is_advised(letters, drawing, capsys)
     assert "calibrate --chart" in told[-1][1].advice
     status, text, _ = in_json(capsys, "compare", letters / "3.jpg", EXAMPLE)
     assert status == 0 and "--prior" not in text and text.count("calibrate --chart") == 1
-    as_it_lies, placed = (float(each) for each in re.search(r"by (0\.\d+); .*? by (0\.\d+)", text).groups())
-    assert placed < as_it_lies
+    as_painted, placed = (float(each) for each in re.search(r"by (0\.\d+); .*? by (0\.\d+)", text).groups())
+    assert placed < as_painted
     main(["simulate-photo", str(drawing), str(letters / "six.jpg"), "--seed", "5", "--quiet"])
     status, text, _ = in_json(capsys, "compare", letters / "six.jpg", drawing)
-    as_it_lies, placed = (float(each) for each in re.search(r"by (0\.\d+); .*? by (0\.\d+)", text).groups())
-    assert placed > as_it_lies and "calibrate --chart" not in text
+    as_painted, placed = (float(each) for each in re.search(r"by (0\.\d+); .*? by (0\.\d+)", text).groups())
+    assert placed > as_painted and "calibrate --chart" not in text
 
 
 def test_strokes_that_repeats_tells_nothing_of_are_named(letters, capsys):

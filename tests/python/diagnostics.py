@@ -15,7 +15,7 @@ def agrees(told: Error | Notice, expected: str, where: str | None = None) -> boo
     """expected: a code, then numbers and names that the element or the sentence gives, each as a whole word; with
     blanks in it, in quotes. where: the element it must be about."""
     code, *parts = shlex.split(expected)
-    text = f"{told.where}: {told if isinstance(told, Error) else told.told}"
+    text = f"{told.where}: {told if isinstance(told, Error) else told.text}"
     return told.code == code and where in (None, told.where) and all(_found(part, text) for part in parts)
 
 

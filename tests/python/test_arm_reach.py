@@ -123,7 +123,7 @@ def test_the_nearest_place_may_be_a_turn():
     assert found.turn_deg != 0
     there = place.cell_at(cell, found.frame)
     assert look(there, plan).problems == []
-    assert gives(found.told, f"{found.turn_deg:g}")
+    assert gives(found.text, f"{found.turn_deg:g}")
 
 
 def test_convert_and_check_ask_the_arm(tmp_path, capsys):

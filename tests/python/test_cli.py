@@ -262,7 +262,7 @@ def test_refused_with_one_sentence_and_nothing_written(desk, capsys, case):
     assert (status, out, len(err)) == (1, "", 1), err
     status, out, ((about, told),) = in_json(capsys, *words)
     assert (status, out, about) == (1, "", file) and agrees(told, said, where), (about, told)
-    assert err == [": ".join(part for part in ("brushsvg", file, where, told.told) if part)]
+    assert err == [": ".join(part for part in ("brushsvg", file, where, told.text) if part)]
     assert listing(desk) == before
 
 

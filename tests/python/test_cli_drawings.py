@@ -202,7 +202,7 @@ def test_filled_shapes_become_strokes_unless_they_hold_nothing(desk, capsys):
         names = [each["stroke"] for each in passes]
         assert names == ["bar", "wide", *(f"wide~{k}" for k in range(2, len(passes)))] and len(names) > 4
     told = refusal(capsys, "convert", "bar.svg", "x.json", "--wide", "refuse")
-    assert agrees(told, "width-out-of-reach 12", "wide") and "nearest" not in told.told
+    assert agrees(told, "width-out-of-reach 12", "wide") and "nearest" not in told.text
 
 
 def test_fonts_of_inkscape_are_found_by_name(desk, capsys, monkeypatch):

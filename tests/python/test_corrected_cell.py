@@ -17,7 +17,7 @@ from brushsvg.comparison.placing import Placed  # noqa: E402
 from brushsvg.jobs.comparing import _not_undone, _undoable  # noqa: E402
 from brushsvg.machine.cells.cell import Machine, Paper, axes_along_paper  # noqa: E402
 from brushsvg.machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell  # noqa: E402
-from brushsvg.machine.realised.distortion import told_mm, true_mm  # noqa: E402
+from brushsvg.machine.realised.distortion import commanded_mm, true_mm  # noqa: E402
 
 MIDDLE = np.array([70.0, 40.0])
 TRUE = Machine((0.1, -0.05), (1.01, 0.992), 0.004, -0.3, (0.006, -0.008))
@@ -57,7 +57,7 @@ def places(count=40):
 def test_what_was_undone_before_stays_undone(undone):
     """Where the painted job went is asked of the true machine; what is amiss beyond the cell, of least squares."""
     wanted = places(400)
-    went = true_mm(told_mm(wanted, undone), TRUE)
+    went = true_mm(commanded_mm(wanted, undone), TRUE)
     depth = np.maximum(-went[:, 2], 0)
     x, y, ones = wanted[:, 0], wanted[:, 1], np.ones(len(wanted))
     to_x = np.linalg.lstsq(np.column_stack([x, y, depth]), went[:, 0], rcond=None)[0]
@@ -65,9 +65,9 @@ def test_what_was_undone_before_stays_undone(undone):
     to_z = np.linalg.lstsq(np.column_stack([ones, x, y]), wanted[:, 2] - went[:, 2], rcond=None)[0]
     beyond = Machine((to_x[2], to_y[1]), (to_x[0], to_y[0]), to_x[1], to_z[0], (to_z[1], to_z[2]))
     now = corrected_machine(found(beyond), MIDDLE, undone)
-    off = true_mm(told_mm(wanted, now), TRUE) - wanted
+    off = true_mm(commanded_mm(wanted, now), TRUE) - wanted
     assert np.abs(off).max() < 0.01, np.abs(off).max(axis=0)
-    before = true_mm(told_mm(wanted, undone), TRUE) - wanted
+    before = true_mm(commanded_mm(wanted, undone), TRUE) - wanted
     assert np.abs(before).max() > 0.3
 
 

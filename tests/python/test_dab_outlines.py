@@ -99,7 +99,7 @@ def test_outlines_lie_where_dabs_were_seen_on_a_sheet_that_was_laid_askew():
         replace(dab, rings_mm=((dab.rings_mm[0] - about_mm) @ turned + about_mm + shift,))
         for dab in changed(6, lambda ring: [ring + np.array([1.5, 0.0])])
     ]
-    found = calibrate_dabs(lying, BRUSH, "own").outlines.lying_mm()
+    found = calibrate_dabs(lying, BRUSH, "own").outlines.predicted_mm()
     assert set(found) == {dab.name for dab in lying} - {"dab-6"}
     for dab in lying:
         if dab.name in found:

@@ -181,5 +181,5 @@ def test_an_arm_that_is_hardly_too_wide_does_not_lead_to_passes(brush):
     bare = 'fill="red" stroke="none"'
     both = strokes(read(f'<path id="arm" d="{arm}" {bare}/><path id="bar" d="{bar}" {bare}/>'))[0]
     _, _, notices = within_reach(both, brush)
-    told = [each.told for each in notices]
+    told = [each.text for each in notices]
     assert any("would overlap" in each for each in told) or not any("as others" in each for each in told)

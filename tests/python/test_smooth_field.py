@@ -21,7 +21,7 @@ from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Machine
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.realised.arc_chords import with_chords
-from brushsvg.machine.realised.distortion import told_mm, true_mm
+from brushsvg.machine.realised.distortion import commanded_mm, true_mm
 from brushsvg.machine.realised.smooth_field import beyond_field
 from brushsvg.model.library import find_brush
 from brushsvg.verify import simulate_program
@@ -62,7 +62,7 @@ def goes(told, machine):
 @pytest.mark.parametrize("machine", [BENT, NARROW, BOTH])
 def test_there_and_back(machine):
     wanted = np.random.default_rng(1).uniform((-20, -20, -6), (140, 110, 2), (500, 3))
-    told = told_mm(wanted, machine)
+    told = commanded_mm(wanted, machine)
     assert goes(told, machine) == pytest.approx(wanted, abs=1e-7)
     assert true_mm(told, machine) == pytest.approx(wanted, abs=1e-7)
     assert np.abs(told - wanted)[:, :2].max() > 0.5

@@ -70,7 +70,7 @@ def warn(file: str, warnings: Iterable[Notice]) -> None:
 def say_notice(file: str, notice: Notice) -> None:
     """One line of text, or of JSON for programs that asked for it."""
     if not _in_json:
-        say(file, notice.where, notice.told)
+        say(file, notice.where, notice.text)
     elif sys.stderr is not None:
         _write_line(json.dumps({"file": file, **notice.as_json()}))
 

@@ -20,7 +20,7 @@ from ..machine.realised.retimed import on_way
 from .offset_width import wider
 
 FORMAT = "brushsvg/comparison"
-BESIDE = "beside_machine"  # of the file: what is left of each stroke once the cell is corrected
+RESIDUAL = "beside_machine"  # of the file: what is left of each stroke once the cell is corrected
 LEAST_MARKS = 3  # fewer do not tell a sheet's place from their own
 MARK = "corrections"  # key of a corrected plan: the corrections and the plan before
 KEYS = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm", "way_mm")
@@ -64,7 +64,7 @@ class SheetBefore:
     does not say it."""
 
     corrections: tuple[Correction, ...] = ()
-    aside_mm: dict[str, float] = field(default_factory=dict)
+    displacement_mm: dict[str, float] = field(default_factory=dict)
 
 
 def way_of(a_pass) -> tuple[tuple[float, ...], ...]:
@@ -80,7 +80,9 @@ def machine_sha256(machine: Machine | None) -> str:
     return hashlib.sha256(json.dumps(known).encode()).hexdigest()
 
 
-def beside_machine(corrections: tuple[Correction, ...], machine: Machine | None) -> tuple[Correction, ...]:
+def select_for_machine(
+    corrections: tuple[Correction, ...], machine: Machine | None
+) -> tuple[Correction, ...]:
     """Return the corrections that belong to this machine.
 
     Error if they belong to other cells: they would correct again what a corrected cell already undoes.
@@ -105,10 +107,10 @@ def corrected(plan, corrections: tuple[Correction, ...], brush):
         return plan
     plan, _ = uncorrected(plan)
     _core.refuse_tilted(plan.passes, "strokes are corrected for a brush held upright")
-    beside = corrections[0].brush_sha256
-    if beside and brush.sha256 and beside != brush.sha256:
+    of_brush_sha256 = corrections[0].brush_sha256
+    if of_brush_sha256 and brush.sha256 and of_brush_sha256 != brush.sha256:
         raise Error(
-            f"the corrections say what is left of a sheet beside another brush (sha256 {beside[:12]}), not beside "
+            f"the corrections are residuals of another brush (sha256 {of_brush_sha256[:12]}), not of "
             f"{brush.name} ({brush.sha256[:12]}), which may know part of it: compare the photograph again with this "
             "brush, and with the plan.json that was painted",
             "brush_sha256",
@@ -118,7 +120,7 @@ def corrected(plan, corrections: tuple[Correction, ...], brush):
     passes = []
     for a_pass in plan.passes:
         correction = left.pop(a_pass.stroke, None)
-        passes.append(_led(a_pass, correction, brush) if correction else a_pass)
+        passes.append(_corrected(a_pass, correction, brush) if correction else a_pass)
     if left:
         raise _of_another_job(next(iter(left)), "there is no such stroke")
     said = {
@@ -159,7 +161,7 @@ def uncorrected(plan) -> tuple[_core.Plan, tuple[Correction, ...]]:
     return before, _strokes(said, f"{MARK}.", {})
 
 
-def _led(a_pass, correction: Correction, brush):
+def _corrected(a_pass, correction: Correction, brush):
     poses = np.array(a_pass.poses_mm, dtype=float)
     away_mm = math.dist(poses[0, :2], correction.start_mm)
     # a plan for a brush that trails by nothing, or three times as far, begins up to two lags elsewhere
@@ -182,9 +184,13 @@ def _led(a_pass, correction: Correction, brush):
 def _refuse_other_way(a_pass, known_mm: np.ndarray) -> None:
     """Where the brush is led elsewhere, deeper or less deep than when the sheet was painted."""
     off = np.array(way_of(a_pass)) - known_mm
-    aside_mm, deeper_mm = np.hypot(*off.T[:2]).max(), np.abs(off[:, 2]).max()
-    if max(aside_mm, deeper_mm) > SAME_MM:
-        how = f"{aside_mm:.2f} mm aside" if aside_mm > deeper_mm else f"{deeper_mm:.2f} mm higher or lower"
+    displacement_mm, deeper_mm = np.hypot(*off.T[:2]).max(), np.abs(off[:, 2]).max()
+    if max(displacement_mm, deeper_mm) > SAME_MM:
+        how = (
+            f"{displacement_mm:.2f} mm aside"
+            if displacement_mm > deeper_mm
+            else f"{deeper_mm:.2f} mm higher or lower"
+        )
         raise _of_another_job(
             a_pass.stroke, f"the brush is led up to {how} of where it was, as by another width or tolerance"
         )
@@ -206,15 +212,15 @@ def read_sheet_before(path: str | os.PathLike[str]) -> SheetBefore:
         sha256, planned = (_sha256(content, key) for key in ("brush_sha256", "plan_brush_sha256"))
         of_brush = {"brush_sha256": sha256, "replanned": bool(planned) and planned != sha256}
         found = _strokes(content, "", of_brush)
-        if content.get(BESIDE) is not None:
-            (corrected,) = json_fields.objects([content[BESIDE]], BESIDE)
-            found += _strokes(corrected, f"{BESIDE}.", of_brush)
+        if content.get(RESIDUAL) is not None:
+            (corrected,) = json_fields.objects([content[RESIDUAL]], RESIDUAL)
+            found += _strokes(corrected, f"{RESIDUAL}.", of_brush)
         if not found:
             raise Error(_why_none(content["strokes"]), "strokes", code="corrections-missing")
     except Error as refusal:
         refusal.file = os.fspath(path)
         raise
-    return SheetBefore(found, _aside_mm(content["strokes"]))
+    return SheetBefore(found, _displacement_mm(content["strokes"]))
 
 
 def _why_none(rows: list[dict]) -> str:
@@ -250,7 +256,7 @@ def _sha256(content: dict, key: str, at: str = "") -> str:
     return said
 
 
-def _aside_mm(rows: list[dict]) -> dict[str, float]:
+def _displacement_mm(rows: list[dict]) -> dict[str, float]:
     said = [(row.get("stroke"), row.get("aside_mm")) for row in rows]
     return {
         name: float(mm)

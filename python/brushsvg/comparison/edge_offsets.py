@@ -93,7 +93,7 @@ def offsets_of(outline: Outline, rings_of: list[list[np.ndarray]]) -> np.ndarray
 def seen(
     outline: Outline,
     rings_of: list[list[np.ndarray]],
-    beside: list[list[np.ndarray]],
+    neighbours: list[list[np.ndarray]],
     paint: np.ndarray,
     canvas: Canvas,
     reach_mm: float,
@@ -121,7 +121,7 @@ def seen(
     ]
     found[(np.mean(inside, axis=0) < WHOLE) | outline.sharp] = np.nan
     edge = outline.at + np.nan_to_num(found)[:, None] * outline.normal
-    shapes = [area(rings) if rings else Polygon() for rings in (*rings_of, *beside)]
+    shapes = [area(rings) if rings else Polygon() for rings in (*rings_of, *neighbours)]
     for k in range(len(rings_of)):
         here = np.flatnonzero((outline.stroke == k) & ~np.isnan(found))
         others = unary_union([shape for other, shape in enumerate(shapes) if other != k])

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..photo.edges import EDGE_MM, SEEN, outlines_of
 from .job_page import JobPage
-from .photographs import Comparison, Wanted
+from .photographs import Comparison, TargetStroke
 from .placing import Canvas
 
 PART = 0.15  # of a mark: a piece of paint that holds so much of it is, or has part in, its paint
@@ -28,7 +28,7 @@ class JobMarks:
     dry: list[int]
 
 
-def job_marks(found: Comparison, page: JobPage, strokes: list[Wanted]) -> JobMarks:
+def job_marks(found: Comparison, page: JobPage, strokes: list[TargetStroke]) -> JobMarks:
     """strokes: those that were compared."""
     painting = [number for number, stroke in enumerate(strokes) if stroke.predicted]
     rows = dict(zip(painting, found.strokes, strict=True))

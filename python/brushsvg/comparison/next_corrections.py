@@ -69,7 +69,7 @@ def next_corrections(
     return made, notices
 
 
-def aside_mm(row: Compared, found: Comparison) -> np.ndarray:
+def displacement_mm(row: Compared, found: Comparison) -> np.ndarray:
     """(2,) how far a stroke lies from its prediction beyond how the sheet lies, in the sheet's own directions."""
     middle, sheet = np.array([row.middle_mm]), found.common
     beyond = middle + row.placed.shift_mm - sheet.moved(middle, found.middle_mm)
@@ -80,7 +80,7 @@ def farther(found: Comparison, before: dict[str, float]) -> list[Notice]:
     """before: by stroke how many mm it lay aside on the sheet before. A notice for each that lies farther now."""
     notices = []
     for row in found.strokes if found.spread_mm is not None else ():
-        now_mm = float(np.hypot(*aside_mm(row, found)))
+        now_mm = float(np.hypot(*displacement_mm(row, found)))
         if row.placed.found and row.stroke in before and now_mm > before[row.stroke] + FARTHER_MM:
             sentence = (
                 f"its mark lies {now_mm:.2f} mm aside, on the sheet before {before[row.stroke]:.2f} mm: what led it "
@@ -90,13 +90,15 @@ def farther(found: Comparison, before: dict[str, float]) -> list[Notice]:
     return notices
 
 
-def _repeats(aside_mm: np.ndarray, found: Comparison) -> float:
+def _repeats(displacement_mm: np.ndarray, found: Comparison) -> float:
     """The share of what a stroke lies aside that repeats: that of all strokes by their spread, more of one that lies
     farther aside than chance leads any."""
     by_chance = 2 * AT_RANDOM_MM**2
     known = max(sum(row.placed.found for row in found.strokes), LEAST_MARKS)
     spread = found.spread_mm**2 * 2 * known / (2 * known - 3)  # shift and turn of the sheet were fitted
-    of_all, its_own = (1 - by_chance / max(square, by_chance) for square in (spread, aside_mm @ aside_mm / 2))
+    of_all, its_own = (
+        1 - by_chance / max(square, by_chance) for square in (spread, displacement_mm @ displacement_mm / 2)
+    )
     return min(max(of_all, its_own, LEAST_SHARE), MOST_SHARE)
 
 
@@ -106,9 +108,9 @@ def _along(correction: Correction, way_mm) -> Correction:
 
 
 def _next(row: Compared, found: Comparison, way_mm, before: Correction | None) -> Correction:
-    aside, sheet = aside_mm(row, found), found.common
-    share = _repeats(aside, found)
-    off = share * aside
+    displaced, sheet = displacement_mm(row, found), found.common
+    share = _repeats(displaced, found)
+    off = share * displaced
     turn_deg = share * math.degrees(row.placed.turn_rad - sheet.turn_rad)
     shift = np.array(before.shift_mm) - off if before else -off
     return Correction(

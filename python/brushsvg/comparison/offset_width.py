@@ -45,14 +45,14 @@ def refuse_width(a_pass, by_mm: float, brush) -> None:
     low, high = 2 * float(brush.half_width(least)), 2 * float(brush.half_width(deepest))
     widest_mm = 2 * float(brush.half_width(-np.array(a_pass.poses_mm)[:, 2]).max())
     share = 1 + by_mm / half_mm
-    told_mm = share * (widest_mm if by_mm > 0 else 2 * half_mm)
-    if low <= told_mm <= high or half_mm <= 0:
+    target_mm = share * (widest_mm if by_mm > 0 else 2 * half_mm)
+    if low <= target_mm <= high or half_mm <= 0:
         return
     raise Error(
-        f"with its width corrected by {2 * by_mm:+.2f} mm it would be {told_mm:.2f} mm wide, outside the range "
+        f"with its width corrected by {2 * by_mm:+.2f} mm it would be {target_mm:.2f} mm wide, outside the range "
         f"[{low:.2f}, {high:.2f}] mm in which brush {brush.name} was measured: its width is not corrected",
         a_pass.stroke,
-        told_mm,
+        target_mm,
         (low, high),
         code="width-correction-refused",
     )

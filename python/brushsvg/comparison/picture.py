@@ -7,17 +7,17 @@ import numpy as np
 
 from .attribution.faults import Faults
 from .job_page import JobPage
-from .photographs import Comparison, Wanted
+from .photographs import Comparison, TargetStroke
 
 LONG_SIDE_PX = 2400
-WANTED, PREDICTED, TEXT = (190, 190, 190), (40, 40, 220), (30, 30, 30)  # blue, green, red
+TARGET, PREDICTED, TEXT = (190, 190, 190), (40, 40, 220), (30, 30, 30)  # blue, green, red
 NAMED = 5
 MARGIN_PX = 90
 ROW_PX = 40
 
 
 def comparison_png(
-    page: JobPage, strokes: list[Wanted], found: Comparison, title: str, faults: Faults | None
+    page: JobPage, strokes: list[TargetStroke], found: Comparison, title: str, faults: Faults | None
 ) -> bytes:
     left, bottom, right, top = _extent(strokes, found)
     fine = min(LONG_SIDE_PX / max(right - left, top - bottom), 2 * found.flat.px_per_mm)
@@ -38,7 +38,7 @@ def comparison_png(
 
     grey = image.copy()
     for stroke in strokes:
-        cv2.fillPoly(grey, lines(stroke.wanted or ()), WANTED, cv2.LINE_AA, 4)
+        cv2.fillPoly(grey, lines(stroke.target or ()), TARGET, cv2.LINE_AA, 4)
     image = cv2.min(image, grey)
     for stroke in strokes:
         cv2.polylines(image, lines(stroke.predicted), True, PREDICTED, 2, cv2.LINE_AA, 4)
@@ -76,13 +76,13 @@ def _shares(faults: Faults, width: int) -> np.ndarray:
         y = 80 + ROW_PX * row
         _write(out, f"{share.gain + 0.0:+.3f}  {share.cause}", (16, y + 26), TEXT, 0.75)
         ends = [left + round(max(value, 0.0) * per_px) for value in (share.gain, share.low, share.high)]
-        cv2.rectangle(out, (left, y + 4), (ends[0], y + 28), WANTED if row else PREDICTED, -1)
+        cv2.rectangle(out, (left, y + 4), (ends[0], y + 28), TARGET if row else PREDICTED, -1)
         cv2.line(out, (ends[1], y + 16), (ends[2], y + 16), TEXT, 2, cv2.LINE_AA)
     return out
 
 
-def _extent(strokes: list[Wanted], found: Comparison):
-    points = np.vstack([ring for stroke in strokes for ring in (*stroke.predicted, *(stroke.wanted or ()))])
+def _extent(strokes: list[TargetStroke], found: Comparison):
+    points = np.vstack([ring for stroke in strokes for ring in (*stroke.predicted, *(stroke.target or ()))])
     low = np.maximum(points.min(axis=0) - 8, found.canvas.window_mm[:2])
     high = np.minimum(points.max(axis=0) + 8, found.canvas.window_mm[2:])
     return *low, *high

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..model.plot import BAND, INK, QUIET, encoded, new_figure
 from .edge_offsets import LEVEL
-from .photographs import Comparison, Wanted
+from .photographs import Comparison, TargetStroke
 from .placing import NOWHERE
 from .repeats import Repeats, bins_of
 
@@ -19,7 +19,7 @@ FINE_PX_PER_MM = 4.0  # of the paint that is drawn
 MOST_BARS = 30  # strokes; of more those that spread most
 
 
-def repeats_png(title: str, found: Repeats, sheets: list[Comparison], strokes: list[Wanted]) -> bytes:
+def repeats_png(title: str, found: Repeats, sheets: list[Comparison], strokes: list[TargetStroke]) -> bytes:
     """sheets: the comparisons that `found` was made of; strokes: those that were compared. Error where matplotlib is
     missing."""
     figure = new_figure((12, 11))
@@ -33,14 +33,14 @@ def repeats_png(title: str, found: Repeats, sheets: list[Comparison], strokes: l
     return encoded(figure, ".png")
 
 
-def _overlay(axes, sheets: list[Comparison], strokes: list[Wanted]) -> None:
+def _overlay(axes, sheets: list[Comparison], strokes: list[TargetStroke]) -> None:
     """Outlines of all paint, each sheet laid where it should lie."""
     for number, sheet in enumerate(sheets):
         step = max(1, round(sheet.canvas.px_per_mm / FINE_PX_PER_MM))
         x, y = (axis[::step] for axis in sheet.canvas.places())
         at = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-        lies = sheet.common if sheet.spread_mm is not None else NOWHERE
-        back = _taken_back(at, lies, sheet.middle_mm).reshape(len(y), len(x), 2)
+        placement = sheet.common if sheet.spread_mm is not None else NOWHERE
+        back = _taken_back(at, placement, sheet.middle_mm).reshape(len(y), len(x), 2)
         colour = f"C{number % 10}"
         axes.contour(back[..., 0], back[..., 1], sheet.painted[::step, ::step], [LEVEL], colors=[colour])
         axes.plot([], [], color=colour, label=f"sheet {number + 1}")
@@ -54,10 +54,10 @@ def _overlay(axes, sheets: list[Comparison], strokes: list[Wanted]) -> None:
     axes.tick_params(labelsize=7)
 
 
-def _taken_back(points: np.ndarray, lies, middle_mm: np.ndarray) -> np.ndarray:
+def _taken_back(points: np.ndarray, placement, middle_mm: np.ndarray) -> np.ndarray:
     """The inverse of Placed.moved."""
-    c, s = np.cos(lies.turn_rad), np.sin(lies.turn_rad)
-    return (points - middle_mm - lies.shift_mm) @ np.array([[c, -s], [s, c]]) + middle_mm
+    c, s = np.cos(placement.turn_rad), np.sin(placement.turn_rad)
+    return (points - middle_mm - placement.shift_mm) @ np.array([[c, -s], [s, c]]) + middle_mm
 
 
 def _spread(axes, found: Repeats) -> None:

@@ -11,10 +11,10 @@ import numpy as np
 from ..machine.cells.cell import Machine
 from .attribution.faults import Faults
 from .attribution.report import in_json, in_words
-from .corrections import BESIDE, FORMAT, Correction
+from .corrections import FORMAT, RESIDUAL, Correction
 from .corrections import as_json as in_file
 from .ends import UNSEEN, Ends
-from .next_corrections import aside_mm
+from .next_corrections import displacement_mm
 from .photographs import BLOT_MM, Compared, Comparison
 
 LEAST_BLOT_MM2 = 1.0
@@ -52,8 +52,8 @@ def as_text(
         )
         for row in rows
     ]
-    as_it_lies, placed, each = found.overlaps
-    what = "what was wanted" if found.overlap_wanted is not None else "what was predicted"
+    as_painted, placed, each = found.overlaps
+    what = "what was wanted" if found.overlap_target is not None else "what was predicted"
     common, middle, spread = found.common, found.middle_mm, found.spread_mm
     lines = [
         f"{title}: {len(found.strokes)} strokes",
@@ -61,8 +61,8 @@ def as_text(
         table[0],
         *table[1:],
         "",
-        f"All paint overlaps with {what} by {as_it_lies:.3f}; with the sheet's place put right by {placed:.3f}"
-        f"{WORSE if round(placed, 3) < round(as_it_lies, 3) else ''}, with each stroke's by {each:.3f}.",
+        f"All paint overlaps with {what} by {as_painted:.3f}; with the sheet's place put right by {placed:.3f}"
+        f"{WORSE if round(placed, 3) < round(as_painted, 3) else ''}, with each stroke's by {each:.3f}.",
         f"The sheet lies x {common.shift_mm[0]:+.2f}, y {common.shift_mm[1]:+.2f} mm aside at the middle of its marks, "
         f"x {middle[0]:.1f}, y {middle[1]:.1f} mm, turned by {math.degrees(common.turn_rad):+.2f} degrees."
         + (f" Beyond that, strokes lie {spread:.2f} mm (rms) aside." if spread is not None else ""),
@@ -87,7 +87,7 @@ def _row(one: Compared, ends: Ends) -> tuple[str, ...]:
     formats = ("+.2f", "+.2f", ".2f", "+.1f", "+.2f")
     return (
         one.stroke,
-        "-" if one.overlap_wanted is None else f"{one.overlap_wanted:.3f}",
+        "-" if one.overlap_target is None else f"{one.overlap_target:.3f}",
         f"{one.overlap_predicted:.3f}",
         *(
             f"{round(value, int(how[-2])) + 0.0:{how}}" if one.placed.found else "-"
@@ -105,7 +105,7 @@ def as_json(
     faults: Faults | None,
     ends: dict[str, Ends],
     sha256: Made,
-    beside: tuple[str, dict[str, Correction]] | None = None,
+    residual: tuple[str, dict[str, Correction]] | None = None,
 ) -> str:
     """corrections: of the strokes that should be led elsewhere next time; faults: None where nothing is told; beside:
     the fingerprint of the corrected cell's machine, and the corrections that are left with it."""
@@ -117,7 +117,7 @@ def as_json(
         "brush_sha256": sha256.brush,
         "plan_brush_sha256": sha256.plan_brush,
         "machine_sha256": sha256.machine,
-        "overlap_wanted": found.overlap_wanted,
+        "overlap_wanted": found.overlap_target,
         "overlap_predicted": found.overlap_predicted,
         "overlap_sheet_placed": placed,
         "overlap_strokes_placed": each,
@@ -133,11 +133,11 @@ def as_json(
         "strokes": [
             {
                 "stroke": one.stroke,
-                "overlap_wanted": one.overlap_wanted,
+                "overlap_wanted": one.overlap_target,
                 "overlap_predicted": one.overlap_predicted,
                 "found": one.placed.found,
                 "shift_mm": list(one.placed.shift_mm) if one.placed.found else None,
-                "aside_mm": float(np.hypot(*aside_mm(one, found))) if one.placed.found else None,
+                "aside_mm": float(np.hypot(*displacement_mm(one, found))) if one.placed.found else None,
                 "turn_deg": math.degrees(one.placed.turn_rad) if one.placed.found else None,
                 "wider_mm": one.placed.wider_mm if one.placed.found else None,
                 "began_mm": ends.get(one.stroke, UNSEEN).began_mm,
@@ -148,10 +148,10 @@ def as_json(
             for one in found.strokes
         ],
     }
-    if beside:
-        machine, left = beside
+    if residual:
+        machine, left = residual
         rows = [{"stroke": name, "correction": in_file(each)} for name, each in left.items()]
-        made[BESIDE] = {"machine_sha256": machine, "strokes": rows}
+        made[RESIDUAL] = {"machine_sha256": machine, "strokes": rows}
     return json.dumps(_rounded(made), indent=1, ensure_ascii=False) + "\n"
 
 

@@ -13,7 +13,7 @@ from .. import _core
 from ..calibration.chart.dabs import dabs_of, is_of_dabs
 from ..calibration.chart.file import read_chart
 from ..calibration.chart.photograph import Read, edge_mm, expected, marks_of, read_chart_photos, remarks
-from ..calibration.chart.photograph import told as reading_in_words
+from ..calibration.chart.photograph import describe_reading as reading_in_words
 from ..calibration.dabs import dab_report
 from ..calibration.dabs.from_dabs import calibrate_dabs
 from ..calibration.from_file import fit_measurements
@@ -304,7 +304,7 @@ def _from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibr
         by_edges = made = _fit_strokes(read, name, options, stage)
         if options.aim == "overlap":
             made = by_overlap(by_edges, stage)
-    warn(photos[0], mark_report.strays_told(by_edges) + doubts(by_edges.painted, by_edges.expected))
+    warn(photos[0], mark_report.list_strays(by_edges) + doubts(by_edges.painted, by_edges.expected))
     kind = "overlap" if options.aim == "overlap" else "marks"
     text = _REPORTS[kind].report(made, of_photo=True)
     return BrushCalibration(made.brush, kind, made, text, reading_in_words(read), _read=read)
@@ -350,7 +350,7 @@ def _lag_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCa
     with concerning(photos[0]):
         made = _fit_strokes(read, name, options, stage)
         found = lag_by_outlines(made, own, name)
-    warn(photos[0], mark_report.strays_told(made))
+    warn(photos[0], mark_report.list_strays(made))
     text = lag_by_outlines_report.report(found)
     return BrushCalibration(found.brush, "lag", found, text, reading_in_words(read), _read=read)
 

@@ -16,13 +16,13 @@ LOOKS_S = 0.05
 PATIENCE_S = 0.8  # for what holds the interpreter, such as the encoder of a picture
 
 
-class Asked(Protocol):
+class Cancelled(Protocol):
     """What a threading.Event has."""
 
     def is_set(self) -> bool: ...
 
 
-Cancel = Callable[[], object] | Asked
+Cancel = Callable[[], object] | Cancelled
 
 
 class _GivenUp(BaseException):

@@ -59,7 +59,7 @@ from .work import Work, nearest_first, whole_strokes
 if TYPE_CHECKING:
     from .preparation.preparation import Source
 
-Told = Callable[[str, Iterable[Notice]], object]
+Warn = Callable[[str, Iterable[Notice]], object]
 STRAY_MM = 0.02  # what a plan's rounding makes of where its paint ends
 SAID = ("compensation", "tolerance", "lag", "terminals", "start", "end", "margin_strokes")  # by the program
 
@@ -133,7 +133,7 @@ def checked(
     path: str,
     chosen: Choices,
     stage: Callable[[str], object] = lambda text: None,
-    told: Told = lambda file, notices: None,
+    warn: Warn = lambda file, notices: None,
 ) -> Check:
     """The same, its notices told with the file that they are of as soon as they are known."""
     suffix = suffix_of(path)
@@ -141,7 +141,7 @@ def checked(
         data = read_bytes(path)
         text = text_of_file(b"" if suffix == ".cdr" else data)
         if suffix in GCODE and not is_ours(text):
-            return _foreign(path, text, chosen, told)
+            return _foreign(path, text, chosen, warn)
         text = _whole_text(path, suffix, text)
         made = made_of(text)
         for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
@@ -155,11 +155,11 @@ def checked(
         cell = preflight.as_exact_as(cell_of(chosen.cell or made.cell), tolerance_mm)
         brush = brush_of(chosen.brush) or find_brush(made.brush)
         read = read_program(text, suffix, cell)
-    told(cell.name, of_arm(cell))
+    warn(cell.name, of_arm(cell))
     program = _Program(path, text, made, read, cell, brush)
     if made.border_mm or made.heights_mm or made.first_mm:
-        return _setup(program, chosen, stage, told)
-    return _painting(program, chosen, stage, told)
+        return _setup(program, chosen, stage, warn)
+    return _painting(program, chosen, stage, warn)
 
 
 @dataclass(frozen=True)
@@ -204,9 +204,9 @@ def _whole_text(path: str, suffix: str, text: str) -> str:
     return "".join([text, *called.values()])
 
 
-def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:
+def _painting(program: _Program, chosen: Choices, stage, warn: Warn) -> Check:
     made, read, cell, brush = program.made, program.read, program.cell, program.brush
-    work = _as_made(program, chosen, stage, told) if chosen.input is not None else None
+    work = _as_made(program, chosen, stage, warn) if chosen.input is not None else None
     z_offset_mm = program.z_offset_mm(chosen)
     with concerning(program.path):
         sheet_mm = work.plan.sheet_mm if work else chosen.sheet or made.sheet_mm
@@ -216,7 +216,7 @@ def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:
                 code="sheet-unknown",
             )
         ran = simulate_program.run(read, brush, cell, sheet_mm, z_offset_mm)
-    told(program.path, _of_offset(z_offset_mm))
+    warn(program.path, _of_offset(z_offset_mm))
     with concerning(program.path):
         problems = ran.problems + simulate_program.misnumbered(read, made.first_stroke, made.strokes)
         strokes, drawn, speeds = None, None, None
@@ -286,8 +286,8 @@ def _written_again(
 ) -> tuple[object, list[Notice]]:
     """What we would write of the plan that was read, and where the program differs from it."""
     made, cell, brush = program.made, program.cell, program.brush
-    told = against_regenerated.Told(*_told_by(made, work))
-    again = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, told, speeds)
+    header_notes = against_regenerated.HeaderNotes(*_header_notes(made, work))
+    again = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, header_notes, speeds)
     if not again:
         return again, []
     least_s = None
@@ -301,7 +301,7 @@ def _written_again(
     return again, said
 
 
-def _told_by(made, work: Work | None) -> tuple[str, tuple[str, ...]]:
+def _header_notes(made, work: Work | None) -> tuple[str, tuple[str, ...]]:
     """Title and notes that a program's header should have: its drawing's, or its own where nobody knows better, as of a
     program that was made of a plan."""
     if (
@@ -315,7 +315,7 @@ def _told_by(made, work: Work | None) -> tuple[str, tuple[str, ...]]:
     return work.title or "untitled", (*outputs.notes(work), *order)
 
 
-def _foreign(path: str, text: str, chosen: Choices, told: Told) -> Check:
+def _foreign(path: str, text: str, chosen: Choices, warn: Warn) -> Check:
     """A program that somebody else wrote for a pen: what a brush paints with it, and which limits it breaks."""
     if chosen.input is not None:
         sentence = "brushsvg did not write it: it paints no drawing that is known; check it alone"
@@ -327,13 +327,13 @@ def _foreign(path: str, text: str, chosen: Choices, told: Told) -> Check:
             raise Error(sentence, code="flag-without-effect")
     cell, brush = cell_of(chosen.cell), brush_of(chosen.brush) or find_brush(DEFAULT_BRUSH)
     found = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z)
-    told(path, found.warnings)
+    warn(path, found.warnings)
     shown = Work("", brush, found.plan, None, (), Options(cell=cell), ())
     figures = outputs.reported(shown, found.marks, cell)
     return Check("painting", found.problems, is_foreign=True, work=shown, marks=found.marks, figures=figures)
 
 
-def _setup(program: _Program, chosen: Choices, stage, told: Told) -> Check:
+def _setup(program: _Program, chosen: Choices, stage, warn: Warn) -> Check:
     """A program before the first stroke: it paints no drawing, and says in its header all that it does."""
     made, read, text = program.made, program.read, program.text
     cell, brush = program.cell, program.brush
@@ -344,7 +344,7 @@ def _setup(program: _Program, chosen: Choices, stage, told: Told) -> Check:
             )
         if made.sheet_mm is None:
             raise Error("its header does not say how large the sheet is", code="sheet-unknown")
-    work = _as_made(program, chosen, stage, told) if chosen.input is not None else None
+    work = _as_made(program, chosen, stage, warn) if chosen.input is not None else None
     with concerning(program.path):
         if made.border_mm:
             sheet_mm, z_offset_mm = work.plan.sheet_mm if work else made.sheet_mm, program.z_offset_mm(chosen)
@@ -385,7 +385,7 @@ def _is_corrected_plan(source) -> bool:
     return isinstance(source, _core.Plan) and is_corrected(source)
 
 
-def _as_made(program: _Program, chosen: Choices, stage, told: Told) -> Work:
+def _as_made(program: _Program, chosen: Choices, stage, warn: Warn) -> Work:
     """The drawing or plan that a program should paint, prepared as its header says; what of it is left out, or painted
     otherwise, is told again: this is the last look."""
     made, source = program.made, chosen.input
@@ -410,9 +410,9 @@ def _as_made(program: _Program, chosen: Choices, stage, told: Told) -> Work:
             wide=wide,
             margin_strokes="on" if made.has_margin else "off",
         )
-    told(name_of(source), without_effect(chosen))
+    warn(name_of(source), without_effect(chosen))
     options = options_of(chosen, program.cell, program.brush)
     with concerning(name_of(source)):
         work = preparation.prepare(source, options, stage)
-    told(name_of(source), work.notices)
+    warn(name_of(source), work.notices)
     return nearest_first(work) if made.nearest_first else work

@@ -117,8 +117,8 @@ def convert(
     reasons it gives the first, its notes the others, its notices what was to be warned of.
     """
     chosen = chosen_of(drawing, choices)
-    beside = {"preview": preview, "report": report, "page": page}
-    paths = {name: os.fspath(path) for name, path in beside.items() if _is_path(path, name)}
+    extras = {"preview": preview, "report": report, "page": page}
+    paths = {name: os.fspath(path) for name, path in extras.items() if _is_path(path, name)}
     out = os.fspath(out) if _is_path(out, "out") else None
     for name, path in paths.items():
         if suffix_of(path) not in FORMATS[name]:
@@ -194,7 +194,7 @@ def _converted(
                 text = pieces.decode() if isinstance(pieces, bytes) else "".join(pieces)
                 texts[name + suffix] = text
                 if out is not None and suffix == suffix_of(out):
-                    files[writer.beside(out, name)] = text
+                    files[writer.path_next_to(out, name)] = text
         if "preview" in paths:
             stage("drawing")
             files[paths["preview"]] = outputs.picture(suffix_of(paths["preview"]), one.work, one.marks)
@@ -221,7 +221,7 @@ def _refuse(problems: list[Notice], notices: tuple[Notice, ...]) -> None:
         first, *others = problems
         error = Error(first.sentence, first.where, code=first.code, advice=first.advice)
         for other in others:
-            error.add_note(": ".join(filter(None, (other.where, other.told))))
+            error.add_note(": ".join(filter(None, (other.where, other.text))))
         error.notices = notices
         raise error
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .. import _core, read
-from ..comparison.corrections import Correction, beside_machine
+from ..comparison.corrections import Correction, select_for_machine
 from ..machine.cells.cell import Cell
 from ..machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as
 from ..read import layout
@@ -42,7 +42,7 @@ class Options:
     def __post_init__(self):
         if self.cell is not None:  # from here on it is as exact as the plan
             object.__setattr__(self, "cell", as_exact_as(self.cell, self.tolerance_mm))
-        left = beside_machine(self.corrections, self.cell.machine if self.cell else None)
+        left = select_for_machine(self.corrections, self.cell.machine if self.cell else None)
         object.__setattr__(self, "corrections", left)
 
 

@@ -92,16 +92,16 @@ def overlap_picture(suffix: str, work: Work, marks: _core.Marks, long_side_px: i
     if work.strokes is None:
         raise Error("a plan does not say what was wanted: give the drawing", code="plan-without-target")
     if suffix == ".svg":
-        wanted = report.wanted_rings(work.strokes)
-        return overlap_svg(wanted, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
+        target = report.target_rings(work.strokes)
+        return overlap_svg(target, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
     from ..show.overlap_png import overlap_png
     from ..show.png_canvas import PNG_LONG_SIDE_PX
 
     px_per_mm = min(20.0, (long_side_px or PNG_LONG_SIDE_PX) / max(work.plan.sheet_mm))
     window = (0.0, 0.0, *work.plan.sheet_mm)
-    wanted = _core.wanted_coverage(work.strokes, window, px_per_mm)
+    target = _core.wanted_coverage(work.strokes, window, px_per_mm)
     painted = _core.coverage(marks, work.brush, window, px_per_mm)
-    return overlap_png(wanted, painted, legend=long_side_px is None)
+    return overlap_png(target, painted, legend=long_side_px is None)
 
 
 def played(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed: float = 1.0) -> bytes:
@@ -110,8 +110,8 @@ def played(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed
     _core.refuse_tilted(work.plan.passes, "the tool is shown upright")
     runs = replace(cell, machine=None)  # the tool is shown where it goes, not where it is told to go
     moves = timeline(whole_program(loads, work.brush, runs), marks)
-    wanted = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
-    return animation(moves, loads, work.brush, marks, wanted, cell.stations, work.title, speed)
+    target = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
+    return animation(moves, loads, work.brush, marks, target, cell.stations, work.title, speed)
 
 
 def reported(

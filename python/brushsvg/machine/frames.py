@@ -44,9 +44,9 @@ def rotation_deg(turned: np.ndarray) -> np.ndarray:
 
 def zyz_deg(turned: np.ndarray) -> np.ndarray:
     """(3,) angles [degrees] about z, then the new y, then the newest z of a rotation (3, 3)."""
-    aside = np.hypot(turned[0, 2], turned[1, 2])
-    b = np.arctan2(aside, turned[2, 2])
-    if aside > 1e-9:
+    sideways = np.hypot(turned[0, 2], turned[1, 2])
+    b = np.arctan2(sideways, turned[2, 2])
+    if sideways > 1e-9:
         a, c = np.arctan2(turned[1, 2], turned[0, 2]), np.arctan2(turned[2, 1], -turned[2, 0])
     else:  # both turn about one axis
         a, c = 0.0, np.arctan2(turned[1, 0], turned[1, 1])
@@ -60,8 +60,8 @@ def frame_of_points(points_mm, flatness_mm: float) -> np.ndarray:
     plane of the others.
     """
     points = np.asarray(points_mm, dtype=float)
-    origin, along_x, beside = points[:3]
-    x, y = along_x - origin, beside - origin
+    origin, along_x, on_left = points[:3]
+    x, y = along_x - origin, on_left - origin
     for name, side in (("second", x), ("third", y)):
         if np.linalg.norm(side) < LEAST_TAUGHT_MM:
             raise Error(

@@ -12,7 +12,7 @@ import numpy as np
 from ..geometry import polylines
 from .cells.cell import LEAST_SPEED_MM_S, Cell, servo_stands
 from .frames import moved
-from .realised.distortion import told_high_mm
+from .realised.distortion import commanded_high_mm
 
 SAFE_MEANINGS = ("travel", "retract")  # at or above safe height: as fast as the machine likes
 
@@ -104,7 +104,7 @@ def rise_over(cell: Cell, sheet_mm, frame: np.ndarray) -> float:
     margin = cell.workspace.margin_mm
     x, y = (-margin, sheet_mm[0] + margin), (-margin, sheet_mm[1] + margin)
     corners = np.array([(a, b) for a in x for b in y])
-    heights = told_high_mm(corners, cell.heights.safe_mm, cell.machine)
+    heights = commanded_high_mm(corners, cell.heights.safe_mm, cell.machine)
     return float(moved(frame, np.column_stack([corners, heights]))[:, 2].max())
 
 
@@ -132,18 +132,18 @@ def _turned(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
     return replace(step, points_mm=moved(frame, step.points_mm), arc=arc, axes=axes)
 
 
-def at_told_speeds(section: Section, cell: Cell) -> Section:
+def set_programmed_speeds(section: Section, cell: Cell) -> Section:
     """The same where a language tells whole speeds alone: no move is faster, but none slower than the least of them."""
     unit = LEAST_SPEED_MM_S.get(cell.language)
     if unit is None:
         return section
 
-    def told(step: Move | Wait) -> Move | Wait:
+    def with_speed(step: Move | Wait) -> Move | Wait:
         if isinstance(step, Wait):
             return step
         return replace(step, speed_mm_s=unit * max(math.floor(step.speed_mm_s / unit + 1e-6), 1))
 
-    return Section(section.title, tuple(map(told, section.steps)))
+    return Section(section.title, tuple(map(with_speed, section.steps)))
 
 
 def via(points_mm: np.ndarray) -> np.ndarray:

@@ -76,7 +76,7 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
         for a_pass in plan.passes:
             whole = painted_mm(a_pass) <= every_mm or a_pass.settings.reload is False or a_pass.load > 0
             loads += [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
-    if not _is_told_circles(cell):
+    if not _writes_circles(cell):
         loads = map(with_chords, loads)
     elif cell.machine and any(cell.machine.backlash_mm):
         axes = robot_from_paper(cell)[:2, 0]
@@ -125,7 +125,7 @@ def without_paint(brush: _core.Brush, cell: Cell) -> list[Notice]:
     return [Notice("", sentence, code="paint-unknown", advice='measure it: "paint" of a brush file')]
 
 
-def _is_told_circles(cell: Cell) -> bool:
+def _writes_circles(cell: Cell) -> bool:
     """On paper that leans a robot's circles would lie in no plane that it knows, and a machine that is told other
     places than the true ones may need ellipses."""
     post = POSTS.get(cell.language)
@@ -215,9 +215,9 @@ def dips_mm(passes, loads: PlanInLoads, cell: Cell) -> list[list[float]]:
     """
     if not cell.reload:
         return dips_without_cell(passes)
-    asked, found, k = visits(loads, cell), [], 0
+    requested, found, k = visits(loads, cell), [], 0
     for a_pass in passes:
-        dips = [0.0] if asked[k] else []
+        dips = [0.0] if requested[k] else []
         k += 1
         while not a_pass.load and k < len(loads.loads) and is_later_part(loads.loads[k]):
             dips.append(_begins_at_mm(a_pass, loads.loads[k], dips[-1] if dips else 0.0))
@@ -336,9 +336,9 @@ def painted_mm(a_pass: _core.Pass) -> float:
 def _is_due(a_pass, last, used_mm: float, reload, lasts_mm: float) -> bool:
     if is_later_part(a_pass):
         return True
-    asked = a_pass.settings.reload
-    if asked is not None:
-        return asked
+    requested = a_pass.settings.reload
+    if requested is not None:
+        return requested
     if reload.when == "stroke":
         return True
     if reload.when == "layer":

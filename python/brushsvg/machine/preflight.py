@@ -153,21 +153,23 @@ def shifted_by_blends(
     # marks are straight between rows: as close as the tolerance asks, or it is their chords that are compared
     rows_mm = min(tolerance_mm / 10, ROWS_MM)
     found = []
-    told = [
-        _as_told(a_pass, written(number), cell)
+    as_written = [
+        _as_commanded(a_pass, written(number), cell)
         for number, a_pass in enumerate(loads.loads, 1)
         if number >= first_stroke
     ]
-    for first, last in _groups(told):
-        runs = as_run(told[first:last], lambda poses, arcs: blend_radii(poses, cell.blending, arcs))
-        pairs = zip(told[first:last], runs, strict=True)
+    for first, last in _groups(as_written):
+        runs = as_run(as_written[first:last], lambda poses, arcs: blend_radii(poses, cell.blending, arcs))
+        pairs = zip(as_written[first:last], runs, strict=True)
         cut = [(a_pass, *run) for a_pass, run in pairs if len(run[1]) > len(a_pass.poses_mm)]
         both = [a_pass for a_pass, _, _ in cut] + [run for _, run, _ in cut]
         traces = _core.simulate(
             _core.Plan(sheet_mm=loads.sheet_mm, passes=both), brush, rows_mm, for_outlines=False
         ).passes
-        for (a_pass, _, at), meant, run in zip(cut, traces[: len(cut)], traces[len(cut) :], strict=True):
-            shift_mm = _largest_shift_mm(meant, run, at, brush)
+        for (a_pass, _, at), planned_trace, run in zip(
+            cut, traces[: len(cut)], traces[len(cut) :], strict=True
+        ):
+            shift_mm = _largest_shift_mm(planned_trace, run, at, brush)
             if shift_mm > tolerance_mm:
                 sentence = (
                     f"cutting corners by up to {cell.blending.tolerance_mm:g} mm, as cell {cell.name} does, moves the "
@@ -180,11 +182,13 @@ def shifted_by_blends(
 ROWS_MM = 0.02  # rows of a mark are as close as that: a coarse tolerance is no reason to look less closely
 
 
-def _as_told(a_pass, written: Written, cell: Cell):
+def _as_commanded(a_pass, written: Written, cell: Cell):
     """With the poses and circles that a program has, not rounded."""
     axes = np.zeros((0, 3)) if written.axes is None else written.axes
-    told = _core.Pass(a_pass.stroke, written.told_mm, a_pass.speed_mm_s, arcs=written.arcs, tool_axes=axes)
-    return true_pass(told, cell)
+    commanded = _core.Pass(
+        a_pass.stroke, written.commanded_mm, a_pass.speed_mm_s, arcs=written.arcs, tool_axes=axes
+    )
+    return true_pass(commanded, cell)
 
 
 def _groups(passes) -> Iterator[tuple[int, int]]:
@@ -229,15 +233,17 @@ def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[t
     return runs
 
 
-def _largest_shift_mm(meant, run, at: np.ndarray, brush) -> float:
+def _largest_shift_mm(planned_trace, run, at: np.ndarray, brush) -> float:
     """Between the widest sections of two traces of one stroke; at: the meant pose of each pose that was run."""
-    ran, planned = _under_way(run), _under_way(meant)
+    ran, planned = _under_way(run), _under_way(planned_trace)
     taut = np.asarray(run.taut, dtype=bool)[ran]
     if not taut.any():
         return 0.0
     pose = np.interp(np.asarray(run.pose)[ran][taut], np.arange(len(at)), at)
-    widest = _core.widest_points(meant, brush)[planned]
-    there = np.column_stack([np.interp(pose, np.asarray(meant.pose)[planned], axis) for axis in widest.T])
+    widest = _core.widest_points(planned_trace, brush)[planned]
+    there = np.column_stack(
+        [np.interp(pose, np.asarray(planned_trace.pose)[planned], axis) for axis in widest.T]
+    )
     return float(np.linalg.norm(_core.widest_points(run, brush)[ran][taut] - there, axis=1).max())
 
 

@@ -14,12 +14,12 @@ from .arm.joints import is_installed
 from .arm.place import unreachable
 from .cells.cell import MOST_LINES, MOST_POINTS, Cell, Station, briefly, robot_from_paper, value_mm
 from .frames import moved
-from .motion import Arc, Move, Program, Section, Wait, at_told_speeds, rise_over
+from .motion import Arc, Move, Program, Section, Wait, rise_over, set_programmed_speeds
 from .paint_reload import PlanInLoads, visits
 from .posts import POSTS
-from .posts.text import told_apart
+from .posts.text import make_unique
 from .realised.corner_blending import SHARP_RAD, blends, on_the_spot
-from .realised.distortion import told_high_mm, told_mm, true_mm
+from .realised.distortion import commanded_high_mm, commanded_mm, true_mm
 from .realised.rounding import Written, as_written
 from .realised.tilt import slow_enough
 from .tool_axes import axes_of, tilts_deg
@@ -87,9 +87,9 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     if cell.pen and job.z_offset_mm:
         sentence = f"the pen of cell {cell.name} is up or down: no height of the paper can be told"
         problems.append(Notice("", sentence, code="pen-depth"))
-    told_mm = value_mm(cell) if cell.servo else 10.0**-cell.decimals
+    commanded_mm = value_mm(cell) if cell.servo else 10.0**-cell.decimals
     problems += broken_limits(
-        [_as_run(a_pass, made) for a_pass in left], loads.sheet_mm, brush, cell, told_mm
+        [_as_run(a_pass, made) for a_pass in left], loads.sheet_mm, brush, cell, commanded_mm
     )
     problems += [
         Notice(
@@ -130,7 +130,7 @@ def _as_run(a_pass, made: Program):
     if made.cell.servo is None or not np.isfinite(a_pass.poses_mm).all():
         return a_pass
     written = as_written(a_pass, made.cell, made.robot_from_frame)
-    poses = true_mm(written.told_mm, made.cell.machine)
+    poses = true_mm(written.commanded_mm, made.cell.machine)
     return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s)  # no servo tilts a brush
 
 
@@ -205,9 +205,9 @@ def unchecked_program(
     def sections() -> Iterator[Section]:
         for number, a_pass in left:
             stations = job.visits[number - 1] if job.visits else ()
-            yield from (at_told_speeds(visit(station, brush, cell), cell) for station in stations)
+            yield from (set_programmed_speeds(visit(station, brush, cell), cell) for station in stations)
             moves = _moves(a_pass, written(number), brush, cell)
-            yield at_told_speeds(Section(f"stroke {number} of {count}: {a_pass.stroke}", moves), cell)
+            yield set_programmed_speeds(Section(f"stroke {number} of {count}: {a_pass.stroke}", moves), cell)
 
     made = cache(lambda: tuple(sections()))
     rises_mm = (rise_over(cell, loads.sheet_mm, of) for of in (np.eye(4), frame))
@@ -221,10 +221,12 @@ def over(point, height_mm: float) -> np.ndarray:
     return np.array([[point[0], point[1], height_mm]], dtype=float)
 
 
-def safely_over(told_mm, cell: Cell) -> np.ndarray:
+def safely_over(commanded_mm, cell: Cell) -> np.ndarray:
     """(1, 3) the place at safe height above one that the machine is told."""
-    (height_mm,) = told_high_mm(np.array([told_mm[:2]], dtype=float), cell.heights.safe_mm, cell.machine)
-    return over(told_mm, height_mm)
+    (height_mm,) = commanded_high_mm(
+        np.array([commanded_mm[:2]], dtype=float), cell.heights.safe_mm, cell.machine
+    )
+    return over(commanded_mm, height_mm)
 
 
 def approach_mm_s(brush, cell: Cell) -> float:
@@ -235,7 +237,7 @@ def approach_mm_s(brush, cell: Cell) -> float:
 def names_of_stations(cell: Cell) -> dict[Station, str]:
     """What a program calls each, short visits by a name of their own: no two alike."""
     stations = list(dict.fromkeys(each for one in cell.stations for each in (one, briefly(one))))
-    names = told_apart([station.name for station in stations])
+    names = make_unique([station.name for station in stations])
     return dict(zip(stations, names, strict=True))
 
 
@@ -290,14 +292,14 @@ def _circles(station: Station) -> np.ndarray:
 
 
 def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:
-    poses = written.told_mm
+    poses = written.commanded_mm
     if len(poses) == 0:
         return ()
     heights, speeds = cell.heights, cell.speeds
     start, end = true_mm(poses[[0, -1]], cell.machine)
 
     def above(place, height_mm: float) -> np.ndarray:
-        return told_mm(over(place, height_mm), cell.machine)
+        return commanded_mm(over(place, height_mm), cell.machine)
 
     axes = written.axes
     first, last = (None, None) if axes is None else (axes[:1], axes[-1:])

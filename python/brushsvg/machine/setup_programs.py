@@ -10,10 +10,10 @@ import numpy as np
 
 from ..errors import Error
 from .cells.cell import LEAST_SPEED_MM_S, Cell, robot_from_paper, why_no_waiting
-from .motion import Move, Program, Section, Wait, at_told_speeds, rise_over
+from .motion import Move, Program, Section, Wait, rise_over, set_programmed_speeds
 from .move_extents import ways
 from .program import approach_mm_s, astray_in, out_of_arm, over, safely_over
-from .realised.distortion import in_lines_mm, told_mm
+from .realised.distortion import commanded_mm, in_lines_mm
 from .workspace_limits import astray, touching_mm_s
 
 CORNER_WAIT_S = 0.5  # long enough to look where the tip stands
@@ -111,11 +111,11 @@ def _highest_air(cell: Cell, sheet_mm) -> float:
     corners = ((0.0, 0.0), (width, 0.0), (width, height), (0.0, height))
     frame, safe_mm = robot_from_paper(cell), cell.heights.safe_mm
     for more_mm in (HIGH_MM, HIGH_MM / 2):
-        told = [
-            told_mm(over(corner, safe_mm), cell.machine)[0] + np.array([0.0, 0.0, more_mm])
+        corner_poses = [
+            commanded_mm(over(corner, safe_mm), cell.machine)[0] + np.array([0.0, 0.0, more_mm])
             for corner in corners
         ]
-        if not astray(ways([np.array(told)]), frame, cell, sheet_mm):
+        if not astray(ways([np.array(corner_poses)]), frame, cell, sheet_mm):
             return safe_mm + more_mm
     return safe_mm
 
@@ -133,7 +133,7 @@ def _inner_corners(sheet_mm) -> tuple[tuple[float, float], ...]:
 def _touch(place, clearance_mm: float, brush, cell: Cell) -> tuple[Move | Wait, ...]:
     """Down to where the tip should just touch, twice asked: a person stops it who sees the brush bend."""
     press_mm_s = min(cell.speeds.press_mm_s, touching_mm_s(brush, cell))
-    touching, down = (told_mm(over(place, z), cell.machine) for z in (0.0, clearance_mm))
+    touching, down = (commanded_mm(over(place, z), cell.machine) for z in (0.0, clearance_mm))
     return (
         Move("travel", safely_over(down[0], cell), cell.speeds.travel_mm_s),
         Move("approach", down, approach_mm_s(brush, cell)),
@@ -152,8 +152,8 @@ def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> 
     """
     left, bottom, right, top = around_mm
     corners = ((left, bottom), (right, bottom), (right, top), (left, top), (left, bottom))
-    told = np.vstack([told_mm(over(corner, 0.0), cell.machine) for corner in corners])
-    path = np.vstack([safely_over(corner, cell) for corner in told])
+    corner_poses = np.vstack([commanded_mm(over(corner, 0.0), cell.machine) for corner in corners])
+    path = np.vstack([safely_over(corner, cell) for corner in corner_poses])
 
     def sections() -> Iterator[Section]:
         start = Move("travel", path[:1], cell.speeds.travel_mm_s)
@@ -220,13 +220,13 @@ def _stroke_at(ends, height_mm: float, clearance_mm: float, brush, cell: Cell) -
     speed_mm_s = min(touching_mm_s(brush, cell), SPEED_MM_S)
     press_mm_s = min(cell.speeds.press_mm_s, speed_mm_s)
     way = in_lines_mm(np.vstack([over(end, height_mm) for end in ends]), cell.machine)
-    told = told_mm(way, cell.machine)
-    down, up = (told_mm(over(end, clearance_mm), cell.machine) for end in ends)
+    commanded = commanded_mm(way, cell.machine)
+    down, up = (commanded_mm(over(end, clearance_mm), cell.machine) for end in ends)
     return (
         Move("travel", safely_over(down[0], cell), cell.speeds.travel_mm_s),
         Move("approach", down, approach_mm_s(brush, cell)),
-        Move("land", told[:1], press_mm_s),
-        Move("paint", told[1:], speed_mm_s),
+        Move("land", commanded[:1], press_mm_s),
+        Move("paint", commanded[1:], speed_mm_s),
         Move("lift", up, press_mm_s),
         Move("retract", safely_over(up[0], cell), cell.speeds.travel_mm_s),
     )
@@ -285,10 +285,10 @@ def _unless_astray(
     high = replace(cell, heights=replace(cell.heights, safe_mm=cell.heights.safe_mm + rise_more_mm))
     rises_mm = (rise_over(high, sheet_mm, of) for of in (np.eye(4), frame))
 
-    def told() -> Iterator[Section]:
-        return (at_told_speeds(section, cell) for section in sections())
+    def timed() -> Iterator[Section]:
+        return (set_programmed_speeds(section, cell) for section in sections())
 
-    made = Program((), cell, frame, told, *rises_mm, touching_mm_s(brush, cell))
+    made = Program((), cell, frame, timed, *rises_mm, touching_mm_s(brush, cell))
     for notice in astray_in(made, sheet_mm) or out_of_arm(made, sheet_mm):
         raise Error(notice.sentence, code=notice.code, advice=notice.advice)
     return made

@@ -215,7 +215,7 @@ def _box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: float) -
         if least[axis] < low - slack_mm or greatest[axis] > high + slack_mm:
             worst = least[axis] if low - least[axis] > greatest[axis] - high else greatest[axis]
             sentence = (
-                f"the tool goes to {name} {_told(worst, low, high)} mm, outside the range "
+                f"the tool goes to {name} {_in_digits(worst, low, high)} mm, outside the range "
                 f"[{low:g}, {high:g}] mm of the box of cell {cell.name}"
             )
             yield Notice("", sentence, code="out-of-box", about=name)
@@ -225,8 +225,8 @@ def _box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: float) -
         for height in (least[2], greatest[2]):
             if not low - slack_mm <= height <= high + slack_mm:
                 sentence = (
-                    f"height {_told(height, low, high)} mm is outside the range [{low:g}, {high:g}] mm of the servo "
-                    f"of cell {cell.name}"
+                    f"height {_in_digits(height, low, high)} mm is outside the range [{low:g}, {high:g}] mm of the "
+                    f"servo of cell {cell.name}"
                 )
                 if height > high:  # where the paper lies higher than the table leaves room for
                     sentence += ": measure a higher row of its table, or lower safe_mm"
@@ -240,7 +240,7 @@ def _reach(nearest: float, farthest: float, cell: Cell, cut_mm: float, slack_mm:
     if nearest < least - max(-cut_mm, 0.0) or farthest > greatest + slack_mm:
         worst = nearest if least - nearest > farthest - greatest else farthest
         sentence = (
-            f"the tool goes {_told(worst, least, greatest)} mm away from the robot's origin, outside the range "
+            f"the tool goes {_in_digits(worst, least, greatest)} mm away from the robot's origin, outside the range "
             f"[{least:g}, {greatest:g}] mm of the reach of cell {cell.name}"
         )
         yield Notice("", sentence, code="out-of-reach")
@@ -252,15 +252,15 @@ def _kept_out(some: Ways, cell: Cell, cut_mm: float) -> Iterator[Notice]:
         grown = np.maximum(cut_mm, (low - high) / 4)  # however thin a box, slack leaves half of it
         if (place := place_inside(some, low - grown, high + grown)) is None:
             continue
-        told = ", ".join(f"{axis} {value:.1f}" for axis, value in zip("xyz", place, strict=True))
+        where = ", ".join(f"{axis} {value:.1f}" for axis, value in zip("xyz", place, strict=True))
         box = ", ".join(
             f"{axis} {a:g} to {b:g}" for axis, a, b in zip("xyz", low.tolist(), high.tolist(), strict=True)
         )
-        sentence = f"the tool goes through {told} mm, in box {number} that cell {cell.name} keeps it out of: {box} mm"
+        sentence = f"the tool goes through {where} mm, in box {number} that cell {cell.name} keeps it out of: {box} mm"
         yield Notice("", sentence, code="in-kept-out-box", about=str(number))
 
 
-def _told(value: float, low: float, high: float) -> str:
+def _in_digits(value: float, low: float, high: float) -> str:
     """A length outside of a range, with as many decimals as tell it from its ends."""
     for decimals in range(1, 7):
         if not low <= float(f"{value:.{decimals}f}") <= high:

@@ -97,10 +97,10 @@ def _object(text: str) -> dict:
 
 def _unknown(path: str, where: str, key: str, known: tuple[str, ...]) -> Notice:
     near = nearest_name(key, known)
-    meant = f"; did you mean {where}{near}?" if near else ""
+    hint = f"; did you mean {where}{near}?" if near else ""
     return Notice(
         path,
-        f"this key is not known and has no effect{meant}",
+        f"this key is not known and has no effect{hint}",
         code="key-unknown",
         about=near,
     )

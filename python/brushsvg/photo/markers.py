@@ -320,7 +320,7 @@ def _meet(one, other) -> np.ndarray:
     return np.linalg.solve(normals, [one[1], other[1]])
 
 
-def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape, aside_px=(0.0, 0.0)) -> View:
+def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape, shift_px=(0.0, 0.0)) -> View:
     """Least squares of all corners that are not NaN. aside_px: where the lens's middle lies from the picture's."""
     ids = tuple(number for number in sorted(corners) if np.isfinite(corners[number]).all())
     marker = np.repeat(sorted(corners), 4)
@@ -329,7 +329,7 @@ def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape, aside_px=(0
     marker, mm, px = (each[np.isfinite(px).all(axis=1)] for each in (marker, mm, px))
     middle = np.array([(shape[1] - 1) / 2, (shape[0] - 1) / 2])
     radius = float(np.hypot(*middle))
-    middle = middle + aside_px
+    middle = middle + shift_px
     centre, size = np.array(printed.sheet_mm) / 2, max(printed.sheet_mm) / 2
     to_unit = np.array([[1 / size, 0, -centre[0] / size], [0, 1 / size, -centre[1] / size], [0, 0, 1]])
     start, _ = cv2.findHomography((mm - centre) / size, (px - middle) / radius)

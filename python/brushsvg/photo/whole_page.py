@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import Error
-from .edges import Room
+from .edges import StrokeBox
 from .markers import View
 
 MOST_UNSURE_MM = 0.5  # of a place on the sheet
 
 
-def refuse_cropped(pixels: np.ndarray, view: View, rooms: list[Room]) -> None:
+def refuse_cropped(pixels: np.ndarray, view: View, stroke_boxes: list[StrokeBox]) -> None:
     """Where room of a stroke lies beyond the picture."""
     cut = []
-    for room in rooms:
-        left, bottom, right, top = room.box_mm
+    for stroke_box in stroke_boxes:
+        left, bottom, right, top = stroke_box.box_mm
         corners = view.to_px(np.array([(left, bottom), (right, bottom), (right, top), (left, top)]))
         if (corners < 0).any() or (corners > np.array(pixels.shape[1::-1]) - 1).any():
-            cut.append(room.stroke)
+            cut.append(stroke_box.stroke)
     if cut:
         raise Error(
             f"the page is cropped: the room of {len(cut)} stroke{'s' * (len(cut) > 1)} runs out of the picture "

@@ -103,10 +103,10 @@ def _overlap_at(factor: float, units, brush, made) -> float:
     def area(unit):
         larger = [scaled(stroke, factor) for stroke in unit]
         try:
-            marks, wanted = made(larger)
+            marks, targets = made(larger)
         except Error:  # not to be painted at this size: all of it is missing
-            marks, wanted = [], larger
-        return _core.common_area(marks, wanted, brush)
+            marks, targets = [], larger
+        return _core.common_area(marks, targets, brush)
 
     pool = ThreadPoolExecutor(os.cpu_count())
     try:

@@ -106,14 +106,14 @@ def _fitting_scale(
 
 def _of_layers(design: Design, names: tuple[str, ...]) -> Design:
     painted = [element.layer for element in design.elements if element.layer]
-    told = [notice.layer for notice in design.notices if notice.layer]
-    paths = list(dict.fromkeys([*painted, *filter(None, design.layers), *told]))
-    wanted = [_layer(name, paths) for name in names]
+    noticed = [notice.layer for notice in design.notices if notice.layer]
+    paths = list(dict.fromkeys([*painted, *filter(None, design.layers), *noticed]))
+    requested = [_layer(name, paths) for name in names]
 
-    def chosen(layer: str | None, among: list[str] = wanted) -> bool:
+    def chosen(layer: str | None, among: list[str] = requested) -> bool:
         return any(layer == path or (layer or "").startswith(path + "/") for path in among)
 
-    for path in wanted:
+    for path in requested:
         if not any(chosen(element.layer, [path]) for element in design.elements):
             raise Error(_why_nothing(design, path, chosen), where="layer", code="nothing-to-paint")
     elements = tuple(element for element in design.elements if chosen(element.layer))
@@ -154,10 +154,10 @@ def _layer(name: str, paths: list[str]) -> str:
 def _why_nothing(design: Design, path: str, chosen) -> str:
     if why := design.layers.get(path):
         return f"layer {path!r} cannot be painted: {why}"
-    told = [notice for notice in design.notices if chosen(notice.layer, [path])]
+    of_layers = [notice for notice in design.notices if chosen(notice.layer, [path])]
     sentence = f"layer {path!r} has nothing to paint"
-    if told:
-        first = next((notice for notice in told if notice.damaged), told[0])
+    if of_layers:
+        first = next((notice for notice in of_layers if notice.damaged), of_layers[0])
         sentence += f": {first.where}: {first.sentence}"
     return sentence
 

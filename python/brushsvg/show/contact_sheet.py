@@ -53,7 +53,7 @@ def _sheet(cards: list[Card], heading: str) -> bytes:
         if card.picture is None:
             _write_lines(part, card.why)
         else:
-            _lay_picture(part[:PICTURE_H], card.picture())
+            _place_picture(part[:PICTURE_H], card.picture())
         words_y = PICTURE_H + NAME_PX
         write(part, _fitting(card.name, NAME_PX, 600), (12, words_y), NAME_PX, 600, TEXT)
         colour = REFUSED if card.picture is None else QUIET
@@ -61,7 +61,7 @@ def _sheet(cards: list[Card], heading: str) -> bytes:
     return encoded(image)
 
 
-def _lay_picture(part: np.ndarray, png: bytes) -> None:
+def _place_picture(part: np.ndarray, png: bytes) -> None:
     """As large as it fits, in the middle."""
     picture = cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR)
     scale = min(part.shape[0] / picture.shape[0], part.shape[1] / picture.shape[1])

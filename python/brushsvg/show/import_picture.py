@@ -183,19 +183,19 @@ def _letters(canvas: _Canvas) -> int:
 
 
 def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
-    told = [
+    listed = [
         (colour, notice)
         for is_damage, colour in ((True, WARNING), (False, TEXT))
         for notice in summarized(notice for notice in notices if notice.damaged == is_damage)
     ]
-    for colour, notice in told[:LISTED]:
+    for colour, notice in listed[:LISTED]:
         for line in textwrap.wrap(
-            f"{notice.where}: {notice.told}", _letters(canvas), subsequent_indent="    "
+            f"{notice.where}: {notice.text}", _letters(canvas), subsequent_indent="    "
         ):
             canvas.text(MARGIN_PX, y, line, colour, 18)
             y += LINE_PX
-    if len(told) > LISTED:
-        canvas.text(MARGIN_PX, y, f"and {len(told) - LISTED} warnings more", QUIET, 18)
+    if len(listed) > LISTED:
+        canvas.text(MARGIN_PX, y, f"and {len(listed) - LISTED} warnings more", QUIET, 18)
         y += LINE_PX
     return y
 

@@ -11,7 +11,7 @@ from .. import _core
 from ..errors import Error, need
 from .marks_svg import BAND, EDGE, Band, check_picture, known_colour
 from .overlap_svg import MISSING
-from .png_canvas import PNG_LONG_SIDE_PX, SUB_PIXEL_BITS, TEXT, bgr, canvas, encoded, lay, write
+from .png_canvas import PNG_LONG_SIDE_PX, SUB_PIXEL_BITS, TEXT, bgr, blend, canvas, encoded, write
 
 
 def marks_png(
@@ -37,7 +37,7 @@ def marks_png(
         run.passes = list(marks.passes[first:last])
         paint = _core.coverage(run, brush, window, px_per_mm)
         image = canvas(paint.shape, "#ffffff") if image is None else image
-        lay(image, paint, known_colour(colours[first]))
+        blend(image, paint, known_colour(colours[first]))
         first = last
     if image is None:
         raise Error("there is nothing to draw", code="nothing-to-show")
@@ -55,10 +55,10 @@ def _draw_band(image, band, window, px_per_mm: float) -> None:
     size = max(12, round(min(image.shape[:2]) / 40))
     left, low = size, image.shape[0] - size
     for rings in filter(None, band.rings):
-        lay(image, 0.45 * _core.coverage(rings, window, px_per_mm), BAND)
+        blend(image, 0.45 * _core.coverage(rings, window, px_per_mm), BAND)
     if any(band.rings):
         box = np.zeros(image.shape[:2])
         box[low - size : low, left : left + 2 * size] = 0.45
-        lay(image, box, BAND)
+        blend(image, box, BAND)
         left += round(2.5 * size)
     write(image, band.words, (left, low - round(0.15 * size)), size, 400, TEXT)

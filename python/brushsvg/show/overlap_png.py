@@ -8,13 +8,13 @@ from .overlap_svg import BOTH, MISSING, OVERLAP_COLOURS, SPILT
 from .png_canvas import TEXT, bgr, canvas, encoded, write
 
 
-def overlap_png(wanted: np.ndarray, painted: np.ndarray, legend: bool = True) -> bytes:
+def overlap_png(target: np.ndarray, painted: np.ndarray, legend: bool = True) -> bytes:
     """Where paint is missing and where there is too much of it. wanted, painted: shares of the same pixels."""
-    common = np.minimum(wanted, painted)
+    common = np.minimum(target, painted)
     rows, columns = common.shape
     size = max(14, round(0.016 * max(rows, columns)))
     image = canvas((rows + 2 * size * legend, columns), "#ffffff")
-    shares = ((common, BOTH), (wanted - common, MISSING), (painted - common, SPILT))
+    shares = ((common, BOTH), (target - common, MISSING), (painted - common, SPILT))
     page = np.full((rows, columns, 3), 255.0)
     for share, colour in shares:  # side by side in a pixel, not over each other
         page -= share[..., None] * (255.0 - np.array(bgr(colour)))

@@ -14,7 +14,7 @@ OVERLAP_COLOURS = (
 )
 
 
-def overlap_svg(wanted: list, painted: list, sheet_mm: tuple[float, float], title: str = "") -> str:
+def overlap_svg(target: list, painted: list, sheet_mm: tuple[float, float], title: str = "") -> str:
     """Where paint is missing and where there is too much of it, in OVERLAP_COLOURS, in millimetres of the sheet.
 
     wanted, painted: rings of all that was drawn, and of all paint.
@@ -23,7 +23,7 @@ def overlap_svg(wanted: list, painted: list, sheet_mm: tuple[float, float], titl
     size = max(2.0, 0.018 * max(width, height))
     data = {
         name: "".join(path_data(ring, height) for ring in rings)
-        for name, rings in (("wanted", wanted), ("painted", painted))
+        for name, rings in (("wanted", target), ("painted", painted))
     }
     foot = height + 2.5 * size
     lines = [

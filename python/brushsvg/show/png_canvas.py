@@ -14,7 +14,7 @@ def canvas(shape: tuple[int, int], colour: str) -> np.ndarray:
     return np.full((*shape, 3), bgr(colour), np.uint8)
 
 
-def lay(image: np.ndarray, coverage: np.ndarray, colour: str) -> None:
+def blend(image: np.ndarray, coverage: np.ndarray, colour: str) -> None:
     painted = coverage > 0  # most of a page is blank
     share = coverage[painted][:, None]
     image[painted] = np.round(image[painted] * (1 - share) + np.array(bgr(colour)) * share).astype(np.uint8)

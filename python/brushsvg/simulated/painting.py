@@ -13,7 +13,7 @@ from ..machine.cells.cell import Machine
 from ..machine.paint_reload import dips_without_cell
 from ..machine.realised.arc_chords import with_chords
 from ..machine.realised.backlash import from_air_mm
-from ..machine.realised.distortion import in_lines_mm, told_mm
+from ..machine.realised.distortion import commanded_mm, in_lines_mm
 from ..machine.realised.passes import as_run
 from ..machine.realised.retimed import on_way
 from ..model.perturbed import with_factors
@@ -65,10 +65,10 @@ def painted(
     turn = rotation(np.radians(studio.sheet.turn_deg))
     out = []
     for mark in marks.passes:
-        aside = own[mark.stroke] + random.normal(0, 1, 2) * off.random_mm
+        shift = own[mark.stroke] + random.normal(0, 1, 2) * off.random_mm
 
-        def laid(points, aside=aside):
-            return (np.asarray(points)[:, :2] + aside - middle) @ turn + middle + studio.sheet.shift_mm
+        def laid(points, shift=shift):
+            return (np.asarray(points)[:, :2] + shift - middle) @ turn + middle + studio.sheet.shift_mm
 
         contact = np.asarray(mark.contact_mm, dtype=float).reshape(-1, 2)
         come = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(contact, axis=0).T))])
@@ -105,12 +105,12 @@ def _as_run(plan, studio: Studio, undone: Machine | None) -> list:
     }
     bent = over_sheet if np.any(over_sheet["field_mm"]) else {}
     machine = Machine(off.lean_mm_per_mm, off.scale, off.skew, off.height_mm, off.tilt_mm_per_mm, **bent)
-    return as_run([_told(one, undone) for one in plan.passes], machine, off.backlash_mm)
+    return as_run([_commanded(one, undone) for one in plan.passes], machine, off.backlash_mm)
 
 
-def _told(a_pass, undone: Machine | None):
+def _commanded(a_pass, undone: Machine | None):
     poses = np.asarray(with_chords(a_pass).poses_mm, dtype=float).reshape(-1, 3)
-    told = told_mm(in_lines_mm(poses, undone), undone)
+    commanded = commanded_mm(in_lines_mm(poses, undone), undone)
     if undone and any(undone.backlash_mm):
-        told = from_air_mm(told, undone.backlash_mm)
-    return on_way(a_pass, told, [])
+        commanded = from_air_mm(commanded, undone.backlash_mm)
+    return on_way(a_pass, commanded, [])

@@ -138,9 +138,9 @@ def _is_better_lifted(line: Line, before: int, corner: int, after: int, brush) -
 
     whole = line_stroke(line.between(before, after))
     parts = [line_stroke(line.between(before, corner)), line_stroke(line.between(corner, after))]
-    wanted = _core.wanted_outline(whole, 0.01)
+    target = _core.wanted_outline(whole, 0.01)
     try:
-        one, several = (misplaced_mm2(trial_marks(some, brush), wanted, brush) for some in ([whole], parts))
+        one, several = (misplaced_mm2(trial_marks(some, brush), target, brush) for some in ([whole], parts))
     except Error:
         return False
     return one - several > _WORTH * (2 * max(half for _, half in whole.half_width)) ** 2
@@ -163,8 +163,8 @@ def line_stroke(line: Line, like=None, lane: int = 1):
 
 def _is_straight(points: np.ndarray) -> bool:
     chord = points[3] - points[0]
-    beside = np.abs((points[1:3] - points[0]) @ (-chord[1], chord[0]))
-    return bool((beside <= _STRAIGHT * (chord @ chord)).all())
+    distance = np.abs((points[1:3] - points[0]) @ (-chord[1], chord[0]))
+    return bool((distance <= _STRAIGHT * (chord @ chord)).all())
 
 
 def _tangent(points: np.ndarray) -> np.ndarray:

@@ -65,10 +65,10 @@ def strokes(
             empty.append(element)
     notices += _left_out(empty, paths_as)
     if not found:
-        where, sentence = (notices[-1].where, notices[-1].told) if notices else ("", "it is empty")
+        where, sentence = (notices[-1].where, notices[-1].text) if notices else ("", "it is empty")
         sentence = f"there is nothing to paint: {sentence}"
-        if told := next(iter(design.notices), None):
-            sentence += f"; for example {told.where}: {told.sentence}"
+        if notice := next(iter(design.notices), None):
+            sentence += f"; for example {notice.where}: {notice.sentence}"
         raise Error(sentence, where=where, code="nothing-to-paint")
     names, renamed = _names([(element, len(lines)) for element, lines in found])
     made = [

@@ -20,7 +20,7 @@ from ..machine.preflight import as_run, off_sheet
 from ..machine.program import names_of_stations
 from ..machine.realised.arc_chords import OFF_MM
 from ..machine.realised.corner_blending import blend_radii
-from ..machine.realised.distortion import is_similar, told_pass, true_mm, true_pass
+from ..machine.realised.distortion import commanded_pass, is_similar, true_mm, true_pass
 from ..machine.setup_programs import slow_below_mm
 from ..machine.tool_axes import tilts_deg
 from ..machine.workspace_limits import astray, astray_between, broken_limits, rise_astray, touching_mm_s
@@ -61,7 +61,7 @@ def slack_mm(cell: Cell) -> float:
 def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Ran:
     """Simulate the program as a machine of this cell runs it. Error for poses deeper than the brush allows."""
     problems: Problems = []
-    meant, cut, lines, rests = [], [], [], []
+    programmed, cut, lines, rests = [], [], [], []
     slack = slack_mm(cell)
     leans = not read.in_paper_frame and not is_upright(robot_from_paper(cell, z_offset_mm))
     here = None
@@ -86,9 +86,9 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             axes = _axes(section, track, on, frame)
             poses = _no_deeper(poses, brush, slack)
             joint = radii if read.blends_by_radius else blend_radii(poses, Blending(read.joint_mm), arcs)
-            meant.append(_core.Pass(name, poses, speed, arcs=arcs, tool_axes=axes))
-            told = [told_pass(meant[-1], cell)]
-            run = true_pass(as_run(told, lambda *_, joint=joint: joint)[0][0], cell)
+            programmed.append(_core.Pass(name, poses, speed, arcs=arcs, tool_axes=axes))
+            commanded = [commanded_pass(programmed[-1], cell)]
+            run = true_pass(as_run(commanded, lambda *_, joint=joint: joint)[0][0], cell)
             # where a machine whose paper bends cuts a corner it may go some micrometres deeper than the poses that are
             # meant; those themselves are judged by the simulation
             is_allowed = poses[:, 2].min(initial=0.0) >= -brush.depth_range_mm[1]
@@ -96,7 +96,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             cut.append(_core.Pass(name, run_mm, run.speed_mm_s, arcs=run.arcs, tool_axes=run.tool_axes))
             lines.append(np.array([section.steps[number].line for number in track.step[on]]))
             rests.append(np.array([_rests(section.steps[number], cell) for number in track.step[on]]))
-    plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
+    plan = _core.Plan(brush.name, "", tuple(sheet_mm), programmed)
     ran = _core.Plan(brush.name, "", tuple(sheet_mm), cut)
     marks = _core.simulate(ran, brush, may_rise=True)
     visited = _visits(read, cell)
@@ -105,7 +105,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
         is_counted = cell.reload and len(visited) == len(cut)
         dips = [[0.0] if not is_counted or visited[k] else [] for k in range(len(cut))]
         _core.narrow(marks, brush.paint, dips)
-    problems += broken_limits(meant, sheet_mm, brush, _rounded(cell))
+    problems += broken_limits(programmed, sheet_mm, brush, _rounded(cell))
     problems += off_sheet(marks, brush, sheet_mm, rounded_mm=slack)
     return Ran(plan, ran, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests))
 
@@ -130,8 +130,8 @@ def misnumbered(read: Readback, first_stroke: int, count: int) -> Problems:
         if found := _stroke(section):
             number += 1
             if (int(found[1]), int(found[2])) != (number, count):
-                told = f"line {section.line}: stroke {found[1]} of {found[2]}"
-                sentence = f"{told} stands where stroke {number} of {count} should"
+                place = f"line {section.line}: stroke {found[1]} of {found[2]}"
+                sentence = f"{place} stands where stroke {number} of {count} should"
                 return [Notice(_name(section), sentence, code="stroke-misnumbered")]
     left = f"stroke {count} is" if number == count - 1 else f"strokes {number + 1} to {count} are"
     return [Notice("", f"{left} missing at the end", code="strokes-missing")] if number < count else []

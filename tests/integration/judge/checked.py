@@ -25,7 +25,7 @@ def converted(*words) -> list[str]:
     try:
         convert_file(parse(["convert", *map(str, words)]))
     except RefusedError as refused:
-        return [f"{notice.where}: {notice.told}" for notice in refused.why]
+        return [f"{notice.where}: {notice.text}" for notice in refused.why]
     return []
 
 
@@ -70,7 +70,7 @@ def quick_check():
         try:
             command.check_file(copy.copy(asked[words]))
         except RefusedError as refused:
-            return [f"{notice.where}: {notice.told}" for notice in refused.why]
+            return [f"{notice.where}: {notice.text}" for notice in refused.why]
         except Exception as mistake:
             return [f"{CRASHED}: {type(mistake).__name__} {mistake}"]
         return []

@@ -20,7 +20,7 @@ BROKEN = 0.1  # share of its paint that lies apart
 RAGGED = 0.15  # share of its hull that is bare: paint was dry, or it is no footprint
 # times the usual distance from the others of its depth, and at least so far: no repeat of them
 UNLIKE, UNLIKE_MM = 4.0, 0.15
-ASIDE, ASIDE_MM = 6.0, 0.6  # the same of its place
+MAX_DISPLACEMENT, MAX_DISPLACEMENT_MM = 6.0, 0.6  # the same of its place
 LEAST_LEFT = 2  # dabs of a depth: one alone cannot be told from a bad one
 # times what chance does to sides that are alike: less, and the outline is the mean of both sides, amid the axis. Sides
 # that differ by chance would push every stroke aside
@@ -50,7 +50,7 @@ class Seen:
 
     dab: Dab
     outline_mm: np.ndarray
-    aside_mm: np.ndarray
+    displacement_mm: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -82,12 +82,12 @@ class Outlines:
     is_even: bool
     remarks: tuple[Notice, ...]
 
-    def lying_mm(self) -> dict[str, np.ndarray]:
+    def predicted_mm(self) -> dict[str, np.ndarray]:
         """By name, where the outline of its depth lies for each dab that was not left out, (n, 2) mm on the sheet."""
         out = {}
         for shape in self.shapes:
             for seen in shape.seen:
-                from_patch = shape.outline_mm - [shape.tip_gap_mm, 0.0] + seen.aside_mm
+                from_patch = shape.outline_mm - [shape.tip_gap_mm, 0.0] + seen.displacement_mm
                 planned = from_patch @ rotation(seen.dab.heading_rad) + seen.dab.place_mm
                 turned = (planned - self.centre_mm) @ rotation(self.turn_rad)
                 out[seen.dab.name] = turned + self.centre_mm + self.shift_mm
@@ -161,10 +161,10 @@ def _refuse_open(depths: list[float], dabs: list[Dab], remarks: list[Notice]) ->
         left = [dab.name for dab in dabs if dab.depth_mm == depth]
         if len(left) >= LEAST_LEFT:
             continue
-        told = "; ".join(f"{each.where}: {each.sentence}" for each in remarks[:4])
+        listed = "; ".join(f"{each.where}: {each.sentence}" for each in remarks[:4])
         raise Error(
             f"{len(left)} dabs are left at depth {depth:g} mm, it takes {LEAST_LEFT}: paint the page again with more "
-            f"paint on the brush, and wipe it in between ({told}{'; ...' * (len(remarks) > 4)})",
+            f"paint on the brush, and wipe it in between ({listed}{'; ...' * (len(remarks) > 4)})",
             f"{depth:g} mm",
             len(left),
             code="dabs-too-few",
@@ -218,11 +218,11 @@ def _placed(dabs: list[Dab], remarks: list[Notice]) -> tuple[_Sheet, list[Dab]]:
         for row, dab in zip(columns, dabs, strict=True):
             at = 3 + 2 * depths.index(dab.depth_mm)
             row[:, at : at + 2] = rotation(dab.heading_rad).T
-        columns, wanted = columns.reshape(2 * len(dabs), -1), (found - place).ravel()
-        answer = np.linalg.lstsq(columns, wanted, rcond=None)[0]
-        off = np.hypot(*(wanted - columns @ answer).reshape(-1, 2).T)
+        columns, target = columns.reshape(2 * len(dabs), -1), (found - place).ravel()
+        answer = np.linalg.lstsq(columns, target, rcond=None)[0]
+        off = np.hypot(*(target - columns @ answer).reshape(-1, 2).T)
         worst = int(off.argmax())
-        if off[worst] <= max(ASIDE * float(np.median(off)), ASIDE_MM):
+        if off[worst] <= max(MAX_DISPLACEMENT * float(np.median(off)), MAX_DISPLACEMENT_MM):
             return _Sheet(answer[:2], float(answer[2]), place.mean(axis=0)), dabs
         sentence = f"it lies {off[worst]:.1f} mm from where the others say it should: left out"
         remarks.append(Notice(dabs[worst].name, sentence, code="mark-astray"))
@@ -240,14 +240,14 @@ def _across(seen: list[Seen]) -> tuple[Callable[[float], float], float]:
     """How far beside the axis the middle of a dab lies, over depth: single dabs lie aside by more than that. And how
     many times as far as by chance."""
     depths = np.array([each.dab.depth_mm for each in seen])
-    beside = np.array([_middle(each.outline_mm)[1] for each in seen])
+    off_axis = np.array([_middle(each.outline_mm)[1] for each in seen])
     wide = np.array([np.ptp(each.outline_mm[:, 1]) for each in seen])
     usual = {depth: float(wide[depths == depth].mean()) for depth in depths.tolist()}
     columns = np.array(
         [usual[depth] for depth in depths.tolist()]
     )  # a shape that grows is as lopsided as before
-    share = float(columns @ beside / (columns @ columns))
-    chance = np.sum((beside - share * columns) ** 2) / max(1, len(seen) - 1)
+    share = float(columns @ off_axis / (columns @ columns))
+    chance = np.sum((off_axis - share * columns) ** 2) / max(1, len(seen) - 1)
     times = abs(share) * np.sqrt(columns @ columns / max(chance, 1e-12))
     return lambda depth: share * usual[depth], float(times)
 
@@ -268,7 +268,9 @@ class _Depth:
         middles = np.array([_middle(each.outline_mm) for each in seen])
         self.middle = np.array([middles[:, 0].mean(), across_mm])
         self.seen = [
-            replace(each, outline_mm=each.outline_mm + self.middle - middle, aside_mm=middle - self.middle)
+            replace(
+                each, outline_mm=each.outline_mm + self.middle - middle, displacement_mm=middle - self.middle
+            )
             for each, middle in zip(seen, middles, strict=True)
         ]
         spans = np.array([np.ptp(each.outline_mm, axis=0) for each in self.seen])

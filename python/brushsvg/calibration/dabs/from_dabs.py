@@ -54,14 +54,14 @@ def calibrate_dabs(
     brush = _with_outlines(before, name, outlines)
     fits = {law: _fitted(law, values[law], brush.depth_range_mm) for law in LAWS}
     for law in LAWS:
-        setattr(brush, law, _told(fits[law].law, shapes, fits[law].law.half_interval_95))
+        setattr(brush, law, _profile_of(fits[law].law, shapes, fits[law].law.half_interval_95))
     covariance = _covariance(before, brush, fits, values, edge_mm)
     if covariance is not None:
         brush.covariance = covariance.tolist()
         for law in LAWS:
             variance = np.diag(covariance)[places(brush)[law]]
             half = _core.deviations_of_95(fits[law].law.degrees_of_freedom) * np.sqrt(variance)
-            setattr(brush, law, _told(fits[law].law, shapes, half.tolist()))
+            setattr(brush, law, _profile_of(fits[law].law, shapes, half.tolist()))
     _core.check(brush)
     return DabCalibration(brush, before, outlines, values, edge_mm, outlines.remarks)
 
@@ -121,7 +121,7 @@ def _seen(law: str, shape: Shape) -> np.ndarray:
         return np.column_stack([np.full(len(tops), depth), _widest(shape.outline_mm) + tops - tops.mean()])
     if law == "tip_gap":
         # a dab that lies farther ahead has its tip nearer to where it was set down
-        return np.array([[depth, shape.tip_gap_mm - seen.aside_mm[0]] for seen in shape.seen])
+        return np.array([[depth, shape.tip_gap_mm - seen.displacement_mm[0]] for seen in shape.seen])
     spans = np.array([_broadest(seen.outline_mm) for seen in shape.seen])
     return np.column_stack([np.full(len(spans), depth), _half(shape) + (spans - spans.mean()) / 2])
 
@@ -203,7 +203,7 @@ def _with_outlines(before: _core.Brush, name: str, outlines: Outlines) -> _core.
     return brush
 
 
-def _told(found: _core.Profile, shapes: tuple[Shape, ...], half_interval_95) -> _core.Profile:
+def _profile_of(found: _core.Profile, shapes: tuple[Shape, ...], half_interval_95) -> _core.Profile:
     return _core.Profile(
         found.coefficients,
         calibrated_mm=(shapes[0].depth_mm, shapes[-1].depth_mm),

@@ -27,7 +27,9 @@ OUTLINES = 10
 LEAST_RATIO = 0.1  # of widest section and front to the half width, as the fit has it
 ROUND_TAIL = (1.0, 0.4)  # of a footprint with a round tail: tip to widest section in half widths, sigma
 FOREIGN = 0.2  # share of a mark's points beyond that where it says nothing of the tail
-TELLS = 4.0  # chi-square by which one tail must fit better than the other for the marks to tell them apart
+MIN_CHI_SQUARE = (
+    4.0  # chi-square by which one tail must fit better than the other for the marks to tell them apart
+)
 # A law with a 95 % interval of more than this share of it, and this long, over this part of the depths: no measurement
 UNDETERMINED, UNDETERMINED_MM, UNDETERMINED_PART = 0.5, 0.5, 0.25
 
@@ -111,7 +113,7 @@ def calibrate_marks(
     refuse_unlike(fit, painted)
     covariance = np.array(fit.covariance)
     if edge_mm > 0:
-        moved = _moved(fit, farther_out(painted.marks, edge_mm), options)
+        moved = _moved(fit, grow_outlines(painted.marks, edge_mm), options)
         covariance += np.outer(moved, moved)
         wetter = wetter_where_wider(fit, deepest, edge_mm)
         covariance += np.outer(wetter, wetter)
@@ -173,15 +175,15 @@ def moved_by(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
 
 def moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float) -> np.ndarray:
     """The same where every edge lies edge_mm farther out."""
-    return moved_by(fit, farther_out(marks, edge_mm), options)
+    return moved_by(fit, grow_outlines(marks, edge_mm), options)
 
 
-def farther_out(marks: list, edge_mm: float) -> list:
+def grow_outlines(marks: list, edge_mm: float) -> list:
     return [
         _core.PaintedMark(
             mark.stroke,
             np.array(mark.poses_mm),
-            [_farther_out(ring, edge_mm) for ring in mark.outline_mm],
+            [_grow(ring, edge_mm) for ring in mark.outline_mm],
             mark.arcs,
         )
         for mark in marks
@@ -243,7 +245,7 @@ def height_at(fit) -> int:
     return len(laws.lag) + len(laws.tip_gap) - 1 + len(laws.half_width) - 1 + ratios
 
 
-def _farther_out(ring: np.ndarray, by_mm: float) -> np.ndarray:
+def _grow(ring: np.ndarray, by_mm: float) -> np.ndarray:
     """Paint lies on the left of a ring."""
     along = np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0)
     along /= np.maximum(np.hypot(*along.T), 1e-9)[:, None]
@@ -268,7 +270,7 @@ def _likelier_tail(marks: list, options: _core.MarkOptions, start=None) -> tuple
         if np.mean(off > OUTLYING) < FOREIGN:
             squares = np.minimum(off, OUTLYING) ** 2
             gain += float(squares[0].sum() - squares[1].sum()) / alike
-    fit = rounded if gain > TELLS else pointed
+    fit = rounded if gain > MIN_CHI_SQUARE else pointed
     if fit is pointed:
         options.round_tail, options.widest_per_half = False, usual
     options.departing = departing

@@ -74,13 +74,13 @@ def ask_for(options: _core.MarkOptions, parts: tuple[str, ...]) -> None:
         setattr(options, key, sigma)
 
 
-def asked(options: _core.MarkOptions) -> tuple[str, ...]:
+def list_parts(options: _core.MarkOptions) -> tuple[str, ...]:
     return tuple(part for part, (key, _) in PARTS.items() if getattr(options, key) > 0)
 
 
 def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Number]:
     """All that was asked for, in the order of the fit."""
-    parts = asked(options)
+    parts = list_parts(options)
     if not parts:
         return []
     machine = fit.machine
@@ -109,7 +109,7 @@ def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Num
     ]
 
 
-def told(found: list[Number]) -> list[str]:
+def describe_numbers(found: list[Number]) -> list[str]:
     """A line for each number, and of the field what becomes of it."""
     lines = [f"{one.name}: {one.value:.4f} +- {one.half:.4f} {one.unit}".rstrip() for one in found]
     field = [one for one in found if one.part == "field"]
@@ -129,7 +129,7 @@ def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str
     """The lines of a cell's table [machine]; none where nothing is asked for that a cell can undo. Backlash and a field
     that may as well be none are left out. Which machine it is may not be known: a remark says where a line has no use.
     """
-    parts, machine = asked(options), fit.machine
+    parts, machine = list_parts(options), fit.machine
     backlash = [
         one.value if one.value > max(one.half, LEAST_MM) else 0.0 for one in found if one.part == "backlash"
     ]
@@ -164,7 +164,7 @@ def _pair(values) -> str:
 
 def doubts(painted, options: _core.MarkOptions) -> list[Notice]:
     """A notice where lean cannot be told from lag."""
-    if "lean" not in asked(options):
+    if "lean" not in list_parts(options):
         return []
     way, total = np.zeros(2), 0.0
     for mark in painted.marks:

@@ -102,7 +102,7 @@ def ways_before_mm(passes: dict[str, _core.Pass]) -> tuple[dict[str, float], flo
 def painted_of(marks: list) -> Painted:
     """Error where the marks tell nothing of a brush."""
     ways = [np.array(mark.poses_mm) for mark in marks]
-    _refuse_what_tells_nothing(ways)
+    _refuse_uninformative(ways)
     return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))
 
 
@@ -317,7 +317,7 @@ def depths_painted(ways: list[np.ndarray]) -> int:
     return int(np.sum(runs & ~np.concatenate([[False], runs[:-1]]))) if runs.sum() < 4 else int(runs.sum())
 
 
-def _refuse_what_tells_nothing(ways: list[np.ndarray]) -> None:
+def _refuse_uninformative(ways: list[np.ndarray]) -> None:
     count = depths_painted(ways)
     if count == 0:
         raise Error(

@@ -17,7 +17,7 @@ from .from_marks import (
     GAP_TERMS,
     HALF_TERMS,
     LAG_TERMS,
-    TELLS,
+    MIN_CHI_SQUARE,
     front_ratio,
     height_at,
     simulated,
@@ -82,7 +82,7 @@ def _paint(made) -> list[str]:
             "and the freshly dipped width is off by more than its interval"
         )
     lines.append(
-        made.dry.told()
+        made.dry.describe()
         if made.dry
         else f"no mark ran dry: a load lasts {made.painted.way_mm:.0f} mm at least"
     )
@@ -91,7 +91,7 @@ def _paint(made) -> list[str]:
 
 def _tail(made) -> str:
     gain = made.round_tail_gain
-    if abs(gain) < TELLS:
+    if abs(gain) < MIN_CHI_SQUARE:
         return "these marks do not tell whether the footprint's tail is pointed or round; it is taken to be pointed"
     kinds = ("round", "pointed") if gain > 0 else ("pointed", "round")
     return "footprints with a {} tail fit these marks, {} ones worse (chi-square {:.0f} more)".format(
@@ -135,7 +135,7 @@ def _unexpected(made, of_photo: bool = False) -> list[str]:
     """What lies so far off that the sigmas the fit was given are not those of this sheet: they pull at the laws."""
     fit, expected = made.fit, made.expected
     astray = {stray.mark.stroke for stray in made.strays}
-    aside = [
+    displaced = [
         residual.displacement_mm
         for mark, residual in zip(made.painted.marks, fit.marks, strict=True)
         if mark.stroke not in astray
@@ -145,7 +145,7 @@ def _unexpected(made, of_photo: bool = False) -> list[str]:
         (
             "displacement_mm",
             "marks are displaced (rms) by",
-            _rms(aside),
+            _rms(displaced),
             expected.displacement_mm,
             UNLIKELY_RMS,
         ),
@@ -188,10 +188,10 @@ def _astray(made) -> list[str]:
     if made.strays_left_out and made.strays:
         names = ", ".join(stray.mark.stroke for stray in made.strays)
         return [f"left out, not being where or what the other marks say: {names}"]
-    return [f"{notice.where}: {notice.told}" for notice in strays_told(made)]
+    return [f"{notice.where}: {notice.text}" for notice in list_strays(made)]
 
 
-def strays_told(made) -> list[Notice]:
+def list_strays(made) -> list[Notice]:
     """Of each mark that is not where or what the others say: where it was found and where expected, what it costs."""
     out = []
     for stray in made.strays:
@@ -292,13 +292,15 @@ def _moved(made) -> list[str]:
         f"marks are displaced by {np.sqrt(np.mean(np.square(sizes))):.2f} mm (rms), {made.painted.marks[far].stroke} "
         f"most, by {sizes[far]:.2f} mm",
     ]
-    lines += machine_found.told(machine_found.numbers(fit, made.covariance, made.expected))
+    lines += machine_found.describe_numbers(machine_found.numbers(fit, made.covariance, made.expected))
     if made.scale:
-        lines.append(f"by where its marks lie the sheet is {made.scale.told(made.scale.both)} than the plan")
+        lines.append(
+            f"by where its marks lie the sheet is {made.scale.describe(made.scale.both)} than the plan"
+        )
     return lines
 
 
-def _stays(made, lying: float, moved: float) -> list[str]:
+def _stays(made, in_place: float, moved: float) -> list[str]:
     """lying, moved: overlap with and without the displacements."""
     fit = made.fit
     worst = int(np.argmax([residual.rms_mm for residual in fit.marks]))
@@ -306,7 +308,7 @@ def _stays(made, lying: float, moved: float) -> list[str]:
         f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, worth "
         f"{fit.effective_samples:.0f} independent ones",
         f"largest residuals: {made.painted.marks[worst].stroke}, {fit.marks[worst].rms_mm:.2f} mm (rms)",
-        f"painted and predicted marks overlap by {lying:.3f} where they lie, by {moved:.3f} with their displacements "
+        f"painted and predicted marks overlap by {in_place:.3f} where they are, by {moved:.3f} with their displacements "
         "taken away (mean of intersection over union)",
     ]
     if made.edge_mm > 0:
@@ -334,12 +336,12 @@ def _stays(made, lying: float, moved: float) -> list[str]:
 def overlaps(made) -> tuple[float, float]:
     """Mean overlap of painted with predicted marks, where they lie and with their displacements taken away: how well
     the brush says where paint will be, which is more than the confidence of its laws."""
-    marks, lying, moved = made.painted.marks, [], []
+    marks, in_place, moved = made.painted.marks, [], []
     predicted = predicted_marks(made, marks)
     for mark, residual, rings in zip(marks, made.fit.marks, predicted, strict=True):
-        lying.append(_core.overlap(_home(made, mark.outline_mm, (0.0, 0.0)), rings))
+        in_place.append(_core.overlap(_home(made, mark.outline_mm, (0.0, 0.0)), rings))
         moved.append(_core.overlap(_home(made, mark.outline_mm, residual.displacement_mm), rings))
-    return float(np.mean(lying)), float(np.mean(moved))
+    return float(np.mean(in_place)), float(np.mean(moved))
 
 
 def report_picture(made, suffix: str) -> bytes:

@@ -97,15 +97,15 @@ def freshly_dipped(painted: Painted, made: MarkCalibration, rate_per_m: float) -
     brush, traces = simulated(made, painted.marks)
     fit, turned = made.fit, rotation(made.fit.turn_rad)
     centre = np.array(fit.centre_mm)
-    aside = dict(zip((each.stroke for each in made.painted.marks), fit.marks, strict=True))
+    residuals = dict(zip((each.stroke for each in made.painted.marks), fit.marks, strict=True))
     paint = _core.Paint(abs(rate_per_m))
     marks = []
     for mark, trace in zip(painted.marks, traces, strict=True):
-        moved = np.array(aside[mark.stroke].displacement_mm) if mark.stroke in aside else np.zeros(2)
+        moved = np.array(residuals[mark.stroke].displacement_mm) if mark.stroke in residuals else np.zeros(2)
         side = Sides(brush, trace, painted.before_mm[mark.stroke])
         rings = []
         for ring in map(np.asarray, mark.outline_mm):
-            at = side.beside((ring - fit.shift_mm - centre) @ turned.T + centre - moved)
+            at = side.locate((ring - fit.shift_mm - centre) @ turned.T + centre - moved)
             shares = np.array([paint.width_share(way) for way in at.way_mm])
             more = 1 / shares - 1 if rate_per_m > 0 else shares - 1
             rings.append(ring + (more * at.across_mm)[:, None] * (at.normal @ turned))
@@ -114,7 +114,7 @@ def freshly_dipped(painted: Painted, made: MarkCalibration, rate_per_m: float) -
 
 
 @dataclass(frozen=True)
-class Beside:
+class NearestSections:
     """Of each point: depth and way of the brush where its widest section was nearest, how far to the left of it the
     point lies, which way that is, and how far the section ran to there, or from there on, whichever is less."""
 
@@ -144,7 +144,7 @@ class Sides:
         self.ways_mm = before_mm + between(lengths(np.asarray(trace.tcp_mm)[down]))
         self.along_mm = fine
 
-    def beside(self, points: np.ndarray) -> Beside:
+    def locate(self, points: np.ndarray) -> NearestSections:
         row = np.concatenate(
             [
                 ((part[:, None] - self.widest_mm) ** 2).sum(axis=2).argmin(axis=1)
@@ -154,7 +154,7 @@ class Sides:
         normal = self.normals[row]
         across = ((points - self.widest_mm[row]) * normal).sum(axis=1)
         ends = np.minimum(self.along_mm[row], self.along_mm[-1] - self.along_mm[row])
-        return Beside(self.depth_mm[row], self.ways_mm[row], across, normal, ends)
+        return NearestSections(self.depth_mm[row], self.ways_mm[row], across, normal, ends)
 
 
 @dataclass(frozen=True)
@@ -163,12 +163,12 @@ class Expected:
     grows that the depth tells, and the way in mm that one load has to last."""
 
     half_per_m: float
-    told_by_depth: float
+    explained_by_depth: float
     way_mm: float
 
     @property
     def is_refused(self) -> bool:
-        return 1 - self.told_by_depth < LEAST_OWN
+        return 1 - self.explained_by_depth < LEAST_OWN
 
 
 def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painted: list) -> Expected:
@@ -176,15 +176,15 @@ def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painte
     options = _core.MarkOptions()
     fit = expected_fit(painted, plan, brush, noise_mm, 1.0, options)
     before_mm, _ = ways_before_mm({one.stroke: one for one in plan.passes})
-    told = replace(painted_of(painted), before_mm=before_mm)
-    made = MarkCalibration(brush_of(fit.laws, brush.name, brush.depth_range_mm), fit, told, options)
+    complete = replace(painted_of(painted), before_mm=before_mm)
+    made = MarkCalibration(brush_of(fit.laws, brush.name, brush.depth_range_mm), fit, complete, options)
     flanks = _flanks(made)
     own = flanks.own()
     kept = np.exp(-options.spacing_mm / 1.0)  # points beside each other know of each other, over 1 mm
     sigma = noise_mm * np.sqrt((1 + kept) / (1 - kept) / float(own @ own))
     half = _core.deviations_of_95(flanks.freedom) * sigma
-    last_mm = max(told.before_mm[mark.stroke] + _lengths(mark)[-1] for mark in told.marks)
-    return Expected(float(half), flanks.told_by_depth(), float(last_mm))
+    last_mm = max(complete.before_mm[mark.stroke] + _lengths(mark)[-1] for mark in complete.marks)
+    return Expected(float(half), flanks.explained_by_depth(), float(last_mm))
 
 
 @dataclass(frozen=True)
@@ -208,16 +208,16 @@ class Flanks:
 
     def own(self) -> np.ndarray:
         """What of moved no width law and no height of the paper does."""
-        return beside_powers(self.moved, self.powers)
+        return residual_of_powers(self.moved, self.powers)
 
-    def told_by_depth(self) -> float:
+    def explained_by_depth(self) -> float:
         """Of how moved differs from what one way for all points would make of it."""
         way = float(self.moved @ self.half_mm) / float(self.half_mm @ self.half_mm)
         about, own = self.moved - way * self.half_mm, self.own()
         return 1 - float(own @ own) / max(float(about @ about), 1e-12)
 
 
-def beside_powers(values: np.ndarray, powers: np.ndarray) -> np.ndarray:
+def residual_of_powers(values: np.ndarray, powers: np.ndarray) -> np.ndarray:
     return values - powers @ np.linalg.lstsq(powers, values, rcond=None)[0]
 
 
@@ -228,16 +228,16 @@ def _flanks(made: MarkCalibration) -> Flanks:
     for number, (residual, trace) in enumerate(zip(made.fit.marks, traces, strict=True)):
         if trace.stroke in astray or residual.outlier:
             continue
-        at = Sides(brush, trace, made.painted.before_mm[trace.stroke]).beside(np.asarray(residual.point_mm))
+        at = Sides(brush, trace, made.painted.before_mm[trace.stroke]).locate(np.asarray(residual.point_mm))
         half = np.array([brush.half_width(d) for d in at.depth_mm])
         long = np.array([brush.tip_to_widest(d) for d in at.depth_mm]) + half
         share = np.abs(at.across_mm) / np.maximum(half, 1e-6)
         distance = np.asarray(residual.distance_mm)
-        told = (share > ACROSS[0]) & (share < ACROSS[1]) & (at.ends_mm > long)
-        told &= np.abs(distance) < OUTLYING * made.fit.noise_mm
+        is_flank = (share > ACROSS[0]) & (share < ACROSS[1]) & (at.ends_mm > long)
+        is_flank &= np.abs(distance) < OUTLYING * made.fit.noise_mm
         powers = at.depth_mm[:, None] ** np.arange(3 if made.painted.depths > 1 else 1)
         rows = np.column_stack([-1e-3 * half * at.way_mm, half, distance, np.full(len(half), number), powers])
-        found.append(rows[told])
+        found.append(rows[is_flank])
     rows = np.vstack(found) if found else np.empty((0, 5))
     marks = len(np.unique(rows[:, 3]))
     if marks < FEWEST + 4:
@@ -253,18 +253,18 @@ def _left(made: MarkCalibration) -> tuple[float, float, float]:
     that decide are smaller than their errors (HC2 of MacKinnon and White, 1985, by marks); and marks beyond what is
     found."""
     flanks = _flanks(made)
-    told = flanks.told_by_depth()
-    if 1 - told < LEAST_OWN:
+    explained = flanks.explained_by_depth()
+    if 1 - explained < LEAST_OWN:
         raise Error(
-            f"{100 * told:.0f} % of how the way since the dip grows is told by the depth alone, so narrower and "
+            f"{100 * explained:.0f} % of how the way since the dip grows is told by the depth alone, so narrower and "
             "shallower marks are alike: paint strokes of one depth early and late, as `brushsvg chart --paint` does",
             "paint",
             code="paint-undetermined",
         )
     columns, own = np.column_stack([flanks.moved, flanks.powers]), flanks.own()
     rate = _first_number(columns, flanks.off_mm)
-    beside = beside_powers(flanks.off_mm, flanks.powers) - rate * own
-    says = np.array([float((own * beside)[mark].sum()) for mark in flanks.marks()]) / float(own @ own)
+    others = residual_of_powers(flanks.off_mm, flanks.powers) - rate * own
+    says = np.array([float((own * others)[mark].sum()) for mark in flanks.marks()]) / float(own @ own)
     without = _without_each(columns, flanks)
     return rate, float(np.sqrt(max(says @ (rate - without), 0.0))), flanks.freedom
 

@@ -65,28 +65,28 @@ def _compared(picture, flat, read, made) -> dict[str, list[str]]:
     marks = made.painted.marks
     predicted = predicted_marks(made, marks)
     for mark, residual, rings in zip(marks, made.fit.marks, predicted, strict=True):
-        lying = on_sheet(made, [ring + np.array(residual.displacement_mm) for ring in rings])
-        _draw(picture, flat, lying, PREDICTED, PREDICTED_MM)
-        overlap = _core.overlap([np.array(ring) for ring in mark.outline_mm], lying)
-        aside = np.hypot(*residual.displacement_mm)
+        drawn = on_sheet(made, [ring + np.array(residual.displacement_mm) for ring in rings])
+        _draw(picture, flat, drawn, PREDICTED, PREDICTED_MM)
+        overlap = _core.overlap([np.array(ring) for ring in mark.outline_mm], drawn)
+        displaced = np.hypot(*residual.displacement_mm)
         words[mark.stroke] = [
-            f"{mark.stroke}: overlap {overlap:.3f}, {aside:.2f} mm aside",
-            f"{mark.stroke}: {overlap:.3f}, {aside:.2f} mm",
-            f"{overlap:.3f}, {aside:.2f} mm",
-            f"{overlap:.2f}, {aside:.1f}",
+            f"{mark.stroke}: overlap {overlap:.3f}, {displaced:.2f} mm aside",
+            f"{mark.stroke}: {overlap:.3f}, {displaced:.2f} mm",
+            f"{overlap:.3f}, {displaced:.2f} mm",
+            f"{overlap:.2f}, {displaced:.1f}",
         ]
     return words
 
 
 def _dabs_compared(picture, flat, read, outlines) -> dict[str, list[str]]:
-    lying, words = outlines.lying_mm(), {}
+    drawn, words = outlines.predicted_mm(), {}
     for shape in outlines.shapes:
-        for name, aside in ((each.dab.name, np.hypot(*each.aside_mm)) for each in shape.seen):
-            _draw(picture, flat, [lying[name]], PREDICTED, PREDICTED_MM)
-            told = f"{shape.depth_mm:g} mm deep, {aside:.2f} mm aside"
-            words[name] = [f"{name}: {told}", told, f"{shape.depth_mm:g} mm", f"{shape.depth_mm:g}"]
+        for name, displaced in ((each.dab.name, np.hypot(*each.displacement_mm)) for each in shape.seen):
+            _draw(picture, flat, [drawn[name]], PREDICTED, PREDICTED_MM)
+            label = f"{shape.depth_mm:g} mm deep, {displaced:.2f} mm aside"
+            words[name] = [f"{name}: {label}", label, f"{shape.depth_mm:g} mm", f"{shape.depth_mm:g}"]
     for name, rings in read.marks.outlines_mm.items():
-        if name not in lying:
+        if name not in drawn:
             _draw(picture, flat, rings, ASTRAY, FOUND_MM)
             words[name] = [f"{name}: LEFT OUT", "LEFT OUT", "OUT"]
     return words

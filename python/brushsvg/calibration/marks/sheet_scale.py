@@ -33,7 +33,7 @@ class SheetScale:
         size, error = abs(share[0]), max(share[1], 1e-12)
         return size > LEAST_SCALE and _core.as_normal(size / error, self.freedom) > CERTAIN
 
-    def told(self, share: tuple[float, float]) -> str:
+    def describe(self, share: tuple[float, float]) -> str:
         """A share with its 95 % interval."""
         size = "larger" if share[0] >= 0 else "smaller"
         half = _core.deviations_of_95(self.freedom) * share[1]
@@ -70,13 +70,13 @@ def refuse_scale(scale: SheetScale | None) -> None:
     apart = (scale.x[0] - scale.y[0], math.hypot(scale.x[1], scale.y[1]))
     if scale.is_off(apart):
         raise Error(
-            f"the sheet is {scale.told(scale.x)} than the plan in x and {scale.told(scale.y)} in y. {REMEDY}",
+            f"the sheet is {scale.describe(scale.x)} than the plan in x and {scale.describe(scale.y)} in y. {REMEDY}",
             "marks",
             code="marks-scaled",
         )
     if scale.is_off(scale.both):
         raise Error(
-            f"the sheet is {scale.told(scale.both)} than the plan. {REMEDY}",
+            f"the sheet is {scale.describe(scale.both)} than the plan. {REMEDY}",
             "marks",
             code="marks-scaled",
         )

@@ -35,15 +35,15 @@ def strays(marks: list, fit) -> list[Stray]:
     have no say in it."""
     if len(marks) < 5:
         return []
-    aside = np.array([residual.displacement_mm for residual in fit.marks])
+    displaced = np.array([residual.displacement_mm for residual in fit.marks])
     rms = np.array([residual.rms_mm for residual in fit.marks])
     out = []
     for k, (mark, residual) in enumerate(zip(marks, fit.marks, strict=True)):
-        others = np.delete(aside, k, axis=0)
+        others = np.delete(displaced, k, axis=0)
         middle = np.median(others, axis=0)
         spread = max(1.4826 * float(np.median(np.abs(others - middle))), LEAST_SPREAD_MM)
         usual = max(float(np.median(np.delete(rms, k))), LEAST_USUAL_MM)
-        off = tuple((aside[k] - middle).tolist())
+        off = tuple((displaced[k] - middle).tolist())
         part = float(np.mean(np.abs(residual.distance_mm) > OUTLYING * fit.noise_mm))
         found = Stray(mark, off, spread, residual.rms_mm, usual)
         if found.is_displaced or (residual.rms_mm > UNLIKE * usual and part > UNLIKE_PART):

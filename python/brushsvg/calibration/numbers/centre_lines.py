@@ -57,7 +57,7 @@ def _at(values: np.ndarray, piece: np.ndarray, share: np.ndarray) -> np.ndarray:
     return values[piece] + share[:, None] * (values[piece + 1] - values[piece])
 
 
-def _beside(points_mm) -> np.ndarray:
+def _below_second_line(points_mm) -> np.ndarray:
     """At most MOST_POINTS of them, below the handle's second line."""
     points = np.array(points_mm, float)
     points = points[:: -(-len(points) // MOST_POINTS)]
@@ -82,7 +82,7 @@ def read_turn_near(points_mm, lag_mm: float, turning_mm: float) -> Turn:
     the least squares of all points of all lines. Points scattered about a bent line are nearest to its inside on
     average; what that adds to the step is taken off, as noise of the size that is found adds it to points on the line.
     """
-    points = _beside(points_mm)
+    points = _below_second_line(points_mm)
     off, gradient, normal = _normal_equations(points, lag_mm, turning_mm)
     freedom = len(points) - 2
     variance = float((off**2).sum()) / freedom
@@ -114,7 +114,7 @@ def read_turn(points_mm, where: str = "") -> Turn:
     """
     from scipy.optimize import least_squares
 
-    points = _beside(points_mm)
+    points = _below_second_line(points_mm)
     reach = float(-points[:, 1].min())
     if not reach > 0.0 or points[:, 0].max() <= 0.0:
         raise Error(

@@ -63,7 +63,7 @@ class Fitted:
     remarks: tuple[str, ...] = ()
     outliers: dict[int, plausibility.Outlier] = field(default_factory=dict)
 
-    def outliers_told(self) -> list[str]:
+    def list_outliers(self) -> list[str]:
         """A sentence for each outlier, the farthest first."""
         return [
             f"{self.points[k].where} is an outlier: {found.off_mm:+.2f} mm off the law of the others, studentized "
@@ -435,11 +435,11 @@ class _Maker:
             outliers = plausibility.outliers_of_kinds(left, spare, np.array(scatter), np.array(freedoms))
             self._refuse_negative(law, points, fit)
             self.done[law] = Fitted(law, points, fit, self.done[law].remarks, outliers)
-        told = ", ".join(
+        listed = ", ".join(
             f"{kind.name} ({kind.count}, scatter {' and '.join(f'{mm:.2f}' for mm in kind.scatter_mm)} mm)"
             for kind in found.kinds
         )
-        self.remarks.append(f"lag, tip gap and what they are read with were fitted together: {told}")
+        self.remarks.append(f"lag, tip gap and what they are read with were fitted together: {listed}")
         if found.held:
             self.remarks.append(
                 "fitted with a constraint: without it the lag or the tip gap is not positive somewhere in the depth "

@@ -187,12 +187,12 @@ def _lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
             values[worst],
             code="law-undetermined",
         )
-    told = ", ".join(f"{lag:g} mm at depth {depth:g} mm" for depth, lag in lags[:4])
+    listed = ", ".join(f"{lag:g} mm at depth {depth:g} mm" for depth, lag in lags[:4])
     more = f" and {len(lags) - 4} more" if len(lags) > 4 else ""
     return _core.Profile(
         fit.law.coefficients,
         calibrated_mm=fit.law.calibrated_mm,
-        source=f"Lags as typed in: {told}{more}; met to {off_mm:.2f} mm.",
+        source=f"Lags as typed in: {listed}{more}; met to {off_mm:.2f} mm.",
         assumed=places == 1,
         half_interval_95=fit.law.half_interval_95,
         rmse_mm=fit.law.rmse_mm,
@@ -231,13 +231,13 @@ def _half_width(widths: list[tuple[float, float]], deepest: float) -> _core.Prof
             2 * halves[worst],
             code="width-falls",
         )
-    told = ", ".join(f"{width:g} mm at depth {depth:g} mm" for depth, width in widths[:4])
+    listed = ", ".join(f"{width:g} mm at depth {depth:g} mm" for depth, width in widths[:4])
     more = f" and {len(widths) - 4} more" if len(widths) > 4 else ""
     return _core.Profile(
         fit.law.coefficients,
         calibrated_mm=fit.law.calibrated_mm,
-        source=f"Widths as typed in: {told}{more}; met to {2 * off_mm:.2f} mm. That the brush touches with no width at "
-        "depth 0 is assumed.",
+        source=f"Widths as typed in: {listed}{more}; met to {2 * off_mm:.2f} mm. That the brush touches with no width "
+        "at depth 0 is assumed.",
         assumed=places == 1,
         half_interval_95=fit.law.half_interval_95,
         rmse_mm=fit.law.rmse_mm,

@@ -42,7 +42,7 @@ def _law(brush, fitted) -> list[str]:
             + " (ascending powers)"
         )
     lines += [f"  {remark}" for remark in fitted.remarks]
-    return [*lines, *(f"  {told}" for told in fitted.outliers_told())]
+    return [*lines, *(f"  {line}" for line in fitted.list_outliers())]
 
 
 def _table(brush) -> list[str]:
@@ -57,8 +57,8 @@ def _table(brush) -> list[str]:
             band = bands[name]
             cells.append(value + (f" +- {band[0][i]:.2f}" if band else ""))
         lines.append(f"{depth:7.2f}" + "".join(cell.rjust(18) for cell in cells))
-    told = {band[1] for band in bands.values() if band}
-    return [*lines, *(f"  +-: {what}" for what in sorted(told))]
+    notes = {band[1] for band in bands.values() if band}
+    return [*lines, *(f"  +-: {what}" for what in sorted(notes))]
 
 
 def _next(made) -> list[str]:

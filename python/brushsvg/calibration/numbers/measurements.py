@@ -141,14 +141,14 @@ def _table_rows(
         raise Error(
             "this is not a table: a line end stands amid a value, or a value has no end", code="not-a-table"
         ) from None
-    told = [(f"{where}, {name}", row[name]) for where, row in rows for name in numbers]
-    for where, cell in told:
+    cells = [(f"{where}, {name}", row[name]) for where, row in rows for name in numbers]
+    for where, cell in cells:
         if not _NUMBER.fullmatch(cell):
             advice = (
                 "write a number of mm, without its unit" if _NUMBER.match(cell) else "write a number of mm"
             )
             raise Error(f"{cell!r} is not a number: {advice}", where, code="not-a-number")
-    points, commas = ([each for each in told if mark in each[1]] for mark in ".,")
+    points, commas = ([each for each in cells if mark in each[1]] for mark in ".,")
     if points and commas:
         raise Error(
             f"{commas[0][1]!r} has a comma for its decimals and {points[0][1]!r} in {points[0][0]} a point: write all "
@@ -235,7 +235,7 @@ def _refuse_surplus(line: dict, where: str, separator: str) -> None:
 
 def _read_json(text: str) -> Measurements:
     content = json_fields.document(text, FORMAT)
-    json_fields.refuse_unknown(content, (*_ABOUT, *_PAINTED), told=(*KINDS, "marks"))
+    json_fields.refuse_unknown(content, (*_ABOUT, *_PAINTED), listed=(*KINDS, "marks"))
     rows = {}
     for kind in KINDS:
         if listed := json_fields.objects(content.get(kind, []), kind):

@@ -335,7 +335,7 @@ def refuse_open(brush, fitted) -> None:
     if np.mean(half > values) <= OPEN_PART:
         return
     worst = int(np.argmax(half / np.maximum(values, 1e-9)))
-    todo = next(iter(fitted.outliers_told()), "measure it at more depths, from shallow to the deepest")
+    todo = next(iter(fitted.list_outliers()), "measure it at more depths, from shallow to the deepest")
     raise Error(
         f"these values do not determine the {fitted.name}: {values[worst]:.1f} +- {half[worst]:.1f} mm (95 %) at "
         f"depth {depths[worst]:.3g} mm: {todo}",

@@ -74,14 +74,14 @@ def _calibrated(made: MarkCalibration, found: Predicting) -> OverlapCalibration:
     brush.max_speed_mm_s = made.brush.max_speed_mm_s
     for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
         was = getattr(brush, law)
-        told = _core.Profile(
+        profile = _core.Profile(
             was.coefficients,
             calibrated_mm=(0.0, made.painted.deepest_mm),
             source=f"Fitted to {count} painted marks, to the largest overlap; without intervals.",
             floor=was.floor,
             floor_slope=was.floor_slope,
         )
-        setattr(brush, law, told)
+        setattr(brush, law, profile)
     _core.check(brush)
     placed = Placed(
         fit.turn_rad,
@@ -90,7 +90,7 @@ def _calibrated(made: MarkCalibration, found: Predicting) -> OverlapCalibration:
         found.height_mm,
         tuple(
             PlacedMark(
-                found.led.way(np.array(residual.way_mm), found.height_mm),
+                found.offsets.way(np.array(residual.way_mm), found.height_mm),
                 tuple((residual.displacement_mm - found.shift_mm).tolist()),
             )
             for residual in fit.marks

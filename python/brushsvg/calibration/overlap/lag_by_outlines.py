@@ -52,21 +52,24 @@ def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagBy
     refuse_assumed(own)
     _refuse_shallow(own, made.painted.deepest_mm)
     edges = _Edges(made, own)
-    told = np.array(made.fit.laws.lag)
+    fitted_lag = np.array(made.fit.laws.lag)
     depths = np.linspace(0.0, made.painted.deepest_mm, 21)[1:]
     terms = min(LAG_TERMS, made.painted.depths)
     # lags at so many depths, as coefficients
     at = np.linspace(0.0, made.painted.deepest_mm, terms + 1)[1:]
     to_law = np.linalg.inv(np.vander(at, terms, increasing=True))
     more = np.zeros(terms)
-    height, aside = made.fit.height_mm, np.array([residual.displacement_mm for residual in made.fit.marks])
+    height, displaced = (
+        made.fit.height_mm,
+        np.array([residual.displacement_mm for residual in made.fit.marks]),
+    )
     for _ in range(ROUNDS):
-        off, slopes = edges.looked_at(_raised(told, to_law @ more), to_law, height, aside)
-        change, covariance, noise = edges.solved(off, slopes, height, aside)
-        more, height, aside = (
+        off, slopes = edges.looked_at(_raised(fitted_lag, to_law @ more), to_law, height, displaced)
+        change, covariance, noise = edges.solved(off, slopes, height, displaced)
+        more, height, displaced = (
             more + change[:terms],
             height + change[terms],
-            aside + change[terms + 1 :].reshape(-1, 2),
+            displaced + change[terms + 1 :].reshape(-1, 2),
         )
         left = float(np.abs(polyval(depths, to_law @ change[:terms])).max())
         if left < SETTLED_MM:
@@ -80,8 +83,8 @@ def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagBy
             code="law-undetermined",
         )
     # no shorter than the tip gap: what that is off, the lag is off the other way
-    lag = _raised(_raised(told, to_law @ more), np.zeros(len(own.tip_gap.coefficients)))
-    _refuse_far(lag, told, depths, own)
+    lag = _raised(_raised(fitted_lag, to_law @ more), np.zeros(len(own.tip_gap.coefficients)))
+    _refuse_far(lag, fitted_lag, depths, own)
     brush = _with_lag(own, lag, name)
     block = _raised_covariance(made, to_law @ covariance[:terms, :terms] @ to_law.T)
     whole = _joined(own, brush, block)
@@ -97,7 +100,7 @@ def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagBy
     fit = made.fit
     marks = [
         PlacedMark(np.array(residual.way_mm), tuple(by.tolist()))
-        for residual, by in zip(fit.marks, aside, strict=True)
+        for residual, by in zip(fit.marks, displaced, strict=True)
     ]
     placed = Placed(fit.turn_rad, fit.shift_mm, fit.centre_mm, float(height), tuple(marks))
     return LagByOutlines(replace(made, brush=brush, fit=placed), made, own, float(height), noise)
@@ -132,42 +135,44 @@ class _Edges:
         ]
         self.of = np.repeat(np.arange(len(self.points)), [len(each) for each in self.points])
 
-    def looked_at(self, lag, to_law, height, aside) -> tuple[np.ndarray, np.ndarray]:
+    def looked_at(self, lag, to_law, height, displaced) -> tuple[np.ndarray, np.ndarray]:
         """Distances (n,) outward from the predicted edges, and their slopes over lags, height and each displacement."""
         rings = self._painted(lag, height)
-        off = self._off(rings, aside)
-        columns = [self._off(self._painted(_raised(lag, STEP_MM * row), height), aside) for row in to_law.T]
-        columns.append(self._off(self._painted(lag, height + STEP_MM), aside))
+        off = self._off(rings, displaced)
+        columns = [
+            self._off(self._painted(_raised(lag, STEP_MM * row), height), displaced) for row in to_law.T
+        ]
+        columns.append(self._off(self._painted(lag, height + STEP_MM), displaced))
         slopes = np.zeros((len(off), len(columns) + 2 * len(self.points)))
         slopes[:, : len(columns)] = (np.column_stack(columns) - off[:, None]) / STEP_MM
         for axis, step in enumerate(STEP_MM * np.eye(2)):
-            moved = (self._off(rings, aside + step) - off) / STEP_MM
+            moved = (self._off(rings, displaced + step) - off) / STEP_MM
             slopes[np.arange(len(off)), len(columns) + 2 * self.of + axis] = moved
         return off, slopes
 
-    def solved(self, off, slopes, height, aside) -> tuple[np.ndarray, np.ndarray, float]:
+    def solved(self, off, slopes, height, displaced) -> tuple[np.ndarray, np.ndarray, float]:
         """The step, the covariance of what it ends at, and the noise. What is known beforehand: height and
         displacements, as the fit was told; points beside each other say less than as many."""
         expected, fit = self.made.expected, self.made.fit
         noise = max(LEAST_NOISE_MM, 1.4826 * float(np.median(np.abs(off))))
         weight = np.clip(1 - (off / (OUTLYING * noise)) ** 2, 0.0, 1.0)  # the root of Tukey's
         alike = noise * np.sqrt(fit.samples / max(fit.effective_samples, 1.0))
-        first = slopes.shape[1] - 1 - aside.size
-        known = np.zeros((1 + aside.size, slopes.shape[1]))
+        first = slopes.shape[1] - 1 - displaced.size
+        known = np.zeros((1 + displaced.size, slopes.shape[1]))
         known[0, first] = 1 / expected.height_mm.sigma
-        known[1:, first + 1 :] = np.eye(aside.size) / expected.displacement_mm
+        known[1:, first + 1 :] = np.eye(displaced.size) / expected.displacement_mm
         usual = np.append(
             (expected.height_mm.value - height) / expected.height_mm.sigma,
-            -aside.ravel() / expected.displacement_mm,
+            -displaced.ravel() / expected.displacement_mm,
         )
         both = np.vstack([slopes * (weight / alike)[:, None], known])
-        wanted = np.append(-off * weight / alike, usual)
+        right_side = np.append(-off * weight / alike, usual)
         inverse = np.linalg.inv(both.T @ both)
         # what all edges, painted or measured on dabs, lie off together
         together = float(np.hypot(self.made.edge_mm, _unsure_mm(self.own)))
         moved = inverse @ both.T[:, : len(off)] @ (weight / alike * together)
         covariance = inverse + np.outer(moved, moved)
-        return inverse @ both.T @ wanted, covariance, noise
+        return inverse @ both.T @ right_side, covariance, noise
 
     def _painted(self, lag, height: float) -> list:
         brush = _with_lag(self.own, lag, self.own.name)
@@ -180,11 +185,11 @@ class _Edges:
         _core.trace_outlines(painted, brush)
         return [[np.array(ring) for ring in one.outline_mm] for one in painted.passes]
 
-    def _off(self, painted: list, aside: np.ndarray) -> np.ndarray:
+    def _off(self, painted: list, displaced: np.ndarray) -> np.ndarray:
         return np.concatenate(
             [
                 _outward(points - by, rings)
-                for points, by, rings in zip(self.points, aside, painted, strict=True)
+                for points, by, rings in zip(self.points, displaced, painted, strict=True)
             ]
         )
 
@@ -254,8 +259,8 @@ def _refuse_shallow(own: _core.Brush, deepest_mm: float) -> None:
         )
 
 
-def _refuse_far(lag, told, depths: np.ndarray, own: _core.Brush) -> None:
-    usual, now = polyval(depths, told), polyval(depths, lag)
+def _refuse_far(lag, fitted_lag, depths: np.ndarray, own: _core.Brush) -> None:
+    usual, now = polyval(depths, fitted_lag), polyval(depths, lag)
     share = np.abs(now - usual) / np.maximum(usual, usual.max() / 4)
     worst = int(share.argmax())
     if share[worst] > FARTHEST or polyval(np.append(0.0, depths), lag).min() < 0:

@@ -19,7 +19,17 @@ from ...errors import Error
 from ..marks.from_marks import ROUND_TAIL
 from ..marks.machine_found import PARTS
 from .overlap_field import FoundField, found_field, moved
-from .overlap_search import Begin, Led, Search, Target, best_from, each_kind, few_of, middle_of, polished
+from .overlap_search import (
+    Begin,
+    MachineOffsets,
+    Search,
+    Target,
+    best_from,
+    each_kind,
+    few_of,
+    middle_of,
+    polished,
+)
 
 HALVES = 30  # marks from which on two parts do; fewer are parted in three: each fit needs enough of them
 LEAST = 9  # marks; the edges of fewer, parted, leave laws open
@@ -39,14 +49,14 @@ class Predicting:
     laws: _core.MarkLaws
     height_mm: float
     shift_mm: np.ndarray
-    led: Led
+    offsets: MachineOffsets
     before: float
     overlap: float
     numbers: int
     kind: str
     parts: int
     left_out: dict[str, tuple[float, float]]
-    aside: FoundField | None = None
+    displacement: FoundField | None = None
 
 
 def best_predicting(
@@ -80,7 +90,7 @@ def best_predicting(
     else:  # fewer marks told fewer numbers of a law
         kind, x = _searched(search, targets, look, kind)
     found = _predicting(search, kind, x, targets, look, order)
-    means = {one: (float(lying), float(moved)) for one, (lying, moved) in left_out.items()}
+    means = {one: (float(in_place), float(moved)) for one, (in_place, moved) in left_out.items()}
     return replace(found, parts=len(tried["edges"]), left_out=means)
 
 
@@ -105,15 +115,15 @@ def _searched(search: Search, targets: list[Target], look, last: str | None = No
 
 
 def _predicting(search: Search, kind: str, x, targets: list[Target], look, order=None) -> Predicting:
-    x, aside = polished(search, kind, x, targets, look), None
+    x, displacement = polished(search, kind, x, targets, look), None
     if order is not None:
-        aside = found_field(search, x, targets, order)
-        if aside.field is not None:
-            targets = moved(targets, aside.field.at(order))
+        displacement = found_field(search, x, targets, order)
+        if displacement.field is not None:
+            targets = moved(targets, displacement.field.at(order))
             # along the way a place is what a lag is, too
             x = polished(search, kind, x, targets, look, ("lag",))
     before, now = (float(search.overlaps(each, targets)[:, 0].mean()) for each in (search.begin, x))
-    return Predicting(*search.read(x), before, now, search.changed(kind), kind, 0, {}, aside)
+    return Predicting(*search.read(x), before, now, search.changed(kind), kind, 0, {}, displacement)
 
 
 @dataclass(frozen=True, eq=False)

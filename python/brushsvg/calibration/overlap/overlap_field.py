@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .overlap_search import Search, Target, best_shift, of_led
+from .overlap_search import Search, Target, apply_to_moved, best_shift
 from .sheet_field import SheetField, sheet_field
 
 FIFTHS = 5
@@ -33,19 +33,19 @@ def found_field(search: Search, x, targets: list[Target], order: np.ndarray) -> 
 
     if len(targets) < FEWEST:
         return FoundField(None)
-    places = np.array(of_led(search, x, targets, placed))
+    places = np.array(apply_to_moved(search, x, targets, placed))
     part = np.arange(len(targets)) % FIFTHS
-    aside = np.zeros((len(targets), 2))
+    displacement = np.zeros((len(targets), 2))
     for k in np.unique(part):
         taught = part != k
-        aside[~taught] = sheet_field(order[taught], places[taught]).at(order[~taught])
-    won = search.overlaps(x, moved(targets, aside))[:, 0] - search.overlaps(x, targets)[:, 0]
+        displacement[~taught] = sheet_field(order[taught], places[taught]).at(order[~taught])
+    won = search.overlaps(x, moved(targets, displacement))[:, 0] - search.overlaps(x, targets)[:, 0]
     field = sheet_field(order, places) if won.mean() > 0 else None
     return FoundField(field, float(won.mean()), float(won.std() / np.sqrt(len(won))))
 
 
-def moved(targets: list[Target], aside_mm: np.ndarray) -> list[Target]:
+def moved(targets: list[Target], displacements_mm: np.ndarray) -> list[Target]:
     return [
-        replace(one, poses_mm=one.poses_mm + np.append(aside, 0.0))
-        for one, aside in zip(targets, aside_mm, strict=True)
+        replace(one, poses_mm=one.poses_mm + np.append(displacement, 0.0))
+        for one, displacement in zip(targets, displacements_mm, strict=True)
     ]

@@ -80,7 +80,7 @@ class Target:
 
 
 @dataclass(frozen=True, eq=False)
-class Led:
+class MachineOffsets:
     """How a machine runs a way besides what edges told of it: aside by lean_mm_per_mm (2,) of depth, by map (2, 2)
     times the way from centre_mm (2,), mm per mm, and by lever_mm (2,) times the tangent of what the tool leans."""
 
@@ -166,7 +166,7 @@ class Search:
             free[self.at[name]] = False
         return free
 
-    def read(self, x) -> tuple[_core.MarkLaws, float, np.ndarray, Led]:
+    def read(self, x) -> tuple[_core.MarkLaws, float, np.ndarray, MachineOffsets]:
         """Laws, height of the paper, displacement, machine."""
         change, deepest, old = x - self.begin, self.deepest_mm, self.laws
         half = np.cumsum(change[self.at["half_width"]])
@@ -183,28 +183,28 @@ class Search:
         )
         height = float(x[self.at["height"]][0]) if self.has_height else self.height_mm
         lean, by_map, lever = (x[self.at[name]] for name in MACHINE)
-        led = Led(
+        machine = MachineOffsets(
             lean if len(lean) else np.zeros(2),
             by_map.reshape(2, 2) if len(by_map) else np.zeros((2, 2)),
             self.centre_mm,
             lever if len(lever) else np.zeros(2),
         )
-        return laws, height, x[self.at["shift"]], led
+        return laws, height, x[self.at["shift"]], machine
 
     def loss(self, x, targets: list[Target]) -> float:
-        laws, height, shift, led = self.read(x)
+        laws, height, shift, machine = self.read(x)
         if self._impossible(x, laws, height):
             return 1.0
-        aim = self._overlaps(targets, laws, height, shift, led) @ (1 - SHIFTED, SHIFTED)
+        aim = self._overlaps(targets, laws, height, shift, machine) @ (1 - SHIFTED, SHIFTED)
         return 1 - float(aim.mean()) + float(self._price(x) @ self._price(x)) / self.count
 
     def differences(self, x, targets: list[Target], blur_px: int) -> np.ndarray | None:
         """Of predicted and painted pixels, blurred; squares are shares of each mark's paint, and the price. None where
         there is no such brush."""
-        laws, height, shift, led = self.read(x)
+        laws, height, shift, machine = self.read(x)
         if self._impossible(x, laws, height):
             return None
-        pictures = predicted(_led(targets, led, height), laws, height, shift, self.deepest_mm)
+        pictures = predicted(_move_targets(targets, machine, height), laws, height, shift, self.deepest_mm)
         out = [
             blur_px / np.sqrt(target.paint.sum()) * _blurred(picture - target.paint, blur_px).ravel()
             for target, picture in zip(targets, pictures, strict=True)
@@ -213,16 +213,18 @@ class Search:
 
     def overlaps(self, x, targets: list[Target]) -> np.ndarray:
         """Of each mark where it lies, and where it may move (n, 2)."""
-        laws, height, shift, led = self.read(x)
-        return self._overlaps(targets, laws, height, shift, led)
+        laws, height, shift, machine = self.read(x)
+        return self._overlaps(targets, laws, height, shift, machine)
 
-    def _overlaps(self, targets: list[Target], laws, height: float, shift, led: Led) -> np.ndarray:
+    def _overlaps(
+        self, targets: list[Target], laws, height: float, shift, machine: MachineOffsets
+    ) -> np.ndarray:
         def compared(target: Target, picture: np.ndarray) -> tuple[float, float]:
             moved, _ = best_shift(picture, target.paint, 1 / target.px_per_mm, self.farthest_mm)
             return soft_overlap(target.paint, picture), moved
 
-        led_targets = _led(targets, led, height)
-        return np.array(of_predicted(compared, led_targets, laws, height, shift, self.deepest_mm))
+        moved_targets = _move_targets(targets, machine, height)
+        return np.array(of_predicted(compared, moved_targets, laws, height, shift, self.deepest_mm))
 
     def _price(self, x) -> np.ndarray:
         """Of a footprint that is not round, and of a machine that does not as it is told: its squares over all marks
@@ -276,8 +278,8 @@ def each_kind(
     x = _best_of(loss, starts, steps, alone)
     yield "laws", x
     if search.has_machine:
-        led = search.without(*HELD["machine"])
-        x = _best_of(loss, [_registered(search, search.begin, led, few, look), x], 0.4 * steps, led)
+        machine = search.without(*HELD["machine"])
+        x = _best_of(loss, [_registered(search, search.begin, machine, few, look), x], 0.4 * steps, machine)
         yield "machine", x
     if len(search.begin[search.at["lever"]]):
         leant = search.without("lag", "tip_gap", "half_width", "shape", "height", "lean", "map")
@@ -330,16 +332,16 @@ def few_of(targets: list[Target]) -> list[Target]:
     return targets[:: max(1, len(targets) // FEW)]
 
 
-def of_led(search: Search, x, targets: list[Target], what: Callable) -> list:
+def apply_to_moved(search: Search, x, targets: list[Target], what: Callable) -> list:
     """what(target, picture) of what the numbers x paint of each target."""
-    laws, height, shift, led = search.read(x)
-    return of_predicted(what, _led(targets, led, height), laws, height, shift, search.deepest_mm)
+    laws, height, shift, machine = search.read(x)
+    return of_predicted(what, _move_targets(targets, machine, height), laws, height, shift, search.deepest_mm)
 
 
-def _led(targets: list[Target], led: Led, height_mm: float) -> list[Target]:
-    if not (led.lean_mm_per_mm.any() or led.map.any() or led.lever_mm.any()):
+def _move_targets(targets: list[Target], machine: MachineOffsets, height_mm: float) -> list[Target]:
+    if not (machine.lean_mm_per_mm.any() or machine.map.any() or machine.lever_mm.any()):
         return targets
-    return [replace(one, poses_mm=led.way(one.poses_mm, height_mm, one.leant)) for one in targets]
+    return [replace(one, poses_mm=machine.way(one.poses_mm, height_mm, one.leant)) for one in targets]
 
 
 def _registered(search: Search, x, free, targets: list[Target], look: Callable[[], None]) -> np.ndarray:
@@ -396,8 +398,8 @@ def _simplex(loss, x, steps, free, most: int, corners=None):
 
     if corners is None:
         corners = np.vstack([x[free], *(x[free] + d for d in np.diag(steps[free]))])
-    told = {"initial_simplex": corners, "maxfev": most, "adaptive": True, "xatol": 0.01, "fatol": 1e-5}
-    found = minimize(lambda changed: loss(filled(changed)), x[free], method="Nelder-Mead", options=told)
+    simplex = {"initial_simplex": corners, "maxfev": most, "adaptive": True, "xatol": 0.01, "fatol": 1e-5}
+    found = minimize(lambda changed: loss(filled(changed)), x[free], method="Nelder-Mead", options=simplex)
     found.all_x = filled(found.x)
     return found
 

@@ -53,8 +53,8 @@ class Layout:
 
     def variances(self, size: float, fall: float, sheet: float, terms: int) -> np.ndarray:
         """Beforehand, in variances of single marks."""
-        told = (DEGREES[:, 0] < self.columns) & (DEGREES[:, 1] < self.rows)
-        field = np.where(told, (size * fall ** (DEGREES.sum(axis=1) - 1.0)) ** 2, 0.0)
+        is_free = (DEGREES[:, 0] < self.columns) & (DEGREES[:, 1] < self.rows)
+        field = np.where(is_free, (size * fall ** (DEGREES.sum(axis=1) - 1.0)) ** 2, 0.0)
         return np.concatenate([[MEAN**2], field, np.full(terms - 1 - len(field), sheet**2)])
 
 
@@ -110,9 +110,9 @@ def _of_layout(basis, moved, scale, layout: Layout) -> tuple[float, np.ndarray]:
     total, out = 0.0, []
     for one, variance in zip(moved.T, scale, strict=True):
         each = [_regressed(basis, one, layout.variances(*size, basis.shape[1]), variance) for size in sizes]
-        told = np.array([evidence for evidence, _ in each]) + shares
-        weights = np.exp(told - told.max())
-        total += told.max() + np.log(weights.sum())
+        log_weights = np.array([evidence for evidence, _ in each]) + shares
+        weights = np.exp(log_weights - log_weights.max())
+        total += log_weights.max() + np.log(weights.sum())
         out.append(weights / weights.sum() @ [coefficients for _, coefficients in each])
     return total, np.column_stack(out)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...model.confidence import LAWS, law_band
 from ...model.describe import polynomial
-from ..marks.machine_found import cell_table, numbers, told
+from ..marks.machine_found import cell_table, describe_numbers, numbers
 from ..marks.mark_report import TABLE_ROWS
 from .from_prior import found_height
 
@@ -25,7 +25,7 @@ def report(made) -> str:
     ]
     for law in LAWS:
         now = getattr(brush, law)
-        lines += [f"{law} = {polynomial(now.coefficients)}", *_halves(now), f"  {_told(made, law)}"]
+        lines += [f"{law} = {polynomial(now.coefficients)}", *_halves(now), f"  {_describe(made, law)}"]
         lines.append(f"  the prior: {made.known.how[law]}{_taken(made, law)}")
     lines += ["", *_table(made), *_stays(made), *_machine(made)]
     return "\n".join([*lines, ""])
@@ -34,7 +34,11 @@ def report(made) -> str:
 def _machine(made) -> list[str]:
     found = numbers(made.fit, made.covariance, made.options)
     table = cell_table(made.fit, made.options, found)
-    return [*(["", "of the machine:"] if found else []), *told(found), *(["", *table] if table else [])]
+    return [
+        *(["", "of the machine:"] if found else []),
+        *describe_numbers(found),
+        *(["", *table] if table else []),
+    ]
 
 
 def _halves(law) -> list[str]:
@@ -42,10 +46,10 @@ def _halves(law) -> list[str]:
     return [f"  95 % confidence intervals +- {halves} (ascending powers)"] if halves else []
 
 
-def _told(made, law: str) -> str:
-    share, depth = made.told[law]
-    if not made.is_told(law):
-        with_width = law == "tip_to_widest" and made.is_told("half_width")
+def _describe(made, law: str) -> str:
+    share, depth = made.doubts_left[law]
+    if not made.is_learned(law):
+        with_width = law == "tip_to_widest" and made.is_learned("half_width")
         return "the marks tell nothing of it: " + (
             "it keeps its ratio to the half width" if with_width else "left as it was"
         )
@@ -55,7 +59,7 @@ def _told(made, law: str) -> str:
 def _taken(made, law: str) -> str:
     """How else the prior was taken than it stands in its file."""
     words = ""
-    if (off := made.known.off_mm[law]) > OFF_MM and made.is_told(law):
+    if (off := made.known.off_mm[law]) > OFF_MM and made.is_learned(law):
         words += f"; as the law that marks are fitted with, {off:.2f} mm off at most"
     if (wider := made.wider.get(law, 1.0)) > 1.0:
         words += f"; taken {wider:.1f} times as wide, since the marks lie that far from it"
@@ -63,7 +67,7 @@ def _taken(made, law: str) -> str:
 
 
 def _table(made) -> list[str]:
-    laws = [law for law in LAWS if made.is_told(law)]
+    laws = [law for law in LAWS if made.is_learned(law)]
     if not laws:
         return []
     lines = ["  depth" + "".join(law.rjust(30) for law in laws)]

@@ -95,11 +95,21 @@ class FaultModel:
         share = float(band[0][0]) / _core.deviations_of_95() / max(getattr(self.brush, law)(usual), 1e-6)
         return min(max(share, SUREST), OTHER_OF_MAKE)
 
-    def rings(self, amiss: np.ndarray) -> dict[str, list[np.ndarray]]:
+    def rings(self, fault_values: np.ndarray) -> dict[str, list[np.ndarray]]:
         """By stroke, on the sheet; strokes that would not be painted are left out."""
-        shift, turn = amiss[:2], np.radians(amiss[2])
-        scale, skew, lean, backlash = 1 + amiss[3:5], amiss[5], amiss[6:8], amiss[8:10]
-        height, tilt, lag, width = amiss[10], amiss[11:13], amiss[13:15], amiss[15:17]
+        shift, turn = fault_values[:2], np.radians(fault_values[2])
+        scale, skew, lean, backlash = (
+            1 + fault_values[3:5],
+            fault_values[5],
+            fault_values[6:8],
+            fault_values[8:10],
+        )
+        height, tilt, lag, width = (
+            fault_values[10],
+            fault_values[11:13],
+            fault_values[13:15],
+            fault_values[15:17],
+        )
         middle = self.middle_mm
         machine = Machine(
             tuple(lean.tolist()),
@@ -112,7 +122,7 @@ class FaultModel:
         run = as_run(self.plan.passes, machine, np.maximum(backlash, 0.0), deepest)
         if (backlash < 0).any():  # as far the other way: only a derivative at 0 asks for it
             run = as_run(self.plan.passes, machine, (0.0, 0.0), deepest)
-        asked = [one for one in run if one.stroke in self.names]
+        requested = [one for one in run if one.stroke in self.names]
         usual, spread = self._depths_mm
         factors = {
             name: (1 + even - slope * usual / spread, slope / spread)
@@ -120,13 +130,13 @@ class FaultModel:
         }
         brush = with_factors(self.brush, factors)
         marks = _core.simulate(
-            _core.Plan("", "", self.plan.sheet_mm, asked), brush, ROUGHLY_MM, may_rise=True
+            _core.Plan("", "", self.plan.sheet_mm, requested), brush, ROUGHLY_MM, may_rise=True
         )
-        lie = rotation(turn)
+        turned = rotation(turn)
         with ThreadPoolExecutor(AT_ONCE) as pool:  # without the interpreter's lock
             outlines = list(pool.map(lambda mark: _traced(mark, brush), marks.passes))
         return {
-            mark.stroke: [(np.array(ring) - middle) @ lie + middle + shift for ring in outline]
+            mark.stroke: [(np.array(ring) - middle) @ turned + middle + shift for ring in outline]
             for mark, outline in zip(marks.passes, outlines, strict=True)
         }
 

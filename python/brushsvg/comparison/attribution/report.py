@@ -8,7 +8,7 @@ from .corrected_cell import as_table
 from .faults import DRY, OWN, Faults, Found, Share
 from .model import BRUSH, MACHINE, PAPER, SHEET
 
-MEND = {
+REMEDY = {
     SHEET: "teach the paper anew, or lay the sheet where it was taught",
     MACHINE: "give convert the cell of --corrected-cell, or fix the machine",
     PAPER: "give convert the cell of --corrected-cell, or level the paper",
@@ -19,7 +19,7 @@ MEND = {
 NONE_ALONE = f"no stroke of this sheet lies alone with its paint whole, to learn from; {PAINT_A_CHART}"
 
 
-def told(share: Share) -> str:
+def describe(share: Share) -> str:
     return f"{share.cause}: {share.gain:+.3f} ({share.low:+.3f} to {share.high:+.3f})"
 
 
@@ -55,7 +55,7 @@ def in_words(faults: Faults | None, machine: Machine | None, any_alone: bool = T
         lines.append("No single fix is certain to help: use the corrections.")
     else:
         gain = next(share.gain for share in faults.shares if share.cause == faults.first)
-        how = MEND[faults.first] if any_alone or faults.first != BRUSH else NONE_ALONE
+        how = REMEDY[faults.first] if any_alone or faults.first != BRUSH else NONE_ALONE
         lines.append(f"Fix first: {faults.first}, which gains {gain:.3f}: {how}.")
     if machine:
         lines += [

@@ -44,7 +44,7 @@ class Row:
     path: str = ""
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         return ": ".join(filter(None, (self.where, self.sentence)))
 
 

@@ -19,7 +19,7 @@ from ...files import find_file, read_bytes, write_files
 from ...machine.cells import cell_file
 from ...machine.cells.cell_file import write_cell
 from ...machine.posts import POSTS, sources_of_post
-from ...machine.writer import beside
+from ...machine.writer import path_next_to
 from ...model import library
 from ...show.contact_sheet import Card, contact_sheets
 from ...units import clock
@@ -126,7 +126,7 @@ def batch(
             manifest.refuse_other_drawing(listed[index])
         places = _Places(listed, manifest)
         removed = [path for row in rows if row for path in manifest.remove_outdated(row)]
-        tell = _told(len(listed), resumed, progress or (lambda text: None))
+        report_row = _make_reporter(len(listed), resumed, progress or (lambda text: None))
         with ExitStack() as stack:
             is_ours = executor is None and cluster is None
             if left and executor is None:
@@ -137,7 +137,7 @@ def batch(
                 row = rows[index] = replace(row, path=manifest.way_to(listed[index]))
                 removed += manifest.remove_outdated(row)
                 manifest.add(row)
-                tell(row)
+                report_row(row)
         manifest.finish(rows)
         files = _summary(folder, rows, parquet)
     finally:
@@ -271,7 +271,7 @@ def _kept(folder: Path, item: Item, key: str, done: Made, places: _Places) -> Ro
         return Row(item.name, item.source, key, None, done.code, done.where, done.sentence, done.notices)
     place = Path(PROGRAMS, item.name) if len(done.texts) > 1 else Path(PROGRAMS, item.name).parent
     first = place / f"{Path(item.name).name}{done.suffix}"
-    data = {Path(beside(first, name)).as_posix(): text for name, text in done.texts.items()}
+    data = {Path(path_next_to(first, name)).as_posix(): text for name, text in done.texts.items()}
     data[f"{PICTURES}/{item.name}.png"] = done.picture
     try:
         places.refuse_taken(item, data)
@@ -282,11 +282,11 @@ def _kept(folder: Path, item: Item, key: str, done: Made, places: _Places) -> Ro
     return Row(item.name, item.source, key, done.figures, notices=done.notices, files=sums)
 
 
-def _told(count: int, resumed: int, progress):
+def _make_reporter(count: int, resumed: int, progress):
     """What tells of each row how far it is, how fast, and how long it will take."""
     start, found = time.monotonic(), [0, 0]
 
-    def tell(row: Row) -> None:
+    def report_row(row: Row) -> None:
         found[0] += 1
         found[1] += row.figures is None
         rate = found[0] / max(time.monotonic() - start, 1e-9)
@@ -296,7 +296,7 @@ def _told(count: int, resumed: int, progress):
             f"{resumed + found[0]} of {count} drawings{refused}; {rate:.1f} a second, {clock(left_s)} left"
         )
 
-    return tell
+    return report_row
 
 
 def _summary(folder: Path, rows: list[Row], parquet: bool) -> list[str]:
@@ -319,7 +319,7 @@ def _summary(folder: Path, rows: list[Row], parquet: bool) -> list[str]:
 
 def _card(folder: Path, row: Row) -> Card:
     if row.figures is None:
-        return Card(row.name, row.code, row.told, None)
+        return Card(row.name, row.code, row.text, None)
     figures = row.figures
     overlap = "" if figures.overlap is None else f"overlap {figures.overlap:.3f}"
     takes = "" if figures.time_s is None else clock(figures.time_s)

@@ -44,8 +44,12 @@ def with_margin_strokes(work: Work) -> Work:
 
     The work stays as it is, with a notice, where the sheet is too narrow or the cell cannot paint them.
     """
-    asked, deepest_mm = work.options.margin_strokes, _deepest_mm(work.plan)
-    if asked == "off" or deepest_mm <= 0 or (asked == "auto" and is_calibrated(work.brush, deepest_mm)):
+    requested, deepest_mm = work.options.margin_strokes, _deepest_mm(work.plan)
+    if (
+        requested == "off"
+        or deepest_mm <= 0
+        or (requested == "auto" and is_calibrated(work.brush, deepest_mm))
+    ):
         return work
     if work.brush.is_rigid():
         return _left_out(work, f"brush {work.brush.name} is a pen, which marks teach nothing")

@@ -19,7 +19,7 @@ def warnings_with_advice(painted, done, brush, compensated) -> list[Notice]:
     ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
     measured = (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
     pairs = zip(painted, done.plan.passes, strict=True)
-    thin = {stroke.id for stroke, run in pairs if measured and _thins_out(stroke, run, brush, *measured)}
+    thin = {stroke.id for stroke, run in pairs if measured and _gets_thinner(stroke, run, brush, *measured)}
     off = {each.where for each in done.warnings if each.code == "depth-not-measured"} - thin
     advice, lines = "", []
     if compensated is not None and measured and measured[0] < measured[1]:
@@ -51,7 +51,7 @@ def _width_advice(lines: list, brush, measured: tuple[float, float], compensated
     return f"--width MM, from {least:.2g} to {greatest:.2g}, gives all strokes one width that was measured"
 
 
-def _thins_out(stroke, run, brush, least_mm: float, greatest_mm: float) -> bool:
+def _gets_thinner(stroke, run, brush, least_mm: float, greatest_mm: float) -> bool:
     """Whether a stroke is pressed less than was measured at its ends alone, no farther in than it is wide. run: its
     pass; a dot, which is turned round on the spot, is pressed less than a line as wide."""
     if -np.asarray(run.poses_mm)[:, 2].min() < least_mm:

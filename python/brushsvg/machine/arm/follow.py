@@ -127,7 +127,7 @@ def follow(made: Program, joints: Joints, to_the_end: bool = True) -> Followed:
                 _go_on(posture, before, place, found, find, arm)
                 posture.failed_at, posture.failed = number, place
             elif _may_have_flipped(posture, place.robot_mm):
-                _tell_flip(posture, found, arm)
+                _note_flip(posture, found, arm)
         before = place
         if not to_the_end and all(posture.failure for posture in postures):
             break
@@ -364,7 +364,7 @@ def _may_have_flipped(posture: _Posture, robot_mm: np.ndarray) -> bool:
     return float(np.linalg.norm(robot_mm - posture.failed.robot_mm)) <= AHEAD_MM
 
 
-def _tell_flip(posture: _Posture, found: _Found, arm: Arm) -> None:
+def _note_flip(posture: _Posture, found: _Found, arm: Arm) -> None:
     """The failure at a singularity told as a flip where, calm again behind it, the wrist that bends the same way has
     turned over."""
     turns = _turned(posture.calm_rad, found.angles_rad)

@@ -35,7 +35,7 @@ class Elsewhere:
     frame: np.ndarray
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         if self.turn_deg:
             x, y = self.about_mm
             return f"turned by {self.turn_deg:g} degrees about x {x:.0f}, y {y:.0f} mm of it"
@@ -50,7 +50,7 @@ def unreachable(made: Program, allowed: Callable[[Program], bool]) -> list[Notic
     if not problems:
         return []
     found = nearest(made, joints, allowed)
-    advice = f"the sheet {found.told} would do" if found else NOWHERE
+    advice = f"the sheet {found.text} would do" if found else NOWHERE
     return [replace(problem, advice=advice) for problem in problems]
 
 

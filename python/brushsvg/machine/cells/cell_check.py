@@ -352,8 +352,8 @@ def _check_motors(cell: Cell) -> None:
 
 def _check_servo(cell: Cell) -> None:
     frame = robot_from_paper(cell)
-    lies_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
-    if "servo" in NEEDED_BY.get(cell.language, ()) and not lies_level:
+    is_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
+    if "servo" in NEEDED_BY.get(cell.language, ()) and not is_level:
         raise Error(
             "a servo's heights are those over the paper: it must lie level, at z 0",
             where="paper",

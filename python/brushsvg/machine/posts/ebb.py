@@ -96,10 +96,10 @@ class _Writer:
         if not lifts:
             return ""
         self.value = lifts[-1][0]
-        told = "".join(self._set(*lift) for lift in lifts)
-        return self._told(feed_mm_min(move.speed_mm_s)) + told + _waited(servo.settle_s)
+        set_lifts = "".join(self._set(*lift) for lift in lifts)
+        return self._set_feed(feed_mm_min(move.speed_mm_s)) + set_lifts + _waited(servo.settle_s)
 
-    def _told(self, feed: float) -> str:
+    def _set_feed(self, feed: float) -> str:
         """The line that says the most that the moves have which follow, where it is another one."""
         before, self.feed = self.feed, feed
         return "" if feed == before else f"# feed {feed:.1f} mm/min\n"
@@ -169,12 +169,12 @@ class _Writer:
         times_ms = np.maximum(np.add.reduceat(times_ms, first), LEAST_MS)
         values, feeds = values[part], feeds[part]
         new_value, new_feed = _steps(values, self.value) != 0, _steps(feeds, self.feed) != 0
-        told = zip(times_ms.astype(int).tolist(), *moves.T.tolist(), strict=True)
-        lines = [f"SM,{time_ms},{one},{two}\n" for time_ms, one, two in told]
+        rows = zip(times_ms.astype(int).tolist(), *moves.T.tolist(), strict=True)
+        lines = [f"SM,{time_ms},{one},{two}\n" for time_ms, one, two in rows]
         for k in np.flatnonzero(new_value):
             lines[k] = self._set(values[k], 0) + lines[k]
         for k in np.flatnonzero(new_feed):
-            lines[k] = self._told(feeds[k]) + lines[k]
+            lines[k] = self._set_feed(feeds[k]) + lines[k]
         self.value = int(values[-1]) if len(values) else self.value
         return "".join(lines)
 

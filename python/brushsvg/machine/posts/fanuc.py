@@ -106,15 +106,15 @@ class _Points:
         return np.arange(first, self.count + 1)
 
     def text(self) -> str:
-        told, first = "", 1
+        rows_text, first = "", 1
         for angles, alike in itertools.groupby(self.held, lambda each: each[1]):
             places = np.vstack([points_mm for points_mm, _ in alike])
             values = np.column_stack([np.arange(first, first + len(places)), places])
             w, p, r = angles
             held = f"\tW = {w} deg,\tP = {p} deg,\tR = {r} deg\n}};"
-            told += "".join(rows(self.place + held, values, self.decimals))
+            rows_text += "".join(rows(self.place + held, values, self.decimals))
             first += len(places)
-        return told
+        return rows_text
 
 
 def _angles(turned: np.ndarray) -> tuple[str, str, str]:

@@ -118,10 +118,10 @@ def _program(program: Program, modes: list[str], dialect: Dialect) -> Iterator[s
                 yield wait(step, dialect)
                 continue
             if step.meaning not in SAFE_MEANINGS or not dialect.has_blocks:
-                wanted = f"F{feed_mm_min(step.speed_mm_s):.1f}\n"
-                if wanted != feed:
-                    yield wanted if dialect.has_blocks else f"G1 {wanted}"
-                feed = wanted
+                feed_word = f"F{feed_mm_min(step.speed_mm_s):.1f}\n"
+                if feed_word != feed:
+                    yield feed_word if dialect.has_blocks else f"G1 {feed_word}"
+                feed = feed_word
             yield from _lines(step, here, decimals)
             here = step.points_mm[-1]
     yield "\nM2\n" if dialect.has_blocks else "\nM400\n" + dialect.comment(HELD_UP)

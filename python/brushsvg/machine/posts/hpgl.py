@@ -30,9 +30,9 @@ def hpgl(program: Program) -> Iterator[str]:
         if not section.moves:
             yield f"SP{pen_number(section.name, cell)};\n"
         for move in section.moves:
-            if move.meaning == "land" and speed != (wanted := f"VS{round(section.drawn_mm_s / CM_S)};\n"):
-                yield wanted
-                speed = wanted
+            if move.meaning == "land" and speed != (speed_word := f"VS{round(section.drawn_mm_s / CM_S)};\n"):
+                yield speed_word
+                speed = speed_word
             here = yield from _lines(move, here)
     yield "".join(f"{line}\n" for line in PUT_AWAY) + comment(HELD_UP)
 

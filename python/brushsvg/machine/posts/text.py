@@ -32,7 +32,7 @@ def spelled(text: str) -> str:
     return plain(text, len(text) * 18).translate(BRACKETS | AT_ONCE | ENDS | QUOTES)
 
 
-def told_apart(names: Sequence[str]) -> list[str]:
+def make_unique(names: Sequence[str]) -> list[str]:
     """The names, with their number where a program would write them like another one, or as nothing at all."""
     short = [spelled(name)[:NAMED] for name in names]
     has_own = [

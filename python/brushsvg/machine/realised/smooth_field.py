@@ -34,20 +34,20 @@ def steepest(machine: Machine) -> float:
     return max(by_x, by_y)
 
 
-def parts_of(told_mm: np.ndarray, machine: Machine) -> np.ndarray:
+def parts_of(commanded_mm: np.ndarray, machine: Machine) -> np.ndarray:
     """(n - 1,) lines that it takes from each place (n, 2) that is told to the next, so that each is straight enough: a
     way with the second derivative q over it has chords that leave it by q / 8 k^2, in k of them."""
-    du, dv = (np.diff(told_mm, axis=0) / machine.field_reach_mm).T
+    du, dv = (np.diff(commanded_mm, axis=0) / machine.field_reach_mm).T
     bends = 2 * np.column_stack([du * du, du * dv, dv * dv]) @ np.array(machine.field_mm).T
     return np.maximum(np.ceil(np.sqrt(np.hypot(*bends.T) / (8 * OFF_MM))), 1).astype(int)
 
 
-def edge_cuts(told_mm: np.ndarray, machine: Machine) -> list[np.ndarray]:
+def edge_cuts(commanded_mm: np.ndarray, machine: Machine) -> list[np.ndarray]:
     """For each line between places (n, 2) that are told shares of it, up to 1, where it leaves or enters what was
     measured: there the field has a kink."""
-    if not beyond_mm(told_mm, machine):
-        return [np.ones(1)] * (len(told_mm) - 1)
-    at = (told_mm - machine.field_middle_mm) / machine.field_reach_mm
+    if not beyond_mm(commanded_mm, machine):
+        return [np.ones(1)] * (len(commanded_mm) - 1)
+    at = (commanded_mm - machine.field_middle_mm) / machine.field_reach_mm
     cuts = []
     for start, end in pairwise(at):
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -56,9 +56,9 @@ def edge_cuts(told_mm: np.ndarray, machine: Machine) -> list[np.ndarray]:
     return cuts
 
 
-def beyond_mm(told_mm: np.ndarray, machine: Machine) -> float:
+def beyond_mm(commanded_mm: np.ndarray, machine: Machine) -> float:
     """How far the farthest of places (n, 2) that are told lies beyond where the field was measured."""
-    out = np.abs(told_mm - machine.field_middle_mm) - machine.field_reach_mm
+    out = np.abs(commanded_mm - machine.field_middle_mm) - machine.field_reach_mm
     return float(np.max(out, initial=0.0))
 
 

@@ -106,7 +106,7 @@ class Walk:
         self.notices: list[Notice] = []
         self._counts: Counter[tuple[str, str, str | None, str]] = Counter()
         self._known: dict[tuple[str | None, float], list[Curve] | None] = {}
-        self._told: set[tuple[str, str]] = set()
+        self._reported: set[tuple[str, str]] = set()
         self._entities = self._cubics = 0
 
     def run(self) -> None:
@@ -311,13 +311,11 @@ class Walk:
                 self._note(
                     name, "its gradient is not read: it counts as filled", pen.layer, code="paint-unread"
                 )
-        self._tell_what_is_not_painted(
-            entity, kind, name, pen, bool(fill_rule) or found[0].widths is not None
-        )
+        self._report_unpainted(entity, kind, name, pen, bool(fill_rule) or found[0].widths is not None)
         joinable = kind in _JOINABLE and len(found) == 1 and not found[0].closed
         self.pieces.append(Piece(name, place.name, filling, tuple(found), fill_rule, joinable))
 
-    def _tell_what_is_not_painted(self, entity, kind: str, name: str, pen: Pen, filled: bool) -> None:
+    def _report_unpainted(self, entity, kind: str, name: str, pen: Pen, filled: bool) -> None:
         header, dxf = self.document.header, entity.dxf
         if pen.see_through:
             self._note(name, "it is see-through: it counts as opaque", pen.layer, code="opacity-unread")
@@ -333,8 +331,8 @@ class Walk:
             )
 
     def _once(self, where: str, sentence: str) -> None:
-        if (where, sentence) not in self._told:
-            self._told.add((where, sentence))
+        if (where, sentence) not in self._reported:
+            self._reported.add((where, sentence))
             self._note(where, sentence, None, code="shown-otherwise")
 
     def _leave_out(

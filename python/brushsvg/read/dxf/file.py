@@ -134,8 +134,8 @@ def shown(text: str, most: int = 120) -> str:
     return text if len(text) <= most else text[: most - 3] + "..."
 
 
-def _some(told: list[tuple[str, str]], damaged: bool) -> list[Notice]:
-    kept = [(where, shown(sentence).rstrip(".")) for where, sentence in told[:_MOST_NOTICES]]
-    if more := len(told) - len(kept):
+def _some(reported: list[tuple[str, str]], damaged: bool) -> list[Notice]:
+    kept = [(where, shown(sentence).rstrip(".")) for where, sentence in reported[:_MOST_NOTICES]]
+    if more := len(reported) - len(kept):
         kept.append(("file", f"and {more} more such problems"))
     return [Notice(where, sentence, damaged, code="dxf-repaired", about=sentence) for where, sentence in kept]

@@ -76,8 +76,10 @@ class Notes:
     ) -> None:
         """Say something of an element that is to be painted; of any other there is nothing to say."""
         if context.chosen or node is self.root:
-            told = one_line(sentence)
-            self.notices.append(Notice(self.label(node), told, damaged, context.layer, code, about, advice))
+            in_one_line = one_line(sentence)
+            self.notices.append(
+                Notice(self.label(node), in_one_line, damaged, context.layer, code, about, advice)
+            )
 
     def label(self, node: ET.Element) -> str:
         """An element's id, or which one of its kind it is: "rect 3"."""

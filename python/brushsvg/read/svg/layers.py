@@ -18,7 +18,7 @@ _SERIF = "{http://www.serif.com/}"
 _ESCAPE = re.compile("_x([0-9A-Fa-f]{2,6})_")
 _AROUND = frozenset(("svg", "switch", "a"))  # what stands around layers without being one
 _DEEPEST = 100  # layers in layers with names of their own: nobody clicks deeper
-_BESIDE = frozenset("title desc metadata defs style script foreignObject namedview".split())
+_NOT_DRAWN = frozenset("title desc metadata defs style script foreignObject namedview".split())
 
 
 def layer_names(root: ET.Element) -> dict[ET.Element, str]:
@@ -74,7 +74,7 @@ def _outermost(parent: ET.Element) -> Iterator[tuple[ET.Element, str]]:
             yield node, name
         elif local(node) in _AROUND or local(node) == "g":
             waiting.append(iter(node))
-        elif local(node) not in _BESIDE:
+        elif local(node) not in _NOT_DRAWN:
             yield node, ""
 
 

@@ -40,14 +40,14 @@ def nested_viewport(
 
     Error if a length or the viewBox makes no sense.
     """
-    asked = dict(zip(("width", "height"), size, strict=True))
+    given = dict(zip(("width", "height"), size, strict=True))
     x, y, width, height = (
         length_px(text if text and text.strip() not in ("", "auto") else default, outer[axis], em_px)
         for text, default, axis in (
             (attributes.get("x"), "0", 0),
             (attributes.get("y"), "0", 1),
-            (asked["width"] or attributes.get("width"), "100%", 0),
-            (asked["height"] or attributes.get("height"), "100%", 1),
+            (given["width"] or attributes.get("width"), "100%", 0),
+            (given["height"] or attributes.get("height"), "100%", 1),
         )
     )
     if not (width > 0 and height > 0):

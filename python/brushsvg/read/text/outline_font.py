@@ -39,13 +39,13 @@ def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
     setter = _Setter(unpacked, size_mm)
     placed = tuple(map(setter.place, lines))
     is_filled = not setter.is_of_lines()
-    told: tuple[Notice, ...] = tuple(_choices(unpacked, setter.face))
+    notices: tuple[Notice, ...] = tuple(_choices(unpacked, setter.face))
     if not is_filled:
-        told = Notice("font", _LINES_NOTICE, code="font-of-lines"), *told
+        notices = Notice("font", _LINES_NOTICE, code="font-of-lines"), *notices
         placed = tuple(
             tuple(replace(each, subpaths=as_lines(each.subpaths)) for each in line) for line in placed
         )
-    return Setting(placed, is_filled, tuple(setter.missing), told, tuple(setter.blank))
+    return Setting(placed, is_filled, tuple(setter.missing), notices, tuple(setter.blank))
 
 
 def _choices(data: bytes, face: hb.Face) -> Iterator[Notice]:
@@ -207,10 +207,8 @@ def _refuse_unmeasured(face: hb.Face) -> None:
         )
     widths = int.from_bytes(hhea[34:36], "big") if len(hhea) >= 36 else 0
     if not 0 < 4 * widths <= len(hmtx):
-        there, asked = min(widths, len(hmtx) // 4), widths or face.glyph_count
-        sentence = (
-            f"this is a damaged font: it has the widths of {there} glyphs, and should have those of {asked}"
-        )
+        there, expected = min(widths, len(hmtx) // 4), widths or face.glyph_count
+        sentence = f"this is a damaged font: it has the widths of {there} glyphs, and should have those of {expected}"
         raise Error(sentence, "hmtx", code="font-damaged")
 
 

@@ -72,9 +72,9 @@ def _of_width(here: _Here, area_mm2: float, size_mm: float, where: str) -> Cause
     """What the brush is too wide or too narrow for, or no stroke reaches."""
     half, (least, greatest) = here.half_mm, here.brush.half_width_range_mm()
     finest = max(least, _finest_measured(here.brush))
-    beside_mm2 = (half - greatest) * size_mm  # what a mark too narrow leaves in the square
+    unpainted_mm2 = (half - greatest) * size_mm  # what a mark too narrow leaves in the square
     is_wide = here.is_missing and half > greatest + SLIGHT
-    if is_wide and (where == "rim" or beside_mm2 > EXPLAINS * area_mm2):
+    if is_wide and (where == "rim" or unpainted_mm2 > EXPLAINS * area_mm2):
         words = f"{2 * half:.3g} mm wide there, wider than the brush paints, {2 * greatest:.3g} mm"
         return Cause(words, code="wider-than-brush")
     if where == "bare":

@@ -96,7 +96,7 @@ class Bare(Protocol):
     def is_rim(self) -> bool: ...
 
 
-def wanted_rings(strokes: Iterable[_core.Stroke]) -> list[np.ndarray]:
+def target_rings(strokes: Iterable[_core.Stroke]) -> list[np.ndarray]:
     """Outline of everything that was drawn."""
     return _core.unite([ring for s in strokes for ring in _core.wanted_outline(s, RING_TOLERANCE_MM)])
 
@@ -129,8 +129,8 @@ def measure(
         else _figures(a_pass, stroke, *next(found), brush, tolerance_mm, compensation, unreached)
         for a_pass, stroke in zip(runs, strokes, strict=True)
     )
-    meant = alone if drawn is None else list(drawn)
-    overlap = _core.common_area(traces, meant, brush).overlap if rows else None
+    target = alone if drawn is None else list(drawn)
+    overlap = _core.common_area(traces, target, brush).overlap if rows else None
     return rows, _in_all(rows, overlap)
 
 
@@ -144,11 +144,11 @@ def _figures(
         here = [
             piece
             for piece in unreached
-            if piece.element == stroke.origin.element and _lies_in(place.at_mm, piece.rings, size_mm / 2)
+            if piece.element == stroke.origin.element and _is_in(place.at_mm, piece.rings, size_mm / 2)
         ]
         is_bare = place.is_missing and any(not piece.is_rim for piece in here)
         is_rim = place.is_missing and bool(here)
-        is_corner = place.is_missing and _beside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
+        is_corner = place.is_missing and _outside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
         where = "bare" if is_bare else "rim" if is_rim else "corner" if is_corner else ""
         why = cause(stroke, line, brush, place, size_mm, where, tracking_error, tolerance_mm, compensation)
         worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why.words, why.code)
@@ -165,12 +165,12 @@ def _figures(
     )
 
 
-def _lies_in(place_mm, rings, reach_mm: float) -> bool:
+def _is_in(place_mm, rings, reach_mm: float) -> bool:
     """Whether a square about a place meets what rings enclose."""
     return _core.area(_core.intersect([_square(place_mm, reach_mm)], rings)) > _BARE * (2 * reach_mm) ** 2
 
 
-def _beside_discs_mm2(stroke, place_mm, size_mm: float) -> float:
+def _outside_discs_mm2(stroke, place_mm, size_mm: float) -> float:
     """What discs of its widths leave of a stroke's shape in a square about a place: there no round brush paints."""
     if not stroke.wanted_mm:
         return 0.0
@@ -190,11 +190,11 @@ def groups(
 ) -> tuple[Group, ...]:
     """Strokes that touch, each letter judged as one. strokes: one per pass, None for a part of one."""
     known = [pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None]
-    traces, wanted = [trace for trace, _ in known], [stroke for _, stroke in known]
-    together = _core.touching(wanted)
-    areas = _core.common_areas(traces, wanted, together, brush)
+    traces, targets = [trace for trace, _ in known], [stroke for _, stroke in known]
+    together = _core.touching(targets)
+    areas = _core.common_areas(traces, targets, together, brush)
     return tuple(
-        Group(tuple(wanted[k].id for k in members), area.overlap)
+        Group(tuple(targets[k].id for k in members), area.overlap)
         for members, area in zip(together, areas, strict=True)
     )
 
@@ -333,10 +333,10 @@ def to_text(report: Report) -> str:
         lines += ["", report.advice]
     if report.refused:
         lines += ["", f"Left out, since they cannot be painted: {len(report.refused)}"]
-        lines += ["  " + ": ".join((notice.where, notice.told)) for notice in report.refused]
+        lines += ["  " + ": ".join((notice.where, notice.text)) for notice in report.refused]
     if report.warnings:
         lines += ["", f"Warnings: {len(report.warnings)}"]
-        lines += ["  " + ": ".join(filter(None, (notice.where, notice.told))) for notice in report.warnings]
+        lines += ["  " + ": ".join(filter(None, (notice.where, notice.text))) for notice in report.warnings]
     return "\n".join([*lines, ""])
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from ... import _core
 from ...geometry.cubics import at
 from ...geometry.rings import is_within
-from .edges import amid, beside_edges, can_follow, find_bent_ends, find_ways_in
+from .edges import amid, can_follow, find_bent_ends, find_ways_in, follow_edges
 from .junctions import STEM_END, STRAIGHTEST_RAD, Arm, Crossing, turn_across
 
 # Of the shape around a corner, what lines that end beside each other may leave bare beside those that meet: a u's bend
@@ -22,7 +22,7 @@ WHOLE, IN_HUMP = 0.95, 0.5
 # stem that it meets, so far from its sides and with its far side no more slanted than that. And how much farther the
 # shape has to go on amid the bar, how much at most, and on all of its width. FLAT: cosine of the angle with the stem,
 # at most.
-_BESIDE = np.array([-1.6, -0.7, 0.0, 0.7, 1.6])
+_ACROSS = np.array([-1.6, -0.7, 0.0, 0.7, 1.6])
 IN_STEM, SLANTED, STUB, LIMB, SHOULDER, FLAT = 0.3, 0.6, 0.35, 1.8, 0.1, 0.5
 ELBOW = 0.3  # of a turn by 17 degrees
 TOUCHING_RAD = np.radians(25)  # lines that cross turn by less
@@ -42,7 +42,7 @@ def _grid(count: int) -> np.ndarray:
 
 _AROUND, _FINELY_AROUND = _grid(17), _grid(41)
 # Places times points of the outline, of which it is asked whether they lie in the shape: a second.
-_MOST_ASKED = 200_000_000
+_MOST_QUERIES = 200_000_000
 
 
 # A belly: a disc so much wider than both arms where they leave it, whose middle lies no farther aside of the straight
@@ -66,8 +66,8 @@ def bridge(a: Arm, b: Arm, crossing: Crossing) -> np.ndarray:
 
 def _is_belly(disc: np.ndarray, p: np.ndarray, q: np.ndarray) -> bool:
     way, to_middle = (q - p)[:2], (disc - p)[:2]
-    aside_mm = abs(way[0] * to_middle[1] - way[1] * to_middle[0]) / max(np.hypot(*way), 1e-12)
-    return bool(disc[2] > BELLY * max(p[2], q[2]) and aside_mm < AMID * disc[2])
+    distance_mm = abs(way[0] * to_middle[1] - way[1] * to_middle[0]) / max(np.hypot(*way), 1e-12)
+    return bool(disc[2] > BELLY * max(p[2], q[2]) and distance_mm < AMID * disc[2])
 
 
 def stub(arm: Arm, crossing: Crossing) -> np.ndarray:
@@ -99,7 +99,7 @@ def find_bridges(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     ]
     if not through:
         return
-    found, _ = beside_edges([bridge(a, a.mate, c) for a, c in through], rings)
+    found, _ = follow_edges([bridge(a, a.mate, c) for a, c in through], rings)
     for (a, _), line in zip(through, found, strict=True):
         a.bridge, a.mate.bridge = line, line[::-1]
 
@@ -117,7 +117,7 @@ def _join_along_edges(crossing: Crossing, rings: list[np.ndarray]) -> None:
         if all(a.other is b for a, b in pairs):
             continue  # both rings of an 8, which is one line
         if max(turn_across(*pair) for pair in pairs) < STRAIGHTEST_RAD:
-            _, have_edges = beside_edges([bridge(a, b, crossing) for a, b in pairs], rings)
+            _, have_edges = follow_edges([bridge(a, b, crossing) for a, b in pairs], rings)
             if all(have_edges):
                 for a, b in pairs:
                     a.mate, b.mate = b, a
@@ -162,7 +162,7 @@ def find_ends(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
 
 
 def _can_ask(discs: int, rings: list[np.ndarray]) -> bool:
-    return discs * len(_FINELY_AROUND) * sum(map(len, rings)) < _MOST_ASKED
+    return discs * len(_FINELY_AROUND) * sum(map(len, rings)) < _MOST_QUERIES
 
 
 def _inside(crossing: Crossing, rings: list[np.ndarray]) -> np.ndarray:
@@ -190,8 +190,8 @@ def find_bars(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     backs = np.array([-arm.direction for arm, _ in ending])
     lefts = np.column_stack([-backs[:, 1], backs[:, 0]])
     middles = np.array([amid(arm, crossing) for arm, crossing in ending])
-    at = middles[:, None] + (halves[:, None] * _BESIDE)[..., None] * lefts[:, None]
-    ways = np.repeat(backs, len(_BESIDE), axis=0)
+    at = middles[:, None] + (halves[:, None] * _ACROSS)[..., None] * lefts[:, None]
+    ways = np.repeat(backs, len(_ACROSS), axis=0)
     reached = np.array(_core.first_crossings(rings, at.reshape(-1, 2), ways)).reshape(len(ending), -1)
     stem = reached[:, [0, -1]].max(axis=1)  # its far side, beside the bar
     sticks_out = (reached[:, 1:-1] > (stem + SHOULDER * halves)[:, None]).all(axis=1)
@@ -296,20 +296,22 @@ def _keep_disc(
 def _keep_bent(crossing: Crossing, around: np.ndarray, most_bare: float) -> None:
     """The ways of arms along bent edges stay if they leave less bare. A stroke of both arms turns at the end of the
     one that bends, or where both meet."""
-    led = [arm for arm in crossing.arms if arm.lead is not None]
+    with_lead = [arm for arm in crossing.arms if arm.lead is not None]
     thin, wide = sorted(arm.line[arm.out, 2] for arm in crossing.arms)
     stubs = [stub(arm, crossing) for arm in crossing.arms]
-    if led and (thin < UNLIKE * wide or _bare(crossing, stubs, around) >= most_bare):
-        for arm in led:
+    if with_lead and (thin < UNLIKE * wide or _bare(crossing, stubs, around) >= most_bare):
+        for arm in with_lead:
             arm.lead = None
-    elif len(led) == 1:
-        if led[0].line[led[0].out, 2] > AS_WIDE * max(arm.line[arm.out, 2] for arm in crossing.arms):
-            crossing.corner = led[0].lead[0, :2], float(led[0].lead[0, 2])
+    elif len(with_lead) == 1:
+        if with_lead[0].line[with_lead[0].out, 2] > AS_WIDE * max(
+            arm.line[arm.out, 2] for arm in crossing.arms
+        ):
+            crossing.corner = with_lead[0].lead[0, :2], float(with_lead[0].lead[0, 2])
             crossing.is_on_lead = True
         else:
-            led[0].lead = None
-    elif len(led) == 2 and crossing.dropped < WHOLE_STEM:
-        thin, wide = (arm.lead for arm in sorted(led, key=lambda arm: arm.line[arm.out, 2]))
+            with_lead[0].lead = None
+    elif len(with_lead) == 2 and crossing.dropped < WHOLE_STEM:
+        thin, wide = (arm.lead for arm in sorted(with_lead, key=lambda arm: arm.line[arm.out, 2]))
         off = np.hypot(*(thin[:, None, :2] - wide[None, :, :2]).transpose(2, 0, 1))
         i, j = np.unravel_index(off.argmin(), off.shape)
         if off[i, j] < NEAR_EACH_OTHER * wide[j, 2]:

@@ -98,7 +98,7 @@ def _paint_inside(crossings: list[Crossing], pieces: list[Piece], lines: list[np
         near = at_crossing.get(number, [])
         if not near:
             continue
-        near = [*near, *(piece for leg in crossing.beside for piece in at_crossing.get(leg.crossing, ()))]
+        near = [*near, *(piece for leg in crossing.neighbours for piece in at_crossing.get(leg.crossing, ()))]
         for branch in crossing.inner:
             middle = lines[branch][:, :2]
             bare = np.ones(len(middle), bool)

@@ -65,7 +65,7 @@ class Crossing:
     dropped: float = 0.0  # the largest that a branch dropped there would add, in squares of the radius
     inner: list[int] = field(default_factory=list)  # branches between its nodes
     arms: list[Arm] = field(default_factory=list)
-    beside: list[Arm] = field(default_factory=list)  # at corners in its disc; see _leave_out_stem_end
+    neighbours: list[Arm] = field(default_factory=list)  # at corners in its disc; see _leave_out_stem_end
     has_tip: bool = False  # of legs that meet, which are strokes of their own
     corner: tuple[np.ndarray, float] | None = (
         None  # where both arms begin, and the half width there; see joints
@@ -153,7 +153,7 @@ def _leave_out_stem_end(crossing: Crossing, crossings: list[Crossing]) -> None:
         if length(arm.line[:, :2]) < reach and thin < NECK * arm.line[arm.out, 2]:
             arm.mate.mate = arm.mate = None
             crossing.inner.append(arm.branch)
-            crossing.beside += [leg for leg in corner.arms if leg is not arm.other]
+            crossing.neighbours += [leg for leg in corner.arms if leg is not arm.other]
 
 
 def _are_legs(one: Arm, two: Arm) -> bool:
@@ -210,8 +210,8 @@ def _join(crossing: Crossing) -> None:
     narrow = NECK * crossing.discs[:, 2].max()
     thick = [arm for arm in crossing.arms if arm.line[arm.out, 2] >= narrow]
     necks = [arm for arm in crossing.arms if arm.line[arm.out, 2] < narrow <= arm.line[arm.out :, 2].max()]
-    is_beside = len(thick) == 2 and necks and len(necks) + 2 == len(crossing.arms)
-    if is_beside and turn_across(*thick) < STRAIGHTEST_THICK_RAD:
+    is_neighbour = len(thick) == 2 and necks and len(necks) + 2 == len(crossing.arms)
+    if is_neighbour and turn_across(*thick) < STRAIGHTEST_THICK_RAD:
         thick[0].mate, thick[1].mate = thick[1], thick[0]
     turns = []
     for a, b in combinations(crossing.arms[:MOST_ARMS], 2):

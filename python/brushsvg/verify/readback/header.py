@@ -56,8 +56,8 @@ def made(text: str) -> Made:
     first = _said(header, "first", r"heights (\S+) to (\S+) mm, (\S+) mm apart", (-1000.0, 1000.0))
     how = re.match(r"(none|constant|closed|refined), ", header.get("compensation", "closed, "))
     ends = r"(?:, start (?:auto|round|butt|pointed))?(?:, end (?:auto|round|butt|pointed))?"
-    told = rf"\w+, tolerance (\S+) mm(?:, lag \S+ mm)?{ends}"
-    tolerance = _said(header, "compensation", told, (1e-5, 10.0))
+    written = rf"\w+, tolerance (\S+) mm(?:, lag \S+ mm)?{ends}"
+    tolerance = _said(header, "compensation", written, (1e-5, 10.0))
     start = re.search(r", start (\w+)(?:, end \w+)?$", header.get("compensation", ""))
     end = re.search(r", end (\w+)$", header.get("compensation", ""))
     has_lag = ", lag " in header.get("compensation", "")
@@ -126,9 +126,9 @@ def _damaged(word: str, said: str) -> Error:
 def _header_of(text: str) -> dict[str, str]:
     """The lines at the top of a program of ours, by their first word: title, brush, sheet, cell, ..."""
     text = re.sub(r" *; *\r?\n *\d*: *!\+", "", text)  # a remark of TP goes on
-    told = re.compile(
+    written = re.compile(
         r"\((\w+): (.*)\)| *(?:[#!;]|--) (\w+):(?: (.*))?| *\d*: *!(\w+):(?: (.*?))? *;|CO \"(\w+): (.*)\";"
     )
-    lines = (told.fullmatch(line.rstrip(" \r")) for line in text.lstrip("\ufeff").split("\n")[:100])
+    lines = (written.fullmatch(line.rstrip(" \r")) for line in text.lstrip("\ufeff").split("\n")[:100])
     found = ([each for each in line.groups() if each is not None] for line in lines if line)
     return {word: said[0] if said else "" for word, *said in found}

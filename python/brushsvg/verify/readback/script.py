@@ -143,12 +143,12 @@ class _Reader:
         if not self.script.turned_deg:
             sentence = f"line {number}: {line[:60]!r} tilts the brush, and no line of its header says so"
             raise Error(sentence, code="tool-turned")
-        wanted_deg = np.round(self.script.turned_deg, 6) + 0.0
-        off_deg = np.abs((np.array(found_deg) - wanted_deg + 180.0) % 360.0 - 180.0).max()
+        expected_deg = np.round(self.script.turned_deg, 6) + 0.0
+        off_deg = np.abs((np.array(found_deg) - expected_deg + 180.0) % 360.0 - 180.0).max()
         if off_deg > LEANS_DEG:
-            wanted = ", ".join(f"{value:g}" for value in wanted_deg)
+            expected = ", ".join(f"{value:g}" for value in expected_deg)
             raise Error(
-                f"line {number}: {line[:60]!r} turns the tool {off_deg:.4g} degrees from {wanted}, "
+                f"line {number}: {line[:60]!r} turns the tool {off_deg:.4g} degrees from {expected}, "
                 "which sets the brush upright on the cell's paper",
                 code="tool-turned",
             )

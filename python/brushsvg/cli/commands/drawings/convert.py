@@ -15,7 +15,7 @@ from ....jobs.preparation.margin_strokes import expected_in_words
 from ....jobs.work import Work, colours, of_colour
 from ....machine.paint_reload import has_pens, may_pause, pens_changed
 from ....machine.program import Job
-from ....machine.writer import beside, called_programs
+from ....machine.writer import called_programs, path_next_to
 from ....show.evaluation import report
 from ...console import RefusedError, about, stage, tell, warn
 from ...steps.options import settled, typed, warn_of_cell
@@ -38,7 +38,7 @@ def convert_file(args) -> None:
     with about(args.input):
         tries = [_tried(args, path, part) for path, part in parts]
         for (path, _), one in reversed([*zip(parts, tries, strict=True)]):
-            files = {beside(path, name): text for name, text in one.encoded().items()} | files
+            files = {path_next_to(path, name): text for name, text in one.encoded().items()} | files
         shown = tries[0] if len(tries) == 1 else None
         if args.preview or args.report:
             marks = (

@@ -93,7 +93,7 @@ def cell_place(args) -> None:
         tell(f"{args.input}: arm {cell.arm.name} does it all with the paper where it lies\n")
     elif found:
         pose = place.cell_at(cell, found.frame).paper
-        tell(f"{args.input}: the sheet {found.told} would do: {_pose(pose)}\n")
+        tell(f"{args.input}: the sheet {found.text} would do: {_pose(pose)}\n")
     if there.start_rad is not None:
         told = ", ".join(f"{math.degrees(angle):.0f}" for angle in there.start_rad)
         tell(f"{args.input}: it begins with its joints at {told} degrees, or turned by whole turns\n")

@@ -90,20 +90,20 @@ def drawn_line(
     offsets = np.array(pairs) * [1.0, scale[0]]
     if said.get("sort_points", "true") == "true":
         offsets = offsets[np.argsort(offsets[:, 0], kind="stable")]
-    told = []
+    notices = []
     interpolator = said.get("interpolator_type", "Linear")
     if interpolator not in _INTERPOLATORS:
         how = re.sub("[^A-Za-z]", "", interpolator)[:30]
-        told.append(_unread(f"the width of its PowerStroke is interpolated {how}, read as Linear"))
+        notices.append(_unread(f"the width of its PowerStroke is interpolated {how}, read as Linear"))
     caps = [said.get(f"{end}_linecap_type", "round") for end in ("start", "end")]
     for cap in dict.fromkeys(caps):
         if cap not in _CAPS:
             how = re.sub("[^A-Za-z_]", "", cap)[:30]
-            told.append(
+            notices.append(
                 _unread(f"the cap {how} of its PowerStroke is not read: its ends are as the brush makes them")
             )
     tapers = (caps[0] == "zerowidth", caps[1] == "zerowidth")
-    return PowerStroke(original, offsets, interpolator, beta[0], tapers), told
+    return PowerStroke(original, offsets, interpolator, beta[0], tapers), notices
 
 
 def _unread(sentence: str) -> Notice:
