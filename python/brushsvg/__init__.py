@@ -1,7 +1,7 @@
 """brushsvg: vector lettering to brush strokes that a robot can paint.
 
 The public names are those of __all__. Each is imported when it is first used: importing the package costs
-nothing, and no more is loaded than what is asked for.
+nothing, and only the parts in use are loaded.
 """
 
 from __future__ import annotations

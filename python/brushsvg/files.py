@@ -21,7 +21,7 @@ except ImportError:  # Windows: there what a killed run left stays
 
 MOST_PARTS = 20  # of a TOML key, a.b.c; many of them take minutes to read
 LARGEST_BYTES = 500 * 2**20  # no drawing is; a device may have no end
-READ_AT_ONCE = 4 * 2**20  # memory is asked for as it is needed
+READ_AT_ONCE = 4 * 2**20  # memory is allocated as it is needed
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
@@ -64,7 +64,7 @@ def toml_document(text: str, kind: str) -> dict:
 
 
 def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.PathLike[str]) -> Path:
-    """Where a brush or cell lies: that of a name among the shipped ones, or a user's own file.
+    """Return the path of a brush or cell: a shipped one with this name, or a user's own file.
 
     Error, naming the kind and the shipped ones, for a name that is neither.
     """
@@ -81,7 +81,7 @@ def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.Path
         f"{kind} {name_or_path!r} is not known{did_you_mean(name_or_path, names)} Known are {known}, and any file "
         f"that ends in {suffix}",
         code=f"{kind}-unknown",
-        advice=f"{own} lies here: give its name with the ending" if _is_file(own) else "",
+        advice=f"{own} is in this folder: give its name with the ending" if _is_file(own) else "",
     )
 
 
@@ -98,13 +98,13 @@ def names_in(folder: Path, suffix: str) -> list[str]:
 
 
 def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[str]]) -> None:
-    """Put data at each path, at all of them or at none: written beside them, then renamed. Text, whole or in
+    """Put data at each path, at all of them or at none: written next to them, then renamed. Text, whole or in
     pieces, becomes UTF-8.
 
     Error, with the path in `file`, when a place cannot be written; every path is then as it was before. The
     one gap: a rename that fails after others were made, as where a file is a mount point of its own.
-    Devices and pipes are written through, once all the rest lies ready. What a killed run left beside a path is
-    cleared by the next one that writes there.
+    Devices and pipes are written through, once all other files are ready. Files that a killed run left next to a path
+    are cleared by the next one that writes there.
     """
     path: str | os.PathLike[str] = ""
     targets: dict[str | os.PathLike[str], str] = {}

@@ -45,7 +45,7 @@ def _once(pairs: list[tuple[str, object]]) -> dict:
 
 
 def refuse_unknown(content: dict, known, where: str = "", listed=None) -> None:
-    """Error for the first key that is not known; told: those that are worth naming, None for all."""
+    """Raise Error for the first key that is not known. listed: the keys that the sentence names, None for all."""
     for key in content:
         if key not in known:
             names = ", ".join(listed or known)

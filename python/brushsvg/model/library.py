@@ -107,8 +107,8 @@ def _unknown(path: str, where: str, key: str, known: tuple[str, ...]) -> Notice:
 
 
 def mistyped_keys(brush: _core.Brush) -> list[Notice]:
-    """Those of them that may be another key, mistyped: who paints is told; notes that somebody keeps in a file are
-    none."""
+    """Return the keys that may be another key, mistyped: they are reported to a person who paints; notes that somebody
+    keeps in a file are not."""
     found = [notice for notice in unknown_keys(brush) if notice.about]
     return [
         Notice(f"brush {brush.name}", f"{notice.where}: {notice.sentence}", code=notice.code)

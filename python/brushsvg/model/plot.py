@@ -43,7 +43,7 @@ def brush_picture_on(figure, brush, data: dict | None = None) -> None:
 
 
 def _legend(figure) -> None:
-    """One for all laws, below them: inside it would lie on some law."""
+    """Draw one legend for all laws, below them: inside it would cover a law."""
     named = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):

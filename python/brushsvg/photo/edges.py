@@ -16,16 +16,16 @@ from .photo import LIGHT, grey_light, refuse_grainy
 BROADEST_MM = 31  # paint is narrower: what is darker over less than this is not the light
 PAPER = 0.92  # of the light round about: darker is paint
 SMOOTH_MM = 8.0  # over which the light changes; shorter, and it would follow the stain round wet paint
-STRAY_MM = 6.0  # a mark lies no farther from its box
+STRAY_MM = 6.0  # greatest distance of a mark from its box
 FAINTEST = 0.12  # share of the light that paint takes away at least
 CERTAIN = 6.0  # times the paper's noise
 SEEN = 0.3  # of the usual paint: more is a mark, the edge is found for each by itself
 SPLIT, SPLIT_MM2 = 0.15, 3.0  # share and area of a part in another stroke's box from which it is another mark
 MOST_JOINED = 2  # strokes that one piece of paint covers: more, and it is a shadow or a thing on the page
 MOST_TOUCHING = 0.25  # share of the strokes: more, and it is not one painting of this chart
-TURNED = 0.1  # of the paint: so much more lies in the room of strokes were the page turned
+TURNED = 0.1  # of the paint: so much more would be in the boxes of strokes if the page were turned
 IN_STROKE_BOX = 0.7  # of the paint at least: the rest strays
-MOST_LEAN = 1.5  # mm aside for each mm of depth, as of a cell
+MOST_LEAN = 1.5  # mm of displacement for each mm of depth, as for a cell
 MOST_MISSING = 0.5  # share of the strokes
 LEAST_MM2 = 0.5
 BLOT = 0.03  # of a mark's area: smaller parts are splashes
@@ -36,14 +36,14 @@ ALONG_RIM = (
 LEAST_LENGTH = 0.3  # of its box, that a mark is long at least: less is a splash where a stroke is missing
 CLEAR_MM = 0.5  # within a mark's edge, from where on blur takes nothing away
 MOST_BLURRED = 1.3  # times as much paint a narrow mark may have as it shows
-EDGE_MM = 0.8  # beside a mark, where its edge is looked for
+EDGE_MM = 0.8  # next to a mark, where its edge is searched
 STEP_MM, OVER_MM = 0.1, 0.2  # points of an outline, and over how much of it each is a mean: pixels make steps
 
 
 @dataclass(frozen=True)
 class StrokeBox:
     """Where the mark of a stroke is expected: left, bottom, right, top in mm on the sheet. depth_mm: how deep it is
-    pressed, which takes it aside where the tool leans; 0 where that is not to be looked for."""
+    pressed, which displaces it where the tool leans; 0: no such displacement is estimated."""
 
     stroke: str
     box_mm: tuple[float, float, float, float]
@@ -73,7 +73,7 @@ def find_marks(
         paint = paint_seen(flat, print_, stroke_boxes, labels_mm)
         return assign_marks(paint, flat, stroke_boxes, labels_mm)
     except Error:
-        refuse_grainy(grey_light(flat.pixels), "the strokes cannot be told")
+        refuse_grainy(grey_light(flat.pixels), "the strokes cannot be distinguished")
         raise
 
 
@@ -86,8 +86,8 @@ def printed_pixels(flat: Flat, printed_mm) -> np.ndarray:
 
 
 def paint_seen(flat: Flat, print_: np.ndarray, stroke_boxes: list[StrokeBox], labels_mm=()) -> np.ndarray:
-    """Along the colour that tells paint from paper best, from the light that paper next to it would throw back; paint
-    is darker than paper, or lighter."""
+    """Return the paint along the colour that separates it best from paper, from the light that paper next to it would
+    throw back; paint is darker than paper, or lighter."""
     light = cv2.LUT(flat.pixels, LIGHT)
     printed = print_.copy()
     for box in labels_mm:
@@ -209,8 +209,8 @@ def _nearest_box(flat: Flat, stroke_boxes: list[StrokeBox]) -> np.ndarray:
 
 
 def assign_marks(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], labels_mm: list) -> Marks:
-    """Marks by the box that most of each lies in; where marks lie in the boxes of others, as of a tool that leans, by
-    boxes that lean as they do. paint: as paint_seen gives it, or a mean over several pictures."""
+    """Return the marks, each by the box that holds most of it; where marks are in the boxes of others, as with a
+    leaning tool, by boxes that lean as they do. paint: as paint_seen gives it, or a mean over several pictures."""
     try:
         found = _assign_marks_once(paint, flat, stroke_boxes, labels_mm)
     except Error as refusal:
@@ -232,7 +232,8 @@ def assign_marks(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], l
 
 
 def _leaning(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> list[StrokeBox] | None:
-    """Rooms moved in proportion to depth, to where the middles of most parts of paint lie in those of their rooms.
+    """Return the boxes moved in proportion to depth, to where the middles of most parts of paint are in those of their
+    boxes.
     None where no depth is known, and where the same shift of all does better: the sheet was not at its place."""
     depths = np.array([stroke_box.depth_mm for stroke_box in stroke_boxes])
     if not depths.any():
@@ -314,7 +315,8 @@ def _assign_marks_once(
     if len(missing) > MOST_MISSING * len(stroke_boxes):
         raise Error(
             f"no paint is found of {len(missing)} of the {len(stroke_boxes)} strokes, the range is "
-            f"[0, {int(MOST_MISSING * len(stroke_boxes))}]: is this chart painted, at its place and the right way round?",
+            f"[0, {int(MOST_MISSING * len(stroke_boxes))}]: is this chart painted, at its place and the right way "
+            "round?",
             value=len(missing),
             code="mark-missing",
         )
@@ -333,8 +335,8 @@ def _reaches(other, areas, fine: float) -> np.ndarray:
 
 
 def _largest_foreign(shares, areas, home, kept) -> np.ndarray:
-    """How much of each part lies in the room of a stroke that has no larger mark besides: what reaches into the room of
-    one that has is displaced."""
+    """Return the share of each part in the box of a stroke that has no larger mark: a part that reaches into the box of
+    a stroke with a larger mark is displaced."""
     own = np.zeros(shares.shape[1])
     np.maximum.at(own, home[kept], areas[kept])
     foreign = shares * (np.arange(shares.shape[1]) != home[:, None])
@@ -344,13 +346,13 @@ def _largest_foreign(shares, areas, home, kept) -> np.ndarray:
 
 
 def _refuse_displaced(shares, reaching: np.ndarray, stroke_boxes: list[StrokeBox]) -> None:
-    """reaching: which parts lie in the room of more strokes than one."""
+    """reaching: which parts are in the boxes of more strokes than one."""
     touching = np.unique(np.argsort(shares[reaching, 1:], axis=1)[:, -2:])
     if len(touching) > MOST_TOUCHING * len(stroke_boxes):
         raise Error(
-            f"the marks of {len(touching)} of {len(stroke_boxes)} strokes touch each other, or reach where the next one "
-            f"should be, the range is [0, {int(MOST_TOUCHING * len(stroke_boxes))}]: was this chart painted on this page, "
-            "once, and did the page lie at its stop? Or the page was not printed at 100 % (measure its bar), or the "
+            f"the marks of {len(touching)} of {len(stroke_boxes)} strokes touch each other, or reach where the next "
+            f"one should be, the range is [0, {int(MOST_TOUCHING * len(stroke_boxes))}]: was this chart painted on this "
+            "page, once, and was the page at its stop? Or the page was not printed at 100 % (measure its bar), or the "
             "brush is wider than the chart has room for",
             value=len(touching),
             code="photo-paint-elsewhere",
@@ -358,7 +360,7 @@ def _refuse_displaced(shares, reaching: np.ndarray, stroke_boxes: list[StrokeBox
 
 
 def _refuse_covered(shares, areas, several, stroke_boxes: list[StrokeBox], fine: float) -> None:
-    """several: which parts lie in the room of more strokes than one."""
+    """several: which parts are in the boxes of more strokes than one."""
     widest = max(
         (stroke_box.box_mm[2] - stroke_box.box_mm[0]) * (stroke_box.box_mm[3] - stroke_box.box_mm[1])
         for stroke_box in stroke_boxes
@@ -377,7 +379,7 @@ def _refuse_covered(shares, areas, several, stroke_boxes: list[StrokeBox], fine:
 
 
 def _refuse_elsewhere(painted: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> None:
-    """painted (rows, columns): what counts as paint. Where it lies beside the strokes' room."""
+    """Refuse paint outside of the strokes' boxes. painted (rows, columns): what counts as paint."""
     stroke_box = np.zeros(painted.shape, bool)
     for each in stroke_boxes:
         c0, r0, c1, r1 = _window(flat, each.box_mm, 0.5)
@@ -386,16 +388,16 @@ def _refuse_elsewhere(painted: np.ndarray, flat: Flat, stroke_boxes: list[Stroke
     here, turned = ((painted & there).sum() / total for there in (stroke_box, stroke_box[::-1, ::-1]))
     if turned > here + TURNED:
         raise Error(
-            f"{100 * turned:.0f} % of the paint lies where the strokes would be were the page turned by 180 degrees, "
-            f"{100 * here:.0f} % where they should be: lay the page the other way round for the machine",
+            f"{100 * turned:.0f} % of the paint is where the strokes would be if the page were turned by 180 degrees, "
+            f"{100 * here:.0f} % where they should be: turn the page round for the machine",
             value=turned,
             code="photo-paint-elsewhere",
         )
     if here < IN_STROKE_BOX:
         raise Error(
-            f"only {100 * here:.0f} % of the paint lies where strokes of this chart should be, it takes "
-            f"{100 * IN_STROKE_BOX:.0f} %: was this chart painted on this page, once, did the page lie at its stop, and was "
-            "it printed at 100 % (measure its bar)?",
+            f"only {100 * here:.0f} % of the paint is where strokes of this chart should be, at least "
+            f"{100 * IN_STROKE_BOX:.0f} % must be: was this chart painted on this page, once, was the page at its stop, "
+            "and was it printed at 100 % (measure its bar)?",
             value=here,
             code="photo-paint-elsewhere",
         )
@@ -418,7 +420,8 @@ def _outlines(paint, part, owner, own, cut, number: int, stats, fine: float, hei
 
 def outlines_of(amount, mine, foreign, usual: float, fine: float, left_top_mm) -> list[np.ndarray]:
     """Rings round one mark, half way between paper and its paint. amount (rows, columns): of paint; mine, foreign:
-    where it certainly lies, and that of others; usual: paint of a mark; left_top_mm: of the part of the sheet."""
+    where it certainly is, and where that of others is; usual: paint of a mark; left_top_mm: of the part of the
+    sheet."""
     level = 0.5 * _amount_of(amount, mine, usual, fine)
     reach = max(1, round(EDGE_MM * fine))
     ellipse = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
@@ -431,8 +434,8 @@ def outlines_of(amount, mine, foreign, usual: float, fine: float, left_top_mm) -
 
 
 def _amount_of(amount: np.ndarray, mine: np.ndarray, usual: float, fine: float) -> float:
-    """How much paint a mark has where blur takes none of it; a narrow one, without such a place, what is usual as far
-    as that can be: half way of less lies outside of its edge."""
+    """Return how much paint a mark has where blur removes none of it; for a narrow one, without such a place, the usual
+    amount as far as that is possible: half of less is outside of its edge."""
     broad = cv2.erode(np.uint8(mine), None, iterations=max(1, round(CLEAR_MM * fine))) == 1
     if broad.sum() > 0.1 * mine.sum():
         return float(np.median(amount[broad]))

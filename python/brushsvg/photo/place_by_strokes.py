@@ -1,7 +1,7 @@
-"""A flatbed's scan of a sheet without markers: where the sheet lies in it, from the strokes on it alone.
+"""Find a sheet without markers in a flatbed's scan from its strokes alone.
 
-The scanner's resolution gives the scale, and shows nothing aslant: what is left is a turn and a shift. They are first
-those at which most paint lies along the strokes' ways, then those that bring each mark's box to the middle of its room.
+The scanner's resolution gives the scale, and there is no perspective: what is left is a turn and a shift. They are
+first those at which most paint is along the strokes' ways, then those that bring each mark to the middle of its box.
 """
 
 from __future__ import annotations
@@ -24,13 +24,11 @@ ENOUGH_PX_PER_MM = (
 COARSE_PX_PER_MM = 3.0  # in which marks are looked for
 WAYS_MM, NEAR_MM = 3.0, 2.0  # how broad ways are drawn, and over how much both pictures are blurred
 AROUND_MM = 10  # to which ways are broadened and blurred around them
-ASKEW_DEG, STEP_DEG = 8, 1  # a sheet lies on the glass aslant by so much at most; tried in steps
-# times as well that a mirrored scan lies along mirrored ways: charts match 1.7 times, other pictures 1.01 either way
+ASKEW_DEG, STEP_DEG = 8, 1  # greatest turn of a sheet on the glass; tried in steps
+# times as well that a mirrored scan fits mirrored ways: charts match 1.7 times, other pictures 1.01 either way
 MIRRORED = 1.2
 EXTENT = (0.8, 1.25)  # of what is painted against the chart's: beyond, it is another resolution
-SCALE = (
-    0.03  # by which brushes as thick as thought have marks lie nearer or farther: more is another resolution
-)
+SCALE = 0.03  # by which a brush of another thickness moves marks apart: more is another resolution
 FOUND = 0.6  # share of the strokes whose marks must be in their rooms
 WITHIN = 0.7  # of a mark, in its room
 SPECK_MM2 = 2.0
@@ -51,7 +49,7 @@ def find_scan_view(
     fine = dpi / MM_PER_INCH
     if fine < LEAST_PX_PER_MM:
         raise Error(
-            f"{dpi:g} dpi are {fine:.1f} pixels per mm, it takes {LEAST_PX_PER_MM:g}: scan at 300 dpi or more",
+            f"{dpi:g} dpi are {fine:.1f} pixels per mm, at least {LEAST_PX_PER_MM:g} are needed: scan at 300 or more",
             value=dpi,
             code="photo-too-coarse",
         )
@@ -64,7 +62,7 @@ def find_scan_view(
         )
     if len({number for number, _ in detected(pixels, dictionary)}) >= FEWEST:
         raise Error(
-            "the scan shows a chart's printed markers, which tell its place better than --dpi: leave --dpi out",
+            "the scan shows a chart's printed markers, which give its place better than --dpi: leave --dpi out",
             code="scan-with-markers",
         )
     if fine > ENOUGH_PX_PER_MM:
@@ -114,7 +112,7 @@ def _refuse_another_size(paint: np.ndarray, stroke_boxes: list[StrokeBox], dpi: 
     size = math.sqrt(found[0] * found[1] / (expected[0] * expected[1]))
     if not EXTENT[0] < size < EXTENT[1]:
         raise Error(
-            f"at {dpi:g} dpi the paint on the scan lies over {found[1]:.0f} x {found[0]:.0f} mm, the strokes of the "
+            f"at {dpi:g} dpi the paint on the scan covers {found[1]:.0f} x {found[0]:.0f} mm, the strokes of the "
             f"chart over {expected[1]:.0f} x {expected[0]:.0f} mm: was it scanned at {_usual(dpi * size)} dpi, in one "
             "piece, and is it this chart?",
             value=dpi,
@@ -163,7 +161,7 @@ def spectrum(paint: np.ndarray, ways: list[np.ndarray]) -> tuple[np.ndarray, tup
         fy=1 / COARSE_PX_PER_MM,
         interpolation=cv2.INTER_AREA,
     )
-    # both beside each other with what is blurred around the ways: what lies beyond one end must not meet the other
+    # both next to each other, with the blur around the ways: one end must not wrap round to the other
     every = np.concatenate(ways)
     reach = math.ceil(math.hypot(np.ptp(every.real), np.ptp(every.imag))) + 2 * AROUND_MM + max(small.shape)
     size = cv2.getOptimalDFTSize(reach)
@@ -171,8 +169,8 @@ def spectrum(paint: np.ndarray, ways: list[np.ndarray]) -> tuple[np.ndarray, tup
 
 
 def match_ways(seen: np.ndarray, shape: tuple[int, int], ways: list[np.ndarray]) -> tuple[float, complex]:
-    """How much paint lies along the ways (x - iy) at the best shift, and that shift. seen, shape: of `spectrum`; shifts
-    beyond the picture are those up and to the left."""
+    """Return how much paint is along the ways (x - iy) at the best shift, and that shift. seen, shape: of `spectrum`;
+    shifts beyond the picture are those up and to the left."""
     size = len(seen)
     every = np.concatenate(ways)
     corner = complex(math.floor(every.real.min()), math.floor(every.imag.min())) - AROUND_MM * (1 + 1j)
@@ -205,9 +203,9 @@ def _into_rooms(
         of, places = marks_in(aligned, sheet_mm, stroke_boxes)
         if len(of) < max(FEWEST, FOUND * len(stroke_boxes)):
             raise Error(
-                f"only {len(of)} of the {len(stroke_boxes)} strokes of this chart are found where they should be on the scan, "
-                f"it takes {math.ceil(FOUND * len(stroke_boxes))}: is it this chart, painted once, scanned in one piece at "
-                f"{dpi:g} dpi?",
+                f"only {len(of)} of the {len(stroke_boxes)} strokes of this chart are where they should be on the "
+                f"scan, at least {math.ceil(FOUND * len(stroke_boxes))} are needed: is it this chart, painted once, "
+                f"scanned in one piece at {dpi:g} dpi?",
                 value=len(of),
                 code="photo-paint-elsewhere",
             )
@@ -217,7 +215,7 @@ def _into_rooms(
         unit *= change / size
     if abs(size - 1) > SCALE:
         raise Error(
-            f"the strokes lie {size:.3f} times as far from each other as on the chart: was the sheet scanned at "
+            f"the strokes are {size:.3f} times as far from each other as on the chart: was the sheet scanned at "
             f"{_usual(dpi * size)} instead of {dpi:g} dpi?",
             value=dpi,
             code="scan-resolution",
@@ -248,7 +246,7 @@ def marks_in(aligned: np.ndarray, sheet_mm, stroke_boxes: list[StrokeBox]) -> tu
 
 
 def similar(middles: np.ndarray, places: np.ndarray) -> tuple[complex, complex]:
-    """(a, b) of places = a middles + b, without those that lie off."""
+    """Fit (a, b) of places = a middles + b, without outliers."""
     kept = np.ones(len(middles), bool)
     for _ in range(4):
         columns = np.column_stack([middles[kept], np.ones(kept.sum())])

@@ -1,4 +1,4 @@
-"""Strokes that are asked for wider as paint runs out, so that they come out as wide as they were drawn."""
+"""Widen the targets of strokes as paint runs out, so that the marks come out as wide as drawn."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ MOST_ROUNDS = 8  # of plans: deeper landings are longer, which takes more paint;
 
 @dataclass(frozen=True)
 class Pressed:
-    """painted, wanted: strokes as they are to be asked for; done: what compensates painted; told: where the brush would
-    have to be pressed deeper than it may be."""
+    """painted, targets: strokes to compensate and their targets; done: the compensation of painted; notices: where the
+    brush would have to be pressed deeper than it may be."""
 
     painted: list
     targets: list

@@ -49,7 +49,7 @@ WORSE = "a refined way would paint the letter worse"
 def refined(painted: list, targets: list, brush, closed, compensated, forbidden=None) -> Refined:
     """The refined passes of strokes, but the closed form's where those are forbidden, or paint a letter worse.
 
-    painted: strokes that the brush can paint; wanted: what they should become; closed: their compensation in closed
+    painted: strokes that the brush can paint; targets: what they should become; closed: their compensation in closed
     form; compensated: (strokes, method) to what _core.compensate returns; forbidden: a plan to the sentences that
     forbid it.
     """
@@ -78,8 +78,8 @@ def refined(painted: list, targets: list, brush, closed, compensated, forbidden=
 
 
 def towards_reach(painted, target, brush):
-    """What refinement is to paint of a stroke: where that is far too wide, not the outline it was found in. All of the
-    shape beside the paint would pull the stroke's line to it."""
+    """Return the target of refinement for a stroke: its discs, where the outline it was found in is far too wide. All
+    of the shape next to the paint would pull the stroke's line to it."""
     if not painted.wanted_mm or not brush.width_follows_depth():
         return painted
     greatest = brush.half_width_range_mm()[1]

@@ -85,8 +85,8 @@ def _half_width(unit) -> float:
 
 
 def advice(size: Size, scale: float | None = 1.0) -> str:
-    """A sentence for people, "" where no size can be painted. scale: what was asked of --scale; None where the size is
-    given in another way."""
+    """Return a sentence for people, "" where no size can be painted. scale: the value of --scale; None where the size
+    is given in another way."""
     if not any(size.overlaps.values()):
         return ""
     sample = f"tried on {size.tried} of {size.strokes} strokes" if size.tried < size.strokes else "tried"

@@ -14,8 +14,8 @@ def worse(refined: list, closed: list, targets: list, brush, groups: list[list[i
     """Numbers of the strokes of those groups, such as letters, that refined passes paint worse than those in closed
     form.
 
-    wanted: what the passes should become, one each. Groups are judged by the overlap of all they paint with all that is
-    wanted, as the report does, and by how calm their outline is. Where a letter is the calmer without some of its
+    targets: what the passes should become, one each. Groups are judged by the overlap of all they paint with all
+    targets, as in the report, and by how calm their outline is. Where a letter is the calmer without some of its
     refined strokes, by more than it loses of overlap, those are worse.
     """
     first, second = (_core.simulate(_core.Plan(passes=each), brush).passes for each in (refined, closed))

@@ -13,7 +13,7 @@ from functools import cache, lru_cache
 import cv2
 import numpy as np
 
-TEXELS = 20.0  # per mm of the sheet, unless another number is asked for
+TEXELS = 20.0  # per mm of the sheet, by default
 INK = np.array([0.05, 0.04, 0.04])  # of a printer: share of the light thrown back, red green blue
 BLUE = np.array([0.05, 0.09, 0.35])
 
@@ -144,7 +144,7 @@ def _posed(camera, sheet_mm):
 
 
 def _height(camera, sheet_mm, points):
-    """Paper that lies flat on two edges and bulges in between."""
+    """Paper that is flat on two edges and bulges in between."""
     return camera.sag_mm * np.sin(np.pi * np.clip(points[..., 0] / sheet_mm[0], 0, 1))
 
 
@@ -241,7 +241,7 @@ def _lit(camera, size_mm, at):
 
 
 def _looked_up(sheet, at):
-    """Between texels; beside the sheet a brown table."""
+    """Return the light between texels; outside of the sheet, of a brown table."""
     rows, columns = sheet.shown.shape[:2]
     c = at[..., 0] * sheet.texels - 0.5
     r = (sheet.size_mm[1] - at[..., 1]) * sheet.texels - 0.5

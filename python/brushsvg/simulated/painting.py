@@ -24,7 +24,7 @@ LOWER_MM = 0.02  # more than the tilt's and scale's part in a change of height
 
 @dataclass(frozen=True)
 class PaintedStroke:
-    """rings: on the sheet, as it lies; way: (n, 3) x, y of the brush's contact and how far it has come, mm."""
+    """rings: on the sheet; way: (n, 3) x, y of the brush's contact and its distance so far, mm."""
 
     stroke: str
     rings: list[np.ndarray]
@@ -48,7 +48,7 @@ def painted(
     except Error as refusal:
         if refusal.code == "depth-out-of-range" and _deepest_mm(plan.passes) <= brush.depth_range_mm[1]:
             refusal = Error(
-                f"{refusal.sentence}, as high as the studio's paper lies there",
+                f"{refusal.sentence}, at the height of the studio's paper there",
                 refusal.where,
                 refusal.value,
                 refusal.range,
@@ -59,7 +59,7 @@ def painted(
     if brush.paint:
         _core.narrow(marks, brush.paint, dips_mm or dips_without_cell(plan.passes))
     _core.trace_outlines(marks, brush)
-    always = np.random.default_rng(0)  # of this machine: whatever is random
+    always = np.random.default_rng(0)  # of this machine: the part that repeats
     own = {one.stroke: always.normal(0, 1, 2) * off.own_mm for one in plan.passes}
     random = np.random.default_rng(seed + 1)
     turn = rotation(np.radians(studio.sheet.turn_deg))
@@ -81,7 +81,8 @@ def painted(
 
 
 def low_enough(studio: Studio, plan, brush, undone: Machine | None) -> Studio:
-    """The studio, its paper so low that no stroke is pressed beyond the brush's range, if none is asked to be."""
+    """Return the studio, its paper so low that no stroke is pressed beyond the brush's range, unless the plan asks for
+    it."""
     most_mm = brush.depth_range_mm[1]
     beyond = _deepest_mm(_as_run(plan, studio, undone)) - most_mm
     if beyond <= 0 or _deepest_mm(plan.passes) > most_mm:

@@ -16,8 +16,8 @@ from ..geometry.cubics import split
 _CORNER_RAD = np.radians(20)
 _SHARP_RAD = np.radians(100)  # at less a turn leaves no blot that one sees
 _LIKE_RAD = np.radians(5)
-_STRAIGHT = 0.001  # of a side's length, its control points beside it
-_WORTH = 0.05  # a lift, in squares of the width: paint out of place that it takes away
+_STRAIGHT = 0.001  # of a side's length, its control points off it
+_WORTH = 0.05  # a lift, in squares of the width: misplaced paint that it removes
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def begun_amid_a_side(cubics: np.ndarray, half_width: list) -> tuple[np.ndarray,
 
 
 def lifted_at_corners(strokes: list[_core.Stroke], brush: _core.Brush) -> list[_core.Stroke]:
-    """The strokes, those of drawn lines cut at each sharp corner where two marks lie nearer to what is wanted than one
+    """The strokes, those of drawn lines cut at each sharp corner where two marks are nearer to the target than one
     with a turn in place: paint missing and too much is less by 0.05 squares of the width. The parts of `id` are called
     id, id~2, id~3 ...; a closed line then begins at such a corner."""
     from .. import _core

@@ -1,4 +1,4 @@
-"""Strokes of filled shapes led otherwise, and added, where their marks cost less for it."""
+"""Search for other and further strokes of filled shapes, where their marks cost less."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class _Added:
 
 @dataclass(frozen=True)
 class Searched:
-    """What a search made of drawn, painted and wanted strokes, those that it added behind the others of their element;
+    """The result of a search: drawn, painted and target strokes, added ones behind the others of their element;
     done: what compensation says of the painted ones; added: ids of the strokes that the search added."""
 
     drawn: list
@@ -50,7 +50,7 @@ def searched(
 ) -> Searched:
     """The strokes by which the marks of filled shapes cost least.
 
-    drawn: strokes as they were found; painted: as the brush paints them; wanted: what each should become; compensated:
+    drawn: strokes as they were found; painted: as the brush paints them; targets: what each should become; compensated:
     makes a plan of strokes; done: that of the painted ones, where it is there already. detail: how small an area gets a
     stroke of its own: "draft", "normal", "fine". are_corners_filled: else only limbs without a stroke get one.
     are_sides_painted: along what a stroke of the brush's greatest width leaves of a wider one, too.
@@ -268,7 +268,7 @@ def _behind(added: list, rows: list, stroke_of) -> list:
 
 
 def _without(stroke, element: str, areas_mm: list[np.ndarray]):
-    """A stroke of the element, no longer asked for what others paint."""
+    """Return a stroke of the element without the target areas that others paint."""
     if stroke.origin.element != element or not _core.intersect(stroke.wanted_mm, areas_mm):
         return stroke
     import shapely

@@ -29,7 +29,7 @@ def trial_overlap(strokes: list, rings: list[np.ndarray], brush) -> float:
 
 
 def misplaced_mm2(marks, rings: list[np.ndarray], brush) -> float:
-    """Area of what is wanted and not painted, and of what is painted and not wanted."""
+    """Return the area of the missing and of the surplus paint."""
     mark = outline_of(marks, brush)
     return _core.area(mark) + _core.area(rings) - 2 * _core.area(_core.intersect(mark, rings))
 

@@ -13,13 +13,13 @@ WIDE = ("auto", "clamp", "passes", "refuse")
 # Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
 _WORTH_PASSES = 1 / 0.95
 POINT_MM = 1e-3  # half the width of a line where it ends in a point
-UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge lies beside the shape's by more
+UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge is farther from the shape's
 
 
 def within_reach(
     strokes: list[_core.Stroke], brush: _core.Brush, wide: str = "auto", is_searched: bool = True
 ) -> tuple[list[_core.Stroke], list[_core.Stroke], list[Notice]]:
-    """What to paint, stroke by stroke, and what each should become: (strokes to paint, strokes wanted, notices).
+    """Return what to paint, stroke by stroke, and what each should become: (strokes to paint, targets, notices).
 
     A line that was drawn narrower than the brush is painted at the brush's least width; one drawn wider is refused when
     the plan is made. Other widths are changed only where strokes carry an outline. A stroke whose shape is less than

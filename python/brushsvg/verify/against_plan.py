@@ -21,7 +21,7 @@ STRAY_MM = 0.02  # what rounding and the chords of circles make of a path; a bru
 def with_plan(
     ran: Ran, expected: PlanInLoads, cell: Cell, first_stroke: int = 1
 ) -> tuple[list[int | None], Problems]:
-    """For each pass that was read which load it is (None: none), and a notice for whatever is missing, in another
+    """Return for each pass that was read its load (None: none), and a notice for each pass that is missing, in another
     order, elsewhere, at another speed or with other paint.
 
     Passes before the program's first stroke were painted before. Error when the plan has no such stroke.
@@ -37,7 +37,7 @@ def with_plan(
     rows = zip(ran.plan.passes, ran.lines, partners, strict=True)
     for a_pass, lines, k in rows:
         problems += _strayed(a_pass, lines, due[k], cell) if k is not None else []
-    if not problems and len(ran.visits) == len(due):  # else a stroke is not one touch, which is told
+    if not problems and len(ran.visits) == len(due):  # else a stroke is not one touch, which is reported
         planned_visits = visits(expected, cell, first)[first - 1 :] or ((),) * len(due)
         problems += _paint(ran, due, planned_visits)
     return [None if k is None else first - 1 + k for k in partners], problems
@@ -91,7 +91,7 @@ def _strayed(a_pass, lines: np.ndarray, planned, cell: Cell) -> Problems:
     planned = steep_ways_lifted(planned, cell) if cell.servo else planned
     # where units are coarse, a pose gives way to one that is less than a move away
     limit_mm = max(STRAY_MM, slack_mm(cell), least_move_mm(cell) + unit_mm(cell))
-    # a servo's height goes in steps of whole values, beside the line by half of both; and a pose at the value of the
+    # a servo's height goes in steps of whole values, off the line by half of both; and a pose at the value of the
     # one before gives way to it, by which the line begins up to a value higher
     allowance_mm = (_step_mm(planned, cell) + 3 * value_mm(cell)) / 2 if cell.servo else 0.0
     steepness = limit_mm / (limit_mm + allowance_mm)
@@ -118,7 +118,7 @@ def _step_mm(a_pass, cell: Cell) -> float:
     return max(cell.servo.step_mm, float((np.abs(ways[:, 2]) / servo_parts(ways, cell)).max(initial=0.0)))
 
 
-HELD_DEG = 0.5  # off what was meant, a brush's mark does not show it
+HELD_DEG = 0.5  # off the planned direction: a brush's mark does not show it
 
 
 def _held_otherwise(a_pass, lines: np.ndarray, planned) -> Problems:
@@ -136,8 +136,8 @@ def _held_otherwise(a_pass, lines: np.ndarray, planned) -> Problems:
         return []
     sentence = (
         f"line {lines[worst]}: the brush is held {off_deg[worst]:.3g} degrees from how the drawing asks for it, by "
-        f"{float(tilts_deg(reference[worst])):.3g} degrees from upright: it was changed, or made with other flags or of "
-        "another drawing"
+        f"{float(tilts_deg(reference[worst])):.3g} degrees from upright: it was changed, or made with other flags or "
+        "of another drawing"
     )
     return [Notice(a_pass.stroke, sentence, code="held-otherwise")]
 
@@ -217,8 +217,8 @@ def follows(found: np.ndarray, reference: np.ndarray, limit_mm: float) -> int | 
     ends, never back on either, and never farther from each other than the limit; else the point of found to which the
     first move leads on which that is over.
 
-    Decided exactly, as Alt and Godau do: a move of each make a cell, of which the pairs of places within the limit are
-    a convex part. A cell is entered from the move of found before it, or from the move of asked before it, and what
+    Decided exactly, after Alt and Godau: a move of each path makes a cell, whose pairs of places within the limit are
+    a convex part. A cell is entered from the move of found before it, or from the move of reference before it, and what
     matters is how early on the other move that can be.
     """
     found, reference = (
@@ -229,7 +229,7 @@ def follows(found: np.ndarray, reference: np.ndarray, limit_mm: float) -> int | 
     cells = len(reference) - 1
     entered: dict[
         int, float
-    ] = {}  # by the move of asked: how early on it, coming from the move of found before
+    ] = {}  # by the move of reference: how early on it, coming from the move of found before
     for j in range(cells):
         free = _within(found[0], reference[j], reference[j + 1], limit_mm)
         if free is None or free[0] > 0.0:
@@ -240,7 +240,7 @@ def follows(found: np.ndarray, reference: np.ndarray, limit_mm: float) -> int | 
     for i in range(len(found) - 1):
         begin, end = found[i], found[i + 1]
         left: dict[int, float] = {}
-        below = None  # how early on the move of found, coming from the move of asked before
+        below = None  # how early on the move of found, coming from the move of reference before
         if entered.get(0) == 0.0 and (free := _within(reference[0], begin, end, limit_mm)) and free[0] == 0.0:
             below = 0.0
         columns = sorted(entered)

@@ -34,8 +34,9 @@ def again(
     header_notes: HeaderNotes | None = None,
     speeds_mm_s: list[float] | None = None,
 ) -> Program | None:
-    """What brushsvg would make of the strokes and visits that were read; None where a stroke is not one touch. Without
-    a header, unless its words are told. speeds_mm_s: of the strokes, where it is known how they were meant.
+    """Return the program that brushsvg would write for the strokes and visits that were read; None where a stroke is
+    not one touch. Without a header, unless its words are given. speeds_mm_s: planned speeds of the strokes, where
+    known.
     """
     if not ran.visits or len(ran.visits) != len(ran.plan.passes):
         return None
@@ -61,7 +62,7 @@ def again(
 
 @dataclass(frozen=True)
 class HeaderNotes:
-    """What of a header stands in no line of the program."""
+    """The words of a header that no line of the program holds."""
 
     title: str
     notes: tuple[str, ...]
@@ -74,7 +75,7 @@ def differing_line(
 
     However the numbers are written, places may be off by what a brush does not show, feeds may be lower, and what does
     nothing may be missing or stand twice. Of a servo's ways in paint, whose heights were rounded to whole values, only
-    the ends are looked at. least_time_s: that of the program before its feeds were lowered; None: they are as meant.
+    the ends are compared. least_time_s: that of the program before its feeds were lowered; None: they are as planned.
     """
     theirs_text = "".join(text_of(POSTS[cell.language], program))
     again = read_program(theirs_text, POSTS[cell.language].extensions[0], cell)
@@ -166,7 +167,7 @@ def _by_value(acts: list[Act]) -> dict[float, list[Act]]:
 def _differs_in_header(
     ours: list[Act], theirs: list[Act], text: list[str], again: list[str], a: Act | None, b: Act | None
 ) -> str | None:
-    """A line that only one of both headers has: they are sorted, and the line beside it says nothing of it."""
+    """A line that only one of both headers has: they are sorted, so the line next to it is no counterpart."""
     if b and _HEADER.match(b.text) and _header_word(b) not in map(_header_word, ours):
         return f"its header lacks the line {again[b.line - 1].strip()[:60]!r}"
     if a and _HEADER.match(a.text) and _header_word(a) not in map(_header_word, theirs):
@@ -223,7 +224,7 @@ def _with_header_sorted(acts: list[Act]) -> list[Act]:
 
 
 def _header_word(act: Act) -> str:
-    """What tells one line of a header from the others: its first word, or what it declares."""
+    """Return the key of a line of a header: its first word, or the name that it declares."""
     word = act.text.partition(":")[0]
     return word if word.startswith("local ") else word[:8]
 
@@ -257,7 +258,7 @@ class _Alike:
         self.upright = upright
         self.blends = max(BLENDS, BLENDS_PER_MM * unit_mm(cell))
         if cell.servo:
-            # rounded heights tell a lift's begin and end to a value, and a way's last part to a step
+            # rounded heights give a lift's begin and end to a value, and a way's last part to a step
             self.value_s = 2 * value_mm(cell) / cell.speeds.press_mm_s
             rows = np.diff(np.array(cell.servo.table), axis=0)
             self.rest_s = cell.servo.settle_s + LIFTS_S + self.value_s
@@ -391,10 +392,10 @@ _ABOUT = re.compile(
 
 
 def _header_ranges(program: Program, least_time_s: float | None) -> tuple[tuple, tuple]:
-    """(least, most) of the length [mm] and of the time [s] that a header may tell, but for one unit of the last digit
-    less and two more: circles that were written as lines took rests.
+    """Return (least, most) of the length [mm] and of the time [s] that a header may state, with one unit of the last
+    digit less and two more: circles that were written as lines took rests.
 
-    A servo's heights in steps make a way longer than it was meant, but not shorter than it is seen from above; and each
+    A servo's heights in steps make a way longer than planned, but not shorter than it is seen from above; and each
     stroke may have lost a step and a value at both ends.
     """
     length_mm, time_s = painting_mm(program), duration_s(program)
@@ -412,7 +413,7 @@ LENGTHS, TIMES = 1e-3, 1e-2
 
 
 def _about(found: re.Match) -> tuple[float, float]:
-    """The seconds or millimetres that a header tells, and the unit that they are rounded to."""
+    """Return the seconds or millimetres of a header, and the unit that they are rounded to."""
     if found[4]:
         return float(found[4]), 1.0
     seconds = sum(int(found[k] or 0) * unit for k, unit in ((1, 3600), (2, 60), (3, 1)))

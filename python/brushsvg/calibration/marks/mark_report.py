@@ -308,8 +308,8 @@ def _stays(made, in_place: float, moved: float) -> list[str]:
         f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, worth "
         f"{fit.effective_samples:.0f} independent ones",
         f"largest residuals: {made.painted.marks[worst].stroke}, {fit.marks[worst].rms_mm:.2f} mm (rms)",
-        f"painted and predicted marks overlap by {in_place:.3f} where they are, by {moved:.3f} with their displacements "
-        "taken away (mean of intersection over union)",
+        f"painted and predicted marks overlap by {in_place:.3f} where they are, by {moved:.3f} with their "
+        "displacements taken away (mean of intersection over union)",
     ]
     if made.edge_mm > 0:
         lines.append(

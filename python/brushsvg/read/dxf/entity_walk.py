@@ -64,7 +64,7 @@ class _Place:
         return float(np.linalg.norm(self.mm_from_block[:3, :3], 2))
 
     def widths_mm(self, line: Curve, normal) -> np.ndarray:
-        """Of a polyline in the plane of its normal, across the line as it lies on paper: blocks can be squeezed."""
+        """Return the vector across the line on paper, from the plane of a polyline's normal: blocks can be squeezed."""
         mean = math.sqrt(abs(float(np.linalg.det(self.mm_from_block[:2, :2]))))
         along = line.cubics[:, (1, 3)] - line.cubics[:, (0, 2)]  # at the start and end of each
         along /= np.linalg.norm(along, axis=2, keepdims=True)
@@ -153,7 +153,7 @@ class Walk:
                 raise
             except NoFontError:
                 self._leave_out(kind, _TEXT_ADVICE, layer, code="text-unread")
-            except Exception as problem:  # whatever ezdxf meets in numbers that anyone may have written
+            except Exception as problem:  # ezdxf raises anything on arbitrary numbers
                 self._note(
                     name,
                     f"it is damaged ({reason(problem)}): left out",

@@ -37,7 +37,7 @@ class _Auditor(ezdxf.audit.Auditor):
             self.fixes.pop()
 
     def repairs(self) -> list[Notice]:
-        """A notice for each repair that may change what is painted; those of one kind are told as one."""
+        """Return a notice for each repair that may change the painting; repairs of one kind share a notice."""
         return [
             Notice(
                 str(fix.entity or "file"),
@@ -65,7 +65,7 @@ def open_dxf(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
         auditor.run()
     except ezdxf.DXFError as problem:
         raise Error(f"the DXF is damaged beyond repair: {reason(problem)}", code="dxf-damaged") from None
-    except Exception:  # whatever ezdxf meets in bytes that anyone may have written
+    except Exception:  # ezdxf raises anything on arbitrary bytes
         raise Error("the DXF is damaged beyond repair, or cut short", code="dxf-damaged") from None
     problems = _some([("file", error.message) for error in auditor.errors], damaged=False)
     return document, notices + problems + auditor.repairs()
@@ -84,7 +84,7 @@ def _text(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
     try:
         document, recovered = _loaded(data, entities)
         bad_numbers = any(code == _NUMBER for code, _ in recovered.errors)
-    except Exception:  # as above; entity by entity it is told what is wrong
+    except Exception:  # as above; the walk reports the problem entity by entity
         bad_numbers = True
     if bad_numbers:
         entities = Entities(is_strict=True)

@@ -41,7 +41,7 @@ _REQUESTED = {"mm": _UNITS[4], "in": _UNITS[1]}
 
 
 def unit_of(document, requested: str | None) -> tuple[float, list[Notice]]:
-    """Of the drawing, or as asked for. Error where neither says a unit."""
+    """Return the unit of the drawing, or the requested one. Error where neither says a unit."""
     name, drawn = _UNITS.get(document.header.get("$INSUNITS", 0), ("", None))
     if requested is None:
         if drawn is None:
@@ -57,7 +57,7 @@ def unit_of(document, requested: str | None) -> tuple[float, list[Notice]]:
     return unit_mm, [
         Notice(
             "$INSUNITS",
-            f"the drawing is in {name}; read in {unit_name}, as asked for",
+            f"the drawing is in {name}; read in {unit_name}, as requested",
             code="unit-overruled",
         )
     ]

@@ -95,7 +95,7 @@ def _goes_on(chain: list[Way], way: Way) -> bool:
 
 
 def _without_dips(chains: list, said: dict[int, str], options: ReadOptions) -> tuple[list, list[Notice]]:
-    """The lines that draw, with a notice for those that fetch paint and for those that were asked to be left out."""
+    """Return the lines that draw, with a notice for those that fetch paint and for those left out on request."""
     strokes = [(chain[0].line, np.concatenate([way.points_mm[:, :2] for way in chain])) for chain in chains]
     skipped = [_is_skipped(line, points, said, options) for line, points in strokes]
     notices = []

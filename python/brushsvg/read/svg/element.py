@@ -33,7 +33,7 @@ _MOST_DATA = 10_000_000  # characters of path data
 
 
 class Painted:
-    """elements: those of the drawing in the order painted. bent: what lies in path effects of groups."""
+    """elements: those of the drawing in the order painted. bent: elements in path effects of groups."""
 
     def __init__(self, by_id: dict[str, ET.Element], notes: Notes, paints: Paints, bent: set[ET.Element]):
         self.elements: list[Element] = []
@@ -96,7 +96,7 @@ class Painted:
                 'too; data-brushsvg-skip="yes" on it leaves it out'
             )
             self.notes.add(node, context, sentence, code="white-paint")
-        # a fill that nobody chose is black, and hardly ever meant next to a stroke of another colour
+        # a black fill that nobody chose is rarely intended next to a stroke of another colour
         is_two = properties["fill"] and "none" not in (fill, stroke) and fill != stroke
         if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
             self.notes.add(node, context, "markers are not read: left out", code="markers-unread")
@@ -130,7 +130,7 @@ class Painted:
         return found
 
     def _why_unpainted(self, properties: dict[str, str], tag: str, width_mm: float) -> str:
-        """What of a stroke or fill that the drawing does ask for is the cause."""
+        """Return the reason why a stroke or fill of the drawing paints nothing."""
         kinds = [
             name
             for name in ("stroke", "fill")
@@ -159,7 +159,7 @@ class Painted:
         return x, y, width, height
 
     def _named(self, node: ET.Element, context: Context, first: int) -> str:
-        """A painted element's name; what was told about one without an id is told about its name as well."""
+        """Return a painted element's name; notices about one without an id are renamed as well."""
         if name := context.name(node):
             return name
         self.nameless += 1
@@ -278,6 +278,6 @@ def _encloses(subpaths: tuple[SubPath, ...], width_mm: float) -> bool:
 def _beyond(attributes, tag: str, place: int) -> str:
     name = {"path": "d", "polyline": "points", "polygon": "points"}.get(tag)
     if name is None:
-        return "its geometry lies beyond 1e6 mm: left out"
+        return "its geometry is beyond 1e6 mm: left out"
     found = shapes.snippet(attributes[name], place)
     return f"{name} leads beyond 1e6 mm at character {place + 1}: found {found}; read up to there"

@@ -29,7 +29,7 @@ class Paints:
         ] = {}  # thousands of shapes share a long gradient
 
     def of(self, properties: dict[str, str], name: str) -> tuple[str, list[Notice]]:
-        """What "stroke" or "fill" paints with: "#rrggbb" or "none", and what of it is not read."""
+        """Return the paint of "stroke" or "fill", "#rrggbb" or "none", and the notices about unread parts."""
         key = properties[name] or "#000000", name
         if key not in self._known:
             self._known[key] = self._colour(*key)
@@ -53,7 +53,7 @@ class Paints:
         return colour[:7], notices
 
     def why_none(self, properties: dict[str, str], name: str) -> str:
-        """Why a stroke or fill that is asked for paints nothing."""
+        """Return why a stroke or fill of the drawing paints nothing."""
         found = URL.match(properties[name])
         if found and self._colour(properties[name], name)[0] == "none":
             return f"the {name}'s paint {found[1].strip()[:40]} is nowhere in the drawing or paints nothing"

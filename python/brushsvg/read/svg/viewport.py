@@ -1,4 +1,4 @@
-"""Where SVG's user units lie on paper: viewport, viewBox and preserveAspectRatio."""
+"""Map SVG's user units to paper: viewport, viewBox and preserveAspectRatio."""
 
 from __future__ import annotations
 
@@ -68,8 +68,8 @@ def read_page(
 ) -> Page:
     """The page of a root element. A given sheet replaces the drawing's; the upper left corners stay together.
 
-    style: what its CSS says of width and height. Browsers go by it and Inkscape by the attributes: so it counts where
-    these are missing, and where they say something else that is told.
+    style: the width and height of its CSS. Browsers go by it and Inkscape by the attributes: so it counts where
+    these are missing, and a notice reports a difference.
 
     Error if neither the drawing nor the caller says how large it is.
     """

@@ -49,7 +49,7 @@ def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
 
 
 def _choices(data: bytes, face: hb.Face) -> Iterator[Notice]:
-    """What else the font holds, besides what is taken of it."""
+    """Further tables of the font."""
     if data.startswith(b"ttcf") and (count := int.from_bytes(data[8:12], "big")) > 1:
         yield Notice(
             "font",
@@ -110,7 +110,7 @@ class _Setter:
         for info, position in zip(infos, positions, strict=True):
             characters = line[info.cluster : ends[info.cluster]]
             if info.codepoint == 0:
-                inked.add(info.cluster)  # told as missing
+                inked.add(info.cluster)  # reported as missing
                 lacking = [each for each in characters if not self.font.get_nominal_glyph(ord(each))]
                 self.missing.update(dict.fromkeys(lacking or characters))
                 continue
@@ -255,7 +255,7 @@ def _unpacked(data: bytes) -> bytes:
         font.save(out, reorderTables=None)
     except Error:
         raise
-    except Exception as error:  # fontTools raises whatever it meets in damaged tables
+    except Exception as error:  # fontTools raises anything on damaged tables
         reason = str(error).splitlines() or [type(error).__name__]
         raise Error(f"this is a damaged WOFF font: {reason[0][:120]}", code="font-damaged") from None
     return out.getvalue()

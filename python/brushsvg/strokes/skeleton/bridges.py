@@ -10,15 +10,15 @@ from ...geometry.rings import is_within
 from .edges import amid, can_follow, find_bent_ends, find_ways_in, follow_edges
 from .junctions import STEM_END, STRAIGHTEST_RAD, Arm, Crossing, turn_across
 
-# Of the shape around a corner, what lines that end beside each other may leave bare beside those that meet: a u's bend
-# is one stroke's.
+# Of the shape around a corner, area that lines ending next to each other may leave bare, more than lines that meet: a
+# u's bend is one stroke's.
 NOTCH = 0.01
-# What one line of two limbs has to leave bare beside a third, more than two lines do, of the shape around.
+# Area that one line of two limbs must leave bare next to a third, more than two lines do, of the shape around.
 FORK = 0.04
-# Of a line's width, what there must be room for where it begins: at the end of a stem that sticks out at a corner less,
-# as of an n with a hump, which narrows towards its top. Farther up a straight stem would have to be a wedge.
+# Of a line's width, the space that the shape needs where it begins: at the end of a stem that sticks out at a corner
+# less, as in an n with a hump, which narrows towards its top. Above, a straight stem would have to be a wedge.
 WHOLE, IN_HUMP = 0.95, 0.5
-# Beside the middle of a bar, in its half widths, where it is looked how far the shape goes on: the outer two in the
+# Offsets from the middle of a bar, in its half widths, where the extent of the shape is measured: the outer two in the
 # stem that it meets, so far from its sides and with its far side no more slanted than that. And how much farther the
 # shape has to go on amid the bar, how much at most, and on all of its width. FLAT: cosine of the angle with the stem,
 # at most.
@@ -41,18 +41,18 @@ def _grid(count: int) -> np.ndarray:
 
 
 _AROUND, _FINELY_AROUND = _grid(17), _grid(41)
-# Places times points of the outline, of which it is asked whether they lie in the shape: a second.
+# Places times points of the outline, at most, that are tested for being in the shape: a second.
 _MOST_QUERIES = 200_000_000
 
 
-# A belly: a disc so much wider than both arms where they leave it, whose middle lies no farther aside of the straight
-# way between them than so much of its radius. No bend of a line has such a disc, and a knob at one side lies aside.
+# A belly: a disc so much wider than both arms where they leave it, whose middle is no farther from the straight
+# way between them than so much of its radius. No bend of a line has such a disc, and a knob at one side is farther off.
 BELLY, AMID = 1.25, 0.25
 
 
 def bridge(a: Arm, b: Arm, crossing: Crossing) -> np.ndarray:
     """From one arm to the other through a crossing: a cubic along their directions; the width changes evenly. Where it
-    is the belly of one line, the line goes on as it lies."""
+    is the belly of one line, the line continues unchanged."""
     if a.bridge is not None:
         return a.bridge
     p, q = a.line[a.out], b.line[b.out]
@@ -85,7 +85,8 @@ def stub(arm: Arm, crossing: Crossing) -> np.ndarray:
 
 
 def find_bridges(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
-    """Lines through crossings beside one edge of the shape, which they keep; those through corners cut them."""
+    """Return the lines through crossings along one edge of the shape, which they keep; those through corners cut
+    them."""
     inner = [crossing for crossing in crossings if not crossing.is_corner]
     if not can_follow(sum(len(crossing.arms) for crossing in inner), rings):
         return
@@ -125,8 +126,8 @@ def _join_along_edges(crossing: Crossing, rings: list[np.ndarray]) -> None:
 
 
 def find_forks(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
-    """Two limbs that turn sharply beside a third, as the arm and the leg of a k before their short bar, are no one line
-    where that leaves more of the shape bare than either that runs straight on."""
+    """Two limbs that turn sharply next to a third, as the arm and the leg of a k before their short bar, are no one
+    line where that leaves more of the shape bare than either that runs straight on."""
     forks = []
     for crossing in crossings:
         limbs = [arm for arm in crossing.arms if arm.mate is not None]
@@ -148,8 +149,8 @@ def find_forks(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
 
 
 def find_ends(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
-    """How the arms that end at crossings run on into them. Without room for their width up to the middle, as two limbs
-    that meet beside a stem, they end before it, if that leaves less bare than to narrow up to there."""
+    """Decide how the arms that end at crossings continue into them. Without space for their width up to the middle, as
+    two limbs that meet next to a stem, they end before it, if that leaves less bare than to narrow up to there."""
     shorter = find_ways_in(crossings, rings)
     if not _can_ask(sum(len(crossing.discs) for _, crossing, _ in shorter), rings):
         return
@@ -193,7 +194,7 @@ def find_bars(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     at = middles[:, None] + (halves[:, None] * _ACROSS)[..., None] * lefts[:, None]
     ways = np.repeat(backs, len(_ACROSS), axis=0)
     reached = np.array(_core.first_crossings(rings, at.reshape(-1, 2), ways)).reshape(len(ending), -1)
-    stem = reached[:, [0, -1]].max(axis=1)  # its far side, beside the bar
+    stem = reached[:, [0, -1]].max(axis=1)  # its far side, next to the bar
     sticks_out = (reached[:, 1:-1] > (stem + SHOULDER * halves)[:, None]).all(axis=1)
     sticks_out &= (reached[:, 2] > stem + STUB * halves) & (reached[:, 2] < stem + LIMB * halves)
     rooms = np.array(_core.clearance(rings, at[:, [0, -1]].reshape(-1, 2))).reshape(-1, 2)
@@ -276,7 +277,7 @@ def _keep_disc(
     crossing: Crossing, ways: list[np.ndarray], around: np.ndarray, rings: list[np.ndarray]
 ) -> None:
     """The wide one of two lines begins in the disc of a corner, as wide as that, and the thin one runs on, two
-    strokes, if that leaves less bare: a bowl that widens towards a thin bar, as of a bold serif's e."""
+    strokes, if that leaves less bare: a bowl that widens towards a thin bar, as in a bold serif's e."""
     thin, wide = sorted((0, 1), key=lambda n: float(crossing.arms[n].line[crossing.arms[n].out, 2]))
     one, other = crossing.arms[thin], crossing.arms[wide]
     is_unlike = one.line[one.out, 2] < UNLIKE * other.line[other.out, 2]

@@ -23,7 +23,7 @@ OFF_MIDDLE, STRAIGHT, BENT, STEEPEST = 0.92, 0.12, 0.5, 1.3
 ACROSS = OFF_MIDDLE * np.linspace(-1.0, 1.0, 7)
 ALONG = 0.9 * np.linspace(0.0, 1.0, 4)  # where sides are looked at, in shares of the way to the cut
 FLICK = 0.25  # in half widths: a last piece that is no longer is but how the axis ends
-# The axis of an arm whose sides bend as they end, as of an r, points past the middle of its cut by so much.
+# The axis of an arm whose sides bend as they end, as in an r, points past the middle of its cut by this angle.
 TURNS_RAD = np.radians([0, -8, 8, -16, 16])
 UNSEEN_RAD = np.radians(6)  # a last step that turns by less is no hook
 

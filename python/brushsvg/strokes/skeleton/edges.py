@@ -1,4 +1,4 @@
-"""Beside a junction the medial axis is none of a line's own: it bends and widens towards the junction's disc. What goes
+"""Next to a junction the medial axis is not that of a line: it bends and widens towards the junction's disc. What goes
 on there is the outline on one side. A line that passes a junction keeps its distance from that edge; one that ends
 there runs on along it, with the width that it had."""
 
@@ -11,13 +11,13 @@ from .junctions import STEM_END, Arm, Crossing
 
 # Arms times points of the outline: letters have some thousands, Chinese characters a hundred thousand.
 MOST = 3_000_000
-# How far an edge may lie off a line's half width, beside a junction that it passes, and be its edge still: an arm that
+# How far an edge may be off a line's half width, next to a junction that it passes, and be its edge still: an arm that
 # leaves there is wider. In its half widths.
 OWN = 0.3
 WAVES_RAD = np.radians(20)  # an edge along which a line would turn by so much more has a corner
 STEPS = 16  # on the way of a line into a junction
 # An edge that leaves a step's way by more is lost, in lengths of it: at a corner of the outline, where an arm leaves.
-# The first step is that of the axis, which may lie aslant.
+# The first step is that of the axis, which may be slanted.
 FIRST, BENDS = 1.0, 0.5
 NEAR = 0.25  # half widths over which the axis has its direction
 LASTS = 0.6  # half widths for which an edge has to last, or the line runs straight on
@@ -36,7 +36,7 @@ def can_follow(arms: int, rings: list[np.ndarray]) -> bool:
 
 def follow_edges(lines: list[np.ndarray], rings: list[np.ndarray]) -> tuple[list[np.ndarray], list[bool]]:
     """Stretches of lines through junctions, rows (k, 3), each moved so that it keeps its half width from the one edge
-    of the shape that goes on beside it, and which have one; as they are where there is none or one on both sides."""
+    of the shape that continues along it, and which have one; as they are where there is none or one on both sides."""
     has_edge = [False] * len(lines)
     for _ in range(2):
         lefts = [_left_of(_directions(line)) for line in lines]
@@ -113,7 +113,7 @@ def ways_on(
 
 
 def amid(arm: Arm, crossing: Crossing) -> np.ndarray:
-    """Straight on along an arm, as far into its crossing as the middle of that lies."""
+    """Continue straight along an arm, up to the middle of its crossing."""
     start, back = arm.line[arm.out, :2], -arm.direction
     return start + max(float((crossing.discs[:, :2].mean(axis=0) - start) @ back), 0.0) * back
 

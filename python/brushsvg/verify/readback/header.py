@@ -12,7 +12,7 @@ from ...errors import Error
 class Made:
     """What a program's header says of how it was made; tolerance_mm None: it does not say.
 
-    strokes: how many the job has; notes: the lines that tell how it was planned, as they are written.
+    strokes: how many the job has; notes: the lines about its planning, as they are written.
     border_mm: what an air run goes round, left, bottom, right, top; heights_mm: highest, lowest and step of the strokes
     that find the paper; first_mm: the same of a first run; None for programs that paint.
     """
@@ -35,7 +35,7 @@ class Made:
     border_mm: tuple[float, ...] | None = None
     heights_mm: tuple[float, ...] | None = None
     first_mm: tuple[float, ...] | None = None
-    has_margin: bool = False  # margin strokes were asked for, whether there was room or not
+    has_margin: bool = False  # margin strokes were requested, even if they did not fit
     is_of_plan: bool = False  # made from a plan.json, which does not say how it was planned
 
 

@@ -1,4 +1,4 @@
-"""Where axes with backlash go that are told what a program says: each stands until it is told half of it ahead."""
+"""Model axes with backlash that run a program: each stands until the command is half of it ahead."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ CHORD_RAD = 0.02
 
 
 def as_gone(read: Readback, cell: Cell) -> Readback:
-    """The program with the places where the tool goes instead of those that it tells, in its steps as in its acts.
-    Steps on which the tool stands while an axis takes up its play are kept aside."""
+    """Return the program with the places of the tool in place of the commanded ones, in its steps and in its acts.
+    Steps on which the tool stands while an axis takes up its play are kept apart."""
     half = half_mm(cell)
     if not half.any():
         return read
@@ -36,10 +36,10 @@ def as_gone(read: Readback, cell: Cell) -> Readback:
 
 
 class _Axes:
-    """near_mm: what rounding makes of places; step_mm: of a servo's heights. told (3,): what they were told last; slide
-    (2,): where they are; beside (2,): where they are if they began on the other side of their backlash; unsure: the
-    lines behind which that makes a difference; stood: whether the tool stood on the last step; gone: by line the steps
-    to which each of its own led, None for one on which the tool stands."""
+    """near_mm: the effect of rounding on places; step_mm: of a servo's heights. commanded (3,): the last commanded
+    place; slide (2,): where the axes are; far_side (2,): where they are if they began on the other side of their
+    backlash; unsure: the lines behind which that makes a difference; stood: whether the tool stood on the last step;
+    gone: by line the steps that its own steps became, None for one on which the tool stands."""
 
     def __init__(self, known: list[Step], half: np.ndarray, near_mm: float, step_mm: float):
         self.half, self.near_mm, self.step_mm = half, near_mm, step_mm

@@ -19,7 +19,7 @@ INHERITED = {
     "stroke-opacity": "1",
     "stroke-dasharray": "none",
     "stroke-dashoffset": "0",
-    "fill": "",  # SVG's default, black, that nobody asked for
+    "fill": "",  # SVG's default, black, which the drawing does not set
     "fill-opacity": "1",
     "fill-rule": "nonzero",
     "clip-rule": "nonzero",

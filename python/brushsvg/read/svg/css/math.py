@@ -16,7 +16,7 @@ Amount = tuple[float, str]  # of a unit: "" for a number, "px", or one of _RELAT
 
 
 def computed_length(value: str) -> str:
-    """The one length that a function comes to; the value itself where it holds none, or percent beside px."""
+    """Return the one length of a function; the value itself where it holds none, or percent together with px."""
     tokens = _without_spaces(tinycss2.parse_component_value_list(value))
     if len(tokens) != 1 or tokens[0].type != "function":
         return value

@@ -43,7 +43,7 @@ class PowerStroke:
 
 
 def in_effects_of_groups(root: ET.Element) -> set[ET.Element]:
-    """What lies in groups that have path effects themselves: their outlines are made of its outlines."""
+    """Return the elements of groups that have path effects: these work on the elements' outlines."""
     found: set[ET.Element] = set()
     for node in root.iter():
         if (
@@ -58,7 +58,7 @@ def in_effects_of_groups(root: ET.Element) -> set[ET.Element]:
 def drawn_line(
     node: ET.Element, by_id: dict[str, ET.Element], in_group: bool
 ) -> tuple[PowerStroke | None, list[Notice]]:
-    """The line under a PowerStroke, None if there is none, and what of the element's effects is not read.
+    """Return the line under a PowerStroke, None if there is none, and the notices about its unread effects.
 
     in_group: whether a group around it has path effects.
     """
@@ -78,7 +78,9 @@ def drawn_line(
     if in_group or len(effects) > 1:
         others = [kind for kind in kinds if kind != "powerstroke"] + ["of a group"] * in_group
         also = ", ".join(others) or "a second one"
-        return None, [_unread(f"its PowerStroke is not read beside path effect {also}: its outline counts")]
+        return None, [
+            _unread(f"its PowerStroke is not read together with path effect {also}: its outline counts")
+        ]
     (said,) = power
     pairs = [numbers(pair.strip()) for pair in said.get("offset_points", "").split("|")]
     scales = (numbers(said.get(name, "1").strip()) for name in ("scale_width", "interpolator_beta"))
