@@ -27,7 +27,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class Move:
-    """Straight lines through points_mm (n, 3), at one speed; or, with arc, the circle that they lie on.
+    """Straight lines through points_mm (n, 3), at one speed; or, with arc, the circle through them.
 
     meaning: travel (at safe height), approach (down to the clearance), land (down to the first pose), paint (along the
     poses), lift (up to the clearance), retract (up to safe height), dip (into the paint and out), wipe, look (slowly,
@@ -47,7 +47,7 @@ class Move:
 
 @dataclass(frozen=True)
 class Wait:
-    """Stand still for so long; seconds None: until a person, who is told the message, lets the program go on."""
+    """Stand still for so long; seconds None: until a person, who is shown the message, lets the program go on."""
 
     seconds: float | None
     message: str = ""
@@ -133,7 +133,7 @@ def _turned(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
 
 
 def set_programmed_speeds(section: Section, cell: Cell) -> Section:
-    """The same where a language tells whole speeds alone: no move is faster, but none slower than the least of them."""
+    """Round speeds down for a language of whole speeds, but no lower than its least one."""
     unit = LEAST_SPEED_MM_S.get(cell.language)
     if unit is None:
         return section
@@ -147,7 +147,7 @@ def set_programmed_speeds(section: Section, cell: Cell) -> Section:
 
 
 def via(points_mm: np.ndarray) -> np.ndarray:
-    """Of the points of a circle that follow its first one, the one that tells how it goes."""
+    """Of the points of a circle after its first one, the one that determines it."""
     return points_mm[(len(points_mm) - 1) // 2]
 
 

@@ -32,14 +32,14 @@ def look(
     of_drawing: bool = True,
 ) -> Walked:
     """The job with everything that forbids to run it on the robot. marks: of the plan or of its loads; of a job that
-    is resumed only what is left is asked. walk: what within_limits found of it, where that is known. of_drawing: see
+    is resumed only the rest is checked. walk: what within_limits found of it, where that is known. of_drawing: see
     off_sheet."""
     walk = walk or within_limits(loads, brush, marks, cell, job, of_drawing)
     left = loads.left(job.first_stroke) if job.first_stroke > 1 else loads
     if job.first_stroke > 1 and not left.loads:
         return walk
     found = walk.problems or out_of_arm(walk.made, left.sheet_mm)
-    is_known = walk.made.cell is cell and not job.z_offset_mm  # asked of the paper where the cell has it
+    is_known = walk.made.cell is cell and not job.z_offset_mm  # checked for the paper where the cell has it
     written = walk.written if is_known else written_of(loads, cell, WHOLE_JOB)
     return replace(
         walk, problems=found or shifted_by_blends(loads, brush, cell, tolerance_mm, job.first_stroke, written)
@@ -97,8 +97,8 @@ def off_sheet(
     marks: _core.Marks, brush: _core.Brush, sheet_mm, of_drawing: bool = True, rounded_mm: float = 0.0
 ) -> list[Notice]:
     """A notice of the stroke for each side of the sheet [mm] that a stroke's paint crosses. of_drawing: whether it was
-    made of one, which flags lay out anew; they have no effect on a plan. rounded_mm: by how much rounding alone takes
-    the tool elsewhere than was planned: it may move an edge so much farther."""
+    made of one, which flags arrange anew; they have no effect on a plan. rounded_mm: the shift of the tool from its
+    plan by rounding alone: it may move an edge so much more."""
     found = []
     advice = (
         "move the drawing or make room with --origin X,Y, --sheet WxH or --fit WxH"
@@ -146,7 +146,7 @@ def shifted_by_blends(
     """A notice of the stroke where cutting corners as the cell does moves the mark by more than the tolerance, from one
     stroke on. written: what a program has of each load, by its number.
 
-    The path as it is run is simulated, and where the brush is taut its widest section compared with what was meant.
+    The path as it is run is simulated, and where the brush is taut its widest section compared with the plan.
     """
     if not cell.blending.tolerance_mm:
         return []
@@ -234,7 +234,8 @@ def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[t
 
 
 def _largest_shift_mm(planned_trace, run, at: np.ndarray, brush) -> float:
-    """Between the widest sections of two traces of one stroke; at: the meant pose of each pose that was run."""
+    """Return the distance between the widest sections of two traces of one stroke; at: the planned pose of each pose
+    that was run."""
     ran, planned = _under_way(run), _under_way(planned_trace)
     taut = np.asarray(run.taut, dtype=bool)[ran]
     if not taut.any():

@@ -42,16 +42,16 @@ class Job:
 
 
 WHOLE_JOB = Job()
-AROUND = 4  # points of a stroke beside its poses
+AROUND = 4  # points of a stroke around its poses
 POSES_KEPT = 300_000  # of a plan whose moves are made once and kept, in some 10 MB
-POSES_AT_ONCE = 100_000  # what is held twice, whatever the size of a plan; and what one call to numpy handles
+POSES_AT_ONCE = 100_000  # held twice, for a plan of any size; and what one call to numpy handles
 
 
 @dataclass(frozen=True)
 class Walked:
     """A job that was gone through before it is run. job: with its visits; made: all that the machine does, without a
     header; written: what a program has of a load, by its number; problems: a notice of the stroke or station for
-    whatever forbids to run it, empty when the robot may."""
+    anything that forbids to run it, empty when the robot may."""
 
     loads: PlanInLoads
     job: Job
@@ -70,7 +70,7 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     """Moves for every load of the job, in order, with the visits to the paint, and each limit that is broken anywhere
     on its way, or on that of a visit to any station.
 
-    brush: asked for nothing but its name and how fast it may go.
+    brush: only its name and its greatest speed are read.
     """
     problems = []
     try:
@@ -85,7 +85,7 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         return Walked(loads, job, made, written, [Notice("", sentence, code="stroke-unknown")])
     left = loads.left(first).loads
     if cell.pen and job.z_offset_mm:
-        sentence = f"the pen of cell {cell.name} is up or down: no height of the paper can be told"
+        sentence = f"the pen of cell {cell.name} is up or down: no height of the paper can be set"
         problems.append(Notice("", sentence, code="pen-depth"))
     commanded_mm = value_mm(cell) if cell.servo else 10.0**-cell.decimals
     problems += broken_limits(
@@ -104,7 +104,7 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     if all(np.isfinite(a_pass.poses_mm).all() for a_pass in left):
         problems += astray_in(made, loads.sheet_mm)
         problems += stations_astray(brush, cell, made.robot_from_frame, loads.sheet_mm)
-    if problems and cell.reload:  # told of strokes as they were drawn, of one in parts once
+    if problems and cell.reload:  # reported of strokes as they were drawn, once for one in parts
         drawn = dict(zip((a_pass.stroke for a_pass in loads.loads), loads.strokes(), strict=True))
         problems = [replace(each, where=drawn.get(each.where, each.where)) for each in problems]
     return Walked(loads, job, made, written, list(dict.fromkeys(problems)))
@@ -126,7 +126,7 @@ def beyond_part(loads: PlanInLoads, cell: Cell) -> list[Notice]:
 
 
 def _as_run(a_pass, made: Program):
-    """The pass as limits are asked of it: a servo's with the places at which it stands."""
+    """Return the pass for which limits are checked: a servo's with the places at which it stands."""
     if made.cell.servo is None or not np.isfinite(a_pass.poses_mm).all():
         return a_pass
     written = as_written(a_pass, made.cell, made.robot_from_frame)
@@ -157,7 +157,7 @@ def astray_in(made: Program, sheet_mm) -> list[Notice]:
 
 
 def _home(made: Program) -> tuple[Section, ...]:
-    """Where motors that are told steps alone begin, and end: over the robot's origin."""
+    """Return where motors that count steps begin, and end: over the robot's origin."""
     if made.cell.motors is None:
         return ()
     place = moved(np.linalg.inv(made.robot_from_frame), np.array([[0.0, 0.0, made.cell.heights.safe_mm]]))
@@ -166,7 +166,7 @@ def _home(made: Program) -> tuple[Section, ...]:
 
 
 def out_of_arm(made: Program, sheet_mm) -> list[Notice]:
-    """A notice, with the place where the paper would have to lie, for what the cell's arm cannot do of a program; none
+    """A notice, with the place that the paper would need, for what the cell's arm cannot do of a program; none
     where the cell has no arm, or nothing is installed that knows its joints."""
     if made.cell.arm is None or not is_installed():
         return []
@@ -196,7 +196,7 @@ def unchecked_program(
     job: Job = WHOLE_JOB,
     written: Callable[[int], Written] | None = None,
 ) -> Program:
-    """The same for who only asks how long it takes or wants to see it: limits are not looked at. Its sections are made
+    """Return the program for its duration or its picture: limits are not checked. Its sections are made
     once where they are few: they are walked for limits, time, length and text."""
     frame, count = robot_from_paper(cell, job.z_offset_mm), len(loads.loads)
     left = list(enumerate(loads.loads, 1))[max(job.first_stroke - 1, 0) :]
@@ -222,7 +222,7 @@ def over(point, height_mm: float) -> np.ndarray:
 
 
 def safely_over(commanded_mm, cell: Cell) -> np.ndarray:
-    """(1, 3) the place at safe height above one that the machine is told."""
+    """Return (1, 3) the place at safe height above a commanded one."""
     (height_mm,) = commanded_high_mm(
         np.array([commanded_mm[:2]], dtype=float), cell.heights.safe_mm, cell.machine
     )

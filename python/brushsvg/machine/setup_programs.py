@@ -1,4 +1,4 @@
-"""Programs before the first stroke: where will it be painted, and how high does the paper lie."""
+"""Make programs before the first stroke: where it will be painted, and how high the paper is."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ def _inner_corners(sheet_mm) -> tuple[tuple[float, float], ...]:
 
 
 def _touch(place, clearance_mm: float, brush, cell: Cell) -> tuple[Move | Wait, ...]:
-    """Down to where the tip should just touch, twice asked: a person stops it who sees the brush bend."""
+    """Go down to where the tip should just touch, with two stops: a person who sees the brush bend ends it."""
     press_mm_s = min(cell.speeds.press_mm_s, touching_mm_s(brush, cell))
     touching, down = (commanded_mm(over(place, z), cell.machine) for z in (0.0, clearance_mm))
     return (
@@ -158,7 +158,7 @@ def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> 
     def sections() -> Iterator[Section]:
         start = Move("travel", path[:1], cell.speeds.travel_mm_s)
         slow_mm_s = approach_mm_s(brush, cell)
-        waits = () if cell.pen else (Wait(CORNER_WAIT_S),)  # a pen plotter is told no time
+        waits = () if cell.pen else (Wait(CORNER_WAIT_S),)  # a pen plotter has no waits
         steps = [step for corner in path[1:] for step in (*waits, Move("look", corner[None], slow_mm_s))]
         yield Section("border of the job, at safe height", (start, *steps))
 
@@ -167,7 +167,7 @@ def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> 
 
 def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, step_mm: float) -> Program:
     """Short strokes side by side, each step_mm deeper than the one before, from highest_mm over the paper to
-    lowest_mm, as the cell believes it to lie: the first that leaves paint tells the paper's true height.
+    lowest_mm, by the cell's height: the first that leaves paint shows the paper's true height.
 
     Error when they do not fit on the sheet or go deeper than brush or cell allow.
     """
@@ -211,7 +211,7 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
 
 
 def slow_below_mm(highest_mm: float, cell: Cell) -> float:
-    """From there down all is slow, since the paper may lie as high as highest_mm [mm]."""
+    """From there down all is slow, since the paper may be as high as highest_mm [mm]."""
     return max(cell.heights.clearance_mm, highest_mm + 0.5)
 
 
@@ -233,8 +233,8 @@ def _stroke_at(ends, height_mm: float, clearance_mm: float, brush, cell: Cell) -
 
 
 def over_sheet(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
-    """To and fro over a whole sheet, at the safe height and touching it: what any drawing on it may ask of an arm. It
-    is asked and never run; limits are not looked at."""
+    """Return moves to and fro over a whole sheet, at the safe height and touching it: all that a drawing on it may need
+    of an arm. They are checked and never run; limits are not checked."""
     width, height = sheet_mm
     lanes = np.linspace(0.0, height, max(2, math.ceil(height / LANE_APART_MM) + 1))
     ends = [((0.0, y), (width, y))[:: 1 if k % 2 == 0 else -1] for k, y in enumerate(lanes)]

@@ -129,7 +129,7 @@ def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str
 
 
 def painting_cell(suffix: str, cell: Cell) -> Cell:
-    """The cell whose limits an output is asked for: a plan.json has whole strokes, and goes for no paint."""
+    """Return the cell whose limits apply to an output: a plan.json has whole strokes, and fetches no paint."""
     return replace(cell, reload=None) if suffix == ".json" else cell
 
 
@@ -141,7 +141,7 @@ def text_of(post: Post, made: Program, suffix: str = "") -> Iterator[str]:
 
 
 def whole_program(loads: PlanInLoads, brush: _core.Brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
-    """All that the machine does, paint included, for who only looks: limits are not asked."""
+    """Return all that the machine does, paint included, for a picture: limits are not checked."""
     job = replace(job, visits=visits(loads, cell, job.first_stroke))
     return unchecked_program(loads, brush, cell, job)
 

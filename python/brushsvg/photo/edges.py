@@ -351,8 +351,8 @@ def _refuse_displaced(shares, reaching: np.ndarray, stroke_boxes: list[StrokeBox
     if len(touching) > MOST_TOUCHING * len(stroke_boxes):
         raise Error(
             f"the marks of {len(touching)} of {len(stroke_boxes)} strokes touch each other, or reach where the next "
-            f"one should be, the range is [0, {int(MOST_TOUCHING * len(stroke_boxes))}]: was this chart painted on this "
-            "page, once, and was the page at its stop? Or the page was not printed at 100 % (measure its bar), or the "
+            f"one should be, the range is [0, {int(MOST_TOUCHING * len(stroke_boxes))}]: was this chart painted on "
+            "this page, once, and was the page at its stop? Or the page was not printed at 100 % (measure its bar), or the "
             "brush is wider than the chart has room for",
             value=len(touching),
             code="photo-paint-elsewhere",
@@ -396,8 +396,8 @@ def _refuse_elsewhere(painted: np.ndarray, flat: Flat, stroke_boxes: list[Stroke
     if here < IN_STROKE_BOX:
         raise Error(
             f"only {100 * here:.0f} % of the paint is where strokes of this chart should be, at least "
-            f"{100 * IN_STROKE_BOX:.0f} % must be: was this chart painted on this page, once, was the page at its stop, "
-            "and was it printed at 100 % (measure its bar)?",
+            f"{100 * IN_STROKE_BOX:.0f} % must be: was this chart painted on this page, once, was the page at its "
+            "stop, and was it printed at 100 % (measure its bar)?",
             value=here,
             code="photo-paint-elsewhere",
         )

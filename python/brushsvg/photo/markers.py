@@ -427,8 +427,8 @@ def _px_per_mm(view: View, sheet_mm) -> float:
 def _refuse_unmeasurable(view: View, printed: Printed) -> None:
     if view.px_per_mm < LEAST_PX_PER_MM:
         raise Error(
-            f"the picture shows {view.px_per_mm:.1f} pixels per mm, at least {LEAST_PX_PER_MM:g} are needed: let the page "
-            "fill the picture, and take it as large as the camera gives it",
+            f"the picture shows {view.px_per_mm:.1f} pixels per mm, at least {LEAST_PX_PER_MM:g} are needed: let the "
+            "page fill the picture, and take it as large as the camera gives it",
             value=view.px_per_mm,
             code="photo-too-coarse",
         )

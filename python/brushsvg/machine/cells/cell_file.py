@@ -206,5 +206,5 @@ def _toml(value) -> str:
         return "true" if value else "false"
     if isinstance(value, tuple):
         return "[" + ", ".join(map(_toml, value)) + "]"
-    # JSON's escapes are TOML's, but for what lies beyond 16 bits
+    # JSON's escapes are TOML's, except those beyond 16 bits
     return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)

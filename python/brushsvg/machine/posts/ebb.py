@@ -1,5 +1,5 @@
 """Moves -> commands of an EBB (.ebb), the board of AxiDraw and NextDraw: steps of two motors in so many milliseconds, a
-servo's pulse in 1/12 microseconds. Lines that begin with # are for readers; whoever sends the file leaves them out."""
+servo's pulse in 1/12 microseconds. Lines that begin with # are for readers; a sender leaves them out."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .text import feed_mm_min, plain
 
 LINE_LIMIT = 100
 LEAST_MS = 16  # no slice is shorter: firmware 2.4 left gaps between such (evil-mad/EggBot, issues 71 and 72)
-SLOWEST_S = 0.5  # no slice takes longer: below 1.31 steps in a second a motor is told, the board refuses
+SLOWEST_S = 0.5  # no slice takes longer: below 1.31 steps in a second a command, the board refuses
 STEPS_MS = 25  # no motor makes more in a millisecond
 HOME = "end: back to where it began"
 EBB_END = "end: the brush is held up, over where it began"
@@ -161,7 +161,7 @@ class _Writer:
         goes = moves.any(axis=1)  # where it stands, what follows takes the time, too
         part, when_s, moves = part[goes], when_s[goes], moves[goes]
         ways_mm = np.hypot(*places_of(moves, motors).T)
-        # never faster than it may be, whatever rounding makes of ways and times
+        # never faster than allowed, with any rounding of ways and times
         least_s = np.maximum(_steps(when_s, 0.0), 60 * ways_mm / feeds[part])
         times_ms = np.ceil(np.maximum(1e3 * least_s, np.abs(moves).max(axis=1) / STEPS_MS) - 1e-6)
         first = _none_short(part, times_ms)
@@ -180,7 +180,7 @@ class _Writer:
 
 
 def _steps(values: np.ndarray, before: float) -> np.ndarray:
-    """(n,) how far each value lies beyond the one before."""
+    """(n,) how far each value is beyond the one before."""
     steps = values - before
     steps[1:] = values[1:] - values[:-1]
     return steps

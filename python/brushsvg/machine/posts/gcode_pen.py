@@ -13,7 +13,7 @@ from .text import feed_mm_min, number, rows
 
 
 def marlin_servo(program: Program) -> Iterator[str]:
-    """The firmware sets a servo as soon as it reads of it, whatever moves it still holds: M400 stands before each
+    """The firmware sets a servo as soon as it reads of it, even while it still holds moves: M400 stands before each
     value, and the machine stands. So a pen is up or down, and no height changes along a line."""
     cell, dialect = program.cell, DIALECTS["marlin-servo"]
     yield "".join(map(dialect.comment, program.header))

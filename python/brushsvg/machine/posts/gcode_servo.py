@@ -20,13 +20,13 @@ TOUCHING = (
     "lift",
     "dip",
     "wipe",
-)  # here the lift goes as slowly as it is told; in the air at once
+)  # here the lift goes at the programmed speed; in the air at once
 
 
 def grbl_servo(program: Program) -> Iterator[str]:
     """Heights become values of the servo's table, held along each line; a line is split where the height
     changes by more than the servo's step. The machine must run in grbl's laser mode ($32=1), in which a new S
-    takes effect with the move that it stands in and does not stop it. There grbl switches the output off wherever
+    takes effect with the move that it stands in and does not stop it. There grbl switches the output off where
     the motion mode is not G1, G2 or G3, at M5 and at M2, and the brush would fall: so all is G1, from the first line
     to the last, and the program ends without M2, the brush held up."""
     servo = program.cell.servo
@@ -154,7 +154,7 @@ def _ways(
 
 
 def feeds_mm_min(way: np.ndarray, speed_mm_s: float, fastest_mm_s: float) -> np.ndarray:
-    """(n,) the feed [mm/min] of each line (n, 3). It is that of the way beside the lift alone: where both together
+    """(n,) the feed [mm/min] of each line (n, 3). It is that of the way without the lift: where both together
     would be faster than the tip may be, it is lower, in hundredths of the fastest, so that few lines change it."""
     feeds = np.full(len(way), feed_mm_min(speed_mm_s))
     if math.isinf(fastest_mm_s):

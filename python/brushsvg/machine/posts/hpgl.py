@@ -13,7 +13,7 @@ from .text import ENDS, QUOTES, plain, rows
 
 LINE_LIMIT = 80
 UNIT_MM = UNITS_MM["hpgl"]
-CM_S = 10.0  # VS tells whole centimetres in a second
+CM_S = 10.0  # VS takes whole centimetres in a second
 HELD_UP = "end: the pen is put away"
 PUT_AWAY = ("PU;", "SP0;")
 

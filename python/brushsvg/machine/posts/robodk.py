@@ -33,7 +33,7 @@ CALLS = (
 
 def robodk(program: Program) -> Iterator[str]:
     """The one file that the post saves. Joints are not known, so that no move is MoveJ, and there is no rise before the
-    first one: posts cannot ask where the arm is. Error for whatever the post cannot do, and for what it logs."""
+    first one: posts cannot ask where the arm is. Error for anything the post cannot do, and for what it logs."""
     where = program.cell.robodk.post
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
         try:

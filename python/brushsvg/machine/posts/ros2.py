@@ -30,7 +30,7 @@ TILTED_COLUMNS = 6  # of a row, behind which stands how the brush is held
 
 
 def csv(program: Program) -> Iterator[str]:
-    """Remarks begin with #, as readers of tables can be told."""
+    """Remarks begin with #: readers of tables can be set to skip them."""
     yield "".join(map(comment, _head(program))) + COLUMNS + "\n"
     for title, table in timed(program):
         yield comment(title)

@@ -14,7 +14,7 @@ AT_ONCE = {ord("!"): ".", ord("?"): ".", ord("%"): ".", ord("~"): "-"}
 ENDS = {ord(";"): ","}  # an instruction of TP, and of HP-GL
 QUOTES = {ord('"'): "'"}  # that end a comment of HP-GL
 NAMED = 40  # letters of a name that no line of a program is too short for
-ROWS_AT_ONCE = 10_000  # of points that become text: some megabytes, whatever a stroke's length
+ROWS_AT_ONCE = 10_000  # of points that become text: some megabytes, for any stroke length
 
 
 def plain(text: str, room: int) -> str:
@@ -46,7 +46,7 @@ def make_unique(names: Sequence[str]) -> list[str]:
 
 
 def number(value: float, decimals: int) -> str:
-    """Fixed decimals, a point whatever the locale, no minus sign before a zero."""
+    """Fixed decimals, a point in any locale, no minus sign before a zero."""
     return f"{round(value, decimals) + 0.0:.{decimals}f}"
 
 

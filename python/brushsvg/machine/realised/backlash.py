@@ -1,7 +1,7 @@
-"""Backlash undone: each axis is told half of it ahead of where it should be, on the side to which it goes; where it
-turns back it is told the other side first, and takes up its play while the tool stands.
+"""Undo backlash: each axis is commanded half of it ahead of where it should be, on the side to which it goes; where it
+turns back it is commanded to the other side first, and takes up its play while the tool stands.
 
-All of it in whole units of the language, as places are told: who reads a program back finds the same places."""
+All of it in whole units of the language, as places are written: a reader of the program finds the same places."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def half_mm(cell: Cell) -> np.ndarray:
 
 
 def undone(program: Program) -> Program:
-    """The same program, in the robot's frame, as its axes are told it."""
+    """Return the program, in the robot's frame, as its axes are commanded."""
     half = half_mm(program.cell)
     if not half.any():
         return program
@@ -37,8 +37,8 @@ def sides_of(ways_mm: np.ndarray, side: np.ndarray) -> np.ndarray:
 
 
 def ahead(points_mm: np.ndarray, here_mm: np.ndarray, side: np.ndarray, half: np.ndarray) -> tuple:
-    """(m, 3) what is told for places (n, 3) in turn from one (3,) on, the ways on which play is taken up among them;
-    and the side (2,) that the axes are on then."""
+    """Return (m, 3) the commands for places (n, 3) in turn from one (3,) on, the ways on which play is taken up among
+    them; and the side (2,) that the axes are on then."""
     path = np.vstack([here_mm, points_mm])
     sides = sides_of(np.diff(path[:, :2], axis=0), side)
     before = np.vstack([side, sides[:-1]])
@@ -52,8 +52,8 @@ AIR_MM = 5.0
 
 
 def from_air_mm(commanded_mm: np.ndarray, backlash_mm) -> np.ndarray:
-    """(m, 3) what is told for places (n, 3) of a pass in turn, from the air on, where each axis comes to the side to
-    which it goes first. On paper that lies along the machine's axes."""
+    """Return (m, 3) the commands for places (n, 3) of a pass in turn, from the air on, where each axis comes to the
+    side to which it goes first. On paper along the machine's axes."""
     half, way = 0.5 * np.asarray(backlash_mm), np.round(commanded_mm, 6)
     first = first_side(np.diff(way[:, :2], axis=0))
     side = np.where(first == 0, 1.0, first)
@@ -80,7 +80,7 @@ def _compensate_sections(sections: Iterator[Section], half: np.ndarray, cell: Ce
                 continue
             move = replace(step, points_mm=_rounded(step.points_mm, cell), blends_mm=None)
             goes_on = _side_of(section.steps[number + 1 :], move.points_mm[-1], side, cell)
-            if here is None:  # wherever an axis was, it comes out of its play on the way to the other side
+            if here is None:  # from any place, an axis comes out of its play on the way to the other side
                 here, side = move.points_mm[0], -goes_on
             moves, side = _compensate_moves(move, here, side, half)
             steps += moves

@@ -1,4 +1,4 @@
-"""Where a machine takes the tool that is told to go elsewhere, and what to tell it instead. In the paper's frame."""
+"""Model where a machine takes the tool for a command, and the command for a place. In the paper's frame."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .retimed import on_way
 from .smooth_field import edge_cuts, field_mm, is_bent, parts_of
 
 NEAR_MM, MOST_ROUNDS = 1e-9, 60  # of the way back through a field: each round leaves a quarter of it or less
-MAP_OFF_MM = 0.003  # how far a line that is told may lie from the paper's map between its ends
+MAP_OFF_MM = 0.003  # greatest distance of a commanded line from the paper's map between its ends
 
 
 def is_similar(machine: Machine | None) -> bool:
@@ -32,7 +32,7 @@ def leans(machine: Machine | None) -> bool:
 
 
 def true_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
-    """(n, 3): where the tool goes that is told to go there. It leans as deep as it is pressed: not in the air."""
+    """Return (n, 3): where the tool goes for commands. It leans as deep as it is pressed: not in the air."""
     if machine is None:
         return points_mm
     commanded = np.asarray(points_mm, dtype=float)
@@ -43,7 +43,8 @@ def true_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
 
 
 def true_way_mm(commanded_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
-    """(m, 3): where the tool goes along lines between places (n, 3) that are told, with more of them where it bends."""
+    """Return (m, 3): where the tool goes along commanded lines between places (n, 3), with more of them where it
+    bends."""
     if is_bent(machine):
         commanded_mm = _in_parts(commanded_mm, parts_of(commanded_mm[:, :2], machine))
     run = true_mm(commanded_mm, machine)
@@ -56,7 +57,7 @@ def true_way_mm(commanded_mm: np.ndarray, machine: Machine | None) -> np.ndarray
 
 
 def commanded_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
-    """(n, 3): what to tell the machine so that the tool goes there."""
+    """Return (n, 3): the commands that take the tool there."""
     if machine is None:
         return points_mm
     target = np.asarray(points_mm, dtype=float)
@@ -66,7 +67,7 @@ def commanded_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
 
 
 def _solve_place(target_mm: np.ndarray, machine: Machine) -> np.ndarray:
-    """(n, 2) what to tell the machine so that its axes and its field take the tool there."""
+    """Return (n, 2) the commands for which the machine's axes and its field take the tool there."""
     back = np.linalg.inv(_axes(machine)).T
     place = target_mm @ back
     for _ in range(MOST_ROUNDS if is_bent(machine) else 0):
@@ -77,7 +78,7 @@ def _solve_place(target_mm: np.ndarray, machine: Machine) -> np.ndarray:
 
 
 def commanded_high_mm(commanded_mm: np.ndarray, height_mm: float, machine: Machine | None) -> np.ndarray:
-    """(n,) what to tell the machine at places (n, 2) that it is told, so that the tool is at least so high over the
+    """Return (n,) the commanded heights at commanded places (n, 2), so that the tool is at least so high over the
     paper, and over what stands as it was taught, such as vessels."""
     rises_mm = np.zeros(len(commanded_mm))
     if machine is not None:
@@ -88,13 +89,13 @@ def commanded_high_mm(commanded_mm: np.ndarray, height_mm: float, machine: Machi
 
 
 def goes_straight(machine: Machine | None) -> bool:
-    """Whether lines that are told are lines on the paper."""
+    """Return whether commanded lines are lines on the paper."""
     return machine is None or not (machine.map_mm or machine.field_mm)
 
 
 def in_lines_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
     """(m, k): places (n, k), x, y, z and what else changes evenly, where the tool shall go, with more of them between,
-    so that straight lines between what is told keep the tool on its way, and its height over the paper's map."""
+    so that straight lines between the commands keep the tool on its way, and its height over the paper's map."""
     if goes_straight(machine):
         return points_mm
     target = np.asarray(points_mm, dtype=float)
@@ -144,7 +145,7 @@ def _cuts(a: np.ndarray, b: np.ndarray, machine: Machine) -> np.ndarray:
 
 
 def _paper_mm(places_mm: np.ndarray, machine: Machine) -> np.ndarray:
-    """(n,) how much higher the paper lies at places (n, 2) that are told than it was taught."""
+    """Return (n,) how much higher the paper is at commanded places (n, 2) than it was taught."""
     plane_mm = machine.height_mm + places_mm @ machine.tilt_mm_per_mm
     if not machine.map_mm:
         return plane_mm
@@ -166,7 +167,7 @@ def _grid(map_mm: tuple) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _cell(grid: np.ndarray, places):
-    """Between which of the grid's lines and the next one places lie, or nearest to it beyond its ends."""
+    """Return the lines of the grid between which places are, or the nearest ones beyond its ends."""
     return np.clip(np.searchsorted(grid, places, side="right") - 1, 0, len(grid) - 2)
 
 
@@ -180,12 +181,12 @@ def _axes(machine: Machine) -> np.ndarray:
 
 
 def true_pass(a_pass, cell: Cell):
-    """A pass that the machine was told, as it runs it; circles that do not stay any as the poses on them."""
+    """Return a commanded pass as the machine runs it; circles that do not stay any become the poses on them."""
     return _mapped(a_pass, cell.machine, true_mm)
 
 
 def commanded_pass(a_pass, cell: Cell):
-    """What to tell the machine so that it runs this pass."""
+    """Return the commands with which the machine runs this pass."""
     return _mapped(a_pass, cell.machine, commanded_mm)
 
 

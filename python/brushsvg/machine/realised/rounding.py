@@ -1,4 +1,4 @@
-"""What of a pass is left in a program's text: who writes it and who reads it back decide from the same places."""
+"""Round a pass as a program's text does: writers and readers decide from the same places."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from .distortion import commanded_pass, leans
 from .retimed import on_way
 
 # circles that are smaller or flatter, in units of the last decimal, are run along their chords: rounded, they could
-# turn the other way, or all round, or lie on one line
+# turn the other way, or all round, or be on one line
 CIRCLE_UNITS = 10
 
 
 @dataclass(frozen=True)
 class Written:
-    """told_mm: (k, 3) what the machine is told for each pose that a program has; poses_mm: (k, 3) the same as the
-    program has it, in the paper's frame; arcs: what of these it tells as circles; sideways_mm: steps of less than that
+    """commanded_mm: (k, 3) the command for each pose that a program has; poses_mm: (k, 3) the same rounded as in the
+    program, in the paper's frame; arcs: those of them written as circles; sideways_mm: steps of less than that
     are straight up and down; axes: (k, 3) how the brush is held there, None: upright."""
 
     commanded_mm: np.ndarray
@@ -40,18 +40,18 @@ class Written:
 
 def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) -> Written:
     """A pass as the cell's language has it; frame: (4, 4) the paper's in the robot's. The pass is what shall be run,
-    written is what the cell's machine is told for it. was_read: in a program."""
+    written is the command for the cell's machine. was_read: in a program."""
     a_pass = commanded_pass(steep_ways_lifted(a_pass, cell, was_read) if cell.servo else a_pass, cell)
     post = POSTS.get(cell.language)
     unit = unit_mm(cell)
     exact = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     given_by = circles_by(cell)
     in_robot = bool(post and post.in_robot_frame and not np.array_equal(frame, np.eye(4)))
-    # what leans is told to go aside for it to go straight down, which it does up to rounding
+    # a leaning tool is commanded sideways to go straight down, which it does up to rounding
     sideways_mm = 2 * unit if leans(cell.machine) else ON_THE_SPOT_MM
     if in_robot and not is_upright(frame):
         sideways_mm = 2 * unit  # up and down are only so up to rounding
-        given_by = ""  # and circles lie in no plane that the robot knows
+        given_by = ""  # and circles are in no plane that the robot knows
 
     def on_grid(poses: np.ndarray) -> np.ndarray:
         if in_robot:
@@ -110,7 +110,7 @@ def steep_ways_lifted(a_pass, cell: Cell, was_read: bool = False):
 
 def _held(places: np.ndarray, least_mm: float) -> np.ndarray:
     """(n,) at which of its rounded places (n, 2) a servo stands: its lift alone names none, and stays where the last
-    way ended as long as less than a move is gone beside it."""
+    way ended as long as the sideways part is less than a move."""
     stays = np.arange(len(places))
     near = np.hypot(*(places[1:] - places[:-1]).T) < least_mm
     on, done = places.tolist(), 0
@@ -125,8 +125,8 @@ def _held(places: np.ndarray, least_mm: float) -> np.ndarray:
 
 
 def _split_arcs(arcs, poses: np.ndarray, given_by: str, cell: Cell) -> tuple[list, list]:
-    """The arcs that are told as circles, those that come back to where they began or beyond in parts, and none where no
-    more than a tiny move would lead to it or away from it; and the others."""
+    """Return the arcs that are written as circles, those that come back to where they began or beyond in parts, and
+    none where no more than a tiny move would go to it or away from it; and the others."""
     unit, least_mm = unit_mm(cell), least_move_mm(cell)
 
     def is_tiny(first: int, last: int) -> bool:
@@ -180,8 +180,8 @@ def _is_round(spokes: np.ndarray, cell: Cell) -> bool:
 
 
 def _is_writable(on: np.ndarray, circles_by: str, least_mm: float) -> bool:
-    """Whether points (n, 2) of a circle tell it: its ends are apart; by a pose on its way, the three are the corners of
-    a triangle that is nowhere flatter."""
+    """Return whether points (n, 2) determine a circle: its ends are apart; by a pose on its way, the three are the
+    corners of a triangle that is nowhere flatter."""
     if circles_by == "centre":
         return dist(on[0], on[-1]) >= least_mm
     if len(on) < 3:
