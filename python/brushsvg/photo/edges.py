@@ -352,8 +352,8 @@ def _refuse_displaced(shares, reaching: np.ndarray, stroke_boxes: list[StrokeBox
         raise Error(
             f"the marks of {len(touching)} of {len(stroke_boxes)} strokes touch each other, or reach where the next "
             f"one should be, the range is [0, {int(MOST_TOUCHING * len(stroke_boxes))}]: was this chart painted on "
-            "this page, once, and was the page at its stop? Or the page was not printed at 100 % (measure its bar), or the "
-            "brush is wider than the chart has room for",
+            "this page, once, and was the page at its stop? Or the page was not printed at 100 % (measure its bar), or "
+            "the brush is wider than the chart has room for",
             value=len(touching),
             code="photo-paint-elsewhere",
         )

@@ -1,4 +1,4 @@
-"""What a chart will tell of a brush, before anyone paints it; in words."""
+"""Say in words how well a chart will calibrate a brush, before anyone paints it."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _of_paint(paint: Expected) -> list[str]:
     alike = f"depth explains {100 * paint.explained_by_depth:.0f} % of how far each stroke is from the dip"
     if paint.is_refused:
         return [
-            "Whether marks narrow as paint runs out, this chart cannot tell: its strokes go from shallow to deep, so "
+            "This chart cannot show whether marks narrow as paint runs out: its strokes go from shallow to deep, so "
             f"that less paint looks like less depth ({alike}); chart --paint has another order"
         ]
     return [

@@ -22,7 +22,7 @@ from .page import bar_rings, label_box
 
 ANOTHER_SIZE = (0.9, 1.1)  # of the page, which --bar corrects; beyond, strokes run into labels and markers
 MARGIN = 1 / 5  # of a marker's side around it: blur
-# Standard deviation of where all edges of a picture lie off together: dark paint lies 0.02 to 0.08 px outward, yellow,
+# Standard deviation of the shift of all edges of a picture together: dark paint is 0.02 to 0.08 px outward, yellow,
 # of which JPEG keeps one colour for four pixels, 0.11 to 0.19. With 0.2 the lag of a narrow brush, whose width the
 # paper's height changes as little, had intervals five times as wide as its errors.
 EDGE_PX = 0.1
@@ -64,7 +64,7 @@ def read_chart_photos(
     """photos: names and what their files hold, of one painted sheet; bar_mm: how long the printed bar is by a ruler,
     where the page was not printed at 100 %; dpi: of a flatbed's scan of a sheet on which nothing is printed; mirrored:
     taken from below, through a clear sheet and glass. Several
-    photographs must agree; their paint is averaged, and the view is that of the one whose markers lie farthest off.
+    photographs must agree; their paint is averaged, and the view is that of the one whose markers are farthest off.
     Error in one sentence, with the file."""
     size = _size(chart, bar_mm)
     page = _page(chart, size)
@@ -202,7 +202,7 @@ def _refuse_compressed(data: bytes) -> None:
     quality = jpeg_quality(data)
     if quality is not None and quality < WORST_QUALITY:
         raise Error(
-            f"the JPEG was saved at quality {quality:.0f} of 100, it takes {WORST_QUALITY:g}: give the picture as the "
+            f"the JPEG was saved at quality {quality:.0f} of 100, at least {WORST_QUALITY:g} is needed: give the picture as the "
             "camera wrote it, not as a messenger sent it on",
             value=quality,
             code="photo-compressed",
@@ -210,7 +210,7 @@ def _refuse_compressed(data: bytes) -> None:
 
 
 def _refuse_another_sheet(one: Marks, all_: Marks, name: str) -> None:
-    """By how far its marks lie from the mean of all photographs."""
+    """Sort by the distance of their marks from the mean of all photographs."""
     both = [stroke for stroke in one.outlines_mm if stroke in all_.outlines_mm]
     off = [
         np.vstack(one.outlines_mm[stroke]).mean(axis=0) - np.vstack(all_.outlines_mm[stroke]).mean(axis=0)
@@ -219,8 +219,8 @@ def _refuse_another_sheet(one: Marks, all_: Marks, name: str) -> None:
     away = float(np.sqrt(np.mean(np.sum(np.square(off), axis=1)))) if off else np.inf
     if away > ALIKE_MM:
         raise Error(
-            f"its marks lie {away:.2f} mm (rms) from where all photographs have them on average, more than "
-            f"{ALIKE_MM:g}: are they of one sheet, which lay flat?",
+            f"its marks are {away:.2f} mm (rms) from where all photographs have them on average, more than "
+            f"{ALIKE_MM:g}: are they of one flat sheet?",
             file=name,
             code="photos-differ",
         )
@@ -249,7 +249,7 @@ def _size(chart: Chart, bar_mm: float | None) -> float:
 
 
 def edge_mm(read: Read) -> float:
-    """By how much all edges may lie off together, as a standard deviation."""
+    """Return by how much all edges may be off together, as a standard deviation."""
     return EDGE_PX / read.view.px_per_mm
 
 
@@ -299,14 +299,14 @@ def remarks(read: Read) -> list[Notice]:
     view = read.view
     if view.residual_mm > 0.5 * view.most_residual_mm:
         sentence = (
-            f"the markers lie {view.residual_mm:.2f} mm (rms) off, marker {view.worst[0]} most: the paper may not be "
-            "flat, or the picture is noisy, and marks may lie off by more than that"
+            f"the markers are {view.residual_mm:.2f} mm (rms) off, marker {view.worst[0]} most: the paper may not be "
+            "flat, or the picture is noisy, and marks may be off by more than that"
         )
         out.append(Notice("", sentence, code="photo-not-flat"))
     if view.white > TOO_WHITE:
         sentence = (
             f"{100 * view.white:.0f} % of the brightest parts are as white as can be: the picture is overexposed, and "
-            "edges may lie farther out than they are"
+            "edges may be too far out"
         )
         out.append(Notice("", sentence, code="photo-overexposed"))
     if missing := read.marks.missing:
@@ -320,7 +320,7 @@ def remarks(read: Read) -> list[Notice]:
     if unseen and view.seen:
         sentence = f"marker{'s' * (len(unseen) > 1)} {', '.join(map(str, unseen))} cannot be seen whole"
         if view.unsure_mm > UNSURE_MM:
-            sentence += f": places on the sheet may lie off by {view.unsure_mm:.2f} mm (standard deviation)"
+            sentence += f": places on the sheet may be off by {view.unsure_mm:.2f} mm (standard deviation)"
         out.append(Notice("", sentence, code="photo-markers-missing"))
     return out
 

@@ -1,4 +1,4 @@
-"""Dabs to outlines: each seen from its patch, those of a depth averaged, what is no dab left out by name."""
+"""Turn dabs into outlines: each seen from its patch, those of a depth averaged, others left out with their names."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from ...geometry.rotation import rotation
 STEP_MM = 0.05
 VERTICES = 96  # of an outline; more cost time in every sweep
 HOLLOW = 0.03  # share of a dab that is bare inside of its edge: more, and its middle has no paint
-BROKEN = 0.1  # share of its paint that lies apart
+BROKEN = 0.1  # share of its paint that is apart
 RAGGED = 0.15  # share of its hull that is bare: paint was dry, or it is no footprint
 # times the usual distance from the others of its depth, and at least so far: no repeat of them
 UNLIKE, UNLIKE_MM = 4.0, 0.15
 MAX_DISPLACEMENT, MAX_DISPLACEMENT_MM = 6.0, 0.6  # the same of its place
-LEAST_LEFT = 2  # dabs of a depth: one alone cannot be told from a bad one
+LEAST_LEFT = 2  # dabs of a depth: one alone cannot be distinguished from a bad one
 # times what chance does to sides that are alike: less, and the outline is the mean of both sides, amid the axis. Sides
-# that differ by chance would push every stroke aside
+# that differ by chance would displace every stroke
 LOPSIDED = 3.0
 # rms over the outline, of dabs of one heading against all: more, and the shape does not turn with the brush
 MOST_TURNED_MM = 0.25
@@ -55,8 +55,8 @@ class Seen:
 
 @dataclass(frozen=True)
 class Shape:
-    """What the dabs of one depth say: the outline from its tip, where the tip lies behind the place at which the tool
-    was set down, how far single dabs lie from the mean (rms), and how far all of them may."""
+    """What the dabs of one depth say: the outline from its tip, where the tip is behind the place at which the tool
+    was set down, the distance of single dabs from the mean (rms), and the possible one of all."""
 
     depth_mm: float
     outline_mm: np.ndarray
@@ -71,8 +71,8 @@ class Shape:
 
 @dataclass(frozen=True)
 class Outlines:
-    """shift_mm, turn_rad: how the sheet lay amid the dabs, turned about centre_mm; turned_mm: by how much dabs of one
-    heading differ; is_even: both sides of the outlines are alike; remarks: dabs that were left out, and why."""
+    """shift_mm, turn_rad: the pose of the sheet under the dabs, turned about centre_mm; turned_mm: by how much dabs of
+    one heading differ; is_even: both sides of the outlines are alike; remarks: dabs that were left out, and why."""
 
     shapes: tuple[Shape, ...]
     shift_mm: np.ndarray
@@ -83,7 +83,8 @@ class Outlines:
     remarks: tuple[Notice, ...]
 
     def predicted_mm(self) -> dict[str, np.ndarray]:
-        """By name, where the outline of its depth lies for each dab that was not left out, (n, 2) mm on the sheet."""
+        """Return the predicted outline for each dab that was not left out, in a dictionary of names, (n, 2) mm on the
+        sheet."""
         out = {}
         for shape in self.shapes:
             for seen in shape.seen:
@@ -147,7 +148,7 @@ def _bad(dab: Dab, joined: set[str]) -> Notice | None:
             dab.name, f"{100 * bare:.0f} % of it has no paint, amid the rest: left out", code="dab-hollow"
         )
     if 1 - areas.max() / paint.sum() > BROKEN:
-        sentence = f"its paint lies in {len(paint)} parts, as where paint runs dry: left out"
+        sentence = f"its paint is in {len(paint)} parts, as where paint runs dry: left out"
         return Notice(dab.name, sentence, code="dab-dry")
     ragged = 1 - areas.max() / cv2.contourArea(cv2.convexHull(np.float32(_outer(dab))))
     if ragged > RAGGED:
@@ -163,7 +164,7 @@ def _refuse_open(depths: list[float], dabs: list[Dab], remarks: list[Notice]) ->
             continue
         listed = "; ".join(f"{each.where}: {each.sentence}" for each in remarks[:4])
         raise Error(
-            f"{len(left)} dabs are left at depth {depth:g} mm, it takes {LEAST_LEFT}: paint the page again with more "
+            f"{len(left)} dabs are left at depth {depth:g} mm, at least {LEAST_LEFT} are needed: paint the page again with more "
             f"paint on the brush, and wipe it in between ({listed}{'; ...' * (len(remarks) > 4)})",
             f"{depth:g} mm",
             len(left),
@@ -203,8 +204,8 @@ class _Sheet:
 
 
 def _placed(dabs: list[Dab], remarks: list[Notice]) -> tuple[_Sheet, list[Dab]]:
-    """Shift and turn of the sheet by all middles, of which those of a depth lie alike before and beside the place of
-    each dab; and the dabs without those that lie elsewhere."""
+    """Fit shift and turn of the sheet to all middles; those of a depth have one place ahead of and across the place of
+    each dab. Returns also the dabs without outliers."""
     while True:
         depths = sorted({dab.depth_mm for dab in dabs})
         found, place = (
@@ -224,7 +225,7 @@ def _placed(dabs: list[Dab], remarks: list[Notice]) -> tuple[_Sheet, list[Dab]]:
         worst = int(off.argmax())
         if off[worst] <= max(MAX_DISPLACEMENT * float(np.median(off)), MAX_DISPLACEMENT_MM):
             return _Sheet(answer[:2], float(answer[2]), place.mean(axis=0)), dabs
-        sentence = f"it lies {off[worst]:.1f} mm from where the others say it should: left out"
+        sentence = f"it is {off[worst]:.1f} mm from where the others say it should: left out"
         remarks.append(Notice(dabs[worst].name, sentence, code="mark-astray"))
         dabs = dabs[:worst] + dabs[worst + 1 :]
         if {dab.depth_mm for dab in dabs} != set(depths):
@@ -237,8 +238,8 @@ def _seen_from_patch(dab: Dab, sheet: _Sheet) -> Seen:
 
 
 def _across(seen: list[Seen]) -> tuple[Callable[[float], float], float]:
-    """How far beside the axis the middle of a dab lies, over depth: single dabs lie aside by more than that. And how
-    many times as far as by chance."""
+    """Return the distance of a dab's middle from the axis, over depth, which is less than the scatter of single dabs;
+    and its ratio to that by chance."""
     depths = np.array([each.dab.depth_mm for each in seen])
     off_axis = np.array([_middle(each.outline_mm)[1] for each in seen])
     wide = np.array([np.ptp(each.outline_mm[:, 1]) for each in seen])
@@ -282,7 +283,7 @@ class _Depth:
         self.reach = np.array([self._reach(each.outline_mm) for each in self.seen])
 
     def _reach(self, ring: np.ndarray) -> np.ndarray:
-        """How far along each ray an outline lies."""
+        """Return the distance of an outline along each ray."""
         even = (ring - self.centre) / self.axes
         angle = np.unwrap(np.arctan2(even[:, 1], even[:, 0]))
         order = np.argsort(np.mod(angle, 2 * np.pi))
@@ -314,7 +315,7 @@ class _Depth:
             if away[worst] <= most_mm:
                 break
             sentence = (
-                f"its outline lies {away[worst]:.2f} mm (rms) from those of the others at depth {self.depth:g} mm, "
+                f"its outline is {away[worst]:.2f} mm (rms) from those of the others at depth {self.depth:g} mm, "
                 f"{most_mm:.2f} is the most: left out"
             )
             remarks.append(Notice(self.seen[worst].dab.name, sentence, code="dab-unlike"))
@@ -323,7 +324,7 @@ class _Depth:
         return remarks
 
     def by_heading_mm(self) -> dict[float, np.ndarray]:
-        """How far the mean of the dabs of each heading lies beyond the mean of all."""
+        """Return the distance of the mean of the dabs of each heading from the mean of all."""
         heading = np.round(np.degrees([each.dab.heading_rad for each in self.seen])) % 360
         all_ = self.reach.mean(axis=0)
         return {h: self._mm(self.reach[heading == h].mean(axis=0) - all_) for h in np.unique(heading)}
@@ -365,7 +366,7 @@ def _turned_mm(shapes: list[_Depth]) -> float:
 
 
 def _smooth(reach: np.ndarray, size_mm: np.ndarray, unsure_mm: float) -> np.ndarray:
-    """The least bent of what lies within unsure_mm (rms) and SMOOTHED_MM; free to have a corner at the tip."""
+    """Return the least bent outline within unsure_mm (rms) and SMOOTHED_MM; free to have a corner at the tip."""
     closed = np.append(reach, reach[0])
     bends = np.diff(np.eye(len(closed)), 2, axis=0)
     penalty = bends.T @ bends

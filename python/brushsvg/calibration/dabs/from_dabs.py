@@ -1,5 +1,5 @@
 """Dabs to a brush: its outlines as they were seen, and the laws of width, widest section and tip gap that agree with
-them. The lag is that of the brush for which the dabs were landed: dabs do not tell it."""
+them. The lag is that of the brush for which the dabs were landed: dabs do not show it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ...model.confidence import places
 from ...model.laws.fitted import need_fits
 from .dab_outlines import SMOOTHED_MM, Dab, Outlines, Shape, outlines_of, widths_at
 
-# a law bends enough that lies so near to the mean of each depth, or so many errors of that mean
+# a law bends enough if it is so near to the mean of each depth, or so many errors of that mean
 CLOSE_MM, CHANCE = 0.03, 2.0
 AGREE_MM = 0.4  # farther from an outline, and the brush would be refused
 MOST_TERMS = 5
@@ -39,7 +39,7 @@ class DabCalibration:
 def calibrate_dabs(
     dabs: list[Dab], before: _core.Brush, name: str, edge_mm: float = 0.0, joined: tuple[str, ...] = ()
 ) -> DabCalibration:
-    """edge_mm: standard deviation of what all edges lie off outward together. joined: names of dabs that touch others.
+    """edge_mm: standard deviation of a common outward shift of all edges. joined: names of dabs that touch others.
     Error where the dabs leave an outline open, or give a brush that cannot be used."""
     need_fits()
     _refuse_other_lag(dabs, before)
@@ -120,7 +120,7 @@ def _seen(law: str, shape: Shape) -> np.ndarray:
         tops = np.array([_top(seen.outline_mm) for seen in shape.seen])
         return np.column_stack([np.full(len(tops), depth), _widest(shape.outline_mm) + tops - tops.mean()])
     if law == "tip_gap":
-        # a dab that lies farther ahead has its tip nearer to where it was set down
+        # a dab that is farther ahead has its tip nearer to where it was set down
         return np.array([[depth, shape.tip_gap_mm - seen.displacement_mm[0]] for seen in shape.seen])
     spans = np.array([_broadest(seen.outline_mm) for seen in shape.seen])
     return np.column_stack([np.full(len(spans), depth), _half(shape) + (spans - spans.mean()) / 2])
@@ -134,14 +134,14 @@ def _broadest(outline: np.ndarray) -> float:
 
 
 def _widest(outline: np.ndarray) -> float:
-    """Amid what is as wide as can be told."""
+    """In the middle of the rows that are the widest, within the error."""
     x, wide = widths_at(outline)
     top = x[wide >= wide.max() - 0.004]
     return float((top[0] + top[-1]) / 2)
 
 
 def _top(outline: np.ndarray) -> float:
-    """Where the middle of the broad part lies, by all of it: which point of it is the broadest is chance."""
+    """Return the middle of the broad part, from all of it: its broadest point is chance."""
     x, wide = widths_at(np.roll(outline, -int(outline[:, 0].argmin()), axis=0))
     broad = wide >= BROAD * wide.max()
     bend, slope, _ = np.polyfit(x[broad], wide[broad], 2)
@@ -215,7 +215,7 @@ def _profile_of(found: _core.Profile, shapes: tuple[Shape, ...], half_interval_9
 
 
 def _covariance(before, brush, fits, values, edge_mm: float) -> np.ndarray | None:
-    """That of the lag as it was, those of the new laws, and what all edges farther out would do to these together."""
+    """Return the covariance of the lag as it was, of the new laws, and of a common shift of all edges."""
     if any(not np.size(fit.covariance) for fit in fits.values()):
         return None
     at = places(brush)

@@ -17,13 +17,13 @@ from .mark_report import predicted_marks
 
 ROUNDS = 8
 SETTLED = 0.3  # of the standard deviation: added in squares 4 % of it; fits of like marks differ by up to 0.2
-# Of how the way grows, what depth may not tell: with less its interval is 1.5 times as wide, and a width law that is
-# not of the family passes for paint
+# Share of the growth of the way that depth must not explain: with less its interval is 1.5 times as wide, and a width
+# law that is not of the family passes for paint
 LEAST_OWN = 0.45
 OUTLYING = 4.0  # standard deviations of the edges
 ACROSS = (0.5, 1.5)  # half widths from the middle: flanks, not what ends and crossings paint
 STEP_MM = 0.5
-APART = 3.0  # standard deviations between two rates that tell what the fit takes of a rate
+APART = 3.0  # standard deviations between two rates that show the effect of a rate on the fit
 LEAST_KEPT = 0.2
 MOST_WIDER = (
     0.1  # per metre that marks may seem to widen by: strokes of other shapes, early and late, feign some
@@ -115,8 +115,8 @@ def freshly_dipped(painted: Painted, made: MarkCalibration, rate_per_m: float) -
 
 @dataclass(frozen=True)
 class NearestSections:
-    """Of each point: depth and way of the brush where its widest section was nearest, how far to the left of it the
-    point lies, which way that is, and how far the section ran to there, or from there on, whichever is less."""
+    """Of each point: depth and way of the brush where its widest section was nearest, the distance to the left of it,
+    the direction of that, and the way of the section up to there, or from there on, the lesser of both."""
 
     depth_mm: np.ndarray
     way_mm: np.ndarray
@@ -126,7 +126,7 @@ class NearestSections:
 
 
 class Sides:
-    """Where points lie beside the way of the widest section."""
+    """Locates points relative to the way of the widest section."""
 
     def __init__(self, brush, trace, before_mm: float) -> None:
         down = np.flatnonzero(np.asarray(trace.depth_mm) >= 0)
@@ -160,7 +160,7 @@ class Sides:
 @dataclass(frozen=True)
 class Expected:
     """What marks will say of how they narrow: half the 95 % interval of the rate per metre, the share of how the way
-    grows that the depth tells, and the way in mm that one load has to last."""
+    grows that the depth explains, and the way in mm that one load has to last."""
 
     half_per_m: float
     explained_by_depth: float
@@ -180,7 +180,7 @@ def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painte
     made = MarkCalibration(brush_of(fit.laws, brush.name, brush.depth_range_mm), fit, complete, options)
     flanks = _flanks(made)
     own = flanks.own()
-    kept = np.exp(-options.spacing_mm / 1.0)  # points beside each other know of each other, over 1 mm
+    kept = np.exp(-options.spacing_mm / 1.0)  # neighbouring points are correlated, over 1 mm
     sigma = noise_mm * np.sqrt((1 + kept) / (1 - kept) / float(own @ own))
     half = _core.deviations_of_95(flanks.freedom) * sigma
     last_mm = max(complete.before_mm[mark.stroke] + _lengths(mark)[-1] for mark in complete.marks)
@@ -189,7 +189,7 @@ def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painte
 
 @dataclass(frozen=True)
 class Flanks:
-    """Points of the edges beside the middle line, row by row: by how much a narrowing of 1 per metre moves the edge
+    """Points of the edges along the middle line, row by row: by how much a narrowing of 1 per metre moves the edge
     out, the half width, powers of the depth, how far off the edge is (all mm), and of which mark the point is."""
 
     moved: np.ndarray
@@ -207,7 +207,7 @@ class Flanks:
         return [self.of_mark == one for one in np.unique(self.of_mark)]
 
     def own(self) -> np.ndarray:
-        """What of moved no width law and no height of the paper does."""
+        """Return the part of moved that no width law and no height of the paper explains."""
         return residual_of_powers(self.moved, self.powers)
 
     def explained_by_depth(self) -> float:
@@ -248,7 +248,7 @@ def _flanks(made: MarkCalibration) -> Flanks:
 
 def _left(made: MarkCalibration) -> tuple[float, float, float]:
     """By how much the rate is off that the marks were made fresh with, per metre, by the edges' residuals: least
-    squares of what narrowing moves beside powers of the depth; its standard deviation by whole marks, whose points
+    squares of the effect of narrowing next to powers of the depth; its standard deviation by whole marks, whose points
     know of each other, each as far off as its residuals say times what the rate is without it: the residuals of the few
     that decide are smaller than their errors (HC2 of MacKinnon and White, 1985, by marks); and marks beyond what is
     found."""
@@ -256,7 +256,7 @@ def _left(made: MarkCalibration) -> tuple[float, float, float]:
     explained = flanks.explained_by_depth()
     if 1 - explained < LEAST_OWN:
         raise Error(
-            f"{100 * explained:.0f} % of how the way since the dip grows is told by the depth alone, so narrower and "
+            f"{100 * explained:.0f} % of how the way since the dip grows is explained by the depth alone, so narrower and "
             "shallower marks are alike: paint strokes of one depth early and late, as `brushsvg chart --paint` does",
             "paint",
             code="paint-undetermined",
@@ -270,8 +270,8 @@ def _left(made: MarkCalibration) -> tuple[float, float, float]:
 
 
 def _bends(made: MarkCalibration) -> float:
-    """How far what is left of the edges goes with the square of the way besides the way, in its standard deviations by
-    leaving out marks one by one."""
+    """Return the dependence of the residuals on the square of the way, in addition to the way, in its standard
+    deviations by leaving out marks one by one."""
     flanks = _flanks(made)
     ways = -1e3 * flanks.moved / np.maximum(flanks.half_mm, 1e-9)
     columns = np.column_stack([flanks.moved * ways, flanks.moved, flanks.powers])

@@ -1,4 +1,4 @@
-"""Whether a sheet of painted marks has the size of its plan: marks displaced the more, the farther out they lie."""
+"""Test whether a sheet of painted marks has the size of its plan: outer marks are then displaced more."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ REMEDY = (
 
 @dataclass(frozen=True)
 class SheetScale:
-    """By which share marks lie farther apart than planned, in x, in y and on the whole, each (share, standard error),
-    with so many degrees of freedom."""
+    """The share by which marks are farther apart than planned, in x, in y and on the whole, each (share, standard
+    error), with so many degrees of freedom."""
 
     x: tuple[float, float]
     y: tuple[float, float]
@@ -41,7 +41,7 @@ class SheetScale:
 
 
 def sheet_scale(middles_mm: np.ndarray, displacements_mm: np.ndarray) -> SheetScale | None:
-    """From where marks were planned and by what they lie off, both (n, 2). None: they cannot tell.
+    """Fit the scale to planned places and displacements, both (n, 2). None: it cannot be determined.
 
     Least squares of dx and of dy over 1, x and y, so that a turn of the sheet does not count.
     """

@@ -1,4 +1,4 @@
-"""Painted marks that are not where or what all others say: something lies on them, or they are of something else."""
+"""Painted marks that are not where or what all others say: something is on them, or they are of something else."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import numpy as np
 OUTLYING = 4.7  # standard deviations beyond which a point of an outline is masked by the fit
 # A displacement of so many standard deviations of the others' is none of theirs: one good mark in 10^7
 FARTHEST, LEAST_SPREAD_MM = 6.0, 0.1
-# An outline that lies so many times as far off as is usual, at so large a part of it, is not paint of this stroke alone
+# An outline that is so many times farther off than usual, at so large a part of it, is not paint of this stroke alone
 UNLIKE, LEAST_USUAL_MM, UNLIKE_PART = 4.0, 0.04, 0.03
 MOST = 0.2  # share of all marks: more, and it is the sheet
 
 
 @dataclass(frozen=True)
 class Stray:
-    """A mark, by what it is displaced from where the others say, in their standard deviations (spread_mm); by what its
-    outline lies off then (rms), and what is usual."""
+    """A mark, its displacement from where the others say, in their standard deviations (spread_mm); the residual of its
+    outline then (rms), and the usual one."""
 
     mark: object
     displacement_mm: tuple[float, float]
@@ -31,7 +31,7 @@ class Stray:
 
 
 def strays(marks: list, fit) -> list[Stray]:
-    """Each mark is held against the median of the others, in 1.4826 median absolute deviations: those that lie far off
+    """Each mark is held against the median of the others, in 1.4826 median absolute deviations: those far off
     have no say in it."""
     if len(marks) < 5:
         return []

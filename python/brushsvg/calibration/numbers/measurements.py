@@ -15,7 +15,7 @@ LONGEST_MM = 1000.0
 SPEEDS_MM_S = (0.01, 10000.0)
 WHOLE_TURN_DEG = 360.0
 SHALLOWEST_MM = 0.2  # if no depth is greater these are hardly millimetres
-# Kind -> the numbers of one row, beside depth_mm. Those in _READINGS can stand in a table as value_mm.
+# Kind -> the numbers of one row, next to depth_mm. Those in _READINGS can stand in a table as value_mm.
 KINDS = {
     "lag": ("value_mm",),
     "tip_gap": ("value_mm",),
@@ -42,7 +42,7 @@ EXPECTED = ("placement_mm", "turn_deg", "displacement_mm", "height_mm")
 
 @dataclass(frozen=True)
 class Row:
-    """One measurement at a depth: its numbers by name, series as tuples; where it stands in the file."""
+    """One measurement at a depth: its numbers in a dictionary of names, series as tuples; its place in the file."""
 
     kind: str
     where: str
@@ -126,7 +126,8 @@ def _table_rows(
     text: str, columns: tuple[str, ...], numbers: tuple[str, ...]
 ) -> list[tuple[str, dict[str, str | float]]]:
     """(line, cells of these columns) of a table, some of them numbers, whose first line names its columns. Between
-    cells stand commas, semicolons or tabs, in numbers points or commas. Error for whatever could be read in two ways.
+    cells stand commas, semicolons or tabs, in numbers points or commas. Error for anything that could be read in two
+    ways.
     """
     try:
         table = _table(text.removeprefix("\ufeff"), columns)
@@ -270,7 +271,7 @@ def _read_json(text: str) -> Measurements:
         return Measurements(rows, name, about, span, speed)
     if rows:
         raise Error(
-            "marks tell what the other kinds tell, and are fitted alone: leave these out, or make two files",
+            "marks contain what the other kinds measure, and are fitted alone: leave these out, or make two files",
             next(iter(rows)),
             code="measurements-mixed",
         )
@@ -360,7 +361,7 @@ def _centre_line(kind: str, row: dict, where: str) -> list[Row]:
         points = _places(row["points_mm"], f"{where}.points_mm")
         if len(points) < LEAST_POINTS:
             raise Error(
-                f"a centre line of {len(points)} points tells no turn: give {LEAST_POINTS} or more",
+                f"a centre line of {len(points)} points shows no turn: give {LEAST_POINTS} or more",
                 f"{where}.points_mm",
                 len(points),
                 code="measurement-missing",

@@ -167,11 +167,11 @@ def outliers_above_floor(
 def off_the_others(
     depths_mm, values_mm, range_mm: tuple[float, float], degree: int
 ) -> dict[int, tuple[float, float]]:
-    """How unlikely each value is beside the law with floor 0 of the others, as the size of a normal one, and how far it
-    lies off that law [mm].
+    """Return how unlikely each value is given the law with floor 0 of the others, as the size of a normal value, and
+    its distance from that law [mm].
 
     The law of the others has a polynomial p at this depth, known to s, and a noise n about it. The value y is as
-    unlikely as the likeliest truth leaves it: the polynomial lies above the floor, t^2 = (y - p)^2 / (n^2 + s^2),
+    unlikely as the likeliest truth leaves it: the polynomial is above the floor, t^2 = (y - p)^2 / (n^2 + s^2),
     or not, t^2 = y^2 / n^2 + max(0, p)^2 / s^2. Values whose law the others leave open are left out.
     """
     depths, values = np.array(depths_mm, float), np.array(values_mm, float)
@@ -308,7 +308,7 @@ def refuse_brush(brush) -> None:
         )
     if not brush.tip_to_widest.assumed and widest > lag + gap:
         raise Error(
-            f"the widest section lies {widest:.3g} mm from the tip at depth {depth:g} mm, farther than the tool, "
+            f"the widest section is {widest:.3g} mm from the tip at depth {depth:g} mm, farther than the tool, "
             f"{lag + gap:.3g} mm: measure it from the tip of the footprint, in millimetres",
             "tip_to_widest",
             widest,
@@ -318,7 +318,7 @@ def refuse_brush(brush) -> None:
     if not brush.tip_gap.assumed and gap > 1.5 * length:
         raise Error(
             f"the tip gap is {gap:.3g} mm at depth {depth:g} mm, the footprint {length:.3g} mm long: the centre of "
-            "friction must lie in it; measure the gap from the tip of the footprint, in millimetres",
+            "friction must be in it; measure the gap from the tip of the footprint, in millimetres",
             "tip_gap",
             gap,
             code="not-millimetres",

@@ -1,7 +1,7 @@
 """The lag of painted marks by a brush whose outlines were measured, in place of the drops or eggs that a fit assumes.
 
-The fit of marks knows drops and eggs alone: where the true footprint is another it tells another lag. Here the
-outlines are those of the brush, and what moves until the edges of the painted marks lie on those that are predicted is
+The fit of marks knows drops and eggs alone: where the true footprint is another it gives another lag. Here the
+outlines are those of the brush, and the numbers that change until the edges of painted and predicted marks agree are
 the lag, the height of the paper, and each mark's displacement. Least squares over distances by Gauss and Newton, under
 Tukey's loss, from what the fit found on.
 """
@@ -31,9 +31,9 @@ FARTHEST = 0.3  # share of a lag that outlines may change: more, and they are of
 
 @dataclass(frozen=True)
 class LagByOutlines:
-    """made: the marks, and what they say of the brush by its own outlines, lying where these have them (Placed);
+    """made: the marks, and what they say of the brush by its own outlines, at their places by these (Placed);
     before: what the fit said of them by drops or eggs; own: the brush whose outlines and other laws stay; height_mm: of
-    the paper above the taught one; noise_mm: what edges lie off (robust standard deviation)."""
+    the paper above the taught one; noise_mm: residual of the edges (robust standard deviation)."""
 
     made: MarkCalibration
     before: MarkCalibration
@@ -108,7 +108,7 @@ def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagBy
 
 @dataclass(frozen=True)
 class PlacedMark:
-    """The way of a mark as the machine ran it, and how far the mark lies aside."""
+    """Return the way of a mark as the machine ran it, and the displacement of the mark."""
 
     way_mm: np.ndarray
     displacement_mm: tuple[float, float]
@@ -116,7 +116,7 @@ class PlacedMark:
 
 @dataclass(frozen=True)
 class Placed:
-    """Where marks lie, as the fit of drops or eggs says it: sheet, height of the paper, each mark."""
+    """Return the places of marks by the fit of drops or eggs: sheet, height of the paper, each mark."""
 
     turn_rad: float
     shift_mm: tuple[float, float]
@@ -152,7 +152,7 @@ class _Edges:
 
     def solved(self, off, slopes, height, displaced) -> tuple[np.ndarray, np.ndarray, float]:
         """The step, the covariance of what it ends at, and the noise. What is known beforehand: height and
-        displacements, as the fit was told; points beside each other say less than as many."""
+        displacements, as in the fit; neighbouring points count for less than as many independent ones."""
         expected, fit = self.made.expected, self.made.fit
         noise = max(LEAST_NOISE_MM, 1.4826 * float(np.median(np.abs(off))))
         weight = np.clip(1 - (off / (OUTLYING * noise)) ** 2, 0.0, 1.0)  # the root of Tukey's
@@ -168,7 +168,7 @@ class _Edges:
         both = np.vstack([slopes * (weight / alike)[:, None], known])
         right_side = np.append(-off * weight / alike, usual)
         inverse = np.linalg.inv(both.T @ both)
-        # what all edges, painted or measured on dabs, lie off together
+        # common shift of all edges, painted or measured on dabs
         together = float(np.hypot(self.made.edge_mm, _unsure_mm(self.own)))
         moved = inverse @ both.T[:, : len(off)] @ (weight / alike * together)
         covariance = inverse + np.outer(moved, moved)
@@ -283,7 +283,7 @@ def _with_lag(own: _core.Brush, lag, name: str) -> _core.Brush:
 
 def _joined(own: _core.Brush, brush: _core.Brush, of_lag: np.ndarray) -> np.ndarray:
     """Covariance over the coefficients of the brush: of the lag as it was found, of the others as they were. The lag
-    was found by where tips lie, so it is off by what the tip gap is off, the other way."""
+    was found from the places of tips, so it is off by what the tip gap is off, the other way."""
     at, was = places(brush), places(own)
     out = np.zeros((at[LAWS[-1]].stop,) * 2)
     out[: len(of_lag), : len(of_lag)] = of_lag

@@ -1,9 +1,9 @@
-"""What of a brush the largest overlap is to change, chosen by marks that had no part in it.
+"""Choose which numbers of a brush the largest overlap is to change, by marks that had no part in it.
 
 The more numbers a search may change, the more marks overlap with what it was fitted to; whether they predict others is
-another matter. So the marks are parted, each part is predicted by what the others told, edges included, and the kind of
-search is chosen with which the parts left out overlap most (cross-validation): half where they lie, half where each may
-move, as in the search.
+another matter. So the marks are parted, each part is predicted by the others, edges included, and the kind of
+search is chosen with which the parts left out overlap most (cross-validation): half at their places, half where each
+may move, as in the search.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ EVERY = 20  # looks between two words on how far it is
 @dataclass(frozen=True, eq=False)
 class Predicting:
     """What overlaps most: laws as a fit of marks has them, height of the paper, displacement of all marks, what the
-    machine does besides; the overlap by edges and now, and how many numbers were changed.
+    machine does in addition; the overlap by edges and now, and how many numbers were changed.
 
     kind: one of KINDS; parts: into how many the marks were parted to choose it, 0 where they are too few; left_out: of
-    each kind the overlaps of marks left out, where they lie and where each may move. aside: by where on a sheet marks
-    were painted, where their order was told.
+    each kind the overlaps of marks left out, at their places and where each may move. displacement: by the place on a
+    sheet where marks were painted, where their order is known.
     """
 
     laws: _core.MarkLaws
@@ -67,9 +67,9 @@ def best_predicting(
     progress: Callable[[int], object] = lambda looks: None,
     order: np.ndarray | None = None,
 ) -> Predicting:
-    """marks: in the frame of the targets, which they are; begin: what edges told of all of them; order: as of
-    sheet_field(), where that tells on which part of a sheet they were painted. progress: is told how many overlaps were
-    looked at."""
+    """marks: in the frame of the targets, which they are; begin: the fit of all of them by edges; order: as in
+    sheet_field(), where that shows on which part of a sheet they were painted. progress: receives how many overlaps
+    were looked at."""
     looks = 0
 
     def look() -> None:
@@ -87,7 +87,7 @@ def best_predicting(
     starts = [one.x for one in tried[kind] if len(one.x) == len(search.begin)]
     if starts:
         x = best_from(search, kind, starts, few_of(targets), look)
-    else:  # fewer marks told fewer numbers of a law
+    else:  # fewer marks determine fewer numbers of a law
         kind, x = _searched(search, targets, look, kind)
     found = _predicting(search, kind, x, targets, look, order)
     means = {one: (float(in_place), float(moved)) for one, (in_place, moved) in left_out.items()}

@@ -1,4 +1,4 @@
-"""Whether marks lie aside by where on their sheets they were painted, asked of those that predict best so far."""
+"""Test whether marks are displaced by their place on the sheet, with those that predict best so far."""
 
 from __future__ import annotations
 
@@ -10,15 +10,13 @@ from .overlap_search import Search, Target, apply_to_moved, best_shift
 from .sheet_field import SheetField, sheet_field
 
 FIFTHS = 5
-FEWEST = (
-    30  # marks: of 15 real ones even the left-out ones gained by a field in which further ones did not lie
-)
+FEWEST = 30  # marks: of 15 real ones even the left-out ones gained by a field that further ones did not have
 
 
 @dataclass(frozen=True, eq=False)
 class FoundField:
     """field: None where it wins nothing, or marks are too few; won: overlap of marks that had no part in it, each fifth
-    told by the others, and its standard error over marks; None where they are too few."""
+    predicted from the others, and its standard error over marks; None where they are too few."""
 
     field: SheetField | None
     won: float | None = None
@@ -26,7 +24,7 @@ class FoundField:
 
 
 def found_field(search: Search, x, targets: list[Target], order: np.ndarray) -> FoundField:
-    """Of marks that the numbers x predict, which stay as they are; order: as of sheet_field()."""
+    """Of marks that the numbers x predict, which stay as they are; order: as in sheet_field()."""
 
     def placed(target: Target, picture) -> np.ndarray:
         return best_shift(picture, target.paint, 1 / target.px_per_mm, search.farthest_mm)[1]

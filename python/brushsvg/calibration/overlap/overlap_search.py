@@ -1,10 +1,10 @@
-"""The search for the brush whose marks overlap most with painted ones, in few numbers on top of what edges told.
+"""Search for the brush whose marks overlap most with painted ones, in few numbers on top of the fit by edges.
 
 Changed are lag (as values at depths), tip gap, half width, the footprint's two lengths, the height of the paper and the
-displacement of the sheet; where it is asked for lean and a map of the ways; where tools are tilted a lever. By a
+displacement of the sheet; on request lean and a map of the ways; where tools are tilted a lever. By a
 simplex of Nelder and Mead, on a part of the marks first.
 
-Where marks lie aside by chance, a wider brush overlaps more than the true one: its mark reaches all places at which
+Where marks are displaced by chance, a wider brush overlaps more than the true one: its mark reaches all places at which
 paint may be. So half of the aim is the overlap where each mark may move by what displacements are expected to be: there
 the true width overlaps most. See docs/reference/measurements.md.
 
@@ -12,8 +12,8 @@ What the machine does is changed with the laws, in one search: found before or a
 A simplex of so many numbers stops too early: pictures of predicted and painted marks are registered first, by least
 squares. The laws without a machine are one more start.
 
-Lag and footprint tell little apart where the brush hardly turns, so that a footprint that is not round has its price,
-as for the edges: squares of what it is off, weighed against overlaps as if those scattered normally.
+Lag and footprint are hard to separate where the brush hardly turns, so that a footprint that is not round has its
+price, as for the edges: squares of what it is off, weighed against overlaps as if those scattered normally.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from numpy.polynomial.polynomial import polyval
 from ... import _core
 from ..marks.from_marks import brush_of, front_ratio, widest_ratio
 
-# Share of the overlap with each mark moved: 0 paints too wide, 1 says nothing of where marks lie
+# Share of the overlap with each mark moved: 0 paints too wide, 1 ignores the places of marks
 SHIFTED = 0.5
 FARTHEST = 2.0  # how far, in standard deviations of what displacements are expected to be
 FEW = 30  # marks on which the search begins
@@ -81,7 +81,7 @@ class Target:
 
 @dataclass(frozen=True, eq=False)
 class MachineOffsets:
-    """How a machine runs a way besides what edges told of it: aside by lean_mm_per_mm (2,) of depth, by map (2, 2)
+    """Displacement of a machine's ways in addition to the fit by edges: by lean_mm_per_mm (2,) of depth, by map (2, 2)
     times the way from centre_mm (2,), mm per mm, and by lever_mm (2,) times the tangent of what the tool leans."""
 
     lean_mm_per_mm: np.ndarray
@@ -100,7 +100,7 @@ class MachineOffsets:
 
 @dataclass(frozen=True, eq=False)
 class Begin:
-    """What edges told, which the search starts at. shift_mm: of the marks, where their frame does not hold it."""
+    """The fit by edges, at which the search starts. shift_mm: of the marks, where their frame does not hold it."""
 
     laws: _core.MarkLaws
     height_mm: float
@@ -212,7 +212,7 @@ class Search:
         return np.concatenate([*out, self._price(x)])
 
     def overlaps(self, x, targets: list[Target]) -> np.ndarray:
-        """Of each mark where it lies, and where it may move (n, 2)."""
+        """Return the overlap of each mark at its place, and where it may move (n, 2)."""
         laws, height, shift, machine = self.read(x)
         return self._overlaps(targets, laws, height, shift, machine)
 
@@ -227,8 +227,8 @@ class Search:
         return np.array(of_predicted(compared, moved_targets, laws, height, shift, self.deepest_mm))
 
     def _price(self, x) -> np.ndarray:
-        """Of a footprint that is not round, and of a machine that does not as it is told: its squares over all marks
-        are what it costs."""
+        """Return the cost of a footprint that is not round, and of a machine with errors: its squares over all
+        marks."""
         behind, front = x[self.at["shape"]]
         friction = x[self.at["tip_gap"]][0] / max(0.1, x[self.at["half_width"]].sum()) - behind
         if not self.laws.round_tail:
@@ -297,7 +297,7 @@ def _best_of(loss, starts: list[np.ndarray], steps, free) -> np.ndarray:
 def polished(
     search: Search, kind: str, x, targets: list[Target], look: Callable[[], None], held: tuple[str, ...] = ()
 ) -> np.ndarray:
-    """What few marks told, searched on with all; held: names of numbers that stay."""
+    """Continue the search of few marks with all; held: names of numbers that stay."""
     if kind == "edges":
         return x
 
@@ -445,7 +445,7 @@ def _workers() -> ThreadPoolExecutor:
 
 
 def on_paper(poses_mm, height_mm: float, shift_mm) -> np.ndarray:
-    """The TCP's way where paper and sheet were found to lie."""
+    """Return the TCP's way with the heights and places of paper and sheet that were found."""
     poses = np.array(poses_mm)
     poses[:, :2] += shift_mm
     poses[:, 2] = np.minimum(poses[:, 2] - height_mm, 0.0)

@@ -1,5 +1,5 @@
-"""By how much marks lie aside where on the sheet they were painted: what a robot and a camera that were calibrated to
-each other do not agree in.
+"""Displacement of marks by their place on the sheet: the disagreement of a robot and a camera that were calibrated to
+each other.
 
 A smooth field, polynomials of row and column and a displacement of each sheet, found from the marks' own displacements
 by Bayesian linear regression. Where only the order is known in which strokes were painted, it is that of rows of as
@@ -21,7 +21,7 @@ DEGREES = np.array([(i, j) for i in range(DEGREE + 1) for j in range(DEGREE + 1 
 # more are smaller, of a sheet; of the mean of all
 SIZES, FALLS, SHEETS, MEAN = (0.5, 1.0, 2.0), (0.2, 0.6), (0.0, 0.7), 10.0
 OUTLYING = 3.0  # robust standard deviations beyond which a displacement counts as this far
-LEAST_MM = 0.2  # standard deviation of single marks: below, pixels tell no more
+LEAST_MM = 0.2  # standard deviation of single marks: below, pixels show no more
 SHAPE = 2.0  # of the inverse gamma distribution of the single marks' variance
 LEAST_WEIGHT = 1e-4
 

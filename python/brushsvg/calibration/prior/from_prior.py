@@ -1,4 +1,4 @@
-"""A brush that is known already, updated by further painted marks: which laws they told anything of."""
+"""Update a known brush by further painted marks: only the laws that they determine change."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ FOLLOWED = 0.01
 
 @dataclass(frozen=True)
 class Updated:
-    """known: the prior; wider: by law, how many times as wide its intervals had to be taken; told: by law, the least
+    """known: the prior; wider: by law, the factor of its intervals that was needed; doubts_left: by law, the least
     ratio of the standard deviation now to that before, and at which depth. covariance: of all that was fitted."""
 
     brush: _core.Brush
@@ -83,7 +83,7 @@ def update_brush(
     displacement_mm: float | None = None,
 ) -> Updated:
     """edge_mm: as for calibrate_marks; machine: parts of it that are found as well; displacement_mm: standard deviation
-    of where a mark lies, in x and in y, where that is known. Error where the marks are not of this brush at all."""
+    of a mark's place, in x and in y, where that is known. Error where the marks are not of this brush at all."""
     need_fits()
     known = known_laws(brush)
     options = _core.MarkOptions()
@@ -118,9 +118,9 @@ def update_brush(
 
 
 def _fit_wide_enough(marks: list, known: KnownLaws, options) -> tuple[object, dict[str, float]]:
-    """A law that lies farther from its prior than that allows is fitted with a wider one. One that is too narrow for
-    another brush of the same make would hold the law where it is: edges that lie far from there would count as wild,
-    have no say, and leave it sure of itself. So the marks are asked first with a loose prior."""
+    """A law that is farther from its prior than that allows is fitted with a wider one. One that is too narrow for
+    another brush of the same make would hold the law where it is: edges far from there would count as wild,
+    have no say, and leave it sure of itself. So the marks are fitted first with a loose prior."""
     loosened = known.loosened(LOOSE)
     options.laws = known.prior(loosened)
     loose = _core.fit_marks(marks, known.laws, options)
@@ -132,7 +132,7 @@ def _fit_wide_enough(marks: list, known: KnownLaws, options) -> tuple[object, di
 def _followed(
     known: KnownLaws, before: np.ndarray, fit, deepest_mm: float
 ) -> tuple[_core.MarkLaws, np.ndarray]:
-    """Laws and covariance where marks down to this depth tell of the true law no more than a polynomial follows it.
+    """Laws and covariance where marks down to this depth determine the true law only as far as a polynomial follows it.
 
     In numbers in which the prior (covariance `before`) is standard normal: the marks' information L becomes that of
     what they measured and F, the covariance of what it does not follow, together: L - L (L + 1/F)^-1 L.
@@ -185,7 +185,7 @@ def too_narrow(known: KnownLaws, loosened: np.ndarray, loose) -> dict[str, float
 
 
 def _off_as_expected(moved, expected, before, after) -> float:
-    """How many times as far it moved as expected (rms), over the directions in which the marks tell anything; 1 where
+    """How many times as far it moved as expected (rms), over the directions that the marks determine; 1 where
     that is likely."""
     root = root_of_inverse(before)
     values, vectors = np.linalg.eigh(root @ after @ root.T)
@@ -199,7 +199,7 @@ def _off_as_expected(moved, expected, before, after) -> float:
 
 
 def _quantile(freedom: int) -> float:
-    """Of chi-square, that 5 % lie above (Wilson and Hilferty)."""
+    """Return the 95 % quantile of chi-square (Wilson and Hilferty)."""
     part = 2.0 / (9.0 * freedom)
     return freedom * (1.0 - part + LIKELY * np.sqrt(part)) ** 3
 
@@ -235,7 +235,7 @@ def _doubts_left(before: np.ndarray, after: np.ndarray, laws, brush) -> dict[str
 
 
 def _brush_of(brush, known: KnownLaws, laws, covariance, learned: set[str], name: str, painted: Painted):
-    """The brush with the laws that were told anything of; the others stay as they are."""
+    """Return the brush with the laws that the marks determine; the others stay as they are."""
     if learned & {"half_width", "tip_to_widest"}:
         learned = learned | {"tip_to_widest"}  # it is counted in half widths
     made = brush_of(laws, name, brush.depth_range_mm, covariance)
@@ -273,7 +273,7 @@ def _law(before, now, is_learned: bool, painted: Painted, prior: str):
 
 
 def _joined(brush, made, learned: set[str], whole: np.ndarray, fitted: dict[str, slice]) -> np.ndarray:
-    """Covariance over the coefficients of the brush: of laws that were told, and of the others as it was."""
+    """Covariance over the coefficients of the brush: of updated laws, and of the others as it was."""
     at, was = places(made), places(brush)
     out = np.zeros((at[LAWS[-1]].stop,) * 2)
     known = np.array(brush.covariance)
@@ -286,7 +286,8 @@ def _joined(brush, made, learned: set[str], whole: np.ndarray, fitted: dict[str,
 
 
 def _reshaped(brush, made, longer: float) -> _core.FootprintTable:
-    """Its outlines with the half width and widest section of the laws, what lies in front of that as much longer."""
+    """Return its outlines with the half width and widest section of the laws, the part in front of that as much
+    longer."""
 
     def reshaped(shape):
         d = shape.depth_mm
@@ -310,7 +311,7 @@ def refuse_learned(brush: _core.Brush, photos: list[str]) -> None:
     """photos: sha256 of each."""
     if known := set(photos) & set(_learned(brush)["photos"]):
         raise Error(
-            f"brush {brush.name} was made from this very photograph (sha256 {sorted(known)[0][:12]}): told twice, it "
+            f"brush {brush.name} was made from the same photograph (sha256 {sorted(known)[0][:12]}): used twice, it "
             "would seem twice as sure",
             "prior",
             code="photo-learned-twice",
@@ -352,7 +353,7 @@ def _learned(brush) -> dict:
 
 
 def found_height(updated: Updated) -> tuple[float, float]:
-    """How much higher the paper lies than taught [mm], and half its 95 % interval."""
+    """Return how much higher the paper is than taught [mm], and half its 95 % interval."""
     at = height_at(updated.fit)
     return updated.fit.height_mm, float(_core.deviations_of_95() * np.sqrt(updated.covariance[at, at]))
 
