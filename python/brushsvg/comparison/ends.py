@@ -1,4 +1,4 @@
-"""Where along its way the paint of a stroke begins and ends, against what was wanted."""
+"""Find where along its way the paint of a stroke begins and ends, relative to the target."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from .photographs import BLUR_MM, Comparison, TargetStroke
 
 REACH_MM = 6.0  # beyond the end of a middle line, or within it
 ALONG_MM = 0.05
-WIDE_MM = 0.4  # a strip about the middle line: hairs that stand out beside it are no end
+WIDE_MM = 0.4  # a strip about the middle line: hairs that stand out next to it are no end
 FLAT_MM = 0.02
-DIRECTION_MM = 1.5  # of the middle line, that tells where it runs at its end
+DIRECTION_MM = 1.5  # of the middle line, that gives its direction at its end
 LEVEL = 0.5
 
 
 @dataclass(frozen=True)
 class Ends:
-    """By how many mm later on its way than wanted the paint of a stroke begins and ends; below 0: earlier. None where
-    it runs into other paint, or none is found."""
+    """By how many mm later on its way than the target the paint of a stroke begins and ends; below 0: earlier. None
+    where it runs into other paint, or none is found."""
 
     began_mm: float | None
     ended_mm: float | None
@@ -33,7 +33,7 @@ UNSEEN = Ends(None, None)
 
 def ends_of(found: Comparison, strokes: list[TargetStroke], drawn) -> dict[str, Ends]:
     """By stroke; of rings and dabs, which have no ends, nothing is said. drawn: strokes with their middle lines, none
-    of a plan without its drawing. The sheet lies as its marks have it."""
+    of a plan without its drawing. The sheet is at the place of its marks."""
     lines_mm = {
         each.id: flattened(each.middle_mm.reshape(-1, 4, 2), FLAT_MM) for each in drawn if not each.closed
     }

@@ -13,9 +13,9 @@ from .photographs import Comparison, TargetStroke
 from .placing import Canvas
 
 PART = 0.15  # of a mark: a piece of paint that holds so much of it is, or has part in, its paint
-WITHIN = 0.5  # of a piece of paint that lies in a mark: it is of that one
+WITHIN = 0.5  # of a piece of paint that is in a mark: then it is of that one
 DRY = 0.3  # share of a mark without paint, beyond which its edges are not the brush's
-PAINT_A_CHART = "paint a chart, whose strokes lie alone: brushsvg chart, then calibrate --chart"
+PAINT_A_CHART = "paint a chart, whose strokes do not touch: brushsvg chart, then calibrate --chart"
 
 
 @dataclass(frozen=True)

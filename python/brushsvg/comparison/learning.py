@@ -33,7 +33,7 @@ def learn(
 ) -> Learnt:
     """plan: as it was painted, corrections and all; brush: as it is known without this job; photos: names and what
     their files hold, of one sheet; name: of the new brush; machine, displacement_mm: as for update_brush. Error where
-    the photographs are not of this job, or show no stroke that lies alone."""
+    the photographs are not of this job, or show no stroke without contact to others."""
     page, predicted, best = job_page(plan), brush, None
     for _ in range(ROUNDS):
         strokes = _strokes(plan, predicted)
@@ -73,7 +73,7 @@ def _painted(plan, marks: JobMarks):
 def _uninformative(marks: JobMarks, name: str) -> Error:
     touching, dry = len(marks.touching), len(marks.dry)
     sentence = (
-        f"no stroke of this job lies alone with its paint whole: of {touching + dry} {touching} share their paint with "
+        f"no stroke of this job is alone and fully painted: of {touching + dry} {touching} share their paint with "
         f"others, and {dry} are not found or lack paint on more than {100 * DRY:g} %: nothing is learnt from it"
     )
     return Error(sentence, file=name, code="marks-touch", advice=PAINT_A_CHART)

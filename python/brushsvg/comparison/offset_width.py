@@ -1,4 +1,4 @@
-"""A pass that paints its edges farther out or in, as far as the brush's laws were measured."""
+"""Move the edges of a pass out or in, as far as the brush's laws were measured."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ DEPTHS = 400  # that the law of width is inverted between
 
 
 def wider(a_pass, by_mm: float, brush):
-    """The pass whose edges lie by_mm farther out (below 0: in), where it is as wide as it is on average, and elsewhere
-    by the same share: deeper, and the tool ahead by as much as the brush trails more, so that it drags along the same
-    line.
+    """Return the pass with its edges moved out by by_mm (below 0: in), where it is as wide as it is on average, and
+    elsewhere by the same share: deeper, and the tool ahead by as much as the brush trails more, so that it drags along
+    the same line.
     Error where the brush cannot."""
     refuse_width(a_pass, by_mm, brush)
     a_pass = with_chords(a_pass)

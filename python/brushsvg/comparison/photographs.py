@@ -23,25 +23,25 @@ from .placing import NOWHERE, Canvas, Placed, grown, place
 
 AROUND_MM = 6.0  # round a predicted mark, where its paint is looked for
 BLUR_MM = 0.6  # beyond another mark its blurred edge still shows
-BLOT_MM = 1.5  # beyond a mark, as it lies, what is no edge any more
+BLOT_MM = 1.5  # beyond a mark, at its place, what is no edge any more
 FINEST_PX_PER_MM = 12.0
-LEAST_OVERLAP = 0.3  # of paint with its prediction, where it lies: less is another job, or chance
+LEAST_OVERLAP = 0.3  # of paint with its prediction, at its place: less is another job, or chance
 PRINT_MM = 0.5  # round what is printed
 COVERED, MOSTLY = (
     0.3,
     0.7,
-)  # share of a mark, where it lies, that is painted at least; without paint, it is missing
+)  # share of a mark, at its place, that is painted at least; without paint, it is missing
 LEVEL = 0.5  # of the usual paint: an edge
 DRIER = 0.1  # share of a mark without paint, beyond that of most: its middle is the painted part's
-THING_MM2 = 100.0  # of one piece beside all marks: a hand, a tool or a large blot
+THING_MM2 = 100.0  # of one piece outside of all marks: a hand, a tool or a large blot
 PALEST = 0.15  # of the usual paint, that of a stroke
 ALIKE = 0.9  # overlap of the paint of two photographs of one sheet, at least
 
 
 @dataclass(frozen=True)
 class TargetStroke:
-    """One stroke: rings on the sheet of what was wanted (None where only a plan is known), and predicted. is_drawn: a
-    stroke of the drawing; others, in the margin, count in no figure of the sheet."""
+    """One stroke: rings on the sheet of the target (None where only a plan is known), and of the prediction. is_drawn:
+    a stroke of the drawing; others, in the margin, count in no figure of the sheet."""
 
     stroke: str
     target: list[np.ndarray] | None
@@ -51,9 +51,9 @@ class TargetStroke:
 
 @dataclass(frozen=True)
 class Compared:
-    """A stroke as it was painted. overlap_wanted (None without a drawing), overlap_predicted: intersection over union;
-    placed: against the prediction, whose middle lies at middle_mm; missing: share of the mark, where it lies, without
-    paint; like: overlap of the mark, where it lies and as wide, with its paint."""
+    """A stroke as it was painted. overlap_target (None without a drawing), overlap_predicted: intersection over union;
+    placed: relative to the prediction, whose middle is at middle_mm; missing: share of the mark, at its place, without
+    paint; like: overlap of the mark, at its place and width, with its paint."""
 
     stroke: str
     overlap_target: float | None
@@ -66,11 +66,11 @@ class Compared:
 
 @dataclass(frozen=True)
 class Comparison:
-    """common: how the sheet lies, by the places of all marks, about middle_mm; spread_mm: rms of what is left of their
-    displacements, None of fewer than three marks; elsewhere_mm2: paint that lies beside all marks. overlaps: of all
-    paint with what was wanted (or, without a drawing, predicted) as it lies, once the sheet's place is put right, and
+    """common: the pose of the sheet, by the places of all marks, about middle_mm; spread_mm: rms of what is left of
+    their displacements, None of fewer than three marks; elsewhere_mm2: paint outside of all marks. overlaps: of all
+    paint with the target (or, without a drawing, the prediction) as painted, once the sheet's place is put right, and
     once each stroke's is. paint: share of it on the page, painted: on the sheet, by the pixels of canvas.
-    has_things: on the sheet lies what is no mark."""
+    has_things: something on the sheet is no mark."""
 
     strokes: tuple[Compared, ...]
     common: Placed
@@ -182,7 +182,7 @@ def _read(
 
 
 def _on_sheet(paint, flat: Flat, page: JobPage, canvas: Canvas) -> np.ndarray:
-    """Paint of the sheet's own pixels, 1 where the usual paint lies."""
+    """Return the paint of the sheet's own pixels, 1 for the usual paint."""
     left, up = page.frame_mm, page.size_mm[1] - page.frame_mm
     matrix = np.array(
         [[1.0, 0.0, left * flat.px_per_mm], [0.0, 1.0, (flat.sheet_mm[1] - up) * flat.px_per_mm]]
@@ -207,7 +207,7 @@ def _common(painted, strokes: list[TargetStroke], canvas: Canvas) -> tuple[Place
 
 @dataclass(frozen=True)
 class _Seen:
-    """A stroke that paints: its figures, and lies, which puts rings of it where its mark lies."""
+    """A stroke that paints: its figures, and locate, which puts its rings where its mark is."""
 
     stroke: TargetStroke
     row: Compared
@@ -287,15 +287,15 @@ def _covered(things: np.ndarray, canvas: Canvas) -> list[Notice]:
     if not things.any():
         return []
     sentence = (
-        f"{things.sum() / canvas.px_per_mm**2:.0f} mm^2 of what lies on the sheet is no mark, as a hand, a tool or "
-        "a blot: strokes beneath or beside it are not told, nor whose fault anything is"
+        f"{things.sum() / canvas.px_per_mm**2:.0f} mm^2 on the sheet are no mark, but a hand, a tool or a blot: "
+        "strokes beneath or next to it are not reported, nor are causes of errors"
     )
     return [Notice("sheet", sentence, code="photo-covered")]
 
 
 def without(found: Comparison, done: dict[str, Placed]) -> Comparison:
-    """The same with marks where they would lie if what is done to each were not. Of a mark of which that is not known,
-    nothing is."""
+    """Return the comparison with marks at the places that they would have without the known displacements. Those of an
+    unknown displacement are dropped."""
     rows = tuple(_undone(row, done.get(row.stroke, NOWHERE)) for row in found.strokes)
     sheet, spread_mm = _sheet(list(rows), found.common, found.middle_mm)
     return replace(found, strokes=rows, common=sheet, spread_mm=spread_mm)
@@ -311,7 +311,7 @@ def _undone(row: Compared, done: Placed) -> Compared:
 
 
 def _things(astray: np.ndarray, canvas: Canvas) -> np.ndarray:
-    """Pieces of what lies beside all marks that are too large for paint that strayed."""
+    """Return pieces of paint outside of all marks that are too large for stray paint."""
     _, labels, stats, _ = cv2.connectedComponentsWithStats(np.uint8(astray), connectivity=8)
     large = stats[:, cv2.CC_STAT_AREA] > THING_MM2 * canvas.px_per_mm**2
     large[0] = False
@@ -319,14 +319,14 @@ def _things(astray: np.ndarray, canvas: Canvas) -> np.ndarray:
 
 
 def _uncovered(seen: _Seen, near: np.ndarray, canvas: Canvas) -> Compared:
-    """A stroke whose mark lies near a thing is not found."""
+    """Drop a stroke whose mark is near a thing: it is not found."""
     covered = near.any() and (_any(seen.locate(seen.stroke.predicted), canvas) & near).any()
     return replace(seen.row, placed=NOWHERE) if covered else seen.row
 
 
 def _sheet(rows: list[Compared], common: Placed, middle: np.ndarray) -> tuple[Placed, float | None]:
-    """The shift and turn that bring all predicted middles nearest to where the marks lie (Kabsch), and what is left.
-    Marks that are much drier than the best ones lie where their paint was, and are left out where enough others are."""
+    """Return the shift and turn that bring all predicted middles nearest to the marks (Kabsch), and the residuals.
+    Marks that are much drier than the best ones are displaced, and are left out where enough others are."""
     known = [row for row in rows if row.placed.found]
     if len(known) < LEAST_MARKS:
         return common, None
@@ -357,8 +357,8 @@ def _overlap(one: np.ndarray, other: np.ndarray) -> float:
 def _stroke(
     stroke: TargetStroke, rings, others, painted, is_painted, common: Placed, middle, canvas: Canvas
 ) -> _Seen:
-    """rings: its mark with the sheet's place put right, others: those of all other strokes. is_painted gets what of its
-    paint is paler than that of others."""
+    """rings: its mark with the sheet's place put right, others: those of all other strokes. is_painted gets the part
+    whose paint is paler than that of others."""
     points = np.vstack(rings)
     low = np.maximum(points.min(axis=0) - AROUND_MM, canvas.window_mm[:2])
     high = np.minimum(points.max(axis=0) + AROUND_MM, canvas.window_mm[2:])

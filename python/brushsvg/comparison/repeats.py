@@ -19,7 +19,7 @@ from .photographs import Comparison
 
 FORMAT = "brushsvg/repeatability"
 SAME_MM = (
-    0.2  # copies of a stroke have the same way but for its place, and for how its poses were thinned out
+    0.2  # copies of a stroke have the same way but for its place, and for the simplification of its poses
 )
 ALONG = 65  # places at which ways are compared
 LEAST_FREEDOM = 4  # values to spare for a spread: fewer say next to nothing
@@ -31,8 +31,8 @@ BAR = 40
 @dataclass(frozen=True)
 class Spread:
     """A stroke, or copies of one: how many were seen, their mean displacement beyond the sheet's place, and how far
-    they lie from it: rms in x and y together over the square root of two, and the farthest; wider_mm: rms of how much
-    farther out edges lie than on average."""
+    they are from it: rms in x and y together over the square root of two, and the farthest; wider_mm: rms of how much
+    wider they are than on average."""
 
     stroke: str
     count: int
@@ -44,7 +44,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class Approach:
-    """By how much strokes that begin in the positive direction of an axis lie farther along it than those that begin
+    """By how much strokes that begin in the positive direction of an axis are farther along it than those that begin
     in the negative one, with half its 95 % interval; None where there are too few of either. plus_mm, minus_mm: mean
     place along the axis of each stroke, by that direction."""
 
@@ -57,9 +57,9 @@ class Approach:
 
 @dataclass(frozen=True)
 class Repeats:
-    """displacement_mm: standard deviation in x and in y of where the same stroke lies, with its 95 % interval; away_mm:
-    (n,) of each one, how far from its mean; over_sheets: else over copies on one, which their places
-    move, too; once: strokes that were seen once or not at all, of which nothing is told."""
+    """displacement_mm: standard deviation in x and in y of the place of the same stroke, with its 95 % interval;
+    away_mm: (n,) of each one, how far from its mean; over_sheets: else over copies on one, which their places
+    move, too; once: strokes that were seen once or not at all, which have no figures."""
 
     rows: tuple[Spread, ...]
     displacement_mm: float
@@ -108,12 +108,12 @@ def repeats(plan, sheets: list[Comparison]) -> Repeats:
     if freedom < LEAST_FREEDOM:
         what = "on these sheets" if over_sheets else "on this sheet, where copies of a stroke are looked for"
         sentence = (
-            f"too few strokes are seen more than once {what}: {seen} marks of {used} strokes tell no spread"
+            f"too few strokes are seen more than once {what}: {seen} marks of {used} strokes show no spread"
         )
         raise Error(sentence, code="too-few-repeats")
     sigma = math.sqrt(squares / freedom)
     if sigma < ALIKE_MM:
-        sentence = "marks lie alike to the last digit: photographs of two sheets are needed, not of one twice"
+        sentence = "marks are alike to the last digit: photographs of two sheets are needed, not of one twice"
         raise Error(sentence, code="too-few-repeats")
     low, high = (sigma * math.sqrt(freedom / _chi_square(freedom, side)) for side in (1.96, -1.96))
     approaches = tuple(_approach(plan, places, axis) for axis in (0, 1))
@@ -125,7 +125,9 @@ def repeats(plan, sheets: list[Comparison]) -> Repeats:
 def _places(found: Comparison) -> dict[str, tuple[float, float, float]]:
     """By stroke x and y beyond the sheet's place, in the sheet's own directions, and how much wider it is."""
     if found.spread_mm is None:
-        sentence = f"fewer than {LEAST_MARKS} of its marks are found, which do not tell how the sheet lies"
+        sentence = (
+            f"fewer than {LEAST_MARKS} of its marks are found, which do not determine the pose of the sheet"
+        )
         raise Error(sentence, code="marks-missing")
     sheet, out = found.common, {}
     for row in found.strokes:
@@ -183,13 +185,13 @@ def _chi_square(freedom: int, deviate: float) -> float:
 
 
 def histogram(found: Repeats) -> list[tuple[float, int]]:
-    """(upper edge in mm, how many displacements lie below it and above the one before)."""
+    """Return (upper edge in mm, how many displacements are below it and above the one before)."""
     edges, counts = bins_of(found)
     return list(zip(edges[1:].tolist(), counts.tolist(), strict=True))
 
 
 def bins_of(found: Repeats) -> tuple[np.ndarray, np.ndarray]:
-    """Edges (n + 1,) of bins in mm, from 0, and how many displacements (n,) lie in each."""
+    """Return edges (n + 1,) of bins in mm, from 0, and how many displacements (n,) are in each."""
     step = max(0.01, round(BIN_SHARE * float(np.quantile(found.away_mm, 0.9)), 2))
     edges = np.arange(math.ceil(float(found.away_mm.max()) / step) + 1) * step
     return edges, np.histogram(found.away_mm, np.concatenate([[0.0], edges[1:] + 1e-9]))[0]
@@ -215,16 +217,16 @@ def as_text(title: str, found: Repeats) -> str:
         count = f"{len(found.once)} stroke{'s' * (len(found.once) != 1)}"
         lines += [
             "",
-            f"Not told, since not seen twice (not found, or more than {100 * UNSEEN:g} % of the mark without paint): "
-            f"{count}: {', '.join(found.once)}.",
+            f"Without figures, since not seen twice (not found, or more than {100 * UNSEEN:g} % of the mark without "
+            f"paint): {count}: {', '.join(found.once)}.",
         ]
     lines += [
         "",
-        f"The same stroke lies {found.displacement_mm:.3f} mm aside in x and in y (standard deviation, 95 % interval "
-        f"{found.low_mm:.3f} to {found.high_mm:.3f}).",
+        f"The same stroke is displaced by {found.displacement_mm:.3f} mm in x and in y (standard deviation, 95 % "
+        f"interval {found.low_mm:.3f} to {found.high_mm:.3f}).",
         *(_approach_words(one) for one in found.approaches),
         "",
-        "How far from its mean each lies, mm:",
+        "Distance of each from its mean, mm:",
     ]
     bins = histogram(found)
     most, before = max(count for _, count in bins), 0.0
@@ -234,17 +236,17 @@ def as_text(title: str, found: Repeats) -> str:
     lines += [
         "",
         "Mean, spread, farthest: displacement beyond the sheet's place, mm; spread in x and in y; wider: how far edges",
-        "lie from their mean (standard deviation, mm).",
+        "are from their mean (standard deviation, mm).",
     ]
     return "\n".join(lines) + "\n"
 
 
 def _approach_words(one: Approach) -> str:
     if one.value_mm is None:
-        return f"Too few strokes are approached from either side in {one.axis} to tell a hysteresis."
+        return f"Too few strokes are approached from either side in {one.axis} to show a hysteresis."
     certain = "" if abs(one.value_mm) > one.half_mm else ", which may be chance"
     return (
-        f"Strokes that are approached towards +{one.axis} lie {one.value_mm:+.3f} +- {one.half_mm:.3f} mm farther that "
+        f"Strokes that are approached towards +{one.axis} are {one.value_mm:+.3f} +- {one.half_mm:.3f} mm farther that "
         f"way than those approached towards -{one.axis}{certain}."
     )
 

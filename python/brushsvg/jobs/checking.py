@@ -70,7 +70,7 @@ class Check:
 
     job: "painting", or what is done before the first stroke: "border", "first-run", "height". problems: what forbids to
     run it, empty where nothing does. time_s: how long the machine takes, None for a program of others. is_foreign:
-    somebody else wrote it, for a pen; is_compared: with a drawing or plan. notices: what else is told, of the drawing
+    somebody else wrote it, for a pen; is_compared: with a drawing or plan. notices: further warnings, about the drawing
     or the machine. work, marks, figures: what it paints, None where that is nothing. border_mm: left, bottom, right,
     top of an air run; heights_mm: from, to, and of a height program the step.
     """
@@ -104,7 +104,7 @@ def check(
     """A program read back and simulated, as `brushsvg check` does: whether it keeps the limits of its brush and its
     machine, and whether it paints what it should.
 
-    program: its path. drawing: what it should paint, as `convert` takes it; None: only its limits are asked.
+    program: its path. drawing: what it should paint, as `convert` takes it; None: only its limits are checked.
     choices: as those of `convert`, by default what the program says; how strokes were compensated it says itself.
     progress, cancel: as for `convert`.
 
@@ -135,7 +135,7 @@ def checked(
     stage: Callable[[str], object] = lambda text: None,
     warn: Warn = lambda file, notices: None,
 ) -> Check:
-    """The same, its notices told with the file that they are of as soon as they are known."""
+    """Check a program, and report notices with the file that they are of as soon as they are known."""
     suffix = suffix_of(path)
     with concerning(path):
         data = read_bytes(path)
@@ -178,7 +178,7 @@ class _Program:
 
 
 def _whole_text(path: str, suffix: str, text: str) -> str:
-    """With what it calls from files beside it."""
+    """Read a program with the files that it calls, next to it."""
     if suffix == ".robodk":
         raise Error(
             "what a post of RoboDK's kind writes is in a language of its own, which is not read back",
@@ -266,7 +266,7 @@ def _of_offset(z_offset_mm: float) -> list[Notice]:
 
 def _unlike_drawing(unlike: list[Notice]) -> list[Notice]:
     """The same, with one notice for all strokes that are painted in another way: neither the program nor its plan.json
-    says how it was planned, so they may be what was asked for."""
+    says how it was planned, so they may be as requested."""
     otherwise = [
         each for each in unlike if each.code in ("path-elsewhere", "held-otherwise", "stroke-too-fast")
     ]
@@ -291,7 +291,7 @@ def _written_again(
     if not again:
         return again, []
     least_s = None
-    if speeds is None:  # feeds may have been lowered since its time was told
+    if speeds is None:  # feeds may have been lowered after its time was written
         usual_mm_s = min(Options.speed_mm_s, again.touching_mm_s)
         fastest = [max(a_pass.speed_mm_s, usual_mm_s) for a_pass in ran.plan.passes]
         at_most = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, None, fastest)
@@ -302,8 +302,8 @@ def _written_again(
 
 
 def _header_notes(made, work: Work | None) -> tuple[str, tuple[str, ...]]:
-    """Title and notes that a program's header should have: its drawing's, or its own where nobody knows better, as of a
-    program that was made of a plan."""
+    """Title and notes that a program's header should have: its drawing's, or its own where nobody knows better, as for
+    a program that was made of a plan."""
     if (
         work is None
         or work.strokes is None
@@ -386,13 +386,13 @@ def _is_corrected_plan(source) -> bool:
 
 
 def _as_made(program: _Program, chosen: Choices, stage, warn: Warn) -> Work:
-    """The drawing or plan that a program should paint, prepared as its header says; what of it is left out, or painted
-    otherwise, is told again: this is the last look."""
+    """Return the drawing or plan that a program should paint, prepared as its header says; notices on parts that are
+    left out or painted otherwise are repeated: this is the last look."""
     made, source = program.made, chosen.input
     if made.is_corrected and chosen.corrections is None and not _is_corrected_plan(source):
         with concerning(program.path):
             raise Error(
-                "its strokes were led elsewhere by corrections, which are not known here",
+                "its strokes were moved by corrections, which are not known here",
                 code="corrections-missing",
                 advice="give --corrections FILE",
             )

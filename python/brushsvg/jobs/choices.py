@@ -81,7 +81,7 @@ ONE_OF = {
 class Choices:
     """What a drawing or plan is read and painted with; None where nobody says it. Lengths in mm, the speed in mm/s.
 
-    input: a path, or whatever else a drawing may be; brush, cell: by name or path, or themselves.
+    input: a path, or any other form of a drawing; brush, cell: a name, a path or the object.
     """
 
     input: object = None

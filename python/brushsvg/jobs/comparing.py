@@ -1,4 +1,4 @@
-"""Photographs of a painted sheet held against what was wanted and predicted: what `brushsvg compare` does, from
+"""Compare photographs of a painted sheet with its targets and predictions: what `brushsvg compare` does, from
 Python."""
 
 from __future__ import annotations
@@ -67,8 +67,8 @@ LEAST_PRINT_SCALE, SAME_SCALE = 0.015, 0.006  # shares: print scales begin at 2 
 
 @dataclass(frozen=True)
 class Sheet:
-    """What was told to the machine, and the page that it painted on: plan, with the corrections of before, as far as
-    they are of its cell; strokes: rings on the sheet of what was wanted and predicted; otherwise: makes the sheet of
+    """What was commanded to the machine, and the page that it painted on: plan, with the corrections of before, as far
+    as they are of its cell; strokes: rings on the sheet of targets and predictions; otherwise: makes the sheet of
     the other page that this drawing may have been painted on, without strokes in its margin."""
 
     work: Work
@@ -87,11 +87,11 @@ class Sheet:
 class PaintedJob:
     """What photographs of a painted sheet show.
 
-    overlap: of all paint with what was wanted, or predicted where there is no drawing, as it lies. strokes: each with
-    its overlaps and where it lies; ends: by stroke, how much later than wanted it begins and ends. faults: whose it is,
-    None where nothing can be told. corrections: by stroke, where it should be led next time. cell: with a [machine]
-    that undoes what is certain, besides what it undid; is_corrected: whether anything is. notices: what is to be warned
-    of. text, json: what the command prints and what `convert` takes as corrections.
+    overlap: of all paint, where it is, with the target, or the prediction where there is no drawing. strokes: each with
+    its overlaps and its place; ends: by stroke, how much later than its target it begins and ends. faults: the causes
+    of errors, None where they cannot be estimated. corrections: by stroke, its displacement for the next sheet. cell:
+    with a [machine] that undoes the certain errors, in addition to those before; is_corrected: whether it differs.
+    notices: warnings. text, json: what the command prints and what `convert` takes as corrections.
     """
 
     title: str
@@ -110,7 +110,7 @@ class PaintedJob:
     )
 
     def picture(self) -> bytes:
-        """A PNG: the paint as photographed over what was wanted, in grey, under a red line where it was predicted."""
+        """Return a PNG: the paint as photographed over the target, in grey, under a red line for the prediction."""
         if self._shown is None:
             raise Error("it was not made of photographs", code="nothing-to-show")
         return comparison_png(*self._shown, self.faults)
@@ -124,7 +124,7 @@ def compare(
     cancel: Cancel | None = None,
     **choices: Unpack[Given],
 ) -> PaintedJob:
-    """Photographs of one painted sheet held against what was wanted and predicted, as `brushsvg compare` does.
+    """Compare photographs of one painted sheet with targets and predictions, as `brushsvg compare` does.
 
     drawing: what was painted, as `convert` takes it, with the choices that it was converted with; corrections: those
     that it was painted with. photos: the path of one, or a list of them, which are averaged. progress, cancel: as for
@@ -152,7 +152,7 @@ def compare(
 
 
 def painted_sheet(chosen: Choices, stage: Callable[[str], object], warn: Warn) -> Sheet:
-    """What stands on the page that was painted on; notices are told with the file that they are of."""
+    """Return the contents of the painted page; notices are reported with the file that they are of."""
     before = sheet_before_of(chosen.corrections)
     return _sheet(replace(chosen, corrections=None), before, stage, warn)
 
@@ -214,12 +214,12 @@ def photographs(paths: Iterable[str], stage: Callable[[str], object]) -> list[tu
 
 
 def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], warn: Warn) -> PaintedJob:
-    """paths: photographs of one sheet; notices are told with the first of them."""
+    """paths: photographs of one sheet; notices are reported with the first of them."""
     with concerning(paths[0]):
         photos = photographs(paths, stage)
         sheet, found = on_its_page(sheet, lambda one: compare_photos(one.page, [*one.strokes], photos))
     work, brush, strokes = sheet.work, sheet.work.brush, list(sheet.strokes)
-    stage("looking for what is amiss")
+    stage("estimating faults")
     every = found, sheet.page, strokes
     found, strokes = of_drawing(found, strokes)
     learned = has_learned(brush, [hashlib.sha256(data).hexdigest() for _, data in photos])

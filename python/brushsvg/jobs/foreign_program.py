@@ -24,7 +24,7 @@ Lift = Callable[[float | None], float]
 _ROOM = dict.fromkeys(
     ("left", "lower"), "its zero is the sheet's lower left corner: move the program's lines"
 )
-_ROOM |= dict.fromkeys(("right", "upper"), "tell the sheet's size with --sheet WxH")
+_ROOM |= dict.fromkeys(("right", "upper"), "give the sheet's size with --sheet WxH")
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ def _touches(some: list[Way], cell: Cell) -> tuple[list, list[Notice]]:
 
 
 def _below(start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:
-    """The ends of what of a straight way is not above the paper."""
+    """Return the ends of the part of a straight way that is not above the paper."""
     rise = end[2] - start[2]
 
     def at_paper() -> np.ndarray:

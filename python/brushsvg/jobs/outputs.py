@@ -23,7 +23,7 @@ from .options import Options
 from .preparation.margin_strokes import KIND, is_margin, without_margin_strokes
 from .work import Work
 
-SHOWN_MM = 0.02  # how exactly a page shows what was wanted: less cannot be seen
+SHOWN_MM = 0.02  # how exactly a page shows the target: less cannot be seen
 
 
 def notes(work: Work) -> tuple[str, ...]:
@@ -88,9 +88,9 @@ def page(suffix: str, work: Work) -> bytes:
 
 def overlap_picture(suffix: str, work: Work, marks: _core.Marks, long_side_px: int | None = None) -> bytes:
     """Where paint is missing and where there is too much of it, as the bytes of a .png or an .svg; the latter needs
-    outlines. long_side_px: of a small .png without legend. Error for a plan, which does not say what was wanted."""
+    outlines. long_side_px: of a small .png without legend. Error for a plan, which does not hold its target."""
     if work.strokes is None:
-        raise Error("a plan does not say what was wanted: give the drawing", code="plan-without-target")
+        raise Error("a plan does not hold its target: give the drawing", code="plan-without-target")
     if suffix == ".svg":
         target = report.target_rings(work.strokes)
         return overlap_svg(target, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
@@ -108,7 +108,7 @@ def played(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed
     """An HTML page that plays tool and paint over time, speed times as fast at first. marks: of the work's plan in
     loads, with outlines."""
     _core.refuse_tilted(work.plan.passes, "the tool is shown upright")
-    runs = replace(cell, machine=None)  # the tool is shown where it goes, not where it is told to go
+    runs = replace(cell, machine=None)  # the tool is shown where it goes, not where it is commanded
     moves = timeline(whole_program(loads, work.brush, runs), marks)
     target = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
     return animation(moves, loads, work.brush, marks, target, cell.stations, work.title, speed)
@@ -126,7 +126,7 @@ def reported(
     as_run: _core.Plan | None = None,
 ) -> report.Report:
     """The figures of a work. warnings: None for those of the work; forbidden:
-    those of them for which no program would be written; drawn: see report.measure; seconds: how long it takes, where
+    those of them for which no program would be written; drawn: see report.measure; seconds: the duration, where
     that is known better than from the plan; advice: on the size; as_run: what the marks are of, where a machine cuts
     corners of the work's plan."""
     known = warnings if warnings is not None else work.notices

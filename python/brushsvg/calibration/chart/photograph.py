@@ -202,8 +202,8 @@ def _refuse_compressed(data: bytes) -> None:
     quality = jpeg_quality(data)
     if quality is not None and quality < WORST_QUALITY:
         raise Error(
-            f"the JPEG was saved at quality {quality:.0f} of 100, at least {WORST_QUALITY:g} is needed: give the picture as the "
-            "camera wrote it, not as a messenger sent it on",
+            f"the JPEG was saved at quality {quality:.0f} of 100, at least {WORST_QUALITY:g} is needed: give the "
+            "picture as the camera wrote it, not as a messenger sent it on",
             value=quality,
             code="photo-compressed",
         )

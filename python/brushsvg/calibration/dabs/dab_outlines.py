@@ -164,8 +164,8 @@ def _refuse_open(depths: list[float], dabs: list[Dab], remarks: list[Notice]) ->
             continue
         listed = "; ".join(f"{each.where}: {each.sentence}" for each in remarks[:4])
         raise Error(
-            f"{len(left)} dabs are left at depth {depth:g} mm, at least {LEAST_LEFT} are needed: paint the page again with more "
-            f"paint on the brush, and wipe it in between ({listed}{'; ...' * (len(remarks) > 4)})",
+            f"{len(left)} dabs are left at depth {depth:g} mm, at least {LEAST_LEFT} are needed: paint the page again "
+            f"with more paint on the brush, and wipe it in between ({listed}{'; ...' * (len(remarks) > 4)})",
             f"{depth:g} mm",
             len(left),
             code="dabs-too-few",

@@ -172,7 +172,7 @@ def moved_by(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
 
 
 def moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float) -> np.ndarray:
-    """Return the marks with every edge edge_mm farther out."""
+    """Return the marks grown by edge_mm at every edge."""
     return moved_by(fit, grow_outlines(marks, edge_mm), options)
 
 
@@ -189,7 +189,7 @@ def grow_outlines(marks: list, edge_mm: float) -> list:
 
 
 def wetter_where_wider(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
-    """Return the marks with edges the farther out the wider a mark is, by edge_mm at the greatest depth: more paint
+    """Return the marks grown the more the wider a mark is, by edge_mm at the greatest depth: more paint
     runs farther. The fit would take a common shift of all edges for higher paper; these are wider marks."""
     half = np.array(fit.laws.half_width)
     shape = len(widest_ratio(fit.laws)) + len(front_ratio(fit.laws))

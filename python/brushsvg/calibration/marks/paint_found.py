@@ -256,8 +256,9 @@ def _left(made: MarkCalibration) -> tuple[float, float, float]:
     explained = flanks.explained_by_depth()
     if 1 - explained < LEAST_OWN:
         raise Error(
-            f"{100 * explained:.0f} % of how the way since the dip grows is explained by the depth alone, so narrower and "
-            "shallower marks are alike: paint strokes of one depth early and late, as `brushsvg chart --paint` does",
+            f"{100 * explained:.0f} % of how the way since the dip grows is explained by the depth alone, so narrower "
+            "and shallower marks are alike: paint strokes of one depth early and late, as `brushsvg chart --paint` "
+            "does",
             "paint",
             code="paint-undetermined",
         )

@@ -11,7 +11,7 @@ import numpy as np
 from ...errors import Error
 
 # Where points of the line are placed between the chords that points are held against, in lags from the corner: chords
-# lie off it by 1e-4 lags. Before the corner and 12 lags beyond it is straight.
+# are off it by 1e-4 lags. Before the corner and 12 lags beyond it is straight.
 PLACES = np.concatenate([np.arange(0.0, 4.0, 0.03), np.arange(4.0, 12.1, 0.25)])
 MOST_POINTS = 500  # of one line that count: one in so many, evenly
 UNSURE = 0.5  # share of the lag: less is known of it by a line that ends too early

@@ -1,7 +1,8 @@
-"""Whose fault: what lies between paint and prediction, split by what each cause does to the edges of all marks.
+"""Attribute errors: the difference of paint and prediction, split by the effect of each cause on the edges of all
+marks.
 
 Least squares, linear in numbers of the sheet, the machine, the paper and the brush, in a place of its own of each
-stroke, and in what of the width the reading of edges leaves open; done anew at what was found, until it rests.
+stroke, and in the part of the width that the reading of edges leaves open; repeated at its result until it converges.
 """
 
 from __future__ import annotations
@@ -23,25 +24,25 @@ REACHES_MM = (2.5, 1.2, 0.8, 0.8)  # of the search for edges: first those of a b
 OWN_MM = (0.02, 0.2, 1.0)  # standard deviation of own places: at least, to begin with, at most
 EDGE_MM = 0.03  # the same of what reading an edge leaves open
 FLOOR_MM = 0.01  # of edges, standard deviation: no photograph is read better
-# A brush is never quite its model. Where it is not, whole sides of a mark lie elsewhere, which the fit then takes for
+# A brush is never quite its model. Where it is not, whole sides of a mark are elsewhere, which the fit then takes for
 # this or that number: two simulators that know the same brush differ so far (standard deviation), over such lengths.
 MISFIT_MM, MISFIT_LONG_MM = 0.03, 6.0
 LEAST_EDGES = 60  # on fewer the numbers rest on their priors
 FEW_STROKES, MOST_STROKES = (
     3,
     40,
-)  # fewer do not tell a place from their own; of more the largest are looked at
+)  # fewer do not separate a common place from their own; of more the largest are used
 TUNING = 1.345  # Huber's
 DRAWS = 200
 FINE_PX_PER_MM = 8.0
-ALIKE = 0.3  # share of a cause's doubt that is left once another is known: below, they are hard to tell apart
-MODEL_ERROR_MM = 0.04  # so far a model lies beside the paint all round by its own doubt
+ALIKE = 0.3  # share of a cause's doubt that is left once another is known: below, they are hard to separate
+MODEL_ERROR_MM = 0.04  # distance of a model from the paint all round by its own doubt
 DOUBT_MM = 0.05  # less of it matters to nobody
 
 
 @dataclass(frozen=True)
 class Found:
-    """A number that is amiss by so much, and half its 95 % interval."""
+    """An error of one number, and half its 95 % interval."""
 
     number: Number
     value: float
@@ -50,7 +51,7 @@ class Found:
 
 @dataclass(frozen=True)
 class Share:
-    """What mending a cause alone would gain in overlap, with its 95 % interval."""
+    """The gain in overlap if one cause alone were corrected, with its 95 % interval."""
 
     cause: str
     gain: float
@@ -60,8 +61,8 @@ class Share:
 
 @dataclass(frozen=True)
 class Faults:
-    """overlap: with what was wanted, of paint with these faults alone; own_mm: rms of the strokes' own places; rest_mm:
-    rms of edges beyond all that; alike: pairs of causes that these marks hardly tell apart; first: what to fix first,
+    """overlap: with the target, of paint with these faults alone; own_mm: rms of the strokes' own places; rest_mm:
+    rms of edges beyond all that; alike: pairs of causes that these marks hardly separate; first: what to fix first,
     None where no gain is certain."""
 
     found: tuple[Found, ...]
@@ -77,8 +78,8 @@ class Faults:
 def attribute_errors(
     plan, brush, strokes: list[TargetStroke], seen_of: Comparison, learned: bool = False
 ) -> Faults | None:
-    """plan: as it was told; strokes: those that were compared; learned: whether the brush was made from them. None
-    where too few edges are seen, where things lie on the sheet, or where no brush has the numbers that would explain
+    """plan: as commanded; strokes: those that were compared; learned: whether the brush was made from them. None
+    where too few edges are seen, where things are on the sheet, or where no brush has the numbers that would explain
     them."""
     painting = [stroke for stroke in strokes if stroke.predicted]
     if len(painting) < FEW_STROKES or seen_of.has_things:
@@ -150,7 +151,7 @@ def _fit(model: FaultModel, names, found: Comparison, neighbours):
 
 def _solved(slopes, off, stroke, prior, now):
     """A step, its covariance, and what is left: Huber's weights, as many edges as are independent of each other, and
-    the model's misfit beside."""
+    the model's misfit in addition."""
     weight, like = np.ones(len(off)), 1.0
     scale = max(1.4826 * float(np.median(np.abs(off - np.median(off)))), FLOOR_MM)
     misfit = MISFIT_MM**2 * MISFIT_LONG_MM / EVERY_MM
@@ -238,14 +239,14 @@ def _interval(outline, slopes, numbers, of_it, drawn) -> tuple[float, float]:
 
 
 def _by_edges(outward: np.ndarray, outline: Outline) -> float:
-    """Intersection over union where edges lie so far out; the area inside by the divergence theorem."""
+    """Return the intersection over union of edges with these offsets; the area inside by the divergence theorem."""
     area = 0.5 * float(np.sum((outline.at * outline.normal).sum(axis=1) * outline.length))
     less, more = (float(np.sum(np.maximum(way * outward, 0.0) * outline.length)) for way in (-1, 1))
     return max(area - less, 0.0) / (area + more)
 
 
 def _missing_paint(model, names, fault_values, own, found: Comparison, whole) -> Share:
-    """Paint that is missing inside of marks, as they lie: more than a model misses that lies beside them."""
+    """Return the paint missing inside of marks at their places: more than a displaced model misses."""
     rings = _rings(model, names, fault_values, own)
     canvas = found.canvas
     target = canvas.filled(whole) > 0.5

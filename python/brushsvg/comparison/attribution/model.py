@@ -1,4 +1,4 @@
-"""What a job's marks would be if this or that were amiss: of the sheet, the machine, the paper, the brush."""
+"""Predict a job's marks with errors of the sheet, the machine, the paper and the brush."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ OTHER_OF_MAKE, OTHER_BENT = (
     0.15,
     0.1,
 )  # of a law, standard deviation between brushes of one make; how it bends
-SUREST = 0.005  # of a law: on paper as it lies no brush is surer
+SUREST = 0.005  # of a law: on the paper as it is no brush is surer
 AT_ONCE = min(8, os.cpu_count() or 1)
 ROUGHLY_MM = 0.02  # between rows of a mark: with 0.1 outlines are rough by as much as a number moves them
 
 
 @dataclass(frozen=True)
 class Number:
-    """One number that may be amiss, 0 where it is not. sigma: standard deviation beforehand; step: that moves edges by
+    """One number that may be off, 0 where it is not. sigma: standard deviation beforehand; step: that moves edges by
     about 0.1 mm."""
 
     cause: str
@@ -40,7 +40,7 @@ class Number:
 
 @dataclass(frozen=True)
 class FaultModel:
-    """plan: as it was told; names: of the strokes that are looked at; the frame is the sheet's; turn, height and
+    """plan: as commanded; names: of the examined strokes; the frame is the sheet's; turn, height and
     tilt are about the middle of the marks, scale and skew about the work zero, which is the sheet's corner. learned:
     the brush was made from these marks and its laws are as sure as its file says; else it may be another of its
     make."""
@@ -142,7 +142,7 @@ class FaultModel:
 
 
 def _traced(mark, brush):
-    """The rings of one stroke: what all paint together covers is not asked."""
+    """Return the rings of one stroke: the area that all paint covers together is not computed."""
     alone = _core.Marks()
     alone.passes = [mark]
     _core.trace_outlines(alone, brush)

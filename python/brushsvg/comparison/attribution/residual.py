@@ -27,7 +27,7 @@ def subtract_faults(
 
 
 def _does(straight, moved, canvas: Canvas) -> Placed:
-    """Where a mark lies, against what it would be."""
+    """Return the place of a mark, relative to its prediction."""
     if not straight or not moved:
         return NOWHERE
     points = np.vstack([*straight, *moved])

@@ -69,7 +69,7 @@ def batch(
     **choices: Unpack[Given],
 ) -> Batch:
     """Convert many drawings, each as `convert` does. What an earlier run into the same folder has done with the same
-    drawing, choices, brush, cell and version, and what lies there as it was written, is not done again.
+    drawing, choices, brush, cell and version, and whose files are there as written, is not done again.
 
     items: paths of drawings, folders, patterns with * and lists (.txt), and pairs of a name and an SVG document.
     out: the folder: programs/NAME.ngc, pictures/NAME.png, manifest.jsonl, table.csv, contact-1.png ...; a drawing that
@@ -77,7 +77,7 @@ def batch(
     executor: any of concurrent.futures; it is given functions and values that can be pickled, and is not shut down.
     jobs: without it, the number of processes, by default one for each processor (a script that starts them needs
     `if __name__ == "__main__":`); cluster: the address of a scheduler of Dask's instead. The rows and files are the
-    same whatever does the work.
+    same in any process.
     format: extension of the programs, by default the first of the cell's language; parquet: table.parquet, too.
     progress, cancel, order, lenient, choices: as for convert; corrections are for one drawing alone.
 
@@ -192,7 +192,7 @@ def _sent(brush) -> SentBrush:
 
 
 def _each_made(executor, is_ours: bool, left: list[int], items: list[Item], way: _Way, is_over):
-    """(Number, Made) of each that is left, as they come. is_ours: it ends with what it has, and is not to be asked."""
+    """(Number, Made) of each that is left, as they come. is_ours: the work ends by itself, and is not polled."""
     done: queue.SimpleQueue = queue.SimpleQueue()
     waiting: dict[Future, tuple[int, int]] = {}
     numbers = iter(left)
@@ -283,7 +283,7 @@ def _kept(folder: Path, item: Item, key: str, done: Made, places: _Places) -> Ro
 
 
 def _make_reporter(count: int, resumed: int, progress):
-    """What tells of each row how far it is, how fast, and how long it will take."""
+    """Return a function that reports each row with the progress, the speed, and the time left."""
     start, found = time.monotonic(), [0, 0]
 
     def report_row(row: Row) -> None:

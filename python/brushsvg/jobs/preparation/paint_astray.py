@@ -1,4 +1,4 @@
-"""Strokes whose paint lies where nobody wants it, by more than one sees and than the brush is known to."""
+"""Find strokes whose paint is visibly outside of the drawing, by more than the error of the brush."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ def off_middle_line(painted, tracking_errors, brush, tolerance_mm: float) -> lis
 
 
 def outside(targets, passes, brush) -> list[Notice]:
-    """Of passes that leave their middle lines on purpose: where their paint lies outside of all that was drawn.
+    """Of passes that leave their middle lines on purpose: where their paint is outside of all that was drawn.
 
-    wanted: what strokes should become; passes: one each, None for those that are not looked at.
+    targets: what strokes should become; passes: one each, None for those that are not looked at.
     """
     looked_at = [(stroke, run) for stroke, run in zip(targets, passes, strict=True) if run is not None]
     if not looked_at:
@@ -60,7 +60,7 @@ def outside(targets, passes, brush) -> list[Notice]:
         away_mm = shapely.distance(corners, drawn) if len(corners) else np.zeros(1)
         if away_mm.max() > seen_mm:
             place = _place(shapely.get_coordinates(corners[away_mm.argmax()])[0])
-            sentence = f"its paint lies up to {away_mm.max():.2g} mm outside of what was drawn, near {place}"
+            sentence = f"its paint is up to {away_mm.max():.2g} mm outside of what was drawn, near {place}"
             found.append(Notice(stroke.id, sentence, code="paint-outside"))
     return found
 

@@ -48,7 +48,7 @@ def prepare(
     stage: Callable[[str], object] = lambda text: None,
     partly: bool = False,
 ) -> Work:
-    """Read a drawing or plan.json and lay out the TCP's path. source: the path of one, a Plan, a Design, or an open
+    """Read a drawing or plan.json and plan the TCP's path. source: the path of one, a Plan, a Design, or an open
     drawing as read_drawing takes it. Error when it cannot be read or painted; partly: strokes that are refused are left
     out."""
     work = _prepared(source, options, stage, partly)
@@ -74,7 +74,7 @@ def _prepared(source: Source, options: Options, stage: Callable[[str], object], 
 
 
 def _planned(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> Work:
-    """The work of a drawing that was read. notices: what was told of it; what else is found is added."""
+    """The work of a drawing that was read. notices: its warnings; further ones are added."""
     stage("finding strokes")
     found, of_strokes = _found(design, brush, options)
     notices += of_strokes
@@ -126,7 +126,7 @@ def _leads(options: Options) -> bool:
 
 @dataclass(frozen=True)
 class _Lines:
-    """Strokes as they were found, as the brush will paint them, and what each of these should become; what is told of
+    """Strokes as they were found, as the brush will paint them, and what each of these should become; notices on
     them, why some were refused, what those should have become, and which the search added."""
 
     drawn: list
@@ -140,7 +140,7 @@ class _Lines:
 
 @dataclass
 class _Way:
-    """How lines are painted. painted, wanted: as in _Lines, pressed deeper where paint runs out; done: what
+    """How lines are painted. painted, targets: as in _Lines, pressed deeper where paint runs out; done: what
     compensation said; moved: which strokes refinement moved."""
 
     painted: list
@@ -154,7 +154,7 @@ class _Way:
 
 
 def _found(design: Design, brush, options: Options) -> tuple[list, list[Notice]]:
-    """A design's strokes, joined, lifted and cut at their corners as is asked for."""
+    """Return a design's strokes, joined, lifted and cut at their corners as requested."""
     thin: list[Notice] = []
     if options.paths_as is None:
         design, thin = without_thin_outlines(design, brush)
@@ -253,7 +253,7 @@ def _without_left_out(lines: _Lines, way: _Way) -> _Lines:
 
 
 def _refined(way: _Way, brush, compensated, options: Options) -> _Way:
-    """The same, or moved where the mark lies better, if that is asked for."""
+    """Return the way, or a refined one whose marks are nearer to the target, if requested."""
     if options.compensation != "refined":
         return way
     forbidden = _forbidden(brush, options)
@@ -269,8 +269,8 @@ def _refined(way: _Way, brush, compensated, options: Options) -> _Way:
 
 
 def _find_stray_paint(lines: _Lines, way: _Way, brush, options: Options) -> tuple[list, list, list[Notice]]:
-    """Pieces of shapes that no stroke reaches, those that strokes reach and their marks do not, and which strokes lie
-    where nobody wants them."""
+    """Return pieces of shapes that no stroke reaches, those that strokes reach and their marks do not, and the strokes
+    whose paint is outside of the drawing."""
     refused = {notice.where for notice in lines.refused}
     planned = [stroke for stroke in lines.drawn if stroke.id not in refused]
     areas = uncovered_areas(planned, way.painted, list(way.plan.passes), brush)
@@ -347,7 +347,7 @@ def _check_speed(brush, options: Options) -> None:
 
 
 def _at_speed(plan, options: Options):
-    """The plan with the one speed that all was asked to be painted at."""
+    """Return the plan with the one speed that was requested for all."""
     if options.speed_of_all_mm_s is not None:
         for a_pass in plan.passes:
             a_pass.speed_mm_s = options.speed_of_all_mm_s
@@ -368,7 +368,7 @@ def _other_brushes(strokes, brush) -> list[Notice]:
 
 
 def _astray(way: _Way, brush, options: Options) -> list[Notice]:
-    """Of strokes that lie where nobody wants them. Who drew a shape drew no middle line, and refinement leaves it on
+    """Return notices on strokes outside of the drawing. A shape has no drawn middle line, and refinement leaves it on
     purpose: there the paint is judged."""
     shapes = {stroke.origin.element for stroke in way.targets if stroke.wanted_mm}
     by_paint = [
