@@ -18,7 +18,7 @@ struct AboveStretch {
 
 /// The TCP's way as it stands in a pass. deeper_mm: how much deeper than -z the brush is pressed.
 template <class T>
-struct ToldWay {
+struct CommandedWay {
     const Poses& poses;
     const std::vector<Arc>& arcs;
     T deeper_mm;
@@ -33,8 +33,8 @@ struct ToldWay {
 };
 
 /// The TCP's way in a pass, stretch by stretch, on any scalar: where it is above the paper, meets it and draws on it.
-/// Way: a ToldWay, or what else tells places, depths and arcs. Called, with i the pose before and shares of the move
-/// from there to the next one:
+/// Way: a CommandedWay, or another type with places, depths and arcs. Called, with i the pose before and shares of the
+/// move from there to the next one:
 ///
 ///     to.above(i, stretch, end, touches)  above the paper, up to `end` of the move, where it is set down or not
 ///     to.touch(i, at, tcp)                set down

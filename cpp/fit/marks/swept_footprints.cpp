@@ -110,7 +110,7 @@ std::size_t count_up_to(const std::vector<double>& rising, std::size_t i, double
 
 bool Footprints::follow(const PassRun& pass, const std::vector<double>& at, double coarse) {
     apart_ = coarse * kApartMm;
-    if (!pass.machine) return follow_on(ToldWay<double>{pass.poses, pass.arcs, pass.height_mm}, pass, at);
+    if (!pass.machine) return follow_on(CommandedWay<double>{pass.poses, pass.arcs, pass.height_mm}, pass, at);
     return follow_on(run(pass), pass, at);
 }
 
@@ -143,7 +143,8 @@ void Footprints::derive(const PassRun& pass, const Eigen::MatrixXd& lag_by, bool
     if (by_.size() < rows_.size()) by_.resize(rows_.size());
     looks_ += kLooksPerStep * rows.size();
     if (!pass.machine)
-        derive_on<Jet>(ToldWay<Jet>{pass.poses, pass.arcs, Jet(pass.height_mm, kMostTerms)}, pass.laws, lag_by, rows);
+        derive_on<Jet>(CommandedWay<Jet>{pass.poses, pass.arcs, Jet(pass.height_mm, kMostTerms)}, pass.laws, lag_by,
+                       rows);
     else if (!by_machine)
         derive_on<Jet>(run_by<Jet>(pass, 0), pass.laws, lag_by, rows);
     else if (pass.machine->is_bent)
@@ -336,7 +337,7 @@ Eigen::Vector2d Footprints::passing(std::size_t row, const NearestEdge& edge) co
 }
 
 double Footprints::way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out, std::size_t& last) const {
-    // Where footprints lie this near one after the other they count as side by side: more than instants are apart.
+    // Where footprints are this near one after the other they count as side by side: more than instants are apart.
     const double gap = 2.0 * apart_;
     struct Part {
         Span span;

@@ -38,7 +38,7 @@ LagLaw<T> law_of(const std::vector<T>& coefficients, double lo, double hi) {
     return {{piece}, plain.rigid};
 }
 
-/// Walks a pass, and tells what the patch does at some of its places.
+/// Walks a pass, and reports what the patch does at some of its places.
 template <class T, class Out>
 class TraceAt {
  public:
@@ -88,8 +88,8 @@ class TraceAt {
 
 /// Calls out(k, Trace) for every k of `at`: poses, fractional in between, ascending.
 ///
-/// way: a ToldWay, or what tells the same. begun: the state at the first pose; without it the brush is set down there,
-/// if it is not in the air.
+/// way: a CommandedWay, or a type with the same members. begun: the state at the first pose; without it the brush is
+/// set down there, if it is not in the air.
 ///
 /// Derivatives pass through events: where bristles tighten and where they touch by the moment's own derivative; where
 /// they loosen the patch stands still, so that the moment does not matter.

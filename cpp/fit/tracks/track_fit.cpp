@@ -109,7 +109,7 @@ class Stroke : public ceres::CostFunction {
             begun.taut = begun.heading_known = true;
         }
         const std::vector<Arc> arcs;
-        const ToldWay<Jet> way{track_.poses_mm, arcs, Jet(0.0)};
+        const CommandedWay<Jet> way{track_.poses_mm, arcs, Jet(0.0)};
         trace(law_.jets, way, track_.pose, is_set_down(track_) ? nullptr : &begun,
               [&](std::size_t k, const Trace<Jet>& at) {
                   checkpoint();
@@ -155,7 +155,7 @@ class Strokes : public ceres::EvaluationCallback {
             own.push_back(all.back()->own_start());
         }
     }
-    /// With slopes at once: nearly all steps are taken, and then they are asked for.
+    /// With slopes at once: nearly all steps are taken, and then they are needed.
     void PrepareForEvaluation(bool = true, bool = true) override {
         if (law.unknown == law_at_ && own == own_at_) return;
         law_at_ = law.unknown;
@@ -301,7 +301,7 @@ void refuse_what_cannot_be_fitted(const std::vector<Track>& tracks, const std::v
         double before = 0.0;
         for (double pose : track.pose) {
             if (!(pose >= before && pose <= double(track.poses_mm.rows() - 1)))
-                throw Error("not-ascending", "the poses of what was seen must ascend and lie on the stroke", where,
+                throw Error("not-ascending", "the poses of what was seen must ascend and be on the stroke", where,
                             pose);
             const Index from = std::min(Index(pose), track.poses_mm.rows() - 2);
             const double z0 = track.poses_mm(from, 2), z1 = track.poses_mm(from + 1, 2);

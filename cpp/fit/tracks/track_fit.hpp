@@ -23,7 +23,7 @@ enum class Displaced { no, along, both };  ///< along: in the direction of its f
 
 struct TrackOptions {
     std::array<double, 2> range_mm{0.0, 10.0};  ///< depths on which the law must be positive
-    std::vector<double> lever_mm;  ///< what was seen lies e(d) ahead of the centre of friction: its coefficients
+    std::vector<double> lever_mm;  ///< what was seen is e(d) ahead of the centre of friction: its coefficients
     bool free_heading = false;     ///< each stroke's heading at its first pose is an unknown, for strokes that have one
     Displaced displaced = Displaced::no;
     int most_iterations = 50;
