@@ -25,7 +25,7 @@ class Done:
     err: tuple[str, ...]
 
     @property
-    def told(self) -> list[tuple[str, Notice]]:
+    def reported(self) -> list[tuple[str, Notice]]:
         """Of `--messages json`, with the file that each is about."""
         return heard(self.err)
 
@@ -83,5 +83,5 @@ def refused(folder, *words, status=1, **settings):
 
 def refusal(folder, *words, **settings) -> tuple[str, Notice]:
     """The same for programs: the file and what is told of it."""
-    (told,) = heard([refused(folder, "--messages", "json", *words, **settings)])
-    return told
+    (reported,) = heard([refused(folder, "--messages", "json", *words, **settings)])
+    return reported

@@ -87,12 +87,12 @@ def painted(data: bytes) -> tuple[dict[str, shapely.Geometry], list[str]]:
     for element in design.elements:
         found.setdefault(element.colour, []).append(_of_element(element))
     usual = ("dashed", "text-outlined")
-    told = [
+    reported = [
         f"{n.where}: {n.sentence}"
         for n in design.notices
         if n.code not in usual and (n.code, n.where) != ("hidden", "Defpoints")
     ]
-    return {colour: shapely.union_all(marks) for colour, marks in found.items()}, told
+    return {colour: shapely.union_all(marks) for colour, marks in found.items()}, reported
 
 
 def _of_element(element):

@@ -59,8 +59,8 @@ def painted(text: str, cap: str = "round"):
     mark = shapely.union_all([_mark(element, cap) for element in design.elements]).intersection(
         shapely.box(*sheet)
     )
-    told = [f"{n.where}: {n.sentence}" for n in design.notices if n.code != "dashed"]
-    return _pixels(mark, design.sheet_mm[1]), told
+    reported = [f"{n.where}: {n.sentence}" for n in design.notices if n.code != "dashed"]
+    return _pixels(mark, design.sheet_mm[1]), reported
 
 
 def _mark(element, cap: str):

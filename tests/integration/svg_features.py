@@ -271,7 +271,7 @@ ROUND = {
     "circles and ellipses",
     "skewed circles",
 }
-TOLD_OTHERWISE = {
+REPORTED_OTHERWISE = {
     "transform-origin": page(
         '<path transform="rotate(30 50 60)" d="M0 9h20l5 9"/>'
         '<path transform="translate(-30-10)scale(2)" d="M0 9h20l5 9"/><g transform="rotate(30 50 60)">'

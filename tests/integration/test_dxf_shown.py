@@ -47,20 +47,20 @@ def written(draw) -> bytes:
 def off(draw):
     """How much differs, and what is told."""
     data = written(draw)
-    ours, told = dxf_shown.painted(data)
-    return dxf_shown.difference(dxf_shown.shown(data), ours), told
+    ours, reported = dxf_shown.painted(data)
+    return dxf_shown.difference(dxf_shown.shown(data), ours), reported
 
 
 @sample("table", dxf_features.TABLES, keep=5)
-def test_what_is_not_painted_as_shown_is_told(table):
+def test_what_is_not_painted_as_shown_is_reported(table):
     silent, stale = {}, []
     for name, draw in dxf_features.TABLES[table].items():
-        share, told = off(draw)
+        share, reported = off(draw)
         if name in dxf_features.OWN:
             stale += [name] if share <= LEAST else []
-        elif share > LEAST and not told:
+        elif share > LEAST and not reported:
             silent[name] = round(share, 3)
-        elif not told and name in dxf_features.NAMED:
+        elif not reported and name in dxf_features.NAMED:
             silent[name] = "not named"
     assert (silent, stale) == ({}, [])
 

@@ -12,7 +12,7 @@ TOO_WIDE = path("M20 30 H90", width="30")
 
 
 @pytest.mark.parametrize(
-    ("drawing", "action", "suffix", "told"),
+    ("drawing", "action", "suffix", "reported"),
     [
         (
             FILLED,
@@ -31,12 +31,12 @@ TOO_WIDE = path("M20 30 H90", width="30")
     ],
 )
 def test_in_batches_inkscape_ends_and_what_it_would_show_is_on_stderr(
-    plugin, tmp_path, drawing, action, suffix, told
+    plugin, tmp_path, drawing, action, suffix, reported
 ):
     """A dialog would stay until the time is up."""
     source = tmp_path / "drawing.svg"
     source.write_text(drawing)
-    assert told in plugin.batch(source, tmp_path / f"out.{suffix}", action).stderr
+    assert reported in plugin.batch(source, tmp_path / f"out.{suffix}", action).stderr
 
 
 def test_without_a_display_warnings_are_on_stderr_too(plugin, tmp_path):
@@ -86,11 +86,11 @@ def test_advice_is_worded_for_who_has_dialogs(plugin, tmp_path, in_dialogs, code
     source = tmp_path / "drawing.svg"
     source.write_text(text)
     done = plugin.script(script, source, *words)
-    told = " ".join(
+    reported = " ".join(
         re.sub("<[^>]*>", " ", (done.stdout + done.stderr).decode()).split()
     )  # a check breaks its lines
-    assert in_dialogs[code] in told.replace("&gt;", ">")
-    assert "--" not in told.replace("brushsvg cell new --taught, in a terminal", ""), "a flag"
+    assert in_dialogs[code] in reported.replace("&gt;", ">")
+    assert "--" not in reported.replace("brushsvg cell new --taught, in a terminal", ""), "a flag"
 
 
 @pytest.mark.parametrize(
@@ -111,13 +111,13 @@ def test_no_flag_is_shown_in_a_dialog(monkeypatch, sentence, advice, shown):
     assert in_dialogs(notice) == shown
 
 
-def test_damage_is_to_be_mended_whatever_its_code(plugin, tmp_path):
+def test_damage_is_to_be_corrected_for_any_code(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(path("M20 30 H90 V"))
     assert b"; repair or delete it, or draw it again" in plugin.script("save", source).stderr
 
 
-def test_a_cell_is_advised_by_name(plugin, tmp_path):
+def test_a_cell_is_advised_with_its_name(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(document('data-brushsvg-cell="linuxcnc-3axis"'))
     done = plugin.script("save", source, "--format=script")

@@ -63,10 +63,10 @@ def test_ctrl_c_stops_at_once_and_leaves_nothing(desk, long_drawing, stage):
         seen = read_until(terminal, stage)
         assert stage in seen, seen[-300:]
         process.send_signal(signal.SIGINT)
-        asked = time.monotonic()
+        requested = time.monotonic()
         rest = read_until(terminal, b"\0 never", timeout_s=10)
         assert process.wait(timeout=10) == 130, rest
-        assert time.monotonic() - asked < 2
+        assert time.monotonic() - requested < 2
         assert rest.decode().splitlines()[-1].endswith("brushsvg: interrupted")
         assert b"Traceback" not in rest
     finally:
@@ -76,7 +76,7 @@ def test_ctrl_c_stops_at_once_and_leaves_nothing(desk, long_drawing, stage):
     assert listing(desk) == before
 
 
-def test_progress_is_told_to_a_terminal_only(desk):
+def test_progress_is_reported_to_a_terminal_only(desk):
     process, terminal = started_at_terminal(desk, "convert", "sound.svg", "out.ngc")
     assert b"compensated" in read_until(terminal, b"\0 never")
     assert process.wait(timeout=30) == 0

@@ -111,9 +111,9 @@ def test_as_inkscape_shows_its_own_file(name, saved):
     assert ours.shape == theirs.shape
     assert theirs.sum() / PX_PER_MM**2 > 80, "Inkscape has not drawn the effect"
     assert np.abs(theirs - ours).sum() / np.maximum(theirs, ours).sum() < LEAST
-    beside = len(DRAWN[name][0]) > 1 and "power" in DRAWN[name][0]
+    near_by = len(DRAWN[name][0]) > 1 and "power" in DRAWN[name][0]
     assert any(notice.code == "path-effect-unread" for notice in design.notices) == (
-        beside or "mirror" in DRAWN[name][0]
+        near_by or "mirror" in DRAWN[name][0]
     )
 
 

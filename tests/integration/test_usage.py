@@ -172,5 +172,5 @@ def test_help_names_what_there_is_and_nothing_else(desk):
     }
 
 
-def test_the_version_is_told(desk):
+def test_the_version_is_reported(desk):
     assert re.fullmatch(r"brushsvg \d+\.\d+\.\d+\n", brushsvg("--version", cwd=desk, status=0).out)

@@ -45,7 +45,7 @@ def known_brush(sure=0.08, lag=1.0, half=1.0):
 
 
 @dataclass(frozen=True)
-class Amiss:
+class Faults:
     """What is: lag and half width times so much; scale - 1, skew (from the work zero, the sheet's corner), lean,
     backlash of the machine; the paper higher at the sheet's middle, tilted about it; the sheet's place; own: by stroke,
     always alike; random_mm: sigma; lasts_mm: the way that a load of paint lasts."""
@@ -64,9 +64,9 @@ class Amiss:
     random_mm: float = 0.0
     lasts_mm: float = np.inf
 
-    def mended(self, cause):
+    def corrected(self, cause):
         """The same without what one cause, by the name that compare has for it, does."""
-        good = Amiss()
+        good = Faults()
         keys = {
             "place of the sheet": ("shift", "turn"),
             "machine": ("scale", "skew", "lean", "backlash"),
@@ -78,10 +78,10 @@ class Amiss:
         return replace(self, **{key: getattr(good, key) for key in keys})
 
 
-def random_amiss(rng, names, sheet_mm):
+def random_faults(rng, names, sheet_mm):
     """A brush up to 20 % off, up to 2 mm of tilt over the sheet, 0.5 mm of backlash, 1 % of scale."""
     tilt = rng.uniform(-1, 1, 2) * rng.dirichlet([1, 1]) * 2 / np.array(sheet_mm)
-    return Amiss(
+    return Faults(
         *(1 + rng.uniform(-0.2, 0.2, 2)),
         scale=tuple(rng.uniform(-0.01, 0.01, 2)),
         backlash=tuple(rng.uniform(0, 0.5, 2)),
@@ -91,7 +91,7 @@ def random_amiss(rng, names, sheet_mm):
     )
 
 
-def told_by(program, sheet_mm):
+def commanded_by(program, sheet_mm):
     """What a program for LinuxCNC tells the machine of each stroke, from the air on: every place that it names, those
     of circles close together."""
     at, found = np.array([0.0, 0.0, 50.0]), []
@@ -165,8 +165,8 @@ def laid(regions, plan, fault_values, seed):
     middle = tuple(0.5 * np.array(plan.sheet_mm))
     out = {}
     for name, region in regions.items():
-        aside = fault_values.own.get(name, np.zeros(2)) + rng.normal(0, fault_values.random_mm, 2)
-        region = affinity.rotate(affinity.translate(region, *aside), fault_values.turn, middle)
+        displaced = fault_values.own.get(name, np.zeros(2)) + rng.normal(0, fault_values.random_mm, 2)
+        region = affinity.rotate(affinity.translate(region, *displaced), fault_values.turn, middle)
         out[name] = affinity.translate(region, *fault_values.shift)
     return out
 
@@ -186,8 +186,8 @@ def photographed(plan, regions, title="", camera=None, seed=1):
     return photograph.photograph(sheet, camera, seed)
 
 
-def overlap(regions, wanted):
-    one, other = (unary_union(list(each.values())) for each in (regions, wanted))
+def overlap(regions, target):
+    one, other = (unary_union(list(each.values())) for each in (regions, target))
     return one.intersection(other).area / one.union(other).area
 
 

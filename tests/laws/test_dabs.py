@@ -152,8 +152,8 @@ def wide_at(outline, x):
 )
 def test_outlines_and_widths_come_back(name, tmp_path, capsys):
     """Of drops that were assumed with the true widths, outlines lie 0.2 to 0.7 mm off."""
-    status, report, told, path = calibrated(tmp_path, capsys, photographed(name))
-    assert status == 0 and not [notice for file, notice in told if file.endswith("photo.jpg")], told
+    status, report, reported, path = calibrated(tmp_path, capsys, photographed(name))
+    assert status == 0 and not [notice for file, notice in reported if file.endswith("photo.jpg")], reported
     found = find_brush(path)
     assert len(found.footprints.dragged) == 6
     for shape in found.footprints.dragged:
@@ -191,8 +191,10 @@ def predicted_overlap(plan, brush, painted):
     """Mean over strokes."""
     marks = core.simulate(plan, brush)
     core.trace_outlines(marks, brush)
-    told = [whole(shapely.make_valid(shapely.Polygon(max(one.outline_mm, key=len)))) for one in marks.passes]
-    both = zip(told, painted, strict=True)
+    reported = [
+        whole(shapely.make_valid(shapely.Polygon(max(one.outline_mm, key=len)))) for one in marks.passes
+    ]
+    both = zip(reported, painted, strict=True)
     return np.mean([one.intersection(other).area / one.union(other).area for one, other in both])
 
 
@@ -240,8 +242,8 @@ def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys
     marks = read_painted(json.loads(core.write_plan(made.plan)), rows, None)
     made_of_strokes = calibrate_marks(marks, "before", leave_out_strays=True)
     before = made_of_strokes.brush
-    status, _, told, path = calibrated(tmp_path, capsys, photographed(name), before=before)
-    assert status == 0, told
+    status, _, reported, path = calibrated(tmp_path, capsys, photographed(name), before=before)
+    assert status == 0, reported
     plan = prepare(WORD, Options(brush=before)).plan
     painted = painted_word(plan, SHAPES[name])
     was, now = (predicted_overlap(plan, brush, painted) for brush in (before, find_brush(path)))
@@ -254,24 +256,24 @@ def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys
     off = np.array([found.brush.lag(depth) for depth in depths]) - true
     assert np.abs(off).max() < 0.15, off
     assert np.mean(np.abs(off) < law_band(found.brush, "lag", depths)[0]) > 0.7, off
-    told = report(found)
-    assert gives(told, found.own.name)
-    assert ("\nnote: " in told) == (name == "egg"), told
+    reported = report(found)
+    assert gives(reported, found.own.name)
+    assert ("\nnote: " in reported) == (name == "egg"), reported
 
 
 def test_the_same_from_below_through_glass(tmp_path, capsys):
     """On a clear sheet; a picture that is mirrored, and one that is not, are refused where the other was told."""
     photo = photo_of(painted(lopsided), mirrored=True)
-    status, _, told, path = calibrated(tmp_path, capsys, photo, "--mirrored")
-    assert status == 0, told
+    status, _, reported, path = calibrated(tmp_path, capsys, photo, "--mirrored")
+    assert status == 0, reported
     above = tmp_path / "above"
     above.mkdir()
     *_, other = calibrated(above, capsys, photographed("lopsided"))
     pairs = zip(find_brush(path).footprints.dragged, find_brush(other).footprints.dragged, strict=True)
     assert max(outline_off(one.outline_mm, two.outline_mm).max() for one, two in pairs) < 0.03
     for picture, words in ((photo, ()), (photographed("lopsided"), ("--mirrored",))):
-        status, _, told, _ = calibrated(tmp_path, capsys, picture, *words)
-        assert status == 1 and told[-1][1].code == "photo-mirrored", told
+        status, _, reported, _ = calibrated(tmp_path, capsys, picture, *words)
+        assert status == 1 and reported[-1][1].code == "photo-mirrored", reported
 
 
 def test_a_chart_of_dabs_needs_the_brush_whose_lag_is_known(tmp_path, capsys):

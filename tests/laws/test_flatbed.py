@@ -122,7 +122,7 @@ def similarity_off(found) -> tuple[float, float, float]:
     [(0, 300), (90, 300), (180, 300), (2, 300), (268, 150), (-1, 600)],
     keep=2,
 )
-def test_marks_are_found_however_the_sheet_lies(turn_deg, dpi):
+def test_marks_are_found_for_any_pose_of_the_sheet(turn_deg, dpi):
     """Rigidly: a turn and shift of the whole sheet are the fit's to find, as on any sheet."""
     found = read(scanned(dpi, turn_deg), dpi)
     assert not found.marks.missing and not found.marks.joined and not remarks(found)
@@ -187,7 +187,7 @@ def test_who_forgets_the_resolution_of_a_scan_is_reminded(paper):
 
 
 @pytest.mark.parametrize(("turn_deg", "side"), [(2, "left"), (-3, "right"), (180, ""), (180.5, "")])
-def test_how_a_scan_is_turned_is_told_without_a_sign(turn_deg, side):
+def test_how_a_scan_is_turned_is_reported_without_a_sign(turn_deg, side):
     sentence = describe_reading(read(scanned(turn_deg=turn_deg)))
     degrees = re.search(r"turned by (\S+) degrees( to the )?(\w*)", sentence)
     assert float(degrees[1]) == pytest.approx(abs(turn_deg), abs=1.5) and degrees[3] == side, sentence

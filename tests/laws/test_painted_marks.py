@@ -126,8 +126,8 @@ def test_displacements_come_back():
 
 def test_more_displacement_than_expected_is_said():
     _, strokes, painted = sheet(3, displacement=2.5)
-    told = report(calibrate_marks(read_painted(*as_file(strokes, painted), None), "b"))
-    assert re.search(r'2\.\d mm.* 1 mm .*\{"displacement_mm": 3\}', told)
+    reported = report(calibrate_marks(read_painted(*as_file(strokes, painted), None), "b"))
+    assert re.search(r'2\.\d mm.* 1 mm .*\{"displacement_mm": 3\}', reported)
     _, _, usual = calibrated(3)
     assert '{"displacement_mm"' not in report(usual)
 
@@ -151,7 +151,7 @@ def found(displacements=(), shift=(0.0, 0.0), height=0.0, turn=0.0):
         (found(turn=0.11), r' 6.3 degrees.* 1.1 degrees.*\{"turn_deg": 7\}'),
     ],
 )
-def test_what_lies_far_beyond_what_was_expected_is_said(made, said):
+def test_what_is_far_beyond_what_was_expected_is_said(made, said):
     assert re.search(said, "".join(mark_report._unexpected(made)))
     assert bool(said) == bool(mark_report._unexpected(made))
 
@@ -177,16 +177,16 @@ def test_marks_unlike_their_predictions_are_said(monkeypatch):
 
 
 @pytest.mark.parametrize("widths", [1.0, 1.3])
-def test_a_mark_that_lies_its_width_aside_is_found(widths):
+def test_a_mark_displaced_by_its_width_is_found(widths):
     """Once its near edge was taken for the far one, and half of the mark was masked."""
     brush, strokes, painted = sheet(5)
     plan, marks = as_file(strokes, painted)
     k = [name for name, _ in strokes].index("straight-3")
-    aside = np.array([0.0, 2 * widths * brush.law("half_width")(brush.deepest)])
-    marks[k]["outline_mm"] = [(np.array(ring) + aside).tolist() for ring in marks[k]["outline_mm"]]
+    displaced = np.array([0.0, 2 * widths * brush.law("half_width")(brush.deepest)])
+    marks[k]["outline_mm"] = [(np.array(ring) + displaced).tolist() for ring in marks[k]["outline_mm"]]
     made = calibrate_marks(read_painted(plan, marks, None), "b")
     found = np.array(made.fit.marks[k].displacement_mm)
-    np.testing.assert_allclose(found, painted.displacements[k] + aside, atol=0.7)
+    np.testing.assert_allclose(found, painted.displacements[k] + displaced, atol=0.7)
     assert made.fit.left_aside < 0.002
 
 
@@ -336,7 +336,7 @@ def test_points_never_count_as_more_than_there_are():
     assert intervals(made).min() > 0.015
 
 
-def test_paper_that_lies_millimetres_higher_than_it_was_taught():
+def test_paper_that_is_millimetres_higher_than_it_was_taught():
     """The fit once stood before a wall at 2 mm."""
     brush, _, painted = sheet(3)
     marks = [
@@ -360,10 +360,10 @@ def test_what_to_expect_is_what_comes():
     promised, remarks = expected_brush(plan, made.brush, noise_mm=0.1, noise_length_mm=1.0)
     assert not remarks
     for law, count in (("lag", 4), ("half_width", 3)):
-        told = np.array(getattr(promised, law).half_interval_95)
+        reported = np.array(getattr(promised, law).half_interval_95)
         came = np.array(getattr(made.brush, law).half_interval_95)
         at = slice(0 if law == "lag" else 1, count)
-        assert np.all(np.abs(np.log(told[at] / came[at])) < np.log(1.7))
+        assert np.all(np.abs(np.log(reported[at] / came[at])) < np.log(1.7))
 
 
 def test_laws_that_are_known_add_their_information():

@@ -11,7 +11,7 @@ import numpy as np
 import painter
 import photograph
 import pytest
-from diagnostics import are_told, gives, in_json, refused
+from diagnostics import are_reported, gives, in_json, refused
 from photograph import BLUE, INK, Camera
 
 core = pytest.importorskip("brushsvg._core")
@@ -86,9 +86,9 @@ def test_one_photograph_gives_the_brush_back(desk, capsys):
         main(["calibrate", "--force", files[0], "--chart", files[1], "-o", files[2], "--picture", files[3]])
         == 0
     )
-    told = capsys.readouterr()
-    assert re.search(r"\b24 .*\b6 [a-z ]+ 0\.0", told.err)
-    assert gives(told.out, "0.01 mm")
+    reported = capsys.readouterr()
+    assert re.search(r"\b24 .*\b6 [a-z ]+ 0\.0", reported.err)
+    assert gives(reported.out, "0.01 mm")
     found = find_brush(desk / "own.json")
     off = {}
     for law in ("lag", "half_width"):
@@ -129,8 +129,10 @@ def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
         assert np.mean(np.abs(values - truth) < band) >= 0.9, (law, values - truth, band)
         assert np.abs(values / truth - 1).max() < 0.02, (law, values / truth)
     (tmp_path / "photo.jpg").write_bytes(photo_of(marks(), camera=replace(CAMERA, sag_mm=0.8)))
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and are_told([each for _, each in told], "photo-not-flat", "marks-scaled"), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and are_reported([each for _, each in reported], "photo-not-flat", "marks-scaled"), (
+        reported
+    )
 
 
 @pytest.mark.thorough
@@ -139,8 +141,8 @@ def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, caps
     drops with which this brush paints, so the lag stays what it was."""
     photo = ["calibrate", "--force", str(desk / "photo.jpg"), "--chart", str(desk / "chart.json")]
     assert main([*photo, "-o", str(desk / "surer.json"), "--height", "0.005"]) == 0
-    told = re.search(r"(0\.\d+) \+- (0\.\d+) mm [a-z]", capsys.readouterr().out)
-    assert float(told[1]) < 0.02 and float(told[2]) <= 0.01, told[0]
+    reported = re.search(r"(0\.\d+) \+- (0\.\d+) mm [a-z]", capsys.readouterr().out)
+    assert float(reported[1]) < 0.02 and float(reported[2]) <= 0.01, reported[0]
     surer = json.loads((desk / "surer.json").read_text())
     surer["footprints"]["assumed"] = False
     (desk / "own.json").write_text(json.dumps(surer))
@@ -165,8 +167,8 @@ def test_a_lag_by_outlines_needs_outlines_that_were_measured(desk, capsys):
         "--brush",
         "round-6",
     ]
-    status, _, told = in_json(capsys, *words, "-o", str(desk / "none.json"))
-    assert status == 1 and told[-1][1].code == "footprints-assumed", told
+    status, _, reported = in_json(capsys, *words, "-o", str(desk / "none.json"))
+    assert status == 1 and reported[-1][1].code == "footprints-assumed", reported
     assert not (desk / "none.json").exists()
 
 
@@ -180,12 +182,12 @@ def test_marks_that_are_covered_or_elsewhere_are_named_and_left_out(tmp_path, ca
     photo.write_bytes(photo_of(moved, (disc, INK)))
     (tmp_path / "chart.json").write_text(write_chart(printed()))
     words = ["calibrate", "--force", str(photo), "--chart", str(tmp_path / "chart.json"), "-o", str(out)]
-    status, report, told = in_json(capsys, *words)
+    status, report, reported = in_json(capsys, *words)
     assert status == 0
-    named = [notice for _, notice in told if notice.code == "mark-astray"]
-    assert are_told(named, "mark-astray straight-3", "mark-astray arc-3")
-    aside = re.search(r" (\d\.\d) mm [a-z]* ?\(\+(\d\.\d), \+(\d\.\d)\)", named[1].sentence)
-    assert [float(number) for number in aside.groups()] == pytest.approx([2.2, 2.0, 1.0], abs=0.4)
+    named = [notice for _, notice in reported if notice.code == "mark-astray"]
+    assert are_reported(named, "mark-astray straight-3", "mark-astray arc-3")
+    displaced = re.search(r" (\d\.\d) mm [a-z]* ?\(\+(\d\.\d), \+(\d\.\d)\)", named[1].sentence)
+    assert [float(number) for number in displaced.groups()] == pytest.approx([2.2, 2.0, 1.0], abs=0.4)
     for notice, stroke in zip(named, ("straight-3", "arc-3"), strict=True):
         corners = re.findall(r"-?\d+\.\d", notice.text.split(";")[1])
         found, expected = np.array(corners, float).reshape(2, 4)
@@ -247,6 +249,6 @@ def test_the_table_round_paper_that_is_smaller_than_the_print_is_no_mark(tmp_pat
     (tmp_path / "photo.jpg").write_bytes(photograph.photograph(sheet, CAMERA))
     (tmp_path / "chart.json").write_text(write_chart(printed()))
     words = calibrating(tmp_path)
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and are_told([told[-1][1]], "marks-scaled smaller bar"), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and are_reported([reported[-1][1]], "marks-scaled smaller bar"), reported
     assert in_json(capsys, *words, "--bar", f"{1.03 * printed().bar.length_mm:.1f}")[0] == 0

@@ -13,7 +13,7 @@ import numpy as np
 import photograph
 import pytest
 import shapely
-from diagnostics import agrees, in_json, is_told, refused
+from diagnostics import agrees, in_json, is_reported, refused
 from photograph import BLUE, Camera, replace
 from sampling import sample
 
@@ -138,7 +138,7 @@ def test_three_markers_are_enough():
     ids=["blue", "shadow", "red", "yellow", "pale grey"],
     keep=2,
 )
-def test_outlines_lie_where_paint_ends(camera, colour, most_mm):
+def test_outlines_are_where_paint_ends(camera, colour, most_mm):
     marks = painted_marks()
     found = read(photograph.exposed(painted_sheet(marks.values(), colour), camera))
     assert not found.marks.missing and not found.marks.joined
@@ -219,14 +219,14 @@ def test_a_mark_that_is_displaced_into_the_next_room_stays_whole():
     lefts = {"a": 10, "b": 21} | {str(k): 30 + 15 * k for k in range(1, 9)}
     stroke_boxes = [StrokeBox(name, (left, 10, left + 10, 40)) for name, left in lefts.items()]
     at = {name: left + 1 for name, left in lefts.items()} | {"a": 14.4, "b": 25.4}
-    wanted = {name: np.array([[x, 12], [x + 8, 12], [x + 8, 38], [x, 38.0]]) for name, x in at.items()}
+    target = {name: np.array([[x, 12], [x + 8, 12], [x + 8, 38], [x, 38.0]]) for name, x in at.items()}
     paint = np.zeros((sheet_mm[1] * fine, sheet_mm[0] * fine), np.float32)
-    for ring in wanted.values():
+    for ring in target.values():
         (left, bottom), (right, top) = np.int32(ring.min(axis=0) * fine), np.int32(ring.max(axis=0) * fine)
         paint[len(paint) - top : len(paint) - bottom, left:right] = 1
     found = assign_marks(paint, Flat(np.zeros((*paint.shape, 3), np.uint8), fine, sheet_mm), stroke_boxes, [])
     assert not found.joined and not found.missing
-    for name, ring in wanted.items():
+    for name, ring in target.items():
         assert _core.overlap(found.outlines_mm[name], [ring]) > 0.9, name
 
 
@@ -267,8 +267,8 @@ def test_a_stroke_without_paint_is_named(tmp_path, capsys):
     words = ["scan", str(photo), "--chart", str(desk / "chart.json"), "-o", str(desk / "marks.json")]
     assert main([*words, "--picture", str(desk / "read.png")]) == 0
     assert re.search(r"\b22 [a-z]+ 24 .*\b6 [a-z ]+ 0\.0", capsys.readouterr().err)
-    status, _, told = in_json(capsys, *words)
-    assert status == 0 and is_told(told, "mark-missing straight-1 arc-2"), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 0 and is_reported(reported, "mark-missing straight-1 arc-2"), reported
     content = json.loads((desk / "marks.json").read_text())
     assert [row["stroke"] for row in content["marks"]] == [one.id for one in a5().strokes if one.id in marks]
     assert cv2.imread(str(desk / "read.png")).shape[0] > 1000
@@ -311,7 +311,7 @@ def test_what_is_no_picture_is_refused(data, said):
 
 @pytest.mark.parametrize("depth", [np.uint8, np.uint16])
 @pytest.mark.parametrize("suffix", [".png", ".tif"])
-def test_what_is_seen_through_lies_on_white(suffix, depth):
+def test_what_is_seen_through_is_on_white(suffix, depth):
     """The black that stands below what is seen through was taken for paint."""
     full = np.iinfo(depth).max
     picture = np.zeros((40, 30, 4), depth)
@@ -640,9 +640,11 @@ def test_refusals_name_the_file(tmp_path, capsys):
     photo.write_bytes(cv2.imencode(".png", np.full((300, 300, 3), 200, np.uint8))[1].tobytes())
     file.write_text("{")
     words = ["calibrate", "--force", str(photo), "--chart", str(file), "-o", str(out)]
-    status, _, ((about, told),) = in_json(capsys, *words)
-    assert (status, about) == (1, str(file)) and agrees(told, "not-json"), told
+    status, _, ((about, reported),) = in_json(capsys, *words)
+    assert (status, about) == (1, str(file)) and agrees(reported, "not-json"), reported
     file.write_text(write_chart(a5()))
-    status, _, ((about, told),) = in_json(capsys, *words)
-    assert (status, about) == (1, str(photo)) and agrees(told, f"photo-markers-missing {a5().id}"), told
+    status, _, ((about, reported),) = in_json(capsys, *words)
+    assert (status, about) == (1, str(photo)) and agrees(reported, f"photo-markers-missing {a5().id}"), (
+        reported
+    )
     assert not out.exists()

@@ -418,7 +418,7 @@ def read_options():
         yield brushsvg.ReadOptions(select=value)
 
 
-def laws_asked():
+def laws_requested():
     for span in [(0, 10), (10, 0), (3, 3), (NAN, 9), (0, INF), (-INF, 1e300)]:
         yield _core.LawShape(span, 1)
     for degree in (0, -1, 9, 2**31 - 1):
@@ -528,7 +528,7 @@ FITS = {
         [3.0, [3, 4], [3, 4, 5], [3, -4], [3, NAN], np.ones((2, 1)), np.ones((2, 2)), *NUMBERS],
         ["a", *TEXTS],
     ],
-    "fit_law": [readings, readings, laws_asked],
+    "fit_law": [readings, readings, laws_requested],
     "from_angles": [
         [1.5, *NUMBERS],
         lambda: [[1, 3, 6], *([1, 3, each] for each in NUMBERS), [6, 3, 1], [0, 0, 0], []],

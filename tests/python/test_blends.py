@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import are_told
+from diagnostics import are_reported
 from programs import problems
 
 from brushsvg import _core
@@ -106,7 +106,7 @@ def test_blends_that_move_the_mark_too_far_are_refused():
     brush = find_brush("round-6")
     plan, marks = marks_and_plan(brush)
     wide = replace(find_cell(), blending=Blending(2.0))
-    assert are_told(problems(plan, brush, marks, wide, 0.05), "shifted-by-blends angle 2 linuxcnc-3axis")
+    assert are_reported(problems(plan, brush, marks, wide, 0.05), "shifted-by-blends angle 2 linuxcnc-3axis")
     assert problems(plan, brush, marks, wide, 5.0) == []
     assert problems(plan, brush, marks, as_exact_as(wide, 0.05), 0.05) == []
 

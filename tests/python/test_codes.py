@@ -92,7 +92,7 @@ def test_the_table_lists_the_codes_that_there_are():
     assert sorted(each for each in listed if not any(fnmatch(each, code) for code in found)) == []
 
 
-def test_python_is_told_the_codes_of_the_library():
+def test_python_has_the_codes_of_the_library():
     with pytest.raises(Error) as refused:
         _core.read_plan('{"format": "brushsvg/plan", "version": 3}')
     assert (refused.value.code, refused.value.value) == ("version-unknown", 3)
@@ -136,8 +136,10 @@ def test_tests_expect_codes_and_numbers_and_quote_no_sentences():
 
 def test_tests_of_the_library_ask_refusals_for_codes_and_numbers():
     """refusal.hpp alone looks into sentences, for numbers and names; nonsense.cpp asks whether there is one."""
-    asked = {file.name for file in (TESTS / "cpp").iterdir() if "what()" in file.read_text(encoding="utf-8")}
-    assert asked <= {"refusal.hpp", "brushsvg_test.cpp", "fit_nonsense.cpp", "mark_fit_test.cpp"}
+    requested = {
+        file.name for file in (TESTS / "cpp").iterdir() if "what()" in file.read_text(encoding="utf-8")
+    }
+    assert requested <= {"refusal.hpp", "brushsvg_test.cpp", "fit_nonsense.cpp", "mark_fit_test.cpp"}
     words = {
         file.name for file in (TESTS / "cpp").iterdir() if "THROWS_WITH" in file.read_text(encoding="utf-8")
     }

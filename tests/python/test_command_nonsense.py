@@ -132,7 +132,7 @@ def refused(desk, capsys, words) -> list[str]:
     "command", [each for each in COMMANDS if any(word in SOUND for word in each.split())]
 )
 @pytest.mark.slow
-def test_whatever_is_read_may_be_nonsense(desk, capsys, command):
+def test_all_that_is_read_may_be_nonsense(desk, capsys, command):
     for word in {*command.split()} & {*SOUND}:
         path = desk / f"bad{Path(SOUND[word]).suffix}"
         for kind, data in NONSENSE.items():
@@ -155,7 +155,7 @@ def test_whatever_is_read_may_be_nonsense(desk, capsys, command):
     [each for each in COMMANDS if "OUT" in each and not {"MEASURED", "PHOTO", "photo.jpg"} & {*each.split()}],
 )
 @pytest.mark.slow
-def test_whatever_is_written_may_have_no_place(desk, capsys, command):
+def test_all_that_is_written_may_have_no_place(desk, capsys, command):
     for kind, place in PLACES.items():
         suffix = next(Path(word).suffix for word in command.split() if word.startswith("OUT"))
         out = desk / f"{place}{suffix}"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from diagnostics import are_told, refused
+from diagnostics import are_reported, refused
 
 core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
@@ -81,10 +81,10 @@ LEFT_OUT = {
 
 
 @pytest.mark.parametrize("what", LEFT_OUT)
-def test_a_bad_dab_is_left_out_by_name(what):
+def test_a_bad_dab_is_left_out_and_named(what):
     make, expected = LEFT_OUT[what]
     made = calibrate_dabs(make(), BRUSH, "own")
-    assert are_told(made.remarks, expected), made.remarks
+    assert are_reported(made.remarks, expected), made.remarks
     assert [len(shape.seen) for shape in made.outlines.shapes] == [4, 3, 4, 4]
     for shape in made.outlines.shapes:
         true = shapely.Polygon(seen_from_patch(shape.depth_mm))
@@ -92,16 +92,16 @@ def test_a_bad_dab_is_left_out_by_name(what):
         assert found.area == pytest.approx(true.area, rel=0.02)
 
 
-def test_outlines_lie_where_dabs_were_seen_on_a_sheet_that_was_laid_askew():
+def test_outlines_are_where_dabs_were_seen_on_a_sheet_that_was_laid_askew():
     turn, about_mm, shift = 0.03, np.array([200.0, -50.0]), np.array([1.2, 0.7])
     turned = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
-    lying = [
+    placed = [
         replace(dab, rings_mm=((dab.rings_mm[0] - about_mm) @ turned + about_mm + shift,))
         for dab in changed(6, lambda ring: [ring + np.array([1.5, 0.0])])
     ]
-    found = calibrate_dabs(lying, BRUSH, "own").outlines.predicted_mm()
-    assert set(found) == {dab.name for dab in lying} - {"dab-6"}
-    for dab in lying:
+    found = calibrate_dabs(placed, BRUSH, "own").outlines.predicted_mm()
+    assert set(found) == {dab.name for dab in placed} - {"dab-6"}
+    for dab in placed:
         if dab.name in found:
             seen, said = shapely.Polygon(dab.rings_mm[0]), shapely.Polygon(found[dab.name])
             assert seen.intersection(said).area > 0.95 * seen.union(said).area, dab.name
@@ -109,7 +109,7 @@ def test_outlines_lie_where_dabs_were_seen_on_a_sheet_that_was_laid_askew():
 
 def test_dabs_that_touch_are_left_out():
     made = calibrate_dabs(dabs(), BRUSH, "own", joined=("dab-2", "dab-9"))
-    assert are_told(made.remarks, "dabs-touch dab-2", "dabs-touch dab-9")
+    assert are_reported(made.remarks, "dabs-touch dab-2", "dabs-touch dab-9")
 
 
 def fixed_to_the_handle(headings=HEADINGS):

@@ -200,7 +200,7 @@ def test_many_depths_above_a_floor_are_fitted_too(norm):
 
 @pytest.mark.thorough
 @pytest.mark.slow
-def test_a_mark_that_lies_over_itself_all_over_is_refused_by_counted_work():
+def test_a_mark_that_covers_itself_everywhere_is_refused_by_counted_work():
     rng = np.random.default_rng(1)
     poses = np.column_stack([rng.uniform(0, 60, (300, 2)), -rng.uniform(0.5, 5, 300)])
     plan = brushsvg.Plan("round-6", "", (60, 60), [brushsvg.Pass("jumps", poses)])

@@ -93,7 +93,7 @@ def test_a_stem_inside_of_a_crossing_is_painted():
 
 
 @pytest.mark.parametrize(("top", "slant_deg"), [(5, 0), (8, 16)])
-def test_the_stem_of_an_a_runs_from_its_top_to_its_foot_beside_the_bowl(top, slant_deg):
+def test_the_stem_of_an_a_runs_from_its_top_to_its_foot_next_to_the_bowl(top, slant_deg):
     """Bowl and stem meet in necks; the first became a ring through both of them, with the foot left over; at the second
     the stem began where the bowl leaves it."""
     outer = (

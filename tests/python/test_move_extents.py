@@ -71,7 +71,7 @@ def test_the_least_and_greatest_are_those_of_all_places_on_the_way(frame, start,
 
 
 @given(FRAME, POINT, POINT, circles(), POINT, st.tuples(*[st.floats(0.5, 300)] * 3))
-def test_whoever_goes_through_a_box_is_found_there(frame, start, end, circle, corner, size):
+def test_a_way_through_a_box_is_found_there(frame, start, end, circle, corner, size):
     low, high = np.array(corner), np.add(corner, size)
     some, places, step_mm = both(frame, start, end, circle)
     place = place_inside(some, low, high)
@@ -139,7 +139,7 @@ def test_a_circle_that_climbs_through_a_box_on_its_way_is_found():
     assert place_inside(half, (-1, -11, 3), (1, -9, 5)) is None
 
 
-def test_the_nearest_place_of_a_climbing_circle_lies_on_its_way():
+def test_the_nearest_place_of_a_climbing_circle_is_on_its_way():
     climbing = ways([], [((2, 0, -3), (2, 0, 5), (0, 0, 1))])  # round the z axis: nearest where it passes z 0
     assert from_origin(climbing) == pytest.approx((2.0, math.hypot(2, 5)))
 

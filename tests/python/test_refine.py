@@ -61,10 +61,10 @@ def looks(stroke, method: str) -> tuple[float, float, int]:
     plan = _core.compensate([stroke], BRUSH, SHEET, method, start="auto", end="auto").plan
     marks = _core.simulate(plan, BRUSH)
     _core.trace_outlines(marks, BRUSH)
-    wanted = _core.wanted_outline(stroke, 0.01)
+    target = _core.wanted_outline(stroke, 0.01)
     overlap = _core.common_area(marks.passes, [stroke], BRUSH).overlap
     mark = marks.outline_mm
-    return overlap, _core.excess_turning(mark, wanted), _core.thorns(mark, wanted)
+    return overlap, _core.excess_turning(mark, target), _core.thorns(mark, target)
 
 
 @pytest.mark.slow

@@ -77,7 +77,7 @@ def test_json_is_complete_and_without_nan():
     assert read["format"] == "brushsvg/report"
     assert read["strokes"][0]["overlap"] == 0.951235
     assert read["total"]["poses"] == 42
-    told = {
+    reported = {
         "where": "s/1",
         "sentence": "odd; mend",
         "code": "strange",
@@ -85,7 +85,7 @@ def test_json_is_complete_and_without_nan():
         "damaged": False,
         "refused": False,
     }
-    assert read["warnings"] == [told]
+    assert read["warnings"] == [reported]
 
 
 def test_text_names_every_stroke_and_says_what_is_not_known():
@@ -131,7 +131,7 @@ def test_a_stroke_painted_twice_is_no_worse_as_a_letter():
 WORST = Worst((12.34, 5.67), True, 0.5, "too short", "shorter-than-footprint")
 
 
-def test_the_worst_place_is_told():
+def test_the_worst_place_is_reported():
     row = Figures("s", 0.9, 0.01, 0.04, 0.125, 0, 60.0, 81.5, 42, WORST)
     made = Report("T", "round-6", "closed", 0.05, (row,), ROW, 5, advice="Size: fine.")
     assert re.search(r"42  x 12\.3, y 5\.7: .*; too short\n", to_text(made))

@@ -67,7 +67,7 @@ def test_the_lift_alone_takes_its_time():
 
 
 @pytest.mark.parametrize(("values", "step_mm"), [(80, 0.5), (150, 0.25), (1000, 0.1)])
-def test_no_lift_is_faster_than_told_by_the_values_as_they_are_written(values, step_mm):
+def test_no_lift_is_faster_than_programmed_by_the_written_values(values, step_mm):
     """A lift after a line begins where the line's last part was held, half a step away, and values are whole: waits
     were those of the plan's heights, up to a half too short."""
     cell = replace(CELL, servo=Servo(((-10.0, 0.0), (0.0, 0.6 * values), (5.0, float(values))), step_mm, 0.0))
@@ -226,8 +226,8 @@ def test_check_accepts_a_straight_line_by_a_brush_of_one_lag(tmp_path, monkeypat
     assert call(capsys, "brush", "new", "mine", *words)[0] == 0
     program = "line.ebb" if cell.endswith("ebb") else "line.gcode"
     assert call(capsys, "convert", "line.svg", program, "--brush", "mine.json", "--cell", cell)[0] == 0
-    status, _, told = call(capsys, "check", program, "line.svg", "--brush", "mine.json", "--cell", cell)
-    assert status == 0, told
+    status, _, reported = call(capsys, "check", program, "line.svg", "--brush", "mine.json", "--cell", cell)
+    assert status == 0, reported
 
 
 def test_check_accepts_a_pose_at_the_value_of_the_one_before(tmp_path, monkeypatch, capsys):
@@ -245,8 +245,8 @@ def test_check_accepts_a_pose_at_the_value_of_the_one_before(tmp_path, monkeypat
     plan = _core.Plan("round-6", "", (100, 60), [_core.Pass("a", np.array(poses), 6.42)])
     Path("p.json").write_text(write_plan(plan))
     assert call(capsys, "convert", "p.json", "p.nc", "--cell", "mine.toml")[0] == 0
-    status, _, told = call(capsys, "check", "p.nc", "p.json", "--cell", "mine.toml")
-    assert status == 0, told
+    status, _, reported = call(capsys, "check", "p.nc", "p.json", "--cell", "mine.toml")
+    assert status == 0, reported
 
 
 @pytest.mark.parametrize("width_mm", [0.0503, 0.0707, 0.1103])

@@ -392,8 +392,8 @@ def test_no_value_type_is_forgotten():
     classes = {each for _, each in inspect.getmembers(_core, inspect.isclass)}
     public = {getattr(brushsvg, name) for name in brushsvg.__all__} | {getattr(laws, n) for n in laws.__all__}
     enums = {_core.Norm, _core.Lines, _core.Displaced}
-    wanted = classes - enums | {each for each in public if inspect.isclass(each)} - {brushsvg.Error}
-    assert {each.__name__ for each in wanted} <= set(NAMES)
+    target = classes - enums | {each for each in public if inspect.isclass(each)} - {brushsvg.Error}
+    assert {each.__name__ for each in target} <= set(NAMES)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -461,14 +461,14 @@ def test_what_was_never_made_has_nothing_to_show(kind):
 
 
 def test_repr_says_sizes_and_units():
-    told = [
+    reported = [
         (BRUSH, "round-6", "0 to 10 mm", "3.1 to 13.7 mm", "8.4 mm"),
         (PLAN, "round-6", "2 passes", "6 poses", "100 x 60 mm"),
         (PASS, "'a'", "4 poses", "34.14 mm", "2 mm", "9 mm/s"),
         (STROKE, "'s/2'", "1 cubic", "32.68 mm", "2 to 4 mm"),
         (_core.Profile([3.1, 0, -0.5], calibrated_mm=(1, 10)), "3.1 - 0.5 d^2 mm", "1 to 10 mm"),
     ]
-    for value, *parts in told:
+    for value, *parts in reported:
         assert all(part in repr(value) for part in parts), repr(value)
 
 

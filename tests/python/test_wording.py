@@ -76,8 +76,8 @@ def reports() -> Iterator[tuple[str, str]]:
     row = Figures("line", 0.95, 0.01, 0.04, 0.12, 1, 60.0, 81.5, 42, excess_turning=0.1)
     worst = Worst((12.34, 5.67), True, 0.5, "REASON", "shorter-than-footprint")
     odd = Figures("dab", None, None, None, None, None, None, 12.0, 7, worst)
-    told = (Notice("line", "SENTENCE", advice="ADVICE"),)
-    made = Report("T", "round-6", "closed", 0.05, (row, odd), row, 75.0, told, told)
+    reported = (Notice("line", "SENTENCE", advice="ADVICE"),)
+    made = Report("T", "round-6", "closed", 0.05, (row, odd), row, 75.0, reported, reported)
     yield "a report", to_text(made)
     made = Report("", "round-6", "", None, (row,), row, 5.0, groups=(Group(("line", "dab"), 0.9),))
     yield "a report of strokes that touch", to_text(made)
@@ -107,8 +107,8 @@ def wording() -> str:
 
 @pytest.mark.wording
 def test_wording_is_as_it_was_read():
-    told, read = (text.split(TITLE) for text in (wording(), WORDING.read_text(encoding="utf-8")))
-    assert told == read, "if it is meant: make wording, and read what git says of the file"
+    reported, read = (text.split(TITLE) for text in (wording(), WORDING.read_text(encoding="utf-8")))
+    assert reported == read, "if it is meant: make wording, and read what git says of the file"
 
 
 if __name__ == "__main__":

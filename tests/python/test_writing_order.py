@@ -116,8 +116,8 @@ def test_the_stem_of_a_bold_4_is_no_flick_of_its_slant():
 
 
 def test_a_roof_is_one_letter_with_what_stands_below_it_and_lines_of_text_follow_each_other():
-    roof, left, right, beside = (0, 30, 20, 40), (0, 5, 8, 31), (12, 5, 20, 31), (25, 5, 40, 40)
-    assert [set(each) for each in group_areas(np.array([right, beside, left, roof]), "latin")] == [
+    roof, left, right, near_by = (0, 30, 20, 40), (0, 5, 8, 31), (12, 5, 20, 31), (25, 5, 40, 40)
+    assert [set(each) for each in group_areas(np.array([right, near_by, left, roof]), "latin")] == [
         {0, 2, 3},
         {1},
     ]

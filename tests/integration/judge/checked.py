@@ -37,7 +37,7 @@ def quick_check():
     """
     known: dict[tuple, Work] = {}
     cells: dict[str, object] = {}
-    asked: dict[tuple, object] = {}
+    requested: dict[tuple, object] = {}
     before = {
         checking: {name: getattr(checking, name) for name in ("preparation", "cell_of", "outputs")},
         command: {name: getattr(command, name) for name in ("tell", "report")},
@@ -65,10 +65,10 @@ def quick_check():
         return cells[name]
 
     def refusals(*words) -> list[str]:
-        if words not in asked:
-            asked[words] = parse(["check", *map(str, words)])
+        if words not in requested:
+            requested[words] = parse(["check", *map(str, words)])
         try:
-            command.check_file(copy.copy(asked[words]))
+            command.check_file(copy.copy(requested[words]))
         except RefusedError as refused:
             return [f"{notice.where}: {notice.text}" for notice in refused.why]
         except Exception as mistake:

@@ -65,17 +65,17 @@ class _Board:
         self.run.acts.append(f"line {self.number}: {what}")
 
     def _command(self, command: str) -> None:
-        word, *told = command.split(",")
+        word, *reported = command.split(",")
         word = word.upper()
         if word not in ("SM", "S2", "SR", "EM"):
             if word in KNOWN.split():
                 self._act(f"{word} does something else")
                 return
             raise RefusedError(f"line {self.number}: !8 Err: Unknown command {word[:10]!r}")
-        if not all(re.fullmatch(r"[+-]?\d+", each) for each in told):
+        if not all(re.fullmatch(r"[+-]?\d+", each) for each in reported):
             raise RefusedError(f"line {self.number}: !7 Err: Invalid parameter")
         {"SM": self._move, "S2": self._servo, "SR": self._power, "EM": self._enable}[word](
-            *map(int, told[:6])
+            *map(int, reported[:6])
         )
 
     def _at(self) -> tuple:

@@ -54,11 +54,17 @@ class Judged:
     job: Job | None = None
 
 
-ASKED = ("--brush", "--corners")  # which check needs again
+REQUESTED = ("--brush", "--corners")  # which check needs again
 
 
 def judged(
-    dialect: str, cell, source: Path, flags: tuple[str, ...], folder: Path, check, asked: tuple = ASKED
+    dialect: str,
+    cell,
+    source: Path,
+    flags: tuple[str, ...],
+    folder: Path,
+    check,
+    requested: tuple = REQUESTED,
 ) -> Judged:
     """A drawing converted to mine.toml, a program and plan.json in the folder, run by the judge and by check."""
     suffix = CELLS[dialect][1]
@@ -101,7 +107,7 @@ def judged(
             )
             has_circles = re.search(r"^G[23] ", text, re.MULTILINE) is not None
             wrong += apart(way, way_of(of.interpret(_whole(twin)), of), cell, has_circles)
-    words = [word for flag in asked for word in said_of(flags, flag)]
+    words = [word for flag in requested for word in said_of(flags, flag)]
     drawing = () if source.suffix == ".json" else (source,)
     denied = check(program, *drawing, "--cell", toml, *words)
     assert not any(CRASHED in said for said in denied), denied

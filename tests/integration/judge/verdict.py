@@ -139,7 +139,7 @@ class Job:
     def start(self) -> tuple:
         """Where the tool is before: over the end of the job, low, so that a missing rise is seen."""
         end, height = self.plan["passes"][-1]["poses_mm"][-1], self.cell["heights"]["safe_mm"] / 2
-        return tuple(places.moved(self.paper, places.told_in_air(end, height, self.machine)[None])[0])
+        return tuple(places.moved(self.paper, places.commanded_in_air(end, height, self.machine)[None])[0])
 
     def interpret(self, text: str) -> Run:
         """As the tool goes, on axes that have play."""
@@ -211,9 +211,9 @@ class Way:
     leg: np.ndarray
     samples: np.ndarray
     row: np.ndarray
-    told: np.ndarray
+    commanded: np.ndarray
     touches: list[np.ndarray] = field(default_factory=list)
-    told_touches: list[np.ndarray] = field(default_factory=list)
+    commanded_touches: list[np.ndarray] = field(default_factory=list)
 
 
 def way_of(run: Run, job: Job) -> Way:
@@ -248,14 +248,14 @@ def way_of(run: Run, job: Job) -> Way:
     counts = np.clip(counts, 1, MOST).astype(int)
     row = np.repeat(np.arange(len(steps)), counts)
     part = (np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts) + 1) / counts[row]
-    told = starts[row] + steps[row] * part[:, None]
-    samples = places.true_of(told, job.machine)
+    commanded = starts[row] + steps[row] * part[:, None]
+    samples = places.true_of(commanded, job.machine)
     on = samples[:, 2] <= job.touch_mm
     edges = np.flatnonzero(np.diff(np.r_[False, on, False].astype(int)))
-    touches, told_touches = (
-        [each[a:b] for a, b in zip(edges[::2], edges[1::2], strict=True)] for each in (samples, told)
+    touches, commanded_touches = (
+        [each[a:b] for a, b in zip(edges[::2], edges[1::2], strict=True)] for each in (samples, commanded)
     )
-    return Way(run, true_starts, true_ends, owner, samples, row, told, touches, told_touches)
+    return Way(run, true_starts, true_ends, owner, samples, row, commanded, touches, commanded_touches)
 
 
 # Limits -----------------------------------------------------------------------------------------------
@@ -270,7 +270,7 @@ def broken(way: Way, job: Job) -> list[str]:
 
 def _beyond(way: Way, job: Job):
     first = _first_place(way)
-    cell, points = job.cell, way.told[first:]
+    cell, points = job.cell, way.commanded[first:]
     if not len(points):
         return
     # how low, of the strokes as they are painted and of vessels as they stand
@@ -414,8 +414,8 @@ def strokes_of(way: Way, job: Job) -> list[np.ndarray]:
     the sheet where it is told."""
     width, height = job.plan["sheet_mm"]
     found = []
-    for touch, told in zip(way.touches, way.told_touches, strict=True):
-        is_off = (told[:, :2] <= 0).any(axis=1) | (told[:, :2] >= (width, height)).any(axis=1)
+    for touch, commanded in zip(way.touches, way.commanded_touches, strict=True):
+        is_off = (commanded[:, :2] <= 0).any(axis=1) | (commanded[:, :2] >= (width, height)).any(axis=1)
         if is_off.all() and any(_to_path(touch, visit).max() < job.near_mm for visit in job.stations):
             continue
         found.append(touch)
@@ -431,16 +431,16 @@ def unlike(way: Way, job: Job, sound: list[np.ndarray] | None = None) -> list[st
     said = []
     if len(strokes) != len(job.passes):
         said.append(f"{len(strokes)} strokes instead of {len(job.passes)}")
-    for k, (stroke, wanted) in enumerate(zip(strokes, job.passes, strict=False)):
+    for k, (stroke, target) in enumerate(zip(strokes, job.passes, strict=False)):
         if sound and k < len(sound) and sound[k].shape == stroke.shape and (sound[k] == stroke).all():
             continue
-        if (away := off_mm(stroke, wanted, sound[k] if sound and k < len(sound) else None)) > OFF_MM:
+        if (away := off_mm(stroke, target, sound[k] if sound and k < len(sound) else None)) > OFF_MM:
             said.append(f"stroke {k + 1} is {away:.3g} mm off, lost in part, or runs another way")
             break
     return said + _corners(way, job)
 
 
-def off_mm(stroke: np.ndarray, wanted: np.ndarray, sound: np.ndarray | None) -> float:
+def off_mm(stroke: np.ndarray, target: np.ndarray, sound: np.ndarray | None) -> float:
     """OFF_MM at most when both can be walked from end to end, never back, without ever being farther apart (Frechet);
     else how far the one is from the other at the worst place, but more than OFF_MM."""
     near = OFF_MM + STEP_MM / 2
@@ -453,13 +453,13 @@ def off_mm(stroke: np.ndarray, wanted: np.ndarray, sound: np.ndarray | None) -> 
         if first < last:
             middle = stroke[max(0, first - 1) : last + 1]
             gap = _to_path(
-                middle[:: max(1, len(middle) // 200)], wanted[:: max(1, len(wanted) // 2000)]
+                middle[:: max(1, len(middle) // 200)], target[:: max(1, len(target) // 2000)]
             ).max()
             if gap > 3 * OFF_MM:
                 return float(gap)
-    if walkable(stroke, wanted, near):
+    if walkable(stroke, target, near):
         return 0.0
-    far = max(_to_path(stroke[::3], wanted[::3]).max(), _to_path(wanted[::3], stroke[::3]).max())
+    far = max(_to_path(stroke[::3], target[::3]).max(), _to_path(target[::3], stroke[::3]).max())
     return max(float(far), OFF_MM * 1.001)
 
 
@@ -611,7 +611,7 @@ class Sound:
 
     @cached_property
     def steps(self) -> list:
-        return _told(self.way, self.job)
+        return _commanded(self.way, self.job)
 
     @cached_property
     def facts(self) -> tuple:
@@ -650,15 +650,15 @@ def judged(text: str, whole: Sound) -> tuple[str, str]:
         return "neither", f"the controller stops: {way.run.refused}"
     if not same_facts(facts(way.run), whole.facts):
         return "neither", "the header or a title says something else"
-    told = _told(way, whole.job)
+    commanded = _commanded(way, whole.job)
     return (
         ("harmless", "")
-        if _same(told, whole.steps, whole.job)
+        if _same(commanded, whole.steps, whole.job)
         else ("neither", "other moves, yet not dangerous")
     )
 
 
-def _told(way: Way, job: Job) -> list:
+def _commanded(way: Way, job: Job) -> list:
     """Legs that move, waits and stops, in order, each with how far its corner may be cut; what a servo does on the spot
     as one lift: its steps are but the rounding of a ramp. What a tolerance of JAKA script bounds, its manual does not
     say: there it counts as it is written."""
@@ -712,8 +712,8 @@ def _same(ours: list, theirs: list, job: Job) -> bool:
     if max(leg.acceleration for leg, _ in ours) > min(leg.acceleration for leg, _ in theirs) * 1.001:
         return False
     # a row less between two with times: the same way in the same time
-    told = (max if job.language == "ros2" else min)(leg.speed_mm_s for leg, _ in theirs)
-    if max(leg.speed_mm_s for leg, _ in ours) > told + FASTER_MM_S:
+    commanded = (max if job.language == "ros2" else min)(leg.speed_mm_s for leg, _ in theirs)
+    if max(leg.speed_mm_s for leg, _ in ours) > commanded + FASTER_MM_S:
         return False
     if max(cut for _, cut in ours) > max(cut for _, cut in theirs) + ROUNDING_MM:
         return False

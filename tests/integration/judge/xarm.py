@@ -40,7 +40,7 @@ def executed(text: str, arm: XArmAPI) -> XArmAPI:
         return arm
     run.frame += [ast.dump(each) for each in ast.parse(text).body if isinstance(each, ast.FunctionDef)]
     known = {name: getattr(builtins, name) for name in ("len", "range", "SystemExit")}
-    known |= {"__import__": arm.imported, "input": arm.asked, "print": arm.printed}
+    known |= {"__import__": arm.imported, "input": arm.requested, "print": arm.printed}
     try:
         exec(code, {"__name__": "__main__", "__builtins__": known})
         run.frame.append(
@@ -92,7 +92,7 @@ class XArmAPI(Arm):
 
     def __init__(self, start, paper, down, tool, sensitivity=0):
         super().__init__(start, paper, down, tool, by_radius=True)
-        self.wanted_sensitivity, self.sensitivity = sensitivity, 0
+        self.target_sensitivity, self.sensitivity = sensitivity, 0
         self.calls: list[tuple[str, tuple, dict]] = []
         self.is_enabled = self.is_closed = False
         self.mode, self.state = 2, 4  # as somebody may have left it
@@ -107,7 +107,7 @@ class XArmAPI(Arm):
             return types.SimpleNamespace(XArmAPI=self._connected)
         raise RefusedError(f"line {_line()}: there is no module {name}")
 
-    def asked(self, message=""):
+    def requested(self, message=""):
         self.run.titles.append((f"stop: {message}", len(self.run.legs)))
         self.rest(_line(), "stop")
         return ""
@@ -189,7 +189,7 @@ class XArmAPI(Arm):
         number = _line()
         if not self._ready() or self.is_closed:
             return NOT_READY
-        if self.sensitivity != self.wanted_sensitivity:
+        if self.sensitivity != self.target_sensitivity:
             self.run.acts.append(f"line {number}: another sensitivity of collisions")
         given = [x, y, z, roll, pitch, yaw]
         self.is_waiting = wait
