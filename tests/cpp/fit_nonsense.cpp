@@ -1,4 +1,4 @@
-// Whatever the fits are given ends in Error or in finite numbers: no crash, no hang.
+// Any input of the fits ends in Error or in finite numbers: no crash, no hang.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -223,7 +223,7 @@ TEST_CASE("fit_marks refuses what is no sheet") {
     });
 }
 
-TEST_CASE("fits are given up when they are asked to, and leave nothing behind") {
+TEST_CASE("fits are given up on request, and leave nothing behind") {
     Sheet sheet;
     sheet.options.spacing_mm = 0.2;
     const MarkLaws start{{4.0, 0.5}, {0.0, 0.5}, {0.0, 0.4}};

@@ -131,7 +131,7 @@ void hold_against(const std::vector<Rows>& strokes, const std::vector<LagLaw<dou
     }
 }
 
-/// Wanders, presses, stands still, turns on the spot, lifts and comes down again; arcs where asked for.
+/// Wanders, presses, stands still, turns on the spot, lifts and comes down again; arcs where requested.
 Rows random_stroke(std::mt19937& random, int count, bool arcs) {
     std::uniform_real_distribution<double> share(0.0, 1.0);
     std::normal_distribution<double> normal;

@@ -78,7 +78,7 @@ def _even_odd(rings):
 
 
 def painted(data: bytes) -> tuple[dict[str, shapely.Geometry], list[str]]:
-    """What we read, and every sentence told but those of what is read as it is meant."""
+    """What we read, and every notice except those of parts that are read as intended."""
     try:
         design = read_dxf(data, ReadOptions(sheet_mm=(1000, 1000), lenient=True))
     except Error as refusal:

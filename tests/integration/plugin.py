@@ -7,7 +7,7 @@ from pathlib import Path
 
 from command import COMMAND
 
-SHIPPED = "/usr/share/inkscape/extensions"  # Inkscape lets scripts import what lies there
+SHIPPED = "/usr/share/inkscape/extensions"  # Inkscape lets scripts import what is there
 SOURCE = Path(__file__).parents[2] / "plugins" / "inkscape"
 
 

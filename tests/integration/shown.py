@@ -50,7 +50,7 @@ def _shown(drawings: list[str], folder) -> list[np.ndarray]:
 
 
 def painted(text: str, cap: str = "round"):
-    """Darkness (h, w) of what we take a drawing for, and every sentence told about it."""
+    """Darkness (h, w) of what we take a drawing for, and every sentence reported about it."""
     try:
         design = read_svg(text.encode(), ReadOptions(lenient=True))
     except Error as refusal:

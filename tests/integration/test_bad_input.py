@@ -157,7 +157,7 @@ def test_an_unknown_brush_is_refused_with_those_there_are(desk):
 
 
 FAR = "geometry-out-of-range 1 line '[-1e6, 1e6] mm'"
-PLANS = {  # a change, and what is told of which key or stroke
+PLANS = {  # a change, and which key or stroke is reported how
     "unknown version": (lambda plan: plan.update(version=3), "version", "version-unknown 3 2"),
     "another format": (
         lambda plan: plan.update(format="brushsvg/marks"),

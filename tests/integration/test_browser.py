@@ -201,15 +201,15 @@ def test_words_show_the_stroke_and_the_time(page, browser):
 # a browser without a window whose time is virtual shows one frame only
 FRAMES = "<script>requestAnimationFrame = (f) => setTimeout(() => f(performance.now()), 16);</script>"
 KEYS = """<script>
-const told = [];
+const reported = [];
 const text = (id) => document.getElementById(id).textContent;
 const press = (key) => {
   const event = new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true });
   document.getElementById("slider").dispatchEvent(event);
-  told.push(text("clock").split(" ")[0] + " " + text("what"));
+  reported.push(text("clock").split(" ")[0] + " " + text("what"));
 };
 ["ArrowRight", "ArrowRight", "ArrowLeft", "ArrowDown", "ArrowUp", "End", "Home", " "].forEach(press);
-setTimeout(() => { press(" "); document.body.append("told " + JSON.stringify(told)); }, 1500);
+setTimeout(() => { press(" "); document.body.append("reported " + JSON.stringify(reported)); }, 1500);
 </script></body>"""
 
 
@@ -217,7 +217,7 @@ def test_keys_move_and_play(page, browser, played):
     _, _, rows = played
     keyed = page.with_name("keyed.html")
     keyed.write_text(page.read_text().replace("<head>", f"<head>{FRAMES}").replace("</body>", KEYS))
-    reported = json.loads(re.search(r"told (\[.*\])", browser.text(keyed, ""))[1])
+    reported = json.loads(re.search(r"reported (\[.*\])", browser.text(keyed, ""))[1])
     first, second, last = (f"stroke {number} of 13" for number in (1, 2, 13))
     second_s = rows.time_s[rows.chapters[1].first_row]
     clocks, words = zip(*(each.split(" ", 1) for each in reported), strict=True)

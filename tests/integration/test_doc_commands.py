@@ -122,7 +122,7 @@ def _written(words: list[str]) -> set[str | None]:
 
 
 def _photographing(photo: str, words: list[str]) -> str:
-    """The command that takes a photograph of the job which a command reads from it, painted as that is told."""
+    """The command that takes a photograph of the job which a command reads from it, painted as that job is."""
     flags = dict(pair for pair in pairwise(words) if pair[0].startswith("--"))
     job = flags.get("--plan") or next(word for word in words[2:] if word.endswith((".svg", ".json")))
     painted = {"--brush": flags.get("--brush") or flags.get("--prior")}

@@ -1,8 +1,8 @@
 """Nothing of a DXF is misread without a word: 450 small drawings of one feature each, as ezdxf's own drawing add-on
 shows them, held against what we would paint.
 
-Where they differ by more than 3 % of the area, something must have been told of it, and so of what the add-on does
-not show either. Where the add-on itself is simpler than the DXF reference, dxf_features.OWN says in what.
+Where they differ by more than 3 % of the area, something must have been reported about it, and so of what the add-on
+does not show either. Where the add-on itself is simpler than the DXF reference, dxf_features.OWN says in what.
 """
 
 import platform
@@ -45,7 +45,7 @@ def written(draw) -> bytes:
 
 
 def off(draw):
-    """How much differs, and what is told."""
+    """How much differs, and what is reported."""
     data = written(draw)
     ours, reported = dxf_shown.painted(data)
     return dxf_shown.difference(dxf_shown.shown(data), ours), reported

@@ -26,7 +26,7 @@ def cycle():
     return f'{LINE}<g id="a"><use id="u" href="#b"/></g><defs><g id="b"><use href="#a"/></g></defs>'
 
 
-# name: (what the drawing holds, exit status of import, what is told)
+# name: (what the drawing holds, exit status of import, what is reported)
 CASES = {
     "100 MB of path data": (
         lambda: f'<path d="M30 30{"l1 1-1-1" * 12_500_000}"/>',

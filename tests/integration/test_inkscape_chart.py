@@ -1,4 +1,4 @@
-"""Calibration sheet in the real Inkscape: its page beside the document's, its marks where brushsvg chart puts them."""
+"""Calibration sheet in the real Inkscape: its page next to the document's, its marks where brushsvg chart puts them."""
 
 import xml.etree.ElementTree as ET
 

@@ -1,4 +1,4 @@
-"""Brush settings in the real Inkscape: what is touched is stored, the rest stays, and what is stored is told."""
+"""Brush settings in the real Inkscape: what is touched is stored, the rest stays, and what is stored is reported."""
 
 from xml.etree import ElementTree
 

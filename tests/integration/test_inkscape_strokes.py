@@ -85,7 +85,7 @@ def test_inkscape_draws_and_we_paint_the_strokes_as_the_letters_were(plugin, ink
 
 def assert_painted_alike(letters: Path, strokes: Path) -> None:
     """The same strokes with the same marks; poses may differ within the tolerance of the mark. A PowerStroke has no
-    slanted cap: where a letter ends in a slanted cut, as an S does, its stroke ends round, 0.13 mm beside it."""
+    slanted cap: where a letter ends in a slanted cut, as an S does, its stroke ends round, 0.13 mm from it."""
     plans, marks = [], []
     for drawn in (letters, strokes):
         for command, found in (("convert", plans), ("predict", marks)):

@@ -1,4 +1,4 @@
-"""What Inkscape's user is told: in the words of dialogs, and without a dialog that nobody can close."""
+"""Notices for Inkscape's user: in the words of dialogs, and without a dialog that nobody can close."""
 
 import re
 
@@ -51,7 +51,7 @@ def document(setting: str) -> str:
     return SOUND.replace("<svg ", f"<svg {setting} ")
 
 
-ADVICE = {  # by the code of what brushsvg tells: a script of ours and a drawing that are told so
+ADVICE = {  # by the code of the notice: a script of ours and a drawing that give it
     "background": (
         "save",
         SOUND.replace("<path", '<rect x="-1" y="-1" width="900" height="900" fill="#fff"/><path', 1),

@@ -1,4 +1,4 @@
-"""Ctrl-C: at once, exit status 130, nothing written. And progress, which only a terminal is told."""
+"""Ctrl-C: at once, exit status 130, nothing written. And progress, which only a terminal shows."""
 
 import os
 import pty
@@ -26,7 +26,7 @@ def long_drawing():
 
 
 def started_at_terminal(folder, *words):
-    """(process, the terminal's end) with stderr at a terminal, so that progress is told."""
+    """(process, the terminal's end) with stderr at a terminal, so that progress is shown."""
     terminal, its_end = pty.openpty()
     process = subprocess.Popen(
         [COMMAND, *words],

@@ -270,7 +270,7 @@ def test_the_marks_are_the_plans(way, made, tmp_path):
 
 
 def planned_pass(each):
-    """In the same small steps: edges of thin marks are asked for more exactly than the simulator's tolerance."""
+    """In the same small steps: edges of thin marks are requested more exactly than the simulator's tolerance."""
     poses, rows = each["poses_mm"], []
     circle = {k: arc for arc in each.get("arcs", ()) for k in range(arc[0] + 1, arc[1] + 1)}
     for k, pose in enumerate(poses):

@@ -1,4 +1,4 @@
-"""Spiro, BSpline, mirrors and PowerStroke beside them: what Inkscape draws and saves, and what we paint of its file.
+"""Spiro, BSpline, mirrors and PowerStroke next to them: what Inkscape draws and saves, and what we paint of its file.
 
 Each drawing is changed and saved by Inkscape, so that it computes the effects itself; then its picture of the saved
 file is held against what we read of the same file.
@@ -51,7 +51,7 @@ def source(kinds, stroked):
 
 @pytest.fixture(scope="module")
 def saved(inkscape, tmp_path_factory):
-    """By name: the file that Inkscape wrote after it had moved the line, and its darkness (h, w) there."""
+    """A table of names: the file that Inkscape wrote after it had moved the line, and its darkness (h, w) there."""
     folder, found = tmp_path_factory.mktemp("effects"), {}
     for number, (name, (kinds, stroked)) in enumerate(DRAWN.items()):
         given, out = folder / f"{number}.svg", folder / f"{number}-saved.svg"

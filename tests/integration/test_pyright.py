@@ -1,7 +1,7 @@
 """pyright, strict, over all Python that README, docs, examples, notebooks and the article's figures show, and over
 every public name with its members: no error. Mistakes that a user could make in them are found.
 
-What is not asked, and why: matplotlib's functions take keywords without types, so members of which a part is unknown
+What is not checked, and why: matplotlib's functions take keywords without types, so members of which a part is unknown
 pass in files that draw (those of brushsvg are held whole by every_name.py); svgpathtools has no types at all; a cell of
 a notebook may end in an expression, which is shown.
 """
@@ -78,7 +78,7 @@ def shown() -> dict[str, str]:
 
 
 def requested(name: str, code: str) -> str:
-    """The code below a line that says what is not asked of it."""
+    """The code below a line that says what is not checked of it."""
     spared = [
         rule
         for reason, rule in NOT_REQUESTED.items()
@@ -107,7 +107,7 @@ def every_name() -> str:
 @pytest.fixture(scope="module")
 def reported(tmp_path_factory, npm):
     """What pyright says of each file: name -> [(rule, line and sentence)]. The package is found where an installed one
-    is, beside others, so that it counts as one that ships its types."""
+    is, next to others, so that it counts as one that ships its types."""
     pyright = npm("pyright", PACKAGES) / "pyright" / "index.js"
     folder = tmp_path_factory.mktemp("pyright")
     shutil.copytree(

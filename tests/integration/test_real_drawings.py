@@ -1,4 +1,4 @@
-"""Real drawings end to end: what is planned, predicted and reported; Inkscape renders what was wanted."""
+"""Real drawings end to end: what is planned, predicted and reported; Inkscape renders the target."""
 
 import json
 import re
@@ -98,7 +98,7 @@ def test_the_report_counts_what_the_plan_holds(source, converted, reported):
 
 
 def test_only_what_is_left_out_is_warned_of(source, drawing, converted, tmp_path):
-    """Numbers beside the strokes of a character, depths the brush was not measured at: nothing else."""
+    """Numbers next to the strokes of a character, depths the brush was not measured at: nothing else."""
     words = ("--messages", "json", "convert", drawing(source), "again.ngc", "--quiet")
     notices = brushsvg(*words, cwd=tmp_path, status=0).reported
     count = 0
@@ -142,7 +142,7 @@ def test_the_prediction_is_written_in_three_ways(source, drawing, converted, tmp
 
 @pytest.mark.parametrize("compensation", ["closed", "none"])
 def test_overlap_as_inkscape_sees_the_drawing(source, compensation, drawing, reported, inkscape, tmp_path):
-    """Inkscape renders what was wanted, OpenCV fills marks.json: nothing of ours comes between."""
+    """Inkscape renders the target, OpenCV fills marks.json: nothing of ours comes between."""
     width_mm, height_mm = SHEETS_MM[source]
     px_per_mm = PIXELS_ACROSS / width_mm
     target = cv2.imread(str(inkscape.paint(drawing(source), px_per_mm)), cv2.IMREAD_UNCHANGED)[:, :, 3] / 255

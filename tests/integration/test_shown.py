@@ -1,7 +1,8 @@
 """Nothing is lost in reading without a word: small drawings as Chromium shows them, held against what we would paint.
 
-Where the pictures differ, something must have been told of it; and what is plain must be painted as it is shown, with
-nothing told. Dashes are always told, so that does not count. Caps and joins are round here: ours always are.
+Where the pictures differ, something must have been reported about it; and what is plain must be painted as it is shown,
+with nothing reported. Dashes are always reported, so that does not count. Caps and joins are round here: ours always
+are.
 """
 
 import numpy as np

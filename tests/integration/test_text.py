@@ -74,7 +74,7 @@ def test_single_lines_come_back_as_they_are_in_the_font(name, tmp_path):
         pen_mm += advance * SIZE_MM / 1000
     ink = np.vstack(ink)
     margin = 20 + WIDTH_MM / 2
-    assert ink.min(axis=0) == pytest.approx([margin, margin], abs=0.5)  # handles may lie beyond the ink
+    assert ink.min(axis=0) == pytest.approx([margin, margin], abs=0.5)  # handles may be beyond the ink
     assert ink.max(axis=0) == pytest.approx(np.array(design.sheet_mm) - margin, abs=0.5)
 
 

@@ -40,7 +40,7 @@ USAGE = [
     "batch in --out x --format .txt",
     "brush wash round-6",
 ]
-# of house rules, but not there yet: neither understood nor promised
+# of package rules, but not there yet: neither understood nor promised
 LATER = {
     "flags": ["--caps"],
     "commands": ["learn"],

@@ -26,7 +26,7 @@ DRAWING = f"""{OPEN.replace("<svg", '<svg xmlns:inkscape="http://www.inkscape.or
 
 @pytest.fixture(scope="session")
 def vpype(tmp_path_factory):
-    """A function that runs vpype; brushsvg is the one under test, found beside vpype's own packages."""
+    """A function that runs vpype; brushsvg is the one under test, found next to vpype's own packages."""
     folder = tmp_path_factory.mktemp("vpype")
     environment = folder / "env"
     python = environment / "bin" / "python"

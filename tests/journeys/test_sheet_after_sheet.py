@@ -1,5 +1,5 @@
-"""From a typed brush to the third sheet, without a chart: each sheet is compared and learned from, whatever it was
-planned with, and the next brush, corrections and cell fit together."""
+"""From a typed brush to the third sheet, without a chart: each sheet is compared and learned from, with any
+plan, and the next brush, corrections and cell fit together."""
 
 from __future__ import annotations
 

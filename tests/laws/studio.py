@@ -92,7 +92,7 @@ def random_faults(rng, names, sheet_mm):
 
 
 def commanded_by(program, sheet_mm):
-    """What a program for LinuxCNC tells the machine of each stroke, from the air on: every place that it names, those
+    """The commands of a program for LinuxCNC for each stroke, from the air on: every place that it names, those
     of circles close together."""
     at, found = np.array([0.0, 0.0, 50.0]), []
     for line in program.splitlines():
@@ -160,7 +160,7 @@ def swept(plan, fault_values, strokes_a_load=1):
 
 
 def laid(regions, plan, fault_values, seed):
-    """Where these lie on a sheet."""
+    """Where these are on a sheet."""
     rng = np.random.default_rng(seed)
     middle = tuple(0.5 * np.array(plan.sheet_mm))
     out = {}

@@ -117,7 +117,7 @@ def test_against_monte_carlo(brush, painted):
 
 
 def test_the_band_holds_the_edges(brush, painted):
-    """Along a stroke some 95 % of the edges of brushes drawn from the covariance lie in it."""
+    """Along a stroke some 95 % of the edges of brushes drawn from the covariance are in it."""
     work, marks, brushes = painted
     band = uncertainty.band(work.plan, brush, marks)
     k = next(k for k, a_pass in enumerate(work.plan.passes) if a_pass.stroke == "n-arch")

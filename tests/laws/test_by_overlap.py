@@ -28,7 +28,7 @@ NUMBER = re.compile(r"[+-]\d+\.\d+")
 
 @cache
 def sheet():
-    """Marks of a round tail that lie 1.5 mm aside by chance, as those of real robots do."""
+    """Marks of a round tail displaced by 1.5 mm by chance, as those of real robots do."""
     return painted(DISPLACED_MM)
 
 
@@ -72,7 +72,7 @@ def calibrated():
 
 @pytest.mark.thorough
 def test_where_marks_are_displaced_the_brush_is_little_wider_than_it_is():
-    # by the overlap where marks lie alone it was 38 % wider at half of the depth, its lag 10 % longer
+    # by the overlap where marks are alone it was 38 % wider at half of the depth, its lag 10 % longer
     brush, _ = sheet()
     made, _ = calibrated()
     for share, wider in ((0.5, 0.2), (1.0, 0.1)):
@@ -109,7 +109,7 @@ def test_a_map_that_edges_did_not_look_for_comes_back_with_the_turn():
 
 
 def machine_added(made, fit=None):
-    """As for the largest overlap, of edges that held the machine for one that does as it is told."""
+    """As for the largest overlap, of edges that held the machine for one without errors."""
     options = copy(made.expected)
     options.deepest_mm = made.brush.depth_range_mm[1]
     machine_found.ask_for(options, ("lean", "axes"))
@@ -206,7 +206,7 @@ def test_the_lever_of_a_tilted_tool_comes_back():
 
 @pytest.mark.thorough
 def test_what_is_changed_is_what_predicts_marks_that_had_no_part_and_the_report_says_so():
-    # lean that edges are not asked for: laws alone cannot make up for it on marks left out
+    # lean that the fit by edges holds at 0: laws alone cannot make up for it on marks left out
     brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 3)
     lean, moved = np.array([0.9, -0.7]), np.random.default_rng(4).normal(0, 0.3, (len(strokes), 2))
     as_run = [(name, poses + np.pad(-poses[:, 2:] * lean, ((0, 0), (0, 1)))) for name, poses in strokes]
@@ -239,7 +239,7 @@ def outlines(target):
 
 
 def displacement_of(strokes, brush, displaced):
-    """What is found of marks that lie aside by these (n, 2), taught every second stroke."""
+    """The field found for marks displaced by these (n, 2), taught every second stroke."""
     targets = targets_of(strokes, brush, lambda k: displaced[k])
     begin, order = Begin(laws(brush, [1.0, 1.0]), 0.0), 2 * np.arange(len(strokes))
     search = overlap_choice.Search(begin, reported(brush), targets, np.zeros(2))

@@ -240,7 +240,7 @@ def test_the_angular_stroke_is_read_with_e():
 
 def test_side_view_and_straight_stroke_give_the_tip_gap():
     """(18) counts from first touch; (17) as printed lacks the lag. A straight slow landing: the tip begins to mark at
-    0 and lies r + b behind the TCP, which has gone s_L; D is from the mark's start to its widest place."""
+    0 and is r + b behind the TCP, which has gone s_L; D is from the mark's start to its widest place."""
     known = {
         "lag": values(DEPTHS, lag(DEPTHS)),
         "tip_to_widest": values(DEPTHS, widest(DEPTHS)),

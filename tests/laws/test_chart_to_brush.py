@@ -1,4 +1,4 @@
-"""From the chart to a brush: the chart of round-6 painted by another brush, on a sheet that lies elsewhere, each mark
+"""From the chart to a brush: the chart of round-6 painted by another brush, on a sheet that is elsewhere, each mark
 displaced, edges uneven; the outlines give that other brush back."""
 
 import json
@@ -79,7 +79,7 @@ def test_as_sure_as_was_said_before(painted):
 
 
 def test_a_common_shift_of_edges_is_in_the_intervals():
-    """A picture shows all paint 0.04 mm wider than it is: no mark tells that from a wider brush."""
+    """A picture shows all paint 0.04 mm wider than it is: no mark separates that from a wider brush."""
     made = chart(find_brush("round-6"), (148.0, 210.0), "few")
     marks = _core.simulate(made.plan, truth())
     _core.trace_outlines(marks, truth())

@@ -113,7 +113,7 @@ def photographed(name):
 
 
 def calibrated(folder, capsys, photo, *words, before=None):
-    """Status, report, what was told, and the brush's path."""
+    """Status, report, what was reported, and the brush's path."""
     (folder / "photo.jpg").write_bytes(photo)
     (folder / "dabs.json").write_text(write_chart(printed()))
     save_brush(before or assumed(), folder / "before.json")
@@ -151,7 +151,7 @@ def wide_at(outline, x):
     keep=1,
 )
 def test_outlines_and_widths_come_back(name, tmp_path, capsys):
-    """Of drops that were assumed with the true widths, outlines lie 0.2 to 0.7 mm off."""
+    """Of drops that were assumed with the true widths, outlines are 0.2 to 0.7 mm off."""
     status, report, reported, path = calibrated(tmp_path, capsys, photographed(name))
     assert status == 0 and not [notice for file, notice in reported if file.endswith("photo.jpg")], reported
     found = find_brush(path)
@@ -165,7 +165,7 @@ def test_outlines_and_widths_come_back(name, tmp_path, capsys):
         )
         assert off < 0.1 < 0.2 < was, (depth, off, was)
         assert abs(2 * found.half_width(depth) - np.ptp(contour[:, 1])) < 0.05, depth
-        # the top is flat: what can be told is a place that is as wide
+        # the top is flat: the answer is a place that is as wide
         assert np.ptp(contour[:, 1]) - wide_at(contour, found.tip_to_widest(depth)) < 0.05, depth
         assert abs(found.tip_gap(depth) - GAP[1] * depth) < 0.25, depth
     # the front is behind that of depth 6.7 on the way; of the egg by too little to see
@@ -212,7 +212,7 @@ def with_lag(brush, coefficients):
 )
 def test_a_word_is_predicted_better(name, drops, own_outlines, tmp_path, capsys):
     """By a brush of the same lag and of the true widths, whose outlines are drops: so far right, and no farther. How
-    far a lopsided dab lies aside is known to 0.03 mm."""
+    far a lopsided dab is to the side is known to 0.03 mm."""
     _, _, _, path = calibrated(tmp_path, capsys, photographed(name))
     before, own = with_lag(assumed(), LAG), with_lag(find_brush(path), LAG)
     plan = prepare(WORD, Options(brush=before)).plan
@@ -230,7 +230,7 @@ def test_a_word_is_predicted_better(name, drops, own_outlines, tmp_path, capsys)
 def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys):
     """The whole way: lag, and eggs for outlines, from a chart of strokes; then the brush's own outlines from dabs, and
     by these the lag of the strokes anew. An egg is as good from the strokes, since its widest section may move with
-    depth; beside a lopsided brush an egg's lag is 0.3 mm too short."""
+    depth; next to a lopsided brush an egg's lag is 0.3 mm too short."""
     made = chart(assumed(), A5, "few")
     strokes = [(one.stroke, oracle.chords(one.poses_mm, one.arcs, step=1.0)) for one in made.plan.passes]
     faults = replace(FAULTS, height=0.05)
@@ -262,7 +262,7 @@ def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys
 
 
 def test_the_same_from_below_through_glass(tmp_path, capsys):
-    """On a clear sheet; a picture that is mirrored, and one that is not, are refused where the other was told."""
+    """On a clear sheet; a picture that is mirrored, and one that is not, are refused where the other was given."""
     photo = photo_of(painted(lopsided), mirrored=True)
     status, _, reported, path = calibrated(tmp_path, capsys, photo, "--mirrored")
     assert status == 0, reported

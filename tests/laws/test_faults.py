@@ -1,4 +1,4 @@
-"""Whose fault: what is amiss of a studio is named and measured on sheets that another simulator paints."""
+"""Faults of a studio are named and measured on sheets that another simulator paints."""
 
 import json
 
@@ -84,7 +84,7 @@ def test_what_is_wrong_is_named_and_measured(job, cause, capsys):
             np.hypot(*np.transpose([row["correction"]["shift_mm"] for row in rows]))
             for rows in (seen["strokes"], seen["beside_machine"]["strokes"])
         )
-        assert with_corrected.mean() < 0.6 * with_old.mean(), "the cell undoes what they lie aside"
+        assert with_corrected.mean() < 0.6 * with_old.mean(), "the cell undoes their displacement"
         corrected = read_cell(folder / "corrected.toml")
         assert corrected.name not in cell_names(), (
             "a program that names it is not checked with the cell as it was"
@@ -100,7 +100,7 @@ def test_what_is_wrong_is_named_and_measured(job, cause, capsys):
 
 @sample("number", [104, 105], keep=1)
 def test_all_of_it_at_once_is_within_its_intervals(job, number, capsys):
-    """Brush, paper and machine amiss together: height of the paper, lag and width look much alike."""
+    """Faults of brush, paper and machine together: height of the paper, lag and width look much alike."""
     _, plan = job
     rng = np.random.default_rng([24, number])
     fault_values = studio.random_faults(rng, NAMES, plan.sheet_mm)

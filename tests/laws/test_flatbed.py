@@ -1,4 +1,4 @@
-"""A flatbed's scan of strokes on plain paper: its place is found by the strokes themselves, however the sheet lies on
+"""A flatbed's scan of strokes on plain paper: its place is found by the strokes themselves, however the sheet is on
 the glass, or it is refused in a sentence that says what to do."""
 
 import re
@@ -55,7 +55,7 @@ def sheet(paper=0.85, colour=tuple(BLUE)):
 
 
 def placed(points_mm, turn_deg):
-    """Places of the sheet on the glass, both y up: the sheet's middle lies near the glass's."""
+    """Places of the sheet on the glass, both y up: the sheet's middle is near the glass's."""
     turn = np.radians(turn_deg)
     to = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
     return (np.asarray(points_mm) - np.array(A5) / 2) @ to + np.array(GLASS) / 2 + [2.0, -3.0]
@@ -63,7 +63,7 @@ def placed(points_mm, turn_deg):
 
 @lru_cache(maxsize=1)  # of hundreds of megabytes
 def blurred(dpi, **how):
-    """The sheet as the scanner's lens has it, however it lies."""
+    """The sheet as the scanner's lens has it, in any pose."""
     made = sheet(**how)
     return cv2.GaussianBlur(made.shown, None, 0.4 * photograph.TEXELS * 25.4 / dpi)
 
@@ -75,7 +75,8 @@ def grain(shape):
 
 @lru_cache(maxsize=1)  # what is refused is refused of the same scan; more would be hundreds of megabytes
 def scanned(dpi=300, turn_deg=0.0, **how):
-    """Pixels as a scanner writes them, red first: the mean light over each, some noise, a grey lid beside the sheet."""
+    """Pixels as a scanner writes them, red first: the mean light over each, some noise, a grey lid next to the "
+    "sheet."""
     made, fine = blurred(dpi, **how), dpi / 25.4
     texels = np.array([(0, 0), (made.shape[1], 0), (0, made.shape[0])], float)
     corners = placed([(0, A5[1]), A5, (0, 0)], turn_deg)
@@ -105,7 +106,7 @@ def shape(rings):
 
 
 def similarity_off(found) -> tuple[float, float, float]:
-    """Turn [degrees], scale and shift [mm] by which marks lie where they were painted, and how well, rms mm."""
+    """Turn [degrees], scale and shift [mm] by which marks are where they were painted, and how well, rms mm."""
     both = [stroke for stroke in marks() if stroke in found.marks.outlines_mm]
     was, seen = (
         np.array([complex(*shape(rings[stroke]).centroid.coords[0]) for stroke in both])
@@ -172,14 +173,14 @@ def test_light_paint_on_dark_paper_is_read():
 
 
 def test_paper_that_is_nearly_black_is_refused():
-    """Marks were found on it, 0.4 mm beside where they were painted."""
+    """Marks were found on it, 0.4 mm from where they were painted."""
     code, sentence = code_of(scanned(paper=0.03, colour=(0.8, 0.8, 0.75)))
     assert code == "photo-too-dark" and "3.5" in sentence
 
 
 @pytest.mark.parametrize("paper", [0.85, 1.05])
 def test_who_forgets_the_resolution_of_a_scan_is_reminded(paper):
-    """White paper on the glass is as white as can be: that was told as overexposed."""
+    """White paper on the glass is as white as can be: that was reported as overexposed."""
     with pytest.raises(Error) as refusal:
         read(scanned(paper=paper), dpi=None)
     assert refusal.value.code == ("photo-markers-missing" if paper < 1 else "photo-overexposed")
@@ -217,7 +218,7 @@ def test_another_chart_is_refused():
 
 
 def test_the_mirrored_scan_of_another_chart_is_one_of_another_chart():
-    """It once was told to be mirrored, as any picture was in one of two cases."""
+    """It once was said to be mirrored, as any picture was in one of two cases."""
     other = chart(find_brush("round-6"), A5, "few", deepest_mm=9.0)
     assert code_of(np.ascontiguousarray(scanned()[:, ::-1]), made=other)[0] == "photo-paint-elsewhere"
 

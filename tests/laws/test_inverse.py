@@ -342,7 +342,7 @@ def test_contact_settles_on_its_own_circle(half_width):
 
 
 def test_tcp_is_a_lag_ahead_along_the_heading():
-    """q = P + r T wherever the brush is taut, at the poses themselves."""
+    """q = P + r T where the brush is taut, at the poses themselves."""
     painted = Painted(stroke_of(smooth(np.random.default_rng(8), 3), [(0.0, 0.8), (1.0, 2.0)]), 1e-3, parts=1)
     rows, k = painted.rows, painted.taut
     ahead = LAG(rows.depth_mm[k])[:, None] * oracle.unit(rows.heading_rad[k])
@@ -372,7 +372,7 @@ def reach(painted, point, direction, rows):
 @pytest.mark.parametrize("half_width", [0.25, 0.5, 1.0, 1.68, 2.5, 4.0])
 @sample("seed", [11, 12], keep=1)
 def test_ends_of_the_mark(half_width, seed):
-    """No tail after the lift, nothing before the wanted start; the patch rests while the brush is lifted."""
+    """No tail after the lift, nothing before the requested start; the patch rests while the brush is lifted."""
     painted = Painted(
         stroke_of(smooth(np.random.default_rng(seed), 3), [(0.0, half_width)]), 1e-3, parts=12, step=0.5
     )
@@ -544,8 +544,8 @@ def painted_region(poses, step=0.25, from_x=-np.inf):
 
 
 def beginning(middle, half_width, start):
-    """Overlap of mark and wanted mark within two half widths of the path's first point, and the greatest distance of
-    paint beyond the wanted mark there."""
+    """Overlap of mark and target mark within two half widths of the path's first point, and the greatest distance of
+    paint beyond the target mark there."""
     import shapely
 
     found = core.compensate([stroke_of(middle, [(0.0, half_width)])], ROUND, (200.0, 200.0), start=start)
@@ -756,7 +756,7 @@ def test_a_dot_without_corners_stays_round(corners):
     ],
 )
 def test_wide_lines_begin_round_however_they_bend(cubic, half_width):
-    """For want of room they began pointed: 0.94 of what was drawn."""
+    """Without room they began pointed: 0.94 of what was drawn."""
     stroke = stroke_of(np.array([cubic], float), [(0.0, half_width)])
     drawn = shapely.union_all([shapely.Polygon(ring) for ring in core.wanted_outline(stroke, 0.02)])
 
@@ -774,7 +774,7 @@ def test_wide_lines_begin_round_however_they_bend(cubic, half_width):
 
 @pytest.mark.parametrize("half_width", [1.0, 2.0, 3.0, 3.9, 4.1])
 def test_bars_of_all_widths_begin_alike(half_width):
-    """Wide ones began pointed beside round ones: a roof on every stem of a sans."""
+    """Wide ones began pointed next to round ones: a roof on every stem of a sans."""
     bar = line((60, 90), (60, 40))
     rounded = poses_of(bar, [(0.0, half_width)], start="round")
     np.testing.assert_array_equal(poses_of(bar, [(0.0, half_width)], start="auto"), rounded)
@@ -941,7 +941,7 @@ ROUND_CAP = [
         (
             0.5,
             [(20, 19.5), (60.5, 19.5), (60.5, 20.5), (20, 20.5)],
-        ),  # finer than what can be led into a corner
+        ),  # finer than a path can follow into a corner
         (2.0, [(20, 18), (58, 18), (62, 20), (58, 22), (20, 22)]),  # pointed
         (2.0, [(20, 18), (62, 18), (60, 20), (62, 22), (20, 22)]),  # a swallow's tail
         (2.0, [(20, 18), (70, 18), (70, 22), (20, 22)]),  # goes on in another stroke
@@ -961,7 +961,7 @@ def test_what_is_no_cut_ends_round(half_width, target):
         (
             0.5,
             [(19.5, 19.5), (60, 19.5), (60, 20.5), (19.5, 20.5)],
-        ),  # finer than what can be led into a corner
+        ),  # finer than a path can follow into a corner
         (2.0, [(22, 18), (60, 18), (60, 22), (22, 22), (18, 20)]),  # pointed
         (2.0, [(10, 18), (60, 18), (60, 22), (10, 22)]),  # goes on in another stroke
     ],
@@ -977,7 +977,7 @@ def test_what_begins_with_no_cut_is_round(half_width, target):
 
 @pytest.mark.parametrize("middle", [line((20, 20), (28, 20)), line((20, 20), (25, 20), (25, 50))])
 def test_a_beginning_without_room_for_the_way_back_is_round(middle):
-    """Too short for the tip that is set down inside, or it would come out beside a corner."""
+    """Too short for the tip that is set down inside, or it would come out next to a corner."""
     rounded = poses_of(middle, [(0.0, 3.0)], start="round")
     np.testing.assert_array_equal(poses_of(middle, [(0.0, 3.0)], start="butt"), rounded)
 

@@ -111,7 +111,7 @@ def deepest(plan):
     return max(float(-np.array(one.poses_mm)[:, 2].min()) for one in plan.passes)
 
 
-# seed: truth, and how sure the file is: the second lies five standard deviations from what it says
+# seed: truth, and how sure the file is: the second is five standard deviations from what it says
 STUDIOS = {1: (true_brush(1.18, 0.9), 0.08), 2: (true_brush(0.83, 0.86), 0.03)}
 
 
@@ -160,7 +160,7 @@ def test_marks_that_say_less_than_is_known_leave_the_brush_as_it_was(tmp_path, c
 
 
 def test_one_depth_says_less_of_others(tmp_path, capsys):
-    """What is told at one depth and above it leaves what lies far below it open, and the truth within."""
+    """What is learned at one depth and above it leaves what is far below it open, and the truth within."""
     studio = Studio(tmp_path, ONE_DEPTH, 0.08)
     studio.paint(3, true_brush(1.06, 0.96))
     assert in_json(capsys, *studio.words())[0] == 0

@@ -47,7 +47,7 @@ def run(poses, centre, height, lean, axes, tilt, displaced=None):
 
 
 def displacement_of(strokes):
-    """(n, 2) places to how far FIELD takes the tool aside there, over the box of all strokes."""
+    """(n, 2) places to how far FIELD displaces the tool there, over the box of all strokes."""
     places = np.concatenate([poses[:, :2] for _, poses in strokes])
     low, high = places.min(axis=0), places.max(axis=0)
 
@@ -194,8 +194,8 @@ def test_an_exact_machine_is_found_to_be_exact():
 
 @pytest.mark.parametrize("seed", [5, 6])
 def test_no_lean_is_known_no_better_than_some(seed):
-    """A brush that is pressed on the spot points to wherever a lean of micrometres takes the tool: of such a lean the
-    marks seem to tell everything, of none at all another thing."""
+    """A brush that is pressed on the spot points to where a lean of micrometres takes the tool: of such a lean the
+    marks seem to determine everything, of none at all another thing."""
     _, upright = painted_by(seed, ())
     _, leaning = painted_by(seed, ("lean",))
     known = {}

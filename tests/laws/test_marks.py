@@ -167,7 +167,7 @@ def test_outline_area_against_a_dense_union(name, shape):
     region, signed = region_of(rings)
     assert all(len(r) >= 3 and not np.array_equal(r[0], r[-1]) for r in rings)
     assert all(shapely.Polygon(r).is_simple for r in rings)
-    assert signed.sum() == pytest.approx(region.area, rel=1e-9)  # holes lie inside, outer rings apart
+    assert signed.sum() == pytest.approx(region.area, rel=1e-9)  # holes are inside, outer rings apart
     assert core.area(rings) == pytest.approx(signed.sum(), rel=1e-9)
     assert signed.sum() == pytest.approx(target.area, rel=2e-4)
     assert region.symmetric_difference(target).area < 4e-4 * target.area + 1e-3 * target.length

@@ -45,7 +45,10 @@ class Studio:
         (folder / "five.svg").write_text(DRAWING)
         self.axes = np.eye(2) + self.rng.normal(0, 0.002, (2, 2))
         self.own, self.sheets, self.brush = {}, 0, BRUSH
-        self.grown, self.cut = {}, {}  # by stroke: how much farther out its edges lie; where its paint ends
+        self.grown, self.cut = (
+            {},
+            {},
+        )  # by stroke: how much farther from the middle its edges are; where its paint ends
 
     def plan(self, *flags):
         path = self.folder / "plan.json"
@@ -98,7 +101,7 @@ class Studio:
         return path
 
     def reported(self, plan, cell):
-        """What a machine is told that undoes what this cell says."""
+        """The commands of a machine that undoes what this cell says."""
         passes = [commanded_pass(with_chords(each), find_cell(cell)) for each in plan.passes]
         return _core.Plan("", "", plan.sheet_mm, passes)
 
@@ -122,7 +125,7 @@ def outlines(shape):
 
 
 def apart(painted, target):
-    """Of each stroke 1 - intersection over union, by shapely; the sheet shifted and turned as its strokes lie best."""
+    """Of each stroke 1 - intersection over union, by shapely; the sheet shifted and turned as its strokes fit best."""
     ours, theirs = ([area(rings[name]) for name in target] for rings in (painted, target))
     a, b = (np.array([each.centroid.coords[0] for each in some]) for some in (ours, theirs))
     turn = Rotation.align_vectors(*(np.column_stack([c - c.mean(axis=0), 0 * c[:, 0]]) for c in (b, a)))[0]
@@ -217,7 +220,7 @@ def test_strokes_that_are_displaced_more_are_reported(tmp_path, capsys):
 
 
 def test_corrections_are_read_once(tmp_path, capsys):
-    """From a pipe, which is empty then. A row without a name says of no stroke how far it lay aside."""
+    """From a pipe, which is empty then. A row without a name gives no displacement of a stroke."""
     first, photo = sheet_with_the_bar_elsewhere(tmp_path)
     made = json.loads(first.read_text())
     made["strokes"].append({"stroke": ["bow"], "aside_mm": 1.0, "correction": None})
@@ -353,7 +356,7 @@ def test_the_plan_for_another_brush_may_begin_elsewhere(tmp_path, capsys, planne
 
 
 def test_two_strokes_show_no_corrections(tmp_path, capsys):
-    """Their places are not told from the sheet's."""
+    """Their places are not separated from the sheet's."""
     few = DRAWING[: DRAWING.index('<path id="cross"')] + "</g></svg>"
     studio = Studio(tmp_path, 5)
     (tmp_path / "five.svg").write_text(few)
@@ -371,7 +374,7 @@ def test_two_strokes_show_no_corrections(tmp_path, capsys):
 
 @pytest.fixture(scope="module")
 def stretched(tmp_path_factory):
-    """A machine that goes 2 % too far, compared: the studio, the wanted rings, the file, the mended cell."""
+    """A machine that goes 2 % too far, compared: the studio, the target rings, the file, the corrected cell."""
     studio = Studio(tmp_path_factory.mktemp("stretched"), 12)
     studio.axes = np.diag([1.02, 0.985])
     plan = studio.plan()
@@ -382,7 +385,8 @@ def stretched(tmp_path_factory):
 
 
 def test_a_corrected_cell_and_corrections_in_one_round(stretched):
-    """Beside the mended cell strokes are led by what it leaves alone; either file alone is right for its own cell."""
+    """With the corrected cell, strokes are moved by what it leaves alone; either file alone is right for its own
+    cell."""
     studio, target, found, corrected_cell = stretched
     plan = studio.plan()
     with_both = studio.plan("--cell", corrected_cell, "--corrections", found)
@@ -418,7 +422,7 @@ def test_corrections_of_another_cell_are_refused(stretched, capsys):
 
 @pytest.mark.parametrize("by_mm", [-0.4, 0.3])
 def test_a_width_is_corrected_where_it_is(tmp_path, by_mm):
-    """Each edge lies so much farther out, by shapely: middle line and ends stay."""
+    """Each edge is so much farther from the middle, by shapely: middle line and ends stay."""
     studio = Studio(tmp_path, 13)
     plan = studio.plan()
     before = studio.rings(plan)
@@ -436,7 +440,7 @@ def test_a_width_is_corrected_where_it_is(tmp_path, by_mm):
 
 
 def test_widths_are_corrected_from_a_photograph(tmp_path, capsys):
-    """A brush that paints one stroke wider than another; one that is wider than any depth paints is told."""
+    """A brush that paints one stroke wider than another; one that is wider than any depth paints is reported."""
     studio = Studio(tmp_path, 14)
     plan = studio.plan()
     rings = studio.rings(plan)
@@ -495,7 +499,7 @@ def measured_between(folder, least_mm, deepest_mm):
 
 
 def test_where_strokes_begin_and_end_is_reported(tmp_path, capsys):
-    """Strokes that begin 1.5 mm late, end 1 mm late, or end 2 mm early, wherever the sheet lies."""
+    """Strokes that begin 1.5 mm late, end 1 mm late, or end 2 mm early, where the sheet is."""
     studio = Studio(tmp_path, 16)
     plan = studio.plan()
     rings = studio.rings(plan)
@@ -524,7 +528,7 @@ def test_where_strokes_begin_and_end_is_reported(tmp_path, capsys):
 
 @pytest.mark.thorough
 def test_a_stroke_that_ran_dry_moves_no_other(tmp_path, capsys):
-    """Where half of a stroke has no paint, the sheet's place is told by the others."""
+    """Where half of a stroke has no paint, the sheet's place comes from the others."""
     studio = Studio(tmp_path, 17)
     plan = studio.plan()
     studio.own = {each.stroke: np.zeros(2) for each in plan.passes}

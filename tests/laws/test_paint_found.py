@@ -72,7 +72,8 @@ def test_the_rate_and_the_freshly_dipped_brush_come_back(seed, rate, mixed):
 
 @cache
 def chart_sheet(seed, law):
-    """Of a chart made for one load: the brush, what the chart told beforehand, what calibrates, and the way in mm."""
+    """Of a chart made for one load: the brush, what the chart reported beforehand, what calibrates, and the way in "
+    "mm."""
     rng = np.random.default_rng(1000 + seed)
     brush = painter.random_brush(rng)
     laws = core.MarkLaws(
@@ -109,7 +110,7 @@ def test_a_chart_for_one_load_shows_laws_and_paint_at_once(seed, rate):
     found, half = rate_of(made)
     assert reported.explained_by_depth < 0.3
     assert abs(found - rate) < half < 0.06
-    assert 0.4 < half / reported.half_per_m < 2.5, "as the chart told"
+    assert 0.4 < half / reported.half_per_m < 2.5, "as the chart reported"
     depths = np.linspace(0.2, 1.0, 5) * brush.deepest
     for law in ("lag", "half_width"):
         half = law_band(made.brush, law, depths)[0]
@@ -127,7 +128,7 @@ def test_paint_that_runs_out_by_another_law_is_reported():
     assert brush.law("half_width")(brush.deepest) - made.brush.half_width(brush.deepest) > half
     _, _, usual = chart_sheet(3, lambda way, _: np.exp(-0.25 * way / 1000))
     assert usual.paint_bends < 2
-    assert len(report(made).splitlines()) > len(report(usual).splitlines()), "it is told"
+    assert len(report(made).splitlines()) > len(report(usual).splitlines()), "it is reported"
 
 
 @pytest.mark.thorough
@@ -162,7 +163,7 @@ def test_the_command_writes_it(tmp_path, capsys):
 
 
 def test_marks_that_get_wider_are_refused():
-    """Told in the other order than they were painted in."""
+    """Listed in another order than painted."""
     _, reported = sheet(6, 0.8, True)
     with refused("paint-undetermined"):
         calibrate(

@@ -1,4 +1,4 @@
-"""A painted job in a rendered photograph: where each mark lies comes back, and other pictures are refused."""
+"""A painted job in a rendered photograph: where each mark is comes back, and other pictures are refused."""
 
 import copy
 import json
@@ -224,7 +224,7 @@ def with_a_thing(page, painted, ring):
 
 
 def seen(job, capsys, photo):
-    """Status, what was told, and by stroke whether it was found and is corrected."""
+    """Status, what was reported, and by stroke whether it was found and is corrected."""
     folder, out = job[0], job[0] / "bad.json"
     out.unlink(missing_ok=True)
     status, _, reported = in_json(
@@ -312,7 +312,7 @@ def test_the_page_names_its_plan(job, tmp_path, capsys):
     )
     assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
     work = prepare(folder / "four.svg")
-    assert job_page(nearest_first(work).plan).printed.id == page.printed.id, "whatever the order"
+    assert job_page(nearest_first(work).plan).printed.id == page.printed.id, "in any order"
 
 
 def test_python_reports_what_the_command_shows(job, capsys, tmp_path):

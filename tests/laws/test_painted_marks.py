@@ -88,7 +88,7 @@ def test_the_brush_comes_back_with_honest_intervals(seed):
     sure = np.sqrt(np.array(made.fit.covariance)[-4, -4])
     assert abs(made.fit.height_mm - painted.height) < 4 * sure < 0.4  # 1.2 is what was known before
     assert made.fit.noise_mm == pytest.approx(0.1, rel=0.25), "the noise that was put on"
-    assert made.fit.effective_samples < 0.5 * made.fit.samples, "neighbours tell the same"
+    assert made.fit.effective_samples < 0.5 * made.fit.samples, "neighbours are correlated"
     assert made.round_tail_gain < -40 and not made.fit.laws.round_tail
 
 
@@ -133,7 +133,7 @@ def test_more_displacement_than_expected_is_said():
 
 
 def found(displacements=(), shift=(0.0, 0.0), height=0.0, turn=0.0):
-    """What a report is made of, as far as it tells what was not expected."""
+    """What a report is made of, as far as it reports the unexpected."""
     marks = [SimpleNamespace(displacement_mm=moved) for moved in displacements or [(0.1, 0.0)] * 4]
     fit = SimpleNamespace(marks=marks, shift_mm=shift, height_mm=height, turn_rad=turn)
     painted = SimpleNamespace(marks=[SimpleNamespace(stroke=f"s{k}") for k in range(len(marks))])
@@ -258,7 +258,7 @@ def test_an_uncertain_edge_is_as_far_off_as_it_was_moved(seed):
 
 
 def test_a_height_just_below_0_is_not_surer_than_the_paper_above_allows():
-    """Landings on a slope from height 0 move with paper that lies lower, and not with paper that lies higher."""
+    """Landings on a slope from height 0 move with paper that is lower, and not with paper that is higher."""
     brush, _, clean = sheet(11, noise=1e-9, height=1e-9, **STILL)
 
     def sure(height):

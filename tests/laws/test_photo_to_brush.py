@@ -54,7 +54,7 @@ def marks():
 
 
 def photo_of(painted, *things, camera=CAMERA):
-    """things: rings and their colour, that lie on the paint."""
+    """things: rings and their colour, that are on the paint."""
     sheet = photograph.page(printed())
     for rings in painted.values():
         sheet.paint(rings, BLUE)
@@ -115,8 +115,8 @@ def calibrating(folder):
 
 
 def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
-    """By 0.4 mm the brush comes back; by 0.8 mm the markers only hint at it, and marks lie so far aside that the sheet
-    seems to be of another scale: it is told that paper which bulges does that, too."""
+    """By 0.4 mm the brush comes back; by 0.8 mm the markers only hint at it, and marks are displaced so far that the
+    sheet seems to be of another scale: it is reported that paper which bulges does that, too."""
     (tmp_path / "chart.json").write_text(write_chart(printed()))
     words = calibrating(tmp_path)
     (tmp_path / "photo.jpg").write_bytes(photo_of(marks(), camera=replace(CAMERA, sag_mm=0.4)))
@@ -221,7 +221,7 @@ def test_a_mark_is_held_against_the_others_alone():
     fit = fitted(24, {})
     fit.marks[5].rms_mm, fit.marks[5].distance_mm = 0.3, np.append(np.zeros(90), np.full(10, 0.9))
     assert [stray.mark for stray in strays(list("abcdefghijklmnopqrstuvwx"), fit)] == ["f"]
-    assert not strays(list("abcd"), fitted(4, {0: np.array([5.0, 0.0])})), "four tell nothing of one"
+    assert not strays(list("abcd"), fitted(4, {0: np.array([5.0, 0.0])})), "four do not single out one"
 
 
 def test_many_marks_astray_are_refused():

@@ -259,7 +259,7 @@ def test_all_that_is_written_is_safe(name, seed):
 
 
 def test_every_language_is_tried():
-    # whatever a user's own post writes; and a pen, which draws no plan of this kind: test_hpgl, test_marlin_servo
+    # anything a user's own post writes; and a pen, which draws no plan of this kind: test_hpgl, test_marlin_servo
     posts = set(POSTS) - {"robodk", "hpgl", "marlin-servo"}
     assert {find_cell(name).language for name in LANGUAGES} == posts
 

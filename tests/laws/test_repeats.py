@@ -57,7 +57,7 @@ def sheets(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def painted(sheets):
-    """Photographs of three sheets, and where each stroke lay on them beside the place of the sheet."""
+    """Photographs of three sheets, and where each stroke was on them next to the place of the sheet."""
     rng = np.random.default_rng(4)
     always = {name: np.array([PLAY / 2 if name in TO_THE_RIGHT else -PLAY / 2, 0.0]) for name in sheets.rings}
     displaced = [{name: always[name] + rng.normal(0, 0.15, 2) for name in sheets.rings} for _ in range(3)]
@@ -78,7 +78,7 @@ def test_the_spread_and_the_hysteresis_come_back(sheets, painted, capsys):
     at = np.array([[each[name] for name in sheets.rings] for each in displaced])
     at -= at.mean(axis=1, keepdims=True)  # which is the place of the sheet
     off = at - at.mean(axis=0)
-    truth = np.sqrt(np.square(off).sum() / (2 * 7 * 2 - 2))  # a turn of each sheet beside
+    truth = np.sqrt(np.square(off).sum() / (2 * 7 * 2 - 2))  # a turn of each sheet in addition
     assert found["displacement_mm"] == pytest.approx(truth, rel=0.12)
     assert found["displacement_95_mm"][0] < 0.15 < found["displacement_95_mm"][1]
     value, half = found["hysteresis_mm"]["x"]
@@ -126,7 +126,7 @@ def test_the_next_calibration_takes_the_spread(sheets, painted, tmp_path, capsys
         ]
         assert main(words) == 0, capsys.readouterr().err
         laws.append(json.loads((tmp_path / f"brush-{k}.json").read_text())["lag"]["coefficients"])
-    assert laws[1] != laws[0], "the fit was told"
+    assert laws[1] != laws[0], "the fit used it"
     damaged = json.loads(out.read_text()) | {"displacement_mm": -1}
     (tmp_path / "bad.json").write_text(json.dumps(damaged))
     words = [

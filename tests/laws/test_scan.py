@@ -178,7 +178,7 @@ def test_a_soft_shadow_over_few_narrow_marks_is_not_taken_for_paint(is_lighter):
 
 
 def test_narrow_marks_of_a_blurred_picture_are_as_wide_as_they_were_painted():
-    """Blur takes from the middle of a narrow mark, too: half way up to what is left there once lay 0.05 mm outside."""
+    """Blur takes from the middle of a narrow mark, too: half way up to what is left there once was 0.05 mm outside."""
     marks = dict(painted_marks())
     for stroke, width in (("auxiliary-1", 0.7), ("straight-1", 0.9)):
         left, bottom, right, top = shape(marks[stroke]).bounds
@@ -214,7 +214,7 @@ def test_a_mark_that_strays_stays_whole_and_two_that_touch_are_cut():
 
 
 def test_a_mark_that_is_displaced_into_the_next_room_stays_whole():
-    """As by a tool that leans: a quarter of it lies where the next one should, which does so, too."""
+    """As by a tool that leans: a quarter of it is where the next one should, which does so, too."""
     fine, sheet_mm = 5, (170, 50)
     lefts = {"a": 10, "b": 21} | {str(k): 30 + 15 * k for k in range(1, 9)}
     stroke_boxes = [StrokeBox(name, (left, 10, left + 10, 40)) for name, left in lefts.items()]
@@ -232,7 +232,7 @@ def test_a_mark_that_is_displaced_into_the_next_room_stays_whole():
 
 @pytest.mark.parametrize("lean", [(-0.6, 0.5), (0.0, 0.8)])
 def test_marks_of_a_tool_that_leans_much_are_those_of_their_strokes(lean):
-    """So much that they lie in the rooms of others: every mark is that of its stroke, and none is lost."""
+    """So much that they are in the boxes of others: every mark is that of its stroke, and none is lost."""
     depth = {one.id: one.depth_mm for one in a5().strokes}
     marks = {
         name: [ring + np.multiply(lean, depth[name]) for ring in rings]

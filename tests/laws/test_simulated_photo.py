@@ -1,4 +1,4 @@
-"""simulate-photo: what its studio says is amiss is what compare sees, and it cannot be taken for a photograph."""
+"""simulate-photo: the faults of its studio are what compare finds, and it cannot be taken for a photograph."""
 
 import json
 import re
@@ -170,7 +170,7 @@ def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, ca
 
 @pytest.fixture(scope="module")
 def letters(tmp_path_factory):
-    """A word whose strokes touch each other, its plan, and two sheets of studios in which much is amiss."""
+    """A word whose strokes touch each other, its plan, and two sheets of studios with many faults."""
     folder = tmp_path_factory.mktemp("letters")
     for words in (
         ("convert", EXAMPLE, folder / "word.json"),
@@ -234,7 +234,7 @@ def test_a_photograph_that_is_given_twice_is_refused(letters, capsys):
 
 
 def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
-    """Of a studio in which nothing is amiss the brush that was named comes back; from the plan alone it would be
+    """Of a studio without faults the brush that was named comes back; from the plan alone it would be
     another page."""
     plan, chart, photo, found = (
         str(tmp_path / name) for name in ("plan.json", "chart.json", "p.jpg", "own.json")

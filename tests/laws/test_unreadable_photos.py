@@ -1,5 +1,5 @@
-"""Photographs that cannot be read, or not whole, in more than twenty ways: each is refused, or told, with the code of
-its cause, and what is read of the others lies where it was painted."""
+"""Photographs that cannot be read, or not whole, in twenty ways: each is refused, or reported, with the code of
+its cause, and what is read of the others is where it was painted."""
 
 from functools import cache
 

@@ -96,7 +96,7 @@ def missing(some, others) -> int:
 
 
 def compare(name: str, count: int, seed: int = 0) -> dict:
-    """How many random places agree, differ, and lie near a singularity; and how many angles each has found."""
+    """How many random places agree, differ, and are near a singularity; and how many angles each has found."""
     arm, random = find_cell(name).arm, np.random.default_rng(seed)
     joints, judge = joints_of(arm), Eaik(arm)
     reported = {

@@ -24,7 +24,7 @@ def agrees(reported: Error | Notice, expected: str, where: str | None = None) ->
 
 
 def is_reported(reported, expected: str, where: str | None = None) -> bool:
-    """Whether one of these agrees; told: notices, with their files as in_json gives them or without."""
+    """Whether one of these agrees; reported: notices, with their files as in_json gives them or without."""
     notices = (each[1] if isinstance(each, tuple) else each for each in reported)
     return any(agrees(each, expected, where) for each in notices)
 
@@ -60,14 +60,14 @@ def refused(expected: str, where: str | None = None):
 
 
 def in_json(capsys, *words) -> tuple[int, str, list[tuple[str, Notice]]]:
-    """Exit status, standard output, and what was told with the file that it is about."""
+    """Exit status, standard output, and what was reported with the file that it is about."""
     status = main(["--messages", "json", *map(str, words)])
     output, errors = capsys.readouterr()
     return status, output, heard(errors.splitlines())
 
 
 def heard(lines) -> list[tuple[str, Notice]]:
-    """What `--messages json` told in these lines, each with the file that it is about."""
+    """What `--messages json` reported in these lines, each with the file that it is about."""
     reported = [json.loads(line) for line in lines if line.startswith("{")]
     return [(each.pop("file"), read(each)) for each in reported]
 

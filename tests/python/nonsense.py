@@ -404,7 +404,7 @@ def sound_program():
 def sound_photo():
     photo = FOLDER / "photo.jpg"
     if not photo.exists():
-        with contextlib.redirect_stdout(io.StringIO()):  # its studio is told
+        with contextlib.redirect_stdout(io.StringIO()):  # its studio is printed
             assert command(["simulate-photo", str(FOLDER / "d.svg"), str(photo), "--quiet"]) == 0
     return photo
 
@@ -599,7 +599,7 @@ def methods(name):
 
 
 def shown_and_copied(value):
-    """What every value can do, whatever it holds."""
+    """What every value can do, for any contents."""
     repr(value)
     for made in (copy.copy(value), pickle.loads(pickle.dumps(value))):
         if made != value:
@@ -627,7 +627,7 @@ def main(names):
             words = f"{name}({', '.join(repr(each)[:60] for each in arguments)})"
             print(words, file=sys.stderr, flush=True)  # what was last begun, should the process end here
             if count == 0 and arguments:
-                public(*arguments)  # the sound one: what it is to be nonsense beside
+                public(*arguments)  # the sound one: what it is to be nonsense next to
             if wrong := outcome(lambda f=public, given=arguments: f(*given), words):
                 print(wrong, flush=True)
         for arguments in truths(name):

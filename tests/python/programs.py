@@ -59,7 +59,7 @@ def problems(plan, brush, marks, cell, tolerance_mm):
 
 
 def is_refused_when_damaged(capsys, path, old, new, reported, *words):
-    """That check allows a program, and no longer where one pattern of it is replaced; told: codes, any of them."""
+    """That check allows a program, and no longer where one pattern of it is replaced; reported: codes, any of them."""
     text = path.read_text()
     check = ("check", path, *words)
     assert in_json(capsys, *check)[0] == 0

@@ -157,7 +157,7 @@ def test_all_found_angles_put_the_flange_at_the_requested_place(name):
 
 
 def test_near_a_singularity_angles_are_as_exact():
-    """There two steps of Newton's left 4e-6 mm, and joints 1e-6 rad beside where they should be."""
+    """There two steps of Newton's left 4e-6 mm, and joints 1e-6 rad off their target."""
     arm = find_cell("xarm6").arm
     target = frames(arm, (-2.05282, -0.04117, -0.86343, 1.96439, -0.19169, 0.47531))[-1]
     there = frames(arm, joints_of(arm).solutions(target))[:, -1]

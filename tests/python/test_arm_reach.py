@@ -112,7 +112,7 @@ def test_joint_rates_are_those_of_two_places_close_together():
 
 
 def test_the_nearest_place_may_be_a_turn():
-    """Behind the robot, beside the place that joint 1 cannot pass: lengthwise the stroke stays clear of it."""
+    """Behind the robot, next to the place that joint 1 cannot pass: lengthwise the stroke stays clear of it."""
     cell, plan = job("irb120", (-450, 90, 20), (), ACROSS, (), {})
     (problem,) = look(cell, plan).problems
     assert problem.code == "joint-limit"

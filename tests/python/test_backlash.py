@@ -32,7 +32,7 @@ CELLS = {"linuxcnc-3axis": ".ngc", "grbl-3axis": ".gcode", "klipper-3axis": ".gc
 
 @pytest.fixture(params=CELLS)
 def desk(tmp_path, request):
-    """A folder with a drawing and two cells: one that knows nothing, one that knows the backlash; the paper lies askew
+    """A folder with a drawing and two cells: one that knows nothing, one that knows the backlash; the paper is askew
     on the machine, which has its own x and y. And the extension of programs."""
     (tmp_path / "a.svg").write_text(DRAWING)
     cell = replace(find_cell(request.param), paper=Paper((30.0, 20.0, 0.0), (0.0, 0.0, 25.0)))
@@ -176,7 +176,7 @@ def test_damage_to_what_takes_up_play_is_found(tmp_path, capsys):
 
 
 def test_a_circle_is_cut_where_an_axis_turns_back():
-    """On paper that lies askew, too: nowhere else, and once."""
+    """On paper that is askew, too: nowhere else, and once."""
     angles = np.radians([200.0, 260.0, 330.0, 390.0, 450.0, 480.0])
     poses = np.column_stack([40 + 8 * np.cos(angles), 30 + 8 * np.sin(angles), np.full(6, -2.0)])
     arcs = [core.Arc(0, 5, (40.0, 30.0), 1)]

@@ -1,4 +1,4 @@
-"""brushsvg batch: many drawings, the same rows and files whatever does the work, and nothing done twice."""
+"""brushsvg batch: many drawings, the same rows and files in any process, and nothing done twice."""
 
 import csv
 import json
@@ -269,7 +269,7 @@ def test_another_batch_into_the_folder_leaves_what_is_known_of_the_first(desk, m
         Path(name).unlink()
     brushsvg.batch(["in/1.svg"], "out", jobs=1, wide="refuse")
     rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
-    assert [row["name"] for row in rows] == ["1", "0"], "of what lies there no more nothing is kept"
+    assert [row["name"] for row in rows] == ["1", "0"], "no row is kept of files that are gone"
 
 
 def test_equal_drawings_are_each_done_once(desk, monkeypatch):

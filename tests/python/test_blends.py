@@ -58,7 +58,7 @@ def test_corners_of_circles_are_cut_as_those_of_lines(tolerance):
 
 
 def test_a_circle_that_is_left_at_a_small_angle_is_not_left_far_before_its_end():
-    """The chord of what is left out would lie farther from it than the tolerance."""
+    """The chord of what is left out would be farther from it than the tolerance."""
     path = TURN_IN_PLACE.copy()
     path[4] = (24, 20, -2)
     radii = blend_radii(path, Blending(0.01), [QUARTER])
@@ -137,7 +137,7 @@ def with_circle(brush):
 
 @pytest.mark.parametrize("cut_mm", [0.0005, 0.005, 0.05])
 def test_a_circle_is_no_row_of_corners(cut_mm):
-    """Its poses may lie far apart; only where it ends there is something to cut."""
+    """Its poses may be far apart; only where it ends there is something to cut."""
     brush = find_brush("round-6")
     plan = with_circle(brush)
     marks = _core.simulate(plan, brush)

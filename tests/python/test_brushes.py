@@ -407,7 +407,7 @@ def test_a_law_of_a_brush_refuses_depths_that_the_brush_cannot_have(law):
         with refused("depth-out-of-range 50"):
             value([1.0, 50.0])
         assert value.extrapolated(50) > 10 and value.depth_range_mm == (0.0, 10.0)
-        brush.depth_range_mm = (0.0, 60.0)  # the law that is asked is that of the brush as it is
+        brush.depth_range_mm = (0.0, 60.0)  # the law that is checked is that of the brush as it is
         assert getattr(brush, law)(50) == value.extrapolated(50)
         alone = brushsvg.Profile(value.coefficients)
         assert alone.depth_range_mm is None and alone(50) == pytest.approx(alone.extrapolated(50))

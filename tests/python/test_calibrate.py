@@ -492,8 +492,8 @@ WIDEST = np.polynomial.Polynomial([-2.35, 2.75, -0.42, 0.024])
 @pytest.mark.parametrize("floored", [1, 3])
 @pytest.mark.slow
 def test_normal_noise_above_a_floor_is_seldom_called_an_outlier(floored):
-    """Readings where the law lies on its floor say nothing of its coefficients: 15 % of such calibrations were told to
-    measure the first depth again."""
+    """Readings where the law is on its floor say nothing of its coefficients: 15 % of such calibrations were refused
+    with advice to measure the first depth again."""
     rng, depths = np.random.default_rng(3), np.linspace(1, 10, 10)
     law = np.maximum(0, WIDEST(depths - (floored - 1) * 0.8))
     sizes, named = [], 0

@@ -209,7 +209,7 @@ def test_a_cell_that_reaches_no_paper_is_reported(workspace, said):
 
 @pytest.mark.slow
 def test_what_is_out_of_reach_is_what_no_point_of_the_sheet_meets():
-    """Against points tried one by one, on papers that lie anywhere."""
+    """Against points tried one by one, on papers that are anywhere."""
     random = np.random.default_rng(5)
     found = {True: 0, False: 0}
     for _ in range(200):

@@ -137,7 +137,7 @@ def all_but_the_first_slow(names):
     return [*names[:1], *(pytest.param(name, marks=pytest.mark.slow) for name in names[1:])]
 
 
-SMALL_ARMS = ("irb120", "ur3e")  # A4 is nearly too large for them: asked of their joints, too
+SMALL_ARMS = ("irb120", "ur3e")  # A4 is nearly too large for them: checked for their joints, too
 
 
 @pytest.mark.slow
@@ -271,7 +271,7 @@ def test_the_pdf_has_the_size_and_the_shapes_of_the_page(sheet):
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["chart plan.json --sheet a5", "convert a.svg plan.json"])
 def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monkeypatch, capsys, command):
-    """It was told as a mistake of ours."""
+    """It was reported as a mistake of ours."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="50mm" viewBox="0 0 90 50">'

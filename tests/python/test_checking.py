@@ -44,7 +44,7 @@ def ran(text, cell, work):
 
 
 def off_circles(found, points):
-    """How far points lie from the nearest of the circles that were read."""
+    """How far points are from the nearest of the circles that were read."""
     radii = [np.linalg.norm(found.poses_mm[arc.first, :2] - arc.centre_mm) for arc in found.arcs]
     spokes = [np.linalg.norm(points - arc.centre_mm, axis=1) for arc in found.arcs]
     pairs = zip(spokes, radii, strict=True)
@@ -63,7 +63,7 @@ def test_what_was_planned_comes_back(desk, name):
     ]
     for expected, found in zip(work.plan.passes, back.plan.passes, strict=True):
         away = np.linalg.norm(found.poses_mm[None] - expected.poses_mm[:, None], axis=2).min(axis=1)
-        for arc in expected.arcs:  # told by its ends, and at most a pose on its way
+        for arc in expected.arcs:  # given by its ends, and at most a pose on its way
             inside = slice(arc.first + 1, arc.last)
             away[inside] = np.minimum(away[inside], off_circles(found, expected.poses_mm[inside, :2]))
         assert away.max() < (0.1 if name in SERVOS else 2e-3), "every pose is passed"
@@ -268,7 +268,7 @@ PAINT = '[reload]\nwhen = "length"\nevery_mm = 60\n[[stations]]\nname = "ink"\np
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "grbl-servo", "ur5e"])
 @pytest.mark.slow
 def test_any_name_may_stand_next_to_any_part(desk, capsys, name):
-    """A drawing's own a+2 beside an a in parts, and names that a program writes otherwise, twice the same, cut."""
+    """A drawing's own a+2 next to an a in parts, and names that a program writes otherwise, twice the same, cut."""
     long = "n" * 150
     paths = "".join(
         f'<path id="{name}" d="M20 {10 + 5 * k} h{length}"/>'
@@ -363,7 +363,7 @@ THREE = DRAWING.replace("</g>", '<path id="third" d="M20 20 h60"/></g>')
     ],
 )
 def test_a_program_has_all_its_strokes(desk, capsys, drawing, lost, said):
-    """Which they are its header tells, whether the drawing is there or not."""
+    """Its header lists them, whether the drawing is there or not."""
     (desk / "two.svg").write_text(THREE)
     assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
     parts = sections((desk / "two.ngc").read_text())
@@ -451,7 +451,7 @@ def test_a_header_says_what_the_program_does(desk, capsys, old, new, said):
     ["a ~ b", "what?", "go!", "50 %", "a" * 80, "a\tb", "a\x18b", "a\xc3\xa4b", "a (b", "a) G0 Z-5 (b"],
 )
 def test_what_grbl_acts_on_is_refused_where_it_stands(desk, capsys, title):
-    """In the header, whose title nobody else tells, and in a stroke's name."""
+    """In the header, whose title stands nowhere else, and in a stroke's name."""
     assert call(capsys, "convert", "two.svg", "two.gcode", "--cell", "grbl-3axis")[0] == 0
     text = (desk / "two.gcode").read_text()
     for changed in (
@@ -1035,7 +1035,7 @@ def test_of_a_servos_lift_the_line_that_was_changed_is_named(desk, capsys, drawi
 @pytest.mark.slow
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 def test_what_lets_a_servos_brush_fall_or_makes_it_fast_is_reported(desk, capsys, drawing):
-    """In laser mode grbl switches the output off wherever no G1 holds; lines of modes alone were taken for idle."""
+    """In laser mode grbl switches the output off where no G1 holds; lines of modes alone were taken for idle."""
     assert call(capsys, "convert", "two.svg", "two.nc", "--cell", "grbl-servo")[0] == 0
     lines = (desk / "two.nc").read_text().splitlines()
     ways = [k for k, line in enumerate(lines) if line.startswith("G1 X")]
@@ -1110,7 +1110,7 @@ def test_lines_may_be_as_long_as_the_controller_reads_them(desk, capsys, name, m
 
 
 def test_a_visit_to_the_paint_more_is_reported_by_the_time_of_the_header(desk, capsys):
-    """Alone: nobody knows which colours were asked for, but each visit takes its time."""
+    """Alone: nobody knows which colours were requested, but each visit takes its time."""
     station = '[[stations]]\nname = "ink"\nplace_mm = [-15, 10]\ndepth_mm = 5\nhold_s = 1\ndrip_s = 2\n'
     text = (SHIPPED / "linuxcnc-3axis.toml").read_text() + '[reload]\nwhen = "layer"\n' + station
     (desk / "mine.toml").write_text(text)

@@ -201,7 +201,7 @@ def test_flags_reach_the_plan(desk, capsys):
     assert len(finer["passes"][0]["poses_mm"]) > len(default["passes"][0]["poses_mm"])
 
 
-REFUSED = {  # file, what it holds, flags, what is told of which file and element
+REFUSED = {  # file, what it holds, flags, the reported code, file and element
     "no file": ("missing.svg", None, [], "file-unreadable", "missing.svg", ""),
     "no plan file": ("missing.json", None, [], "file-unreadable", "missing.json", ""),
     "not XML": ("x.svg", "moo", [], "not-xml", "x.svg", ""),
@@ -312,7 +312,7 @@ BAD = '<path id="bad" d="M30 40 L60 45 L nan 4" fill="none" stroke="#000" stroke
 
 
 def test_a_refusal_for_damage_says_what_would_be_drawn_of_it(desk, capsys):
-    """Told once, at the end, and nothing claims that anything was painted."""
+    """Reported once, at the end, and nothing claims that anything was painted."""
     worse = BAD.replace('"bad"', '"worse" transform="turn(3)" stroke-dasharray="2" opacity=".5"')
     off = BAD.replace('"bad" d="M30 40 L60 45 L nan 4"', '"off" d="M-3 30h20"')
     (desk / "x.svg").write_text(drawing(LINE, worse, off))

@@ -31,7 +31,7 @@ def desk(tmp_path, monkeypatch):
 
 
 def plan(desk, capsys, *words, drawing="d.svg"):
-    """Its passes, and what was told."""
+    """Its passes, and what was reported."""
     capsys.readouterr()
     status, _, reported = in_json(capsys, "convert", drawing, "plan.json", "--quiet", *words)
     assert status == 0, reported
@@ -272,7 +272,7 @@ def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsy
 
 @pytest.mark.parametrize(("d", "is_marked"), [("M20 60C80 75 20 75 80 60", False), ("M30 60H60L40 62", True)])
 def test_no_stroke_is_marked_for_less_than_the_brush_itself_is_off(desk, capsys, d, is_marked):
-    """0.095 mm in place of 0.05 was red, and told, of a brush whose lag is known to 0.58 mm."""
+    """0.095 mm in place of 0.05 was red, and reported, of a brush whose lag is known to 0.58 mm."""
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", d))
     assert main(["predict", "d.svg", "x.svg", "--corners", "turn"]) == 0
     assert ("d.svg: b: " in capsys.readouterr().err) == is_marked
@@ -295,7 +295,7 @@ def test_a_brush_that_is_known_exactly_is_warned_of_less(desk, capsys):
 
 
 def test_a_width_is_advised_only_for_lines(desk, capsys):
-    """Outlines have no single width: --width was advised, and told to be without effect when it was taken."""
+    """Outlines have no single width: --width was advised, and reported to be without effect when it was taken."""
     hair = '<path id="hair" fill="none" stroke="#000" stroke-width="0.3" d="M10 10H80"/>'
     sliver = '<path id="sliver" d="M10 40H80V40.3H10Z"/>'
     size = 'width="100mm" height="60mm" viewBox="0 0 100 60"'

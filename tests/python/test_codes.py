@@ -1,4 +1,4 @@
-"""docs/reference/diagnostics.md lists the codes of all that a person is told, and nothing else."""
+"""docs/reference/diagnostics.md lists the codes of all notices, and nothing else."""
 
 import ast
 import re
@@ -17,7 +17,7 @@ LIBRARY = ROOT / "cpp"
 TESTS = ROOT / "tests"
 CODE = re.compile("[a-z]+(-[a-z]+)*")
 FOUR_WORDS = re.compile(r"(?<![\w-])[A-Za-z][a-z]+(?: [a-z]+(?:'[a-z]+)?){3}(?![\w-])")
-QUOTED = {  # file: how many texts of four plain words and more its tests expect, for no code tells them
+QUOTED = {  # file: how many texts of four plain words and more its tests expect, for no code replaces them
     "integration/command.py": 1,  # what a mistake of ours begins with
     "python/test_checking.py": 3,  # lines of a program's header and end
     "python/test_jaka.py": 1,

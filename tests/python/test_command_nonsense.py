@@ -7,7 +7,7 @@ import pytest
 
 from brushsvg.cli import main
 
-SOUND = {  # the word that stands for a file, and what lies there when it is sound
+SOUND = {  # the word that stands for a file, and what is there when it is sound
     "IN": "a.svg",
     "BRUSH": "mine.json",
     "CELL": "mine.toml",

@@ -1,4 +1,4 @@
-"""How far a path that was read lies from the one that was meant."""
+"""How far a path that was read is from the one that was intended."""
 
 import itertools
 import re

@@ -235,7 +235,7 @@ def test_a_choice_that_there_is_not_is_a_type_error(desk):
 
 
 def test_ranges_are_those_of_the_flags():
-    """Whoever changes one changes the other."""
+    """A change of one changes the other."""
     flags = {
         action.dest: action
         for action in command_parser()._subparsers._group_actions[0].choices["convert"]._actions

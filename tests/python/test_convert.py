@@ -143,7 +143,7 @@ depth_mm = 2
 @pytest.mark.parametrize("when", ["length", "stroke", "layer"])
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "ur5e"])
 def test_a_program_by_way_of_a_plan_is_the_one_of_the_drawing(tmp_path, monkeypatch, name, when):
-    """But for what no plan tells, in the header: the drawing's title, and how it was planned."""
+    """Except what no plan holds, in the header: the drawing's title, and how it was planned."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "some.svg").write_text(FEW_COLOURS)
     (tmp_path / "mine.toml").write_text((SHIPPED / f"{name}.toml").read_text() + PAINT.format(when=when))

@@ -69,7 +69,7 @@ def test_widths_go_with_the_line_when_it_begins_elsewhere():
     at, half = np.array(widths).T
     assert (np.diff(at) >= 0).all()
     assert (at[0], at[-1]) == (0, 1)
-    # 15, 45 and 65 mm along the old line of 80 mm lie 0, 30 and 50 mm along the new one
+    # 15, 45 and 65 mm along the old line of 80 mm are 0, 30 and 50 mm along the new one
     assert np.interp(np.array([0, 30, 50, 65, 80]) / 80, at, half) == pytest.approx(
         [1.75, 2.75, 1.75, 1.0, 1.75]
     )

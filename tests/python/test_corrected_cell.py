@@ -1,4 +1,5 @@
-"""What `compare` finds amiss, besides what the cell undid, goes into the next cell; how sure a brush is beforehand."""
+"""The faults that `compare` finds, in addition to those undone, go into the next cell; how sure a brush is
+beforehand."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -55,7 +56,7 @@ def places(count=40):
 
 @pytest.mark.parametrize("undone", [UNDONE, LEANING])
 def test_what_was_undone_before_stays_undone(undone):
-    """Where the painted job went is asked of the true machine; what is amiss beyond the cell, of least squares."""
+    """Where the painted job went comes from the true machine; faults beyond the cell from least squares."""
     target = places(400)
     went = true_mm(commanded_mm(target, undone), TRUE)
     depth = np.maximum(-went[:, 2], 0)
@@ -170,7 +171,7 @@ def test_a_brush_that_learnt_from_these_marks_holds_its_laws():
     ],
 )
 def test_of_what_may_be_chance_less_is_taken_back(displaced_mm, one_mm, share, of_one):
-    """Of all strokes by their spread (8 numbers, of which 3 are the sheet's place), of one by how far it lies."""
+    """Of all strokes by their spread (8 numbers, of which 3 are the sheet's place), of one by how far it is."""
     asides = [one_mm, -displaced_mm, displaced_mm, -displaced_mm]
     rows = [
         SimpleNamespace(

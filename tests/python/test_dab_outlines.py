@@ -1,4 +1,4 @@
-"""Dabs: how they are landed, and what is left out or refused, each by name."""
+"""Dabs: how they are landed, and what is left out or refused, and named."""
 
 import numpy as np
 import pytest
@@ -113,7 +113,7 @@ def test_dabs_that_touch_are_left_out():
 
 
 def fixed_to_the_handle(headings=HEADINGS):
-    """The same skewed shape on paper whatever the heading."""
+    """The same skewed shape on paper for any heading."""
     out = dabs()
     for k, dab in enumerate(out):
         away = dab.rings_mm[0] - dab.rings_mm[0].mean(axis=0)
@@ -208,4 +208,4 @@ def test_a_program_a_page_and_a_file_of_dabs(tmp_path, capsys):
     program = (tmp_path / "dabs.ngc").read_text()
     assert program.count("(stroke ") == 16 and "Z-10.0000" in program
     assert not is_of_dabs(chart(BRUSH, (148.0, 210.0), "few"))
-    assert main(["chart", files[0], "--dabs", "--noise", "0.2"]) == 2  # of intervals, which dabs do not tell
+    assert main(["chart", files[0], "--dabs", "--noise", "0.2"]) == 2  # of intervals, which dabs do not show

@@ -1,4 +1,4 @@
-"""Machines that take the tool elsewhere than it was told: programs make up for it, check knows where it goes."""
+"""Machines that take the tool elsewhere than commanded: programs make up for it, check knows where it goes."""
 
 import re
 from dataclasses import replace
@@ -50,7 +50,7 @@ def text_of(work, cell):
 
 
 def commanded_places(text):
-    """(n, 3) where a G-code program tells the tool to go, read by nothing of the package; circles as their ends."""
+    """(n, 3) where a G-code program sends the tool, read by nothing of the package; circles as their ends."""
     at, out = [np.nan] * 3, []
     for line in text.splitlines():
         if re.match(r"G[0123] ", line):
@@ -75,12 +75,12 @@ def test_the_machine_goes_where_the_plan_asks_it_to(desk, machine):
         away = np.linalg.norm(goes[None] - poses[:, None], axis=2).min(axis=1)
         assert away.max() < 2e-3
         near_by = np.linalg.norm(reported[None] - poses[:, None], axis=2).min(axis=1)
-        assert near_by.max() > 0.5, "and it is told otherwise"
+        assert near_by.max() > 0.5, "and the command differs"
     assert np.isclose(z, 10.0, atol=2e-3).sum() >= 4, "travel is at the safe height over the paper"
 
 
 def paper_mm(reported, machine):
-    """(n,) how much higher the paper lies at places that are told than it was taught: the map by scipy."""
+    """(n,) how much higher the paper is at commanded places than it was taught: the map by scipy."""
     xs, ys = (np.unique([row[k] for row in GRID]) for k in range(2))
     map_mm = RegularGridInterpolator((ys, xs), np.array([row[2] for row in GRID]).reshape(3, 3))
     at = np.clip(reported[:, :2], (xs[0], ys[0]), (xs[-1], ys[-1]))

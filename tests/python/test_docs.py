@@ -1,4 +1,4 @@
-"""Commands that README and docs tell one to type are commands that there are."""
+"""Commands that README and docs show one to type are commands that there are."""
 
 import re
 import shlex

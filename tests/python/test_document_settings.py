@@ -22,7 +22,7 @@ def desk(tmp_path, monkeypatch):
 
 
 def refusal_of(capsys, *words):
-    """All that is told of the drawing."""
+    """All notices of the drawing."""
     capsys.readouterr()
     status, _, reported = in_json(capsys, *words)
     assert status == 1 and {file for file, _ in reported} == {next(each for each in words if ".svg" in each)}

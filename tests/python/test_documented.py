@@ -1,4 +1,4 @@
-"""Nothing public is undocumented: what the package offers, what it takes and gives, and the errors it raises."""
+"""Nothing public is undocumented: what the package offers, what it needs and gives, and the errors it raises."""
 
 import inspect
 import re
@@ -45,7 +45,7 @@ def test_a_law_documents_shapes_errors_and_each_of_its_arguments(name):
     assert "Raises Error" in reported
     assert re.search(r"\(\.\.\.|\(n", reported), "no shape"
     for argument in inspect.signature(law).parameters:
-        assert re.search(rf"\b{argument}\b", reported), f"{argument} is not told of"
+        assert re.search(rf"\b{argument}\b", reported), f"{argument} is not described"
     assert re.search(r"\((\d+)\)|section \d|Theorem \d|Lemma", reported), "no source"
 
 

@@ -64,7 +64,7 @@ def test_other_shapes_are_no_background(shape):
 
 
 def test_a_background_is_known_by_the_page_for_any_requested_sheet():
-    """The page lies at the sheet's upper left."""
+    """The page is at the sheet's upper left."""
     design = read('<rect width="100" height="60" fill="#fff" stroke="#000"/>' + LINE, sheet_mm=(130.0, 80.0))
     assert ids(design)[-1] == "line" and len(design.elements) == 2
     assert not any(element.fill_rule for element in design.elements)

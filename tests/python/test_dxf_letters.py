@@ -252,7 +252,7 @@ def test_mtext_without_a_width_in_a_style_that_names_a_family(fonts):
     ["AAAA AAAA", r"\H14;AA AA", r"\fBoxes|b1|i0;AA A A", r"A\S1/2; A A", r"{\W2;A A}A"],
 )
 def test_a_short_line_stands_below_the_middle_of_the_longest(long, fonts):
-    """In a text without a width, the longest line is as wide as the text: with a margin, shorter ones lie aside."""
+    """In a text without a width, the longest line is as wide as the text: with a margin, shorter ones are displaced."""
     document = in_boxes()
     content = rf"\pxqc;{{{long}}}\PA"
     document.modelspace().add_mtext(content, {"char_height": 7, "style": "Boxes", "insert": (10, 90)})
@@ -363,7 +363,7 @@ def test_text_of_no_height_is_damaged(fonts, height):
 
 @pytest.mark.slow
 def test_text_leaves_nothing_at_home(tmp_path):
-    """Whatever fonts this machine has."""
+    """With any fonts of this machine."""
     (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: [m.add_text("Aé"), m.add_circle((0, 0), 5)])))
     script = "import brushsvg.read as i; print(i.read_drawing('a.dxf'))"
     runs = [

@@ -97,7 +97,7 @@ def test_without_compensation_the_lag_is_the_reason():
 
 
 def test_a_closed_line_has_a_corner_at_its_seam_too():
-    """The worst place of a square lay where it begins, and bends were blamed."""
+    """The worst place of a square was where it begins, and bends were blamed."""
     square = flatten(stroke([(30, 30), (70, 30), (70, 70), (30, 70), (30, 30)], 1.5, True), 0.01)
     for s in (0.0, 1.0, 159.0, 160.0):
         assert _corner_deg(square, s, 3.0, True) == pytest.approx(90)

@@ -108,7 +108,7 @@ def test_a_frame_is_set_before_it_is_chosen(small):
 
 
 def test_a_speed_in_another_unit_is_read_as_that(small):
-    """20 cm/min are 3.3 mm/s: slower than told, and nothing forbids that; 200 cm/min are 33 mm/s."""
+    """20 cm/min are 3.3 mm/s: slower than requested, and nothing forbids that; 200 cm/min are 33 mm/s."""
     for speed, status in (("20cm/min", 0), ("200cm/min", 1)):
         assert small(lambda text, new=speed: text.replace(" P[5] 20mm/sec", f" P[5] {new}"))[0] == status
     cell = find_cell("lrmate200id")

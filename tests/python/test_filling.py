@@ -52,7 +52,7 @@ def of(d: str, rest: str = 'fill="red" fill-rule="nonzero" stroke="none"'):
 
 
 def intended_by(made):
-    """What discs of passes paint, and what they are meant to paint beyond, in the corners of square ends."""
+    """What discs of passes paint, and what their targets hold beyond, in the corners of square ends."""
     return shapely.union_all([painted(made), *(region(each.wanted_mm) for each in made if each.wanted_mm)])
 
 
@@ -196,7 +196,7 @@ def test_marks_do_not_bulge_where_a_shape_becomes_as_narrow_as_the_brush(brush, 
 @pytest.mark.slow
 @sample("name", ["star", "arrow", "comb", "ell", "round short bar"], keep=2)
 def test_no_other_way_to_fill_a_shape_plainly_paints_more_of_it(brush, name):
-    """Compared by the marks' outlines with shapely; discs would tell of the star's five square ends as the best."""
+    """Compared by the marks' outlines with shapely; discs would report the star's five square ends as the best."""
     made = of(SHAPES[name])
     wide = [k for k, each in enumerate(made) if max(half for _, half in each.half_width) > HALF_MM]
     (filling,) = fillings(made, wide, *brush.half_width_range_mm())
@@ -221,8 +221,8 @@ def like(stroke, line):
 @pytest.mark.slow
 @sample("d", [SHAPES["bar"], SQUARE, SHAPES["ell"], SHAPES["triangle"], PENTAGON, DIAMOND], keep=2)
 def test_marks_of_passes_have_the_shape_s_straight_edges_up_to_its_corners(brush, d):
-    """Measured on the simulated marks by shapely: within 0.2 mm of each edge, from 2 mm beside corners on, from 5 mm
-    beside one that points inwards, where the brush turns."""
+    """Measured on the simulated marks by shapely: within 0.2 mm of each edge, from 2 mm from corners on, from 5 mm
+    next to one that points inwards, where the brush turns."""
     made = of(d)
     shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm])).simplify(0.01)
     paint = paint_of(passes_of(made, brush), brush)
@@ -318,7 +318,7 @@ def test_a_pen_fills_a_shape_in_passes_of_its_one_width(name):
     inked = region(_core.unite([ring for each in marks.passes for ring in each.outline_mm]))
     assert inked.difference(shape.buffer(0.03 * 1.2 + 0.02)).area < 0.05
     assert shape.difference(inked).area / shape.area < 0.03
-    assert within_reach(made, pen, "auto") == (made, made, [])  # unless asked it draws middle lines
+    assert within_reach(made, pen, "auto") == (made, made, [])  # by default it draws middle lines
 
 
 def straight(name, start, end, half):
@@ -327,7 +327,7 @@ def straight(name, start, end, half):
 
 
 def test_slits_between_the_parts_of_a_shape_s_strokes_are_no_edges(brush):
-    """Rings led round them, by 2 mm beside an inner corner of this star."""
+    """Rings along them, by 2 mm from an inner corner of this star."""
     made = of(SHAPES["star"])
     (filling,) = fillings(made, list(range(len(made))), *brush.half_width_range_mm())
     parts = _core.unite([ring for stroke in made for ring in stroke.wanted_mm])

@@ -21,7 +21,7 @@ from brushsvg.model.library import find_brush
 pytestmark = pytest.mark.arm
 
 SHEET_MM = (200.0, 100.0)
-# xarm7 is told what xarm6 is, and its angles take half a minute to prepare in a new home
+# xarm7 has the language of xarm6, and its angles take half a minute to prepare in a new home
 OTHERS = (*SERVOS, "fr3", "hpgl-plotter", "marlin-servo", "xarm7")
 WAITING = [name for name in cell_names() if name not in OTHERS]
 
@@ -49,13 +49,13 @@ def test_it_does_what_a_careful_person_does_in_this_order(name):
     assert asks == [0, 1, 2, 2, 2, 2, 1, *[0] * (len(strokes) - 1), 1]
     assert sections[-1].moves[-1].points_mm[-1, 2] == safe_mm
     for before, move in zip(all_moves(sections), all_moves(sections)[1:], strict=False):
-        if min(before.points_mm[-1, 2], move.points_mm[:, 2].min()) < 1.5:  # the paper may lie 1 mm higher
+        if min(before.points_mm[-1, 2], move.points_mm[:, 2].min()) < 1.5:  # the paper may be 1 mm higher
             assert move.speed_mm_s <= max(cell.speeds.press_mm_s, 15.0)
 
 
 @pytest.mark.parametrize("name", WAITING)
 def test_it_rises_to_its_own_height_and_is_never_lowered_fast(name):
-    """It rose to the safe height, and went on to the height of its air run on a slant, from wherever the tool was."""
+    """It rose to the safe height, and went on to the height of its air run on a slant, from any place."""
     cell = find_cell(name)
     made = first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1)
     moves = all_moves(made.sections())

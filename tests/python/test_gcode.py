@@ -89,7 +89,7 @@ def test_the_slowest_stroke_still_moves():
 def test_every_language_has_a_program_to_look_at():
     for post in (
         each for name, each in POSTS.items() if name != "robodk"
-    ):  # whatever a user's own post writes
+    ):  # anything a user's own post writes
         assert list(GOLDEN.parent.glob(f"*{post.extensions[0]}")), f"tests/golden has no {post.extensions[0]}"
 
 
@@ -163,7 +163,7 @@ HALF_TURNS = [(40 + 4 * np.cos(a), 30 + 4 * np.sin(a), -2.0) for a in np.linspac
     ],
 )
 def test_circles_are_written_where_the_firmware_keeps_near_them(name, segment_mm, off_mm, is_circle):
-    """FluidNC refuses radii 0.005 mm apart; lines of 0.6 mm lie 0.011 mm beside a circle of 4 mm."""
+    """FluidNC refuses radii 0.005 mm apart; lines of 0.6 mm are 0.011 mm from a circle of 4 mm."""
     cell = replace(find_cell(name), arc_segment_mm=segment_mm)
     poses = np.array(HALF_TURNS)
     poses[-1, 0] -= off_mm

@@ -1,4 +1,4 @@
-"""HP-GL for pens: what is drawn lies within half a unit of the plan, and what a pen cannot draw is refused."""
+"""HP-GL for pens: what is drawn is within half a unit of the plan, and what a pen cannot draw is refused."""
 
 import re
 from dataclasses import replace

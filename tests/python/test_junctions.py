@@ -1,4 +1,4 @@
-"""Where thick limbs meet: shapes that lines with a width made are painted by these lines again, straight beside what
+"""Where thick limbs meet: shapes that lines with a width made are painted by these lines again, straight next to what
 joins them, and as wide where they end in another as before."""
 
 import numpy as np
@@ -9,7 +9,7 @@ from brushsvg import _core
 from brushsvg.strokes.skeleton import outline_strokes
 from brushsvg.strokes.swept_areas import region
 
-SEEN_MM = 0.15  # what of a shape lies deeper in it and stays bare, or is painted farther out, one sees
+SEEN_MM = 0.15  # where a shape stays bare deeper in, or paint is farther outside, one sees it
 
 EDGE_MM = 0.15
 

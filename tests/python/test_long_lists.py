@@ -25,7 +25,7 @@ CALLS = {
     "a ring": lambda: brushsvg.area([LONG]),
     "a ring that is one row": lambda: brushsvg.area([all_rows(2)]),
     "a thousand rings": lambda: brushsvg.area([np.zeros((10**5, 2))] * 1000),
-    "rings beside rings": lambda: brushsvg.overlap([SQUARE], [SQUARE, LONG]),
+    "rings next to rings": lambda: brushsvg.overlap([SQUARE], [SQUARE, LONG]),
     "points": lambda: _core.convex_hull(LONG),
     "poses": lambda: brushsvg.Pass("a", LONG),
     "poses that are one": lambda: brushsvg.Pass("a", all_rows(3)),

@@ -29,7 +29,7 @@ NO_LIMIT = 10**9
 
 
 def files_of(path: Path) -> list[Path]:
-    """A job's files in the order in which they run, the one that was asked for first."""
+    """A job's files in the order in which they run, the one that was requested first."""
     others = [other for other in path.parent.glob(f"*{path.suffix}") if other != path]
     return [path, *sorted(others, key=lambda other: int(re.search(r"\d+$", other.stem)[0][-3:]))]
 

@@ -21,7 +21,7 @@ def test_overlaps_count_marks_where_they_are_and_without_their_displacement():
     ways = [np.array([[20, 20 + y, 0], [30, 20 + y, -4], [60, 25 + y, -4.0]]) for y in (0.0, 40.0)]
     marks = _core.simulate(_core.Plan("b", "", (1.0, 1.0), [_core.Pass("", way) for way in ways]), brush)
     _core.trace_outlines(marks, brush)
-    # the sheet lies elsewhere, and the second mark is 1.5 mm off on it
+    # the sheet is elsewhere, and the second mark is 1.5 mm off on it
     moved = [np.array([3.0, -2.0]), np.array([3.0, -0.5])]
     painted = [
         _core.PaintedMark(str(k), way, [np.array(ring) + by for ring in one.outline_mm])

@@ -79,12 +79,12 @@ def test_a_way_through_a_box_is_found_there(frame, start, end, circle, corner, s
         assert place is not None
     if place is not None:
         assert (place > low - 1e-9).all() and (place < high + 1e-9).all()
-        assert np.linalg.norm(places - place, axis=1).min() <= step_mm, "it lies on the way"
+        assert np.linalg.norm(places - place, axis=1).min() <= step_mm, "it is on the way"
 
 
 @given(FRAME, circles(rise=st.floats(-100, 100)), POINT, st.tuples(*[st.floats(0.5, 300)] * 3))
 def test_a_circle_that_climbs_is_never_judged_too_kindly(frame, circle, corner, size):
-    """Only programs that were changed have one; all that circle and climb span is asked instead."""
+    """Only programs that were changed have one; all that circle and climb span is checked instead."""
     some, places = ways_in(frame, ways([], [circle[:3]])), moved(frame, sampled(circle))
     low, high = bounds(some)
     assert (low <= places + 1e-9).all() and (high >= places - 1e-9).all()
@@ -96,7 +96,7 @@ def test_a_circle_that_climbs_is_never_judged_too_kindly(frame, circle, corner, 
 
 
 def test_a_circle_that_ends_where_it_starts_goes_all_the_way_round():
-    """As machines run it, and as no places of its ends tell."""
+    """As machines run it, and as no places of its ends show."""
     some = ways([], [((10, 0, -2), (10, 0, -2), (7, 0, 1))])
     low, high = bounds(some)
     assert np.vstack([low, high]) == pytest.approx(np.array([(4, -3, -2), (10, 3, -2)], dtype=float))

@@ -200,9 +200,7 @@ def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
     reported = capsys.readouterr().out
     assert gives(reported, "lag", "tip_gap", "tip_to_widest", "8 mm", "8.9 mm", "10 mm")
     assert main("brush new flat --lag 5 --width-at 3=2.5 --width-at 8=7".split()) == 0
-    assert not gives(capsys.readouterr().out, "tip_to_widest", "8 mm"), (
-        "nothing lies beyond what was measured"
-    )
+    assert not gives(capsys.readouterr().out, "tip_to_widest", "8 mm"), "nothing is beyond what was measured"
     words = "brush new deep --lag-at 2=5 --lag-at 6=11 --width-at 3=2.5 --width-at 8=7".split()
     assert main(words) == 0
     reported = capsys.readouterr().out

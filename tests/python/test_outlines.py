@@ -65,7 +65,7 @@ def test_a_leg_stays_straight_to_a_cut_and_runs_into_a_corner_that_is_sharper(sl
     ],
 )
 def test_an_arm_whose_sides_bend_is_as_wide_at_its_cut(d, half_mm):
-    """As of C and r: the axis points past the middle of the cut, and ran on into its corner, 2.0 and 1.8 mm."""
+    """As in C and r: the axis points past the middle of the cut, and ran on into its corner, 2.0 and 1.8 mm."""
     (letter,) = painted(path(d))
     halves = letter.half_width[0][1], letter.half_width[-1][1]
     at = {x > 30: half for (x, _), half in zip(ends(letter), halves, strict=True)}
@@ -161,7 +161,7 @@ def test_the_legs_of_an_apex_are_straight_and_begin_next_to_each_other(blunt_mm,
 @pytest.mark.parametrize(
     ("d", "least"),
     [
-        ("M10 6H16.5V34L28.7 6H35.3L18.5 40Q14.3 48.5 10 40Z", 0.977),  # 0.970 beside each other
+        ("M10 6H16.5V34L28.7 6H35.3L18.5 40Q14.3 48.5 10 40Z", 0.977),  # 0.970 next to each other
         ("M10 6H15.5V30.2L23 6H28.5L21.3 40Q15.7 46.1 10 40Z", 0.968),  # 0.948 towards one place
     ],
 )
@@ -575,7 +575,7 @@ def test_edges_side_by_side_are_counted_in_bands():
     teeth = zigzag(20_000)
     tilted = np.column_stack([teeth[:, 0], teeth[:, 1] + teeth[:, 0] / 10])
     assert pairs(tilted) < 1e5, "side by side, none above another"
-    # all reach up to a line beyond which but one edge lies: passed over one by one
+    # all reach up to a line beyond which but one edge is: passed over one by one
     assert pairs([*teeth, [100, 40], [0, 40]]) == pytest.approx(0.04 * 20_000**2 / 2, rel=0.02)
     angle = np.linspace(0, 2 * np.pi, 20_000, endpoint=False)
     assert pairs(np.column_stack([np.cos(angle), np.sin(angle)])) < 20_000 * 300

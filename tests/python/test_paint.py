@@ -481,7 +481,7 @@ def test_all_reports_of_a_job_count_loads(tmp_path, monkeypatch, capsys):
 
 
 def test_the_way_to_the_paint_is_looked_at_before_anything_is_written():
-    """Both ends may be where the tool may go, and not all that lies between."""
+    """Both ends may be where the tool may go, and not the way between."""
     brush = find_brush("round-6")
     cell = cell_with(Reload("stroke"), ANY)
     wall = ((-12.0, -50.0, -50.0), (-8.0, 150.0, 50.0))

@@ -1,4 +1,4 @@
-"""Paint that lies where nobody wants it, of strokes that have no middle line of their own."""
+"""Stray paint of strokes that have no middle line of their own."""
 
 import re
 
@@ -25,8 +25,8 @@ def brush():
     ("displaced_mm", "is_reported"), [(0.0, False), (0.8, False), (1.5, True), (2.5, True)]
 )
 def test_paint_is_reported_by_how_far_it_is_outside(brush, displaced_mm, is_reported):
-    """A straight mark that was shifted sideways lies outside by the shift. Kaushan's B, as good as it can be painted,
-    had a tracking error of 4.9 mm told of it; Lobster's A had nothing told of a thorn of 2.3 mm."""
+    """A straight mark that was shifted sideways is outside by the shift. Kaushan's B, as good as it can be painted,
+    was reported with a tracking error of 4.9 mm; Lobster's A had no notice of a thorn of 2.3 mm."""
     run = _core.compensate([bar("a", 30.0 + displaced_mm)], brush, (100.0, 60.0)).plan.passes[0]
     reported = outside([bar("a", 30.0)], [run], brush)
     assert bool(reported) == is_reported
@@ -43,7 +43,7 @@ def test_paint_on_a_neighbour_is_in_the_target(brush):
 
 
 def test_a_tracking_error_is_reported_where_the_brush_is_known_better(brush):
-    """The lag of round-6 is known to 0.58 mm as standard deviation: 0.1 mm beside the line are lost in it."""
+    """The lag of round-6 is known to 0.58 mm as standard deviation: 0.1 mm from the line are lost in it."""
     for displaced_mm, is_reported in ((0.1, False), (0.4, True)):
         run = _core.compensate([bar("a", 30.0 + displaced_mm)], brush, (100.0, 60.0)).plan.passes[0]
         error = _core.tracking_error_of(run, bar("a", 30.0), brush, 0.05)

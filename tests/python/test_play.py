@@ -50,7 +50,7 @@ def test_the_way_is_that_of_small_steps_with_few_poses():
 
 @pytest.mark.parametrize("height", [-0.4, 0.4])
 def test_a_tool_leans_from_where_it_touches_the_paper(height):
-    """Pressed on the spot and drawn to the right, over paper that lies lower or higher than it was taught."""
+    """Pressed on the spot and drawn to the right, over paper that is lower or higher than it was taught."""
     reported = core.Pass(
         stroke="s",
         poses_mm=np.array([[10.0, 20, 0], [10, 20, -2], [30, 20, -2], [30, 20, 0]]),

@@ -1,4 +1,4 @@
-"""G-code as owners of plotters write it: many styles, four drawings each, read as the lines that were meant."""
+"""G-code as owners of plotters write it: many styles, four drawings each, read as the lines that were intended."""
 
 import math
 import random
@@ -65,7 +65,7 @@ def inverted(lines, travel="G0"):
 
 
 def parked(lines, up, down):
-    """It begins and ends at z 0, wherever the pen is up."""
+    """It begins and ends at z 0, where the pen is up."""
     yield from ("G21", "G90", "G1 X0 Y0 Z0 F3000")
     for line in lines:
         yield from (f"G1 Z{up:g}", at(line[0]), f"G1 Z{down:g} F800")

@@ -101,7 +101,7 @@ def test_a_line_thinner_than_the_brush_is_painted_at_its_least_width():
         with refused(f"width-out-of-reach {width} '[1, 2] mm'", "p"):
             within_reach(made, liner, "refuse")
     rigid = find_brush("rigid")
-    assert within_reach(made, rigid, "passes")[0] == made  # its one width is not asked
+    assert within_reach(made, rigid, "passes")[0] == made  # its one width is not checked
 
 
 def test_a_sliver_that_is_less_than_half_of_the_smallest_mark_is_left_out():
@@ -166,7 +166,7 @@ def test_the_stems_of_a_drawing_are_of_one_weight(brush):
 
 
 def test_a_width_that_is_hardly_out_of_reach_is_no_warning(brush):
-    """8.45 mm in place of 8.4 was told of nine strokes of a word."""
+    """8.45 mm in place of 8.4 was reported for nine strokes of a word."""
     for wide_mm, is_reported in ((8.45, False), (8.55, False), (8.7, True)):
         painted, _, notices = within_reach(of(f"M10 10H90V{10 + wide_mm}H10Z"), brush)
         assert bool(notices) == is_reported

@@ -42,7 +42,7 @@ def test_never_worse_on_small_drawings():
 
 
 def with_teeth(stroke):
-    """Wanted within a zigzag along its edge, as pieces that other strokes were cut from are ragged: every mark turns
+    """Target within a zigzag along its edge, as pieces that other strokes were cut from are ragged: every mark turns
     less."""
     rim = np.array(shapely.Polygon(_core.wanted_outline(stroke, 0.01)[0]).exterior.segmentize(0.4).coords)[
         :-1

@@ -1,4 +1,4 @@
-"""`--compensation refined` on shapes wider than the brush, what is told of where it goes, and a machine's limits."""
+"""`--compensation refined` on shapes wider than the brush, its notices, and a machine's limits."""
 
 from dataclasses import replace
 
@@ -67,7 +67,7 @@ def test_outlines_within_reach_and_a_little_beyond_are_refined_towards():
 @pytest.mark.parametrize(("away_mm", "is_reported"), [(0.8, [True, False]), (2.5, [True, True])])
 def test_a_refined_mark_next_to_its_stroke_is_reported(away_mm, is_reported):
     """Two strokes 4 mm wide: the miss of one in closed form counts from the tolerance on, that of a refined one from
-    where its paint lies half its half width outside."""
+    where its paint is half its half width outside."""
     stroke = bar(2.0, target=False)
     a_pass = compensate([stroke], BRUSH, (120, 90)).plan.passes[0]
     a_pass.poses_mm = a_pass.poses_mm + np.array([0, away_mm, 0])
@@ -77,7 +77,7 @@ def test_a_refined_mark_next_to_its_stroke_is_reported(away_mm, is_reported):
 
 
 def test_a_refined_plan_reports_strokes_left_in_closed_form(tmp_path):
-    """Nothing is refined on a thread, and its misses were told with --compensation closed only."""
+    """Nothing is refined on a thread, and its misses were reported with --compensation closed only."""
     text = """<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60"><path id="z"
         d="M20 20 H70 L22 24" fill="none" stroke="#000" stroke-width="0.4"/></svg>"""
     closed, refined = works(tmp_path, text, corners="turn")

@@ -55,7 +55,7 @@ def test_png_shows_colours_at_their_places_and_order(painted):
     assert image.shape[:2] == (600, 1200)
     assert pixel(image, 16, 6) == RED
     assert pixel(image, 33, 24) == BLUE
-    assert pixel(image, 40, 24) == RED, "the later stroke lies on top"
+    assert pixel(image, 40, 24) == RED, "the later stroke is on top"
     assert pixel(image, 16, 24) == "#ffffff"
     edge = image[(image != 255).any(axis=2) & (image != decode_colour(RED)).any(axis=2)]
     assert len(np.unique(edge, axis=0)) > 20, "edges are anti-aliased"
@@ -121,11 +121,11 @@ def test_panels_are_complete_at_one_scale(shape, landscape):
     assert (image.shape[1] > image.shape[0]) == landscape
     grey = (np.abs(image.astype(int) - 180).max(axis=2) < 8).sum()
     ink = ((image[..., 0] > 90) & (image[..., 2] < 80)).sum()
-    assert ink == pytest.approx(2 * grey, rel=0.1), "one panel wanted, two painted over it"
+    assert ink == pytest.approx(2 * grey, rel=0.1), "one panel of the target, two painted over it"
 
 
 def test_a_page_of_many_strokes_is_painted_by_several_processors_as_each_alone():
-    """In which order tells nothing, where they cross; where none does, the picture is all of theirs."""
+    """The order does not matter where they cross; where none does, the picture is all of theirs."""
     brush, rng = find_brush("round-6"), np.random.default_rng(2)
     sheet, count = (400.0, 300.0), 96
     apart = [((10 + 30 * (k % 12), 15 + 34 * (k // 12)), rng.uniform(-9, 9, 2)) for k in range(count)]

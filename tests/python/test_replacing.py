@@ -102,7 +102,7 @@ def test_where_nothing_can_be_remembered_files_are_somebodys(desk, capsys, monke
 
 
 def test_who_is_refused_for_a_home_that_cannot_be_written_reads_where(desk, capsys, monkeypatch):
-    """Root may write anywhere, so that is asked of a stand-in."""
+    """Root may write anywhere, so a stand-in is used."""
     place = desk / "state" / "brushsvg" / "written.txt"
     place.mkdir(parents=True)
     monkeypatch.setattr(

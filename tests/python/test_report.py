@@ -71,7 +71,7 @@ def test_json_is_complete_and_without_nan():
         (ROW,),
         ROW,
         75.04,
-        (Notice("s/1", "odd", code="strange", advice="mend"),),
+        (Notice("s/1", "odd", code="strange", advice="fix"),),
     )
     read = json.loads(to_json(made), parse_constant=lambda name: pytest.fail(name))
     assert read["format"] == "brushsvg/report"
@@ -79,9 +79,9 @@ def test_json_is_complete_and_without_nan():
     assert read["total"]["poses"] == 42
     reported = {
         "where": "s/1",
-        "sentence": "odd; mend",
+        "sentence": "odd; fix",
         "code": "strange",
-        "advice": "mend",
+        "advice": "fix",
         "damaged": False,
         "refused": False,
     }

@@ -43,7 +43,7 @@ NAMES = {
     "lrmate200id": "fanuc",
     "m0609": "doosan",
 }
-CIRCLES = {"irb120", "kr6-r900", "cr5", "lrmate200id", "m0609"}  # what tells them
+CIRCLES = {"irb120", "kr6-r900", "cr5", "lrmate200id", "m0609"}  # what defines them
 SQUARE = Paper((-150.0, -450.0, 20.0))
 TURNED = Paper((-150.0, -450.0, 20.0), (0.0, 0.0, 25.0))
 LEANING = Paper((-150.0, -450.0, 20.0), (2.0, -3.0, 25.0))
@@ -138,7 +138,7 @@ def gentle(cell, speed_mm_s=12.7) -> str:
 
 
 def test_dobot_gets_whole_blends_and_whole_speeds():
-    """The manual names no others. Where the cell says that finer ones are taken, they are told."""
+    """The manual names no others. Where the cell says that finer ones are taken, they are written."""
     cell = replace(on("cr5", SQUARE), blending=Blending(0.05, 2.0))
     reported = "MovL(on_paper(18.000, 10.000, -2.000), {speed = 12, r = 1})\n"
     reported += "MovL(on_paper(22.000, 10.100, -2.000), {speed = 12, r = 1})\n"

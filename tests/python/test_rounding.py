@@ -1,4 +1,4 @@
-"""What of a pass is left in a program's text, and that nobody who reads one back decides otherwise than its writer."""
+"""Rounding of a pass in a program's text: readers of one decide as its writer does."""
 
 import random
 from dataclasses import replace
@@ -52,7 +52,7 @@ def found_by_check(poses, arcs, cell):
 
 # a chord of 0.7 mm on a circle of 14 mm between lines, as a turn that fills a corner ends
 ONE_CHORD = [DOWN, (30, 20, -2), (45, 22, -2), *arc((50, 40), 14, -70, -67.2, 2), (60, 40, -2), UP]
-# on a circle of 400 m: at any number of decimals that one writes, its places lie on one line
+# on a circle of 400 m: at any number of decimals that one writes, its places are on one line
 FLAT = [DOWN, (30, 20, -2), *arc((40, 4e5 + 20), 4e5, -89.9993, -89.9985, 3), (60, 40, -2), UP]
 # smaller than what is written: rounded, it may run round the other way
 SMALL = [DOWN, (30, 20, -2), *arc((50, 40), 14, -70.001, -70.0, 4), (60, 40, -2), UP]
@@ -233,7 +233,7 @@ def test_no_circle_begins_or_ends_next_to_one_by_less_than_a_move():
     ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3", "irb120", "kr6-r900", "cr5", "lrmate200id", "m0609"],
 )
 def test_a_whole_circle_is_written_in_halves(name, degrees, turn):
-    """Rounded, its end could lie on either side of its beginning: then it would be run all round, or not at all."""
+    """Rounded, its end could be on either side of its beginning: then it would be run all round, or not at all."""
     cell = cell_of(name, 3, paper=Paper((0.3, -400.1, 20.0), (0, 0, 97.57)))
     on = arc((50, 40), 14, -70, -70 + turn * degrees, 24)
     poses = [DOWN, (*on[0][:2], -1.0), *on, (60, 40, -2), UP]
@@ -249,7 +249,8 @@ def test_a_whole_circle_is_written_in_halves(name, degrees, turn):
 @pytest.mark.parametrize("degrees", [361.0, 371.4, 540.0, 800.0])
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3"])
 def test_a_circle_that_goes_on_beyond_its_beginning_loses_no_turn(name, degrees, turn):
-    """A small closed triangle was turned by 371.4 degrees: told in one line, it ran 11.4 degrees, or the other way."""
+    """A small closed triangle was turned by 371.4 degrees: written in one line, it ran 11.4 degrees, or the other
+    way."""
     on = arc((50, 40), 9.47, 72.19, 72.19 + turn * degrees, 67)
     poses = [DOWN, (*on[0][:2], -1.0), *on, (60, 40, -2), UP]
     reported, cell = _core.Arc(2, 68, (50, 40), turn), cell_of(name, 4)
@@ -264,7 +265,7 @@ def test_a_circle_that_goes_on_beyond_its_beginning_loses_no_turn(name, degrees,
 @pytest.mark.parametrize("at", [100, 180, 190, 250])
 @pytest.mark.parametrize("name", ["ur5e", "jaka-zu3"])
 def test_a_circle_whose_named_pose_is_half_way_round_or_farther_is_read(name, at):
-    """Of its poses the middle one is named, wherever on the circle that lies."""
+    """Of its poses the middle one is named, where on the circle that is."""
     angles = [0, at / 3, at / 2, at, (at + 300) / 2, 290, 300]
     on = [point for angle in angles for point in arc((50, 40), 14, angle, angle, 1)]
     poses = [DOWN, (30, 20, -2), *on, (60, 40, -2), UP]

@@ -164,7 +164,7 @@ def test_values_follow_the_table():
 
 
 def test_the_output_is_never_switched_off():
-    """In laser mode grbl's output is off wherever the motion mode is not G1, at M5 and at M2."""
+    """In laser mode grbl's output is off where the motion mode is not G1, at M5 and at M2."""
     text = text_of(*TWO, cell="grbl-servo")
     code = [line for line in text.splitlines() if line and not line.startswith("(")]
     assert code.index("G1 F3000.0") < code.index("M3 S800")
@@ -173,7 +173,7 @@ def test_the_output_is_never_switched_off():
 
 
 def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
-    """Where the line before it was held, rounded heights do not tell to the value: a lift that begins four values
+    """Where the line before it was held, rounded heights do not show to the value: a lift that begins four values
     later waits a tenth of a millimetre less, and was taken for one that was changed."""
     like = _Alike(CELL)
 
@@ -266,7 +266,7 @@ def test_a_lift_before_any_feed_has_a_speed():
 
 
 def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():
-    """The machine's feed is that of the way beside the lift: at 20 mm/s a slope of 1.2 made 31 of it."""
+    """The machine's feed is that of the way without the lift: at 20 mm/s a slope of 1.2 made 31 of it."""
     poses = np.array([(10, 10, 0), (13, 10, -3.6), (20, 10, -3.6), (23, 10, 0)])
     plan = SimpleNamespace(
         sheet_mm=(100.0, 60.0),

@@ -1,4 +1,4 @@
-"""Whether a sheet of marks has the size of its plan, by how far off its marks lie."""
+"""Whether a sheet of marks has the size of its plan, by how far off its marks are."""
 
 import re
 

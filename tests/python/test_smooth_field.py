@@ -46,7 +46,7 @@ def desk(tmp_path, monkeypatch):
 
 
 def goes(reported, machine):
-    """(n, 3) where it goes that is told: the formula once more, in other words, without a map."""
+    """(n, 3) where it goes for a command: the formula once more, in other words, without a map."""
     out = []
     for x, y, z in reported:
         (mx, my), (rx, ry) = machine.field_middle_mm, machine.field_reach_mm
@@ -85,7 +85,7 @@ def test_lines_on_the_paper_are_lines_all_along(desk, machine):
     away = cKDTree(plan).query(painted)[0]
     assert len(painted) > 300 and away.max() < 0.015
     near_by = cKDTree(plan).query(between[between[:, 2] < -0.5])[0]
-    assert near_by.max() > 0.3, "and it is told otherwise"
+    assert near_by.max() > 0.3, "and the command differs"
 
 
 @sample(
@@ -190,7 +190,7 @@ def test_the_table_is_written_as_it_is_read():
 
 
 def test_a_corrected_cell_undoes_the_field_as_well():
-    """What is amiss beyond the cell comes on top of where the cell took the tool."""
+    """Faults beyond the cell come on top of where the cell took the tool."""
     now = corrected_machine(found(replace(TRUE, lean_mm_per_mm=(0.0, 0.0))), MIDDLE, BENT)
     reported = np.random.default_rng(2).uniform((0, 0, 0), (120, 70, 0), (50, 3))
     once = goes(reported, BENT)[:, :2]

@@ -97,7 +97,7 @@ ARC = 20 * np.column_stack([np.cos(np.linspace(0, np.pi, 60)), np.sin(np.linspac
 
 
 def off(stroke, points):
-    """How far points [mm] lie from the middle line."""
+    """How far points [mm] are from the middle line."""
     line = flatten(stroke, 1e-4)[:, :2]
     a, d = line[:-1], np.diff(line, axis=0)
     t = np.clip(((points[:, None] - a) * d).sum(-1) / (d**2).sum(-1), 0, 1)
@@ -124,9 +124,7 @@ def test_a_smooth_stroke_passes_every_point_within_the_tolerance(tolerance_mm, c
     assert off(stroke, points).max() <= tolerance_mm
     lines = len(Stroke.from_points(points, 3.0).middle_mm)
     assert lines == len(points) - 1
-    few = (
-        12 if tolerance_mm > 0.007 else lines
-    )  # 0.007: what lies between the points and a circle through them
+    few = 12 if tolerance_mm > 0.007 else lines  # 0.007: what is between the points and a circle through them
     assert len(stroke.middle_mm) <= few
 
 

@@ -280,7 +280,7 @@ def test_damaged_shapes_transforms_and_widths_are_named(shape, said):
 
 
 def corners(body):
-    """Joints of a shape without those inside its arcs, which lie between two cubics of equal direction."""
+    """Joints of a shape without those inside its arcs, which are between two cubics of equal direction."""
     cubics = only(body).subpaths[0].cubics
     into, out = cubics[:-1, 3] - cubics[:-1, 2], cubics[1:, 1] - cubics[1:, 0]
     alike = np.abs(into - out).max(axis=1) < 1e-9
@@ -364,7 +364,7 @@ def test_y_points_up_from_the_lower_left_corner():
 
 @pytest.mark.parametrize(
     ("page", "sheet", "corner"),
-    [  # corner: where user point (10, 10) lies on paper
+    [  # corner: where user point (10, 10) is on paper
         ('width="100mm" height="50mm" viewBox="0 0 100 50"', (100, 50), (10, 40)),
         ('width="4in" height="2in"', (101.6, 50.8), (10 * 25.4 / 96, 50.8 - 10 * 25.4 / 96)),
         ('width="10cm" height="5cm" viewBox="10 10 1000 500"', (100, 50), (0, 50)),

@@ -231,7 +231,7 @@ def test_deep_and_wide_documents_with_rules():
     ],
 )
 def test_in_a_copy_selectors_see_what_is_copied_and_no_more(selector, reaches):
-    """SVG 2, 5.6.3; Inkscape asks where it is copied from, which is told where it makes another style."""
+    """SVG 2, 5.6.3; Inkscape uses the place of the original, which is reported where it makes another style."""
     copied = '<defs><i/><g id="g"><path id="p" d="M0 0H5"/></g></defs>'
     design = read(
         f'<style>{selector}{{stroke-width:7}}</style>{copied}<g class="here"><use id="u" href="#g"/></g>'

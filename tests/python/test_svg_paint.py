@@ -1,4 +1,4 @@
-"""What a stroke and a fill are painted with, alone and together, and what of it is told."""
+"""What a stroke and a fill are painted with, alone and together, and the notices about it."""
 
 import pytest
 from diagnostics import are_reported, refused
@@ -127,7 +127,7 @@ def test_a_box_is_measured_once(monkeypatch):
 
 
 def test_white_is_reported():
-    """What it hides is painted, too: paint is not cut off by what lies on top."""
+    """What it hides is painted, too: paint is not cut off by what is on top."""
     for fill, stroke in (
         ("white", "blue"),
         ("white", "none"),

@@ -569,7 +569,7 @@ def test_composites_that_hold_each_other_end():
         writer[tag] = data
     writer.close()
     glyph_set = TTFont(hostile).getGlyphSet()
-    with pytest.raises(RecursionError):  # the font is as bad as it was meant to be
+    with pytest.raises(RecursionError):  # the font is as bad as it was intended to be
         glyph_set["A"].draw(DecomposingRecordingPen(glyph_set))
     assert agrees(refusal("A", hostile.getvalue()), "nothing-to-paint")
 
@@ -587,7 +587,7 @@ def saved(font) -> bytes:
 
 
 def test_letters_without_an_outline_are_named():
-    """As of fonts that hold pictures; what is blank by its nature is not named."""
+    """As for fonts that hold pictures; what is blank by its nature is not named."""
     font = TTFont(io.BytesIO(outline_font()))
     font["glyf"]["V"] = TTGlyphPen(None).glyph()
     reported, count = reported_of(saved(font), "A V\u00adA")

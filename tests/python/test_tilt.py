@@ -1,4 +1,4 @@
-"""How a brush is tilted: read, written, kept, and refused wherever it would be lost."""
+"""How a brush is tilted: read, written, kept, and refused where it would be lost."""
 
 import copy
 import json

@@ -74,11 +74,11 @@ def text_for(of, cell):
     return "".join(text_of(POSTS[cell.language], made))
 
 
-# What a robot is told ---------------------------------------------------------------------------------------
+# Commands of a robot ---------------------------------------------------------------------------------------
 
 
 def commanded_ur(text, cell):
-    """(tips (n, 3) [mm], rotations) of each move in the robot's frame, and the line that led to it."""
+    """(tips (n, 3) [mm], rotations) of each move in the robot's frame, and the line that moved to it."""
     rows = [(pose, name) for name, *rest in run(text).events for pose in rest[0] if name.startswith("move")]
     tips = 1e3 * np.array([pose[:3] for pose, _ in rows])
     return tips, Rotation.from_rotvec([pose[3:] for pose, _ in rows])
@@ -88,7 +88,7 @@ N = r"(-?[\d.]+)"
 
 
 def in_paper(tips, turned, cell):
-    """The same in the robot's frame of what is told in that of the paper."""
+    """The same in the robot's frame of commands in that of the paper."""
     frame = robot_from_paper(cell)
     return tips @ frame[:3, :3].T + frame[:3, 3], Rotation.from_matrix(frame[:3, :3]) * turned
 
@@ -289,7 +289,7 @@ def test_a_robot_that_turns_evenly_between_poses_does_what_is_predicted(seed):
         tip = (steps.poses_mm[k] + steps.poses_mm[k + 1]) / 2
         lean = middle[:2] / middle[2]
         place = on(tip[None], lean[None])[0]
-        # beside the straight way of the axis on the paper, and off the lean that belongs to that place
+        # next to the straight way of the axis on the paper, and off the lean that belongs to that place
         way = places[row + 1] - places[row]
         share = (place - places[row]) @ way / (way @ way)
         assert np.linalg.norm(place - places[row] - share * way) < 0.006
@@ -363,7 +363,7 @@ def test_check_allows_what_is_written(name, of_cell, tmp_path, capsys):
 
 @sample("seed", range(2 * len(TILTING)), keep=5)
 def test_check_allows_random_tilts(seed, tmp_path, capsys):
-    """Strokes, tilts, papers, tools and what a machine does besides, all at random; what turns too fast is left out."""
+    """Strokes, tilts, papers, tools and machine errors, all at random; what turns too fast is left out."""
     random, name = np.random.default_rng(seed), TILTING[seed % len(TILTING)]
     cell = anyhow(name) if seed < len(TILTING) else replace(brushsvg.find_cell(name), arm=None)
     tool = replace(cell.tool, spin_deg=float(random.uniform(-180, 180)), turn_deg_s=300.0)
@@ -427,7 +427,7 @@ def test_of_another_tilt_or_none_is_refused(tmp_path, capsys):
     assert in_json(capsys, "check", made, given, *words)[0] == 0  # no mark shows it
 
 
-# where a language tells a place with how the tool is turned there, the numbers of that, and scipy's word for them
+# where a language gives a place with the turn of the tool there, the numbers of that, and scipy's word for them
 IN_DEGREES = (
     lambda xyz: Rotation.from_euler("xyz", xyz, degrees=True),
     lambda turned: turned.as_euler("xyz", degrees=True),
@@ -518,7 +518,8 @@ def test_a_header_that_does_not_say_that_the_brush_is_tilted_is_refused(name, tm
 
 @pytest.mark.parametrize("about", ["x", "y", "z"])
 def test_damaged_rows_between_poses_are_refused(about, tmp_path, capsys):
-    """Of a trajectory: a row on the way that is turned by 3 degrees about the brush or aside, its tip in place."""
+    """Of a trajectory: a row on the way that is turned by 3 degrees about the brush or to the side, its tip in "
+    "place."""
     given, made, words = written(tmp_path, "fr3", plan(TILTED))
     in_json(capsys, "convert", given, made, *words)
     text = made.read_text()
@@ -559,7 +560,7 @@ def test_other_places_upright_where_they_lean_and_lines_lost_are_refused(tmp_pat
         upright = re.sub(r"tilted\((\S+, \S+, [^,]+), [^)]*\)", r"on_paper(\1)", lines[k])
         damaged.append([*lines[:k], upright, *lines[k + 1 :]])
         place = [1e3 * float(each) for each in re.search(r"tilted\((\S+), (\S+), (\S+),", lines[k]).groups()]
-        if np.linalg.norm(np.subtract(POSES[:-1], place), axis=1).min() < 1e-6:  # others lie on the way
+        if np.linalg.norm(np.subtract(POSES[:-1], place), axis=1).min() < 1e-6:  # others are on the way
             damaged.append([*lines[:k], *lines[k + 1 :]])
             own += 1
         damaged += [[*lines[:k], lines[k], lines[k - 1], *lines[k + 1 :]]]
@@ -711,7 +712,7 @@ def test_a_joint_that_turns_too_fast_by_the_tilt_alone_is_refused():
     assert any(each.code == "joint-too-fast" for each in arm_problems(tilted, slow))
 
 
-# Told beforehand --------------------------------------------------------------------------------------------
+# Warned beforehand --------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("words", [(), ("--cell", "ur5e")])

@@ -1,4 +1,4 @@
-"""What editors and type checkers are told is what is there, and it is enough to find a mistake."""
+"""The types for editors and type checkers are the real ones, and it is enough to find a mistake."""
 
 import ast
 import importlib.util

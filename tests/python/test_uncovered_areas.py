@@ -103,7 +103,7 @@ def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path)
 
 
 def test_what_the_mark_leaves_of_a_blunt_beginning_is_named_with_its_place_and_share(tmp_path):
-    """A seventh of a short stem stays blank beside its pointed beginning, and nothing said so."""
+    """A seventh of a short stem stays blank next to its pointed beginning, and nothing said so."""
     import shapely
 
     from brushsvg.strokes.swept_areas import region

@@ -355,7 +355,7 @@ def can_be_hashed(value):
 
 
 def fields_of(value):
-    """Public fields by name, as plain as numpy compares them; nothing of it asks the value whether it is equal."""
+    """Public fields in a table, as plain as numpy compares them; nothing of it asks the value whether it is equal."""
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, list | tuple):

@@ -1,6 +1,6 @@
 """What people read, held word for word against tests/golden/wording.txt; all other tests ask for codes and numbers.
 
-Whoever words something anew writes that file again, by `make wording`, and reads what changed in it.
+After a change of words, write that file again with `make wording`, and read its changes.
 """
 
 import argparse
@@ -108,7 +108,7 @@ def wording() -> str:
 @pytest.mark.wording
 def test_wording_is_as_it_was_read():
     reported, read = (text.split(TITLE) for text in (wording(), WORDING.read_text(encoding="utf-8")))
-    assert reported == read, "if it is meant: make wording, and read what git says of the file"
+    assert reported == read, "if it is intended: make wording, and read what git says of the file"
 
 
 if __name__ == "__main__":

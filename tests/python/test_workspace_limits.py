@@ -57,7 +57,7 @@ def desk(tmp_path, monkeypatch):
 @pytest.mark.parametrize(("limits", "said"), [(RING, AWAY), (POST, KEPT)])
 @pytest.mark.parametrize(("name", "of_stroke", "way"), [("bar", "bar", ""), ("pair", "right", " way")])
 def test_no_way_goes_through_the_robot_itself(desk, capsys, name, of_stroke, way, limits, said):
-    """Both ends were asked, and not the way; between strokes nothing was."""
+    """Both ends were checked, and not the way; between strokes nothing was."""
     (desk / "mine.toml").write_text(write_cell(robot(**limits)))
     drawing, cell = f"{name}.svg", ("--cell", "mine.toml")
     for command in ("convert", "border"):
@@ -171,7 +171,7 @@ def test_a_circle_that_bulges_beyond_a_limit_is_refused(turn, x):
 
 
 def test_a_circle_that_bulges_beyond_the_margin_is_refused(desk, capsys):
-    """All of its poses lie within."""
+    """All of its poses are within."""
     poses = np.array([(40, -25, -2), (60, -25, -2)], dtype=float)
     below = _core.Arc(0, 1, (50.0, -25.0), 1)
     assert forbidden(plan_of(poses), BRUSH, find_cell()) == []
@@ -179,7 +179,7 @@ def test_a_circle_that_bulges_beyond_the_margin_is_refused(desk, capsys):
 
 
 def test_a_rise_on_paper_that_leans_ends_below_the_box():
-    """The highest place over the sheet is asked for before anything; nothing is painted there."""
+    """The highest place over the sheet is checked before anything; nothing is painted there."""
     cell = find_cell()
     leans = replace(
         cell,
@@ -199,7 +199,7 @@ def test_a_rise_on_paper_that_leans_ends_below_the_box():
 )
 def test_a_rise_before_the_first_move_keeps_out_of_what_is_forbidden(desk, capsys, name, limit, said):
     """Over the stroke all is allowed up to the safe height; on paper that leans, the tool first rises over its highest
-    place, and the box's height alone was asked."""
+    place, and the box's height alone was checked."""
     cell = find_cell(name)
     suffix = ".ngc" if name == "linuxcnc-3axis" else ".jks"
     lamp = ((-80.0, -160.0, -366.0), (20.0, -100.0, -300.0)), ((900.0, 900.0, 0.0), (901.0, 901.0, 1.0))
@@ -289,7 +289,7 @@ def test_jobs_before_the_first_stroke_ask_their_whole_way():
 
 
 def test_a_wipe_beyond_the_sheet_is_not_reached_over_it():
-    """Vessel and wipe lie beside it, and the tip, full of paint, went across at the height of the rim."""
+    """Vessel and wipe are next to it, and the tip, full of paint, went across at the height of the rim."""
     ink = Station("ink", (-20.0, 40.0), depth_mm=5.0, wipe_mm=((-10.0, 40.0, 5.0), (-10.0, 80.0, 5.0)))
     cell = replace(find_cell(), stations=(ink,), reload=Reload("stroke"))
     assert forbidden(plan_of(ROUND), BRUSH, cell) == []

@@ -1,4 +1,4 @@
-"""In which order the lines of a letter are painted, told by where their centres lie."""
+"""In which order the lines of a letter are painted, by the places of their centres."""
 
 import numpy as np
 import pytest
@@ -67,7 +67,7 @@ def test_lines_are_painted_in_the_order_of_writing(d, places):
     found = lines_of(d)
     off = np.array([[np.hypot(*(line - (x, 50 - y)).T).min() for line in found] for x, y in places])
     order = off.argmin(axis=1)
-    assert (off.min(axis=1) < 3).all(), "each place lies on a line"
+    assert (off.min(axis=1) < 3).all(), "each place is on a line"
     assert order.tolist() == sorted(order.tolist())
     assert len(set(order.tolist())) == len(places)
 

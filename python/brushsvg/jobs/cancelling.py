@@ -30,7 +30,7 @@ class _GivenUp(BaseException):
 
 
 def run(work: Callable, progress: Callable[[str], object] | None = None, cancel=None):
-    """Return what work(stage) returns; stage receives in words what is done. progress: receives the same; cancel: None, a
+    """Return what work(stage) returns; stage receives words about progress. progress: the same; cancel: None, a
     callable or something with is_set(): once it says yes, CancelledError is raised.
 
     Work that may be given up runs in a thread of its own, so that an exception can be put into it at any line of

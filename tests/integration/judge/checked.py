@@ -33,7 +33,7 @@ def converted(*words) -> list[str]:
 def quick_check():
     """A function: words of `brushsvg check` -> the sentences with which it refuses; CRASHED for anything else.
 
-    What it prepares of a drawing is kept, the figures that it tells are not made: neither decides what it refuses.
+    What it prepares of a drawing is kept, its figures are not made: neither decides what it refuses.
     """
     known: dict[tuple, Work] = {}
     cells: dict[str, object] = {}

@@ -68,7 +68,8 @@ def moved(by: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 def true_of(commanded: np.ndarray, machine: dict | None) -> np.ndarray:
-    """(n, 3) where a machine takes the tool that is told to go there, in the paper's frame, from a cell's table."""
+    """(n, 3) where a machine takes the tool that is commanded to go there, in the paper's frame, from a cell's "
+    "table."""
     if not machine or not len(commanded):
         return commanded
     along, across = machine.get("scale", (1.0, 1.0))
@@ -82,14 +83,14 @@ def true_of(commanded: np.ndarray, machine: dict | None) -> np.ndarray:
 
 
 def paper_height(commanded: np.ndarray, machine: dict) -> np.ndarray:
-    """(n,) how much higher the paper lies where the tool is told to go than it was taught."""
+    """(n,) how much higher the paper is where the tool is commanded to go than it was taught."""
     tilts = machine.get("tilt_mm_per_mm", (0.0, 0.0))
     on = on_map(commanded, machine.get("map_mm", ()))
     return machine.get("height_mm", 0.0) + commanded[:, 0] * tilts[0] + commanded[:, 1] * tilts[1] + on
 
 
 def bent(place, machine: dict) -> np.ndarray:
-    """(2,) by how much the machine's field takes the tool aside: for x and for y half a quadratic form's value."""
+    """(2,) by how much the machine's field displaces the tool: for x and for y half a quadratic form's value."""
     if "field_mm" not in machine:
         return np.zeros(2)
     reach = np.array(machine["field_reach_mm"])
@@ -109,7 +110,7 @@ def on_map(commanded: np.ndarray, rows) -> np.ndarray:
 
 
 def commanded_in_air(place, height: float, machine: dict | None) -> np.ndarray:
-    """(3,) where such a machine is told to go so that the tool is that high over the paper at a place: there it leans
+    """(3,) the command with which the tool is that high over the paper at a place: there it leans
     nowhere."""
     if not machine:
         return np.array([*place[:2], height])

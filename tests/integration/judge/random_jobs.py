@@ -46,7 +46,7 @@ def tried(dialect: str, number: int, folder: Path, check) -> Tried:
 
 @dataclass(frozen=True)
 class Judged:
-    """What became of a drawing on a machine, as in Tried. job: what was asked for, where a program was written."""
+    """What became of a drawing on a machine, as in Tried. job: what was requested, where a program was written."""
 
     refused: tuple[str, ...] = ()
     wrong: tuple[str, ...] = ()
@@ -84,7 +84,7 @@ def judged(
     text = _whole(program)
     # the plan's own file is written without the machine's limits, which the program has passed
     if said := converted(source, plan, "--cell", toml, *planned):
-        if "--z-offset" in flags:  # the plan's paper lies lower, which may be out of reach
+        if "--z-offset" in flags:  # the plan's paper is lower, which may be out of reach
             return Judged(tuple(said))
         return Judged((), (f"no plan: {said}",))
     job = job_for(toml.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags)

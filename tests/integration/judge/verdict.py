@@ -36,7 +36,7 @@ STEP_MM = 0.04  # of samples where the brush may touch: how exactly OFF_MM is kn
 AIR_STEP_MM = 1.0
 LAST_MM = 0.01
 ROUNDING_MM = 0.002  # two units of the last decimal of the coarsest dialect
-LEVER_MM = 10.0  # a tool that leans is as wrong as a brush's length tells
+LEVER_MM = 10.0  # a tool that leans is as wrong as a brush's length makes it
 SLACK_MM = 0.01  # of limits: what is rounded may be beyond by so much
 MOST = 4000  # samples of one leg
 
@@ -59,7 +59,7 @@ SERVOS = ("grbl-servo", "ebb")
 
 @dataclass
 class Job:
-    """What was asked for: a cell as its file has it, a plan.json, the brush's fastest, the paper's height."""
+    """What was requested: a cell as its file has it, a plan.json, the brush's fastest, the paper's height."""
 
     cell: dict
     plan: dict
@@ -109,7 +109,7 @@ class Job:
     @cached_property
     def passes(self) -> list[np.ndarray]:
         """The plan's passes from the first stroke on, sampled, round where it has circles: lines that a machine runs in
-        their place, on paper that leans and by a servo, lie as near."""
+        their place, on paper that leans and by a servo, are as near."""
         return [_sampled(_round(each)) for each in self.plan["passes"][self.first_stroke - 1 :]]
 
     @cached_property
@@ -131,7 +131,7 @@ class Job:
             ]
             if station.get("by_hand"):
                 way = [(x, y, safe), (x, y, safe)]
-            # told as it stands in the cell, on a machine that may lean: bent where it meets the paper
+            # commanded as it stands in the cell, on a machine that may lean: bent where it meets the paper
             ways.append(places.true_of(_sampled(np.array(way, dtype=float)), self.machine))
         return ways
 
@@ -202,8 +202,8 @@ def _sampled(points: np.ndarray) -> np.ndarray:
 @dataclass
 class Way:
     """A run in the paper's frame, as the machine goes. starts, ends (n, 3), speeds (n,) of its legs, circles as chords;
-    leg: which leg each belongs to; samples (m, 3) with the row that each belongs to, and as they are told; touches: of
-    the samples, those of each touch; told_touches: where the tool was told to go for them."""
+    leg: which leg each belongs to; samples (m, 3) with the row that each belongs to, and as they are commanded;
+    touches: of the samples, those of each touch; commanded_touches: where the tool was commanded to go for them."""
 
     run: Run
     starts: np.ndarray
@@ -262,7 +262,7 @@ def way_of(run: Run, job: Job) -> Way:
 
 
 def broken(way: Way, job: Job) -> list[str]:
-    """A sentence for each limit that the run breaks, anywhere along the way, and for whatever is fast or low."""
+    """A sentence for each limit that the run breaks, anywhere along the way, and for all that is fast or low."""
     if not len(way.starts):
         return []
     return [*_beyond(way, job), *_fast(way, job), *_low(way, job), *_leaning(way)]
@@ -302,7 +302,7 @@ def _beyond(way: Way, job: Job):
 
 
 def _first_place(way: Way) -> int:
-    """The first sample behind the way to the first place that the run names, from wherever the tool was."""
+    """The first sample behind the way to the first place that the run names, from any place."""
     if not len(way.row):
         return 0
     sideways = np.linalg.norm((way.ends - way.starts)[:, :2], axis=1) > SLACK_MM
@@ -410,8 +410,8 @@ def _to_path(points: np.ndarray, path: np.ndarray) -> np.ndarray:
 
 
 def strokes_of(way: Way, job: Job) -> list[np.ndarray]:
-    """The touches that are no visits to a vessel. A vessel's place is told as it stands in the cell, so that it is off
-    the sheet where it is told."""
+    """The touches that are no visits to a vessel. A vessel's place is commanded as it stands in the cell, so that it is
+    off the sheet where it is commanded."""
     width, height = job.plan["sheet_mm"]
     found = []
     for touch, commanded in zip(way.touches, way.commanded_touches, strict=True):
@@ -423,7 +423,7 @@ def strokes_of(way: Way, job: Job) -> list[np.ndarray]:
 
 
 def unlike(way: Way, job: Job, sound: list[np.ndarray] | None = None) -> list[str]:
-    """What of the plan is not painted once, in order, in its direction, within OFF_MM and no deeper by that.
+    """Parts of the plan that are not painted once, in order, in its direction, within OFF_MM and no deeper by that.
 
     sound: the touches of a program that is known to paint the plan: what is the same needs no second look.
     """

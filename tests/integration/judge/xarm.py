@@ -1,4 +1,4 @@
-"""A program for xArm, run by Python itself against a stub of the vendor's SDK: an arm that is where it is told to be.
+"""A program for xArm, run by Python itself against a stub of the vendor's SDK: an ideal arm.
 
 The SDK's own manual says what a call does: codes other than 0 are errors, an arm that is not enabled, in mode 0 and
 state 0 takes no moves, a radius of None or below 0 is a line that stops at its end, angles turn about fixed axes.
@@ -26,7 +26,7 @@ def run_xarm(
     text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray, sensitivity: int = 0
 ) -> Run:
     """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them; sensitivity:
-    that the arm has to have, 0 where nothing is asked for."""
+    that the arm has to have, 0 where nothing is requested."""
     return executed(text, XArmAPI(start, paper, down, tool, sensitivity)).run
 
 
@@ -88,7 +88,7 @@ def _rpy_deg(turned: np.ndarray) -> list[float]:
 
 
 class XArmAPI(Arm):
-    """Calls with the parameters that the SDK's have; calls: (name, positional, by name) of all of them."""
+    """Calls with the parameters that the SDK's have; calls: (name, positional, keywords) of all of them."""
 
     def __init__(self, start, paper, down, tool, sensitivity=0):
         super().__init__(start, paper, down, tool, by_radius=True)
