@@ -44,7 +44,7 @@ help:
 	@echo "make deb-test     that package in a bare system: programs are compiled against it and run"
 	@echo "make cross        the C++ library compiled for aarch64 Linux and Windows"
 	@echo "make docs         the documentation as pages to read in a browser, with a search, in docs/_build"
-	@echo "make docs-lint    check the language of the documentation: long sentences, words to avoid, the first sentence"
+	@echo "make docs-lint    check the language of docs and code: long sentences, words to avoid, the first sentence"
 	@echo "make clang-headers  the public headers read by clang and g++ with all warnings as errors"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
 	@echo "make bench        our figures beside the peers' and the floor"
@@ -270,6 +270,7 @@ bench-compare: setup
 # Short sentences, modern words, a first sentence that says who a page is for. tools/banned_words.txt has the words.
 docs-lint:
 	@$(PYTHON) tools/docs_lint.py
+	$(PYTHON) tools/words_lint.py
 
 docs: setup
 	@$(PIP_INSTALL) ".[docs]"

@@ -1,4 +1,4 @@
-"""The lag, a quartic, from 200 strokes with 20,000 residuals: ours beside scipy.optimize.least_squares.
+"""The lag, a quartic, from 200 strokes with 20,000 residuals: ours next to scipy.optimize.least_squares.
 
 Each stroke is a wandering line of 50 moves of 1 mm with changing depth; at every pose the centre of friction was
 seen, with 0.1 mm of noise. First the five coefficients alone, then with a heading at the start and a displacement

@@ -1,4 +1,4 @@
-// ns per 0.5 mm move of many strokes at once, beside the floor of moving the bytes and what one stroke after the other
+// ns per 0.5 mm move of many strokes at once, next to the floor of moving the bytes and what one stroke after the other
 // takes, in one run. Prints medians of repeated rounds and ratios within a round.
 #include <algorithm>
 #include <cmath>
@@ -77,7 +77,7 @@ void compare(const char* title, const ManyWays& ways, const std::vector<LagLaw<d
                        }
                        std::memset(by_floor.taut.data(), 1, size);
                    }});
-    // of one stroke numbers lie beside each other
+    // of one stroke numbers are next to each other
     const auto alone = [](const Lanes& numbers) { return Lanes(numbers.transpose()); };
     const Lanes x = alone(ways.x_mm), y = alone(ways.y_mm), d = alone(ways.depth_mm);
     Lanes ux = alone(out.heading_x), uy = ux, px = ux, py = ux;

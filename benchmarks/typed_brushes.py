@@ -65,10 +65,10 @@ def main() -> None:
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     words.add_argument("--brushes", type=int, default=12)
     words.add_argument("--seed", type=int, default=1)
-    asked = words.parse_args()
+    given = words.parse_args()
     found: dict[str, list[float]] = {}
-    for number in range(asked.brushes):
-        rng = np.random.default_rng((asked.seed, number))
+    for number in range(given.brushes):
+        rng = np.random.default_rng((given.seed, number))
         hidden = painter.random_brush(rng)
         size = 0.75 * 2 * hidden.law("half_width")(hidden.deepest) / WIDEST_OF_WORD_MM
         with tempfile.TemporaryDirectory() as folder:

@@ -24,10 +24,10 @@ WORK = TREE / "build" / "wheel"
 
 def main() -> None:
     """Build a wheel for each Python, then print its name, size and hash."""
-    asked = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    asked.add_argument("--python", action="append", help="an interpreter with headers; default: this one")
-    asked.add_argument("--out", type=Path, default=TREE / "dist")
-    args = asked.parse_args()
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--python", action="append", help="an interpreter with headers; default: this one")
+    parser.add_argument("--out", type=Path, default=TREE / "dist")
+    args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     for python in args.python or [sys.executable]:
         wheel = build(python, args.out.resolve())
@@ -129,7 +129,7 @@ def _python_headers(python: Path) -> None:
 
 
 def _clean_copy(to: Path) -> Path:
-    """The revision that is checked out and its changes, without what else lies in the tree."""
+    """The revision that is checked out and its changes, without what else is in the tree."""
     shutil.rmtree(to, ignore_errors=True)
     for name in _output(
         "git", "-C", TREE, "ls-files", "-z", "--cached", "--others", "--exclude-standard"

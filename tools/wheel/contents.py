@@ -56,7 +56,7 @@ class Component:
 
 
 def components(work: Path, tools: Path) -> list[Component]:
-    """All libraries in the wheel, by name. work: the folder of libraries.sh; tools: the venv of the compiler."""
+    """A table of all libraries in the wheel. work: the folder of libraries.sh; tools: the venv of the compiler."""
     (zig,) = tools.glob("lib/python*/site-packages/ziglang")
     (pybind,) = tools.glob("lib/python*/site-packages/pybind11-*.dist-info")
     clang = subprocess.run(
@@ -106,8 +106,8 @@ def _debian_source(name: str, version: str, licence: str, work: Path) -> Compone
 
 
 def _debian_headers(package: str, name: str, licence: str, text: str) -> Component:
-    asked = ["dpkg-query", "-W", "-f", "${Version}", package]
-    version = subprocess.run(asked, check=True, capture_output=True, text=True).stdout
+    command = ["dpkg-query", "-W", "-f", "${Version}", package]
+    version = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     return Component(
         name, version, licence, f"Debian's package {package}", f"pkg:deb/debian/{package}@{version}", text
     )
@@ -119,8 +119,8 @@ def _copyright(package: str) -> str:
 
 def _boost_package() -> str:
     """Its name has the version: libboost1.74-dev on Debian 12, libboost1.83-dev on 13."""
-    asked = ["dpkg-query", "-S", "/usr/include/boost/version.hpp"]
-    return subprocess.run(asked, check=True, capture_output=True, text=True).stdout.partition(":")[0]
+    command = ["dpkg-query", "-S", "/usr/include/boost/version.hpp"]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.partition(":")[0]
 
 
 def _boost_licence() -> str:

@@ -75,7 +75,7 @@ ADVICE = {  # by the code of the notice: a script of ours and a drawing that giv
 @pytest.fixture
 def in_dialogs(monkeypatch):
     monkeypatch.syspath_prepend(SOURCE)
-    from brushsvg_tell import IN_DIALOGS
+    from brushsvg_dialogs import IN_DIALOGS
 
     return IN_DIALOGS
 
@@ -105,7 +105,7 @@ def test_advice_is_worded_for_who_has_dialogs(plugin, tmp_path, in_dialogs, code
 )
 def test_no_flag_is_shown_in_a_dialog(monkeypatch, sentence, advice, shown):
     monkeypatch.syspath_prepend(SOURCE)
-    from brushsvg_tell import in_dialogs
+    from brushsvg_dialogs import in_dialogs
 
     notice = {"sentence": sentence, "advice": advice, "code": "any", "damaged": False, "refused": False}
     assert in_dialogs(notice) == shown
