@@ -137,7 +137,7 @@ class Manifest:
         """Return the row of a drawing whose files are there as they were written. A refused drawing is not finished:
         its cause may be gone, as a missing font or a full disk."""
         for row in self._by_name.get(item.name, []):
-            if row.figures and row.key == key and all(map(self._is_there, row.files.items())):
+            if row.figures and row.key == key and all(map(self._has_file, row.files.items())):
                 return replace(row, source=item.source, path=self.way_to(item))
         return None
 
@@ -152,7 +152,7 @@ class Manifest:
         """Raise Error where files with this name were made of another drawing that still exists."""
         path = self.way_to(item)
         for row in self._by_name.get(item.name, []):
-            here = [file for file in row.files.items() if self._is_there(file)]
+            here = [file for file in row.files.items() if self._has_file(file)]
             if here and row.path not in ("", path) and (self.folder / row.path).exists():
                 sentence = (
                     f"{here[0][0]} was made of {row.source}: that of {item.source} would be written over it"
@@ -179,7 +179,7 @@ class Manifest:
             file for each in self._by_name.get(row.name, []) for file in each.files.items()
         ):
             is_outdated = file[0] not in row.files and (not row.figures or Path(file[0]).suffix in endings)
-            if is_outdated and self._is_there(file):
+            if is_outdated and self._has_file(file):
                 try:
                     (self.folder / file[0]).unlink()
                 except OSError as problem:
@@ -188,7 +188,7 @@ class Manifest:
                 removed.append(file[0])
         return removed
 
-    def _is_there(self, file: tuple[str, str]) -> bool:
+    def _has_file(self, file: tuple[str, str]) -> bool:
         try:
             return sha256(read_bytes(self.folder / file[0])) == file[1]
         except Error:
