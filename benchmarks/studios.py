@@ -125,19 +125,19 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
         brush, cell = f"mine-{sheet}.json", f"cell-{sheet}.toml"
         flags = f"--brush {brush} --quiet"
         led = f"--corrections {corrections}" if corrections else ""
-        run(f"convert word.svg plan-{sheet}.json --cell {cell} {flags} {led}", folder)
+        run(f"convert word.svg -o plan-{sheet}.json --cell {cell} {flags} {led}", folder)
         plan = read_plan(folder / f"plan-{sheet}.json")
         if sheet == 0:
             amiss, rng = random_studio(number, plan)
             drawn = all_wanted(folder)
             # what a studio paints that knows its brush, and where all else is as it should be
             save_brush(studio.known_brush(lag=amiss.lag, half=amiss.half), folder / "true.json")
-            run("convert word.svg plan-true.json --brush true.json --quiet", folder)
+            run("convert word.svg -o plan-true.json --brush true.json --quiet", folder)
             ideal = studio.Amiss(lag=amiss.lag, half=amiss.half)
             perfect = studio.swept(read_plan(folder / "plan-true.json"), ideal)
             result["truth"] = truth_of(amiss)
             result["lasts_mm"] = amiss.lasts_mm
-        run(f"convert word.svg told-{sheet}.ngc --cell {cell} {flags} {led}", folder)
+        run(f"convert word.svg -o told-{sheet}.ngc --cell {cell} {flags} {led}", folder)
         told = studio.told_by((folder / f"told-{sheet}.ngc").read_text(), plan.sheet_mm)
         swept = studio.swept(told, amiss, strokes_a_load)
         always = studio.laid(swept, told, replace(amiss, random_mm=0.0), 0)

@@ -70,36 +70,36 @@ def test_a_bad_drawing_is_refused_by_every_command(desk, case):
     content, said = DRAWINGS[case]
     if content is not None:
         (desk / "x.svg").write_bytes(content if isinstance(content, bytes) else content.encode())
-    words = ["--preview", "out.png", "--report", "out.txt"]
-    file, told = refusal(desk, "convert", "x.svg", "out.ngc", *words, **bounded())
+    words = ["--picture", "out.png", "--report", "out.txt"]
+    file, told = refusal(desk, "convert", "x.svg", "-o", "out.ngc", *words, **bounded())
     assert file == "x.svg" and agrees(told, said), told
     line = ": ".join(part for part in (file, told.where, told.told) if part)
-    assert refused(desk, "convert", "x.svg", "old.ngc", "--force", **bounded()) == line
+    assert refused(desk, "convert", "x.svg", "-o", "old.ngc", "--force", **bounded()) == line
     if case not in ("NaN", "1e30", "beyond all numbers", "off the sheet"):  # there one may look at the rest
-        assert refused(desk, "predict", "x.svg", "out.svg", **bounded()) == line
-        assert refused(desk, "report", "x.svg", **bounded()) == line
+        assert refused(desk, "preview", "x.svg", "-o", "out.svg", **bounded()) == line
+        assert refused(desk, "preview", "x.svg", **bounded()) == line
 
 
 @pytest.mark.parametrize("case", ["NaN", "1e30", "beyond all numbers"])
 def test_damaged_geometry_is_drawn_up_to_there_on_request(desk, case):
     (desk / "x.svg").write_text(DRAWINGS[case][0])
     (desk / "whole.svg").write_text(path("M20 40 L60 40"))
-    brushsvg("convert", "whole.svg", "whole.json", cwd=desk, status=0)
+    brushsvg("convert", "whole.svg", "-o", "whole.json", cwd=desk, status=0)
     json_told = ("--messages", "json")
-    words = ("convert", "x.svg", "x.json", "--lenient", "--quiet")
+    words = ("convert", "x.svg", "-o", "x.json", "--lenient", "--quiet")
     ((file, told),) = brushsvg(*json_told, *words, cwd=desk, status=0, **bounded()).told
     assert file == "x.svg" and agrees(told, DRAWINGS[case][1])
     plans = [json.loads((desk / name).read_text()) for name in ("x.json", "whole.json")]
     assert plans[0]["passes"] == plans[1]["passes"]
-    brushsvg("convert", "x.svg", "x.ngc", "--lenient", "--quiet", cwd=desk, status=0)
+    brushsvg("convert", "x.svg", "-o", "x.ngc", "--lenient", "--quiet", cwd=desk, status=0)
     assert re.search(r"^\(warnings: 1, 1 ", (desk / "x.ngc").read_text(), re.MULTILINE)
-    for words in (("predict", "x.svg", "x.png", "--quiet"), ("report", "x.svg")):
+    for words in (("preview", "x.svg", "-o", "x.png", "--quiet"), ("preview", "x.svg")):
         assert brushsvg(*json_told, *words, cwd=desk, status=0, **bounded()).told == [(file, told)]
 
 
 def test_what_lies_off_the_sheet_may_be_looked_at(desk):
     (desk / "x.svg").write_text(DRAWINGS["off the sheet"][0])
-    for words in (("predict", "x.svg", "x.svg.png", "--quiet"), ("report", "x.svg", "--json")):
+    for words in (("preview", "x.svg", "-o", "x.svg.png", "--quiet"), ("preview", "x.svg", "--json")):
         done = brushsvg("--messages", "json", *words, cwd=desk, status=0)
         assert len(done.err) == 1 and is_told(done.told, "mark-off-sheet left", "p")
 
@@ -108,8 +108,8 @@ def test_a_directory_is_no_drawing(desk):
     (desk / "x.svg").mkdir()
     (desk / "x.json").mkdir()
     for words in (
-        ("convert", "x.svg", "out.ngc"),
-        ("convert", "x.json", "out.ngc"),
+        ("convert", "x.svg", "-o", "out.ngc"),
+        ("convert", "x.json", "-o", "out.ngc"),
         ("brush", "check", "x.json"),
     ):
         file, told = refusal(desk, *words)
@@ -140,17 +140,17 @@ def test_a_bad_brush_is_refused_by_every_command(desk, case):
     file, told = refusal(desk, "brush", "check", "mine.json")
     assert file == "mine.json" and agrees(told, said, where), told
     flags = ["--brush", "mine.json"]
-    assert refusal(desk, "convert", "sound.svg", "out.ngc", *flags) == (file, told)
-    assert refusal(desk, "predict", "sound.svg", "out.png", *flags) == (file, told)
-    assert refusal(desk, "report", "sound.svg", *flags) == (file, told)
+    assert refusal(desk, "convert", "sound.svg", "-o", "out.ngc", *flags) == (file, told)
+    assert refusal(desk, "preview", "sound.svg", "-o", "out.png", *flags) == (file, told)
+    assert refusal(desk, "preview", "sound.svg", *flags) == (file, told)
     assert refusal(desk, "brush", "show", "mine.json") == (file, told)
 
 
 def test_an_unknown_brush_is_refused_with_those_there_are(desk):
-    file, told = refusal(desk, "convert", "sound.svg", "out.ngc", "--brush", "round-7")
+    file, told = refusal(desk, "convert", "sound.svg", "-o", "out.ngc", "--brush", "round-7")
     assert file == "round-7" and agrees(told, "brush-unknown round-7 rigid round-6")
     assert refusal(desk, "brush", "show", "round-7") == (file, told)
-    file, told = refusal(desk, "convert", "sound.svg", "out.ngc", "--brush", "gone.json")
+    file, told = refusal(desk, "convert", "sound.svg", "-o", "out.ngc", "--brush", "gone.json")
     assert (file, told.code) == ("gone.json", "file-unreadable")
 
 
@@ -199,18 +199,18 @@ PLANS = {  # a change, and what is told of which key or stroke
 
 @sample("case", PLANS, keep=4)
 def test_a_bad_plan_is_refused(desk, case):
-    brushsvg("convert", "sound.svg", "plan.json", cwd=desk, status=0)
+    brushsvg("convert", "sound.svg", "-o", "plan.json", cwd=desk, status=0)
     plan = json.loads((desk / "plan.json").read_text())
     change, where, said = PLANS[case]
     change(plan)
     (desk / "x.json").write_text(json.dumps(plan))
-    file, told = refusal(desk, "convert", "x.json", "out.ngc", **bounded())
+    file, told = refusal(desk, "convert", "x.json", "-o", "out.ngc", **bounded())
     assert file == "x.json" and agrees(told, said, where), told
 
 
 @pytest.mark.parametrize("content", ["", "moo", '{"format": "brushsvg/plan", "ver', "[" * 100_000, "\xff\0"])
 def test_what_is_no_plan_at_all_is_refused(desk, content):
     (desk / "x.json").write_text(content, encoding="latin-1")
-    told = refused(desk, "convert", "x.json", "out.ngc", **bounded())
+    told = refused(desk, "convert", "x.json", "-o", "out.ngc", **bounded())
     assert told.startswith("x.json: ")
     refused(desk, "brush", "check", "x.json", **bounded())

@@ -114,12 +114,14 @@ def test_it_is_written_and_not_checked(tmp_path, capsys):
     )
     out = str(tmp_path / "a.robodk")
     status, _, told = call(
-        capsys, "convert", str(tmp_path / "a.svg"), out, "--cell", str(tmp_path / "mine.toml")
+        capsys, "convert", str(tmp_path / "a.svg"), "-o", out, "--cell", str(tmp_path / "mine.toml")
     )
     assert status == 0, told
     assert Path(out).read_text().startswith("start brushsvg\n; title: ")
     status, _, told = call(capsys, "check", out, "--cell", str(tmp_path / "mine.toml"))
     assert status == 1 and gives(told[-1], "a.robodk")
     (tmp_path / "mine.toml").write_text(write_cell(cell_with(tmp_path / "none.py")))
-    status, _, told = in_json(capsys, "convert", tmp_path / "a.svg", out, "--cell", tmp_path / "mine.toml")
+    status, _, told = in_json(
+        capsys, "convert", tmp_path / "a.svg", "-o", out, "--cell", tmp_path / "mine.toml"
+    )
     assert status == 1 and is_told(told, "file-unreadable")
