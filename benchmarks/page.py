@@ -72,7 +72,7 @@ def main() -> None:
         stage("G-code", lambda: "".join(encoded(".ngc", done.plan, walk, brush, "page")))
         begin = time.perf_counter()
         ran = subprocess.run(
-            [Path(sys.executable).with_name("brushsvg"), "convert", drawing, program],
+            [Path(sys.executable).with_name("brushsvg"), "convert", drawing, "-o", program],
             capture_output=True,
             text=True,
         )

@@ -5,7 +5,7 @@
 
 FOLDER keeps each photograph and what came of it: a run that was stopped goes on where it was, and `--again` reads and
 fits the photographs that are there once more. `--count 0` only shows what is there. `--height`: the paper's height is
-known to so much (standard deviation), as `brushsvg height` finds it, and `calibrate --height` uses it.
+known to so much (standard deviation), as `brushsvg setup height` finds it, and `calibrate --height` uses it.
 
 The paint is the slow stepping simulator's of tests/laws, the pictures the renderer's there: a tilt, a lens of another
 formula, blur, noise, uneven light, shadows, JPEG. Every sixth sheet of either half bulges by a millimetre. Every

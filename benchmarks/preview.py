@@ -124,7 +124,7 @@ def in_inkscape(file: Path) -> float:
 
 def stages(file: Path) -> list[str]:
     marks, out = file.with_suffix(".marks.svg"), file.with_suffix(".out.svg")
-    subprocess.run([COMMAND, "predict", file, marks], check=True, stderr=subprocess.DEVNULL)
+    subprocess.run([COMMAND, "preview", file, "-o", marks], check=True, stderr=subprocess.DEVNULL)
     parts = (
         (sys.executable, STAGES.format(drawing=str(file))),
         (

@@ -159,9 +159,9 @@ def processes(folder: Path, rounds: int) -> None:
         ("`brushsvg --help` (aim: 0.15 s)", [command, "--help"], main(["--help"])),
         ("reading a small SVG (aim: no scipy, no cv2)", [sys.executable, "-c", read], read),
         (
-            "`brushsvg import small.svg picture.svg`",
-            [command, "import", small, picture],
-            main(["import", str(small), str(picture)]),
+            "`brushsvg preview small.svg -o picture.svg --show strokes`",
+            [command, "preview", small, "-o", picture, "--show", "strokes"],
+            main(["preview", str(small), "-o", str(picture), "--show", "strokes"]),
         ),
         ("floor: Python alone", [sys.executable, "-c", "pass"], "pass"),
     ):

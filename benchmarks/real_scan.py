@@ -1,5 +1,5 @@
 """A scan of real strokes in a printed grid: its scale by the printed bar of two inches, its places by the grid, and the
-outlines that `brushsvg scan` would give of them.
+outlines that `calibrate --scan` would give of them.
 
     real_scan.py SCAN [--picture FILE]
 

@@ -173,8 +173,8 @@ def strokes(out: Path, count: int) -> None:
         f'<g fill="none" stroke="#000">{"".join(lines)}</g></svg>'
     )
     for output in ("many.json", "many.ngc", "many.png"):
-        command = "predict" if output.endswith(".png") else "convert"
-        words = [sys.executable, "-m", "brushsvg", command, drawing, out / output]
+        command = "preview" if output.endswith(".png") else "convert"
+        words = [sys.executable, "-m", "brushsvg", command, drawing, "-o", out / output]
         begin, before = time.perf_counter(), _used()
         with subprocess.Popen(words, stderr=subprocess.PIPE, text=True) as process:
             peak: list[float] = []

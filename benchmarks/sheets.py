@@ -82,8 +82,8 @@ def starts_of(brush) -> dict[str, str]:
     lag_at = " ".join(f"--lag-at {d}={value}" for d, value in zip(depths, lags, strict=True))
     width_at = [f"--width-at {d}={value}" for d, value in zip(depths, widths, strict=True)]
     return {
-        "three": f"brush new mine-1.json {lag_at} {' '.join(width_at)}",
-        "one": f"brush new mine-1.json --lag {lags[1]} {width_at[0]} {width_at[2]}",
+        "three": f"brush new -o mine-1.json {lag_at} {' '.join(width_at)}",
+        "one": f"brush new -o mine-1.json --lag {lags[1]} {width_at[0]} {width_at[2]}",
         "round-6": "",
     }
 
@@ -133,7 +133,7 @@ def paint_sheets(job: tuple[int, str], folder: Path, margin: str, own_mm: float,
         run(typed, folder)
     else:
         save_brush(find_brush("round-6"), folder / "mine-1.json")
-    run("convert word.svg plan-true.json --brush true.json", folder)
+    run("convert word.svg -o plan-true.json --brush true.json", folder)
     ideal = read_plan(folder / "plan-true.json")
     drawn = studio.as_region(
         target_rings(prepare(folder / "word.svg", Options(brush=find_brush(folder / "true.json"))).strokes)
@@ -146,7 +146,7 @@ def paint_sheets(job: tuple[int, str], folder: Path, margin: str, own_mm: float,
     corrections = ""
     for sheet in range(1, SHEETS + 1):
         flags = f"--brush mine-{sheet}.json {corrections} --margin-strokes {margin}"
-        run(f"convert word.svg plan-{sheet}.json {flags} --page page-{sheet}.svg", folder)
+        run(f"convert word.svg -o plan-{sheet}.json {flags} --page page-{sheet}.svg", folder)
         plan = read_plan(folder / f"plan-{sheet}.json")
         here = replace(fault_values, shift=tuple(rng.normal(0, 0.2, 2)), turn=float(rng.normal(0, 0.1)))
         seed = 100 * number + sheet
@@ -176,7 +176,7 @@ def learned(sheet: int, folder: Path, notes: list[str]) -> str:
     try:
         run(f"compare {photo} {plan} --brush {now} -o left-{sheet}.json", folder)
         corrections = f"--corrections left-{sheet}.json"
-        run(f"convert word.svg tried.json --brush {now} {corrections}", folder)
+        run(f"convert word.svg -o tried.json --brush {now} {corrections}", folder)
     except RuntimeError as refusal:
         notes.append(str(refusal))
         return ""

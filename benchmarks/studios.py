@@ -125,19 +125,19 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
         brush, cell = f"mine-{sheet}.json", f"cell-{sheet}.toml"
         flags = f"--brush {brush} --quiet"
         corrections_flag = f"--corrections {corrections}" if corrections else ""
-        run(f"convert word.svg plan-{sheet}.json --cell {cell} {flags} {corrections_flag}", folder)
+        run(f"convert word.svg -o plan-{sheet}.json --cell {cell} {flags} {corrections_flag}", folder)
         plan = read_plan(folder / f"plan-{sheet}.json")
         if sheet == 0:
             fault_values, rng = random_studio(number, plan)
             drawn = all_target(folder)
             # what a studio paints that knows its brush, and where all else is as it should be
             save_brush(studio.known_brush(lag=fault_values.lag, half=fault_values.half), folder / "true.json")
-            run("convert word.svg plan-true.json --brush true.json --quiet", folder)
+            run("convert word.svg -o plan-true.json --brush true.json --quiet", folder)
             ideal = studio.Faults(lag=fault_values.lag, half=fault_values.half)
             perfect = studio.swept(read_plan(folder / "plan-true.json"), ideal)
             result["truth"] = truth_of(fault_values)
             result["lasts_mm"] = fault_values.lasts_mm
-        run(f"convert word.svg commanded-{sheet}.ngc --cell {cell} {flags} {corrections_flag}", folder)
+        run(f"convert word.svg -o commanded-{sheet}.ngc --cell {cell} {flags} {corrections_flag}", folder)
         commanded = studio.commanded_by((folder / f"commanded-{sheet}.ngc").read_text(), plan.sheet_mm)
         swept = studio.swept(commanded, fault_values, strokes_a_load)
         always = studio.laid(swept, commanded, replace(fault_values, random_mm=0.0), 0)

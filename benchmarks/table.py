@@ -139,8 +139,10 @@ def refined(drawing: Path, out: Path, strokes: int) -> Callable[[Path], Spent]:
     """One stroke's refinement: the time beyond the closed form."""
 
     def measure(tree: Path) -> Spent:
-        closed = brushsvg("convert", drawing, out)(tree)
-        return brushsvg("convert", drawing, out, "--compensation", "refined")(tree).over(strokes, closed)
+        closed = brushsvg("convert", drawing, "-o", out)(tree)
+        return brushsvg("convert", drawing, "-o", out, "--compensation", "refined")(tree).over(
+            strokes, closed
+        )
 
     return measure
 
@@ -182,7 +184,7 @@ def rows(folder: Path, only: str = "") -> list[Row]:
     letters(alphabet)
     fit = "fit of a chart's marks"
     marks = painted_chart(chart) if only in fit else 0
-    subprocess.run([command(ROOT), "convert", word, word_program, "--quiet"], check=True)
+    subprocess.run([command(ROOT), "convert", word, "-o", word_program, "--quiet"], check=True)
     start = here(code("import numpy"))
     xml = here(code(f"from xml.etree import ElementTree; ElementTree.parse({str(large)!r})"))
     arithmetic = here(advance("floor"))
@@ -191,16 +193,21 @@ def rows(folder: Path, only: str = "") -> list[Row]:
     of_page, of_word = f"page of {page.STROKES} strokes, ", "word of 13 strokes, "
     numpy_starts = "floor: Python and numpy start"
     refine = ("--compensation", "refined")
+    peer_reads = "peer: svgpathtools reads"
+
+    def to_program(drawing: Path):
+        return brushsvg("convert", drawing, "-o", program)
+
     found = [
         Row(f"{fit}, {marks} of them", "s", "5", brushsvg("calibrate", chart, "-o", folder / "b.json")),
-        Row(of_page + "convert", "s", "1.0", brushsvg("convert", large, program), "floor: Python reads the XML", xml),
-        Row(of_page + "report", "s", "1.0", brushsvg("report", large), numpy_starts, start),
-        Row(of_page + "predict .svg", "s", "2", brushsvg("predict", large, page_svg), "peer: svgpathtools reads", peer),
-        Row(of_page + "predict .png", "s", "1", brushsvg("predict", large, folder / "p.png")),
+        Row(of_page + "convert", "s", "1.0", to_program(large), "floor: Python reads the XML", xml),
+        Row(of_page + "report", "s", "1.0", brushsvg("preview", large), numpy_starts, start),
+        Row(of_page + "predict .svg", "s", "2", brushsvg("preview", large, "-o", page_svg), peer_reads, peer),
+        Row(of_page + "predict .png", "s", "1", brushsvg("preview", large, "-o", folder / "p.png")),
         Row(f"refined, each of {REFINED} strokes", "ms", "10", refined(part, program, REFINED)),
-        Row(of_word + "convert (first word)", "s", "0.35", brushsvg("convert", word, program), numpy_starts, start),
-        Row(of_word + "convert, refined", "s", "0.7", brushsvg("convert", word, program, *refine)),
-        Row(of_word + "report", "s", "0.5", brushsvg("report", word)),
+        Row(of_word + "convert (first word)", "s", "0.35", to_program(word), numpy_starts, start),
+        Row(of_word + "convert, refined", "s", "0.7", brushsvg("convert", word, "-o", program, *refine)),
+        Row(of_word + "report", "s", "0.5", brushsvg("preview", word)),
         Row(of_word + "check", "s", "0.6", brushsvg("check", word_program, word)),
         Row("first `read_drawing` in Python", "s", "0.3", code(read), numpy_starts, start),
         Row("outlines of letters, a glyph", "ms", "4", outlines(alphabet)),

@@ -69,6 +69,6 @@ def _python() -> Iterator[str]:
 def _cells() -> Iterator[str]:
     yield "# Shipped cells\n"
     yield "This page is for everyone who wants to read a cell before copying it: it has all shipped cells.\n"
-    yield "`brushsvg cell new my.toml --like NAME` writes each of them. [Cell files](cell.md) explains the keys.\n"
+    yield "`brushsvg cell new -o my.toml --like NAME` writes each of them. [Cell files](cell.md) explains the keys.\n"
     for name in brushsvg.cell_names():
         yield f"## {name}\n\n```toml\n{write_cell(find_cell(name)).rstrip()}\n```\n"

@@ -10,7 +10,7 @@ import brushsvg
 drawing = Path(__file__).with_name("robot.svg")
 
 # Without a brush and a cell, brushsvg uses the brush round-6 and the machine linuxcnc-3axis.
-done = brushsvg.convert(drawing, "first_word.ngc", preview="first_word.png", figures=True)
+done = brushsvg.convert(drawing, "first_word.ngc", picture="first_word.png", figures=True)
 
 for notice in done.notices:
     print(f"warning: {notice.where}: {notice.sentence}")

@@ -16,7 +16,7 @@ ZIGZAG = ElementTree.fromstring(
 
 for corners in ("turn", "auto"):
     done = brushsvg.convert(
-        ZIGZAG, f"corners_{corners}.ngc", preview=f"corners_{corners}.png", corners=corners, figures=True
+        ZIGZAG, f"corners_{corners}.ngc", picture=f"corners_{corners}.png", corners=corners, figures=True
     )
     assert done.figures
     # With "auto", brushsvg ends a stroke at each corner that is too sharp for the brush, and starts a new one there.

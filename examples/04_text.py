@@ -19,7 +19,7 @@ document, notices = brushsvg.text_svg("Hello", font.read_bytes(), size_mm=50)
 Path("text.svg").write_text(document, encoding="utf-8")
 
 # convert finds the strokes in the outlines, in writing order.
-done = brushsvg.convert("text.svg", "text.ngc", preview="text.png", figures=True)
+done = brushsvg.convert("text.svg", "text.ngc", picture="text.png", figures=True)
 for notice in (*notices, *done.notices):
     print(f"warning: {notice.where}: {notice.sentence}")
 assert done.figures

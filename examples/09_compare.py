@@ -16,7 +16,7 @@ drawing = Path(__file__).with_name("robot.svg")
 
 def photograph(name: str, *words: str) -> None:
     """Simulate the photograph of a sheet that an imperfect machine painted."""
-    command = ["simulate-photo", str(drawing), name, "--studio", "studio.toml", *words]
+    command = ["simulate-photo", str(drawing), "-o", name, "--studio", "studio.toml", *words]
     subprocess.run([sys.executable, "-m", "brushsvg", *command], check=True, capture_output=True)
 
 

@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/explanation/letters.md: four alphabets as `brushsvg import` understands them.
+"""Draw the pictures of docs/explanation/letters.md: four alphabets by `brushsvg preview --show strokes`.
 
 Needs the folder into which npm has put the fonts: npm install --prefix FOLDER --no-save @fontsource/open-sans
 @fontsource/lora @fontsource/kaushan-script @fontsource/caveat-brush
@@ -35,9 +35,9 @@ def main() -> None:
         for kind, name in FONTS.items():
             font = modules / name / "files" / f"{name}-latin-400-normal.woff"
             drawing = Path(folder, f"{kind}.svg")
-            subprocess.run([command, "text", TEXT, drawing, "--font", font, "--size", "30"], check=True)
+            subprocess.run([command, "text", TEXT, "-o", drawing, "--font", font, "--size", "30"], check=True)
             picture = Path(folder, f"{kind}.png")
-            subprocess.run([command, "import", drawing, picture], check=True)
+            subprocess.run([command, "preview", drawing, "-o", picture, "--show", "strokes"], check=True)
             cv2.imwrite(str(docs / f"letters-{kind}.png"), without_list(cv2.imread(str(picture))))
 
 

@@ -60,7 +60,9 @@ def stub_files() -> dict[str, str]:
         for said, replacement in REPLACEMENTS:
             text = re.sub(said, replacement, text)
         if "Notice" in text:
-            text = text.replace("import typing\n", "import typing\nfrom ..errors import Notice\n", 1)
+            text = text.replace(
+                "import typing\n", "preview typing\nfrom -o ..errors --show strokes import Notice\n", 1
+            )
         format_it = [sys.executable, "-m", "ruff", "format", "--stdin-filename", name, "-"]
         done = subprocess.run(format_it, input=text, capture_output=True, text=True, check=True, cwd=PACKAGE)
         made[name] = done.stdout

@@ -30,7 +30,7 @@ def main() -> None:
             f"{wished} ends in none of {' '.join(PROGRAMS)}: choose another name for the program."
         )
     program = f"chart{suffix}"
-    words = [program, "--drawing", DRAWING, "--page", "page.svg", "--chart", "read-by.json"]
+    words = ["-o", program, "--drawing", DRAWING, "--page", "page.svg", "--chart", "read-by.json"]
     words += ["--sheet", args.sheet, *choices(args)]
     words += ["--strokes", args.strokes] if args.strokes != "all" else []
     with Run(args.executable, args.input_file, "chart", *words) as run:

@@ -31,7 +31,7 @@ PX_PER_MM = 96 / 25.4
 def main() -> None:
     args = arguments(brush="document", brush_file="", compensation="document")
     words = [*choices(args), *selection(own_ids(args.input_file, args.ids))]
-    with Run(args.executable, args.input_file, "predict", DRAWING, "marks.svg", *words) as run:
+    with Run(args.executable, args.input_file, "preview", DRAWING, "-o", "marks.svg", *words) as run:
         from lxml import etree  # while brushsvg runs
 
         document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))

@@ -18,7 +18,7 @@ from brushsvg_dialogs import in_dialogs, show_message
 NEEDED = (0, 1, 0)
 INSTALL = "pipx install brushsvg"
 DRAWING = "drawing.svg"
-EXECUTABLE_NOTE = "brushsvg-executable.txt"  # written by `brushsvg install-plugin inkscape`
+EXECUTABLE_NOTE = "brushsvg-executable.txt"  # written by `brushsvg setup inkscape`
 LONGEST = 30_000 if sys.platform == "win32" else 120_000  # bytes: systems allow 32 768 and 131 072 in a word
 # What Inkscape's Python has to have next to its own modules, and the packages of Debian and Ubuntu that bring it.
 PACKAGES = {name: f"python3-{name}" for name in ("lxml", "cssselect", "numpy", "packaging", "tinycss2")}
@@ -103,7 +103,7 @@ def executable(chosen: str) -> str:
         raise StopError(
             f"This Inkscape is {sandbox}. It cannot start programs that are installed outside of its sandbox, such as "
             "brushsvg. Install Inkscape from your distribution or as an AppImage instead. Or save the drawing, and "
-            "type in a terminal:  brushsvg convert DRAWING.svg OUT.ngc"
+            "type in a terminal:  brushsvg convert DRAWING.svg -o OUT.ngc"
         )
     if found is None:
         raise StopError(
@@ -225,7 +225,7 @@ class Run:
         if {each for each in os.listdir(self.folder.name) if each.endswith(suffix)} - {DRAWING, *self.words}:
             raise StopError(
                 "This job is several programs, and Inkscape saves one file: save the drawing, then type  "
-                f"brushsvg convert DRAWING.svg OUT{suffix}"
+                f"brushsvg convert DRAWING.svg -o OUT{suffix}"
             )
         with open(path, "rb") as file:
             return file.read()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Save as robot program, plan, marks or animation: the bytes that `brushsvg convert`, `predict`, `animate` write."""
+"""Save as robot program, plan, marks or animation: the bytes that `brushsvg convert` and `preview` write."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def main() -> None:
     ):
         args.cell = args.else_cell
     out = f"saved.{args.format}"
-    with Run(args.executable, args.input_file, args.command, DRAWING, out, *choices(args)) as run:
+    with Run(args.executable, args.input_file, args.command, DRAWING, "-o", out, *choices(args)) as run:
         _, warnings = run.finish()
         sys.stdout.buffer.write(run.made(out))
     if warnings:

@@ -82,7 +82,7 @@ def converted(tmp_path_factory, drawing):
         if key not in known:
             folder = known[key] = tmp_path_factory.mktemp(name)
             for out in ("plan.json", "program.ngc"):
-                brushsvg("convert", drawing(name), out, *flags, cwd=folder, status=0)
+                brushsvg("convert", drawing(name), "-o", out, *flags, cwd=folder, status=0)
         return known[key]
 
     return get
@@ -96,7 +96,7 @@ def reported(tmp_path_factory, drawing):
 
     def get(name: str, *flags: str) -> dict:
         if (name, *flags) not in known:
-            done = brushsvg("report", drawing(name), "--json", *flags, cwd=folder, status=0)
+            done = brushsvg("preview", drawing(name), "--json", *flags, cwd=folder, status=0)
             known[name, *flags] = json.loads(done.out)
         return known[name, *flags]
 

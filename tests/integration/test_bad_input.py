@@ -70,30 +70,30 @@ def test_a_bad_drawing_is_refused_by_every_command(desk, case):
     content, said = DRAWINGS[case]
     if content is not None:
         (desk / "x.svg").write_bytes(content if isinstance(content, bytes) else content.encode())
-    words = ["--preview", "out.png", "--report", "out.txt"]
-    file, reported = refusal(desk, "convert", "x.svg", "out.ngc", *words, **bounded())
+    words = ["--picture", "out.png", "--report", "out.txt"]
+    file, reported = refusal(desk, "convert", "x.svg", "-o", "out.ngc", *words, **bounded())
     assert file == "x.svg" and agrees(reported, said), reported
     line = ": ".join(part for part in (file, reported.where, reported.text) if part)
-    assert refused(desk, "convert", "x.svg", "old.ngc", "--force", **bounded()) == line
+    assert refused(desk, "convert", "x.svg", "-o", "old.ngc", "--force", **bounded()) == line
     if case not in ("NaN", "1e30", "beyond all numbers", "off the sheet"):  # there one may look at the rest
-        assert refused(desk, "predict", "x.svg", "out.svg", **bounded()) == line
-        assert refused(desk, "report", "x.svg", **bounded()) == line
+        assert refused(desk, "preview", "x.svg", "-o", "out.svg", **bounded()) == line
+        assert refused(desk, "preview", "x.svg", **bounded()) == line
 
 
 @pytest.mark.parametrize("case", ["NaN", "1e30", "beyond all numbers"])
 def test_damaged_geometry_is_drawn_up_to_there_on_request(desk, case):
     (desk / "x.svg").write_text(DRAWINGS[case][0])
     (desk / "whole.svg").write_text(path("M20 40 L60 40"))
-    brushsvg("convert", "whole.svg", "whole.json", cwd=desk, status=0)
+    brushsvg("convert", "whole.svg", "-o", "whole.json", cwd=desk, status=0)
     json_reported = ("--messages", "json")
-    words = ("convert", "x.svg", "x.json", "--lenient", "--quiet")
+    words = ("convert", "x.svg", "-o", "x.json", "--lenient", "--quiet")
     ((file, reported),) = brushsvg(*json_reported, *words, cwd=desk, status=0, **bounded()).reported
     assert file == "x.svg" and agrees(reported, DRAWINGS[case][1])
     plans = [json.loads((desk / name).read_text()) for name in ("x.json", "whole.json")]
     assert plans[0]["passes"] == plans[1]["passes"]
-    brushsvg("convert", "x.svg", "x.ngc", "--lenient", "--quiet", cwd=desk, status=0)
+    brushsvg("convert", "x.svg", "-o", "x.ngc", "--lenient", "--quiet", cwd=desk, status=0)
     assert re.search(r"^\(warnings: 1, 1 ", (desk / "x.ngc").read_text(), re.MULTILINE)
-    for words in (("predict", "x.svg", "x.png", "--quiet"), ("report", "x.svg")):
+    for words in (("preview", "x.svg", "-o", "x.png", "--quiet"), ("preview", "x.svg")):
         assert brushsvg(*json_reported, *words, cwd=desk, status=0, **bounded()).reported == [
             (file, reported)
         ]
@@ -101,7 +101,7 @@ def test_damaged_geometry_is_drawn_up_to_there_on_request(desk, case):
 
 def test_what_is_off_the_sheet_may_be_looked_at(desk):
     (desk / "x.svg").write_text(DRAWINGS["off the sheet"][0])
-    for words in (("predict", "x.svg", "x.svg.png", "--quiet"), ("report", "x.svg", "--json")):
+    for words in (("preview", "x.svg", "-o", "x.svg.png", "--quiet"), ("preview", "x.svg", "--json")):
         done = brushsvg("--messages", "json", *words, cwd=desk, status=0)
         assert len(done.err) == 1 and is_reported(done.reported, "mark-off-sheet left", "p")
 
@@ -110,8 +110,8 @@ def test_a_directory_is_no_drawing(desk):
     (desk / "x.svg").mkdir()
     (desk / "x.json").mkdir()
     for words in (
-        ("convert", "x.svg", "out.ngc"),
-        ("convert", "x.json", "out.ngc"),
+        ("convert", "x.svg", "-o", "out.ngc"),
+        ("convert", "x.json", "-o", "out.ngc"),
         ("brush", "check", "x.json"),
     ):
         file, reported = refusal(desk, *words)
@@ -142,17 +142,17 @@ def test_a_bad_brush_is_refused_by_every_command(desk, case):
     file, reported = refusal(desk, "brush", "check", "mine.json")
     assert file == "mine.json" and agrees(reported, said, where), reported
     flags = ["--brush", "mine.json"]
-    assert refusal(desk, "convert", "sound.svg", "out.ngc", *flags) == (file, reported)
-    assert refusal(desk, "predict", "sound.svg", "out.png", *flags) == (file, reported)
-    assert refusal(desk, "report", "sound.svg", *flags) == (file, reported)
+    assert refusal(desk, "convert", "sound.svg", "-o", "out.ngc", *flags) == (file, reported)
+    assert refusal(desk, "preview", "sound.svg", "-o", "out.png", *flags) == (file, reported)
+    assert refusal(desk, "preview", "sound.svg", *flags) == (file, reported)
     assert refusal(desk, "brush", "show", "mine.json") == (file, reported)
 
 
 def test_an_unknown_brush_is_refused_with_those_there_are(desk):
-    file, reported = refusal(desk, "convert", "sound.svg", "out.ngc", "--brush", "round-7")
+    file, reported = refusal(desk, "convert", "sound.svg", "-o", "out.ngc", "--brush", "round-7")
     assert file == "round-7" and agrees(reported, "brush-unknown round-7 rigid round-6")
     assert refusal(desk, "brush", "show", "round-7") == (file, reported)
-    file, reported = refusal(desk, "convert", "sound.svg", "out.ngc", "--brush", "gone.json")
+    file, reported = refusal(desk, "convert", "sound.svg", "-o", "out.ngc", "--brush", "gone.json")
     assert (file, reported.code) == ("gone.json", "file-unreadable")
 
 
@@ -201,18 +201,18 @@ PLANS = {  # a change, and which key or stroke is reported how
 
 @sample("case", PLANS, keep=4)
 def test_a_bad_plan_is_refused(desk, case):
-    brushsvg("convert", "sound.svg", "plan.json", cwd=desk, status=0)
+    brushsvg("convert", "sound.svg", "-o", "plan.json", cwd=desk, status=0)
     plan = json.loads((desk / "plan.json").read_text())
     change, where, said = PLANS[case]
     change(plan)
     (desk / "x.json").write_text(json.dumps(plan))
-    file, reported = refusal(desk, "convert", "x.json", "out.ngc", **bounded())
+    file, reported = refusal(desk, "convert", "x.json", "-o", "out.ngc", **bounded())
     assert file == "x.json" and agrees(reported, said, where), reported
 
 
 @pytest.mark.parametrize("content", ["", "moo", '{"format": "brushsvg/plan", "ver', "[" * 100_000, "\xff\0"])
 def test_what_is_no_plan_at_all_is_refused(desk, content):
     (desk / "x.json").write_text(content, encoding="latin-1")
-    reported = refused(desk, "convert", "x.json", "out.ngc", **bounded())
+    reported = refused(desk, "convert", "x.json", "-o", "out.ngc", **bounded())
     assert reported.startswith("x.json: ")
     refused(desk, "brush", "check", "x.json", **bounded())

@@ -1,4 +1,4 @@
-"""The page that `animate` writes, opened in Chromium: what it paints is what `predict` paints."""
+"""The page that `preview -o FILE.html` writes, opened in Chromium, paints the predicted marks."""
 
 import json
 import re
@@ -70,7 +70,7 @@ def browser(tmp_path_factory):
 @pytest.fixture(scope="module")
 def page(tmp_path_factory, drawing):
     folder = tmp_path_factory.mktemp("animation")
-    brushsvg("animate", drawing("vincent"), "page.html", cwd=folder, status=0)
+    brushsvg("preview", drawing("vincent"), "-o", "page.html", cwd=folder, status=0)
     return folder / "page.html"
 
 
@@ -233,7 +233,7 @@ def test_a_hostile_title_stays_a_title(tmp_path, browser):
     title = "</script><script>document.body.id='taken'</script>"
     escaped = title.replace("<", "&lt;")
     (tmp_path / "a.svg").write_text(SOUND.replace("A line", escaped))
-    brushsvg("animate", "a.svg", "a.html", cwd=tmp_path, status=0)
+    brushsvg("preview", "a.svg", "-o", "a.html", cwd=tmp_path, status=0)
     text = browser.text(tmp_path / "a.html", "t=1")
     assert 'id="taken"' not in text
     assert f'<h1 id="title">{escaped.replace(">", "&gt;")}</h1>' in text
@@ -245,7 +245,7 @@ def test_a_job_of_hours_has_a_clock_with_hours(tmp_path, browser):
     slow = re.sub(r"(?m)^(travel|approach|press|paint)_mm_s = \S+", r"\1_mm_s = 0.01", cell)
     (tmp_path / "slow.toml").write_text(slow)
     (tmp_path / "a.svg").write_text(SOUND)
-    brushsvg("animate", "a.svg", "a.html", "--cell", "slow.toml", cwd=tmp_path, status=0)
+    brushsvg("preview", "a.svg", "-o", "a.html", "--cell", "slow.toml", cwd=tmp_path, status=0)
     text = browser.text(tmp_path / "a.html", "t=754.2")
     assert re.search(r'<output id="clock">0:12:34\.2 / [1-9]:[0-5]\d:[0-5]\d\.\d<', text)
 
@@ -259,7 +259,7 @@ def test_names_of_stations_stay_on_a_narrow_page(tmp_path, browser):
         stations = station.format(name or " ", 30)
         (tmp_path / "pots.toml").write_text(f'{cell}\n[reload]\nwhen = "stroke"\n{stations}')
         (tmp_path / "a.svg").write_text(SOUND)
-        brushsvg("animate", "a.svg", "a.html", "--cell", "pots.toml", cwd=tmp_path, status=0)
+        brushsvg("preview", "a.svg", "-o", "a.html", "--cell", "pots.toml", cwd=tmp_path, status=0)
         pictures.append(browser.shown(tmp_path / "a.html", "t=0", (500, 800))[0].astype(int))
     columns = np.flatnonzero((np.abs(pictures[0] - pictures[1])[200:500] > 20).any(axis=(0, 2)))
     assert 140 < np.ptp(columns) < 180, "all of the letters"

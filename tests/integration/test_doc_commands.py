@@ -116,7 +116,7 @@ class Desk:
 def _written(words: list[str]) -> set[str | None]:
     """The files that a command writes."""
     args = parse(words)
-    names = ["output", "preview", "picture", "plot", "page", "report", "corrected_cell"]
+    names = ["output", "picture", "marks_picture", "page", "report", "corrected_cell"]
     names += {"chart": ["chart"], "brush": ["name"], "cell": ["name"]}.get(words[0], [])
     return {getattr(args, name, None) for name in names}
 
@@ -129,7 +129,7 @@ def _photographing(photo: str, words: list[str]) -> str:
     painted |= {name: flags.get(name) for name in ("--cell", "--corrections")}
     reported = [word for name, value in painted.items() if value for word in (name, value)]
     seed = re.sub(r"\D", "", photo) or "9"
-    return shlex.join(["brushsvg", "simulate-photo", job, photo, "--seed", seed, *reported])
+    return shlex.join(["brushsvg", "simulate-photo", job, "-o", photo, "--seed", seed, *reported])
 
 
 def _letters(desk: Desk, *names: str) -> None:
@@ -181,17 +181,17 @@ MADE = {
         "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", desk.folder / "Lora.ttf"
     ),
     "robot.svg": ROBOT,
-    "letters.svg": "brushsvg text Ro letters.svg --font Lora.ttf --size 60",
-    "word.ngc": "brushsvg convert word.svg word.ngc",
-    "mine.json": "brushsvg brush new mine.json --like round-6",
-    "my-brush.json": "brushsvg brush new my-brush.json --like round-6",
-    "mine.toml": "brushsvg cell new mine.toml",
-    "my-machine.toml": "brushsvg cell new my-machine.toml",
-    "plan.json": "brushsvg convert word.svg plan.json --brush my-brush.json",
-    "word.json": "brushsvg convert word.svg word.json --brush mine.json",
+    "letters.svg": "brushsvg text Ro -o letters.svg --font Lora.ttf --size 60",
+    "word.ngc": "brushsvg convert word.svg -o word.ngc",
+    "mine.json": "brushsvg brush new -o mine.json --like round-6",
+    "my-brush.json": "brushsvg brush new -o my-brush.json --like round-6",
+    "mine.toml": "brushsvg cell new -o mine.toml",
+    "my-machine.toml": "brushsvg cell new -o my-machine.toml",
+    "plan.json": "brushsvg convert word.svg -o plan.json --brush my-brush.json",
+    "word.json": "brushsvg convert word.svg -o word.json --brush mine.json",
     "mine-2.json": "brushsvg calibrate sheet-1.jpg --plan word.json --prior mine.json -o mine-2.json",
     "left.json": "brushsvg compare sheet-1.jpg word.json --brush mine-2.json -o left.json",
-    "chart.json": "brushsvg chart chart.ngc --page page.pdf --chart chart.json",
+    "chart.json": "brushsvg chart -o chart.ngc --page page.pdf --chart chart.json",
     "strokes.jpg": _chart_photo("strokes.jpg"),
     "IMG_2041.jpg": _chart_photo("IMG_2041.jpg"),
     "dabs.jpg": _chart_photo("dabs.jpg", "dabs.json"),
@@ -205,10 +205,10 @@ def test_a_block_of_commands_can_be_typed_as_it_stands(block, tmp_path):
     (tmp_path / "desk").mkdir()
     desk = Desk(tmp_path / "desk")
     if block.kind == "shell":
-        desk.type("brushsvg install-plugin inkscape")
+        desk.type("brushsvg setup inkscape")
     for line in block.code.splitlines():
         if not why_not_run(block.page, line):
             desk.make_all(line)
             desk.type(line)
-            for name in re.findall(r"(?:-o|--picture|--plot|--page|--preview|--chart|>) +(\S+\.\w+)", line):
+            for name in re.findall(r"(?:-o|--picture|--marks-picture|--page|--chart|>) +(\S+\.\w+)", line):
                 assert (desk.folder / name).stat().st_size > 0, line

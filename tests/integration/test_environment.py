@@ -25,7 +25,7 @@ def limited(kind: int, size: int):
 # NumPy's own libraries crash where they are loaded with some 400 to 550 MB, before anything of ours runs
 @pytest.mark.parametrize(("room_mb", "is_enough"), [(150, False), (300, False), (700, True), (1000, True)])
 def test_too_little_memory_is_a_sentence(desk, room_mb, is_enough):
-    words = "convert", "line.svg", "out.ngc", "--preview", "out.png", "--report", "out.txt"
+    words = "convert", "line.svg", "-o", "out.ngc", "--picture", "out.png", "--report", "out.txt"
     done = brushsvg(
         "--messages",
         "json",
@@ -57,8 +57,8 @@ def test_too_little_memory_is_a_sentence(desk, room_mb, is_enough):
     ids=lambda env: " ".join(f"{key}={value}" for key, value in env.items()),
 )
 def test_programs_are_the_same_everywhere(desk, env):
-    brushsvg("convert", "line.svg", "here.ngc", cwd=desk, status=0)
-    brushsvg("convert", "line.svg", "there.ngc", cwd=desk, status=0, env=env)
+    brushsvg("convert", "line.svg", "-o", "here.ngc", cwd=desk, status=0)
+    brushsvg("convert", "line.svg", "-o", "there.ngc", cwd=desk, status=0, env=env)
     assert (desk / "there.ngc").read_bytes() == (desk / "here.ngc").read_bytes()
 
 
@@ -79,16 +79,16 @@ def test_programs_are_the_same_everywhere(desk, env):
 def test_any_name_that_a_file_may_have(desk, name):
     drawing, program = desk / f"{name}.svg", desk / f"{name}.ngc"
     drawing.write_text(SOUND)
-    brushsvg("convert", drawing, program, cwd=desk, status=0)
+    brushsvg("convert", drawing, "-o", program, cwd=desk, status=0)
     assert brushsvg("check", program, drawing, cwd=desk).status == 0
-    brushsvg("convert", "line.svg", "plain.ngc", cwd=desk, status=0)
+    brushsvg("convert", "line.svg", "-o", "plain.ngc", cwd=desk, status=0)
     assert (desk / "plain.ngc").read_bytes() == program.read_bytes()
 
 
 @pytest.mark.parametrize("stream", [0, 1, 2])
 def test_a_stream_that_is_closed_loses_no_program(desk, stream):
     done = subprocess.run(
-        [COMMAND, "convert", "line.svg", "out.ngc"],
+        [COMMAND, "convert", "line.svg", "-o", "out.ngc"],
         cwd=desk,
         preexec_fn=lambda: os.close(stream),
         check=False,
@@ -98,14 +98,14 @@ def test_a_stream_that_is_closed_loses_no_program(desk, stream):
 
 
 READ = {
-    "svg": ("convert", "{}", "out.ngc"),
-    "svgz": ("convert", "{}", "out.ngc"),
-    "dxf": ("convert", "{}", "out.ngc"),
-    "gcode": ("convert", "{}", "out.ngc"),
-    "json": ("convert", "{}", "out.ngc"),
-    "brush.json": ("convert", "line.svg", "out.ngc", "--brush", "{}"),
-    "toml": ("convert", "line.svg", "out.ngc", "--cell", "{}"),
-    "ttf": ("text", "A", "out.svg", "--font", "{}"),
+    "svg": ("convert", "{}", "-o", "out.ngc"),
+    "svgz": ("convert", "{}", "-o", "out.ngc"),
+    "dxf": ("convert", "{}", "-o", "out.ngc"),
+    "gcode": ("convert", "{}", "-o", "out.ngc"),
+    "json": ("convert", "{}", "-o", "out.ngc"),
+    "brush.json": ("convert", "line.svg", "-o", "out.ngc", "--brush", "{}"),
+    "toml": ("convert", "line.svg", "-o", "out.ngc", "--cell", "{}"),
+    "ttf": ("text", "A", "-o", "out.svg", "--font", "{}"),
     "csv": ("calibrate", "{}", "-o", "out.json"),
     "jpg": ("compare", "{}", "line.svg"),
     "script": ("check", "{}"),
@@ -143,7 +143,7 @@ def large(desk) -> str:
 
 
 def test_killed_at_any_instant_all_files_are_old_or_all_are_new(desk):
-    words = [COMMAND, "convert", large(desk), "out.ngc", "--preview", "out.png", "--force"]
+    words = [COMMAND, "convert", large(desk), "-o", "out.ngc", "--picture", "out.png", "--force"]
     subprocess.run(words, cwd=desk, check=True, capture_output=True)
     new = {name: (desk / name).read_bytes() for name in ("out.ngc", "out.png")}
     begin = time.monotonic()
@@ -159,20 +159,22 @@ def test_killed_at_any_instant_all_files_are_old_or_all_are_new(desk):
         found = {name: (desk / name).read_bytes() for name in new}
         # one file follows the other: between the two only a kill can fall
         assert all(found[name] in (b"old", new[name]) for name in new), k
-    brushsvg("convert", "large.svg", "out.ngc", "--force", cwd=desk, status=0)
+    brushsvg("convert", "large.svg", "-o", "out.ngc", "--force", cwd=desk, status=0)
 
 
 def test_two_processes_with_one_output_leave_one_of_both(desk):
     (desk / "other.svg").write_text(SOUND.replace("M20 40", "M25 42"))
     target = []
     for name in ("line", "other"):
-        brushsvg("convert", f"{name}.svg", f"{name}.ngc", cwd=desk, status=0)
+        brushsvg("convert", f"{name}.svg", "-o", f"{name}.ngc", cwd=desk, status=0)
         target.append((desk / f"{name}.ngc").read_bytes())
     for _ in range(4):
         (desk / "out.ngc").unlink(missing_ok=True)
         both = [
             subprocess.Popen(
-                [COMMAND, "convert", f"{name}.svg", "out.ngc", "--force"], cwd=desk, stderr=subprocess.DEVNULL
+                [COMMAND, "convert", f"{name}.svg", "-o", "out.ngc", "--force"],
+                cwd=desk,
+                stderr=subprocess.DEVNULL,
             )
             for name in ("line", "other")
         ]
@@ -183,5 +185,5 @@ def test_two_processes_with_one_output_leave_one_of_both(desk):
 
 def test_an_output_that_is_a_folder(desk):
     (desk / "out.ngc").mkdir()
-    _, notice = refusal(desk, "convert", "line.svg", "out.ngc")
+    _, notice = refusal(desk, "convert", "line.svg", "-o", "out.ngc")
     assert notice.code == "file-unwritable"

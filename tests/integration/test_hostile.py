@@ -186,7 +186,7 @@ def bounded():
 def test_read_or_refused_within_bounds(name, tmp_path):
     body, status, said = {**CASES, **OUTLINES}[name]
     (tmp_path / "hostile.svg").write_text(f"{HEAD}{body()}</svg>")
-    words = ("--messages", "json", "import", "hostile.svg", "seen.svg")
+    words = ("--messages", "json", "preview", "hostile.svg", "-o", "seen.svg", "--show", "strokes")
     done = brushsvg(*words, cwd=tmp_path, status=status, preexec_fn=bounded, timeout_s=300)
     assert not said or is_reported(done.reported, said), done.err
     assert (tmp_path / "seen.svg").exists() == (status == 0)
@@ -197,6 +197,6 @@ def test_rough_discs_are_filled_within_bounds(edges, tmp_path):
     """A line moved inward of an outline full of teeth crosses itself without end."""
     body = filled(ring(around(edges, lambda k: 24 + (k * 7919 % 1000) / 1000 * (edges < 1e5))))
     (tmp_path / "rough.svg").write_text(f"{HEAD}{body}</svg>")
-    words = ("--messages", "json", "convert", "rough.svg", "rough.json", "--wide", "passes")
+    words = ("--messages", "json", "convert", "rough.svg", "-o", "rough.json", "--wide", "passes")
     done = brushsvg(*words, cwd=tmp_path, preexec_fn=bounded, timeout_s=300)
     assert is_reported(done.reported, "width-out-of-reach passes"), done.err

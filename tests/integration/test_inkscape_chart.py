@@ -27,7 +27,7 @@ def test_its_page_is_next_to_the_documents(plugin, tmp_path, view_box):
     drawing.write_text(SOUND.replace('viewBox="0 0 120 60"', f'viewBox="{view_box}"'))
     once = plugin.effect("chart", drawing, tmp_path / "once.svg")
     twice = plugin.effect("chart", once, tmp_path / "twice.svg")
-    brushsvg("chart", "chart.json", "--page", "page.svg", cwd=tmp_path, status=0)
+    brushsvg("chart", "-o", "chart.json", "--page", "page.svg", cwd=tmp_path, status=0)
     expected = markers_mm(tmp_path / "page.svg", "path")
     for file in (once, twice):
         scale = float(view_box.split()[2]) / 120
@@ -46,7 +46,7 @@ def test_its_page_is_next_to_the_documents(plugin, tmp_path, view_box):
             )  # both pages hang from one line; the paper's y runs up
             assert np.abs(ours - moved).max() < 0.01
     for name in ("drawing", "twice"):
-        brushsvg("convert", f"{name}.svg", f"{name}.ngc", cwd=tmp_path, status=0)
+        brushsvg("convert", f"{name}.svg", "-o", f"{name}.ngc", cwd=tmp_path, status=0)
     assert (tmp_path / "twice.ngc").read_bytes() == (tmp_path / "drawing.ngc").read_bytes()
 
 
@@ -56,7 +56,7 @@ def test_the_program_and_what_it_is_read_by_are_those_of_the_command_line(plugin
     done = plugin.script("chart", drawing, f"--output={saved}", "--strokes=few")
     assert done.returncode == 0 and done.stderr.decode().startswith(f"Saved: {saved} and ")
     flags = ("--chart", "typed.json", "--cell", "grbl-3axis", "--strokes", "few")
-    brushsvg("chart", "typed.ngc", *flags, cwd=tmp_path, status=0)
+    brushsvg("chart", "-o", "typed.ngc", *flags, cwd=tmp_path, status=0)
     assert saved.read_bytes() == (tmp_path / "typed.ngc").read_bytes()
     assert (tmp_path / "my sheet \u00fc.chart.json").read_bytes() == (tmp_path / "typed.json").read_bytes()
 

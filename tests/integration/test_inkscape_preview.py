@@ -1,4 +1,4 @@
-"""Brush preview in the real Inkscape: marks where `brushsvg predict` puts them, originals untouched."""
+"""Brush preview in the real Inkscape: marks where `brushsvg preview` puts them, originals untouched."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -73,7 +73,7 @@ def rings_mm(path, tmp_path):
 
 
 def predicted_mm(tmp_path, *flags):
-    brushsvg("predict", "drawing.svg", "marks.svg", *flags, cwd=tmp_path, status=0)
+    brushsvg("preview", "drawing.svg", "-o", "marks.svg", *flags, cwd=tmp_path, status=0)
     return [
         np.vstack([part.cubics[:, 0] for part in each.subpaths])
         for each in read_drawing(tmp_path / "marks.svg").elements
@@ -120,7 +120,7 @@ def test_the_layer_is_not_painted(plugin, tmp_path):
     source.write_text(drawing("mm"))
     plugin.effect("preview", source, tmp_path / "shown.svg")
     for name in ("drawing", "shown"):
-        brushsvg("convert", f"{name}.svg", f"{name}.ngc", cwd=tmp_path, status=0)
+        brushsvg("convert", f"{name}.svg", "-o", f"{name}.ngc", cwd=tmp_path, status=0)
     assert (tmp_path / "shown.ngc").read_bytes() == (tmp_path / "drawing.ngc").read_bytes()
 
 

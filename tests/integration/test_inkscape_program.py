@@ -114,7 +114,7 @@ def test_the_settings_show_which_program_is_used(plugin, tmp_path, drawing):
 def test_inkscape_without_a_path_saves_with_the_one_that_installed_the_extension(tmp_path, drawing, typed):
     alone = Plugin(tmp_path, command=None)
     environment = {"HOME": str(tmp_path), "INKSCAPE_PROFILE_DIR": str(alone.profile), "PATH": ""}
-    words = [*typed, "install-plugin", "inkscape"]
+    words = [*typed, "setup", "inkscape"]
     subprocess.run(words, env=environment, cwd=os.sep, check=True, capture_output=True)
     alone.env["PATH"] = ""
     alone.save(drawing, tmp_path / "saved.ngc")
@@ -127,7 +127,7 @@ def test_a_place_whose_name_is_no_text_is_noted_too(tmp_path, drawing):
     odd.symlink_to(COMMAND)
     alone = Plugin(tmp_path, command=None)
     environment = {"HOME": str(tmp_path), "INKSCAPE_PROFILE_DIR": str(alone.profile), "PATH": ""}
-    subprocess.run([odd, "install-plugin", "inkscape"], env=environment, check=True, capture_output=True)
+    subprocess.run([odd, "setup", "inkscape"], env=environment, check=True, capture_output=True)
     assert alone.script("save", drawing).stdout.endswith(b"M2\n")
 
 

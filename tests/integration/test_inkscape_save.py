@@ -31,8 +31,8 @@ ENTRIES = {  # entry of the menu: extension, and how the command line writes the
     "gcode": ("ngc", ("convert",)),
     "plan": ("json", ("convert",)),
     "urscript": ("script", ("convert", "--cell", "ur5e")),
-    "marks": ("json", ("predict",)),
-    "animation": ("html", ("animate",)),
+    "marks": ("json", ("preview",)),
+    "animation": ("html", ("preview",)),
 }
 
 
@@ -43,7 +43,7 @@ def test_the_same_bytes_as_the_command_line(plugin, tmp_path, name, entry):
     drawing, saved = tmp_path / "drawing.svg", tmp_path / f"saved.{extension}"
     drawing.write_text(DRAWINGS[name])
     plugin.save(drawing, saved, entry)
-    brushsvg(command, "drawing.svg", f"typed.{extension}", *flags, cwd=tmp_path, status=0)
+    brushsvg(command, "drawing.svg", "-o", f"typed.{extension}", *flags, cwd=tmp_path, status=0)
     assert saved.read_bytes() == (tmp_path / f"typed.{extension}").read_bytes()
 
 
@@ -76,6 +76,7 @@ def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
     brushsvg(
         "convert",
         "drawing.svg",
+        "-o",
         f"typed{extension}",
         "--cell",
         cell,
@@ -142,7 +143,7 @@ def test_a_job_of_several_programs_is_not_saved_as_its_first(plugin, tmp_path):
     )
     head = '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="300mm" viewBox="0 0 200 300">'
     (tmp_path / "drawing.svg").write_text(f"{head}{lines}</svg>")
-    wide = brushsvg("cell", "new", "wide.toml", "--like", "ur5e", cwd=tmp_path, status=0)
+    wide = brushsvg("cell", "new", "-o", "wide.toml", "--like", "ur5e", cwd=tmp_path, status=0)
     assert wide is not None
     words = ["--format=script", f"--cell_file={tmp_path / 'wide.toml'}"]
     reported = sentence(plugin.script("save", tmp_path / "drawing.svg", *words))

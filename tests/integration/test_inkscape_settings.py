@@ -109,9 +109,9 @@ def test_the_command_line_uses_what_inkscape_stored(plugin, tmp_path):
         said = plugin.effect("settings", source, tmp_path / "said.svg")
     finally:
         plugin.set()
-    brushsvg("convert", "said.svg", "said.script", cwd=tmp_path, status=0)
+    brushsvg("convert", "said.svg", "-o", "said.script", cwd=tmp_path, status=0)
     flags = [word for name, value in chosen.items() for word in (f"--{name}", value)]
-    brushsvg("convert", "drawing.svg", "typed.script", *flags, cwd=tmp_path, status=0)
+    brushsvg("convert", "drawing.svg", "-o", "typed.script", *flags, cwd=tmp_path, status=0)
     assert (tmp_path / "said.script").read_bytes() == (tmp_path / "typed.script").read_bytes()
     again = plugin.effect("settings", said, tmp_path / "again.svg")
     assert stored(again.read_text()) == stored(said.read_text()) == {**chosen, "tolerance": "0.2mm"}

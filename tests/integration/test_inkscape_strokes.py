@@ -88,10 +88,10 @@ def assert_painted_alike(letters: Path, strokes: Path) -> None:
     slanted cap: where a letter ends in a slanted cut, as an S does, its stroke ends round, 0.13 mm from it."""
     plans, marks = [], []
     for drawn in (letters, strokes):
-        for command, found in (("convert", plans), ("predict", marks)):
+        for command, found in (("convert", plans), ("preview", marks)):
             out = drawn.with_suffix(f".{command}.json")
             # the search for filled shapes adds strokes to letters, and none to lines
-            brushsvg(command, drawn, out, "--corners", "turn", cwd=drawn.parent, status=0)
+            brushsvg(command, drawn, "-o", out, "--corners", "turn", cwd=drawn.parent, status=0)
             found.append(json.loads(out.read_text())["passes"])
     assert len(plans[0]) == len(plans[1])
     for letter, stroke in zip(*plans, strict=True):

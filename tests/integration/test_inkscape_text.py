@@ -48,7 +48,7 @@ def test_text_becomes_the_strokes_of_its_letters(plugin, inkscape, drawing, sele
 
 def painted(file: Path) -> list[float]:
     """Boxes of the marks in mm, one after the other, of the text's letters and of the path."""
-    brushsvg("predict", file, file.with_suffix(".json"), cwd=file.parent, status=0)
+    brushsvg("preview", file, "-o", file.with_suffix(".json"), cwd=file.parent, status=0)
     boxes = []
     for each in json.loads(file.with_suffix(".json").read_text())["passes"]:
         corners = [corner for ring in each["outline_mm"] for corner in ring]

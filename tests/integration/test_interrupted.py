@@ -57,7 +57,17 @@ def read_until(terminal, word, timeout_s=60):
 def test_ctrl_c_stops_at_once_and_leaves_nothing(desk, long_drawing, stage):
     (desk / "long.svg").write_text(long_drawing)
     before = listing(desk)
-    words = ["convert", "long.svg", "old.ngc", "--force", "--preview", "out.svg", "--report", "out.json"]
+    words = [
+        "convert",
+        "long.svg",
+        "-o",
+        "old.ngc",
+        "--force",
+        "--picture",
+        "out.svg",
+        "--report",
+        "out.json",
+    ]
     process, terminal = started_at_terminal(desk, *words)
     try:
         seen = read_until(terminal, stage)
@@ -77,11 +87,11 @@ def test_ctrl_c_stops_at_once_and_leaves_nothing(desk, long_drawing, stage):
 
 
 def test_progress_is_reported_to_a_terminal_only(desk):
-    process, terminal = started_at_terminal(desk, "convert", "sound.svg", "out.ngc")
+    process, terminal = started_at_terminal(desk, "convert", "sound.svg", "-o", "out.ngc")
     assert b"compensated" in read_until(terminal, b"\0 never")
     assert process.wait(timeout=30) == 0
     os.close(terminal)
-    (line,) = brushsvg("convert", "sound.svg", "out.ngc", cwd=desk, status=0).err
+    (line,) = brushsvg("convert", "sound.svg", "-o", "out.ngc", cwd=desk, status=0).err
     assert gives(line, "out.ngc", "1")
 
 
@@ -99,7 +109,7 @@ def test_ctrl_c_while_starting_up(desk, module):
     )
     before = listing(desk)
     done = subprocess.run(
-        [sys.executable, "-c", code, "convert", "sound.svg", "out.ngc"],
+        [sys.executable, "-c", code, "convert", "sound.svg", "-o", "out.ngc"],
         cwd=desk,
         capture_output=True,
         text=True,

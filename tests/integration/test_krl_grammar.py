@@ -118,7 +118,7 @@ def test_the_golden_program_is_krl(errors_of):
 def test_a_program_that_fetches_paint_is_krl(errors_of, tmp_path):
     (tmp_path / "mine.toml").write_text(write_cell(find_cell("kr6-r900")) + PAINT)
     (tmp_path / "red.svg").write_text(DRAWING.replace('id="b"', 'id="b" stroke="#ff0000"'))
-    brushsvg("convert", "red.svg", "red.src", "--cell", "mine.toml", cwd=tmp_path, status=0)
+    brushsvg("convert", "red.svg", "-o", "red.src", "--cell", "mine.toml", cwd=tmp_path, status=0)
     text = (tmp_path / "red.src").read_text()
     assert "\nWAIT SEC 0.5" in text and "\nHALT" in text
     assert errors_of(text) == []
@@ -126,7 +126,9 @@ def test_a_program_that_fetches_paint_is_krl(errors_of, tmp_path):
 
 def test_a_page_of_1000_strokes_is_krl(errors_of, tmp_path):
     (tmp_path / "page.json").write_text(json.dumps(page(1000)))
-    brushsvg("convert", "page.json", "page.src", "--cell", "kr6-r900", cwd=tmp_path, status=0, timeout_s=600)
+    brushsvg(
+        "convert", "page.json", "-o", "page.src", "--cell", "kr6-r900", cwd=tmp_path, status=0, timeout_s=600
+    )
     assert errors_of((tmp_path / "page.src").read_text()) == []
 
 

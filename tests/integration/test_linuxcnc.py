@@ -195,7 +195,7 @@ def test_axes_with_backlash_go_where_others_go(way, drawing, tmp_path):
     painted = []
     for name, machine in (("exact", None), ("worn", Machine(backlash_mm=backlash_mm))):
         (tmp_path / f"{name}.toml").write_text(write_cell(replace(cell, machine=machine)))
-        words = (drawing(source), f"{name}.ngc", "--cell", f"{name}.toml", *flags)
+        words = (drawing(source), "-o", f"{name}.ngc", "--cell", f"{name}.toml", *flags)
         brushsvg("convert", *words, cwd=tmp_path, status=0)
         before, sections = canonical(tmp_path / f"{name}.ngc", tmp_path)
         run = Run(legs_of([*before, *(event for section in sections for event in section.events)]))
@@ -230,7 +230,7 @@ def test_feeds_stay_under_the_brushs_limit(way, made, tmp_path):
 
 def test_a_plan_gives_the_same_moves_as_its_drawing(source, converted, tmp_path):
     folder = converted(source)
-    brushsvg("convert", folder / "plan.json", tmp_path / "by_plan.ngc", cwd=tmp_path, status=0)
+    brushsvg("convert", folder / "plan.json", "-o", tmp_path / "by_plan.ngc", cwd=tmp_path, status=0)
     check_points(*interpreted(tmp_path / "by_plan.ngc", tmp_path), passes_in(folder))
 
 
@@ -302,7 +302,7 @@ def test_names_in_a_drawing_are_not_orders(tmp_path):
         encoding="utf-8",
     )
     for out in ("plan.json", "program.ngc"):
-        brushsvg("convert", "x.svg", out, cwd=tmp_path, status=0)
+        brushsvg("convert", "x.svg", "-o", out, cwd=tmp_path, status=0)
     passes = passes_in(tmp_path)
     assert passes[1]["stroke"] == "MSG,hello"
     before, sections = interpreted(tmp_path / "program.ngc", tmp_path)

@@ -26,6 +26,6 @@ def test_programs_are_the_same_in_any_language(tmp_path, german, out):
     cell = ("--cell", "ur5e") if out.endswith(".script") else ()
     texts = []
     for environment in ({"LC_ALL": "C.UTF-8"}, german):
-        brushsvg("convert", "a.svg", out, *cell, cwd=tmp_path, status=0, env=environment)
+        brushsvg("convert", "a.svg", "-o", out, *cell, cwd=tmp_path, status=0, env=environment)
         texts.append((tmp_path / out).read_bytes())
     assert texts[0] == texts[1]

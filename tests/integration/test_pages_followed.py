@@ -14,7 +14,7 @@ from test_doc_commands import Desk
 FILES = ("toml", "csv", "xml", "text")
 TYPED = ("commands", "shell", "make")
 NAME = re.compile(r"`([\w-]+\.(?:toml|csv|svg|txt))`")
-WRITES = re.compile(r"(?:-o|--picture|--plot|--page|--preview|--chart|--report|--corrected-cell) +(\S+\.\w+)")
+WRITES = re.compile(r"(?:-o|--picture|--marks-picture|--page|--chart|--report|--corrected-cell) +(\S+\.\w+)")
 
 
 def file_of(page, block) -> str:

@@ -99,7 +99,7 @@ def test_the_report_counts_what_the_plan_holds(source, converted, reported):
 
 def test_only_what_is_left_out_is_warned_of(source, drawing, converted, tmp_path):
     """Numbers next to the strokes of a character, depths the brush was not measured at: nothing else."""
-    words = ("--messages", "json", "convert", drawing(source), "again.ngc", "--quiet")
+    words = ("--messages", "json", "convert", drawing(source), "-o", "again.ngc", "--quiet")
     notices = brushsvg(*words, cwd=tmp_path, status=0).reported
     count = 0
     if source == "kanji-eternity":
@@ -116,7 +116,7 @@ def test_only_what_is_left_out_is_warned_of(source, drawing, converted, tmp_path
 
 def test_the_prediction_is_written_in_three_ways(source, drawing, converted, tmp_path):
     for name in ("marks.png", "marks.svg", "marks.json"):
-        brushsvg("predict", drawing(source), name, cwd=tmp_path, status=0)
+        brushsvg("preview", drawing(source), "-o", name, cwd=tmp_path, status=0)
     passes = json.loads((converted(source) / "plan.json").read_text(encoding="utf-8"))["passes"]
     marks = json.loads((tmp_path / "marks.json").read_text(encoding="utf-8"))
     assert (marks["format"], marks["version"]) == ("brushsvg/marks", 1)
@@ -147,7 +147,7 @@ def test_overlap_as_inkscape_sees_the_drawing(source, compensation, drawing, rep
     px_per_mm = PIXELS_ACROSS / width_mm
     target = cv2.imread(str(inkscape.paint(drawing(source), px_per_mm)), cv2.IMREAD_UNCHANGED)[:, :, 3] / 255
     flags = ["--compensation", compensation]
-    brushsvg("predict", drawing(source), "marks.json", *flags, cwd=tmp_path, status=0)
+    brushsvg("preview", drawing(source), "-o", "marks.json", *flags, cwd=tmp_path, status=0)
     rings = json.loads((tmp_path / "marks.json").read_text(encoding="utf-8"))["outline_mm"]
     painted = filled(rings, height_mm, px_per_mm, target.shape)
     overlap = np.minimum(painted, target).sum() / np.maximum(painted, target).sum()

@@ -14,20 +14,20 @@ def everything(folder, name="sound.svg", env=None, command=None):
     run = command or partial(brushsvg, cwd=folder, env=env)
     made = {}
     for words in (
-        ("convert", name, "o.ngc"),
-        ("convert", name, "o.json"),
-        ("predict", name, "o.png"),
-        ("predict", name, "o.svg"),
-        ("predict", name, "o-marks.json"),
-        ("animate", name, "o.html"),
-        ("convert", name, "o2.ngc", "--report", "o.txt", "--preview", "o2.svg"),
+        ("convert", name, "-o", "o.ngc"),
+        ("convert", name, "-o", "o.json"),
+        ("preview", name, "-o", "o.png"),
+        ("preview", name, "-o", "o.svg"),
+        ("preview", name, "-o", "o-marks.json"),
+        ("preview", name, "-o", "o.html"),
+        ("convert", name, "-o", "o2.ngc", "--report", "o.txt", "--picture", "o2.svg"),
     ):
         run(*words, status=0)
     for each in sorted(folder.glob("o*")):
         if each.name != "old.ngc":
             made[each.name] = each.read_bytes()
             each.unlink()
-    made["report"] = run("report", name, "--json", status=0).out
+    made["report"] = run("preview", name, "--json", status=0).out
     assert len(made) == 10
     return made
 
@@ -96,7 +96,7 @@ def test_nor_in_a_program_that_has_set_its_locale(desk, german, usual):
         return type("Done", (), {"out": done.stdout})
 
     assert everything(desk, command=run) == usual
-    brushsvg("convert", "sound.svg", "plan.json", cwd=desk, status=0)
-    run("convert", "plan.json", "p.ngc", status=0)
-    brushsvg("convert", "plan.json", "q.ngc", cwd=desk, status=0)
+    brushsvg("convert", "sound.svg", "-o", "plan.json", cwd=desk, status=0)
+    run("convert", "plan.json", "-o", "p.ngc", status=0)
+    brushsvg("convert", "plan.json", "-o", "q.ngc", cwd=desk, status=0)
     assert (desk / "p.ngc").read_bytes() == (desk / "q.ngc").read_bytes()

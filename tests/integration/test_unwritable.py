@@ -13,12 +13,12 @@ from diagnostics import agrees
 
 
 def test_output_into_a_directory_that_is_not_there(desk):
-    file, reported = refusal(desk, "convert", "sound.svg", "no/where/out.ngc")
+    file, reported = refusal(desk, "convert", "sound.svg", "-o", "no/where/out.ngc")
     assert file == "no/where/out.ngc" and agrees(reported, "file-unwritable")
-    file, reported = refusal(desk, "convert", "sound.svg", "out.ngc", "--preview", "no/where/out.png")
+    file, reported = refusal(desk, "convert", "sound.svg", "-o", "out.ngc", "--picture", "no/where/out.png")
     assert file == "no/where/out.png" and agrees(reported, "file-unwritable")
     (desk / "out.ngc").mkdir()
-    file, reported = refusal(desk, "convert", "sound.svg", "out.ngc")
+    file, reported = refusal(desk, "convert", "sound.svg", "-o", "out.ngc")
     assert file == "out.ngc" and agrees(reported, "file-unwritable")
 
 
@@ -55,9 +55,9 @@ def test_without_the_right_to_write_or_read(as_nobody):
         ((_, notice),) = brushsvg("--messages", "json", *words, cwd=folder, status=1, **settings).reported
         return notice
 
-    assert agrees(reported("convert", "sound.svg", "out.ngc"), "file-unwritable")
-    assert agrees(reported("convert", "sound.svg", "open/old.ngc", "--force"), "file-unwritable")
-    assert agrees(reported("convert", "secret.svg", "open/out.ngc"), "file-unreadable")
+    assert agrees(reported("convert", "sound.svg", "-o", "out.ngc"), "file-unwritable")
+    assert agrees(reported("convert", "sound.svg", "-o", "open/old.ngc", "--force"), "file-unwritable")
+    assert agrees(reported("convert", "secret.svg", "-o", "open/out.ngc"), "file-unreadable")
     assert (folder / "open" / "old.ngc").read_text() == "kept\n"
     assert sorted(os.listdir(folder / "open")) == ["old.ngc"]
     assert sorted(os.listdir(folder)) == ["open", "secret.svg", "sound.svg"]
@@ -71,14 +71,14 @@ def test_a_file_that_grows_too_large_leaves_nothing(desk, out):
     def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300))
 
-    file, reported = refusal(desk, "convert", "sound.svg", out, "--force", preexec_fn=limit)
+    file, reported = refusal(desk, "convert", "sound.svg", "-o", out, "--force", preexec_fn=limit)
     assert file == out and agrees(reported, "file-unwritable")
 
 
 def test_standard_output_that_is_closed_or_full(desk):
     for output in ("&-", "/dev/full"):
         before = ["sh", "-c", f'exec "$@" >{output}', "sh"]
-        for words in (("report", "sound.svg"), ("brush", "list")):
+        for words in (("preview", "sound.svg"), ("brush", "list")):
             assert refused(desk, *words, before=before).startswith("standard output: ")
 
 
@@ -108,10 +108,10 @@ def full_disk(desk):
 @pytest.mark.parametrize(
     "words",
     [
-        ["full/out.json"],
-        ["full/old.ngc"],
-        ["out.ngc", "--preview", "full/out.png"],
-        ["out.ngc", "--preview", "out.png", "--report", "full/out.json"],
+        ["-o", "full/out.json"],
+        ["-o", "full/old.ngc"],
+        ["-o", "out.ngc", "--picture", "full/out.png"],
+        ["-o", "out.ngc", "--picture", "out.png", "--report", "full/out.json"],
     ],
 )
 def test_a_full_disk_leaves_nothing(desk, full_disk, words):

@@ -63,7 +63,7 @@ def desk(tmp_path):
 
 def test_brush_shows_the_marks_that_predict_shows(vpype, desk):
     vpype("read", "x.svg", "brush", "--brush", "round-6", "write", "marks.svg", cwd=desk)
-    brushsvg("predict", "x.svg", "predicted.svg", cwd=desk, status=0)
+    brushsvg("preview", "x.svg", "-o", "predicted.svg", cwd=desk, status=0)
 
     def inked(name):
         parts = (part for each in read_drawing(desk / name).elements for part in each.subpaths)
@@ -85,7 +85,7 @@ def test_refined_strokes_are_those_of_the_command_line(vpype, desk):
     straight = straight.replace("H60 V40", "H40")
     (desk / "x.svg").write_text(straight)
     vpype("read", "x.svg", "brushwrite", *words, "out.json", "brushwrite", *pointed, "closed.json", cwd=desk)
-    brushsvg("convert", "x.svg", "typed.json", *words, cwd=desk, status=0)
+    brushsvg("convert", "x.svg", "-o", "typed.json", *words, cwd=desk, status=0)
 
     def painted(name):
         brush = find_brush("round-6")
@@ -110,7 +110,7 @@ def test_layers_keep_their_settings(vpype, desk):
 
 def test_brushwrite_paints_each_layer_with_its_own_width(vpype, desk):
     vpype("read", "x.svg", "brushwrite", "out.json", "brushwrite", "--width", "1mm", "thin.json", cwd=desk)
-    brushsvg("convert", "x.svg", "typed.json", cwd=desk, status=0)
+    brushsvg("convert", "x.svg", "-o", "typed.json", cwd=desk, status=0)
     plan, thin, typed = (json.loads((desk / f"{name}.json").read_text()) for name in ("out", "thin", "typed"))
     depths = [
         [min(z for _, _, z in each["poses_mm"]) for each in some["passes"]] for some in (plan, thin, typed)
@@ -180,5 +180,5 @@ def test_programs_are_those_of_convert_byte_for_byte(vpype, desk):
             f'width="384" height="240" viewBox="0 0 384 240">{"".join(layers)}</svg>'
         )
         vpype("read", "x.svg", "brushwrite", f"{number}.ngc", cwd=desk)
-        brushsvg("convert", "x.svg", "typed.ngc", "--force", cwd=desk, status=0)
+        brushsvg("convert", "x.svg", "-o", "typed.ngc", "--force", cwd=desk, status=0)
         assert (desk / f"{number}.ngc").read_bytes() == (desk / "typed.ngc").read_bytes(), number

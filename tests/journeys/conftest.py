@@ -46,8 +46,8 @@ def chart_folder(tmp_path_factory):
     )
     studio.write_text(STUDIO)
     for words in (
-        ("chart", plan, "--chart", chart, "--sheet", "a5", "--strokes", "few"),
-        ("simulate-photo", chart, photo, "--studio", studio),
+        ("chart", "-o", plan, "--chart", chart, "--sheet", "a5", "--strokes", "few"),
+        ("simulate-photo", chart, "-o", photo, "--studio", studio),
     ):
         assert main([*map(str, words), "--quiet"]) == 0, words
     return folder

@@ -20,24 +20,25 @@ def run(*words) -> None:
 
 
 def typed(at: Path) -> None:
-    run("brush", "new", at, "--lag", 6, "--width-at", "3=2.2", "--width-at", "8=4.8")
+    run("brush", "new", "-o", at, "--lag", 6, "--width-at", "3=2.2", "--width-at", "8=4.8")
 
 
 def lag_at(at: Path) -> None:
     run(
         "brush",
         "new",
+        "-o",
         at,
         *"--lag-at 1=4 --lag-at 4=6 --lag-at 8=9 --width-at 3=2.2 --width-at 8=4.8".split(),
     )
 
 
 def pen(at: Path) -> None:
-    run("brush", "new", at, "--lag", 0, "--width-at", "3=2.2", "--width-at", "8=4.8")
+    run("brush", "new", "-o", at, "--lag", 0, "--width-at", "3=2.2", "--width-at", "8=4.8")
 
 
 def like(at: Path) -> None:
-    run("brush", "new", at, "--like", "liner-1")
+    run("brush", "new", "-o", at, "--like", "liner-1")
 
 
 def measured(at: Path) -> None:
@@ -57,8 +58,8 @@ def photograph(at: Path, *flags: str) -> Path:
         at.with_suffix(end) for end in (".plan.json", ".chart.json", ".jpg", ".toml")
     )
     studio.write_text(STUDIO)
-    run("chart", plan, "--chart", chart, *flags)
-    run("simulate-photo", chart, photo, "--studio", studio)
+    run("chart", "-o", plan, "--chart", chart, *flags)
+    run("simulate-photo", chart, "-o", photo, "--studio", studio)
     return photo
 
 
@@ -135,20 +136,20 @@ def gcode(at: Path) -> None:
 def plan(at: Path) -> None:
     """One that another brush's convert wrote."""
     svg(LINE)(at)
-    run("convert", at.with_suffix(".svg"), at.with_suffix(".json"))
+    run("convert", at.with_suffix(".svg"), "-o", at.with_suffix(".json"))
     at.with_suffix(".svg").unlink()
 
 
 def outline_text(at: Path) -> None:
     save_font(at.with_suffix(".ttf"), "Boxes", wide=150)
-    run("text", "Ax", at.with_suffix(".svg"), "--font", at.with_suffix(".ttf"), "--size", 20)
+    run("text", "Ax", "-o", at.with_suffix(".svg"), "--font", at.with_suffix(".ttf"), "--size", 20)
     at.with_suffix(".ttf").unlink()
 
 
 def line_text(at: Path) -> None:
     font = at.with_name("font.svg")
     font.write_text(SVG_FONT)
-    run("text", "LL", at.with_suffix(".svg"), "--font", font, "--width", 1.6)
+    run("text", "LL", "-o", at.with_suffix(".svg"), "--font", font, "--width", 1.6)
     font.unlink()
 
 

@@ -19,7 +19,7 @@ REFUSED = {
 def paints(desk: Path, brush: str, drawing: str, capsys) -> None:
     out = desk / "out.ngc"
     out.unlink(missing_ok=True)
-    words = "convert", drawing_file(desk, drawing), out, "--brush", brush_file(desk, brush)
+    words = "convert", drawing_file(desk, drawing), "-o", out, "--brush", brush_file(desk, brush)
     status, _, reported = in_json(capsys, *words)
     if code := REFUSED.get((brush, drawing)):
         assert status == 1 and is_reported(reported, code), reported
@@ -47,9 +47,9 @@ def test_every_photographed_brush_paints_every_drawing(desk, capsys, brush, draw
 @pytest.mark.parametrize("drawing", ["shape", "line", "dots"])
 def test_every_brush_is_reported_on_and_its_program_checked(desk, capsys, brush, drawing):
     at = drawing_file(desk, drawing)
-    status, _, reported = in_json(capsys, "report", at, "--brush", brush_file(desk, brush))
+    status, _, reported = in_json(capsys, "preview", at, "--brush", brush_file(desk, brush))
     assert status == 0, reported
     out = desk / "checked.ngc"
-    assert in_json(capsys, "convert", at, out, "--brush", brush_file(desk, brush))[0] == 0
+    assert in_json(capsys, "convert", at, "-o", out, "--brush", brush_file(desk, brush))[0] == 0
     status, _, reported = in_json(capsys, "check", out, at, "--brush", brush_file(desk, brush))
     assert status == 0, reported

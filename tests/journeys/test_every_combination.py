@@ -41,12 +41,12 @@ def program(cell: str) -> str:
 
 def convert(drawing, options, folder):
     out = folder / program(options[3])
-    yield ("convert", drawing, out, *options), [out]
+    yield ("convert", drawing, "-o", out, *options), [out]
 
 
 def check(drawing, options, folder):
     out = folder / program(options[3])
-    yield ("convert", drawing, out, *options), [out]
+    yield ("convert", drawing, "-o", out, *options), [out]
     yield ("check", out, drawing, *options), []
 
 
@@ -57,35 +57,35 @@ def batch(drawing, options, folder):
     inputs = (
         inputs if drawing.suffix in (".svg", ".dxf") else inputs / drawing.name
     )  # G-code is read where it is named
-    yield ("batch", inputs, "--out", folder / "out", "--jobs", 1, *options), [folder / "out"]
+    yield ("batch", inputs, "-o", folder / "out", "--jobs", 1, *options), [folder / "out"]
 
 
 def report(drawing, options, folder):
     picture = folder / "paint.svg"
-    yield ("report", drawing, "--preview", picture, *options), [picture]
+    yield ("preview", drawing, "--show", "errors", "-o", picture, *options), [picture]
 
 
 def predict(drawing, options, folder):
-    yield ("predict", drawing, folder / "paint.png", *options), [folder / "paint.png"]
+    yield ("preview", drawing, "-o", folder / "paint.png", *options), [folder / "paint.png"]
 
 
 def animate(drawing, options, folder):
-    yield ("animate", drawing, folder / "paint.html", *options), [folder / "paint.html"]
+    yield ("preview", drawing, "-o", folder / "paint.html", *options), [folder / "paint.html"]
 
 
 def border(drawing, options, folder):
     out = folder / program(options[3])
-    yield ("border", drawing, out, *options), [out]
+    yield ("setup", "border", drawing, "-o", out, *options), [out]
 
 
 def compare(drawing, options, folder):
     photo, corrections, studio = folder / "photo.jpg", folder / "corrections.json", folder / "studio.toml"
     studio.write_text(STUDIO)
-    yield ("simulate-photo", drawing, photo, *options, "--studio", studio), [photo]
+    yield ("simulate-photo", drawing, "-o", photo, *options, "--studio", studio), [photo]
     yield ("compare", photo, drawing, *options, "-o", corrections), [corrections]
     if any(stroke["correction"] for stroke in json.loads(corrections.read_text())["strokes"]):
         out = folder / program(options[3])
-        yield ("convert", drawing, out, *options, "--corrections", corrections), [out]
+        yield ("convert", drawing, "-o", out, *options, "--corrections", corrections), [out]
 
 
 COMMANDS = (convert, check, batch, report, predict, animate, border, compare)
@@ -170,6 +170,7 @@ def test_a_brush_on_a_machine_with_a_pen_is_refused(desk, tmp_path, capsys, cell
     words = (
         "convert",
         drawing_file(desk, "line"),
+        "-o",
         tmp_path / program(cell),
         "--cell",
         cell,

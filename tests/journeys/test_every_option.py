@@ -50,11 +50,11 @@ OF_CONVERT = {
     "--margin-strokes": ["", "on", "off"],
     "--from-stroke": ["", "2"],
     "--per-colour": ["", True],
-    "--preview": ["", "seen.png", "seen.svg"],
+    "--picture": ["", "seen.png", "seen.svg"],
     "--page": ["", "page.svg"],
     "--report": ["", "report.txt", "report.json"],
 }
-FILES = ("--preview", "--page", "--report")
+FILES = ("--picture", "--page", "--report")
 
 
 def words_of(options: dict) -> list[str]:
@@ -114,7 +114,7 @@ def title(options: dict) -> str:
 @sample("options", rows(OPTIONS | OF_CONVERT), keep=10, ids=title)
 def test_each_pair_of_options_of_convert_works(desk, capsys, options):
     suffix = {"ur5e": ".script", "grbl-servo": ".nc"}.get(options["--cell"], ".ngc")
-    run(capsys, "convert", "d.svg", f"out{suffix}", *words_of(options))
+    run(capsys, "convert", "d.svg", "-o", f"out{suffix}", *words_of(options))
     made = {each.name for each in desk.iterdir()}
     programs = {name for name in made if name.endswith(suffix)}
     assert programs and {options[flag] for flag in FILES if options[flag]} <= made
@@ -132,8 +132,8 @@ CHECKED = (
 @sample("options", rows(OPTIONS), keep=4, ids=title)
 def test_batch_writes_what_convert_does_with_each_pair_of_options(desk, capsys, options):
     suffix = {"ur5e": ".script", "grbl-servo": ".nc"}.get(options["--cell"], ".ngc")
-    run(capsys, "convert", "d.svg", f"one{suffix}", *words_of(options))
-    run(capsys, "batch", "d.svg", "--out", "many", "--jobs", 1, *words_of(options))
+    run(capsys, "convert", "d.svg", "-o", f"one{suffix}", *words_of(options))
+    run(capsys, "batch", "d.svg", "-o", "many", "--jobs", 1, *words_of(options))
     (made,) = (desk / "many/programs").iterdir()
     assert made.suffix == suffix or options["--cell"] == "grbl-servo"  # which has several endings
     assert made.read_bytes() == (desk / f"one{suffix}").read_bytes()
@@ -176,13 +176,13 @@ OF_PAINTED = {  # those that a photograph is planned and compared with; one line
 def test_each_pair_of_options_of_compare_works(desk, capsys, options):
     (desk / "d.svg").write_text(DRAWING.replace("</svg>", f"{MORE}</svg>"))
     planned = some_of(options, *OF_PAINTED, "--margin-strokes")
-    run(capsys, "simulate-photo", "d.svg", "photo.jpg", "--studio", "studio.toml", *planned)
+    run(capsys, "simulate-photo", "d.svg", "-o", "photo.jpg", "--studio", "studio.toml", *planned)
     run(capsys, "compare", "photo.jpg", "d.svg", *words_of(options))
     made = {each.name for each in desk.iterdir()}
     assert {options[flag] for flag in ("-o", "--picture", "--corrected-cell") if options[flag]} <= made
     if options["-o"] == "fit.json":
         suffix = {"ur5e": ".script", "grbl-servo": ".nc"}.get(options["--cell"], ".ngc")
-        words = "convert", "d.svg", f"next{suffix}", "--corrections", "fit.json", *planned
+        words = "convert", "d.svg", "-o", f"next{suffix}", "--corrections", "fit.json", *planned
         status, _, reported = in_json(capsys, *words)
         # corrected, a stroke may have to be pressed deeper than this servo goes
         assert status == 0 or (reported[-1][1].code == "too-low" and options["--cell"] == "grbl-servo"), (
@@ -191,8 +191,8 @@ def test_each_pair_of_options_of_compare_works(desk, capsys, options):
 
 
 OF_CALIBRATE = {
-    "--picture": ["", "read.png"],
-    "--plot": ["", "laws.png", "laws.svg"],
+    "--marks-picture": ["", "read.png"],
+    "--picture": ["", "laws.png", "laws.svg"],
     "--aim": [
         "",
         "edges",
@@ -219,6 +219,9 @@ def test_each_pair_of_options_of_calibrate_works(chart, tmp_path, capsys, monkey
     photo, file = chart / "chart.jpg", chart / "chart.chart.json"
     run(capsys, "calibrate", photo, "--chart", file, "-o", "mine.json", *words_of(options))
     made = {each.name for each in tmp_path.iterdir()}
-    assert {"mine.json", *(options[flag] for flag in ("--picture", "--plot") if options[flag])} <= made
+    assert {
+        "mine.json",
+        *(options[flag] for flag in ("--picture", "--marks-picture") if options[flag]),
+    } <= made
     (tmp_path / "d.svg").write_text(DRAWING)
-    run(capsys, "convert", "d.svg", "out.ngc", "--brush", "mine.json")
+    run(capsys, "convert", "d.svg", "-o", "out.ngc", "--brush", "mine.json")

@@ -63,14 +63,14 @@ def paint_three_sheets(desk: Desk) -> list[float]:
     overlaps, moved = [], ""
     for sheet in (1, 2, 3):
         planned = f"--brush mine-{sheet}.json --cell cell-{sheet}.toml {moved}"
-        desk.run(f"convert word.svg plan-{sheet}.json {planned} --page page-{sheet}.svg")
-        desk.run(f"convert word.svg job-{sheet}.ngc {planned} --page page.svg --force")
+        desk.run(f"convert word.svg -o plan-{sheet}.json {planned} --page page-{sheet}.svg")
+        desk.run(f"convert word.svg -o job-{sheet}.ngc {planned} --page page.svg --force")
         desk.run(f"check job-{sheet}.ngc word.svg {planned}")
         desk.run(
             f"check job-{sheet}.ngc plan-{sheet}.json --brush mine-{sheet}.json --cell cell-{sheet}.toml"
         )
         desk.run(
-            f"simulate-photo plan-{sheet}.json photo-{sheet}.jpg --brush mine-{sheet}.json --cell cell-{sheet}.toml "
+            f"simulate-photo plan-{sheet}.json -o photo-{sheet}.jpg --brush mine-{sheet}.json --cell cell-{sheet}.toml "
             f"--true-brush round-6 --studio studio.toml --seed {sheet}"
         )
         desk.run(f"compare photo-{sheet}.jpg word.svg {planned} -o seen-{sheet}.json")
@@ -90,9 +90,9 @@ def paint_three_sheets(desk: Desk) -> list[float]:
 @pytest.mark.parametrize("machine", ["", MACHINE], ids=["plain cell", "cell with a machine"])
 def test_three_sheets_without_a_chart(desk, machine):
     desk.run(
-        "brush new mine-1.json --lag-at 1=5 --lag-at 4=8 --lag-at 8=11 --width-at 3=2.4 --width-at 8=5.8"
+        "brush new -o mine-1.json --lag-at 1=5 --lag-at 4=8 --lag-at 8=11 --width-at 3=2.4 --width-at 8=5.8"
     )
-    desk.run("cell new cell-1.toml")
+    desk.run("cell new -o cell-1.toml")
     cell = desk.at / "cell-1.toml"
     cell.write_text(cell.read_text() + machine)
     first, second, third = paint_three_sheets(desk)
@@ -101,9 +101,11 @@ def test_three_sheets_without_a_chart(desk, machine):
 
 def test_a_sheet_planned_for_another_brush_teaches_with_a_warning(desk, capsys):
     """The default brush painted it; the brush that was typed afterwards learns from it."""
-    desk.run("convert word.svg plan.json --page page.svg")
-    desk.run("simulate-photo plan.json photo.jpg --studio studio.toml")
-    desk.run("brush new mine.json --lag-at 1=5 --lag-at 4=8 --lag-at 8=11 --width-at 3=2.4 --width-at 8=5.8")
+    desk.run("convert word.svg -o plan.json --page page.svg")
+    desk.run("simulate-photo plan.json -o photo.jpg --studio studio.toml")
+    desk.run(
+        "brush new -o mine.json --lag-at 1=5 --lag-at 4=8 --lag-at 8=11 --width-at 3=2.4 --width-at 8=5.8"
+    )
     words = "calibrate photo.jpg --plan plan.json --prior mine.json -o mine-2.json".split()
     words = [str(desk.at / each) if "." in each else each for each in words]
     status, _, reported = in_json(capsys, *words)

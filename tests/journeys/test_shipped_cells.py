@@ -40,9 +40,9 @@ def goes_the_whole_way(user, name: str) -> None:
             f"calibrate chart.jpg --chart chart.json --machine lean,axes,tilt,backlash --cell {name} -o {brush}"
         )
     job = f"--brush {brush} {width}"
-    user.types(f"convert word.svg {program} {job} --cell {name} --page page.svg")
+    user.types(f"convert word.svg -o {program} {job} --cell {name} --page page.svg")
     user.types(f"check {program} word.svg {job} --cell {name}")
-    user.types(f"simulate-photo word.svg photo.jpg {job} --cell {name} --studio studio.toml")
+    user.types(f"simulate-photo word.svg -o photo.jpg {job} --cell {name} --studio studio.toml")
     user.types(
         f"compare photo.jpg word.svg {job} --cell {name} -o corrections.json --corrected-cell corrected.toml"
     )
@@ -50,11 +50,11 @@ def goes_the_whole_way(user, name: str) -> None:
         (TOO_FAR, TOO_FAR), abs=0.002
     )
     second = f"{job} --cell corrected.toml --corrections corrections.json"
-    user.types(f"convert word.svg second-{program} {second}")
+    user.types(f"convert word.svg -o second-{program} {second}")
     user.types(f"check second-{program} word.svg {second}")
     assert user.reads(f"second-{program}") != user.reads(program)
     before = json.loads(user.reads("corrections.json"))
-    user.types(f"simulate-photo word.svg second.jpg {second} --studio studio.toml")
+    user.types(f"simulate-photo word.svg -o second.jpg {second} --studio studio.toml")
     user.types(f"compare second.jpg word.svg {second} -o after.json")
     after = json.loads(user.reads("after.json"))
     assert after["overlap_wanted"] > before["overlap_wanted"]

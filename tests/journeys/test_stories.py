@@ -39,18 +39,18 @@ def test_an_artist_paints_a_logo(user):
 
     # The ruler says how the brush marks at three depths.
     measured = "--lag-at 2=4.5 --width-at 2=1.5 --lag-at 5=7 --width-at 5=3.5 --lag-at 8=9 --width-at 8=5"
-    user.types(f"brush new mine {measured}")
+    user.types(f"brush new -o mine.json {measured}")
     assert gives(user.types("brush show mine.json"), "2", "8")
 
     # What did the program understand of the logo, and what will it look like?
-    user.types("import logo.svg understood.png")
-    user.types("convert logo.svg logo.ngc --brush mine.json --preview preview.png")
-    report = json.loads(user.types("report logo.svg --brush mine.json --json"))
+    user.types("preview logo.svg -o understood.png --show strokes")
+    user.types("convert logo.svg -o logo.ngc --brush mine.json --picture preview.png")
+    report = json.loads(user.types("preview logo.svg --brush mine.json --json"))
     assert {"ring", "swash"} <= {each["stroke"] for each in report["strokes"]}
 
     # Nothing hits anything, and the friend's machine goes round the paper once in the air.
     user.types("check logo.ngc logo.svg --brush mine.json")
-    user.types("border logo.svg border.ngc --brush mine.json")
+    user.types("setup border logo.svg -o border.ngc --brush mine.json")
     for name in ("understood.png", "preview.png", "border.ngc"):
         assert (user.folder / name).stat().st_size > 100
 
@@ -58,27 +58,28 @@ def test_an_artist_paints_a_logo(user):
 def test_a_servo_plotter_paints_three_colours(user):
     """One program a colour, with time to wash the brush in between."""
     user.saves("colours.svg", COLOURS)
-    user.types("cell new plotter.toml --like grbl-servo")
+    user.types("cell new -o plotter.toml --like grbl-servo")
     user.types(
-        "brush new mine --lag-at 1=2 --width-at 1=1.5 --lag-at 2=3 --width-at 2=2.5 --lag-at 4=4 --width-at 4=3.5"
+        "brush new -o mine.json --lag-at 1=2 --width-at 1=1.5 --lag-at 2=3 --width-at 2=2.5 "
+        "--lag-at 4=4 --width-at 4=3.5"
     )
     job = "--brush mine.json --cell plotter.toml"
     for colour, stroke in (("red", "arch"), ("blue", "bow"), ("green", "wave")):
-        user.types(f"convert colours.svg {colour}.gcode {job} --layer {colour}")
+        user.types(f"convert colours.svg -o {colour}.gcode {job} --layer {colour}")
         user.types(f"check {colour}.gcode colours.svg {job} --layer {colour}")
         program = user.reads(f"{colour}.gcode")
         assert gives(program, stroke) and "M3" in program
 
     # The plotter moves 0.5 % too far. The page with all colours shows it, so the second page is corrected.
     user.saves("studio.toml", f"{STUDIO}[machine]\nscale = [1.005, 1.005]\n")
-    user.types(f"simulate-photo colours.svg page.jpg {job} --studio studio.toml")
+    user.types(f"simulate-photo colours.svg -o page.jpg {job} --studio studio.toml")
     user.types(f"compare page.jpg colours.svg {job} -o page.json --corrected-cell corrected.toml")
     corrected = "--brush mine.json --cell corrected.toml --corrections page.json"
-    user.types(f"convert colours.svg second.gcode {corrected}")
+    user.types(f"convert colours.svg -o second.gcode {corrected}")
     user.types(f"check second.gcode colours.svg {corrected}")
 
     # The paper turned out 0.3 mm higher than it was thought to be.
-    user.types(f"convert colours.svg higher.gcode {job} --layer red --z-offset 0.3")
+    user.types(f"convert colours.svg -o higher.gcode {job} --layer red --z-offset 0.3")
     assert user.reads("higher.gcode") != user.reads("red.gcode")
 
 
@@ -87,8 +88,8 @@ def test_three_axes_go_from_a_chart_to_a_corrected_second_sheet(user_with_chart)
     user = user_with_chart
     user.saves("word.svg", WORD)
     user.saves("studio.toml", f"{STUDIO}[machine]\nscale = [1.005, 1.005]\n")
-    user.types("cell new machine.toml --like grbl-3axis")
-    user.types("height paper.ngc --cell machine.toml")
+    user.types("cell new -o machine.toml --like grbl-3axis")
+    user.types("setup height -o paper.ngc --cell machine.toml")
 
     # The chart is painted, dry and photographed.
     user.types("calibrate chart.jpg --chart chart.json -o mine.json --picture read.png")
@@ -97,16 +98,16 @@ def test_three_axes_go_from_a_chart_to_a_corrected_second_sheet(user_with_chart)
 
     # First sheet.
     first = "--brush mine.json --cell machine.toml"
-    user.types(f"convert word.svg word.ngc {first} --page page.svg")
+    user.types(f"convert word.svg -o word.ngc {first} --page page.svg")
     user.types(f"check word.ngc word.svg {first}")
-    user.types(f"simulate-photo word.svg sheet-1.jpg {first} --studio studio.toml")
+    user.types(f"simulate-photo word.svg -o sheet-1.jpg {first} --studio studio.toml")
     user.types(f"compare sheet-1.jpg word.svg {first} -o sheet-1.json --corrected-cell corrected.toml")
 
     # Second sheet, by the corrected cell.
     second = "--brush mine.json --cell corrected.toml --corrections sheet-1.json"
-    user.types(f"convert word.svg second.ngc {second}")
+    user.types(f"convert word.svg -o second.ngc {second}")
     user.types(f"check second.ngc word.svg {second}")
-    user.types(f"simulate-photo word.svg sheet-2.jpg {second} --studio studio.toml")
+    user.types(f"simulate-photo word.svg -o sheet-2.jpg {second} --studio studio.toml")
     user.types(f"compare sheet-2.jpg word.svg {second} -o sheet-2.json")
     assert overlap(user, "sheet-2.json") > overlap(user, "sheet-1.json") + 0.01
 
@@ -118,16 +119,16 @@ def test_a_ur5e_learns_its_brush_from_a_job(user):
 
     # The paper is taught at its corner and along two edges.
     taught = "--taught=-150,-650,20 --taught=150,-650,20 --taught=-150,-450,20.2"
-    user.types(f"cell new arm.toml --like ur5e {taught}")
+    user.types(f"cell new -o arm.toml --like ur5e {taught}")
     user.types("cell check arm.toml")
-    user.types("first-run arm.toml -o first.script")
+    user.types("setup first-run arm.toml -o first.script")
 
     # A first job with the brush as it comes along.
     job = "--brush round-6 --cell arm.toml"
-    user.types(f"convert word.svg word.json {job} --page page.svg")
-    user.types(f"convert word.svg word.script {job}")
+    user.types(f"convert word.svg -o word.json {job} --page page.svg")
+    user.types(f"convert word.svg -o word.script {job}")
     user.types(f"check word.script word.svg {job}")
-    user.types("simulate-photo word.json job.jpg --cell arm.toml --studio studio.toml")
+    user.types("simulate-photo word.json -o job.jpg --cell arm.toml --studio studio.toml")
 
     # The photograph teaches the brush.
     user.types("calibrate job.jpg --plan word.json --prior round-6 -o learned.json")
@@ -136,7 +137,7 @@ def test_a_ur5e_learns_its_brush_from_a_job(user):
 
     # The second job is planned with it.
     job = "--brush learned.json --cell arm.toml"
-    user.types(f"convert word.svg second.script {job}")
+    user.types(f"convert word.svg -o second.script {job}")
     user.types(f"check second.script word.svg {job}")
 
 

@@ -27,7 +27,15 @@ def job(tmp_path_factory):
     folder = tmp_path_factory.mktemp("studio")
     save_brush(studio.known_brush(), folder / "mine.json")
     (folder / "word.svg").write_text(studio.WORD)
-    words = ["convert", folder / "word.svg", folder / "word.json", "--brush", folder / "mine.json", "--quiet"]
+    words = [
+        "convert",
+        folder / "word.svg",
+        "-o",
+        folder / "word.json",
+        "--brush",
+        folder / "mine.json",
+        "--quiet",
+    ]
     assert main([*map(str, words)]) == 0
     return folder, read_plan(folder / "word.json")
 
@@ -127,7 +135,7 @@ def test_without_faults_no_cause_is_certain(job, capsys):
 def test_few_strokes_blame_nobody(job, capsys, tmp_path):
     few = studio.WORD[: studio.WORD.index('<path id="wave"')] + "</g></svg>"
     (tmp_path / "few.svg").write_text(few)
-    words = ["simulate-photo", str(tmp_path / "few.svg"), str(tmp_path / "few.jpg"), "--quiet"]
+    words = ["simulate-photo", str(tmp_path / "few.svg"), "-o", str(tmp_path / "few.jpg"), "--quiet"]
     assert main(words) == 0
     capsys.readouterr()  # what its studio was
     status, out, _ = in_json(capsys, "compare", tmp_path / "few.jpg", tmp_path / "few.svg", "--json")

@@ -256,7 +256,7 @@ def test_a_scan_gives_the_brush_back(tmp_path, capsys):
         assert max(off) < 0.03, (law, off)
     assert gives(capsys.readouterr().err, "24")
     marks_file, again = str(tmp_path / "marks.json"), str(tmp_path / "again.json")
-    assert main(["scan", photo, "--chart", made, "--dpi", "300", "-o", marks_file]) == 0
+    assert main(["calibrate", photo, "--scan", "--chart", made, "--dpi", "300", "-o", marks_file]) == 0
     assert main(["calibrate", "--force", marks_file, "-o", again]) == 0
     off = [abs(find_brush(again).lag(depth) / TRUTH.law("lag")(depth) - 1) for depth in DEPTHS]
     assert max(off) < 0.03, off

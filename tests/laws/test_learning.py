@@ -74,6 +74,7 @@ class Studio:
         words = [
             "convert",
             self.folder / "word.svg",
+            "-o",
             self.folder / name,
             "--brush",
             self.folder / "mine.json",
@@ -177,7 +178,14 @@ def test_what_is_not_this_job_is_refused(tmp_path, capsys):
     studio = Studio(tmp_path)
     studio.paint(4, true_brush())
     (tmp_path / "other.svg").write_text((HEAD + WORD + "</g></svg>").replace("M14 34", "M15 34"))
-    words = ["convert", tmp_path / "other.svg", tmp_path / "other.json", "--brush", tmp_path / "mine.json"]
+    words = [
+        "convert",
+        tmp_path / "other.svg",
+        "-o",
+        tmp_path / "other.json",
+        "--brush",
+        tmp_path / "mine.json",
+    ]
     assert main([*map(str, words), "--quiet"]) == 0
     status, _, reported = in_json(capsys, *studio.words(plan="other.json"))
     assert status == 1 and is_reported(reported, "photo-of-another-chart"), reported

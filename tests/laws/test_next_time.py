@@ -52,7 +52,7 @@ class Studio:
 
     def plan(self, *flags):
         path = self.folder / "plan.json"
-        words = ["convert", str(self.folder / "five.svg"), str(path), "--quiet", *map(str, flags)]
+        words = ["convert", str(self.folder / "five.svg"), "-o", str(path), "--quiet", *map(str, flags)]
         assert main(words) == 0
         return read_plan(path)
 
@@ -161,7 +161,7 @@ def test_corrections_are_those_of_this_job(tmp_path, capsys):
     (tmp_path / "other.svg").write_text(DRAWING.replace('id="bow"', 'id="bough"'))
     for name in ("moved.svg", "other.svg"):
         status, _, reported = in_json(
-            capsys, "convert", tmp_path / name, tmp_path / "a.ngc", "--corrections", found
+            capsys, "convert", tmp_path / name, "-o", tmp_path / "a.ngc", "--corrections", found
         )
         assert status == 1 and is_reported(reported, "corrections-of-another-job", "bow"), reported
     (tmp_path / "wider.svg").write_text(
@@ -175,14 +175,14 @@ def test_corrections_are_those_of_this_job(tmp_path, capsys):
         ("five.svg", "bow", ("--width", "3")),
         ("five.svg", "bow", ("--compensation", "constant")),
     ):
-        words = ("convert", tmp_path / name, tmp_path / "a.ngc", "--corrections", found, *flags)
+        words = ("convert", tmp_path / name, "-o", tmp_path / "a.ngc", "--corrections", found, *flags)
         status, _, reported = in_json(capsys, *words)
         assert status == 1 and is_reported(reported, "corrections-of-another-job", stroke), (
             name,
             flags,
             reported,
         )
-    words = ("convert", drawing, tmp_path / "a.ngc", "--corrections", found)
+    words = ("convert", drawing, "-o", tmp_path / "a.ngc", "--corrections", found)
     assert in_json(capsys, *words)[0] == 0
     status, _, reported = in_json(capsys, "check", tmp_path / "a.ngc", drawing)
     assert status == 1 and is_reported(reported, "corrections-missing"), reported
@@ -240,7 +240,7 @@ def test_a_corrected_plan_holds_its_corrections_and_the_plan_before(tmp_path, ca
     found = studio.compared(studio.photographed(studio.plan()))
     photo = studio.photographed(studio.plan("--corrections", found))  # leaves plan.json
     plan, again = tmp_path / "plan.json", tmp_path / "again.json"
-    assert in_json(capsys, "convert", plan, again, "--corrections", found)[0] == 0
+    assert in_json(capsys, "convert", plan, "-o", again, "--corrections", found)[0] == 0
     for one, other in zip(read_plan(plan).passes, read_plan(again).passes, strict=True):
         np.testing.assert_allclose(one.poses_mm, other.poses_mm, atol=1e-5)
     seen = []
@@ -253,7 +253,7 @@ def test_a_corrected_plan_holds_its_corrections_and_the_plan_before(tmp_path, ca
         assert one["turn_deg"] == pytest.approx(other["turn_deg"], abs=0.05)
     status, _, reported = in_json(capsys, "compare", photo, plan, "--corrections", found)
     assert status == 1 and is_reported(reported, "corrections-twice"), reported
-    assert in_json(capsys, "convert", plan, tmp_path / "a.ngc")[0] == 0
+    assert in_json(capsys, "convert", plan, "-o", tmp_path / "a.ngc")[0] == 0
     assert main(["check", str(tmp_path / "a.ngc"), "--corrections", str(found)]) == 2  # of which drawing?
 
 
@@ -278,7 +278,10 @@ def test_damaged_corrections_in_a_plan_are_refused(tmp_path, capsys, change, cod
     extra = json.loads(plan.read_text())
     change(extra)
     plan.write_text(json.dumps(extra))
-    for words in (("compare", photo, plan), ("convert", plan, tmp_path / "a.ngc", "--corrections", found)):
+    for words in (
+        ("compare", photo, plan),
+        ("convert", plan, "-o", tmp_path / "a.ngc", "--corrections", found),
+    ):
         status, _, reported = in_json(capsys, *words)
         assert status == 1 and is_reported(reported, code), reported
 
@@ -302,7 +305,7 @@ def test_damaged_corrections_are_refused(tmp_path, capsys, change, code):
     rows = [{"stroke": "bow", "correction": row}] * (2 if code == "stroke-twice" else 1)
     made = {"format": "brushsvg/comparison", "version": 1, "strokes": rows}
     (tmp_path / "c.json").write_text(json.dumps(made))
-    words = ("convert", tmp_path / "five.svg", tmp_path / "a.ngc", "--corrections", tmp_path / "c.json")
+    words = ("convert", tmp_path / "five.svg", "-o", tmp_path / "a.ngc", "--corrections", tmp_path / "c.json")
     status, _, reported = in_json(capsys, *words)
     assert status == 1 and is_reported(reported, code), reported
     assert not (tmp_path / "a.ngc").exists() and studio.sheets == 0
@@ -329,7 +332,7 @@ def test_a_new_brush_and_corrections_in_one_round(tmp_path, capsys):
     photo = studio.photographed(plan)
     with_the_old = studio.compared(photo)
     drawing, out = tmp_path / "five.svg", tmp_path / "out.json"
-    words = ("convert", drawing, out, "--brush", longer, "--corrections", with_the_old)
+    words = ("convert", drawing, "-o", out, "--brush", longer, "--corrections", with_the_old)
     status, _, reported = in_json(capsys, *words)
     assert status == 1 and is_reported(reported, "corrections-of-another-brush"), reported
     again = tmp_path / "again.json"
@@ -350,7 +353,7 @@ def test_the_plan_for_another_brush_may_begin_elsewhere(tmp_path, capsys, planne
     made = {"format": "brushsvg/comparison", "version": 1, "strokes": [{"stroke": "bow", "correction": row}]}
     made |= {"brush_sha256": BRUSH.sha256, "plan_brush_sha256": planned}
     (tmp_path / "c.json").write_text(json.dumps(made))
-    words = ("convert", tmp_path / "five.svg", tmp_path / "a.ngc", "--corrections", tmp_path / "c.json")
+    words = ("convert", tmp_path / "five.svg", "-o", tmp_path / "a.ngc", "--corrections", tmp_path / "c.json")
     found, _, reported = in_json(capsys, *words)
     assert found == status and (status == 0 or is_reported(reported, "corrections-of-another-job")), reported
 
@@ -362,7 +365,7 @@ def test_two_strokes_show_no_corrections(tmp_path, capsys):
     (tmp_path / "five.svg").write_text(few)
     found = studio.compared(studio.photographed(studio.plan()))
     assert [row["correction"] for row in json.loads(found.read_text())["strokes"]] == [None, None]
-    words = ("convert", tmp_path / "five.svg", tmp_path / "a.ngc", "--corrections", found)
+    words = ("convert", tmp_path / "five.svg", "-o", tmp_path / "a.ngc", "--corrections", found)
     status, _, reported = in_json(capsys, *words)
     assert status == 1 and is_reported(reported, "corrections-missing 2 3", "strokes"), reported
     rows = json.loads(found.read_text())
@@ -414,7 +417,15 @@ def test_corrections_of_another_cell_are_refused(stretched, capsys):
     other = studio.folder / "other.toml"
     cell = parse_cell(corrected_cell.read_text())
     other.write_text(write_cell(replace(cell, machine=replace(cell.machine, skew=0.003))))
-    words = ("convert", studio.folder / "five.svg", studio.folder / "a.ngc", "--corrections", found, "--cell")
+    words = (
+        "convert",
+        studio.folder / "five.svg",
+        "-o",
+        studio.folder / "a.ngc",
+        "--corrections",
+        found,
+        "--cell",
+    )
     assert in_json(capsys, *words, corrected_cell)[0] == 0
     status, _, reported = in_json(capsys, *words, other)
     assert status == 1 and is_reported(reported, "corrections-of-another-cell"), reported
@@ -464,7 +475,7 @@ def test_a_width_that_no_depth_paints_is_refused(tmp_path, capsys):
     made = {"format": "brushsvg/comparison", "version": 1}
     made["strokes"] = [{"stroke": plan.passes[1].stroke, "correction": row}]
     (tmp_path / "c.json").write_text(json.dumps(made))
-    words = ("convert", tmp_path / "five.svg", tmp_path / "a.ngc", "--corrections", tmp_path / "c.json")
+    words = ("convert", tmp_path / "five.svg", "-o", tmp_path / "a.ngc", "--corrections", tmp_path / "c.json")
     assert in_json(capsys, *words)[0] == 0
     status, _, reported = in_json(capsys, *words, "--brush", brush)
     assert status == 1 and is_reported(reported, "width-correction-refused", "line"), reported

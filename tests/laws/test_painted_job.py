@@ -301,7 +301,14 @@ def test_paint_that_is_unlike_a_mark_corrects_it_not(job, capsys):
 def test_the_page_names_its_plan(job, tmp_path, capsys):
     folder, page, *_ = job
     for name in ("page.svg", "page.pdf"):
-        words = ["convert", str(folder / "four.svg"), str(tmp_path / "a.ngc"), "--page", str(tmp_path / name)]
+        words = [
+            "convert",
+            str(folder / "four.svg"),
+            "-o",
+            str(tmp_path / "a.ngc"),
+            "--page",
+            str(tmp_path / name),
+        ]
         words += ["--margin-strokes", "off"]
         made = main([*words, "--quiet"])
         assert made == 0, capsys.readouterr().err

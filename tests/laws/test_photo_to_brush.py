@@ -83,7 +83,19 @@ def test_python_gives_the_brush_of_the_command(desk, tmp_path, capsys):
 def test_one_photograph_gives_the_brush_back(desk, capsys):
     files = [str(desk / name) for name in ("photo.jpg", "chart.json", "own.json", "read.png")]
     assert (
-        main(["calibrate", "--force", files[0], "--chart", files[1], "-o", files[2], "--picture", files[3]])
+        main(
+            [
+                "calibrate",
+                "--force",
+                files[0],
+                "--chart",
+                files[1],
+                "-o",
+                files[2],
+                "--marks-picture",
+                files[3],
+            ]
+        )
         == 0
     )
     reported = capsys.readouterr()
@@ -147,7 +159,15 @@ def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, caps
     surer["footprints"]["assumed"] = False
     (desk / "own.json").write_text(json.dumps(surer))
     pictures = [str(desk / "lag.png"), str(desk / "over.png")]
-    words = [*photo, "-o", str(desk / "lag.json"), "--brush", str(desk / "own.json"), "--plot", pictures[0]]
+    words = [
+        *photo,
+        "-o",
+        str(desk / "lag.json"),
+        "--brush",
+        str(desk / "own.json"),
+        "--picture",
+        pictures[0],
+    ]
     assert main([*words, "--picture", pictures[1]]) == 0
     assert gives(capsys.readouterr().out, "surer")
     found = find_brush(desk / "lag.json")

@@ -107,7 +107,7 @@ def test_the_next_calibration_takes_the_spread(sheets, painted, tmp_path, capsys
     out = sheets.folder / "again.json"
     assert main(sheets.words(photos, "-o", str(out))) == 0
     plan = str(tmp_path / "eight.json")
-    assert main(["convert", str(sheets.folder / "eight.svg"), plan, "--quiet"]) == 0
+    assert main(["convert", str(sheets.folder / "eight.svg"), "-o", plan, "--quiet"]) == 0
     laws = []
     for k, flags in enumerate(((), ("--spread", str(out)))):
         made = str(tmp_path / f"brush-{k}.json")
@@ -150,7 +150,7 @@ def test_strokes_that_are_painted_once_show_no_spread(tmp_path, capsys):
         for k in range(4)
     )
     (tmp_path / "four.svg").write_text(drawing + "</svg>")
-    words = ["simulate-photo", str(tmp_path / "four.svg"), str(tmp_path / "a.jpg"), "--quiet"]
+    words = ["simulate-photo", str(tmp_path / "four.svg"), "-o", str(tmp_path / "a.jpg"), "--quiet"]
     assert main(words) == 0
     status, _, reported = in_json(capsys, "compare", tmp_path / "a.jpg", tmp_path / "four.svg", "--sheets")
     assert status == 1 and is_reported(reported, "too-few-repeats"), reported

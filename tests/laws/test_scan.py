@@ -264,7 +264,15 @@ def test_a_stroke_without_paint_is_named(tmp_path, capsys):
     photo, desk = tmp_path / "photo.jpg", tmp_path
     photo.write_bytes(photograph.encoded(photograph.exposed(painted_sheet(marks.values()), SMALL)))
     (desk / "chart.json").write_text(write_chart(a5()))
-    words = ["scan", str(photo), "--chart", str(desk / "chart.json"), "-o", str(desk / "marks.json")]
+    words = [
+        "calibrate",
+        str(photo),
+        "--scan",
+        "--chart",
+        str(desk / "chart.json"),
+        "-o",
+        str(desk / "marks.json"),
+    ]
     assert main([*words, "--picture", str(desk / "read.png")]) == 0
     assert re.search(r"\b22 [a-z]+ 24 .*\b6 [a-z ]+ 0\.0", capsys.readouterr().err)
     status, _, reported = in_json(capsys, *words)
@@ -623,13 +631,16 @@ def test_wrong_usage(tmp_path, capsys):
         (["calibrate", "a.json", "b.json", "-o", out], "brushsvg calibrate --help"),
         (["calibrate", "a.jpg", "b.json", "--chart", "c.json", "-o", out], "b.json"),
         (
-            ["scan", "a.heic", "--chart", "c.json", "-o", out],
+            ["calibrate", "a.heic", "--scan", "--chart", "c.json", "-o", out],
             "JPEG",
         ),
-        (["scan", "a.jpg", "-o", out], "--chart"),
-        (["scan", "a.jpg", "--chart", "c.json", "-o", "a.jpg"], ".json"),
-        (["scan", "a.jpg", "--chart", out, "-o", out], out),
-        (["scan", "a.jpg", "--chart", "c.json", "-o", out, "--picture", "p.svg"], ".png"),
+        (["calibrate", "a.jpg", "--scan", "-o", out], "--chart"),
+        (["calibrate", "a.jpg", "--scan", "--chart", "c.json", "-o", "a.jpg"], ".json"),
+        (["calibrate", "a.jpg", "--scan", "--chart", out, "-o", out], out),
+        (
+            ["calibrate", "a.jpg", "--scan", "--chart", "c.json", "-o", out, "--marks-picture", "p.svg"],
+            ".png",
+        ),
     ):
         assert main(words) == 2
         assert said in capsys.readouterr().err, words

@@ -34,6 +34,7 @@ def shown(drawing, capsys, toml, *flags):
     words = [
         "simulate-photo",
         drawing,
+        "-o",
         folder / "p.jpg",
         "--studio",
         folder / "studio.toml",
@@ -64,19 +65,31 @@ def test_each_key_does_what_it_says(drawing, capsys):
     found = shown(drawing, capsys, "[brush]\nlag = 1.15\n")
     numbers = {row["name"]: row for row in found["faults"]["numbers"]}
     assert numbers["lag"]["value"] == pytest.approx(0.15, abs=0.03)
-    words = ["simulate-photo", str(drawing), str(drawing.parent / "q.jpg"), "--true-brush", "rigid"]
+    words = ["simulate-photo", str(drawing), "-o", str(drawing.parent / "q.jpg"), "--true-brush", "rigid"]
     assert main(words) == 1, "which cannot be pressed as deep as the plan presses it"
 
 
 def test_the_same_seed_is_the_same_photograph_and_its_studio_is_reported(drawing, capsys):
     folder = drawing.parent
     for name, seed in (("a", 7), ("b", 7), ("c", 8)):
-        assert main(["simulate-photo", str(drawing), str(folder / f"{name}.jpg"), "--seed", str(seed)]) == 0
+        assert (
+            main(["simulate-photo", str(drawing), "-o", str(folder / f"{name}.jpg"), "--seed", str(seed)])
+            == 0
+        )
     a, b, c = ((folder / f"{name}.jpg").read_bytes() for name in "abc")
     assert a == b != c
     text = capsys.readouterr().out
     (folder / "told.toml").write_text(text[text.rindex("format = ") :])
-    words = ["simulate-photo", drawing, folder / "d.jpg", "--seed", "8", "--studio", folder / "told.toml"]
+    words = [
+        "simulate-photo",
+        drawing,
+        "-o",
+        folder / "d.jpg",
+        "--seed",
+        "8",
+        "--studio",
+        folder / "told.toml",
+    ]
     assert main([*map(str, words)]) == 0
     assert (folder / "d.jpg").read_bytes() == c
 
@@ -84,11 +97,13 @@ def test_the_same_seed_is_the_same_photograph_and_its_studio_is_reported(drawing
 def test_no_seed_draws_paper_that_a_chart_cannot_be_painted_on(tmp_path, capsys, monkeypatch):
     """It presses to the end of the brush's range, and half of the seeds had the paper higher than it was taught."""
     monkeypatch.chdir(tmp_path)
-    assert main(["chart", "c.ngc", "--sheet", "a5", "--chart", "c.json", "--quiet"]) == 0
+    assert main(["chart", "-o", "c.ngc", "--sheet", "a5", "--chart", "c.json", "--quiet"]) == 0
     for seed in (2, 3):  # refused, and not, as it was
-        assert main(["simulate-photo", "c.json", "p.jpg", "--seed", str(seed)]) == 0, capsys.readouterr().err
+        assert main(["simulate-photo", "c.json", "-o", "p.jpg", "--seed", str(seed)]) == 0, (
+            capsys.readouterr().err
+        )
     Path("s.toml").write_text(HEAD + "[machine]\nheight_mm = 1.0\n")
-    status, _, said = in_json(capsys, "simulate-photo", "c.json", "p.jpg", "--studio", "s.toml")
+    status, _, said = in_json(capsys, "simulate-photo", "c.json", "-o", "p.jpg", "--studio", "s.toml")
     assert status == 1 and is_reported(said, "depth-out-of-range 11.000 machine.height_mm")
 
 
@@ -117,7 +132,7 @@ def test_letters_of_the_page_end_where_its_layout_has_them(monkeypatch):
 def test_it_says_that_it_is_simulated(drawing):
     """White letters on a dark red strip, from edge to edge."""
     folder = drawing.parent
-    assert main(["simulate-photo", str(drawing), str(folder / "p.jpg"), "--quiet"]) == 0
+    assert main(["simulate-photo", str(drawing), "-o", str(folder / "p.jpg"), "--quiet"]) == 0
     strip = cv2.imread(str(folder / "p.jpg"))[-30:].astype(int)
     red = (strip[..., 2] > 80) & (strip[..., :2].max(axis=-1) < 60)
     white = strip.min(axis=-1) > 180
@@ -143,7 +158,7 @@ def test_what_it_cannot_do_is_refused(drawing, capsys, toml, code):
     (folder / "studio.toml").write_text(HEAD + toml)
     big = DRAWING.replace('stroke-width="3"', 'stroke-width="7"')
     drawing.write_text(big if not code else DRAWING)
-    words = ("simulate-photo", drawing, folder / "p.jpg", "--studio", folder / "studio.toml")
+    words = ("simulate-photo", drawing, "-o", folder / "p.jpg", "--studio", folder / "studio.toml")
     status, _, reported = in_json(capsys, *words)
     assert status == 1 and not (folder / "p.jpg").exists(), reported
     assert is_reported(reported, code) if code else len(reported) >= 1, reported
@@ -156,8 +171,8 @@ def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, ca
         str(tmp_path / name) for name in ("plan.json", "chart.json", "p.jpg", "mine.json")
     )
     page = str(tmp_path / "page.svg")
-    assert main(["chart", plan, "--sheet", "a5", "--page", page, "--chart", chart, "--quiet"]) == 0
-    assert main(["simulate-photo", plan, photo, "--quiet"]) == 0
+    assert main(["chart", "-o", plan, "--sheet", "a5", "--page", page, "--chart", chart, "--quiet"]) == 0
+    assert main(["simulate-photo", plan, "-o", photo, "--quiet"]) == 0
     status, _, reported = in_json(capsys, "calibrate", "--force", photo, "--chart", chart, "-o", found)
     assert status == 1 and is_reported(reported, "photo-of-another-chart"), reported
     assert all(flag in reported[-1][1].advice for flag in ("--plan", "--prior", "--chart"))
@@ -173,9 +188,9 @@ def letters(tmp_path_factory):
     """A word whose strokes touch each other, its plan, and two sheets of studios with many faults."""
     folder = tmp_path_factory.mktemp("letters")
     for words in (
-        ("convert", EXAMPLE, folder / "word.json"),
-        ("simulate-photo", EXAMPLE, folder / "3.jpg", "--seed", "3", "--margin-strokes", "off"),
-        ("simulate-photo", EXAMPLE, folder / "4.jpg", "--seed", "4", "--margin-strokes", "off"),
+        ("convert", EXAMPLE, "-o", folder / "word.json"),
+        ("simulate-photo", EXAMPLE, "-o", folder / "3.jpg", "--seed", "3", "--margin-strokes", "off"),
+        ("simulate-photo", EXAMPLE, "-o", folder / "4.jpg", "--seed", "4", "--margin-strokes", "off"),
     ):
         assert main([*map(str, words), "--quiet"]) == 0
     return folder
@@ -192,7 +207,7 @@ def test_where_no_stroke_is_alone_a_chart_is_advised(letters, drawing, capsys):
     assert status == 0 and "--prior" not in text and text.count("calibrate --chart") == 1
     as_painted, placed = (float(each) for each in re.search(r"by (0\.\d+); .*? by (0\.\d+)", text).groups())
     assert placed < as_painted
-    main(["simulate-photo", str(drawing), str(letters / "six.jpg"), "--seed", "5", "--quiet"])
+    main(["simulate-photo", str(drawing), "-o", str(letters / "six.jpg"), "--seed", "5", "--quiet"])
     status, text, _ = in_json(capsys, "compare", letters / "six.jpg", drawing)
     as_painted, placed = (float(each) for each in re.search(r"by (0\.\d+); .*? by (0\.\d+)", text).groups())
     assert placed > as_painted and "calibrate --chart" not in text
@@ -239,9 +254,9 @@ def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
     plan, chart, photo, found = (
         str(tmp_path / name) for name in ("plan.json", "chart.json", "p.jpg", "own.json")
     )
-    assert main(["chart", plan, "--brush", "round-6", "--sheet", "a5", "--chart", chart]) == 0
+    assert main(["chart", "-o", plan, "--brush", "round-6", "--sheet", "a5", "--chart", chart]) == 0
     (tmp_path / "studio.toml").write_text(HEAD)
-    assert main(["simulate-photo", chart, photo, "--studio", str(tmp_path / "studio.toml")]) == 0
+    assert main(["simulate-photo", chart, "-o", photo, "--studio", str(tmp_path / "studio.toml")]) == 0
     assert main(["calibrate", "--force", photo, "--chart", chart, "-o", found]) == 0
     own, true, depths = find_brush(found), find_brush("round-6"), np.linspace(3, 10, 8)
     for law in ("lag", "half_width"):
@@ -255,5 +270,5 @@ def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
 
 
 def test_a_plan_that_is_not_there_is_reported(tmp_path, capsys):
-    status, _, reported = in_json(capsys, "simulate-photo", tmp_path / "none.json", tmp_path / "x.jpg")
+    status, _, reported = in_json(capsys, "simulate-photo", tmp_path / "none.json", "-o", tmp_path / "x.jpg")
     assert status == 1 and is_reported(reported, "file-unreadable"), reported

@@ -405,7 +405,7 @@ def sound_photo():
     photo = FOLDER / "photo.jpg"
     if not photo.exists():
         with contextlib.redirect_stdout(io.StringIO()):  # its studio is printed
-            assert command(["simulate-photo", str(FOLDER / "d.svg"), str(photo), "--quiet"]) == 0
+            assert command(["simulate-photo", str(FOLDER / "d.svg"), "-o", str(photo), "--quiet"]) == 0
     return photo
 
 

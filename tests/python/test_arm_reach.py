@@ -133,9 +133,9 @@ def test_convert_and_check_ask_the_arm(tmp_path, capsys):
     far.write_text(write_cell(cell))
     near.write_text(write_cell(replace(cell, paper=replace(cell.paper, origin_mm=(-50.0, -500.0, 20.0)))))
     program = tmp_path / "line.script"
-    status, _, reported = in_json(capsys, "convert", drawing, program, "--cell", far)
+    status, _, reported = in_json(capsys, "convert", drawing, "-o", program, "--cell", far)
     assert status == 1 and is_reported(reported, "arm-out-of-reach UR5e", "line") and not program.exists()
-    assert main(["convert", str(drawing), str(program), "--cell", str(near), "--quiet"]) == 0
+    assert main(["convert", str(drawing), "-o", str(program), "--cell", str(near), "--quiet"]) == 0
     assert main(["check", str(program), "--cell", str(near)]) == 0
     text = program.read_text()
     assert text.count("-0.5000000") == 1  # in the line that sets the paper
@@ -152,7 +152,7 @@ def test_without_the_library_a_sentence_says_what_to_install(tmp_path, capsys, m
     far.write_text(write_cell(cell))
     monkeypatch.setitem(sys.modules, "ssik", None)
     joints.joints_of.cache_clear()
-    status, _, reported = in_json(capsys, "convert", drawing, tmp_path / "a.script", "--cell", far)
+    status, _, reported = in_json(capsys, "convert", drawing, "-o", tmp_path / "a.script", "--cell", far)
     assert status == 0 and is_reported(reported, "arm-not-followed ssik UR5e")
     status, _, reported = in_json(capsys, "cell", "place", far)
     assert status == 1 and is_reported(reported, "package-missing ssik")

@@ -48,6 +48,7 @@ def convert(capsys, folder, ending, *flags):
         words = (
             "convert",
             folder / "a.svg",
+            "-o",
             folder / f"{name}{ending}",
             "--cell",
             folder / f"{name}.toml",
@@ -151,7 +152,9 @@ def test_damage_to_what_takes_up_play_is_found(tmp_path, capsys):
     cell = replace(find_cell("linuxcnc-3axis"), machine=Machine(backlash_mm=(0.45, 0.3)))
     (tmp_path / "knows.toml").write_text(write_cell(cell))
     path = tmp_path / "a.ngc"
-    assert in_json(capsys, "convert", tmp_path / "a.svg", path, "--cell", tmp_path / "knows.toml")[0] == 0
+    assert (
+        in_json(capsys, "convert", tmp_path / "a.svg", "-o", path, "--cell", tmp_path / "knows.toml")[0] == 0
+    )
     text, words = path.read_text(), (tmp_path / "a.svg", "--cell", tmp_path / "knows.toml")
     rows = [line for _, line, _ in places_of(text)]
     first = next(line for name, line, _ in places_of(text) if name)
@@ -235,5 +238,5 @@ def test_servos_and_pens_take_it_too(tmp_path, capsys, name, ending):
     (tmp_path / "c.toml").write_text(write_cell(cell))
     brush = () if name == "grbl-servo" else ("--brush", "rigid")
     flags = ("--cell", tmp_path / "c.toml", *brush)
-    assert in_json(capsys, "convert", tmp_path / "a.svg", tmp_path / f"a{ending}", *flags)[0] == 0
+    assert in_json(capsys, "convert", tmp_path / "a.svg", "-o", tmp_path / f"a{ending}", *flags)[0] == 0
     assert in_json(capsys, "check", tmp_path / f"a{ending}", tmp_path / "a.svg", *flags)[0] == 0

@@ -198,7 +198,7 @@ def test_nothing_outdated_stays_under_a_refused_row(desk, capsys):
         with open("out/manifest.jsonl", "ab") as file:  # as a run that was ended left it
             file.writelines(refused_once.splitlines(keepends=True)[1:])
     Path("in/1.svg").write_text(drawing(1, width=30))
-    status, _, reported = in_json(capsys, "batch", "in", "--out", "out", "--jobs", "1")
+    status, _, reported = in_json(capsys, "batch", "in", "-o", "out", "--jobs", "1")
     assert status == 1 and is_reported(reported, "outdated-removed") and "programs/1.ngc" not in contents()
 
 
@@ -225,7 +225,7 @@ def test_two_of_one_name_say_the_way_out(desk):
     Path("in/1.dxf").write_text("")
     advised = set()
     for items, parts in (
-        (["in/1.svg", "more/1.svg"], ["--out"]),
+        (["in/1.svg", "more/1.svg"], ["-o"]),
         (["in/1.svg", "in/1.svg"], []),
         (["in/1.svg", "in/1.dxf"], []),
         (["more", "more/below"], ["more/below/1.svg", "below/1", "1"]),
@@ -240,7 +240,7 @@ def test_two_of_one_name_say_the_way_out(desk):
 @pytest.mark.parametrize("name", ["a\nb.svg", "a\x1bb.svg", "a\udce9b.svg"])
 def test_a_name_that_cannot_be_printed_is_a_row(desk, capsys, name):
     Path("in", name).write_text(drawing(0))
-    status, _, reported = in_json(capsys, "batch", "in", "--out", "out", "--jobs", "1")
+    status, _, reported = in_json(capsys, "batch", "in", "-o", "out", "--jobs", "1")
     shown = name.encode("unicode_escape", "surrogatepass").decode()
     assert status == 1 and f"in/{shown}" in {notice.where for _, notice in reported}
     assert "programs/1.ngc" in contents()
@@ -263,7 +263,7 @@ def test_another_batch_into_the_folder_leaves_what_is_known_of_the_first(desk, m
     assert brushsvg.batch(first, "out", jobs=1, wide="refuse").resumed == 1 and names == ["wide"]
     Path("other").mkdir()
     Path("other/1.svg").write_text(drawing(3))
-    with refused("name-taken 1.svg --out"):
+    with refused("name-taken 1.svg -o"):
         brushsvg.batch(["other/1.svg"], "out", jobs=1)
     for name in ("in/below/wide.svg", "out/programs/2.ngc", "out/pictures/2.png"):
         Path(name).unlink()
@@ -300,21 +300,21 @@ def test_words_are_set_as_the_command_text_sets_them(desk, capsys):
     Path("font.svg").write_text(FONT)
     Path("words.txt").write_text("TT\n\n T T \nTX\nTT\nT\\nT\n", encoding="utf-8")
     status, _, reported = in_json(
-        capsys, *"batch --words words.txt --font font.svg --size 30 --out out --jobs 1".split()
+        capsys, *"batch --words words.txt --font font.svg --size 30 -o out --jobs 1".split()
     )
     assert status == 1
     assert [notice.code for _, notice in reported if notice.code] == ["glyph-missing"]
     rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
     assert [row["name"] for row in rows] == ["TT", "T_T", "TX", "TT~2", "T_nT"]
-    assert main(["text", "T T", "t.svg", "--font", "font.svg", "--size", "30", "--quiet"]) == 0
-    assert main("convert t.svg t.ngc --quiet".split()) == 0
+    assert main(["text", "T T", "-o", "t.svg", "--font", "font.svg", "--size", "30", "--quiet"]) == 0
+    assert main("convert t.svg -o t.ngc --quiet".split()) == 0
     assert Path("out/programs/T_T.ngc").read_bytes() == Path("t.ngc").read_bytes()
 
 
 def test_warnings_of_a_kind_are_reported_as_one(desk, capsys):
     for k in range(6):
         Path(f"in/{k}.svg").write_text(drawing(k).replace("</svg>", "<text>A</text></svg>"))
-    status, _, reported = in_json(capsys, "batch", "in", "--out", "out", "--jobs", "1")
+    status, _, reported = in_json(capsys, "batch", "in", "-o", "out", "--jobs", "1")
     assert status == 1 and are_reported(
         [n for _, n in reported], "text-unread in/0.svg 5", "width-out-of-reach 30.000"
     )
@@ -340,7 +340,7 @@ def test_a_list_of_nothing_is_refused_by_its_name(desk, capsys, data):
     if data is not None:
         Path("w.txt").write_bytes(data)
     for typed in ("--words w.txt --font font.svg", "w.txt"):
-        status, _, ((file, notice),) = in_json(capsys, "batch", *typed.split(), "--out", "out")
+        status, _, ((file, notice),) = in_json(capsys, "batch", *typed.split(), "-o", "out")
         assert (status, file) == (1, "w.txt") and notice.code in ("file-empty", "not-text", "file-unreadable")
     assert not Path("out").exists()
 
@@ -572,7 +572,7 @@ def test_what_is_ended_half_way_goes_on_where_it_was(desk, monkeypatch, by):
         Path(f"in/{k}.svg").write_text(drawing(k / 4))
     with threads() as executor:
         brushsvg.batch(["in"], "whole", executor=executor)
-    process = started("batch", "in", "--out", "out", "--jobs", "2")
+    process = started("batch", "in", "-o", "out", "--jobs", "2")
     while len(rows_there()) < 5 and process.poll() is None:
         time.sleep(0.01)
     process.send_signal(by)

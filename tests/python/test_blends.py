@@ -150,7 +150,7 @@ def test_a_circle_is_no_row_of_corners(cut_mm):
 def test_a_very_fine_tolerance_is_no_reason_to_refuse(tolerance, tmp_path):
     """Rows of marks that are straight in between were compared as if they were the mark."""
     robot = Path(__file__).parents[2] / "examples" / "robot.svg"
-    assert main(["convert", str(robot), str(tmp_path / "out.ngc"), "--tolerance", tolerance]) == 0
+    assert main(["convert", str(robot), "-o", str(tmp_path / "out.ngc"), "--tolerance", tolerance]) == 0
 
 
 @pytest.mark.parametrize("cell", ["linuxcnc-3axis", "ur5e"])

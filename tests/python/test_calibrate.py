@@ -34,7 +34,7 @@ TABLE = "kind,depth_mm,value_mm\n" + "".join(
 def test_from_a_table_to_a_brush_with_a_report(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out, picture = tmp_path / "own.json", tmp_path / "own.svg"
-    assert main(["calibrate", str(tmp_path / "m.csv"), "-o", str(out), "--plot", str(picture)]) == 0
+    assert main(["calibrate", str(tmp_path / "m.csv"), "-o", str(out), "--picture", str(picture)]) == 0
     reported = capsys.readouterr().out
     assert "tip_to_widest = " in reported and gives(reported, "1.8")
     assert gives(reported.splitlines()[-1], "tip_to_widest"), "what to measure next"
@@ -340,7 +340,7 @@ def test_decimal_commas_are_not_read_as_whole_numbers(tmp_path, capsys, columns)
     (tmp_path / "m.csv").write_text(f"{columns}\n{row}\n")
     made = ["calibrate", tmp_path / "m.csv", "-o", tmp_path / "b.json"]
     if columns.startswith("depth"):
-        made = ["brush", "new", tmp_path / "b", "--lag", "5", "--widths", tmp_path / "m.csv"]
+        made = ["brush", "new", "-o", tmp_path / "b.json", "--lag", "5", "--widths", tmp_path / "m.csv"]
     status, _, ((_, reported),) = in_json(capsys, *made)
     assert status == 1 and agrees(reported, "table-columns 33 2"), reported
     assert not (tmp_path / "b.json").exists()
@@ -402,7 +402,7 @@ def test_a_column_that_stands_twice_is_refused(tmp_path, capsys):
 )
 def test_a_width_that_none_can_have_is_refused_with_its_line(line, column, said, tmp_path, capsys):
     (tmp_path / "w.csv").write_text(f"depth_mm,width_mm\n{line}\n")
-    words = ("brush", "new", tmp_path / "b", "--lag", "5", "--widths", tmp_path / "w.csv")
+    words = ("brush", "new", "-o", tmp_path / "b.json", "--lag", "5", "--widths", tmp_path / "w.csv")
     status, _, ((file, reported),) = in_json(capsys, *words)
     assert (status, file) == (1, str(tmp_path / "w.csv")) and agrees(reported, said, f"line 2, {column}"), (
         reported

@@ -384,13 +384,13 @@ def test_a_new_cell_is_not_called_as_one_that_comes_along(tmp_path, monkeypatch,
     """A program of it would be checked with that one, and refused by a line that helps nobody."""
     monkeypatch.chdir(tmp_path)
     taught = [f"--taught={place}" for place in ("-150,-450,20", "150,-450,20", "-150,-250,20")]
-    assert main(["cell", "new", "ur5e.toml", "--like", "ur5e", *taught]) == 0
+    assert main(["cell", "new", "-o", "ur5e.toml", "--like", "ur5e", *taught]) == 0
     assert read_cell("ur5e.toml").name not in cell_names()
     Path("a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="99mm" height="50mm" viewBox="0 0 99 50">'
         '<path d="M20 20L50 30" fill="none" stroke="#000" stroke-width="4"/></svg>'
     )
-    assert main(["convert", "a.svg", "a.script", "--cell", "ur5e.toml"]) == 0
+    assert main(["convert", "a.svg", "-o", "a.script", "--cell", "ur5e.toml"]) == 0
     status, _, reported = in_json(capsys, "check", "a.script", "a.svg")
     assert status == 1 and is_reported(reported, "cell-unknown my-ur5e"), reported
     assert in_json(capsys, "check", "a.script", "a.svg", "--cell", "ur5e.toml")[0] == 0

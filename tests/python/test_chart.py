@@ -153,7 +153,7 @@ SMALL_ARMS = ("irb120", "ur3e")  # A4 is nearly too large for them: checked for 
 def test_a_program_for_every_cell(name, tmp_path, capsys):
     suffix = POSTS[find_cell(name).language].extensions[0]
     out = tmp_path / f"chart{suffix}"
-    assert main(["chart", str(out), "--cell", name]) == 0
+    assert main(["chart", "-o", str(out), "--cell", name]) == 0
     assert gives(capsys.readouterr().out, "210 x 297 mm")
     assert out.stat().st_size > 10_000
     assert main(["check", str(out), "--cell", name]) == 0
@@ -164,7 +164,7 @@ def test_a_program_for_every_cell(name, tmp_path, capsys):
 def test_the_markers_are_found_on_the_page(sheet, tmp_path):
     page, file = tmp_path / "page.svg", tmp_path / "chart.json"
     out = tmp_path / "plan.json"
-    assert main(["chart", str(out), "--sheet", sheet, "--page", str(page), "--chart", str(file)]) == 0
+    assert main(["chart", "-o", str(out), "--sheet", sheet, "--page", str(page), "--chart", str(file)]) == 0
     made = read_chart(file.read_bytes())
     found = detected(page.read_text(), made.plan.sheet_mm, made.dictionary)
     base = 8 * (int(made.id, 16) % 125)
@@ -199,10 +199,10 @@ def detected(svg, sheet_mm, dictionary):
 def test_a_pen_plots_the_markers_where_they_would_be_printed(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     words = "--brush pen.json --wide passes --select [data-marker]"
-    assert main("brush new pen.json --lag 0 --width-at 1=0.7".split()) == 0
-    assert main("chart plan.json --sheet a5 --page page.svg --chart chart.json".split()) == 0
-    assert main(f"convert page.svg markers.ngc {words}".split()) == 0
-    assert main(f"predict page.svg marks.json {words}".split()) == 0
+    assert main("brush new -o pen.json --lag 0 --width-at 1=0.7".split()) == 0
+    assert main("chart -o plan.json --sheet a5 --page page.svg --chart chart.json".split()) == 0
+    assert main(f"convert page.svg -o markers.ngc {words}".split()) == 0
+    assert main(f"preview page.svg -o marks.json {words}".split()) == 0
     made = read_chart((tmp_path / "chart.json").read_bytes())
     passes = json.loads((tmp_path / "marks.json").read_text())["passes"]
     inked = region(_core.unite([np.array(ring) for each in passes for ring in each["outline_mm"]]))
@@ -269,7 +269,7 @@ def test_the_pdf_has_the_size_and_the_shapes_of_the_page(sheet):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", ["chart plan.json --sheet a5", "convert a.svg plan.json"])
+@pytest.mark.parametrize("command", ["chart -o plan.json --sheet a5", "convert a.svg -o plan.json"])
 def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monkeypatch, capsys, command):
     """It was reported as a mistake of ours."""
     monkeypatch.chdir(tmp_path)
@@ -364,7 +364,7 @@ def test_it_says_how_sure_the_brush_will_be(tmp_path, capsys):
     """A larger sheet makes surer, uneven edges less sure."""
 
     def lag_bands(*flags):
-        assert main(["chart", str(tmp_path / "p.json"), *flags]) == 0
+        assert main(["chart", "-o", str(tmp_path / "p.json"), *flags]) == 0
         reported = capsys.readouterr().out
         return np.array([float(half) for half in re.findall(r"(?m)^ +[\d.]+ +[\d.]+ \+- ([\d.]+)", reported)])
 
@@ -382,7 +382,7 @@ def test_wrong_usage(tmp_path, capsys):
         (["--chart", out], out),
         (["--strokes", "lots"], "lots"),
     ):
-        assert main(["chart", out, *flags]) == 2
+        assert main(["chart", "-o", out, *flags]) == 2
         assert said in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
@@ -396,7 +396,7 @@ def test_no_depth_is_rounded_beyond_the_brush(deepest):
 
 @pytest.mark.parametrize("sheet", ["9x9", "1x5000"])
 def test_a_sheet_without_room_for_its_markers_is_refused(sheet, tmp_path, capsys):
-    status, _, ((_, reported),) = in_json(capsys, "chart", tmp_path / "c.json", "--sheet", sheet)
+    status, _, ((_, reported),) = in_json(capsys, "chart", "-o", tmp_path / "c.json", "--sheet", sheet)
     assert status == 1 and agrees(reported, "sheet-too-small markers"), reported
 
 
@@ -440,7 +440,7 @@ def test_one_load_is_fetched_once():
 @pytest.mark.slow
 def test_it_says_how_sure_the_paint_will_be(tmp_path, capsys):
     def reported(*flags):
-        assert main(["chart", str(tmp_path / "p.json"), "--sheet", "a5", *flags]) == 0
+        assert main(["chart", "-o", str(tmp_path / "p.json"), "--sheet", "a5", *flags]) == 0
         return capsys.readouterr().out
 
     assert int(re.findall(r"(\d+) %", reported())[-1]) > 55
@@ -459,7 +459,7 @@ def test_it_says_how_sure_the_paint_will_be(tmp_path, capsys):
 
 
 def test_dabs_do_not_show_paint(tmp_path, capsys):
-    assert main(["chart", str(tmp_path / "p.json"), "--dabs", "--paint"]) == 2
+    assert main(["chart", "-o", str(tmp_path / "p.json"), "--dabs", "--paint"]) == 2
     assert gives(capsys.readouterr().err, "--paint")
     with refused("options-contradict"):
         chart(find_brush("round-6"), A5, dabs=True, one_load=True)

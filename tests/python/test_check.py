@@ -70,7 +70,7 @@ def test_a_program_of_others_paints_with_a_brush(desk):
 
 
 def test_a_program_before_the_first_stroke(desk, capsys):
-    assert in_json(capsys, "border", "two.svg", "border.ngc")[0] == 0
+    assert in_json(capsys, "setup", "border", "two.svg", "-o", "border.ngc")[0] == 0
     found = brushsvg.check("border.ngc", "two.svg")
     left, bottom, right, top = found.border_mm
     assert (found.job, found.problems, found.plan, found.figures) == ("border", (), None, None)

@@ -147,8 +147,8 @@ def test_what_is_not_ours_is_refused(desk, name):
 
 @pytest.mark.slow
 def test_the_command_compares_with_the_drawing(desk, capsys):
-    assert call(capsys, "convert", "two.svg", "two.ngc", "--z-offset", "0.4")[0] == 0
-    status, out, err = call(capsys, "check", "two.ngc", "two.svg", "--preview", "two.png")
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--z-offset", "0.4")[0] == 0
+    status, out, err = call(capsys, "check", "two.ngc", "two.svg", "--picture", "two.png")
     assert (status, len(err)) == (0, 2) and err[1].startswith("brushsvg: two.png: written"), err
     assert re.search(r"(?m)^all +0\.9\d\d ", out)
     assert out.endswith(f"two.ngc: {RUNNABLE}\n")
@@ -167,7 +167,7 @@ def test_the_command_compares_with_the_drawing(desk, capsys):
 
 
 def test_a_resumed_program_is_no_lost_one(desk, capsys):
-    assert call(capsys, "convert", "two.svg", "two.ngc", "--from-stroke", "2")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--from-stroke", "2")[0] == 0
     assert call(capsys, "check", "two.ngc", "two.svg")[0] == 0
 
 
@@ -183,7 +183,7 @@ def test_a_resumed_program_is_no_lost_one(desk, capsys):
     ],
 )
 def test_a_header_without_the_answer_is_refused(desk, capsys, edit, said):
-    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     (desk / "two.ngc").write_text(edit((desk / "two.ngc").read_text()))
     status, _, ((file, reported), *_) = in_json(capsys, "check", "two.ngc")
     assert (status, file) == (1, "two.ngc") and agrees(reported, said), reported
@@ -222,7 +222,7 @@ def test_a_header_without_the_answer_is_refused(desk, capsys, edit, said):
     ],
 )
 def test_damaged_numbers_of_a_header_are_reported_in_a_sentence(desk, capsys, line, said):
-    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     text = (desk / "two.ngc").read_text()
     word = line.partition(":")[0]
     text = re.sub(rf"(?m)^\({word}: .*\n", "", text)
@@ -235,22 +235,22 @@ def test_damaged_numbers_of_a_header_are_reported_in_a_sentence(desk, capsys, li
     ("offset", "said"), [("-3", "paper-offset 3 lower"), ("20", "paper-offset 20 higher")]
 )
 def test_check_says_that_a_program_is_for_another_height_of_the_paper(desk, capsys, offset, said):
-    assert call(capsys, "convert", "two.svg", "two.ngc", f"--z-offset={offset}")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc", f"--z-offset={offset}")[0] == 0
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg")
     assert status == 0 and is_reported(reported, said), reported
 
 
 def test_what_a_command_is_refused_for_says_so_in_json(desk, capsys):
     """A warning said the same: refused false."""
-    main(["--messages", "json", "convert", "two.svg", "two.ngc", "--sheet", "10x10"])
+    main(["--messages", "json", "convert", "two.svg", "-o", "two.ngc", "--sheet", "10x10"])
     rows = [json.loads(line) for line in capsys.readouterr().err.splitlines()]
     assert any(row["refused"] for row in rows) and not (desk / "two.ngc").exists()
-    main(["--messages", "json", "convert", "missing.svg", "two.ngc"])
+    main(["--messages", "json", "convert", "missing.svg", "-o", "two.ngc"])
     assert [json.loads(line)["refused"] for line in capsys.readouterr().err.splitlines()] == [True]
 
 
 def test_flags_for_gcode_have_no_effect_on_an_svg(desk, capsys):
-    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg", "--paper-z", "0")
     assert status == 0 and is_reported(reported, "flag-without-effect --paper-z")
     assert not is_reported(in_json(capsys, "check", "two.ngc", "two.svg")[2], "flag-without-effect")
@@ -258,7 +258,7 @@ def test_flags_for_gcode_have_no_effect_on_an_svg(desk, capsys):
 
 def test_a_drawing_named_like_our_own_jobs_is_checked(desk, capsys):
     (desk / "two.svg").write_text(DRAWING.replace("<title>two", "<title>border of flowers"))
-    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     assert call(capsys, "check", "two.ngc", "two.svg")[0] == 0
 
 
@@ -291,7 +291,9 @@ def test_any_name_may_stand_next_to_any_part(desk, capsys, name):
     (desk / "painter.toml").write_text(text + PAINT.replace("[-10, 10]", "[-15, 10]"))
     suffix = LANGUAGES[name]
     for flags in ((), ("--from-stroke", "3"), ("--order", "nearest")):
-        assert call(capsys, "convert", "two.svg", f"two{suffix}", "--cell", "painter.toml", *flags)[0] == 0
+        assert (
+            call(capsys, "convert", "two.svg", "-o", f"two{suffix}", "--cell", "painter.toml", *flags)[0] == 0
+        )
         status, out, err = call(capsys, "check", f"two{suffix}", "two.svg", "--cell", "painter.toml")
         assert (status, err) == (0, []), err
         assert re.search(r"(?m)^a\+2 +0\.9", out), "measured as the stroke that it is"
@@ -303,19 +305,19 @@ def test_any_name_may_stand_next_to_any_part(desk, capsys, name):
 
 
 def test_strokes_in_another_order_are_reported(desk, capsys):
-    assert call(capsys, "convert", "two.svg", "plan.json")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "plan.json")[0] == 0
     plan = json.loads((desk / "plan.json").read_text())
     plan["passes"].reverse()
     (desk / "plan.json").write_text(json.dumps(plan))
-    assert call(capsys, "convert", "plan.json", "two.ngc")[0] == 0
+    assert call(capsys, "convert", "plan.json", "-o", "two.ngc")[0] == 0
     status, _, ((_, reported),) = in_json(capsys, "check", "two.ngc", "two.svg")
     assert (status, reported.where) == (1, "hook [1]") and agrees(reported, "stroke-order curve")
 
 
 def test_a_plan_is_a_drawing_too(desk, capsys):
-    assert call(capsys, "convert", "two.svg", "plan.json", "--compensation", "none")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "plan.json", "--compensation", "none")[0] == 0
     for suffix, cell in ((".ngc", "linuxcnc-3axis"), (".nc", "grbl-servo")):
-        assert call(capsys, "convert", "plan.json", f"two{suffix}", "--cell", cell)[0] == 0
+        assert call(capsys, "convert", "plan.json", "-o", f"two{suffix}", "--cell", cell)[0] == 0
         status, out, err = call(capsys, "check", f"two{suffix}", "plan.json")
         assert (status, err) == (0, [])
         assert out.endswith(f"two{suffix}: {RUNNABLE}\n")
@@ -332,7 +334,7 @@ def test_a_plan_is_a_drawing_too(desk, capsys):
 
 def test_a_resumed_program_knows_what_it_should_have_painted(desk, capsys):
     (desk / "two.svg").write_text(DRAWING.replace("</g>", '<path id="third" d="M20 20 h30"/></g>'))
-    assert call(capsys, "convert", "two.svg", "two.ngc", "--from-stroke", "2")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--from-stroke", "2")[0] == 0
     text = (desk / "two.ngc").read_text()
     (desk / "two.ngc").write_text(re.sub(r"(?s)\n\(stroke 3.*?\n\n", "\n", text))
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg")
@@ -365,7 +367,7 @@ THREE = DRAWING.replace("</g>", '<path id="third" d="M20 20 h60"/></g>')
 def test_a_program_has_all_its_strokes(desk, capsys, drawing, lost, said):
     """Its header lists them, whether the drawing is there or not."""
     (desk / "two.svg").write_text(THREE)
-    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     parts = sections((desk / "two.ngc").read_text())
     (desk / "two.ngc").write_text("".join(part for k, part in enumerate(parts) if k not in lost))
     status, _, reported = in_json(capsys, "check", "two.ngc", *drawing)
@@ -374,7 +376,7 @@ def test_a_program_has_all_its_strokes(desk, capsys, drawing, lost, said):
 
 def test_strokes_that_are_lost_at_the_end_are_counted(desk, capsys):
     (desk / "two.svg").write_text(THREE)
-    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     text = (desk / "two.ngc").read_text()
     for lost, said in (
         ("3", "strokes-missing 3"),
@@ -411,7 +413,7 @@ def test_the_order_along_a_stroke_counts(desk, capsys, how):
     """A drawing whose paint would look much the same, but that was painted otherwise: nothing is away from its line."""
     (desk / "two.svg").write_text(DRAWING.replace('stroke-width="3"', 'stroke-width="4"'))
     lines_only = "none"  # the closed form has arcs
-    assert call(capsys, "convert", "two.svg", "two.ngc", "--compensation", lines_only)[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--compensation", lines_only)[0] == 0
     text = (desk / "two.ngc").read_text()
     (desk / "two.ngc").write_text(painted_otherwise(text, how))
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg")
@@ -440,7 +442,7 @@ HEADER = [
 @pytest.mark.slow
 @pytest.mark.parametrize(("old", "new", "said"), HEADER)
 def test_a_header_says_what_the_program_does(desk, capsys, old, new, said):
-    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     (desk / "two.ngc").write_text(edited(old, new)((desk / "two.ngc").read_text()))
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg")
     assert status == 1 and any(agrees(each, said) for _, each in reported), reported
@@ -452,7 +454,7 @@ def test_a_header_says_what_the_program_does(desk, capsys, old, new, said):
 )
 def test_what_grbl_acts_on_is_refused_where_it_stands(desk, capsys, title):
     """In the header, whose title stands nowhere else, and in a stroke's name."""
-    assert call(capsys, "convert", "two.svg", "two.gcode", "--cell", "grbl-3axis")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.gcode", "--cell", "grbl-3axis")[0] == 0
     text = (desk / "two.gcode").read_text()
     for changed in (
         text.replace("(title: two)", f"(title: {title})"),
@@ -542,7 +544,7 @@ UNWRITTEN = {
 @pytest.mark.parametrize("name", UNWRITTEN)
 def test_what_is_never_written_is_refused(desk, capsys, name):
     program = f"two{LANGUAGES[name]}"
-    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     text = (desk / program).read_text()
     for old, new in UNWRITTEN[name]:
         (desk / program).write_bytes(edited(old, new)(text).encode())
@@ -612,7 +614,7 @@ HARMLESS = {
 @pytest.mark.parametrize("name", HARMLESS)
 def test_what_a_machine_does_in_the_same_way_is_no_change(desk, capsys, name, drawing):
     program = f"two{LANGUAGES[name]}"
-    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     text = (desk / program).read_text()
     for old, new in HARMLESS[name]:
         (desk / program).write_bytes(edited(old, new)(text).encode())
@@ -623,7 +625,7 @@ def test_what_a_machine_does_in_the_same_way_is_no_change(desk, capsys, name, dr
 @pytest.mark.parametrize("name", LANGUAGES)
 def test_blanks_at_the_end_of_lines_are_no_change(desk, capsys, name):
     program = f"two{LANGUAGES[name]}"
-    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     (desk / program).write_text(edited("(?m)$", "  ", 0)((desk / program).read_text()))
     assert call(capsys, "check", program, "two.svg")[::2] == (0, [])
 
@@ -663,11 +665,11 @@ def test_stations_of_any_name_are_separated(desk, capsys, cell, hand):
         )
         before, _, _ = DRAWING.partition("<path")
         (desk / "some.svg").write_text(f"{before}{paths}</g></svg>")
-        words = ("some.svg", f"some{suffix}", "--cell", "mine.toml")
+        words = ("some.svg", "-o", f"some{suffix}", "--cell", "mine.toml")
         status, _, err = call(capsys, "convert", *words)
         assert status == 0, err
         for drawing in (("some.svg",), ()):
-            status, _, err = call(capsys, "check", words[1], *drawing, "--cell", "mine.toml")
+            status, _, err = call(capsys, "check", words[2], *drawing, "--cell", "mine.toml")
             assert (status, err) == (0, []), names
         made = re.sub(r" ;\n : !\+", "", (desk / words[1]).read_text())  # a remark of TP goes on
         reported = re.findall(r"(?m)^(?:\(| *(?:[#!;]|--) | : !)(paint: .*)$", made)
@@ -681,7 +683,7 @@ def test_another_station_is_reported_with_its_line(desk, capsys):
     )
     text = (SHIPPED / "linuxcnc-3axis.toml").read_text() + '[reload]\nwhen = "stroke"\n' + stations
     (desk / "mine.toml").write_text(text, encoding="utf-8")
-    assert call(capsys, "convert", "two.svg", "two.ngc", "--cell", "mine.toml")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--cell", "mine.toml")[0] == 0
     text = (desk / "two.ngc").read_text()
     for new, said in (
         ("paint: station 2, ?", "other-station \u6731 \u58a8"),
@@ -699,7 +701,7 @@ def test_strokes_of_any_name_are_known_again(desk, capsys):
     before, _, _ = DRAWING.partition("<path")
     (desk / "some.svg").write_text(f"{before}{paths}</g></svg>", encoding="utf-8")
     for name, suffix in LANGUAGES.items():
-        assert call(capsys, "convert", "some.svg", f"some{suffix}", "--cell", name)[0] == 0
+        assert call(capsys, "convert", "some.svg", "-o", f"some{suffix}", "--cell", name)[0] == 0
         status, _, err = call(capsys, "check", f"some{suffix}", "some.svg")
         assert (status, err) == (0, [])
 
@@ -727,7 +729,7 @@ def test_strokes_whose_names_end_in_blanks_are_known_again(desk, capsys, name):
     passes = [_core.Pass(each, np.array(way), 15.0) for each, way in zip(NAMES, places, strict=True)]
     (desk / "some.json").write_text(_core.write_plan(_core.Plan("round-6", "", (120.0, 70.0), passes)))
     program = f"some{LANGUAGES[name]}"
-    assert call(capsys, "convert", "some.json", program, "--cell", name)[0] == 0
+    assert call(capsys, "convert", "some.json", "-o", program, "--cell", name)[0] == 0
     for words in ((program, "some.json"), (program,)):
         assert call(capsys, "check", *words)[::2] == (0, [])
     text = (desk / program).read_text()
@@ -737,7 +739,7 @@ def test_strokes_whose_names_end_in_blanks_are_known_again(desk, capsys, name):
 
 
 def test_a_program_of_another_language_is_refused(desk, capsys):
-    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     status, _, ((_, reported),) = in_json(capsys, "check", "two.ngc", "--cell", "ur5e")
     assert status == 1 and agrees(reported, "program-format ur5e .script")
 
@@ -745,7 +747,7 @@ def test_a_program_of_another_language_is_refused(desk, capsys):
 def test_a_stroke_in_parts_is_one_stroke_of_the_drawing(desk, capsys):
     paint = '[reload]\nwhen = "length"\nevery_mm = 60\n[[stations]]\nname = "ink"\nplace_mm = [-10, 10]\ndepth_mm = 5\n'
     (desk / "painter.toml").write_text((SHIPPED / "linuxcnc-3axis.toml").read_text() + paint)
-    assert call(capsys, "convert", "two.svg", "two.ngc", "--cell", "painter.toml")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--cell", "painter.toml")[0] == 0
     assert "curve+2)" in (desk / "two.ngc").read_text()
     status, out, err = call(capsys, "check", "two.ngc", "two.svg", "--cell", "painter.toml")
     assert (status, err) == (0, [])
@@ -863,7 +865,7 @@ def test_any_change_is_reported(desk, capsys, suffix):
     drawing = DRAWING.replace("h-12", "h-12 l12 2")  # a corner too sharp for anything but a turn in place
     turn = ("--corners", "turn")
     (desk / "two.svg").write_text(drawing)
-    assert call(capsys, "convert", "two.svg", f"two{suffix}", *cell, *turn)[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", f"two{suffix}", *cell, *turn)[0] == 0
     text = (desk / f"two{suffix}").read_text()
     assert call(capsys, "check", f"two{suffix}", "two.svg", *turn)[0] == 0
     for edit, said in CHANGED[suffix]:
@@ -875,7 +877,7 @@ def test_any_change_is_reported(desk, capsys, suffix):
 def test_paint_fetched_otherwise_is_reported(desk, capsys):
     paint = '[reload]\nwhen = "stroke"\n[[stations]]\nname = "ink"\nplace_mm = [-10, 10]\ndepth_mm = 5\n'
     (desk / "painter.toml").write_text((SHIPPED / "linuxcnc-3axis.toml").read_text() + paint)
-    assert call(capsys, "convert", "two.svg", "two.ngc", "--cell", "painter.toml")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--cell", "painter.toml")[0] == 0
     text = (desk / "two.ngc").read_text()
     parts = re.split(r"(?m)^(?=\((?:paint|stroke))", text)
     (desk / "two.ngc").write_text("".join(part for k, part in enumerate(parts) if k != 3))
@@ -905,8 +907,8 @@ def test_on_paper_that_leans_rounding_is_no_change(desk, capsys, decimals, flags
     """Straight down is not quite straight down there, and circles are lines from pose to pose."""
     (desk / "leaning.toml").write_text(leaning("linuxcnc-3axis", decimals) + PAINT.replace("= 60", "= 40"))
     for words in (
-        ("convert", "two.svg", "two.ngc", *flags),
-        ("height", "height.ngc", "--step", "0.07", "--from", "0.55"),
+        ("convert", "two.svg", "-o", "two.ngc", *flags),
+        ("setup", "height", "-o", "height.ngc", "--step", "0.07", "--from", "0.55"),
     ):
         assert call(capsys, *words, "--cell", "leaning.toml")[0] == 0
     for words in (("two.ngc", "two.svg"), ("two.ngc",), ("height.ngc",)):
@@ -919,9 +921,11 @@ def test_an_offset_of_many_digits_comes_back(desk, capsys, suffix):
     name = {".ngc": "linuxcnc-3axis", ".script": "ur5e"}[suffix]
     text = re.sub(r"(?m)^decimals = \d", "decimals = 6", (SHIPPED / f"{name}.toml").read_text())
     (desk / "fine.toml").write_text(text)
-    for words in (("convert", "two.svg", f"two{suffix}"), ("border", "two.svg", f"border{suffix}")):
-        assert call(capsys, *words, "--cell", "fine.toml", "--z-offset", "-0.123456")[0] == 0
-        assert call(capsys, "check", words[-1], "--cell", "fine.toml")[0] == 0
+    for command in (("convert",), ("setup", "border")):
+        program = f"{command[-1]}{suffix}"
+        words = (*command, "two.svg", "-o", program, "--cell", "fine.toml", "--z-offset", "-0.123456")
+        assert call(capsys, *words)[0] == 0
+        assert call(capsys, "check", program, "--cell", "fine.toml")[0] == 0
 
 
 def test_a_blend_may_differ_by_what_rounded_moves_turn():
@@ -949,7 +953,7 @@ def test_what_a_brush_weighs_is_not_rounded(load_kg):
 def test_a_tolerance_finer_than_the_cells_rounding_is_refused(desk, capsys):
     text = re.sub(r"(?m)^decimals = \d", "decimals = 3", (SHIPPED / "ur5e.toml").read_text())
     (desk / "coarse.toml").write_text(text)
-    words = ("convert", "two.svg", "two.script", "--cell", "coarse.toml", "--tolerance")
+    words = ("convert", "two.svg", "-o", "two.script", "--cell", "coarse.toml", "--tolerance")
     status, _, ((_, reported), *_) = in_json(capsys, *words, "0.002")
     assert status == 1 and not (desk / "two.script").exists()
     assert agrees(reported, "decimals-too-few 3 ur5e 0.0005 0 0.0004")
@@ -960,7 +964,7 @@ def test_a_tolerance_finer_than_the_cells_rounding_is_refused(desk, capsys):
 
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 def test_a_servo_that_lands_by_two_steps_at_once_or_goes_without_a_feed_is_reported(desk, capsys, drawing):
-    assert call(capsys, "convert", "two.svg", "two.nc", "--cell", "grbl-servo")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.nc", "--cell", "grbl-servo")[0] == 0
     text = (desk / "two.nc").read_text()
     for old, new, said in (
         (r"(?m)^M3 S60[04]\n", "M3\n", "program-changed"),
@@ -978,7 +982,7 @@ def test_a_servo_that_lands_by_two_steps_at_once_or_goes_without_a_feed_is_repor
 def test_time_and_length_of_a_header_are_those_of_its_program(desk, capsys, name):
     """Alone, too: a time may only be shorter where feeds were lowered since."""
     program = f"two{LANGUAGES[name]}"
-    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     text = (desk / program).read_text()
     seconds, length = (int(re.search(rf"{word}(\d+)", text)[1]) for word in ("time: about ", "length: "))
     for drawing in ((), ("two.svg",)):
@@ -1017,7 +1021,7 @@ def test_time_and_length_of_a_header_are_those_of_its_program(desk, capsys, name
 )
 def test_of_a_servos_lift_the_line_that_was_changed_is_named(desk, capsys, drawing, old, new, count):
     """A lift is held against another as a whole; what is named is no line that brushsvg would write there, too."""
-    assert call(capsys, "convert", "two.svg", "two.nc", "--cell", "grbl-servo")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.nc", "--cell", "grbl-servo")[0] == 0
     before = (desk / "two.nc").read_text()
     after = edited(old, new, count)(before)
     (desk / "two.nc").write_text(after)
@@ -1036,7 +1040,7 @@ def test_of_a_servos_lift_the_line_that_was_changed_is_named(desk, capsys, drawi
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 def test_what_lets_a_servos_brush_fall_or_makes_it_fast_is_reported(desk, capsys, drawing):
     """In laser mode grbl switches the output off where no G1 holds; lines of modes alone were taken for idle."""
-    assert call(capsys, "convert", "two.svg", "two.nc", "--cell", "grbl-servo")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.nc", "--cell", "grbl-servo")[0] == 0
     lines = (desk / "two.nc").read_text().splitlines()
     ways = [k for k, line in enumerate(lines) if line.startswith("G1 X")]
     k = ways[len(ways) // 4]
@@ -1062,7 +1066,7 @@ def test_what_lets_a_servos_brush_fall_or_makes_it_fast_is_reported(desk, capsys
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 def test_a_servos_jump_within_a_lift_is_reported(desk, capsys, drawing):
     """Steps that are waited for are slow only as long as they are steps."""
-    words = ("two.svg", "two.nc", "--cell", "grbl-servo", "--compensation", "none")
+    words = ("two.svg", "-o", "two.nc", "--cell", "grbl-servo", "--compensation", "none")
     assert call(capsys, "convert", *words)[0] == 0
     lines = (desk / "two.nc").read_text().splitlines()
     lifts = [k for k, line in enumerate(lines) if re.fullmatch(r"M3 S5\d\d", line)]
@@ -1084,7 +1088,7 @@ NUMBERS = {
 @pytest.mark.parametrize("name", NUMBERS)
 def test_numbers_beyond_what_any_place_can_be_are_refused_before_they_are_used(desk, capsys, name):
     program = f"two{LANGUAGES[name]}"
-    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     text = (desk / program).read_text()
     for old in NUMBERS[name]:
         for new in (HUGE, "1" + 309 * "0", "12345678901"):
@@ -1097,7 +1101,7 @@ def test_numbers_beyond_what_any_place_can_be_are_refused_before_they_are_used(d
 def test_lines_may_be_as_long_as_the_controller_reads_them(desk, capsys, name, most):
     """LinuxCNC's interpreter stops at 253 letters; grbl keeps 79, which count no blanks."""
     program = f"two{LANGUAGES[name]}"
-    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     text = (desk / program).read_text()
     line = re.search(r"(?m)^G1 .*$", text)[0]
     blanks = line.count(" ") if name == "grbl-3axis" else 0
@@ -1114,7 +1118,7 @@ def test_a_visit_to_the_paint_more_is_reported_by_the_time_of_the_header(desk, c
     station = '[[stations]]\nname = "ink"\nplace_mm = [-15, 10]\ndepth_mm = 5\nhold_s = 1\ndrip_s = 2\n'
     text = (SHIPPED / "linuxcnc-3axis.toml").read_text() + '[reload]\nwhen = "layer"\n' + station
     (desk / "mine.toml").write_text(text)
-    assert call(capsys, "convert", "two.svg", "two.ngc", "--cell", "mine.toml")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--cell", "mine.toml")[0] == 0
     text = (desk / "two.ngc").read_text()
     visit = re.search(r"(?s)\(paint: ink\)\n.*?(?=\(stroke 1)", text)[0]
     (desk / "two.ngc").write_text(text.replace("(stroke 2", f"{visit}F480.0\n(stroke 2"))
@@ -1125,7 +1129,7 @@ def test_a_visit_to_the_paint_more_is_reported_by_the_time_of_the_header(desk, c
 
 
 def test_a_title_that_stands_twice_is_reported(desk, capsys):
-    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     text = (desk / "two.ngc").read_text()
     (desk / "two.ngc").write_text(edited(r"(?m)^(\(stroke 2.*\n)", r"\1\1")(text))
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg")
@@ -1154,7 +1158,7 @@ def test_servos_of_any_table_are_allowed_what_was_written_for_them(desk, capsys,
     dots = '<path d="M60 60 h0.01" stroke-linecap="round"/><path d="M75 60 h0.3"/></g>'
     (desk / "two.svg").write_text(DRAWING.replace("</g>", dots))
     for flags in ((), ("--compensation", "none")):
-        words = ("two.svg", "two.nc", "--cell", "servo.toml", *flags)
+        words = ("two.svg", "-o", "two.nc", "--cell", "servo.toml", *flags)
         status, _, err = call(capsys, "convert", *words)
         if status == 1:  # too fast for this servo, say
             assert not any("report" in line for line in err), err
@@ -1170,7 +1174,10 @@ def test_depths_that_rounding_puts_beyond_the_brush_are_allowed(desk, capsys):
     (desk / "two.svg").write_text(
         (desk / "two.svg").read_text().replace("M20 60 h30 v-20 h-12", "M30 50 h50")
     )
-    assert call(capsys, "convert", "two.svg", "two.ngc", "--cell", "leaning.toml", "--width", "8.4")[0] == 0
+    assert (
+        call(capsys, "convert", "two.svg", "-o", "two.ngc", "--cell", "leaning.toml", "--width", "8.4")[0]
+        == 0
+    )
     assert call(capsys, "check", "two.ngc", "--cell", "leaning.toml")[0] == 0
 
 
@@ -1178,7 +1185,7 @@ def test_depths_that_rounding_puts_beyond_the_brush_are_allowed(desk, capsys):
 def test_a_circle_whose_end_is_rounded_otherwise_is_allowed(desk, capsys, name, digit):
     (desk / "two.svg").write_text(DRAWING.replace("h-12", "h-12 l12 2"))
     program = f"two{LANGUAGES[name]}"
-    assert call(capsys, "convert", "two.svg", program, "--cell", name, "--corners", "turn")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name, "--corners", "turn")[0] == 0
     text = (desk / program).read_text()
     depth = re.search(r"(?m)^G[23] X\S+ Y\S+ Z(\S+) ", text)[1]
     off = f"{float(depth) + float(digit):.{len(digit) - 2}f}"
@@ -1193,7 +1200,7 @@ def test_the_reported_time_is_that_of_the_feeds_in_the_program(desk, capsys):
         assert status == 0
         return json.loads(reported)["time_s"]
 
-    call(capsys, "convert", "two.svg", "x.ngc")
+    call(capsys, "convert", "two.svg", "-o", "x.ngc")
     usual_s = time_s()
     text = (desk / "x.ngc").read_text()
     (desk / "x.ngc").write_text(text.replace("F1200.0", "F60.0"))
@@ -1214,7 +1221,7 @@ def test_the_reported_time_is_that_of_the_feeds_in_the_program(desk, capsys):
     ],
 )
 def test_letters_that_an_editor_left_are_named(desk, capsys, spoil, said):
-    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     (desk / "two.ngc").write_bytes(spoil((desk / "two.ngc").read_text()))
     status, out, ((file, reported),) = in_json(capsys, "check", "two.ngc")
     assert (status, out, file) == (1, "", "two.ngc") and agrees(reported, said)
@@ -1227,7 +1234,7 @@ def test_letters_that_an_editor_left_are_named(desk, capsys, spoil, said):
 )
 def test_a_line_that_is_lost_from_a_header_is_named(desk, capsys, name, drawing, word):
     program = f"two{LANGUAGES[name]}"
-    assert call(capsys, "convert", "two.svg", program, "--cell", name)[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     text = (desk / program).read_text()
     (line,) = re.findall(rf"(?m)^(?:\(| *# ){word}: .*$", text)
     (desk / program).write_text(text.replace(f"{line}\n", ""))
@@ -1238,7 +1245,7 @@ def test_a_line_that_is_lost_from_a_header_is_named(desk, capsys, name, drawing,
 
 
 def test_a_line_that_no_header_has_is_named(desk, capsys):
-    assert call(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     text = (desk / "two.ngc").read_text()
     (desk / "two.ngc").write_text(text.replace("(sheet", "(colour: red)\n(sheet"))
     status, _, ((_, reported),) = in_json(capsys, "check", "two.ngc")
@@ -1261,7 +1268,7 @@ def test_a_plan_that_begins_or_ends_below_the_paper_is_set_down_and_lifted_there
     plan = _core.Plan("round-6", "", (120.0, 80.0), [_core.Pass("a", np.array(poses, float), 10.0)])
     (desk / "plan.json").write_text(_core.write_plan(plan))
     program = f"two{LANGUAGES[name]}"
-    assert call(capsys, "convert", "plan.json", program, "--cell", name)[0] == 0
+    assert call(capsys, "convert", "plan.json", "-o", program, "--cell", name)[0] == 0
     assert call(capsys, "check", program, "plan.json", "--cell", name)[::2] == (0, [])
 
 
@@ -1271,22 +1278,24 @@ def test_a_hairline_that_a_servo_does_not_press_is_refused(desk, capsys):
         '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="90mm" viewBox="0 0 90 90">'
         '<path id="hair" fill="none" stroke="#000" stroke-width="0.01" d="M20 20h40"/></svg>'
     )
-    status, _, (*_, (_, reported)) = in_json(capsys, "convert", "two.svg", "two.nc", "--cell", "grbl-servo")
+    status, _, (*_, (_, reported)) = in_json(
+        capsys, "convert", "two.svg", "-o", "two.nc", "--cell", "grbl-servo"
+    )
     assert (status, reported.where, reported.code) == (1, "hair", "never-pressed")
-    assert call(capsys, "convert", "two.svg", "two.gcode", "--cell", "grbl-3axis")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two.gcode", "--cell", "grbl-3axis")[0] == 0
     assert call(capsys, "check", "two.gcode", "two.svg")[0] == 0
 
 
 def test_a_part_of_a_drawing_that_is_left_out_is_reported_again(desk, capsys):
     text = '<text id="words" x="10" y="60">Hello</text></svg>'
     (desk / "two.svg").write_text(DRAWING.replace("</svg>", text))
-    assert in_json(capsys, "convert", "two.svg", "two.ngc")[0] == 0
+    assert in_json(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg")
     assert (
         status == 0
         and [file for file, _ in reported] == ["two.svg"]
         and is_reported(reported, "text-unread", "words")
     )
-    assert in_json(capsys, "border", "two.svg", "around.ngc")[0] == 0
+    assert in_json(capsys, "setup", "border", "two.svg", "-o", "around.ngc")[0] == 0
     status, _, reported = in_json(capsys, "check", "around.ngc", "two.svg")
     assert status == 0 and is_reported(reported, "text-unread", "words")

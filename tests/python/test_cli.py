@@ -33,7 +33,7 @@ def sound(tmp_path_factory):
     (folder / "a.svg").write_text(drawing(LINE, DAB))
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        assert main(["convert", "a.svg", "plan.json"]) == 0
+        assert main(["convert", "a.svg", "-o", "plan.json"]) == 0
     return folder
 
 
@@ -58,8 +58,8 @@ def listing(directory):
 
 
 def test_convert_writes_program_preview_and_report(desk, capsys):
-    words = ["--preview", "p.png", "--report", "r.json"]
-    status, out, err = run(capsys, "convert", "a.svg", "a.ngc", *words)
+    words = ["--picture", "p.png", "--report", "r.json"]
+    status, out, err = run(capsys, "convert", "a.svg", "-o", "a.ngc", *words)
     code = (desk / "a.ngc").read_text(encoding="ascii")
     assert code.startswith(
         "(title: A line)\n(brush: round-6, 2 strokes)\n(sheet: 120 x 60 mm)\n(compensation: closed, "
@@ -77,25 +77,25 @@ def test_convert_writes_program_preview_and_report(desk, capsys):
 
 
 WRITERS = {  # what is typed, what is written, and what more is said of it
-    "convert a.svg out.ngc": "2 [a-z]+, [a-z ]+ [0-9]+ s, [a-z ]+",
-    "convert a.svg out.json": "2 [a-z]+, [a-z ]+ [0-9]+ s",
-    "convert plan.json out.ngc --from-stroke 2": "1 [a-z]+, [a-z ]+ [0-9]+ s",
-    "predict a.svg out.png": "2 [a-z]+, [a-z ]+ [0-9]+ s",
-    "predict plan.json out.svg --cell nowhere.toml": "2 [a-z]+",
-    "animate a.svg out.html": "2 [a-z]+, [a-z ]+ [0-9]+ s",
-    "report a.svg --preview out.png": r"2 [a-z]+, [a-z ]+ [0-9]+ s, [a-z]+ 0\.[0-9]{3}",
-    "check own.ngc a.svg --preview out.png": r"2 [a-z]+, [a-z ]+ [0-9]+ s, [a-z]+ 0\.[0-9]{3}",
-    "import a.svg out.png": "2 [a-z]+",
-    "import one.svg out.svg --editable": "1 [a-z]+",
-    "text T out.svg --font font.svg": "",
-    "simulate-photo a.svg out.jpg": "5 [a-z]+, [a-z]+",
-    "border a.svg out.ngc": "[a-z ]+ [0-9]+ s",
-    "height out.ngc": "21 [a-z]+, [a-z ]+ [0-9]+ s",
-    "chart out.ngc --page out.svg --chart out.json --strokes few": "[0-9]+ [a-z]+, [a-z ]+ [0-9] min [0-9]{2} s",
-    "brush new out --lag 5 --width-at 3=2": "",
-    "brush plot rigid out.svg": "",
+    "convert a.svg -o out.ngc": "2 [a-z]+, [a-z ]+ [0-9]+ s, [a-z ]+",
+    "convert a.svg -o out.json": "2 [a-z]+, [a-z ]+ [0-9]+ s",
+    "convert plan.json -o out.ngc --from-stroke 2": "1 [a-z]+, [a-z ]+ [0-9]+ s",
+    "preview a.svg -o out.png": "2 [a-z]+, [a-z ]+ [0-9]+ s",
+    "preview plan.json -o out.svg --cell nowhere.toml": "2 [a-z]+",
+    "preview a.svg -o out.html": "2 [a-z]+, [a-z ]+ [0-9]+ s",
+    "preview a.svg --show errors -o out.png": r"2 [a-z]+, [a-z ]+ [0-9]+ s, [a-z]+ 0\.[0-9]{3}",
+    "check own.ngc a.svg --picture out.png": r"2 [a-z]+, [a-z ]+ [0-9]+ s, [a-z]+ 0\.[0-9]{3}",
+    "preview a.svg -o out.png --show strokes": "2 [a-z]+",
+    "preview one.svg -o out.svg --show strokes --editable": "1 [a-z]+",
+    "text T -o out.svg --font font.svg": "",
+    "simulate-photo a.svg -o out.jpg": "5 [a-z]+, [a-z]+",
+    "setup border a.svg -o out.ngc": "[a-z ]+ [0-9]+ s",
+    "setup height -o out.ngc": "21 [a-z]+, [a-z ]+ [0-9]+ s",
+    "chart -o out.ngc --page out.svg --chart out.json --strokes few": "[0-9]+ [a-z]+, [a-z ]+ [0-9] min [0-9]{2} s",
+    "brush new -o out.json --lag 5 --width-at 3=2": "",
+    "brush plot rigid -o out.svg": "",
     "calibrate m.csv -o out.json": "",
-    "cell new out.toml": "",
+    "cell new -o out.toml": "",
 }
 
 
@@ -116,7 +116,7 @@ def test_success_is_one_line_on_stderr_unless_quiet(desk, capsys, words):
     cell = (Path(commands.__file__).parents[2] / "data" / "cells" / "ur5e.toml").read_text()
     paint = '[reload]\nwhen = "stroke"\n[[stations]]\nname = "red"\nplace_mm = [-50, 50]\ndepth_mm = 5\n'
     (desk / "nowhere.toml").write_text(f'{cell}\n{paint}colours = ["#ff0000"]\n')
-    assert run(capsys, "convert", "a.svg", "own.ngc")[0] == 0
+    assert run(capsys, "convert", "a.svg", "-o", "own.ngc")[0] == 0
     before = listing(desk)
     status, out, err = run(capsys, *words.split())
     made = {name: data for name, data in listing(desk).items() if name not in before}
@@ -135,8 +135,8 @@ def test_success_is_one_line_on_stderr_unless_quiet(desk, capsys, words):
 
 
 def test_a_plan_becomes_the_same_program_as_its_drawing(desk, capsys):
-    assert run(capsys, "convert", "a.svg", "direct.ngc")[0] == 0
-    assert run(capsys, "convert", "plan.json", "by_plan.ngc", "--quiet") == (0, "", [])
+    assert run(capsys, "convert", "a.svg", "-o", "direct.ngc")[0] == 0
+    assert run(capsys, "convert", "plan.json", "-o", "by_plan.ngc", "--quiet") == (0, "", [])
     words, numbers = [], []
     for name in ("direct.ngc", "by_plan.ngc"):
         code = re.sub(r"\(.*\)\n", "", (desk / name).read_text())
@@ -152,7 +152,7 @@ def test_a_plan_becomes_the_same_program_as_its_drawing(desk, capsys):
 @pytest.mark.parametrize("source", ["a.svg", "plan.json"])
 def test_animate_writes_one_page(desk, capsys, source):
     before = set(listing(desk))
-    assert run(capsys, "animate", source, "out.html", "--speed", "5", "--quiet") == (0, "", [])
+    assert run(capsys, "preview", source, "-o", "out.html", "--playback", "5", "--quiet") == (0, "", [])
     assert set(listing(desk)) == before | {"out.html"}
     page = (desk / "out.html").read_text()
     assert page.startswith("<!DOCTYPE html>")
@@ -164,14 +164,14 @@ def test_animate_writes_one_page(desk, capsys, source):
 @pytest.mark.parametrize("source", ["a.svg", "plan.json"])
 def test_predict_draws_and_report_prints(desk, capsys, source):
     for suffix, start in ((".png", b"\x89PNG"), (".svg", b"<svg"), (".json", b"{")):
-        assert run(capsys, "predict", source, f"out{suffix}", "--quiet") == (0, "", [])
+        assert run(capsys, "preview", source, "-o", f"out{suffix}", "--quiet") == (0, "", [])
         assert (desk / f"out{suffix}").read_bytes().startswith(start)
     assert json.loads((desk / "out.json").read_text())["format"] == "brushsvg/marks"
-    status, out, err = run(capsys, "report", source)
+    status, out, err = run(capsys, "preview", source)
     assert (status, err) == (0, [])
     assert "line" in out
     assert "dab" in out
-    status, out, err = run(capsys, "report", source, "--json")
+    status, out, err = run(capsys, "preview", source, "--json")
     assert (json.loads(out)["total"]["overlap"] is None) == (source == "plan.json")
 
 
@@ -179,14 +179,14 @@ def test_same_input_same_bytes_in_any_folder(desk, capsys):
     (desk / "elsewhere").mkdir()
     (desk / "elsewhere" / "b.svg").write_bytes((desk / "a.svg").read_bytes())
     for name in ("x.ngc", "x.json"):
-        assert run(capsys, "convert", "a.svg", name)[0] == 0
-        assert run(capsys, "convert", "elsewhere/b.svg", f"elsewhere/{name}")[0] == 0
+        assert run(capsys, "convert", "a.svg", "-o", name)[0] == 0
+        assert run(capsys, "convert", "elsewhere/b.svg", "-o", f"elsewhere/{name}")[0] == 0
         assert (desk / name).read_bytes() == (desk / "elsewhere" / name).read_bytes()
 
 
 def test_flags_reach_the_plan(desk, capsys):
     def plan(*flags):
-        assert run(capsys, "convert", "a.svg", "out.json", *flags)[0] == 0
+        assert run(capsys, "convert", "a.svg", "-o", "out.json", *flags)[0] == 0
         return json.loads((desk / "out.json").read_text())
 
     default = plan()
@@ -257,7 +257,7 @@ def test_refused_with_one_sentence_and_nothing_written(desk, capsys, case):
     if content is not None:
         (desk / name).write_bytes(content if isinstance(content, bytes) else content.encode())
     before = listing(desk)
-    words = ("convert", name, "out.ngc", "--report", "out.txt", *flags)
+    words = ("convert", name, "-o", "out.ngc", "--report", "out.txt", *flags)
     status, out, err = run(capsys, *words)
     assert (status, out, len(err)) == (1, "", 1), err
     status, out, ((about, reported),) = in_json(capsys, *words)
@@ -290,7 +290,7 @@ def edited_plan(desk, **changes):
 )
 def test_a_plan_beyond_limits_is_refused(desk, capsys, changes, said):
     edited_plan(desk, **changes)
-    status, _, reported = in_json(capsys, "convert", "x.json", "out.ngc")
+    status, _, reported = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
     assert (status, {file for file, _ in reported}) == (1, {"x.json"})
     assert is_reported(reported, said, "line"), reported
     assert not (desk / "out.ngc").exists()
@@ -298,12 +298,12 @@ def test_a_plan_beyond_limits_is_refused(desk, capsys, changes, said):
 
 def test_a_preview_alone_warns(desk, capsys):
     edited_plan(desk, speed_mm_s=30, sheet_mm=[120, 20])
-    status, _, reported = in_json(capsys, "predict", "x.json", "out.svg")
+    status, _, reported = in_json(capsys, "preview", "x.json", "-o", "out.svg")
     assert status == 0
     assert is_reported(reported, "speed-out-of-range 30") and is_reported(reported, "mark-off-sheet upper"), (
         reported
     )
-    status, out, _ = run(capsys, "report", "x.json")
+    status, out, _ = run(capsys, "preview", "x.json")
     assert status == 0
     assert gives(out, "line", "30 mm/s")
 
@@ -316,23 +316,23 @@ def test_a_refusal_for_damage_says_what_would_be_drawn_of_it(desk, capsys):
     worse = BAD.replace('"bad"', '"worse" transform="turn(3)" stroke-dasharray="2" opacity=".5"')
     off = BAD.replace('"bad" d="M30 40 L60 45 L nan 4"', '"off" d="M-3 30h20"')
     (desk / "x.svg").write_text(drawing(LINE, worse, off))
-    status, _, err = run(capsys, "convert", "x.svg", "out.ngc")
+    status, _, err = run(capsys, "convert", "x.svg", "-o", "out.ngc")
     assert status == 1
     assert [line.split(": ")[2] for line in err] == ["worse", "worse", "off", "worse", "worse"]
     hint = "; --lenient draws what is sound"
     assert err[-1].endswith(hint) and not any(hint in line for line in err[:-1])
-    _, reported = in_json(capsys, "convert", "x.svg", "out.ngc")[2][-1]
+    _, reported = in_json(capsys, "convert", "x.svg", "-o", "out.ngc")[2][-1]
     assert agrees(reported, "geometry-damaged 17 'nan 4'", "worse") and reported.damaged
     assert not any(word in line for line in err for word in ("drawn", "painted", "ignored"))
     (desk / "x.svg").write_text(drawing(off))
-    assert not any("--lenient" in line for line in run(capsys, "convert", "x.svg", "out.ngc")[2])
+    assert not any("--lenient" in line for line in run(capsys, "convert", "x.svg", "-o", "out.ngc")[2])
 
 
 @pytest.mark.slow
 def test_damaged_geometry_with_lenient_and_on_looking(desk, capsys):
     (desk / "x.svg").write_text(drawing(LINE, BAD))
-    assert run(capsys, "convert", "x.svg", "out.ngc")[0] == 1
-    for words in (("convert", "x.svg", "out.ngc", "--lenient"), ("predict", "x.svg", "out.png")):
+    assert run(capsys, "convert", "x.svg", "-o", "out.ngc")[0] == 1
+    for words in (("convert", "x.svg", "-o", "out.ngc", "--lenient"), ("preview", "x.svg", "-o", "out.png")):
         status, _, err = run(capsys, *words)
         assert (status, len(err)) == (0, 2)
         assert err[0].startswith("brushsvg: x.svg: bad: ")
@@ -343,20 +343,20 @@ def test_damaged_geometry_with_lenient_and_on_looking(desk, capsys):
 
 def test_a_plan_keeps_its_brush(desk, capsys):
     edited_plan(desk, brush_sha256="0" * 64)
-    status, _, ((file, reported),) = in_json(capsys, "convert", "x.json", "out.ngc", "--quiet")
+    status, _, ((file, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc", "--quiet")
     assert (status, file) == (0, "x.json") and agrees(reported, "plan-of-other-brush round-6", "brush_sha256")
-    words = ("predict", "plan.json", "out.png", "--brush", "rigid", "--compensation", "none")
+    words = ("preview", "plan.json", "-o", "out.png", "--brush", "rigid", "--compensation", "none")
     (file, reported), *_ = in_json(capsys, *words)[2]
     assert file == "plan.json" and agrees(reported, "flag-without-effect --compensation")
     (desk / "mine.json").write_text("{}")
     edited_plan(desk, brush="mine.json")
-    status, _, ((file, reported),) = in_json(capsys, "convert", "x.json", "out.ngc")
+    status, _, ((file, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
     assert (status, file) == (1, "mine.json") and agrees(reported, "key-missing format")
     edited_plan(desk, brush="my-brush")
-    status, _, ((_, reported),) = in_json(capsys, "convert", "x.json", "out.ngc")
+    status, _, ((_, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
     assert status == 1 and agrees(reported, "brush-unknown my-brush")
     status, _, ((_, reported),) = in_json(
-        capsys, "convert", "x.json", "out.ngc", "--brush", "round-6", "--quiet"
+        capsys, "convert", "x.json", "-o", "out.ngc", "--brush", "round-6", "--quiet"
     )
     assert status == 0 and agrees(reported, "plan-of-other-brush my-brush round-6", "brush")
 
@@ -367,48 +367,46 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "",
         "paint a.svg",
         "convert a.svg",
-        "convert a.svg out.dxf",
-        "convert a.pdf out.ngc",
-        "convert a.svg out",
-        "convert a.svg out.ngc --preview p.gif",
-        "convert a.svg out.ngc --report r.html",
-        "convert plan.json plan.json",
-        "convert a.svg out.ngc --preview a.svg",
-        "convert a.svg out.json --report ./out.json",
-        "convert a.svg out.ngc --compensation best",
-        "convert a.svg out.ngc --comp none",
-        "convert a.svg out.ngc --lag 5",
-        "convert a.svg out.ngc --compensation constant --lag -1",
-        "convert a.svg out.ngc --compensation constant --lag nan",
-        "convert a.svg out.ngc --tolerance 0",
-        "convert a.svg out.ngc --tolerance -0.1",
-        "convert a.svg out.ngc --tolerance inf",
-        "convert a.svg out.ngc --tolerance 1e-300",
-        "convert a.svg out.ngc --tolerance thick",
-        "convert a.svg out.ngc --sheet A9",
-        "convert a.svg out.ngc --sheet 0x10",
-        "convert a.svg out.ngc --width 0",
-        "convert a.svg out.ngc --fit 5x5 --scale 2",
-        "convert a.svg out.ngc --scale 0",
-        "convert a.svg out.ngc --scale big",
-        "convert a.svg out.ngc --scale \u0662",  # an Arabic two
-        "convert a.svg out.ngc --origin 5",
-        "convert a.svg out.ngc --origin 5,1e9",
-        "convert a.svg out.ngc --units mm",
-        "text Hi font.svg --font font.svg",
-        "import a.svg out.ngc",
-        "import a.json out.svg",
-        "import a.svg out.svg --brush rigid",
-        "convert a.svg out.ngc --json",
-        "predict a.svg out.ngc",
-        "predict a.svg out.png --preview p.png",
-        "animate a.svg out.svg",
-        "animate a.svg out.html --speed 0",
-        "animate a.svg out.html --speed fast",
-        "report a.svg extra",
-        "report a.txt",
+        "convert a.svg -o out.dxf",
+        "convert a.pdf -o out.ngc",
+        "convert a.svg -o out",
+        "convert a.svg -o out.ngc --picture p.gif",
+        "convert a.svg -o out.ngc --report r.html",
+        "convert plan.json -o plan.json",
+        "convert a.svg -o out.ngc --picture a.svg",
+        "convert a.svg -o out.json --report ./out.json",
+        "convert a.svg -o out.ngc --compensation best",
+        "convert a.svg -o out.ngc --comp none",
+        "convert a.svg -o out.ngc --lag 5",
+        "convert a.svg -o out.ngc --compensation constant --lag -1",
+        "convert a.svg -o out.ngc --compensation constant --lag nan",
+        "convert a.svg -o out.ngc --tolerance 0",
+        "convert a.svg -o out.ngc --tolerance -0.1",
+        "convert a.svg -o out.ngc --tolerance inf",
+        "convert a.svg -o out.ngc --tolerance 1e-300",
+        "convert a.svg -o out.ngc --tolerance thick",
+        "convert a.svg -o out.ngc --sheet A9",
+        "convert a.svg -o out.ngc --sheet 0x10",
+        "convert a.svg -o out.ngc --width 0",
+        "convert a.svg -o out.ngc --fit 5x5 --scale 2",
+        "convert a.svg -o out.ngc --scale 0",
+        "convert a.svg -o out.ngc --scale big",
+        "convert a.svg -o out.ngc --scale \u0662",  # an Arabic two
+        "convert a.svg -o out.ngc --origin 5",
+        "convert a.svg -o out.ngc --origin 5,1e9",
+        "convert a.svg -o out.ngc --units mm",
+        "text Hi -o font.svg --font font.svg",
+        "preview a.svg -o out.ngc --show strokes",
+        "preview a.json -o out.svg --show strokes",
+        "convert a.svg -o out.ngc --json",
+        "preview a.svg -o out.ngc",
+        "preview a.svg -o out.png --all-brushes",
+        "preview a.svg -o out.html --playback 0",
+        "preview a.svg -o out.html --playback fast",
+        "preview a.svg extra",
+        "preview a.txt",
         "brush",
-        "brush plot round-6 out.pdf",
+        "brush plot round-6 -o out.pdf",
         "calibrate m.csv",
         "calibrate m.csv -o out.svg",
         "calibrate m.svg -o out.json",
@@ -419,16 +417,16 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "calibrate m.json --plan w.json --prior round-6 -o out.json",
         "calibrate p.jpg --plan w.json --prior out.json -o out.json",
         "brush show",
-        "convert a.svg out.json --from-stroke 2",
-        "convert a.svg out.json --z-offset 0.3",
-        "chart out.json --z-offset 0.3",
-        "convert a.svg out.ngc --width=--",
-        "convert a.svg out.ngc --select=--",
-        "height out.ngc --from=--",
-        "chart out.ngc --noise=--",
+        "convert a.svg -o out.json --from-stroke 2",
+        "convert a.svg -o out.json --z-offset 0.3",
+        "chart -o out.json --z-offset 0.3",
+        "convert a.svg -o out.ngc --width=--",
+        "convert a.svg -o out.ngc --select=--",
+        "setup height -o out.ngc --from=--",
+        "chart -o out.ngc --noise=--",
         "calibrate m.csv -o out.json --machine=--",
-        "animate a.svg out.html --speed=\u0661",
-        "animate a.svg out.html --speed=1_0",
+        "preview a.svg -o out.html --speed=\u0661",
+        "preview a.svg -o out.html --speed=1_0",
         "calibrate p.jpg --chart c.json -o out.json --dpi=6_00",
         "calibrate p.jpg --chart c.json -o out.json --height 0",
         "calibrate p.jpg --plan w.json --prior round-6 -o out.json --height 0.05",
@@ -443,7 +441,7 @@ def test_wrong_usage(desk, capsys, words):
 
 
 def test_scan_takes_one_picture(desk, capsys):
-    assert run(capsys, *"scan p.jpg q.jpg --chart c.json -o out.json".split())[0] == 2
+    assert run(capsys, *"calibrate p.jpg --scan q.jpg --chart c.json -o out.json".split())[0] == 2
 
 
 @pytest.mark.parametrize(
@@ -460,7 +458,7 @@ def test_values_below_nothing_are_no_flags(desk, capsys, flag, said):
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80">'
         '<path d="M20 20H60" stroke="#000" stroke-width="4"/></svg>'
     )
-    status, _, reported = run(capsys, "convert", "a.svg", "a.ngc", *flag.split())
+    status, _, reported = run(capsys, "convert", "a.svg", "-o", "a.ngc", *flag.split())
     assert status and said in " ".join(reported)
 
 
@@ -469,7 +467,7 @@ def test_compare_with_the_drawing_first_says_where_it_stands(desk, capsys):
     assert status == 2 and gives(said, "photo.jpg")
 
 
-@pytest.mark.parametrize("command", ["convert a.svg", "border a.svg", "height", "chart"])
+@pytest.mark.parametrize("command", ["convert a.svg", "setup border a.svg", "setup height", "chart"])
 @pytest.mark.parametrize(
     ("out", "flags", "cells"),
     [
@@ -483,18 +481,18 @@ def test_compare_with_the_drawing_first_says_where_it_stands(desk, capsys):
     ],
 )
 def test_a_program_that_the_cell_does_not_speak_says_which_cells_do(desk, capsys, command, out, flags, cells):
-    status, _, ((file, reported),) = in_json(capsys, *command.split(), out, *flags.split())
+    status, _, ((file, reported),) = in_json(capsys, *command.split(), "-o", out, *flags.split())
     assert (status, file, reported.advice) == (1, out, "give --cell"), "of this file, not of the drawing"
     assert agrees(reported, f"program-format {Path(out).suffix.lower()} {cells}"), reported
     for cell in cells.split(" or "):  # which is true of each
-        assert run(capsys, "height", out, "--cell", cell)[0] == 0
+        assert run(capsys, "setup", "height", "-o", out, "--cell", cell)[0] == 0
 
 
 def test_messages_for_programs_are_lines_of_json_with_codes(desk, capsys):
     (desk / "thin.svg").write_text(
         drawing(*(LINE.replace('"3"', f'"0.{k}"').replace("line", f"p{k}") for k in range(1, 6)))
     )
-    words = ("convert", "thin.svg", "x.ngc", "--quiet")
+    words = ("convert", "thin.svg", "-o", "x.ngc", "--quiet")
     assert main(["--messages", "json", *words]) == 0
     (reported,) = map(json.loads, capsys.readouterr().err.splitlines())
     assert (reported["file"], reported["code"]) == ("thin.svg", "depth-not-measured")
@@ -506,18 +504,18 @@ def test_messages_for_programs_are_lines_of_json_with_codes(desk, capsys):
         [f"brushsvg: thin.svg: {reported['where']}: {reported['sentence']}"],
     )
     (desk / "odd.svg").write_text(drawing(LINE, '<image id="i"/>'))
-    (warned,) = json.loads(run(capsys, "report", "odd.svg", "--json")[1])["warnings"]
+    (warned,) = json.loads(run(capsys, "preview", "odd.svg", "--json")[1])["warnings"]
     assert (warned["where"], warned["code"]) == ("i", "element-unread")
 
 
 def test_outputs_that_cannot_be_written_leave_nothing(desk, capsys):
     (desk / "folder.png").mkdir()
     for words, name in (
-        (["convert", "a.svg", "no/where/out.ngc"], "no/where/out.ngc"),
-        (["convert", "a.svg", "out.ngc", "--preview", "folder.png"], "folder.png"),
-        (["convert", "a.svg", "out.ngc", "--report", "no/where/out.txt"], "no/where/out.txt"),
-        (["predict", "a.svg", "folder.png"], "folder.png"),
-        (["animate", "a.svg", "no/where/out.html"], "no/where/out.html"),
+        (["convert", "a.svg", "-o", "no/where/out.ngc"], "no/where/out.ngc"),
+        (["convert", "a.svg", "-o", "out.ngc", "--picture", "folder.png"], "folder.png"),
+        (["convert", "a.svg", "-o", "out.ngc", "--report", "no/where/out.txt"], "no/where/out.txt"),
+        (["preview", "a.svg", "-o", "folder.png"], "folder.png"),
+        (["preview", "a.svg", "-o", "no/where/out.html"], "no/where/out.html"),
     ):
         before = listing(desk)
         status, _, ((file, reported),) = in_json(capsys, *words)
@@ -537,7 +535,16 @@ def test_several_outputs_are_written_all_or_none(desk, capsys, full):
             (desk / name).write_text("old")
     before = sorted(os.listdir(desk))
     status, _, ((file, reported),) = in_json(
-        capsys, "convert", "a.svg", outputs[0], "--preview", outputs[1], "--report", outputs[2], "--force"
+        capsys,
+        "convert",
+        "a.svg",
+        "-o",
+        outputs[0],
+        "--picture",
+        outputs[1],
+        "--report",
+        outputs[2],
+        "--force",
     )
     assert (status, file) == (1, full) and agrees(reported, "file-unwritable"), reported
     assert all((desk / name).read_text() == "old" for name in outputs if name != full)
@@ -553,12 +560,12 @@ def test_a_turn_too_sharp_for_the_brush_is_a_warning(desk, capsys):
     hairpin = LINE.replace("M20 40 C40 10 60 10 90 30", "M20 30 L90 30 L20 33")
     (desk / "x.svg").write_text(drawing(hairpin))
     status, _, ((_, reported),) = in_json(
-        capsys, "convert", "x.svg", "out.ngc", "--quiet", "--corners", "turn"
+        capsys, "convert", "x.svg", "-o", "out.ngc", "--quiet", "--corners", "turn"
     )
     assert status == 0 and agrees(reported, "off-middle-line 0.05", "line"), reported
     assert re.search(r" \d\.\d+ mm [a-z]+ x \d+\.\d, y \d+\.\d mm", reported.sentence)
     flags = ("--compensation", "none", "--quiet")
-    assert run(capsys, "convert", "x.svg", "out.ngc", *flags) == (0, "", [])
+    assert run(capsys, "convert", "x.svg", "-o", "out.ngc", *flags) == (0, "", [])
 
 
 def test_brush_commands(desk, capsys):
@@ -590,7 +597,10 @@ def test_a_faulty_brush_is_refused_everywhere(desk, capsys, key, value, code):
     brush = json.loads((SHIPPED / "round-6.json").read_text())
     brush[key] = value
     (desk / "mine.json").write_text(json.dumps(brush))
-    for words in (["brush", "check", "mine.json"], ["convert", "a.svg", "out.ngc", "--brush", "mine.json"]):
+    for words in (
+        ["brush", "check", "mine.json"],
+        ["convert", "a.svg", "-o", "out.ngc", "--brush", "mine.json"],
+    ):
         status, out, ((file, reported),) = in_json(capsys, *words)
         assert (status, out, file, reported.code) == (1, "", "mine.json", code)
     assert not (desk / "out.ngc").exists()
@@ -603,10 +613,10 @@ def test_ctrl_c_and_mistakes_of_ours_leave_no_traceback(desk, capsys, monkeypatc
     def fail(*_):
         raise ZeroDivisionError("division by zero")
 
-    monkeypatch.setattr(commands, "report_file", stop)
-    assert run(capsys, "report", "a.svg") == (130, "", ["brushsvg: interrupted"])
-    monkeypatch.setattr(commands, "report_file", fail)
-    status, _, err = run(capsys, "report", "a.svg")
+    monkeypatch.setattr(commands, "preview_report", stop)
+    assert run(capsys, "preview", "a.svg") == (130, "", ["brushsvg: interrupted"])
+    monkeypatch.setattr(commands, "preview_report", fail)
+    status, _, err = run(capsys, "preview", "a.svg")
     assert (status, len(err)) == (1, 1)
     assert err[0].startswith("brushsvg: a.svg: ")
 
@@ -618,7 +628,7 @@ def spawn(*words, **settings):
 
 
 def test_the_package_runs_as_a_module(desk):
-    done = spawn("convert", "a.svg", "b.svg", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    done = spawn("convert", "a.svg", "-o", "b.svg", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert (done.returncode, done.stdout) == (2, b"")
     assert (
         done.stderr
@@ -633,7 +643,7 @@ def test_the_package_runs_as_a_module(desk):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "words", ["report a.svg", "brush list", "brush show rigid", "--version", "--help", "convert --help"]
+    "words", ["preview a.svg", "brush list", "brush show rigid", "--version", "--help", "convert --help"]
 )
 def test_a_closed_stdout_is_said(desk, words):
     done = spawn(*words.split(), preexec_fn=lambda: os.close(1), stderr=subprocess.PIPE)
@@ -641,7 +651,7 @@ def test_a_closed_stdout_is_said(desk, words):
 
 
 def test_what_prints_nothing_needs_no_stdout(desk):
-    done = spawn("convert", "a.svg", "out.ngc", preexec_fn=lambda: os.close(1), stderr=subprocess.PIPE)
+    done = spawn("convert", "a.svg", "-o", "out.ngc", preexec_fn=lambda: os.close(1), stderr=subprocess.PIPE)
     assert done.returncode == 0
     assert re.fullmatch(
         rb"brushsvg: out\.ngc: written; 2 strokes, takes about \d+ s, stops once for another pen\n",
@@ -689,7 +699,7 @@ HIDDEN_STOP = f"""
 @pytest.mark.slow
 def test_ctrl_c_during_start_up_leaves_no_traceback(desk, name, how):
     code = STOPPED_AT.format(name=name, how=how)
-    words = ["convert", "a.svg", "out.ngc", "--preview", "out.png"]
+    words = ["convert", "a.svg", "-o", "out.ngc", "--picture", "out.png"]
     done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (130, "brushsvg: interrupted\n")
     assert not (desk / "out.ngc").exists()
@@ -713,7 +723,7 @@ def test_a_reader_who_leaves_early_is_no_error(desk):
     read_end, write_end = os.pipe()
     os.close(read_end)
     with os.fdopen(write_end, "wb") as closed:
-        done = spawn("report", "a.svg", stdout=closed, stderr=subprocess.PIPE)
+        done = spawn("preview", "a.svg", stdout=closed, stderr=subprocess.PIPE)
     assert (done.returncode, done.stderr) == (0, b"")
 
 
@@ -721,8 +731,8 @@ def test_a_reader_who_leaves_early_is_no_error(desk):
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 def test_a_full_disk_under_stdout_is_said(desk):
     with open("/dev/full", "wb") as full:
-        done = spawn("report", "a.svg", stdout=full, stderr=subprocess.PIPE)
-        as_json = spawn("--messages", "json", "report", "a.svg", stdout=full, stderr=subprocess.PIPE)
+        done = spawn("preview", "a.svg", stdout=full, stderr=subprocess.PIPE)
+        as_json = spawn("--messages", "json", "preview", "a.svg", stdout=full, stderr=subprocess.PIPE)
     assert done.returncode == as_json.returncode == 1
     assert done.stderr == b"brushsvg: standard output: no space left on device\n"
     ((file, reported),) = heard(as_json.stderr.decode().splitlines())
@@ -732,7 +742,7 @@ def test_a_full_disk_under_stdout_is_said(desk):
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 @pytest.mark.parametrize(
     ("words", "status"),
-    [("convert a.svg out.ngc", 0), ("convert a.svg out.svg", 2), ("convert b.svg out.ngc", 1)],
+    [("convert a.svg -o out.ngc", 0), ("convert a.svg -o out.svg", 2), ("convert b.svg -o out.ngc", 1)],
 )
 def test_a_full_disk_under_stderr_changes_nothing(desk, words, status):
     with open("/dev/full", "wb") as full:
@@ -786,7 +796,8 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
         "--help-all",
         "--margin-strokes",
         "--page",
-        "--preview",
+        "--output",
+        "--picture",
         "--report",
         "--quiet",
     } | {"--force"}
@@ -799,9 +810,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
 
 def test_a_plain_convert_imports_no_large_library(desk):
     """They take as long as all the rest."""
-    code = (
-        "import sys; from brushsvg.cli import main; main(['convert', 'a.svg', 'a.ngc']); print(*sys.modules)"
-    )
+    code = "import sys; from brushsvg.cli import main; main(['convert', 'a.svg', '-o', 'a.ngc']); print(*sys.modules)"
     (desk / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">'
         '<path d="M20 30h40" stroke="#000" stroke-width="2"/></svg>'
@@ -823,7 +832,7 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
         assert bool(err) == (not name.endswith(("-3axis", "-servo", "-ebb", "-plotter"))), (
             "a robot's paper is an example"
         )
-    assert run(capsys, "convert", "a.svg", "grbl.ngc", "--cell", "grbl-3axis", "--quiet") == (0, "", [])
+    assert run(capsys, "convert", "a.svg", "-o", "grbl.ngc", "--cell", "grbl-3axis", "--quiet") == (0, "", [])
     lines = (desk / "grbl.ngc").read_text(encoding="ascii").splitlines()
     assert not any(line.startswith("G64") for line in lines)
     assert max(map(len, lines)) <= 70
@@ -836,15 +845,15 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
         status, out, ((file, reported),) = in_json(capsys, "cell", "check", "my.toml")
         assert (status, out, file) == (1, "", "my.toml") and agrees(reported, said, where), reported
     (desk / "my.toml").write_text(text.replace("paint_mm_s = 40.0", "paint_mm_s = 9"))
-    assert run(capsys, "convert", "a.svg", "slow.ngc", "--cell", "my.toml", "--quiet") == (0, "", [])
+    assert run(capsys, "convert", "a.svg", "-o", "slow.ngc", "--cell", "my.toml", "--quiet") == (0, "", [])
     assert "F540.0" in (desk / "slow.ngc").read_text(), "a slow machine paints slowly"
     (desk / "my.toml").write_text(text.replace("margin_mm = 30.0", "margin_mm = 0.0"))
     status, _, reported = in_json(
-        capsys, "convert", "a.svg", "x.ngc", "--cell", "my.toml", "--sheet", "96x60"
+        capsys, "convert", "a.svg", "-o", "x.ngc", "--cell", "my.toml", "--sheet", "96x60"
     )
     assert status == 1 and is_reported(reported, "tool-off-sheet right"), reported
     for cell, said in (("mine", "cell-unknown mine grbl-3axis"), ("no.toml", "file-unreadable")):
-        status, _, ((_, reported),) = in_json(capsys, "convert", "a.svg", "x.ngc", "--cell", cell)
+        status, _, ((_, reported),) = in_json(capsys, "convert", "a.svg", "-o", "x.ngc", "--cell", cell)
         assert status == 1 and agrees(reported, said), reported
     assert not (desk / "x.ngc").exists()
 
@@ -854,8 +863,8 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
     [
         ("convrt a.svg b.ngc", "convert"),
         ("brush shw round-6", "show"),
-        ("convert a.svg b.ngc --brsh round-6", "--brush"),
-        ("convert a.svg b.ngc --compensation closd", "closed"),
+        ("convert a.svg -o b.ngc --brsh round-6", "--brush"),
+        ("convert a.svg -o b.ngc --compensation closd", "closed"),
         ("brush show roun-6", "round-6"),
         ("cell show grbl-3axs", "grbl-3axis"),
     ],

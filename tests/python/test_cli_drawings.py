@@ -33,7 +33,7 @@ def desk(tmp_path, monkeypatch):
 def plan(desk, capsys, *words, drawing="d.svg"):
     """Its passes, and what was reported."""
     capsys.readouterr()
-    status, _, reported = in_json(capsys, "convert", drawing, "plan.json", "--quiet", *words)
+    status, _, reported = in_json(capsys, "convert", drawing, "-o", "plan.json", "--quiet", *words)
     assert status == 0, reported
     return json.loads((desk / "plan.json").read_text())["passes"], [notice for _, notice in reported]
 
@@ -50,9 +50,9 @@ def test_layers_and_selections(desk, capsys):
     passes, (reported,) = plan(desk, capsys, "--select", "#b, text")
     assert [each["stroke"] for each in passes] == ["b"]
     assert agrees(reported, "text-unread --export-text-to-path", "t")
-    reported = refusal(capsys, "convert", "d.svg", "x.json", "--layer", "Blue")
+    reported = refusal(capsys, "convert", "d.svg", "-o", "x.json", "--layer", "Blue")
     assert agrees(reported, "layer-unknown Blue Ink Red", "layer")
-    reported = refusal(capsys, "convert", "d.svg", "x.json", "--select", "#c")
+    reported = refusal(capsys, "convert", "d.svg", "-o", "x.json", "--select", "#c")
     assert agrees(reported, "selector-matches-nothing #c")
 
 
@@ -61,8 +61,8 @@ def test_what_was_reported_of_a_drawing_stands_before_its_refusal(desk, capsys):
     head = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n"
     line = "0\nLWPOLYLINE\n8\nINK\n90\n2\n70\n0\n43\n0.1\n10\n0\n20\n0\n10\n9\n20\n0\n"
     (desk / "thick.dxf").write_text(head + "0\nSECTION\n2\nENTITIES\n" + line + "0\nENDSEC\n0\nEOF\n")
-    for command in ("convert", "predict", "report"):
-        status, _, said = in_json(capsys, command, "thick.dxf", *({"report": ()}.get(command, ("x.json",))))
+    for command, *out in (("convert", "-o", "x.json"), ("preview", "-o", "x.json"), ("preview",)):
+        status, _, said = in_json(capsys, command, "thick.dxf", *out)
         assert status == 1 and [is_reported([each], "unit-doubtful metres") for each in said] == [
             True,
             False,
@@ -83,7 +83,7 @@ def test_what_was_reported_stands_before_what_no_machine_runs(desk):
 
 def test_an_empty_choice_is_wrong_usage(desk, capsys):
     for flag in ("--layer", "--select"):
-        assert main(["convert", "d.svg", "x.json", flag, ""]) == 2
+        assert main(["convert", "d.svg", "-o", "x.json", flag, ""]) == 2
 
 
 def test_compressed_drawings(desk, capsys):
@@ -99,11 +99,11 @@ def test_compressed_drawings(desk, capsys):
         (gzip.compress(b" " * 70_000_000, mtime=0), "file-too-large 64000000"),
     ):
         (desk / "z.svgz").write_bytes(damaged)
-        assert agrees(refusal(capsys, "convert", "z.svgz", "x.json"), said), said
+        assert agrees(refusal(capsys, "convert", "z.svgz", "-o", "x.json"), said), said
 
 
 def test_the_exit_status_does_not_depend_on_who_reads(desk):
-    command = [sys.executable, "-m", "brushsvg", "convert", "d.svg", "x.json", "--sheet", "10x10"]
+    command = [sys.executable, "-m", "brushsvg", "convert", "d.svg", "-o", "x.json", "--sheet", "10x10"]
     reading, writing = os.pipe()
     os.close(reading)
     assert subprocess.run(command, stderr=writing).returncode == 1
@@ -114,7 +114,7 @@ def test_size_and_place(desk, capsys):
     deepest = min(z for *_, z in passes[0]["poses_mm"])
     plain, _ = plan(desk, capsys, "--layer", "Red", "--width", "4.5")
     assert deepest == pytest.approx(min(z for *_, z in plain[0]["poses_mm"]), abs=1e-6), "widths are scaled"
-    main(["predict", "d.svg", "m.json", "--fit", "100x80", "--width", "2"])
+    main(["preview", "d.svg", "-o", "m.json", "--fit", "100x80", "--width", "2"])
     rings = json.loads((desk / "m.json").read_text())["outline_mm"]
     xs, ys = zip(*(point for ring in rings for point in ring), strict=True)
     assert max(xs) - min(xs) == pytest.approx(100, abs=1.5)
@@ -125,23 +125,23 @@ def test_size_and_place(desk, capsys):
 def test_flags_have_no_effect_on_a_plan(desk, capsys):
     plan(desk, capsys)
     status, _, reported = in_json(
-        capsys, "convert", "plan.json", "p2.json", "--fit", "50x50", "--layer", "Ink"
+        capsys, "convert", "plan.json", "-o", "p2.json", "--fit", "50x50", "--layer", "Ink"
     )
     assert status == 0
     for flag in ("--fit", "--layer"):
         assert is_reported(reported, f"flag-without-effect {flag}"), reported
 
 
-@pytest.mark.parametrize("command", ["convert", "import"])
+@pytest.mark.parametrize("command", ["convert", "preview"])
 def test_flags_for_gcode_have_no_effect_on_an_svg(desk, capsys, command):
-    out = "d.ngc" if command == "convert" else "seen.png"
+    out = ["-o", "d.ngc"] if command == "convert" else ["-o", "seen.png", "--show", "strokes"]
     flags = {"--pen": "servo", "--paper-z": "0", "--skip-region": "0,0,1,1", "--skip-comment": "dip"}
     words = [word for pair in flags.items() for word in pair]
-    status, _, reported = in_json(capsys, command, "d.svg", out, *words)
+    status, _, reported = in_json(capsys, command, "d.svg", *out, *words)
     assert status == 0
     for flag in flags:
         assert is_reported(reported, f"flag-without-effect {flag}"), reported
-    assert not is_reported(in_json(capsys, command, "d.svg", out)[2], "flag-without-effect")
+    assert not is_reported(in_json(capsys, command, "d.svg", *out)[2], "flag-without-effect")
 
 
 def test_settings_steer_the_plan(desk, capsys):
@@ -155,43 +155,45 @@ def test_settings_steer_the_plan(desk, capsys):
     assert passes[0]["settings"] == {"order": -1, "passes": 2, "speed_mm_s": 7}
     assert is_reported(reported, "brush-asked-for rigid round-6", "a"), reported
     (desk / "d.svg").write_text(text.replace('speed="7"', 'speed="26"'))
-    status, _, reported = in_json(capsys, "convert", "d.svg", "out.ngc")
+    status, _, reported = in_json(capsys, "convert", "d.svg", "-o", "out.ngc")
     assert status == 1 and is_reported(reported, "speed-out-of-range 26 [0.000001, 25.0]"), reported
 
 
 def test_dxf_needs_its_units(desk, capsys):
-    assert agrees(refusal(capsys, "convert", "d.dxf", "x.json"), "unit-unknown '--units mm'")
+    assert agrees(refusal(capsys, "convert", "d.dxf", "-o", "x.json"), "unit-unknown '--units mm'")
     passes, _ = plan(desk, capsys, "--units", "in", "--width", "3", drawing="d.dxf")
     assert [each["layer"] for each in passes] == ["INK"]
-    assert main(["convert", "d.dxf", "x.json", "--units", "mm", "--select", "g"]) == 2
+    assert main(["convert", "d.dxf", "-o", "x.json", "--units", "mm", "--select", "g"]) == 2
 
 
 @pytest.mark.slow
 def test_import_draws_what_was_understood(desk, capsys):
     for drawing, words in (("d.svg", []), ("d.dxf", ["--units", "mm"])):
         for suffix, start in ((".svg", b"<svg"), (".png", b"\x89PNG")):
-            assert main(["import", drawing, f"seen{suffix}", *words]) == 0
+            assert main(["preview", drawing, "-o", f"seen{suffix}", "--show", "strokes", *words]) == 0
             assert (desk / f"seen{suffix}").read_bytes().startswith(start)
-    assert main(["import", "d.svg", "seen.svg", "--layer", "Ink"]) == 0
+    assert main(["preview", "d.svg", "-o", "seen.svg", "--show", "strokes", "--layer", "Ink"]) == 0
     words = re.findall(r"<text[^>]*>([^<]*)<", (desk / "seen.svg").read_text())
     assert "1  a: 3 mm, Ink" in words
 
 
 def test_import_shows_damage_that_convert_refuses(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M30 60 H90 L"))
-    status, _, reported = in_json(capsys, "convert", "d.svg", "x.json", "--layer", "Red")
+    status, _, reported = in_json(capsys, "convert", "d.svg", "-o", "x.json", "--layer", "Red")
     assert status == 1 and is_reported(reported, "geometry-damaged 13", "b"), reported
-    assert main(["import", "d.svg", "seen.png"]) == 0
-    assert main(["convert", "d.svg", "x.json", "--layer", "Ink"]) == 0, "damage elsewhere does not count"
+    assert main(["preview", "d.svg", "-o", "seen.png", "--show", "strokes"]) == 0
+    assert main(["convert", "d.svg", "-o", "x.json", "--layer", "Ink"]) == 0, (
+        "damage elsewhere does not count"
+    )
 
 
 def test_filled_shapes_become_strokes_unless_they_hold_nothing(desk, capsys):
     (desk / "f.svg").write_text(
         DRAWING.replace('fill="none" stroke="#203060"', "").replace('stroke="red"', "")
     )
-    reported = refusal(capsys, "convert", "f.svg", "x.json", "--as", "stroke")
+    reported = refusal(capsys, "convert", "f.svg", "-o", "x.json", "--as", "stroke")
     assert reported.code == "nothing-to-paint"
-    assert main(["import", "f.svg", "seen.png", "--as", "stroke"]) == 0
+    assert main(["preview", "f.svg", "-o", "seen.png", "--show", "strokes", "--as", "stroke"]) == 0
     capsys.readouterr()
     bar = '<path id="bar" d="M20 20H70V26H20Z"/><rect id="wide" x="20" y="35" width="60" height="12"/>'
     (desk / "bar.svg").write_text(
@@ -204,7 +206,7 @@ def test_filled_shapes_become_strokes_unless_they_hold_nothing(desk, capsys):
         passes, _ = plan(desk, capsys, *flags, drawing="bar.svg")
         names = [each["stroke"] for each in passes]
         assert names == ["bar", "wide", *(f"wide~{k}" for k in range(2, len(passes)))] and len(names) > 4
-    reported = refusal(capsys, "convert", "bar.svg", "x.json", "--wide", "refuse")
+    reported = refusal(capsys, "convert", "bar.svg", "-o", "x.json", "--wide", "refuse")
     assert agrees(reported, "width-out-of-reach 12", "wide") and "nearest" not in reported.text
 
 
@@ -216,10 +218,10 @@ def test_fonts_of_inkscape_are_found_with_their_names(desk, capsys, monkeypatch)
     )
     monkeypatch.setattr("brushsvg.cli.commands.drawings.text.SINGLE_LINE_FONTS", desk / "fonts")
     for name in ("Lines.svg", "Lines"):
-        assert main(["text", "T", f"by-{name}.svg", "--font", name]) == 0
+        assert main(["text", "T", "-o", f"by-{name}.svg", "--font", name]) == 0
     assert (desk / "by-Lines.svg").read_bytes() == (desk / "by-Lines.svg.svg").read_bytes()
     capsys.readouterr()
-    reported = refusal(capsys, "text", "T", "t.svg", "--font", "./Lines.svg")
+    reported = refusal(capsys, "text", "T", "-o", "t.svg", "--font", "./Lines.svg")
     assert reported.code == "file-unreadable"
 
 
@@ -227,14 +229,16 @@ def test_text(desk, capsys):
     font = """<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>
       <glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/></font></svg>"""
     (desk / "font.svg").write_text(font)
-    assert main(["text", "T\\nTT", "t.svg", "--font", "font.svg", "--size", "30", "--width", "2.5"]) == 0
+    assert (
+        main(["text", "T\\nTT", "-o", "t.svg", "--font", "font.svg", "--size", "30", "--width", "2.5"]) == 0
+    )
     passes, reported = plan(desk, capsys, drawing="t.svg")
     assert (len(passes), reported) == (6, [])
-    reported = refusal(capsys, "text", "T", "u.svg", "--font", "none.svg")
+    reported = refusal(capsys, "text", "T", "-o", "u.svg", "--font", "none.svg")
     assert agrees(reported, "file-unreadable Inkscape")
-    reported = refusal(capsys, "text", "x", "u.svg", "--font", "font.svg")
+    reported = refusal(capsys, "text", "x", "-o", "u.svg", "--font", "font.svg")
     assert agrees(reported, "nothing-to-paint U+0078")
-    for words in (["T", "t.png"], ["T", "t.svg", "--size", "0"], ["T"]):
+    for words in (["T", "-o", "t.png"], ["T", "-o", "t.svg", "--size", "0"], ["T"]):
         assert main(["text", *words, "--font", "font.svg"]) == 2
 
 
@@ -245,7 +249,7 @@ def test_widths_out_of_reach_are_one_line_that_names_the_way_out(desk, capsys):
         (desk / "w.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{lines}</svg>')
 
     drawing(0.3)
-    for command in (("convert", "w.svg", "x.json"), ("predict", "w.svg", "x.png")):
+    for command in (("convert", "w.svg", "-o", "x.json"), ("preview", "w.svg", "-o", "x.png")):
         status, _, ((file, reported),) = in_json(capsys, *command, "--quiet")
         assert (status, file) == (0, "w.svg")
         assert agrees(reported, "depth-not-measured p0 5 0.36 [1.0, 10.0]")
@@ -253,16 +257,16 @@ def test_widths_out_of_reach_are_one_line_that_names_the_way_out(desk, capsys):
     passes, (reported,) = plan(desk, capsys, "--width", "0.3", drawing="w.svg")
     assert len(passes) == 6 and (reported.code, reported.advice) == ("depth-not-measured", "")
     drawing(30)
-    reported = refusal(capsys, "convert", "w.svg", "x.json")
+    reported = refusal(capsys, "convert", "w.svg", "-o", "x.json")
     assert agrees(reported, "width-out-of-reach 30.000", "p0")
     drawing('2" transform="translate(-30)')
-    reported = refusal(capsys, "convert", "w.svg", "x.json")
+    reported = refusal(capsys, "convert", "w.svg", "-o", "x.json")
     assert agrees(reported, "mark-off-sheet p0 5 left --fit")
 
 
 def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M30 60 H90 L32 63"))
-    assert main(["predict", "d.svg", "x.svg", "--corners", "turn"]) == 0
+    assert main(["preview", "d.svg", "-o", "x.svg", "--corners", "turn"]) == 0
     text = (desk / "x.svg").read_text()
     assert 'data-made="round-6, closed"' in text
     missed = re.findall(r'data-stroke="(.)" data-tracking-error-mm="([0-9.]+)"( data-off-line="yes")?', text)
@@ -274,7 +278,7 @@ def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsy
 def test_no_stroke_is_marked_for_less_than_the_brush_itself_is_off(desk, capsys, d, is_marked):
     """0.095 mm in place of 0.05 was red, and reported, of a brush whose lag is known to 0.58 mm."""
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", d))
-    assert main(["predict", "d.svg", "x.svg", "--corners", "turn"]) == 0
+    assert main(["preview", "d.svg", "-o", "x.svg", "--corners", "turn"]) == 0
     assert ("d.svg: b: " in capsys.readouterr().err) == is_marked
     text = (desk / "x.svg").read_text()
     ((miss, marked),) = re.findall(
@@ -289,7 +293,7 @@ def test_a_brush_that_is_known_exactly_is_warned_of_less(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M20 60C80 75 20 75 80 60"))
     text = (Path(brushsvg.__file__).parent / "data/brushes/round-6.json").read_text()
     (desk / "exact.json").write_text(text.replace('"rmse_mm": 0.58', '"rmse_mm": 0.01'))
-    assert main(["predict", "d.svg", "x.svg", "--brush", "exact.json"]) == 0
+    assert main(["preview", "d.svg", "-o", "x.svg", "--brush", "exact.json"]) == 0
     assert "d.svg: b: " in capsys.readouterr().err
     assert 'data-off-line="yes"' in (desk / "x.svg").read_text()
 
@@ -312,17 +316,17 @@ def test_a_report_names_every_stroke_that_cannot_be_painted(desk, capsys):
     text = DRAWING.replace('id="b"', 'id="b" stroke-width="30"')
     bad = "".join(f'<path id="c{k}" stroke-width="{20 + k}" d="M30 {70 + k} H90"/>' for k in range(5))
     (desk / "d.svg").write_text(text.replace("</svg>", bad + "</svg>"))
-    status, out, reported = in_json(capsys, "report", "d.svg", "--json")
+    status, out, reported = in_json(capsys, "preview", "d.svg", "--json")
     assert status == 1
     report = json.loads(out)
     assert [each["where"] for each in report["refused"]] == ["b", "c0", "c1", "c2", "c3", "c4"]
     assert agrees(read(report["refused"][3]), "width-out-of-reach 22.000")
     assert [each["stroke"] for each in report["strokes"]] == ["a"]
     assert agrees(reported[-1][1], "width-out-of-reach b 5 30.000")
-    assert main(["report", "d.svg"]) == 1
+    assert main(["preview", "d.svg"]) == 1
     out = capsys.readouterr().out
     assert re.search(r": 6\n  b: .*30\.000 mm", out), out
-    assert main(["convert", "d.svg", "x.ngc"]) == 1
+    assert main(["convert", "d.svg", "-o", "x.ngc"]) == 1
     assert not (desk / "x.ngc").exists()
 
 
@@ -330,23 +334,23 @@ def test_a_report_names_outlines_that_are_too_wide_and_refused(desk, capsys):
     fat = '<path id="fat" fill="#000" stroke="none" d="M30 60h60v14h-60z"/>'
     too_wide = '<path id="line" stroke-width="30" d="M30 50h60"/>'
     (desk / "d.svg").write_text(DRAWING.replace("</svg>", f"{fat}{too_wide}</svg>"))
-    assert main(["report", "d.svg", "--json", "--wide", "refuse"]) == 1
+    assert main(["preview", "d.svg", "--json", "--wide", "refuse"]) == 1
     report = json.loads(capsys.readouterr().out)
     assert [each["where"] for each in report["refused"]] == ["fat", "line"]
     assert agrees(read(report["refused"][0]), "width-out-of-reach 14")
     assert [each["stroke"] for each in report["strokes"]] == ["a", "b"]
-    assert main(["report", "d.svg", "--select", "#fat", "--wide", "refuse"]) == 1
-    assert main(["report", "d.svg", "--all-brushes", "--wide", "refuse"]) == 0
-    assert main(["convert", "d.svg", "x.ngc", "--wide", "refuse"]) == 1
+    assert main(["preview", "d.svg", "--select", "#fat", "--wide", "refuse"]) == 1
+    assert main(["preview", "d.svg", "--all-brushes", "--wide", "refuse"]) == 0
+    assert main(["convert", "d.svg", "-o", "x.ngc", "--wide", "refuse"]) == 1
 
 
 def test_a_report_says_which_warnings_forbid_a_program(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M-3 60 H90"))
-    assert main(["report", "d.svg", "--json"]) == 0
+    assert main(["preview", "d.svg", "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert {each["where"] for each in report["forbidden"]} == {"b"}
     assert all(each in report["warnings"] for each in report["forbidden"])
-    assert main(["convert", "d.svg", "d.ngc"]) == 1
+    assert main(["convert", "d.svg", "-o", "d.ngc"]) == 1
 
 
 def test_ends_at_less_depth_than_was_measured_are_no_warning(desk, capsys):

@@ -22,48 +22,48 @@ SOUND = {  # the word that stands for a file, and what is there when it is sound
     "ZIP": "extension.zip",
 }
 COMMANDS = [
-    "convert IN OUT.ngc",
-    "convert IN OUT.json",
-    "convert PLAN OUT.ngc",
-    "convert a.svg OUT.ngc --brush BRUSH",
-    "convert a.svg OUT.ngc --cell CELL",
-    "predict IN OUT.svg",
-    "predict PLAN OUT.json",
-    "report IN",
-    "report a.svg --preview OUT.png",
-    "animate IN OUT.html",
-    "import IN OUT.png",
-    "border IN OUT.ngc",
-    "first-run CELL -o OUT.ngc",
-    "first-run linuxcnc-3axis -o OUT.ngc --brush BRUSH",
-    "height OUT.ngc --brush BRUSH",
+    "convert IN -o OUT.ngc",
+    "convert IN -o OUT.json",
+    "convert PLAN -o OUT.ngc",
+    "convert a.svg -o OUT.ngc --brush BRUSH",
+    "convert a.svg -o OUT.ngc --cell CELL",
+    "preview IN -o OUT.svg",
+    "preview PLAN -o OUT.json",
+    "preview IN",
+    "preview a.svg -o OUT.png --show errors",
+    "preview IN -o OUT.html",
+    "preview IN -o OUT.png --show strokes",
+    "setup border IN -o OUT.ngc",
+    "setup first-run CELL -o OUT.ngc",
+    "setup first-run linuxcnc-3axis -o OUT.ngc --brush BRUSH",
+    "setup height -o OUT.ngc --brush BRUSH",
     "check PROGRAM",
-    "check own.ngc IN --preview OUT.svg",
+    "check own.ngc IN --picture OUT.svg",
     "check own.ngc PLAN",
-    "text T OUT.svg --font FONT",
-    "batch --words words.txt --font FONT --out new",  # words and drawings of nonsense are rows: test_batch.py
-    "chart OUT.ngc --drawing IN",
+    "text T -o OUT.svg --font FONT",
+    "batch --words words.txt --font FONT -o new",  # words and drawings of nonsense are rows: test_batch.py
+    "chart -o OUT.ngc --drawing IN",
     "calibrate TABLE -o OUT.json",
     "calibrate MEASURED -o OUT.json",
-    "scan PHOTO --chart CHART -o OUT.json",
+    "calibrate PHOTO --scan --chart CHART -o OUT.json",
     "calibrate PHOTO --chart CHART -o OUT.json",
     "calibrate PHOTO --plan plan.json --prior round-6 -o OUT.json",
     "calibrate photo.jpg --plan PLAN --prior mine.json -o OUT.json",
     "calibrate photo.jpg --plan plan.json --prior BRUSH -o OUT.json",
     "compare PHOTO a.svg -o OUT.json",
     "compare PHOTO PLAN",
-    "simulate-photo IN OUT.jpg",
-    "brush new OUT.json --lag 5 --widths WIDTHS",
-    "brush new OUT.json --like BRUSH",
+    "simulate-photo IN -o OUT.jpg",
+    "brush new -o OUT.json --lag 5 --widths WIDTHS",
+    "brush new -o OUT.json --like BRUSH",
     "brush show BRUSH",
     "brush check BRUSH",
-    "brush plot BRUSH OUT.svg",
+    "brush plot BRUSH -o OUT.svg",
     "cell show CELL",
     "cell check CELL",
-    "cell new OUT.toml --like CELL",
+    "cell new -o OUT.toml --like CELL",
     "cell place CELL",
     "cell place ur5e IN",
-    "install-plugin inkscape ZIP",
+    "setup inkscape ZIP",
 ]
 NONSENSE = {  # None: a folder; False: nothing
     "missing": False,
@@ -98,10 +98,10 @@ def sound(tmp_path_factory):
     (folder / "widths.csv").write_text("depth_mm,width_mm\n3,2\n")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        for words in ("convert a.svg own.ngc", "convert a.svg plan.json", "cell new mine.toml"):
+        for words in ("convert a.svg -o own.ngc", "convert a.svg -o plan.json", "cell new -o mine.toml"):
             assert main(words.split()) == 0
-        assert main("brush new mine --lag 5 --width-at 3=2 --width-at 8=7".split()) == 0
-        assert main("chart strokes.json --sheet a5 --strokes few --chart page.json".split()) == 0
+        assert main("brush new -o mine.json --lag 5 --width-at 3=2 --width-at 8=7".split()) == 0
+        assert main("chart -o strokes.json --sheet a5 --strokes few --chart page.json".split()) == 0
     return folder
 
 

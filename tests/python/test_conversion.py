@@ -53,9 +53,9 @@ def desk(tmp_path, monkeypatch):
     ],
 )
 def test_it_does_what_the_command_does(desk, out, flags, choices):
-    near_by = {"preview": "o.svg", "report": "o.txt", "page": "p.svg"}
+    near_by = {"picture": "o.svg", "report": "o.txt", "page": "p.svg"}
     typed = itertools.chain(*((f"--{name}", path) for name, path in near_by.items()))
-    assert main(["convert", "two.svg", out, *typed, *flags.split()]) == 0
+    assert main(["convert", "two.svg", "-o", out, *typed, *flags.split()]) == 0
     names = [out, *near_by.values()]
     by_command = {name: Path(name).read_bytes() for name in names}
     for name in names:
@@ -146,7 +146,7 @@ def test_what_a_drawing_says_is_heard_as_the_command_hears_it(desk):
         ({"fit": (1, 2), "scale": 2}, "options-contradict"),
         ({"formats": [".txt"]}, "program-format .txt"),
         ({"out": "o.script"}, "program-format .script"),
-        ({"preview": "o.bmp"}, "program-format o.bmp"),
+        ({"picture": "o.bmp"}, "program-format o.bmp"),
         ({"width": 300}, "width-out-of-reach 300 8.4 a"),
         ({"sheet": (50, 50)}, "tool-off-sheet right a"),
         ({"from_stroke": 7}, "stroke-unknown 7 2"),
@@ -296,7 +296,7 @@ def test_it_is_given_up_at_any_step(desk, word):
         return any(word in text for text in said)
 
     with pytest.raises(CancelledError):
-        brushsvg.convert("long.svg", "o.ngc", preview="o.png", progress=said.append, cancel=cancel)
+        brushsvg.convert("long.svg", "o.ngc", picture="o.png", progress=said.append, cancel=cancel)
     assert word in said[-1] and still_working() == []
     assert sorted(path.name for path in desk.iterdir()) == ["long.svg", "two.svg"]
 

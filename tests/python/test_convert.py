@@ -148,7 +148,11 @@ def test_a_program_by_way_of_a_plan_is_the_one_of_the_drawing(tmp_path, monkeypa
     (tmp_path / "some.svg").write_text(FEW_COLOURS)
     (tmp_path / "mine.toml").write_text((SHIPPED / f"{name}.toml").read_text() + PAINT.format(when=when))
     suffix = ".script" if name == "ur5e" else ".ngc"
-    files = ("some.svg", "some.json"), ("some.json", f"by{suffix}"), ("some.svg", f"direct{suffix}")
+    files = (
+        ("some.svg", "-o", "some.json"),
+        ("some.json", "-o", f"by{suffix}"),
+        ("some.svg", "-o", f"direct{suffix}"),
+    )
     for each in files:
         assert main(["convert", *each, "--cell", "mine.toml", "--quiet"]) == 0
     ours, theirs = ((tmp_path / f"{one}{suffix}").read_text().splitlines() for one in ("by", "direct"))
@@ -167,7 +171,7 @@ def test_a_stroke_of_a_program_and_its_time_are_computed_once(drawing, tmp_path,
         program, "as_written", lambda *args: requested.append(args[0].stroke) or as_written(*args)
     )
     monkeypatch.setattr(motion, "_duration_s", lambda made: timed.append(made) or duration_s(made))
-    assert main(["convert", str(drawing), str(tmp_path / "a.ngc"), "--quiet"]) == 0
+    assert main(["convert", str(drawing), "-o", str(tmp_path / "a.ngc"), "--quiet"]) == 0
     assert requested
     assert len(requested) == len(set(requested))
     assert len(timed) == 1

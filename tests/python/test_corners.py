@@ -119,7 +119,7 @@ def test_corners_can_be_chosen_and_check_knows(tmp_path, capsys, flags, count):
         f'<path id="p" d="{APEX}" {LINE}/></svg>'
     )
     program = tmp_path / "apex.ngc"
-    assert main(["convert", str(drawing), str(program), "--lenient", *flags]) == 0
+    assert main(["convert", str(drawing), "-o", str(program), "--lenient", *flags]) == 0
     assert re.search(rf"; {count}\b", capsys.readouterr().err)
     assert main(["check", str(program), str(drawing), *(flags if flags[:1] == ["--corners"] else [])]) == 0
 

@@ -190,6 +190,7 @@ def test_a_program_a_page_and_a_file_of_dabs(tmp_path, capsys):
     files = [str(tmp_path / name) for name in ("dabs.ngc", "page.svg", "dabs.json")]
     words = [
         "chart",
+        "-o",
         files[0],
         "--dabs",
         "--sheet",
@@ -208,4 +209,6 @@ def test_a_program_a_page_and_a_file_of_dabs(tmp_path, capsys):
     program = (tmp_path / "dabs.ngc").read_text()
     assert program.count("(stroke ") == 16 and "Z-10.0000" in program
     assert not is_of_dabs(chart(BRUSH, (148.0, 210.0), "few"))
-    assert main(["chart", files[0], "--dabs", "--noise", "0.2"]) == 2  # of intervals, which dabs do not show
+    assert (
+        main(["chart", "-o", files[0], "--dabs", "--noise", "0.2"]) == 2
+    )  # of intervals, which dabs do not show

@@ -48,13 +48,13 @@ def test_demo_opens_the_picture_where_there_is_a_display(tmp_path, monkeypatch, 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("DISPLAY", ":7")
     monkeypatch.setattr("brushsvg.jobs.comparison_picture.comparison_png", lambda *_: b"a picture")
-    assert main(["demo", "a.png", "--quiet", *flags]) == 0
+    assert main(["demo", "-o", "a.png", "--quiet", *flags]) == 0
     assert opened == expected
 
 
 def test_demo_refuses_other_pictures_and_folders(tmp_path, capsys, opened):
-    assert main(["demo", str(tmp_path / "a.jpg")]) == 2
-    status, _, ((_, reported),) = in_json(capsys, "demo", tmp_path / "none" / "a.png")
+    assert main(["demo", "-o", str(tmp_path / "a.jpg")]) == 2
+    status, _, ((_, reported),) = in_json(capsys, "demo", "-o", tmp_path / "none" / "a.png")
     assert (status, reported.code) == (1, "file-unwritable")
 
 
@@ -137,7 +137,7 @@ def test_doctor_asks_for_the_zip_where_there_is_no_source(tmp_path, monkeypatch,
 def test_doctor_says_whether_the_extension_finds_its_program(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("INKSCAPE_PROFILE_DIR", str(tmp_path))
     assert main(["doctor"]) == 0
-    assert "brushsvg install-plugin inkscape" in rows(capsys.readouterr().out)["extension"]
+    assert "brushsvg setup inkscape" in rows(capsys.readouterr().out)["extension"]
     install_inkscape(source=ROOT / "plugins" / "inkscape")  # an installed package does not hold it
     note = tmp_path / "extensions" / "brushsvg" / "brushsvg-executable.txt"
     for program, problem in ((sys.executable, False), (str(tmp_path / "gone"), True)):

@@ -153,7 +153,7 @@ def test_check_allows_it_and_refuses_the_same_program_on_another_machine(desk, c
     (desk / "mine.toml").write_text(write_cell(replace(find_cell(name), name="mine", machine=machine)))
     other = replace(machine, lean_mm_per_mm=(0.1, 0.0))
     (desk / "other.toml").write_text(write_cell(replace(find_cell(name), name="mine", machine=other)))
-    assert call(capsys, "convert", "two.svg", "two" + suffix, "--cell", "mine.toml")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two" + suffix, "--cell", "mine.toml")[0] == 0
     status, out, _ = call(capsys, "check", "two" + suffix, "two.svg", "--cell", "mine.toml")
     assert status == 0 and RUNNABLE in out
     status, _, err = call(capsys, "check", "two" + suffix, "two.svg", "--cell", "other.toml")
@@ -273,7 +273,7 @@ def test_check_allows_visits_on_a_machine_whose_paper_is_higher(desk, capsys, na
     suffix, safe_mm = LANGUAGES[name], 4.5
     cell = replace(with_paint(machine, name, safe_mm), blending=find_cell(name).blending)
     (desk / "mine.toml").write_text(write_cell(cell))
-    assert call(capsys, "convert", "two.svg", "two" + suffix, "--cell", "mine.toml")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two" + suffix, "--cell", "mine.toml")[0] == 0
     status, out, err = call(capsys, "check", "two" + suffix, "two.svg", "--cell", "mine.toml")
     assert status == 0 and RUNNABLE in out, err
 
@@ -281,7 +281,7 @@ def test_check_allows_visits_on_a_machine_whose_paper_is_higher(desk, capsys, na
 @pytest.mark.parametrize("machine", [HIGH, LOW, BUMPY])
 def test_a_border_goes_round_what_is_painted_at_safe_height_over_the_paper(desk, capsys, machine):
     (desk / "mine.toml").write_text(write_cell(with_paint(machine)))
-    assert call(capsys, "border", "two.svg", "border.ngc", "--cell", "mine.toml")[0] == 0
+    assert call(capsys, "setup", "border", "two.svg", "-o", "border.ngc", "--cell", "mine.toml")[0] == 0
     text = (desk / "border.ngc").read_text()
     reported = commanded_places(text)
     assert over_the_paper(reported, machine).min() > 5.0 - 2e-3 and reported[:, 2].min() > 5.0 - 2e-3
@@ -295,7 +295,7 @@ def test_a_border_goes_round_what_is_painted_at_safe_height_over_the_paper(desk,
 def test_heights_show_how_much_higher_the_paper_is_than_is_known(desk, capsys, machine):
     """What the first stroke to paint says is what `convert --z-offset` takes, which adds it to height_mm."""
     (desk / "mine.toml").write_text(write_cell(with_paint(machine)))
-    assert call(capsys, "height", "height.ngc", "--cell", "mine.toml")[0] == 0
+    assert call(capsys, "setup", "height", "-o", "height.ngc", "--cell", "mine.toml")[0] == 0
     text = (desk / "height.ngc").read_text()
     sections = re.findall(r"first to paint means --z-offset (-?[\d.]+)\)\n((?:.+\n)+)", text)
     assert len(sections) > 10

@@ -109,7 +109,7 @@ def test_every_block_is_of_a_kind_that_is_held():
 def folder(tmp_path, monkeypatch):
     """A folder of somebody who draws: word.svg, its painted page, letters/, measured.csv, a font."""
     shutil.copy(REPOSITORY / "examples" / "robot.svg", tmp_path / "word.svg")
-    main(["simulate-photo", str(tmp_path / "word.svg"), str(tmp_path / "word.jpg"), "--quiet"])
+    main(["simulate-photo", str(tmp_path / "word.svg"), "-o", str(tmp_path / "word.jpg"), "--quiet"])
     (tmp_path / "letters").mkdir()
     shutil.copy(REPOSITORY / "examples" / "robot.svg", tmp_path / "letters" / "one.svg")
     rows = [f"lag,{d},{3 + 0.9 * d:.1f}\nwidth,{d},{0.8 * d:.1f}" for d in range(1, 9)]
@@ -223,7 +223,7 @@ def unlike(shown, real, where: str = "") -> list[str]:
 
 def test_warnings_for_programs_have_these_keys(folder, capsys):
     (code,) = of_kind("json", "reference/diagnostics.md")
-    main(["--messages", "json", "convert", "word.svg", "word.ngc", "--brush", "none"])
+    main(["--messages", "json", "convert", "word.svg", "-o", "word.ngc", "--brush", "none"])
     assert set(json.loads(code)) == set(json.loads(capsys.readouterr().err.splitlines()[0]))
 
 
@@ -237,7 +237,7 @@ def test_flags_that_a_page_lists_are_understood():
     for flag, value in listed:
         for each in VALUES.get(value, value).split("|"):
             drawing = "a.dxf" if flag == "units" else "a.svg"
-            parse(["convert", drawing, "a.ngc", f"--{flag}", *filter(None, [each])])
+            parse(["convert", drawing, "-o", "a.ngc", f"--{flag}", *filter(None, [each])])
 
 
 def test_targets_of_make_are_there():

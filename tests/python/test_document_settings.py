@@ -38,26 +38,26 @@ def test_the_document_chooses_for_the_whole_job(desk, capsys):
         on_root('brush="rigid"', 'cell="ur5e"', 'compensation="none"', 'tolerance=".2mm"')
     )
     flags = ["--brush", "rigid", "--cell", "ur5e", "--compensation", "none", "--tolerance", "0.2"]
-    assert main(["convert", "said.svg", "said.script"]) == 0
-    assert main(["convert", "d.svg", "typed.script", *flags]) == 0
+    assert main(["convert", "said.svg", "-o", "said.script"]) == 0
+    assert main(["convert", "d.svg", "-o", "typed.script", *flags]) == 0
     assert (desk / "said.script").read_bytes() == (desk / "typed.script").read_bytes()
     (desk / "said.svgz").write_bytes(gzip.compress((desk / "said.svg").read_bytes()))
-    assert main(["convert", "said.svgz", "packed.script"]) == 0
+    assert main(["convert", "said.svgz", "-o", "packed.script"]) == 0
     assert (desk / "packed.script").read_bytes() == (desk / "typed.script").read_bytes()
 
 
 def test_what_is_typed_wins_over_the_document(desk, capsys):
     (desk / "said.svg").write_text(on_root('cell="ur5e"', 'compensation="none"', 'tolerance="0.2mm"'))
     flags = ["--cell", "linuxcnc-3axis", "--compensation", "closed", "--tolerance", "0.05"]
-    assert main(["convert", "said.svg", "said.ngc", *flags]) == 0
-    assert main(["convert", "d.svg", "plain.ngc"]) == 0
+    assert main(["convert", "said.svg", "-o", "said.ngc", *flags]) == 0
+    assert main(["convert", "d.svg", "-o", "plain.ngc"]) == 0
     assert (desk / "said.ngc").read_bytes() == (desk / "plain.ngc").read_bytes()
 
 
 def test_beginnings_are_said_of_the_job_and_of_strokes(desk, capsys):
     def poses(text, *flags):
         (desk / "s.svg").write_text(text)
-        assert main(["convert", "s.svg", "s.json", *flags]) == 0
+        assert main(["convert", "s.svg", "-o", "s.json", *flags]) == 0
         return {each.stroke: each.poses_mm.tolist() for each in read_plan("s.json").passes}
 
     pointed, rounded = poses(DRAWING, "--start", "pointed"), poses(DRAWING, "--start", "round")
@@ -77,7 +77,7 @@ BAR = (
 
 def test_a_cut_beginning_is_butt_where_it_is_chosen_and_where_it_is_said(desk, capsys):
     def poses(*flags):
-        assert main(["convert", "s.svg", "s.json", *flags]) == 0
+        assert main(["convert", "s.svg", "-o", "s.json", *flags]) == 0
         return {each.stroke[:1]: each.poses_mm.tolist() for each in read_plan("s.json").passes}
 
     (desk / "s.svg").write_text(BAR)
@@ -86,7 +86,7 @@ def test_a_cut_beginning_is_butt_where_it_is_chosen_and_where_it_is_said(desk, c
     assert poses() == butt  # what suits a straight cut
     (desk / "s.svg").write_text(BAR.replace('id="a"', 'id="a" data-brushsvg-start="butt"'))
     assert poses("--start", "round") == {"a": butt["a"], "b": rounded["b"]}
-    assert main(["convert", "s.svg", "s.ngc", "--start", "butt"]) == 0
+    assert main(["convert", "s.svg", "-o", "s.ngc", "--start", "butt"]) == 0
     assert ", start butt)" in (desk / "s.ngc").read_text()
     assert main(["check", "s.ngc", "s.svg"]) == 0
 
@@ -94,7 +94,7 @@ def test_a_cut_beginning_is_butt_where_it_is_chosen_and_where_it_is_said(desk, c
 def test_ends_are_said_of_the_job_and_of_strokes(desk, capsys):
     def poses(text, *flags):
         (desk / "s.svg").write_text(text)
-        assert main(["convert", "s.svg", "s.json", *flags]) == 0
+        assert main(["convert", "s.svg", "-o", "s.json", *flags]) == 0
         return {each.stroke[:1]: each.poses_mm.tolist() for each in read_plan("s.json").passes}
 
     rounded, butt = poses(BAR, "--end", "round"), poses(BAR, "--end", "butt")
@@ -110,7 +110,7 @@ def test_ends_are_said_of_the_job_and_of_strokes(desk, capsys):
 def test_terminals_set_both_ends_and_one_end_may_differ(desk, capsys):
     def poses(text, *flags):
         (desk / "s.svg").write_text(text)
-        assert main(["convert", "s.svg", "s.json", *flags]) == 0
+        assert main(["convert", "s.svg", "-o", "s.json", *flags]) == 0
         return {each.stroke[:1]: each.poses_mm.tolist() for each in read_plan("s.json").passes}
 
     def both(start, end):
@@ -137,7 +137,7 @@ def test_terminals_set_both_ends_and_one_end_may_differ(desk, capsys):
 
 def test_a_program_shows_how_its_strokes_end_and_is_checked_by_it(desk, capsys):
     (desk / "d.svg").write_text(BAR)
-    assert main(["convert", "d.svg", "d.ngc", "--end", "round", "--start", "pointed"]) == 0
+    assert main(["convert", "d.svg", "-o", "d.ngc", "--end", "round", "--start", "pointed"]) == 0
     text = (desk / "d.ngc").read_text()
     assert "(compensation: closed, tolerance 0.05 mm, start pointed, end round)" in text
     assert main(["check", "d.ngc", "d.svg"]) == 0
@@ -146,7 +146,7 @@ def test_a_program_shows_how_its_strokes_end_and_is_checked_by_it(desk, capsys):
 
 
 def test_a_program_shows_how_its_strokes_begin_and_is_checked_by_it(desk, capsys):
-    assert main(["convert", "d.svg", "d.ngc", "--start", "pointed"]) == 0
+    assert main(["convert", "d.svg", "-o", "d.ngc", "--start", "pointed"]) == 0
     text = (desk / "d.ngc").read_text()
     assert "(compensation: closed, tolerance 0.05 mm, start pointed)" in text
     assert main(["check", "d.ngc", "d.svg"]) == 0
@@ -162,7 +162,7 @@ def test_a_program_shows_how_its_strokes_begin_and_is_checked_by_it(desk, capsys
 def test_the_document_names_no_files(desk, capsys, file):
     (desk / "mine.toml").write_text("")
     (desk / "d.svg").write_text(on_root(f'cell="{file}"'))
-    (reported,) = refusal_of(capsys, "convert", "d.svg", "x.ngc")
+    (reported,) = refusal_of(capsys, "convert", "d.svg", "-o", "x.ngc")
     said = f"cell-unknown data-brushsvg-cell {file} {' '.join(cell_names())}"
     assert agrees(reported, said, "svg") and reported.advice == "give --cell"
 
@@ -172,25 +172,25 @@ def test_a_brush_of_the_document_that_is_not_known_is_refused_by_every_command(d
     (desk / "mine.json").write_text("")
     (desk / "d.svg").write_text(on_root(f'brush="{file}"'))
     for words in (
-        ("convert", "d.svg", "x.ngc"),
-        ("predict", "d.svg", "x.svg"),
-        ("animate", "d.svg", "x.html"),
-        ("report", "d.svg"),
-        ("border", "d.svg", "x.ngc"),
-        ("chart", "x.json", "--drawing", "d.svg"),
+        ("convert", "d.svg", "-o", "x.ngc"),
+        ("preview", "d.svg", "-o", "x.svg"),
+        ("preview", "d.svg", "-o", "x.html"),
+        ("preview", "d.svg"),
+        ("setup", "border", "d.svg", "-o", "x.ngc"),
+        ("chart", "-o", "x.json", "--drawing", "d.svg"),
     ):
         (reported,) = refusal_of(capsys, *words)
         assert agrees(reported, f"brush-unknown data-brushsvg-brush {file} rigid round-6", "svg"), words
         assert reported.advice == "give --brush"
     assert not (desk / "x.json").exists()
-    status, _, reported = in_json(capsys, "convert", "d.svg", "x.ngc", "--brush", "round-6")
+    status, _, reported = in_json(capsys, "convert", "d.svg", "-o", "x.ngc", "--brush", "round-6")
     assert status == 0 and is_reported(reported, f"brush-asked-for {file} round-6"), reported
-    assert main(["report", "d.svg", "--all-brushes"]) == 0
+    assert main(["preview", "d.svg", "--all-brushes"]) == 0
 
 
 def test_what_was_typed_is_never_written_over(desk, capsys):
     (desk / "d.svg").write_text(on_root('brush="round-6"', 'cell="grbl-3axis"', 'tolerance="0.2mm"'))
-    for words in ("convert d.svg d.ngc", "report d.svg", "check d.ngc d.svg"):
+    for words in ("convert d.svg -o d.ngc", "preview d.svg", "check d.ngc d.svg"):
         args = parse(words.split())
         before = dict(vars(args))
         getattr(commands, args.run)(args)
@@ -201,10 +201,10 @@ def test_what_was_typed_is_never_written_over(desk, capsys):
 def test_a_chart_is_for_the_brush_and_machine_of_a_drawing(desk, capsys):
     few = ("--strokes", "few")
     (desk / "d.svg").write_text(on_root('brush="round-6"', 'cell="grbl-3axis"', 'tolerance="0.2mm"'))
-    assert main(["chart", "said.ngc", "--drawing", "d.svg", *few]) == 0
-    assert main(["chart", "typed.ngc", "--brush", "round-6", "--cell", "grbl-3axis", *few]) == 0
+    assert main(["chart", "-o", "said.ngc", "--drawing", "d.svg", *few]) == 0
+    assert main(["chart", "-o", "typed.ngc", "--brush", "round-6", "--cell", "grbl-3axis", *few]) == 0
     assert (desk / "said.ngc").read_bytes() == (desk / "typed.ngc").read_bytes()
-    assert main(["chart", "said.ngc", "--drawing", "d.svg", "--cell", "linuxcnc-3axis", *few]) == 0
+    assert main(["chart", "-o", "said.ngc", "--drawing", "d.svg", "--cell", "linuxcnc-3axis", *few]) == 0
     assert (desk / "said.ngc").read_bytes() != (desk / "typed.ngc").read_bytes()
 
 
@@ -217,14 +217,14 @@ FAT = (
 def test_the_document_says_how_wide_outlines_are_painted(desk, capsys):
     for name, setting in (("said.svg", 'data-brushsvg-wide="clamp"'), ("d.svg", "")):
         (desk / name).write_text(FAT.format(setting))
-    assert main(["convert", "said.svg", "said.ngc"]) == 0
-    assert main(["convert", "d.svg", "typed.ngc", "--wide", "clamp"]) == 0
-    assert main(["convert", "d.svg", "filled.ngc"]) == 0
+    assert main(["convert", "said.svg", "-o", "said.ngc"]) == 0
+    assert main(["convert", "d.svg", "-o", "typed.ngc", "--wide", "clamp"]) == 0
+    assert main(["convert", "d.svg", "-o", "filled.ngc"]) == 0
     said = (desk / "said.ngc").read_bytes()
     assert said == (desk / "typed.ngc").read_bytes() != (desk / "filled.ngc").read_bytes()
     assert main(["check", "said.ngc", "said.svg"]) == 0
     (desk / "no.svg").write_text(FAT.format('data-brushsvg-wide="refuse"'))
-    assert is_reported(refusal_of(capsys, "convert", "no.svg", "x.ngc"), "width-out-of-reach 14", "bar")
+    assert is_reported(refusal_of(capsys, "convert", "no.svg", "-o", "x.ngc"), "width-out-of-reach 14", "bar")
 
 
 @pytest.mark.parametrize(
@@ -239,9 +239,9 @@ def test_the_document_says_how_wide_outlines_are_painted(desk, capsys):
 )
 def test_settings_of_the_document_that_make_no_sense_stop_convert(desk, capsys, setting, said):
     (desk / "d.svg").write_text(on_root(setting))
-    (reported,) = refusal_of(capsys, "convert", "d.svg", "x.ngc")
+    (reported,) = refusal_of(capsys, "convert", "d.svg", "-o", "x.ngc")
     assert agrees(reported, f"setting-invalid {said}"), reported
-    assert main(["convert", "d.svg", "x.ngc", "--lenient"]) == 0
+    assert main(["convert", "d.svg", "-o", "x.ngc", "--lenient"]) == 0
 
 
 @pytest.mark.parametrize(
@@ -257,7 +257,7 @@ def test_settings_of_the_document_that_make_no_sense_stop_convert(desk, capsys, 
 def test_a_chart_for_what_is_no_drawing_is_refused(desk, capsys, name, data, said):
     if data is not None:
         (desk / name).write_bytes(data)
-    status, _, ((file, reported),) = in_json(capsys, "chart", "x.json", "--drawing", name)
+    status, _, ((file, reported),) = in_json(capsys, "chart", "-o", "x.json", "--drawing", name)
     assert (status, file) == (1, name) and agrees(reported, said), reported
     assert not (desk / "x.json").exists()
 
@@ -265,8 +265,10 @@ def test_a_chart_for_what_is_no_drawing_is_refused(desk, capsys, name, data, sai
 def test_settings_of_the_document_are_none_of_an_element(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace('id="a"', 'id="a" data-brushsvg-cell="ur5e"'))
     assert is_reported(
-        refusal_of(capsys, "convert", "d.svg", "x.ngc"), "setting-invalid data-brushsvg-cell whole svg", "a"
+        refusal_of(capsys, "convert", "d.svg", "-o", "x.ngc"),
+        "setting-invalid data-brushsvg-cell whole svg",
+        "a",
     )
     (desk / "d.svg").write_text(on_root('cell="ur5e"'))
-    assert main(["convert", "d.svg", "x.json"]) == 0
+    assert main(["convert", "d.svg", "-o", "x.json"]) == 0
     assert [each.settings for each in read_plan(desk / "x.json").passes] == [Settings(), Settings()]

@@ -365,7 +365,7 @@ def test_text_of_no_height_is_damaged(fonts, height):
 def test_text_leaves_nothing_at_home(tmp_path):
     """With any fonts of this machine."""
     (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: [m.add_text("Aé"), m.add_circle((0, 0), 5)])))
-    script = "import brushsvg.read as i; print(i.read_drawing('a.dxf'))"
+    script = "preview brushsvg.read -o as --show strokes i; print(i.read_drawing('a.dxf'))"
     runs = [
         subprocess.run(
             [sys.executable, "-c", script], cwd=tmp_path, env={"HOME": str(tmp_path)}, capture_output=True

@@ -174,9 +174,12 @@ def desk(tmp_path, monkeypatch):
 
 
 def test_what_is_written_is_allowed(desk, capsys):
-    assert call(capsys, "convert", "a.svg", "a.ebb", "--cell", "axidraw-ebb")[0] == 0
+    assert call(capsys, "convert", "a.svg", "-o", "a.ebb", "--cell", "axidraw-ebb")[0] == 0
     assert RUNNABLE in call(capsys, "check", "a.ebb", "a.svg")[1]
-    for name, words in (("b", ("border", "a.svg", "b.ebb")), ("h", ("height", "h.ebb"))):
+    for name, words in (
+        ("b", ("setup", "border", "a.svg", "-o", "b.ebb")),
+        ("h", ("setup", "height", "-o", "h.ebb")),
+    ):
         assert call(capsys, *words, "--cell", "axidraw-ebb")[0] == 0
         assert RUNNABLE in call(capsys, "check", f"{name}.ebb")[1]
 
@@ -200,12 +203,12 @@ def test_what_is_written_is_allowed(desk, capsys):
     ],
 )
 def test_check_refuses_what_was_damaged(desk, capsys, old, new, reported):
-    call(capsys, "convert", "a.svg", "a.ebb", "--cell", "axidraw-ebb")
+    call(capsys, "convert", "a.svg", "-o", "a.ebb", "--cell", "axidraw-ebb")
     assert is_refused_when_damaged(capsys, Path("a.ebb"), old, new, reported)
 
 
 def test_the_sender_of_the_docs_sends_commands_alone_and_stops_at_an_error(desk, capsys, monkeypatch):
-    call(capsys, "convert", "a.svg", "a.ebb", "--cell", "axidraw-ebb")
+    call(capsys, "convert", "a.svg", "-o", "a.ebb", "--cell", "axidraw-ebb")
     (sender,) = (block.code for block in blocks(DOCS / "machines" / "ebb.md") if block.kind == "python")
     sent = []
 
@@ -239,7 +242,7 @@ def test_the_sender_of_the_docs_sends_commands_alone_and_stops_at_an_error(desk,
 def test_who_begins_beyond_the_workspace_is_reported(desk, capsys):
     far = replace(CELL, name="far", paper=Paper((100.0, 0.0, 0.0)))
     Path("far.toml").write_text(write_cell(far))
-    status, _, said = in_json(capsys, "convert", "a.svg", "a.ebb", "--cell", "far.toml")
+    status, _, said = in_json(capsys, "convert", "a.svg", "-o", "a.ebb", "--cell", "far.toml")
     assert status == 1 and is_reported(said, "tool-off-sheet 70.00 motors")
 
 

@@ -18,11 +18,11 @@ DRAWING = (
     '<path d="M20 30H90" fill="none" stroke="#203060" stroke-width="3"/></svg>'
 )
 TYPED = {  # packages of the extra: a command that needs them, and the file that it writes
-    ("fonttools", "uharfbuzz"): ("text word out.svg --font font.ttf", "out.svg"),
-    ("matplotlib",): ("brush plot round-6 out.svg", "out.svg"),
+    ("fonttools", "uharfbuzz"): ("text word -o out.svg --font font.ttf", "out.svg"),
+    ("matplotlib",): ("brush plot round-6 -o out.svg", "out.svg"),
     ("ssik",): ("cell place ur5e in/a.svg -o out.png", "out.png"),
-    ("pyarrow",): ("batch in --out out --jobs 1 --parquet", "out/table.parquet"),
-    ("distributed",): ("batch in --out out --cluster tcp://127.0.0.1:9", None),
+    ("pyarrow",): ("batch in -o out --jobs 1 --parquet", "out/table.parquet"),
+    ("distributed",): ("batch in -o out --cluster tcp://127.0.0.1:9", None),
 }
 MODULES = {"fonttools": "fontTools"}
 

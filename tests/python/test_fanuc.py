@@ -32,7 +32,7 @@ def waves(strokes: int, poses: int):
 def job(tmp_path, capsys):
     """A program in three files."""
     (tmp_path / "waves.json").write_text(_core.write_plan(waves(30, 90)))
-    words = str(tmp_path / "waves.json"), str(tmp_path / "waves.ls"), "--cell", "lrmate200id"
+    words = str(tmp_path / "waves.json"), "-o", str(tmp_path / "waves.ls"), "--cell", "lrmate200id"
     status, _, reported = call(capsys, "convert", *words)
     assert status == 0, reported
     return tmp_path
@@ -85,7 +85,7 @@ def small(tmp_path, capsys):
     (tmp_path / "small.json").write_text(_core.write_plan(waves(2, 10)))
     program = tmp_path / "small.ls"
     cell = ("--cell", "lrmate200id")
-    assert in_json(capsys, "convert", tmp_path / "small.json", program, *cell)[0] == 0
+    assert in_json(capsys, "convert", tmp_path / "small.json", "-o", program, *cell)[0] == 0
     text = program.read_bytes().decode("ascii")
 
     def ends(change=lambda text: text):
@@ -119,7 +119,7 @@ def test_a_speed_in_another_unit_is_read_as_that(small):
 
 def test_a_stroke_of_too_many_poses_is_refused(tmp_path, capsys):
     (tmp_path / "a.json").write_text(_core.write_plan(waves(1, 997)))
-    words = "convert", str(tmp_path / "a.json"), str(tmp_path / "a.ls"), "--cell", "lrmate200id"
+    words = "convert", str(tmp_path / "a.json"), "-o", str(tmp_path / "a.ls"), "--cell", "lrmate200id"
     status, _, reported = in_json(capsys, *words)
     assert status == 1 and is_reported(reported, "poses-too-many 1001 1000")
     assert not (tmp_path / "a.ls").exists()

@@ -29,7 +29,7 @@ WAITING = [name for name in cell_names() if name not in OTHERS]
 @sample("name", WAITING, keep=4)
 def test_check_accepts_the_first_run_of_every_cell(name, tmp_path, capsys):
     program = tmp_path / f"first{POSTS[find_cell(name).language].extensions[0]}"
-    assert in_json(capsys, "first-run", name, "-o", program)[0] == 0
+    assert in_json(capsys, "setup", "first-run", name, "-o", program)[0] == 0
     status, _, reported = in_json(capsys, "check", program)
     assert status == 0, reported
 
@@ -87,12 +87,14 @@ def test_it_rises_to_its_own_height_and_is_never_lowered_fast(name):
 )
 def test_a_machine_that_cannot_wait_has_no_first_run(name, program, tmp_path, capsys):
     """A servo's brush would fall, a trajectory would go on."""
-    status, _, reported = in_json(capsys, "first-run", name, "-o", tmp_path / program)
+    status, _, reported = in_json(capsys, "setup", "first-run", name, "-o", tmp_path / program)
     assert status == 1 and is_reported(reported, "cannot-wait") and not (tmp_path / program).exists()
 
 
 def test_a_pen_that_has_one_height_tries_none(tmp_path, capsys):
-    status, _, reported = in_json(capsys, "first-run", "marlin-servo", "-o", tmp_path / "first.gcode")
+    status, _, reported = in_json(
+        capsys, "setup", "first-run", "marlin-servo", "-o", tmp_path / "first.gcode"
+    )
     assert status == 1 and is_reported(reported, "pen-depth") and not (tmp_path / "first.gcode").exists()
 
 
@@ -102,7 +104,7 @@ def all_moves(sections):
 
 def test_a_first_run_that_was_changed_is_refused(tmp_path, capsys):
     program = tmp_path / "first.ngc"
-    assert in_json(capsys, "first-run", "linuxcnc-3axis", "-o", program)[0] == 0
+    assert in_json(capsys, "setup", "first-run", "linuxcnc-3axis", "-o", program)[0] == 0
     text = program.read_text()
     assert "Y6.0000 Z0.0000" in text
     program.write_text(text.replace("Y6.0000 Z0.0000", "Y6.0000 Z-3.0000", 1))
@@ -111,6 +113,6 @@ def test_a_first_run_that_was_changed_is_refused(tmp_path, capsys):
 
 
 def test_a_sheet_that_is_too_small_is_refused(tmp_path, capsys):
-    command = ("first-run", "linuxcnc-3axis", "-o", tmp_path / "first.ngc", "--sheet", "60x60")
+    command = ("setup", "first-run", "linuxcnc-3axis", "-o", tmp_path / "first.ngc", "--sheet", "60x60")
     status, _, reported = in_json(capsys, *command)
     assert status == 1 and is_reported(reported, "strokes-out-of-range")

@@ -169,7 +169,7 @@ def test_where_nothing_shows_when_the_pen_is_down_it_is_refused():
 
 
 def test_check_predicts_what_a_brush_paints(desk, capsys):
-    status, out, _ = call(capsys, "check", "inches.gcode", "--preview", "p.png")
+    status, out, _ = call(capsys, "check", "inches.gcode", "--picture", "p.png")
     assert status == 0 and (desk / "p.png").exists()
     assert RUNNABLE not in out
     status, out, _ = call(capsys, "check", "servo.nc", "--cell", "grbl-servo", "--sheet", "120x100")
@@ -241,7 +241,7 @@ def test_values_that_no_table_has_ask_for_a_table(desk, capsys):
 
 def test_without_a_height_nothing_is_advised_for_one(desk, capsys):
     (desk / "f.gcode").write_text("G21\nG0 X1 Y1\nG1 X40 Y5 F100\n")
-    for command in (("check", "f.gcode"), ("convert", "f.gcode", "f.ngc")):
+    for command in (("check", "f.gcode"), ("convert", "f.gcode", "-o", "f.ngc")):
         status, _, ((_, said),) = in_json(capsys, *command)
         assert status == 1 and "--paper-z" not in said.advice, said
 
@@ -273,10 +273,10 @@ def test_a_unit_that_is_not_named_is_reported(desk, capsys):
 
 @pytest.mark.parametrize("name", ["inches.gcode", "servo.nc"])
 def test_convert_takes_its_lines_and_check_agrees(desk, capsys, name):
-    assert call(capsys, "convert", name, "out.ngc", "--width", "3")[0] == 0
+    assert call(capsys, "convert", name, "-o", "out.ngc", "--width", "3")[0] == 0
     status, out, _ = call(capsys, "check", "out.ngc", name, "--width", "3")
     assert status == 0 and RUNNABLE in out
-    status, _, said = in_json(capsys, "convert", "out.ngc", "again.ngc")
+    status, _, said = in_json(capsys, "convert", "out.ngc", "-o", "again.ngc")
     assert status == 1 and is_reported(said, "program-ours")
 
 
@@ -316,7 +316,7 @@ def test_a_full_circle_is_drawn(desk, capsys, line):
     (desk / "circle.gcode").write_text(FULL.format(line))
     (circle,) = [way for way in ways(FULL.format(line)) if way.turn]
     assert np.ptp(circle.points_mm[:, :2], axis=0) == pytest.approx([20, 20], abs=0.02)
-    assert call(capsys, "convert", "circle.gcode", "marks.json", "--width", "3")[0] == 0
+    assert call(capsys, "convert", "circle.gcode", "-o", "marks.json", "--width", "3")[0] == 0
     status, out, _ = call(capsys, "check", "circle.gcode")
     assert status == 0 and re.search(r"circle|line 4", out)
 
@@ -386,10 +386,10 @@ def test_check_says_what_is_missing(desk, capsys, program, reported):
 
 
 def test_a_program_of_ours_without_its_header_is_known_by_its_strokes(desk, capsys):
-    assert call(capsys, "convert", "inches.gcode", "out.ngc", "--width", "3")[0] == 0
+    assert call(capsys, "convert", "inches.gcode", "-o", "out.ngc", "--width", "3")[0] == 0
     lines = (desk / "out.ngc").read_text().splitlines()
     first = next(k for k, line in enumerate(lines) if line.startswith("(stroke 1 of "))
     (desk / "headless.ngc").write_text("\n".join(["G21 G90", "G0 Z10", *lines[first:]]))
-    status, _, said = in_json(capsys, "convert", "headless.ngc", "again.ngc")
+    status, _, said = in_json(capsys, "convert", "headless.ngc", "-o", "again.ngc")
     assert status == 1 and is_reported(said, "program-ours")
     assert call(capsys, "check", "headless.ngc")[0] == 1

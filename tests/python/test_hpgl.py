@@ -116,7 +116,7 @@ def test_the_pen_is_reported_for_a_brush_that_presses_and_it_helps(tmp_path, cap
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">'
         '<path id="a" fill="none" stroke="#000" stroke-width="3" d="M20 30Q50 0 80 30"/></svg>'
     )
-    words = ("convert", tmp_path / "a.svg", tmp_path / "a.hpgl", "--cell", "hpgl-plotter")
+    words = ("convert", tmp_path / "a.svg", "-o", tmp_path / "a.hpgl", "--cell", "hpgl-plotter")
     status, _, reported = in_json(capsys, *words)
     assert status == 1 and is_reported(reported, "pen-depth --brush rigid")
     status, _, reported = in_json(capsys, *words, "--brush", "rigid")
@@ -127,7 +127,7 @@ def test_a_height_of_the_paper_cannot_be_set(tmp_path, capsys):
     with refused("pen-depth"):
         text_for(TWO, job=Job(0.1))
     status, _, reported = in_json(
-        capsys, "height", "--cell", "hpgl-plotter", "--brush", "rigid", tmp_path / "h.hpgl"
+        capsys, "setup", "height", "--cell", "hpgl-plotter", "--brush", "rigid", "-o", tmp_path / "h.hpgl"
     )
     assert status == 1 and is_reported(reported, "pen-depth")
 
@@ -169,7 +169,7 @@ def test_a_plotter_takes_its_pens_by_the_colours_of_the_cell(tmp_path, capsys, m
     colours = sorted(set(re.findall("#[0-9a-f]{6}", PENS)))
     own = replace(CELL, name="own", pen=replace(CELL.pen, colours=tuple(reversed(colours))))
     Path("own.toml").write_text(write_cell(own))
-    words = ("pens.svg", "pens.hpgl", "--cell", "own.toml", "--brush", "rigid")
+    words = ("pens.svg", "-o", "pens.hpgl", "--cell", "own.toml", "--brush", "rigid")
     status, _, said = call(capsys, "convert", *words)
     assert status == 0 and said[-1].count(", ") == 2, "how many strokes, how long, how often another pen"
     text = Path("pens.hpgl").read_text()
@@ -197,8 +197,8 @@ def test_a_plotter_takes_its_pens_by_the_colours_of_the_cell(tmp_path, capsys, m
 def test_an_air_run_is_drawn_with_the_pen_up(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("pens.svg").write_text(PENS, encoding="utf-8")
-    words = ("pens.svg", "air.hpgl", "--cell", "hpgl-plotter", "--brush", "rigid")
-    assert call(capsys, "border", *words)[0] == 0
+    words = ("pens.svg", "-o", "air.hpgl", "--cell", "hpgl-plotter", "--brush", "rigid")
+    assert call(capsys, "setup", "border", *words)[0] == 0
     found = run(Path("air.hpgl").read_text())
     assert sum(leg.kind == "rapid" for leg in found.legs) >= 4 and not any(
         leg.kind == "feed" for leg in found.legs
@@ -217,7 +217,7 @@ def test_a_stroke_that_begins_where_the_one_before_ended_is_set_down_there(tmp_p
     )
     made = str(tmp_path / f"lines{POSTS[find_cell(cell).language].extensions[0]}")
     flags = ("--cell", cell, "--brush", "rigid")
-    assert call(capsys, "convert", str(drawing), made, *flags)[0] == 0
+    assert call(capsys, "convert", str(drawing), "-o", made, *flags)[0] == 0
     status, said, _ = call(capsys, "check", made, str(drawing), *flags)
     assert status == 0 and RUNNABLE in said
 
@@ -277,6 +277,15 @@ def test_a_cell_that_a_pen_cannot_be_is_refused(change, reported):
 
 def test_a_tolerance_finer_than_the_units_is_refused(tmp_path, capsys):
     (tmp_path / "a.svg").write_text(PENS)
-    words = ("convert", tmp_path / "a.svg", tmp_path / "a.hpgl", "--cell", "hpgl-plotter", "--brush", "rigid")
+    words = (
+        "convert",
+        tmp_path / "a.svg",
+        "-o",
+        tmp_path / "a.hpgl",
+        "--cell",
+        "hpgl-plotter",
+        "--brush",
+        "rigid",
+    )
     status, _, said = in_json(capsys, *words, "--tolerance", "0.04")
     assert status == 1 and is_reported(said, "decimals-too-few 0.025 0.0125 0.01")

@@ -190,7 +190,7 @@ def test_own_programs_with_turns_in_place_are_allowed(tmp_path, capsys):
         f'<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50">{path}</svg>'
     )
     flags = ["--cell", "jaka-zu3", "--corners", "turn"]
-    assert main(["convert", str(drawing), str(made), *flags]) == 0
+    assert main(["convert", str(drawing), "-o", str(made), *flags]) == 0
     assert "movc(" in made.read_text()
     assert main(["check", str(made), str(drawing), *flags]) == 0
     made.write_text(made.read_text().replace("via = [-", "via = [-1", 1))

@@ -27,7 +27,7 @@ def test_an_air_run_is_checked_alone_and_with_its_drawing(desk, capsys, name):
     flags = ("--cell", name, "--z-offset", "0.4", "--compensation", "none", "--fit", "90x50")
     if name == "grbl-servo":
         flags = ("--cell", name, "--compensation", "none", "--fit", "90x50")  # it has no height to spare
-    assert call(capsys, "border", "two.svg", program, *flags)[0] == 0
+    assert call(capsys, "setup", "border", "two.svg", "-o", program, *flags)[0] == 0
     status, out, err = call(capsys, "check", program)
     assert (status, err) == (0, [])
     assert re.fullmatch(
@@ -46,7 +46,10 @@ def test_an_air_run_is_checked_alone_and_with_its_drawing(desk, capsys, name):
 @pytest.mark.parametrize("name", LANGUAGES)
 def test_strokes_that_find_the_paper_are_checked(desk, capsys, name):
     program = f"height{LANGUAGES[name]}"
-    assert call(capsys, "height", program, "--cell", name, "--from", "0.7", "--step", "0.13")[0] == 0
+    assert (
+        call(capsys, "setup", "height", "-o", program, "--cell", name, "--from", "0.7", "--step", "0.13")[0]
+        == 0
+    )
     status, out, err = call(capsys, "check", program)
     assert (status, err) == (0, [])
     assert gives(out, "0.7", "-1 mm", "0.13 mm")
@@ -105,8 +108,8 @@ CHANGED = {
 def test_any_change_is_reported(desk, capsys, kind):
     job, suffix = kind
     cell = ("--cell", "grbl-servo") if suffix == ".nc" else ()
-    operands = ("border", "two.svg", f"job{suffix}") if job == "border" else ("height", f"job{suffix}")
-    assert call(capsys, *operands, *cell)[0] == 0
+    drawing = ("two.svg",) if job == "border" else ()
+    assert call(capsys, "setup", job, *drawing, "-o", f"job{suffix}", *cell)[0] == 0
     text = (desk / f"job{suffix}").read_text()
     assert call(capsys, "check", f"job{suffix}")[0] == 0
     for edit, said in CHANGED[kind]:
@@ -116,10 +119,10 @@ def test_any_change_is_reported(desk, capsys, kind):
 
 
 def test_what_has_no_picture_and_no_drawing_says_so(desk, capsys):
-    assert call(capsys, "height", "height.ngc")[0] == 0
+    assert call(capsys, "setup", "height", "-o", "height.ngc")[0] == 0
     status, _, ((_, reported),) = in_json(capsys, "check", "height.ngc", "two.svg")
     assert (status, reported.code) == (1, "nothing-to-compare")
-    status, _, ((_, reported),) = in_json(capsys, "check", "height.ngc", "--preview", "x.png")
+    status, _, ((_, reported),) = in_json(capsys, "check", "height.ngc", "--picture", "x.png")
     assert (status, reported.code) == (1, "nothing-to-show")
     status, out, _ = call(capsys, "check", "height.ngc", "--json")
     assert status == 0 and json.loads(out)["heights_mm"] == [1, -1, 0.1]
@@ -128,7 +131,7 @@ def test_what_has_no_picture_and_no_drawing_says_so(desk, capsys):
 def test_an_air_run_beyond_the_workspace_is_refused(desk, capsys):
     """Round a job that could never be run itself."""
     (desk / "two.svg").write_text(DRAWING.replace("C40 10 60 10 90 40", "L190 40"))
-    status, _, reported = in_json(capsys, "border", "two.svg", "border.ngc")
+    status, _, reported = in_json(capsys, "setup", "border", "two.svg", "-o", "border.ngc")
     assert status == 1 and agrees(reported[-1][1], "tool-off-sheet right")
     assert not (desk / "border.ngc").exists()
 
@@ -136,7 +139,7 @@ def test_an_air_run_beyond_the_workspace_is_refused(desk, capsys):
 def test_corners_of_strokes_that_find_the_paper_are_not_cut_by_half_a_millimetre(desk, capsys):
     text = (SHIPPED / "linuxcnc-3axis.toml").read_text()
     (desk / "mine.toml").write_text(edited(r"(?m)^tolerance_mm = \S+", "tolerance_mm = 0.5")(text))
-    for words in (("height", "job.ngc"), ("border", "two.svg", "job.ngc")):
+    for words in (("setup", "height", "-o", "job.ngc"), ("setup", "border", "two.svg", "-o", "job.ngc")):
         assert call(capsys, *words, "--cell", "mine.toml")[0] == 0
         assert "G64 P0.0100" in (desk / "job.ngc").read_text()
         assert call(capsys, "check", "job.ngc", "--cell", "mine.toml")[0] == 0

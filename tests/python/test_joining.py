@@ -85,7 +85,7 @@ def test_lines_are_joined_only_when_requested_and_check_knows(tmp_path, capsys):
         f'<svg xmlns="http://www.w3.org/2000/svg" width="80mm" height="60mm" viewBox="0 0 80 60">{paths}</svg>'
     )
     for flags, count in (([], 2), (["--join"], 1)):
-        assert main(["convert", str(drawing), str(program), *flags]) == 0
+        assert main(["convert", str(drawing), "-o", str(program), *flags]) == 0
         assert re.search(rf"; {count}\b", capsys.readouterr().err)
         assert main(["check", str(program), str(drawing), *flags]) == 0
     assert main(["check", str(program), str(drawing)]) == 1

@@ -82,9 +82,9 @@ def test_the_command_writes_them(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in.svg").write_text(f"{HEAD}{WEDGE}</svg>")
     (tmp_path / "empty.svg").write_text(f"{HEAD}</svg>")
-    assert main(["import", "in.svg", "out.svg", "--editable"]) == 0
+    assert main(["preview", "in.svg", "-o", "out.svg", "--show", "strokes", "--editable"]) == 0
     assert "powerstroke" in (tmp_path / "out.svg").read_text()
-    assert main(["import", "empty.svg", "none.svg", "--editable"]) == 1
-    assert main(["import", "in.svg", "out.png", "--editable"]) == 2
+    assert main(["preview", "empty.svg", "-o", "none.svg", "--show", "strokes", "--editable"]) == 1
+    assert main(["preview", "in.svg", "-o", "out.png", "--show", "strokes", "--editable"]) == 2
     assert not (tmp_path / "none.svg").exists() and not (tmp_path / "out.png").exists()
     assert gives(capsys.readouterr().err.splitlines()[-1], "--editable")

@@ -56,7 +56,7 @@ def job(request, tmp_path, capsys, monkeypatch):
             if path.parent.name == "whole":
                 patch.setitem(cell.MOST_LINES, find_cell(name).language, NO_LIMIT)
             status, _, reported = call(
-                capsys, "convert", str(tmp_path / "waves.json"), str(path), "--cell", name
+                capsys, "convert", str(tmp_path / "waves.json"), "-o", str(path), "--cell", name
             )
             assert status == 0, reported
     assert files_of(paths[0]) == paths[:1]
@@ -137,7 +137,7 @@ def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
 
 def test_a_stroke_of_more_lines_is_one_program_and_a_warning(tmp_path, capsys):
     (tmp_path / "a.json").write_text(_core.write_plan(waves(3, 1200)))
-    words = "convert", tmp_path / "a.json", tmp_path / "a.script", "--cell", "ur5e"
+    words = "convert", tmp_path / "a.json", "-o", tmp_path / "a.script", "--cell", "ur5e"
     status, _, reported = in_json(capsys, *words)
     assert status == 0 and is_reported(reported, "poses-too-many 1204 1000")
     assert len(files_of(tmp_path / "a.script")) == 3
@@ -151,7 +151,7 @@ def test_parts_of_an_earlier_job_are_named(tmp_path, capsys, name, parts):
     output = tmp_path / f"a{LANGUAGES[name]}"
     for strokes in (3, 1):
         (tmp_path / "a.json").write_text(_core.write_plan(waves(strokes, 1200 if name == "ur5e" else 700)))
-        status, _, reported = in_json(capsys, "convert", tmp_path / "a.json", output, "--cell", name)
+        status, _, reported = in_json(capsys, "convert", tmp_path / "a.json", "-o", output, "--cell", name)
         assert status == 0
         named = [each for _, each in reported if each.code == "programs-of-before"]
         assert len(named) == (strokes == 1) and all(
@@ -185,7 +185,7 @@ def test_a_page_of_a_thousand_strokes(name, tmp_path, capsys, monkeypatch):
                 patch.setattr(ebb, "LEAST_MS", 1)
                 for language in cell.MOST_LINES:
                     patch.setitem(cell.MOST_LINES, language, NO_LIMIT)
-            status, _, reported = call(capsys, "convert", words[0], str(path), *words[1:])
+            status, _, reported = call(capsys, "convert", words[0], "-o", str(path), *words[1:])
             assert status == 0, reported
         texts.append(text_of(files_of(path)))
         if folder == "parts":

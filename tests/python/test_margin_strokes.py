@@ -27,7 +27,7 @@ SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="{0}mm" height="60mm" vie
 def desk(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "word.svg").write_text(SVG.format(110, 80))
-    words = "brush new mine.json --lag-at 1=5 --lag-at 4=8 --lag-at 8=11 --width-at 3=2.4 --width-at 8=5.8 --quiet"
+    words = "brush new -o mine.json --lag-at 1=5 --lag-at 4=8 --lag-at 8=11 --width-at 3=2.4 --width-at 8=5.8 --quiet"
     assert main(words.split()) == 0
     return tmp_path
 
@@ -41,8 +41,8 @@ def added(plan) -> list:
 
 
 def test_they_stand_on_a_page_of_a_brush_that_is_not_calibrated(desk):
-    run("convert word.svg plan.json --brush mine.json --page page.svg")
-    run("convert word.svg bare.json --brush mine.json")
+    run("convert word.svg -o plan.json --brush mine.json --page page.svg")
+    run("convert word.svg -o bare.json --brush mine.json")
     plan, bare = read_plan("plan.json"), read_plan("bare.json")
     own = [each for each in plan.passes if each.settings.kind != "margin"]
     assert own == list(bare.passes)  # the job itself is the same
@@ -56,14 +56,14 @@ def test_they_stand_on_a_page_of_a_brush_that_is_not_calibrated(desk):
     assert deepest[2] <= max(-np.min(each.poses_mm[:, 2]) for each in own) + 0.01  # no deeper than the job
     assert plan.sheet_mm[0] == bare.sheet_mm[0] and plan.sheet_mm[1] > bare.sheet_mm[1]
     for flags in ("--brush mine.json", "--brush mine.json --page page.svg --margin-strokes off"):
-        run(f"convert word.svg plan.json {flags}")
+        run(f"convert word.svg -o plan.json {flags}")
         assert not added(read_plan("plan.json"))
-    run("convert word.svg plan.json --brush mine.json --margin-strokes on")
+    run("convert word.svg -o plan.json --brush mine.json --margin-strokes on")
     assert len(added(read_plan("plan.json"))) == 3
 
 
 def test_a_brush_with_half_or_one_and_a_half_times_the_lag_paints_none_on_another_or_on_a_marker(desk):
-    run("convert word.svg plan.json --brush mine.json --page page.svg")
+    run("convert word.svg -o plan.json --brush mine.json --page page.svg")
     plan, brush = read_plan("plan.json"), brushsvg.find_brush("mine.json")
     page = job_page(plan)
     markers = [Polygon(marker.corners_mm) for marker in page.printed.markers]
@@ -86,13 +86,13 @@ def test_a_brush_with_half_or_one_and_a_half_times_the_lag_paints_none_on_anothe
 
 
 def test_the_program_is_checked_and_reported_without_them(desk, capsys):
-    run("convert word.svg with.ngc --brush mine.json --page page.svg --report with.json")
-    run("convert word.svg bare.ngc --brush mine.json --report bare.json")
+    run("convert word.svg -o with.ngc --brush mine.json --page page.svg --report with.json")
+    run("convert word.svg -o bare.ngc --brush mine.json --report bare.json")
     reports = [json.loads((desk / f"{name}.json").read_text()) for name in ("with", "bare")]
     assert reports[0]["strokes"] == reports[1]["strokes"] and reports[0]["total"] == reports[1]["total"]
     assert reports[0]["time_s"] > reports[1]["time_s"] + 5
     for order in ("", " --order nearest"):
-        run(f"convert word.svg with.ngc --brush mine.json --page page.svg{order}")
+        run(f"convert word.svg -o with.ngc --brush mine.json --page page.svg{order}")
         found = brushsvg.check("with.ngc", "word.svg", brush="mine.json")
         assert not found.problems and len(found.plan.passes) == 5
         assert found.figures.total.overlap == pytest.approx(reports[1]["total"]["overlap"], abs=2e-3)
@@ -100,12 +100,12 @@ def test_the_program_is_checked_and_reported_without_them(desk, capsys):
     at = text.index("margin-3)")
     (desk / "cut.ngc").write_text(text[:at] + text[at:].replace("Z-", "Z", 1))
     assert brushsvg.check("cut.ngc", "word.svg", brush="mine.json").problems
-    run("border word.svg border.ngc --brush mine.json --margin-strokes on")
+    run("setup border word.svg -o border.ngc --brush mine.json --margin-strokes on")
     assert not brushsvg.check("border.ngc", "word.svg", brush="mine.json").problems
 
 
 def test_convert_says_beforehand_what_they_teach(desk, capsys):
-    words = "convert word.svg plan.json --brush mine.json --page page.svg".split()
+    words = "convert word.svg -o plan.json --brush mine.json --page page.svg".split()
     status, out, _ = in_json(capsys, *words)
     assert status == 0 and "margin strokes" in out and out.count("lag +-") == 3
     assert "--plan PLAN --prior" in out
@@ -124,10 +124,10 @@ def test_convert_says_beforehand_what_they_teach(desk, capsys):
 def test_where_there_is_no_room_none_is_added_and_a_notice_says_so(desk, capsys, width, cell):
     lines = SVG.format(width, 80) if width > 50 else SVG.format(width, 12).replace("M12 52 H12", "M12 52 V40")
     (desk / "word.svg").write_text(lines.replace("M14 40 C24 16 34 16 12 38", "M8 20 V46"))
-    run("cell new mine.toml")
+    run("cell new -o mine.toml")
     text = (desk / "mine.toml").read_text()
     (desk / "mine.toml").write_text(text.replace("[workspace]", f"[workspace]\n{cell}"))
-    words = "convert word.svg job.ngc --brush mine.json --cell mine.toml --page page.svg".split()
+    words = "convert word.svg -o job.ngc --brush mine.json --cell mine.toml --page page.svg".split()
     status, out, reported = in_json(capsys, *words)
     assert status == 0 and is_reported(reported, "margin-strokes-left-out", "margin"), reported
     assert "margin strokes" not in out
@@ -142,10 +142,10 @@ def test_a_calibrated_brush_needs_none(desk):
     )
     brush.covariance = (1e-6 * np.eye(size)).tolist()
     save_brush(brush, "known.json")
-    run("convert word.svg plan.json --brush known.json --page page.svg")
+    run("convert word.svg -o plan.json --brush known.json --page page.svg")
     assert not added(read_plan("plan.json"))
     for pen in ("rigid",):
-        run(f"convert word.svg plan.json --brush {pen} --page page.svg")
+        run(f"convert word.svg -o plan.json --brush {pen} --page page.svg")
         assert not added(read_plan("plan.json"))
 
 
@@ -167,7 +167,7 @@ def test_figures_of_a_photograph_are_of_the_drawing(desk):
     seen = {}
     for margin in ("auto", "off"):
         run(
-            f"simulate-photo word.svg {margin}.jpg --brush mine.json --studio studio.toml --margin-strokes {margin}"
+            f"simulate-photo word.svg -o {margin}.jpg --brush mine.json --studio studio.toml --margin-strokes {margin}"
         )
         run(f"compare {margin}.jpg word.svg --brush mine.json -o {margin}.json")
         seen[margin] = json.loads((desk / f"{margin}.json").read_text())
@@ -183,8 +183,8 @@ def test_a_sheet_with_them_teaches_more(desk):
     off = {}
     for margin in ("auto", "off"):
         flags = f"--brush mine.json --margin-strokes {margin}"
-        run(f"convert word.svg {margin}-plan.json {flags} --page page.svg")
-        run(f"simulate-photo {margin}-plan.json {margin}.jpg --brush mine.json --studio studio.toml")
+        run(f"convert word.svg -o {margin}-plan.json {flags} --page page.svg")
+        run(f"simulate-photo {margin}-plan.json -o {margin}.jpg --brush mine.json --studio studio.toml")
         run(f"calibrate {margin}.jpg --plan {margin}-plan.json --prior mine.json -o {margin}-brush.json")
         found, was = (brushsvg.find_brush(name) for name in (f"{margin}-brush.json", "mine.json"))
         off[margin] = max(abs(found.lag(d) / (1.2 * was.lag(d)) - 1) for d in (2.0, 3.0, 4.0))

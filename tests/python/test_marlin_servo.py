@@ -90,7 +90,7 @@ def test_it_stops_for_a_pen_of_another_colour(tmp_path, capsys):
         'stroke-width="1"><path d="M30 20h30" stroke="#000000"/><path d="M30 32h30" stroke="#ff0000"/></g></svg>'
     )
     cell = ("--cell", "marlin-servo", "--brush", "rigid")
-    assert in_json(capsys, "convert", tmp_path / "pens.svg", tmp_path / "pens.gcode", *cell)[0] == 0
+    assert in_json(capsys, "convert", tmp_path / "pens.svg", "-o", tmp_path / "pens.gcode", *cell)[0] == 0
     legs = run((tmp_path / "pens.gcode").read_text()).legs
     (stop,) = [leg for leg in legs if leg.kind == "stop"]
     assert stop.end[2] == CELL.heights.safe_mm

@@ -196,20 +196,20 @@ def test_a_table_that_could_be_read_in_two_ways_is_refused(table, where, said):
 def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "w.csv").write_text("depth_mm,width_mm\n3,2.5\n8,7\n")
-    assert main("brush new mine --lag 5 --width-at 3=2.5 --width-at 8=7 --depth-max 10".split()) == 0
+    assert main("brush new -o mine.json --lag 5 --width-at 3=2.5 --width-at 8=7 --depth-max 10".split()) == 0
     reported = capsys.readouterr().out
     assert gives(reported, "lag", "tip_gap", "tip_to_widest", "8 mm", "8.9 mm", "10 mm")
-    assert main("brush new flat --lag 5 --width-at 3=2.5 --width-at 8=7".split()) == 0
+    assert main("brush new -o flat.json --lag 5 --width-at 3=2.5 --width-at 8=7".split()) == 0
     assert not gives(capsys.readouterr().out, "tip_to_widest", "8 mm"), "nothing is beyond what was measured"
-    words = "brush new deep --lag-at 2=5 --lag-at 6=11 --width-at 3=2.5 --width-at 8=7".split()
+    words = "brush new -o deep.json --lag-at 2=5 --lag-at 6=11 --width-at 3=2.5 --width-at 8=7".split()
     assert main(words) == 0
     reported = capsys.readouterr().out
     assert gives(reported, "tip_gap", "tip_to_widest", "6 mm", "14.0 mm", "8 mm")
     assert find_brush("deep.json").lag.coefficients == pytest.approx((2.0, 1.5))
-    words = "brush new sub/mine.json --lag 5 --widths w.csv --depth-max 10".split()
+    words = "brush new -o sub/mine.json --lag 5 --widths w.csv --depth-max 10".split()
     status, _, ((_, reported),) = in_json(capsys, *words)
     assert status == 1 and agrees(reported, "file-unwritable")
-    assert main("brush new ./table.json --lag 5 --widths w.csv --depth-max 10 --speed 12".split()) == 0
+    assert main("brush new -o ./table.json --lag 5 --widths w.csv --depth-max 10 --speed 12".split()) == 0
     mine, table = (json.loads((tmp_path / f"{name}.json").read_text()) for name in ("mine", "table"))
     assert mine.pop("name") == "mine" and table.pop("name") == "table"
     assert mine.pop("max_speed_mm_s") == 25 and table.pop("max_speed_mm_s") == 12
@@ -226,7 +226,7 @@ def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
 
 def test_a_brush_like_another_paints_the_same_and_claims_nothing(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert main("brush new mine --like round-6 --speed 12".split()) == 0
+    assert main("brush new -o mine.json --like round-6 --speed 12".split()) == 0
     assert "tip_gap" not in capsys.readouterr().out, "all of it is assumed, not some"
     mine, round_6 = find_brush("mine.json"), find_brush("round-6")
     assert (mine.name, mine.max_speed_mm_s, mine.kind) == ("mine", 12, "round")
@@ -244,16 +244,16 @@ def test_a_brush_like_another_paints_the_same_and_claims_nothing(tmp_path, monke
 @pytest.mark.parametrize(
     ("typed", "said"),
     [
-        ("brush new mine --lag 5", "--widths FILE"),
-        ("brush new mine --lag 5 --width-at 3", "3=2.5"),
-        ("brush new mine --like round-6 --lag 5", "--like"),
-        ("brush new mine --like round-6 --width-at 3=2", "--like"),
-        ("brush new mine --like round-6 --depth-max 9", "--like"),
-        ("brush new mine --width-at 3=2", "--lag"),
-        ("brush new mine --lag 5 --lag-at 3=7 --width-at 3=2", "--lag-at"),
-        ("brush new mine --lag-at 3 --width-at 3=2", "3=7.4"),
-        ("brush new mine --like round-6 --lag-at 3=7", "--like"),
-        ("brush plot round-6 out.pdf", ".png or .svg"),
+        ("brush new -o mine.json --lag 5", "--widths FILE"),
+        ("brush new -o mine.json --lag 5 --width-at 3", "3=2.5"),
+        ("brush new -o mine.json --like round-6 --lag 5", "--like"),
+        ("brush new -o mine.json --like round-6 --width-at 3=2", "--like"),
+        ("brush new -o mine.json --like round-6 --depth-max 9", "--like"),
+        ("brush new -o mine.json --width-at 3=2", "--lag"),
+        ("brush new -o mine.json --lag 5 --lag-at 3=7 --width-at 3=2", "--lag-at"),
+        ("brush new -o mine.json --lag-at 3 --width-at 3=2", "3=7.4"),
+        ("brush new -o mine.json --like round-6 --lag-at 3=7", "--like"),
+        ("brush plot round-6 -o out.pdf", ".png or .svg"),
     ],
 )
 def test_wrong_usage(typed, said, tmp_path, monkeypatch, capsys):
@@ -266,12 +266,12 @@ def test_wrong_usage(typed, said, tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("typed", "file", "said"),
     [
-        ("brush new round-6 --lag 5 --width-at 3=2", "round-6.json", "name-taken round-6"),
-        ("brush new mine --lag 5 --widths none.csv", "none.csv", "file-unreadable"),
-        ("brush new mine --like round-7", "mine.json", "brush-unknown round-7"),
-        ("brush new rigid --like round-6", "rigid.json", "name-taken rigid"),
-        ("brush new mine --lag 5 --width-at 3=7 --width-at 8=2", "mine.json", "width-falls"),
-        ("brush new odd --lag 5 --width-at 0.001=900", "odd.json", "not-millimetres"),
+        ("brush new -o round-6.json --lag 5 --width-at 3=2", "round-6.json", "name-taken round-6"),
+        ("brush new -o mine.json --lag 5 --widths none.csv", "none.csv", "file-unreadable"),
+        ("brush new -o mine.json --like round-7", "mine.json", "brush-unknown round-7"),
+        ("brush new -o rigid.json --like round-6", "rigid.json", "name-taken rigid"),
+        ("brush new -o mine.json --lag 5 --width-at 3=7 --width-at 8=2", "mine.json", "width-falls"),
+        ("brush new -o odd.json --lag 5 --width-at 0.001=900", "odd.json", "not-millimetres"),
     ],
 )
 def test_what_makes_no_brush_is_refused(typed, file, said, tmp_path, monkeypatch, capsys):
@@ -284,15 +284,15 @@ def test_what_makes_no_brush_is_refused(typed, file, said, tmp_path, monkeypatch
 def test_a_brush_is_not_written_over(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.json").write_text("somebody's")
-    status, _, ((_, reported),) = in_json(capsys, *"brush new mine --lag 5 --width-at 3=2".split())
+    status, _, ((_, reported),) = in_json(capsys, *"brush new -o mine.json --lag 5 --width-at 3=2".split())
     assert (status, reported.code) == (1, "file-exists")
     assert (tmp_path / "mine.json").read_text() == "somebody's"
 
 
 def test_a_brush_without_a_name_is_refused(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    status, _, ((_, reported),) = in_json(capsys, "brush", "new", "", "--lag", "5", "--width-at", "3=3")
-    assert (status, reported.code) == (1, "name-invalid")
+    assert main(["brush", "new", "-o", ".json", "--lag", "5", "--width-at", "3=3"]) == 2
+    assert gives(capsys.readouterr().err, ".json")
     assert not list(tmp_path.iterdir())
 
 
@@ -317,7 +317,7 @@ def test_a_terminal_prompts_for_three_depths_and_shows_the_flags_that_do_the_sam
 ):
     requested, typed = tmp_path / "asked.json", tmp_path / "typed.json"
     answers = "2 1.5 4 nonsense 5 3,5 6 8 5 7.5".split()
-    status, out, shown = answered(monkeypatch, capsys, ["brush", "new", requested], answers)
+    status, out, shown = answered(monkeypatch, capsys, ["brush", "new", "-o", requested], answers)
     assert status == 0 and out.startswith(str(requested))
     flags = shown[shown.index("--lag-at 2=") :].splitlines()[0].split()
     lags = {2: 4.45, 5: 7.05, 8: 9.0}  # the turn and 0.3 of the width
@@ -325,7 +325,7 @@ def test_a_terminal_prompts_for_three_depths_and_shows_the_flags_that_do_the_sam
     assert flags == [
         word for d in lags for word in ("--lag-at", f"{d}={lags[d]:g}", "--width-at", f"{d}={widths[d]:g}")
     ]
-    status, _, reported = in_json(capsys, "brush", "new", typed, *flags)
+    status, _, reported = in_json(capsys, "brush", "new", "-o", typed, *flags)
     assert (status, reported) == (0, [])
     one, other = (json.loads(at.read_text()) | {"name": ""} for at in (requested, typed))
     assert one == other
@@ -333,18 +333,18 @@ def test_a_terminal_prompts_for_three_depths_and_shows_the_flags_that_do_the_sam
 
 def test_answers_that_end_write_nothing(tmp_path, monkeypatch, capsys):
     out = tmp_path / "mine.json"
-    status, _, _ = answered(monkeypatch, capsys, ["brush", "new", out], ["2", "1.5"])
+    status, _, _ = answered(monkeypatch, capsys, ["brush", "new", "-o", out], ["2", "1.5"])
     assert status == 1 and not out.exists()
 
 
 def test_programs_that_read_messages_are_not_prompted(tmp_path, monkeypatch, capsys):
-    words = ["--messages", "json", "brush", "new", tmp_path / "mine.json"]
+    words = ["--messages", "json", "brush", "new", "-o", tmp_path / "mine.json"]
     assert answered(monkeypatch, capsys, words, "2 1.5 4 5 3.5 6 8 5 7.5".split())[0] == 2
 
 
 def test_without_a_terminal_it_explains_how_to_measure(tmp_path, capsys):
     out = tmp_path / "mine.json"
-    assert main(["brush", "new", str(out)]) == 2
+    assert main(["brush", "new", "-o", str(out)]) == 2
     reported = capsys.readouterr()
     assert reported.out == "" and not out.exists()
     assert gives(reported.err, "90", "--lag-at", "--width-at", "--like")
@@ -362,7 +362,7 @@ def test_without_a_terminal_it_explains_how_to_measure(tmp_path, capsys):
     ],
 )
 def test_fewer_than_three_depths_are_warned_about(tmp_path, capsys, words, depths):
-    status, _, reported = in_json(capsys, "brush", "new", tmp_path / "mine.json", *words.split())
+    status, _, reported = in_json(capsys, "brush", "new", "-o", tmp_path / "mine.json", *words.split())
     assert status == 0
     notices = [notice for _, notice in reported if notice.code == "few-depths"]
     assert len(notices) == (depths is not None)

@@ -164,7 +164,7 @@ def test_paint_is_stirred_first_and_then_only_dipped_into_and_the_brush_washed_h
         cell = replace(cell, reload=replace(cell.reload, rinse=rinse))
         (tmp_path / "cell.toml").write_text(write_cell(cell))
         words = str(tmp_path / "plan.json"), "--cell", str(tmp_path / "cell.toml")
-        assert call(capsys, "convert", words[0], program, *words[1:], "--force")[0] == 0
+        assert call(capsys, "convert", words[0], "-o", program, *words[1:], "--force")[0] == 0
         for given in (words, words[1:]):
             status, out, reported = call(capsys, "check", program, *given)
             assert status == 0 and RUNNABLE in out, reported
@@ -466,13 +466,13 @@ def test_all_reports_of_a_job_count_loads(tmp_path, monkeypatch, capsys):
     (tmp_path / "paint.toml").write_text(write_cell(cell))
     reported = {}
     for words in (
-        "convert long.json x.ngc",
-        "animate long.json x.html",
-        "convert long.json last.ngc --from-stroke 4",
+        "convert long.json -o x.ngc",
+        "preview long.json -o x.html",
+        "convert long.json -o last.ngc --from-stroke 4",
     ):
         status, _, (line,) = call(capsys, *words.split(), "--cell", "paint.toml")
         assert status == 0
-        reported[words.split()[2]] = line.partition(": written; ")[2]
+        reported[words.split()[3]] = line.partition(": written; ")[2]
     assert reported["x.ngc"] == reported["x.html"] and gives(reported["x.ngc"], "5")
     assert gives(reported["last.ngc"], "2")
     header = (tmp_path / "x.ngc").read_text()

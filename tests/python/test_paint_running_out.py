@@ -169,5 +169,5 @@ def test_the_program_passes_its_own_check(tmp_path, capsys):
     (tmp_path / "d.svg").write_text(drawing())
     out = str(tmp_path / "d.ngc")
     flags = ["--brush", str(tmp_path / "b.json"), "--cell", str(tmp_path / "c.toml")]
-    assert main(["convert", str(tmp_path / "d.svg"), out, *flags]) == 0
+    assert main(["convert", str(tmp_path / "d.svg"), "-o", out, *flags]) == 0
     assert main(["check", out, str(tmp_path / "d.svg"), *flags]) == 0, capsys.readouterr()

@@ -26,7 +26,7 @@ def desk(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", [name for name in LANGUAGES if name not in (*SERVOS, "fr3")])
 def test_a_program_stops_for_each_other_pen_and_check_asks_for_it(desk, capsys, name):
     program = f"pens{LANGUAGES[name]}"
-    status, _, said = call(capsys, "convert", "pens.svg", program, "--cell", name)
+    status, _, said = call(capsys, "convert", "pens.svg", "-o", program, "--cell", name)
     assert status == 0 and sum(gives(line, "2") for line in said) == 1
     text = (desk / program).read_text(encoding="ascii")
     assert re.findall("paint: pen ([0-9a-f]+)", text) == ["ff0000", "000000"]
@@ -41,7 +41,7 @@ def test_a_program_stops_for_each_other_pen_and_check_asks_for_it(desk, capsys, 
 
 
 def test_who_resumes_behind_a_change_has_changed_the_pen(desk, capsys):
-    words = ("convert", "pens.svg", "rest.ngc", "--from-stroke")
+    words = ("convert", "pens.svg", "-o", "rest.ngc", "--from-stroke")
     (resumed,) = call(capsys, *words, "2")[2]
     (behind,) = call(capsys, *words, "4")[2]
     assert resumed.count(", ") == behind.count(", ") + 1, "it stops once"
@@ -51,24 +51,24 @@ def test_who_resumes_behind_a_change_has_changed_the_pen(desk, capsys):
 
 def test_where_nobody_is_waited_for_it_is_said(desk, capsys):
     for program, name in (("pens.nc", "grbl-servo"), ("pens.csv", "fr3"), ("pens.ebb", "axidraw-ebb")):
-        status, _, said = in_json(capsys, "convert", "pens.svg", program, "--cell", name)
+        status, _, said = in_json(capsys, "convert", "pens.svg", "-o", program, "--cell", name)
         assert status == 0 and is_reported(said, "colours-as-one")
         assert call(capsys, "check", program, "pens.svg")[0] == 0
     one = replace(find_cell("linuxcnc-3axis"), name="one", pause_per_colour=False)
     (desk / "one.toml").write_text(write_cell(one))
-    assert call(capsys, "convert", "pens.svg", "pens.ngc", "--cell", "one.toml")[0] == 0
+    assert call(capsys, "convert", "pens.svg", "-o", "pens.ngc", "--cell", "one.toml")[0] == 0
     assert "M0" not in (desk / "pens.ngc").read_text()
 
 
 def test_speed_is_that_of_all_strokes_within_what_brush_and_cell_allow(desk, capsys):
-    assert call(capsys, "convert", "pens.svg", "pens.ngc", "--speed", "12")[0] == 0
+    assert call(capsys, "convert", "pens.svg", "-o", "pens.ngc", "--speed", "12")[0] == 0
     feeds = re.findall(r"F([\d.]+)", (desk / "pens.ngc").read_text())
     assert set(map(float, feeds)) == {720.0, 1500.0, 480.0}, "painting, approach and press"
     assert call(capsys, "check", "pens.ngc", "pens.svg", "--speed", "12")[0] == 0
     status, _, said = in_json(capsys, "check", "pens.ngc", "pens.svg")
     assert status == 1 and is_reported(said, "stroke-too-fast 12.0 5.0")
-    said = in_json(capsys, "convert", "pens.svg", "x.ngc", "--speed", "26")[2]
+    said = in_json(capsys, "convert", "pens.svg", "-o", "x.ngc", "--speed", "26")[2]
     assert is_reported(said, "speed-out-of-range 26 0.001 25 round-6")
-    said = in_json(capsys, "convert", "pens.svg", "x.lua", "--cell", "cr5", "--speed", "0.5")[2]
+    said = in_json(capsys, "convert", "pens.svg", "-o", "x.lua", "--cell", "cr5", "--speed", "0.5")[2]
     assert is_reported(said, "speed-out-of-range 0.5 1 25")
     assert not (desk / "x.ngc").exists()

@@ -31,7 +31,7 @@ def names(text):
 
 def test_each_colour_has_a_program(desk, capsys):
     status, _, reported = in_json(
-        capsys, "convert", "word.svg", "out.ngc", "--per-colour", "--preview", "all.png"
+        capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour", "--picture", "all.png"
     )
     assert status == 0 and not reported
     files = sorted(path.name for path in desk.glob("out*"))
@@ -46,32 +46,37 @@ def test_each_colour_has_a_program(desk, capsys):
 
 def test_strokes_of_a_colour_are_where_they_are_in_all(desk, capsys):
     """With --fit they would each fill the sheet, were they fitted alone."""
-    words = "convert", "word.svg", "all.json", "--fit", "80x40"
+    words = "convert", "word.svg", "-o", "all.json", "--fit", "80x40"
     assert in_json(capsys, *words)[0] == 0
-    assert in_json(capsys, "convert", "word.svg", "part.json", "--fit", "80x40", "--colour", "gold")[0] == 0
+    assert (
+        in_json(capsys, "convert", "word.svg", "-o", "part.json", "--fit", "80x40", "--colour", "gold")[0]
+        == 0
+    )
     whole, part = (brushsvg.read_plan(desk / f"{name}.json").passes for name in ("all", "part"))
     places = {each.stroke: each.poses_mm.tolist() for each in whole}
     assert len(part) == 2 and all(places[each.stroke] == each.poses_mm.tolist() for each in part)
 
 
 def test_a_plan_is_parted_as_its_drawing_is(desk, capsys):
-    assert in_json(capsys, "convert", "word.svg", "plan.json")[0] == 0
-    assert in_json(capsys, "convert", "plan.json", "out.ngc", "--per-colour")[0] == 0
+    assert in_json(capsys, "convert", "word.svg", "-o", "plan.json")[0] == 0
+    assert in_json(capsys, "convert", "plan.json", "-o", "out.ngc", "--per-colour")[0] == 0
     assert [names(path.read_text()) for path in sorted(desk.glob("out*"))] == [*INKS.values()]
 
 
 def test_a_colour_that_is_not_there_is_refused(desk, capsys):
-    status, _, reported = in_json(capsys, "convert", "word.svg", "out.ngc", "--colour", "#00ff00")
+    status, _, reported = in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--colour", "#00ff00")
     assert status == 1 and is_reported(reported, "nothing-to-paint #00ff00 #ffd700 #d32f2f #1a237e", "colour")
-    assert in_json(capsys, "convert", "word.svg", "out.ngc", "--per-colour", "--from-stroke", "2")[0] == 2
+    assert (
+        in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour", "--from-stroke", "2")[0] == 2
+    )
     assert not list(desk.glob("out*"))
 
 
 def test_programs_of_colours_that_are_gone_are_named(desk, capsys):
-    assert in_json(capsys, "convert", "word.svg", "out.ngc", "--per-colour")[0] == 0
+    assert in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour")[0] == 0
     text = (desk / "word.svg").read_text().replace("#ffd700", "#d32f2f")
     (desk / "word.svg").write_text(text)
-    status, _, reported = in_json(capsys, "convert", "word.svg", "out.ngc", "--per-colour")
+    status, _, reported = in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour")
     assert status == 0 and is_reported(
         reported, "programs-of-before out-1-ffd700.ngc out-2-d32f2f.ngc out-3-1a237e.ngc"
     ), reported
@@ -79,7 +84,7 @@ def test_programs_of_colours_that_are_gone_are_named(desk, capsys):
 
 def test_a_page_has_the_same_sheet_in_each_program(desk, capsys):
     """Strokes in the margin were in one of them, and check refused the others."""
-    words = "convert", "word.svg", "out.ngc", "--per-colour", "--page", "page.svg"
+    words = "convert", "word.svg", "-o", "out.ngc", "--per-colour", "--page", "page.svg"
     assert in_json(capsys, *words)[0] == 0
     for file, ink in zip(sorted(desk.glob("out*")), INKS, strict=True):
         assert in_json(capsys, "check", file, "word.svg", "--colour", ink)[0] == 0
@@ -88,7 +93,7 @@ def test_a_page_has_the_same_sheet_in_each_program(desk, capsys):
 
 def test_none_is_written_where_one_is_there_already(desk, capsys):
     (desk / "out-2-d32f2f.ngc").write_text("mine")
-    status, _, reported = in_json(capsys, "convert", "word.svg", "out.ngc", "--per-colour")
+    status, _, reported = in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour")
     assert status == 1 and is_reported(reported, "file-exists")
     assert [path.read_text() for path in desk.glob("out*")] == ["mine"]
 
@@ -105,7 +110,7 @@ def test_a_shape_has_the_colour_of_its_fill_and_an_outline_its_own(tmp_path, mon
     """All of fine and broad was painted in the colour of the outline."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "word.svg").write_text(DRAWING.format(SHAPES))
-    status, _, reported = in_json(capsys, "convert", "word.svg", "out.json")
+    status, _, reported = in_json(capsys, "convert", "word.svg", "-o", "out.json")
     assert status == 0 and len(reported) == 1
     assert is_reported(reported, "outline-too-fine #1a237e 0.3 0.84 #d32f2f", "fine")
     found = {each.stroke: each.colour for each in brushsvg.read_plan("out.json").passes}

@@ -67,7 +67,7 @@ def test_every_curve_is_named_once_and_no_name_is_on_a_law():
 
 def test_without_matplotlib_the_command_to_run_is_said(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    status, _, ((_, reported),) = in_json(capsys, "brush", "plot", "round-6", tmp_path / "out.svg")
+    status, _, ((_, reported),) = in_json(capsys, "brush", "plot", "round-6", "-o", tmp_path / "out.svg")
     assert (status, reported.code) == (1, "package-missing")
     assert reported.sentence.endswith(f" {sys.executable} -m pip install matplotlib")
     assert not list(tmp_path.iterdir())

@@ -247,7 +247,7 @@ def test_check_refuses_a_z_that_falls_to_lift(tmp_path, monkeypatch, capsys):
     (tmp_path / "falls.gcode").write_text("\n".join(by_z(lines, -4, 0.5)))
     status, _, reported = in_json(capsys, "check", "falls.gcode")
     assert status == 1 and is_reported(reported, "z-inverted 0.5 -4")
-    status, _, reported = in_json(capsys, "convert", "falls.gcode", "out.ngc", "--width", "3")
+    status, _, reported = in_json(capsys, "convert", "falls.gcode", "-o", "out.ngc", "--width", "3")
     assert status == 0 and is_reported(reported, "pen-reading 0.5 -4")
 
 
@@ -264,8 +264,10 @@ def test_the_flags_reach_the_reader(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "sketch.gcode").write_bytes(SKETCH)
     words = "--width 3 --paper-z 0 --pen z --skip-region 30,30,100,50 --skip-comment nothing".split()
-    assert is_reported(in_json(capsys, "convert", "sketch.gcode", "out.ngc")[2], "gcode-no-width 1 --width")
-    status, _, reported = in_json(capsys, "convert", "sketch.gcode", "out.ngc", *words)
+    assert is_reported(
+        in_json(capsys, "convert", "sketch.gcode", "-o", "out.ngc")[2], "gcode-no-width 1 --width"
+    )
+    status, _, reported = in_json(capsys, "convert", "sketch.gcode", "-o", "out.ngc", *words)
     assert not is_reported(reported, "gcode-no-width"), "they have one"
     assert status == 0 and is_reported(reported, "strokes-skipped 1 2"), reported
 

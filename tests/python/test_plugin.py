@@ -36,7 +36,7 @@ def installed(folder):
 def test_it_is_copied_from_the_source_tree_and_replaces_an_older_one(profile, capsys):
     profile.mkdir(parents=True)
     (profile / "brushsvg_gone.inx").write_text("old")
-    assert main(["install-plugin", "inkscape"]) == 0
+    assert main(["setup", "inkscape"]) == 0
     assert capsys.readouterr().out.startswith(f"{profile}: ")
     files = installed(profile)
     assert files.pop("brushsvg-executable.txt") is not None
@@ -62,7 +62,7 @@ def test_the_zip_has_the_same_bytes_each_time(zipped, tmp_path):
 def test_it_is_removed_and_what_is_not_ours_stays(profile, capsys):
     install_inkscape()
     (profile / "notes.txt").write_text("mine")
-    assert main(["install-plugin", "inkscape", "--remove"]) == 0
+    assert main(["setup", "inkscape", "--remove"]) == 0
     assert capsys.readouterr().out.startswith(f"{profile}: ")
     assert installed(profile) == {"notes.txt": b"mine"}
     (profile / "notes.txt").unlink()
@@ -74,7 +74,7 @@ def test_it_is_removed_and_what_is_not_ours_stays(profile, capsys):
 
 
 def test_removing_needs_no_zip(capsys):
-    assert main(["install-plugin", "inkscape", "some.zip", "--remove"]) == 2
+    assert main(["setup", "inkscape", "some.zip", "--remove"]) == 2
 
 
 def test_where_there_is_no_source_it_says_what_to_do(profile, tmp_path):

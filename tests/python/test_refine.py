@@ -140,13 +140,15 @@ def test_from_the_command_line(tmp_path, capsys):
     )
     programs = [tmp_path / f"{k}.ngc" for k in range(2)]
     for program in programs:
-        assert cli.main(["convert", str(drawing), str(program), "--compensation", "refined"]) == 0
+        assert cli.main(["convert", str(drawing), "-o", str(program), "--compensation", "refined"]) == 0
     assert programs[0].read_bytes() == programs[1].read_bytes()
     assert b"compensation: refined" in programs[0].read_bytes()
     capsys.readouterr()
-    for words in (["predict", str(tmp_path / "p.svg")], ["animate", str(tmp_path / "a.html")]):
-        assert cli.main([words[0], str(drawing), words[1], "--compensation", "refined"]) == 0
-    assert cli.main(["report", str(drawing), "--compensation", "refined"]) == 0
+    for name in ("p.svg", "a.html"):
+        assert (
+            cli.main(["preview", str(drawing), "-o", str(tmp_path / name), "--compensation", "refined"]) == 0
+        )
+    assert cli.main(["preview", str(drawing), "--compensation", "refined"]) == 0
     assert "compensation refined" in capsys.readouterr().out
     # the program is held against the drawing by the same way
     assert cli.main(["check", str(programs[0]), str(drawing)]) == 0

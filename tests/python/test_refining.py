@@ -125,10 +125,10 @@ def test_the_command_line_refines_within_its_cell(tmp_path, monkeypatch):
     """And what it wrote is what `check` expects of the drawing."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "two.svg").write_text(TWO.format(d="M20 80 H60", width=5))
-    assert cli.main(["cell", "new", "low.toml"]) == 0
+    assert cli.main(["cell", "new", "-o", "low.toml"]) == 0
     cell = tmp_path / "low.toml"
     cell.write_text(cell.read_text().replace("lowest_mm = -20.0", "lowest_mm = -6.0"))
-    words = ["two.svg", "two.ngc", "--cell", "low.toml", "--compensation", "refined"]
+    words = ["two.svg", "-o", "two.ngc", "--cell", "low.toml", "--compensation", "refined"]
     assert cli.main(["convert", *words]) == 0
     assert cli.main(["check", "two.ngc", "two.svg", "--cell", "low.toml"]) == 0
 

@@ -18,6 +18,7 @@ from brushsvg import (
     simulate,
     trace_outlines,
 )
+from brushsvg.show.marks_svg import TOOLPATH
 from brushsvg.show.panels_png import Panel, panels_png
 
 SHEET = (60.0, 30.0)
@@ -98,6 +99,20 @@ def test_a_colour_that_is_none_is_black(painted):
     assert pixel(decode(marks_png(marks, brush, SHEET, colours)), 16, 6) == "#000000"
     paths = ET.fromstring(marks_svg(marks, SHEET, colours)).findall(f"{SVG}path")
     assert [path.get("fill") for path in paths] == ["#000000"] * 3
+
+
+def test_the_toolpath_is_drawn_over_the_paint(painted):
+    marks, brush, colours = painted
+    toolpath_mm = [
+        np.array([(5.0, 3.0, 2.0), (25.0, 3.0, -4.0)]),
+        np.array([(25.0, 18.0, 2.0), (45.0, 18.0, 0.0)]),
+    ]
+    root = ET.fromstring(marks_svg(marks, SHEET, colours, toolpath_mm=toolpath_mm))
+    paths = {path.get("class"): path.get("d") for path in root.findall(f"{SVG}path")}
+    assert paths["toolpath"] == "M5.000 27.000L25.000 27.000M25.000 12.000L45.000 12.000"
+    assert paths["travel"] == "M25.000 27.000L25.000 12.000"
+    image = decode(marks_png(marks, brush, SHEET, colours, toolpath_mm=toolpath_mm))
+    assert pixel(image, 10, 3) == pixel(image, 40, 18) == TOOLPATH
 
 
 def test_svg_numbers_are_plain(painted):

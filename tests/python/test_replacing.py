@@ -17,7 +17,7 @@ FONT = (
     '<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>'
     '<glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/></font></svg>'
 )
-CONVERT = ("convert", "a.svg", "a.ngc", "--preview", "a.png")
+CONVERT = ("convert", "a.svg", "-o", "a.ngc", "--picture", "a.png")
 
 
 @pytest.fixture
@@ -60,14 +60,14 @@ def test_what_brushsvg_did_not_write_is_kept(desk, capsys):
     Path("a.ngc").write_text("(mine)\n")
     assert is_kept(capsys, "a.ngc", *CONVERT)
     Path("b.json").write_text("{}")
-    assert is_kept(capsys, "b.json", "convert", "a.svg", "b.json")
+    assert is_kept(capsys, "b.json", "convert", "a.svg", "-o", "b.json")
 
 
 def test_a_program_in_several_files_replaces_none_of_others(desk, capsys, monkeypatch):
     monkeypatch.setitem(MOST_POINTS, "fanuc", 60)
     two = DRAWING.format(2).replace("</g>", '<path d="M20 50c10-20 30 20 50 0" stroke-width="2"/></g>')
     Path("a.svg").write_text(two)
-    words = ("convert", "a.svg", "a.ls", "--cell", "lrmate200id")
+    words = ("convert", "a.svg", "-o", "a.ls", "--cell", "lrmate200id")
     assert in_json(capsys, *words)[0] == 0
     part = next(path.name for path in Path().glob("B*.ls"))
     assert in_json(capsys, *words)[0] == 0
@@ -76,9 +76,9 @@ def test_a_program_in_several_files_replaces_none_of_others(desk, capsys, monkey
 
 
 SOURCES = {
-    "a brush": ("own.json", ("brush", "new", "own", "--lag", "4", "--width-at", "3=2")),
-    "a cell": ("own.toml", ("cell", "new", "own.toml")),
-    "a drawing": ("t.svg", ("text", "T", "t.svg", "--font", "font.svg")),
+    "a brush": ("own.json", ("brush", "new", "-o", "own.json", "--lag", "4", "--width-at", "3=2")),
+    "a cell": ("own.toml", ("cell", "new", "-o", "own.toml")),
+    "a drawing": ("t.svg", ("text", "T", "-o", "t.svg", "--font", "font.svg")),
 }
 
 
@@ -92,7 +92,7 @@ def test_brushes_cells_and_drawings_are_never_replaced_by_themselves(desk, capsy
 
 def test_no_program_replaces_a_brush(desk, capsys):
     assert in_json(capsys, *SOURCES["a brush"][1])[0] == 0
-    assert is_kept(capsys, "own.json", "convert", "a.svg", "own.json")
+    assert is_kept(capsys, "own.json", "convert", "a.svg", "-o", "own.json")
 
 
 def test_where_nothing_can_be_remembered_files_are_somebodys(desk, capsys, monkeypatch):
@@ -115,7 +115,7 @@ def test_who_is_refused_for_a_home_that_cannot_be_written_reads_where(desk, caps
 
 def test_a_device_is_written_through(desk, capsys):
     Path("out.ngc").symlink_to(os.devnull)
-    assert [in_json(capsys, "convert", "a.svg", "out.ngc")[0] for _ in range(2)] == [0, 0]
+    assert [in_json(capsys, "convert", "a.svg", "-o", "out.ngc")[0] for _ in range(2)] == [0, 0]
 
 
 def test_what_is_remembered_stays_small(desk, monkeypatch):

@@ -114,7 +114,7 @@ def test_it_is_written_and_not_checked(tmp_path, capsys):
     )
     out = str(tmp_path / "a.robodk")
     status, _, reported = call(
-        capsys, "convert", str(tmp_path / "a.svg"), out, "--cell", str(tmp_path / "mine.toml")
+        capsys, "convert", str(tmp_path / "a.svg"), "-o", out, "--cell", str(tmp_path / "mine.toml")
     )
     assert status == 0, reported
     assert Path(out).read_text().startswith("start brushsvg\n; title: ")
@@ -122,6 +122,6 @@ def test_it_is_written_and_not_checked(tmp_path, capsys):
     assert status == 1 and gives(reported[-1], "a.robodk")
     (tmp_path / "mine.toml").write_text(write_cell(cell_with(tmp_path / "none.py")))
     status, _, reported = in_json(
-        capsys, "convert", tmp_path / "a.svg", out, "--cell", tmp_path / "mine.toml"
+        capsys, "convert", tmp_path / "a.svg", "-o", out, "--cell", tmp_path / "mine.toml"
     )
     assert status == 1 and is_reported(reported, "file-unreadable")

@@ -140,7 +140,7 @@ def test_a_job_as_table_and_as_json_may_be_run(tmp_path, capsys):
     (tmp_path / "a.json").write_text(_core.write_plan(plan))
     for suffix in (".csv", ".traj", ".cdr"):
         out = str(tmp_path / f"a{suffix}")
-        assert call(capsys, "convert", str(tmp_path / "a.json"), out, "--cell", "fr3")[0] == 0
+        assert call(capsys, "convert", str(tmp_path / "a.json"), "-o", out, "--cell", "fr3")[0] == 0
         status, said, reported = call(capsys, "check", out, str(tmp_path / "a.json"))
         assert (RUNNABLE in said) if suffix != ".cdr" else (status == 1 and gives(reported[-1], ".csv"))
     text = (tmp_path / "a.traj").read_text()
@@ -203,6 +203,6 @@ def test_check_accepts_lifts_that_are_hardly_longer_than_what_is_rounded(tmp_pat
         way = [(x, y, 0), (x, y, -2), (x + 3, y + 1, -2), (x + 3.3, y + 1.2, z), (x + 3.3, y + 1.2, 0)]
         passes.append(_core.Pass(f"s{k}", np.array(way), 20.0))
     Path("p.json").write_text(write_plan(_core.Plan("round-6", "", (100, 60), passes)))
-    assert call(capsys, "convert", "p.json", "p.csv", "--cell", "mine.toml")[0] == 0
+    assert call(capsys, "convert", "p.json", "-o", "p.csv", "--cell", "mine.toml")[0] == 0
     status, _, reported = call(capsys, "check", "p.csv", "p.json", "--cell", "mine.toml")
     assert status == 0, reported

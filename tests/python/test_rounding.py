@@ -131,7 +131,7 @@ def test_what_a_servo_paints_to_and_fro_is_known_again(tmp_path, capsys, table, 
     for _ in range(12):
         both = [_core.Pass(name, np.array(to_and_fro(chance)), chance.choice([5.0, 20.0])) for name in "ab"]
         Path(source).write_text(_core.write_plan(_core.Plan(BRUSH.name, "", SHEET_MM, both)))
-        status, _, reported = in_json(capsys, "convert", source, program, "--cell", toml)
+        status, _, reported = in_json(capsys, "convert", source, "-o", program, "--cell", toml)
         assert status == 0, reported
         for words in ((program, source), (program,)):
             status, _, reported = in_json(capsys, "check", *words, "--cell", toml)
@@ -307,7 +307,7 @@ def test_check_allows_all_that_convert_writes(seed, tmp_path, capsys):
     cell.write_text(write_cell(cell_of(name, chance.randrange(3, 7))), encoding="utf-8")
     source.write_text(drawing(chance), encoding="ascii")
     words = ("--wide", "passes", "--cell", str(cell))
-    status, _, reported = call(capsys, "convert", str(source), str(program), *words)
+    status, _, reported = call(capsys, "convert", str(source), "-o", str(program), *words)
     assert status == 0, reported
     status, _, reported = call(capsys, "check", str(program), str(source), *words)
     assert status == 0, reported
@@ -321,7 +321,7 @@ def test_check_allows_marks_that_touch_the_edge_of_the_sheet(cell, radius_mm, tm
     source.write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" width="16mm" height="16mm" viewBox="0 0 16 16">{ring}</svg>'
     )
-    status, _, reported = call(capsys, "convert", str(source), str(program), "--cell", cell)
+    status, _, reported = call(capsys, "convert", str(source), "-o", str(program), "--cell", cell)
     assert status == 0, reported
     status, _, reported = call(capsys, "check", str(program), "--cell", cell)
     assert status == 0, reported

@@ -108,7 +108,7 @@ def test_a_vessel_lower_than_the_paper_is_left_slowly(tmp_path, monkeypatch, cap
     (tmp_path / "mine.toml").write_text(write_cell(cell))
     drawing = '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="30mm" viewBox="0 0 60 30">'
     (tmp_path / "a.svg").write_text(drawing + '<path d="M15 15 h30" stroke="#000" stroke-width="3"/></svg>')
-    assert call(capsys, "convert", "a.svg", "a.nc", "--cell", "mine.toml")[0] == 0
+    assert call(capsys, "convert", "a.svg", "-o", "a.nc", "--cell", "mine.toml")[0] == 0
     status, out, err = call(capsys, "check", "a.nc", "a.svg", "--cell", "mine.toml")
     assert (status, err) == (0, []), err
     assert RUNNABLE in out
@@ -223,9 +223,9 @@ def test_check_accepts_a_straight_line_by_a_brush_of_one_lag(tmp_path, monkeypat
         '<path d="M20 30H100" fill="none" stroke="#000" stroke-width="4"/></svg>'
     )
     words = ("--lag", lag, "--width-at", "3=2.5", "--width-at", "8=7")
-    assert call(capsys, "brush", "new", "mine", *words)[0] == 0
+    assert call(capsys, "brush", "new", "-o", "mine.json", *words)[0] == 0
     program = "line.ebb" if cell.endswith("ebb") else "line.gcode"
-    assert call(capsys, "convert", "line.svg", program, "--brush", "mine.json", "--cell", cell)[0] == 0
+    assert call(capsys, "convert", "line.svg", "-o", program, "--brush", "mine.json", "--cell", cell)[0] == 0
     status, _, reported = call(capsys, "check", program, "line.svg", "--brush", "mine.json", "--cell", cell)
     assert status == 0, reported
 
@@ -244,7 +244,7 @@ def test_check_accepts_a_pose_at_the_value_of_the_one_before(tmp_path, monkeypat
     ]
     plan = _core.Plan("round-6", "", (100, 60), [_core.Pass("a", np.array(poses), 6.42)])
     Path("p.json").write_text(write_plan(plan))
-    assert call(capsys, "convert", "p.json", "p.nc", "--cell", "mine.toml")[0] == 0
+    assert call(capsys, "convert", "p.json", "-o", "p.nc", "--cell", "mine.toml")[0] == 0
     status, _, reported = call(capsys, "check", "p.nc", "p.json", "--cell", "mine.toml")
     assert status == 0, reported
 

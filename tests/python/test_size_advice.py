@@ -137,9 +137,10 @@ def ran(capsys, *words):
 def test_all_brushes_in_one_table(drawing, capsys, tmp_path):
     mine = tmp_path / "mine.json"
     assert (
-        ran(capsys, "brush", "new", str(mine), "--lag", "1", "--width-at", "2=2", "--depth-max", "2")[0] == 0
+        ran(capsys, "brush", "new", "-o", str(mine), "--lag", "1", "--width-at", "2=2", "--depth-max", "2")[0]
+        == 0
     )
-    status, out, _ = ran(capsys, "report", drawing(), "--all-brushes", "--brush", str(mine))
+    status, out, _ = ran(capsys, "preview", drawing(), "--all-brushes", "--brush", str(mine))
     assert status == 0
     names = [row.split()[0] for row in out.splitlines()[4:]]
     assert sorted(names) == ["liner-1", "mine", "rigid", "round-6", "round-6-angles"]
@@ -147,7 +148,7 @@ def test_all_brushes_in_one_table(drawing, capsys, tmp_path):
     assert re.search(
         r"2 [a-z]+ 2  a: [a-z]+ 3\b", next(row for row in out.splitlines() if row.startswith("mine"))
     )
-    read = json.loads(ran(capsys, "report", drawing(), "--all-brushes", "--json")[1])
+    read = json.loads(ran(capsys, "preview", drawing(), "--all-brushes", "--json")[1])
     assert read["format"] == "brushsvg/brushes"
     best = read["brushes"][0]
     assert (best["brush"], best["refused"], best["strokes"]) == ("round-6", 0, 2)
@@ -155,14 +156,14 @@ def test_all_brushes_in_one_table(drawing, capsys, tmp_path):
 
 
 def test_refused_strokes_count_against_a_brush(drawing, capsys):
-    read = json.loads(ran(capsys, "report", drawing(20), "--all-brushes", "--json")[1])
+    read = json.loads(ran(capsys, "preview", drawing(20), "--all-brushes", "--json")[1])
     row = next(each for each in read["brushes"] if each["brush"] == "round-6")
     assert (row["refused"], row["strokes"]) == (1, 2)
     assert row["overlap"] < 0.4
 
 
 def test_the_report_advises_where_strokes_are_refused(drawing, capsys):
-    status, out, err = ran(capsys, "report", drawing(20))
+    status, out, err = ran(capsys, "preview", drawing(20))
     assert status == 1
     assert re.search(r"--scale 0\.\d+", out)
     assert gives(err, "20.000 mm")
@@ -172,7 +173,10 @@ def test_the_report_advises_where_strokes_are_refused(drawing, capsys):
 @pytest.mark.parametrize("suffix", [".png", ".svg"])
 def test_the_picture_shows_what_is_missing(drawing, capsys, tmp_path, suffix):
     made = tmp_path / f"misses{suffix}"
-    assert ran(capsys, "report", drawing(), "--compensation", "none", "--preview", str(made))[0] == 0
+    assert (
+        ran(capsys, "preview", drawing(), "--compensation", "none", "--show", "errors", "-o", str(made))[0]
+        == 0
+    )
     if suffix == ".svg":
         assert made.read_text().count("<path") == 4
         assert "clipPath" in made.read_text()
@@ -187,11 +191,11 @@ def test_the_picture_shows_what_is_missing(drawing, capsys, tmp_path, suffix):
     ("words", "said"),
     [
         (["--brush", "rigid", "--brush", "round-6"], "--all-brushes"),
-        (["--all-brushes", "--preview", "x.png"], "--preview"),
-        (["--preview", "x.pdf"], ".png"),
+        (["--all-brushes", "-o", "x.png"], "-o"),
+        (["-o", "x.pdf"], ".png"),
     ],
 )
 def test_wrong_usage(drawing, capsys, words, said):
-    status, _, err = ran(capsys, "report", drawing(), *words)
+    status, _, err = ran(capsys, "preview", drawing(), *words)
     assert status == 2
     assert said in err

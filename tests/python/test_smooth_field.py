@@ -103,7 +103,7 @@ def test_check_reads_back_what_was_planned(desk, capsys, name, machine):
     cell = replace(find_cell(name), name="mine", machine=machine)
     (desk / "mine.toml").write_text(write_cell(cell))
     (desk / "straight.toml").write_text(write_cell(replace(cell, machine=None)))
-    assert call(capsys, "convert", "two.svg", "two" + suffix, "--cell", "mine.toml")[0] == 0
+    assert call(capsys, "convert", "two.svg", "-o", "two" + suffix, "--cell", "mine.toml")[0] == 0
     status, out, err = call(capsys, "check", "two" + suffix, "two.svg", "--cell", "mine.toml")
     assert status == 0 and RUNNABLE in out, err
     status, _, err = call(capsys, "check", "two" + suffix, "two.svg", "--cell", "straight.toml")
@@ -152,7 +152,7 @@ def test_strokes_beyond_where_it_was_measured_are_reported(desk, capsys):
     (desk / "mine.toml").write_text(
         write_cell(replace(find_cell("linuxcnc-3axis"), name="mine", machine=NARROW))
     )
-    status, _, err = call(capsys, "convert", "two.svg", "two.ngc", "--cell", "mine.toml")
+    status, _, err = call(capsys, "convert", "two.svg", "-o", "two.ngc", "--cell", "mine.toml")
     assert status == 0 and any("[30.0, 90.0]" in line for line in err)
 
 

@@ -184,15 +184,15 @@ def test_cells_that_cannot_tilt_the_brush_write_no_program(tmp_path):
 @pytest.mark.parametrize(
     "words",
     [
-        ["convert", "a.json", "a.ngc"],
-        ["convert", "a.json", "b.json"],
-        ["animate", "a.json", "a.html"],
-        ["animate", "a.json", "a.html", "--cell", "ur5e"],
-        ["convert", "a.json", "a.script", "--page", "a.pdf", "--cell", "ur5e"],
-        ["predict", "a.json", "a.svg", "--band", "--cell", "ur5e"],
-        ["report", "a.json"],
-        ["border", "a.json", "a.ngc"],
-        ["predict", "a.json", "a.svg", "--band"],
+        ["convert", "a.json", "-o", "a.ngc"],
+        ["convert", "a.json", "-o", "b.json"],
+        ["preview", "a.json", "-o", "a.html"],
+        ["preview", "a.json", "-o", "a.html", "--cell", "ur5e"],
+        ["convert", "a.json", "-o", "a.script", "--page", "a.pdf", "--cell", "ur5e"],
+        ["preview", "a.json", "-o", "a.svg", "--band", "--cell", "ur5e"],
+        ["preview", "a.json"],
+        ["setup", "border", "a.json", "-o", "a.ngc"],
+        ["preview", "a.json", "-o", "a.svg", "--band"],
     ],
 )
 def test_commands_refuse(words, tmp_path, capsys, monkeypatch):
@@ -213,7 +213,7 @@ def test_predict_shows_the_mark_and_says_that_no_program_paints_it(suffix, tmp_p
     pictures = []
     for tool_axes in (axes(0, 0, 0, 0), axes(0, 20, 20, 20)):
         given.write_text(_core.write_plan(plan(tool_axes)))
-        status, _, heard = in_json(capsys, "predict", given, made)
+        status, _, heard = in_json(capsys, "preview", given, "-o", made)
         assert status == 0
         is_tilted = tool_axes[:, 0].any()
         assert are_reported([each for _, each in heard], *(["tilt-unsupported 20"] if is_tilted else []))

@@ -356,7 +356,7 @@ def read_leaning():
 @pytest.mark.parametrize("of_cell", [lambda name: None, anyhow])
 def test_check_allows_what_is_written(name, of_cell, tmp_path, capsys):
     given, made, words = written(tmp_path, name, plan(np.zeros((0, 3)), TILTED), of_cell(name))
-    assert in_json(capsys, "convert", given, made, *words)[0] == 0
+    assert in_json(capsys, "convert", given, "-o", made, *words)[0] == 0
     assert in_json(capsys, "check", made, given, *words)[0] == 0
     assert in_json(capsys, "check", made, *words)[0] == 0
 
@@ -383,7 +383,7 @@ def test_check_allows_random_tilts(seed, tmp_path, capsys):
         held = axes(*random.uniform(0, 29.5, n), towards_deg=random.uniform(0, 360, n))
         passes.append(_core.Pass(f"s{k}", poses, float(random.uniform(3, 25)), tool_axes=np.round(held, 3)))
     given, made, words = written(tmp_path, name, _core.Plan("round-6", "", (100, 60), passes), cell)
-    status, _, said = in_json(capsys, "convert", given, made, *words)
+    status, _, said = in_json(capsys, "convert", given, "-o", made, *words)
     if status == 0:
         assert in_json(capsys, "check", made, given, *words)[0] == 0
         assert in_json(capsys, "check", made, *words)[0] == 0
@@ -392,7 +392,7 @@ def test_check_allows_random_tilts(seed, tmp_path, capsys):
 
 def test_on_paper_that_leans_has_a_map_and_gives_way(tmp_path, capsys):
     given, made, words = written(tmp_path, "ur5e", plan(TILTED), read_leaning())
-    assert in_json(capsys, "convert", given, made, *words)[0] == 0
+    assert in_json(capsys, "convert", given, "-o", made, *words)[0] == 0
     assert in_json(capsys, "check", made, given, *words)[0] == 0
 
 
@@ -405,7 +405,7 @@ def test_check_plays_the_tilted_mark(tmp_path, capsys):
         marks = brushsvg.simulate(plan(tool_axes, poses=of.passes[0].poses_mm), BRUSH)
         brushsvg.trace_outlines(marks, BRUSH)
         rings[name] = marks.outline_mm
-    in_json(capsys, "convert", given, made, *words)
+    in_json(capsys, "convert", given, "-o", made, *words)
     cell = brushsvg.find_cell("ur5e")
     ran = played(read_program(made.read_text(), ".script", cell), BRUSH, cell, (100, 60))
     _core.trace_outlines(ran.marks, BRUSH)
@@ -415,7 +415,7 @@ def test_check_plays_the_tilted_mark(tmp_path, capsys):
 
 def test_of_another_tilt_or_none_is_refused(tmp_path, capsys):
     given, made, words = written(tmp_path, "ur5e", plan(TILTED))
-    in_json(capsys, "convert", given, made, *words)
+    in_json(capsys, "convert", given, "-o", made, *words)
     for other in (np.zeros((0, 3)), axes(0, 9, 9, 20, 20, towards_deg=np.array([0, 40, 40, 130, 130]))):
         given.write_text(_core.write_plan(plan(other)))
         status, _, said = in_json(capsys, "check", made, given, *words)
@@ -462,7 +462,7 @@ def test_damaged_directions_are_refused(name, tmp_path, capsys):
     """Programs with one direction changed by a degree or more, about any line, the tool's own axis included; or with
     its numbers exchanged or negated: a hundred for UR, thirty for the others."""
     given, made, words = written(tmp_path, name, plan(np.zeros((0, 3)), TILTED))
-    in_json(capsys, "convert", given, made, *words)
+    in_json(capsys, "convert", given, "-o", made, *words)
     text = made.read_text()
     pattern, of, to = TURNS[name]
     spots = [*re.finditer(pattern, text)]
@@ -505,7 +505,7 @@ def test_damaged_directions_are_refused(name, tmp_path, capsys):
 @pytest.mark.parametrize("name", TILTING)
 def test_a_header_that_does_not_say_that_the_brush_is_tilted_is_refused(name, tmp_path, capsys):
     given, made, words = written(tmp_path, name, plan(TILTED))
-    in_json(capsys, "convert", given, made, *words)
+    in_json(capsys, "convert", given, "-o", made, *words)
     # remarks of FANUC are short, and go on
     said = r"\n[^\n]*tilt: the brush is held as each(?: ;\n : !\+)? move says[^\n]*"
     text, count = re.subn(said, "", made.read_text(), count=1)
@@ -521,7 +521,7 @@ def test_damaged_rows_between_poses_are_refused(about, tmp_path, capsys):
     """Of a trajectory: a row on the way that is turned by 3 degrees about the brush or to the side, its tip in "
     "place."""
     given, made, words = written(tmp_path, "fr3", plan(TILTED))
-    in_json(capsys, "convert", given, made, *words)
+    in_json(capsys, "convert", given, "-o", made, *words)
     text = made.read_text()
     ways = [*re.finditer(r"(?m)^(\d[^,]*,(?:[^,]*,){3})([^,]*,[^,]*,[^,]*,[^,]*)(,[^,]*,way)$", text)]
     cell = brushsvg.find_cell("fr3")
@@ -551,7 +551,7 @@ def test_a_serialized_trajectory_turns_as_the_table_does(tmp_path):
 
 def test_other_places_upright_where_they_lean_and_lines_lost_are_refused(tmp_path, capsys):
     given, made, words = written(tmp_path, "ur5e", plan(TILTED))
-    in_json(capsys, "convert", given, made, *words)
+    in_json(capsys, "convert", given, "-o", made, *words)
     text = made.read_text()
     lines = text.splitlines(keepends=True)
     tilted = [k for k, line in enumerate(lines) if "(tilted(" in line]
@@ -615,7 +615,7 @@ def test_what_turns_and_tilts_just_as_much_as_it_may_is_allowed_by_check(name, t
     assert 20 < most < 300
     cell = replace(cell, tool=replace(cell.tool, turn_deg_s=most))
     given, made, words = written(tmp_path, name, of, cell)
-    assert in_json(capsys, "convert", given, made, *words)[0] == 0
+    assert in_json(capsys, "convert", given, "-o", made, *words)[0] == 0
     assert in_json(capsys, "check", made, given, *words)[0] == 0
     assert in_json(capsys, "check", made, *words)[0] == 0
 
@@ -720,7 +720,7 @@ def test_predict_warns_of_paint_off_the_sheet(words, tmp_path, capsys):
     given = tmp_path / "a.json"
     poses = np.add(POSES, (40, 0, 0))
     given.write_text(_core.write_plan(plan(axes(*[20] * 5), poses=poses)))
-    status, _, said = in_json(capsys, "predict", given, tmp_path / "b.svg", *words)
+    status, _, said = in_json(capsys, "preview", given, "-o", tmp_path / "b.svg", *words)
     assert status == 0
     assert is_reported(said, "mark-off-sheet right", "s0")
 
@@ -734,7 +734,7 @@ def test_a_cell_says_how_far_and_how_fast(tmp_path, capsys):
     given = tmp_path / "a.json"
     given.write_text(json.dumps(json.loads(_core.write_plan(plan(TILTED)))))
     status, _, said = in_json(
-        capsys, "convert", given, tmp_path / "a.script", "--cell", tmp_path / "cell.toml"
+        capsys, "convert", given, "-o", tmp_path / "a.script", "--cell", tmp_path / "cell.toml"
     )
     assert status == 1
     assert is_reported(said, "out-of-range 31 30")

@@ -26,7 +26,7 @@ def drawing(tmp_path):
 
 
 def report(drawing, capsys, *flags):
-    assert main(["report", drawing, *flags]) == 0
+    assert main(["preview", drawing, *flags]) == 0
     return capsys.readouterr()
 
 
@@ -60,7 +60,7 @@ def test_without_rmse_and_covariance_it_is_said_once(drawing, tmp_path, capsys):
     assert reported.count("RMSE") == 1
     assert json.loads(report(drawing, capsys, "--brush", "rigid", "--json").out)["uncertainty_from"] is None
     out = tmp_path / "p.svg"
-    assert main(["predict", drawing, str(out), "--brush", "rigid", "--band"]) == 0
+    assert main(["preview", drawing, "-o", str(out), "--brush", "rigid", "--band"]) == 0
     assert capsys.readouterr().err.count("RMSE") == 1
     assert 'class="band"' not in out.read_text()
 
@@ -68,8 +68,8 @@ def test_without_rmse_and_covariance_it_is_said_once(drawing, tmp_path, capsys):
 @pytest.mark.parametrize("suffix", [".svg", pytest.param(".png", marks=pytest.mark.slow)])
 def test_a_band_with_a_legend(drawing, tmp_path, suffix):
     plain, banded = tmp_path / f"plain{suffix}", tmp_path / f"banded{suffix}"
-    assert main(["predict", drawing, str(plain)]) == 0
-    assert main(["predict", drawing, str(banded), "--band"]) == 0
+    assert main(["preview", drawing, "-o", str(plain)]) == 0
+    assert main(["preview", drawing, "-o", str(banded), "--band"]) == 0
     if suffix == ".svg":
         text = banded.read_text()
         assert text.count('class="band"') == 2 and "RMSE" in text
@@ -82,7 +82,7 @@ def test_a_band_with_a_legend(drawing, tmp_path, suffix):
 
 
 def test_a_band_is_for_pictures(drawing, tmp_path, capsys):
-    assert main(["predict", drawing, str(tmp_path / "m.json"), "--band"]) == 2
+    assert main(["preview", drawing, "-o", str(tmp_path / "m.json"), "--band"]) == 2
     assert gives(capsys.readouterr().err, "--band")
 
 

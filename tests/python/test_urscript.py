@@ -273,7 +273,7 @@ def test_check_refuses_a_program_that_feels_less(name, contact, old, new, tmp_pa
     cell = replace(find_cell(name), contact=contact)
     (tmp_path / "own.toml").write_text(write_cell(cell))
     program = tmp_path / f"first{POSTS[cell.language].extensions[0]}"
-    assert in_json(capsys, "first-run", tmp_path / "own.toml", "-o", program)[0] == 0
+    assert in_json(capsys, "setup", "first-run", tmp_path / "own.toml", "-o", program)[0] == 0
     check = ("check", program, "--cell", tmp_path / "own.toml")
     assert in_json(capsys, *check)[0] == 0
     text = program.read_text()

@@ -60,16 +60,16 @@ def test_no_way_goes_through_the_robot_itself(desk, capsys, name, of_stroke, way
     """Both ends were checked, and not the way; between strokes nothing was."""
     (desk / "mine.toml").write_text(write_cell(robot(**limits)))
     drawing, cell = f"{name}.svg", ("--cell", "mine.toml")
-    for command in ("convert", "border"):
-        program = f"{command}.script"
-        status, _, reported = in_json(capsys, command, drawing, program, *cell)
+    for command in (["convert"], ["setup", "border"]):
+        program = f"{command[-1]}.script"
+        status, _, reported = in_json(capsys, *command, drawing, "-o", program, *cell)
         file, last = reported[-1]
-        expected = (f"{said}{way}", of_stroke) if command == "convert" else (said,)
+        expected = (f"{said}{way}", of_stroke) if command == ["convert"] else (said,)
         assert (status, file) == (1, drawing) and agrees(last, *expected), reported
         if limits == RING:
             assert 0 <= float(re.search(r"goes ([\d.]+) mm away", last.sentence)[1]) <= 40
         assert not (desk / program).exists()
-        assert call(capsys, command, drawing, program, "--cell", "free.toml")[0] == 0
+        assert call(capsys, *command, drawing, "-o", program, "--cell", "free.toml")[0] == 0
         status, _, reported = in_json(capsys, "check", program, *cell)
         assert status == 1 and is_reported(reported, *expected), reported
 
@@ -84,7 +84,7 @@ def test_of_a_resumed_job_only_the_rest_is_checked(desk, capsys, limits, x_mm):
     """The first stroke, the way from it and its paint may break any limit: the machine does not go there again."""
     (desk / "mine.toml").write_text(write_cell(robot(**limits)))
     (desk / "pair.svg").write_text(PAIR.replace("M20 100", f"M{x_mm} 100"))
-    words = ("convert", "pair.svg", "pair.script", "--cell", "mine.toml")
+    words = ("convert", "pair.svg", "-o", "pair.script", "--cell", "mine.toml")
     assert call(capsys, *words)[0] == 1
     assert call(capsys, *words, "--from-stroke", "2")[0] == 0
     assert call(capsys, "check", "pair.script", "pair.svg", "--cell", "mine.toml")[::2] == (0, [])
@@ -99,7 +99,7 @@ def test_strokes_that_find_the_paper_and_the_ways_between_them_keep_out_of_boxes
     """A clip between the first two lanes, lower than neither of them."""
     clip = robot(keep_out_mm=(((-300.0, 90.0, 30.0), (-200.0, 92.0, 45.0)),))
     (desk / "mine.toml").write_text(write_cell(clip))
-    height = ("height", "job.script", "--sheet", "600x200")
+    height = ("setup", "height", "-o", "job.script", "--sheet", "600x200")
     status, _, ((_, reported), *_) = in_json(capsys, *height, "--cell", "mine.toml")
     assert status == 1 and agrees(reported, "in-kept-out-box way 'y 91.0, z 40.0 mm'"), reported
     assert call(capsys, *height, "--cell", "free.toml")[0] == 0
@@ -143,12 +143,15 @@ def test_visits_to_the_paint_and_the_ways_from_them_keep_out_of_boxes(desk, caps
     )
     (desk / "s.svg").write_text(BAR.replace("M40 100 H560", "M40 160 H90").replace('"bar"', '"s"'))
     program = "s.script" if language == "ur5e" else "s.ngc"
-    for words, file in ((("convert", "s.svg", program), "s.svg"), (("check", program, "s.svg"), program)):
+    for words, file in (
+        (("convert", "s.svg", "-o", program), "s.svg"),
+        (("check", program, "s.svg"), program),
+    ):
         status, _, reported = in_json(capsys, *words, "--cell", "mine.toml")
         assert status == 1 and is_reported([each for each in reported if each[0] == file], said, who), (
             reported
         )
-        assert call(capsys, "convert", "s.svg", program, "--cell", "free.toml")[0] == 0
+        assert call(capsys, "convert", "s.svg", "-o", program, "--cell", "free.toml")[0] == 0
 
 
 ROUND = np.array([(50, 30, -2), (50, -20, -2)], dtype=float)  # the lower one at the edge of a margin of 30 mm
@@ -215,12 +218,12 @@ def test_a_rise_before_the_first_move_keeps_out_of_what_is_forbidden(desk, capsy
         some = replace(cell, name="mine", paper=paper, workspace=replace(space, **{limit: value}))
         (desk / file).write_text(write_cell(some))
     (desk / "s.svg").write_text(BAR.replace("M40 100 H560", "M250 170 H290").replace('"bar"', '"s"'))
-    for command in ("convert", "border"):
-        program = f"{command}{suffix}"
-        status, _, reported = in_json(capsys, command, "s.svg", program, "--cell", "mine.toml")
+    for command in (["convert"], ["setup", "border"]):
+        program = f"{command[-1]}{suffix}"
+        status, _, reported = in_json(capsys, *command, "s.svg", "-o", program, "--cell", "mine.toml")
         assert status == 1 and is_reported(reported, f"{said} rise mine", ""), reported
         assert not (desk / program).exists()
-        assert call(capsys, command, "s.svg", program, "--cell", "free.toml")[0] == 0
+        assert call(capsys, *command, "s.svg", "-o", program, "--cell", "free.toml")[0] == 0
         assert call(capsys, "check", program, "--cell", "free.toml")[0] == 0
         status, _, reported = in_json(capsys, "check", program, "--cell", "mine.toml")
         assert status == 1 and is_reported(reported, f"{said} rise mine"), reported
@@ -230,7 +233,7 @@ def test_what_keeps_a_limit_to_the_last_digit_keeps_it_when_it_was_rounded(desk,
     """The reach had no room for the rounding of a program, which check then refused."""
     cell = replace(robot(), decimals=3)
     (desk / "free.toml").write_text(write_cell(cell))
-    assert call(capsys, "convert", "bar.svg", "bar.json", "--cell", "free.toml")[0] == 0
+    assert call(capsys, "convert", "bar.svg", "-o", "bar.json", "--cell", "free.toml")[0] == 0
     poses = np.array(_core.read_plan((desk / "bar.json").read_text()).passes[0].poses_mm)
     high = poses[[0, -1]] * (1, 1, 0) + (-300.0, -100.0, 20.0 + cell.heights.safe_mm)
     poses += (-300.0, -100.0, 20.0)
@@ -239,7 +242,7 @@ def test_what_keeps_a_limit_to_the_last_digit_keeps_it_when_it_was_rounded(desk,
     box = ((float(left), -200.0, -50.0), (float(right), 200.0, 20.0 + cell.heights.safe_mm))
     exact = replace(cell.workspace, reach_mm=(0.0, far), box_mm=box)
     (desk / "mine.toml").write_text(write_cell(replace(cell, workspace=exact)))
-    assert call(capsys, "convert", "bar.json", "bar.script", "--cell", "mine.toml")[0] == 0
+    assert call(capsys, "convert", "bar.json", "-o", "bar.script", "--cell", "mine.toml")[0] == 0
     status, _, err = call(capsys, "check", "bar.script", "bar.json", "--cell", "mine.toml")
     assert (status, err) == (0, [])
 
@@ -328,7 +331,10 @@ def test_a_stroke_that_chooses_how_it_begins_chooses_what_the_cell_can_run(tmp_p
     passes = {}
     for start in ("auto", "pointed"):
         plan = tmp_path / f"{start}.json"
-        assert call(capsys, "convert", str(tmp_path / "a.svg"), str(plan), "--start", start, *words)[0] == 0
+        assert (
+            call(capsys, "convert", str(tmp_path / "a.svg"), "-o", str(plan), "--start", start, *words)[0]
+            == 0
+        )
         passes[start] = _core.read_plan(plan.read_text(encoding="utf-8")).passes
     same = [
         np.array_equal(one.poses_mm, other.poses_mm)
@@ -336,10 +342,10 @@ def test_a_stroke_that_chooses_how_it_begins_chooses_what_the_cell_can_run(tmp_p
     ]
     assert same == [True, True, False], "amid the sheet it begins round, as it suits it"
     program = str(tmp_path / "a.ngc")
-    assert call(capsys, "convert", str(tmp_path / "a.svg"), program, *words)[0] == 0
+    assert call(capsys, "convert", str(tmp_path / "a.svg"), "-o", program, *words)[0] == 0
     assert call(capsys, "check", program, str(tmp_path / "a.svg"), *words)[0] == 0
     (tmp_path / "a.svg").write_text(EDGES.format(own="round"), encoding="utf-8")
-    status, _, reported = call(capsys, "convert", str(tmp_path / "a.svg"), program, *words)
+    status, _, reported = call(capsys, "convert", str(tmp_path / "a.svg"), "-o", program, *words)
     assert status == 1 and "own" in reported[-1], "a round start that was requested is refused"
 
 
@@ -358,7 +364,9 @@ def test_a_cut_beginning_that_the_cell_cannot_cut_is_round_or_pointed(tmp_path, 
 
     def passes(*more):
         plan = tmp_path / "a.json"
-        assert call(capsys, "convert", str(tmp_path / "a.svg"), str(plan), "--end", "round", *more)[0] == 0
+        assert (
+            call(capsys, "convert", str(tmp_path / "a.svg"), "-o", str(plan), "--end", "round", *more)[0] == 0
+        )
         return [one.poses_mm for one in _core.read_plan(plan.read_text(encoding="utf-8")).passes]
 
     chosen, butt, rounded = passes(*words), passes("--start", "butt"), passes("--start", "round")
@@ -374,8 +382,8 @@ def test_a_stroke_whose_round_beginning_is_too_wide_for_the_sheet_begins_pointed
     )
     (tmp_path / "a.svg").write_text(drawn, encoding="utf-8")
     drawing, program = str(tmp_path / "a.svg"), str(tmp_path / "a.ngc")
-    assert call(capsys, "convert", drawing, program, "--start", "round")[0] == 1
-    assert call(capsys, "convert", drawing, program)[0] == 0
+    assert call(capsys, "convert", drawing, "-o", program, "--start", "round")[0] == 1
+    assert call(capsys, "convert", drawing, "-o", program)[0] == 0
     assert call(capsys, "check", program, drawing)[0] == 0
 
 

@@ -64,7 +64,7 @@ run sh -c 'cd /tmp/run && /plain/bin/brushsvg demo --force'
 echo "from a folder of wheels to the picture of the demo: $(awk "BEGIN {print $EPOCHREALTIME - $start}") s"
 size plain
 run sh -c 'cd /tmp/run && echo "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"60mm\" height=\"20mm\" viewBox=\"0 0 60 20\"><path d=\"M5 10c10-8 30 8 50 0\" fill=\"none\" stroke=\"#000\" stroke-width=\"3\"/></svg>" >line.svg
-  for k in 1 2 3 4 5; do date +%s.%N; /plain/bin/brushsvg convert line.svg line.ngc --force >/dev/null; done; date +%s.%N' |
+  for k in 1 2 3 4 5; do date +%s.%N; /plain/bin/brushsvg convert line.svg -o line.ngc --force >/dev/null; done; date +%s.%N' |
   awk 'NR > 1 { t = $1 - last; if (!best || t < best) best = t } { last = $1 } END { printf "convert of a line takes %.2f s, the best of 5\n", best }'
 run /plain/bin/brushsvg doctor
 echo "== without extras"

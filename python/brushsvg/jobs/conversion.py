@@ -44,9 +44,9 @@ if TYPE_CHECKING:
     from .preparation.preparation import Source
 
 ORDERS = ("drawn", "nearest")
-MOST_LOWERED_MM = 2.0  # by --z-offset, without a word: the strokes of `brushsvg height` try 1 mm
+MOST_LOWERED_MM = 2.0  # by --z-offset, without a word: the strokes of `brushsvg setup height` try 1 mm
 FORMATS = {
-    "preview": (".png", ".svg"),
+    "picture": (".png", ".svg"),
     "report": (".txt", ".json"),
     "page": (".pdf", ".svg"),
 }  # of what is written next to a program
@@ -80,7 +80,7 @@ def convert(
     drawing: Source,
     out: str | os.PathLike[str] | None = None,
     *,
-    preview: str | os.PathLike[str] | None = None,
+    picture: str | os.PathLike[str] | None = None,
     report: str | os.PathLike[str] | None = None,
     page: str | os.PathLike[str] | None = None,
     formats: Sequence[str] = (),
@@ -96,7 +96,7 @@ def convert(
     the paths given: all of them or none.
 
     drawing: a path, any other input of read_drawing, a Design, or a Plan.
-    out: a program in the cell's language, or a plan (.json); preview: what will be painted (.png .svg); report: the
+    out: a program in the cell's language, or a plan (.json); picture: what will be painted (.png .svg); report: the
     figures (.txt .json); page: to print and paint on (.pdf .svg).
     formats: extensions of the texts to return, by default that of out, else the first of the cell's language.
     figures: whether to measure overlap and errors, too. from_stroke: resumes a job there. order: "drawn", "nearest".
@@ -117,7 +117,7 @@ def convert(
     reasons it gives the first, its notes the others, its notices what was to be warned of.
     """
     chosen = chosen_of(drawing, choices)
-    extras = {"preview": preview, "report": report, "page": page}
+    extras = {"picture": picture, "report": report, "page": page}
     paths = {name: os.fspath(path) for name, path in extras.items() if _is_path(path, name)}
     out = os.fspath(out) if _is_path(out, "out") else None
     for name, path in paths.items():
@@ -182,7 +182,7 @@ def _converted(
         files = {paths["page"]: outputs.page(suffix_of(paths["page"]), work)} if "page" in paths else {}
         tries = {}
         for suffix in formats:
-            wants_rings = suffix_of(paths.get("preview")) == ".svg"
+            wants_rings = suffix_of(paths.get("picture")) == ".svg"
             marks = tries[formats[0]].marks if tries else None
             tries[suffix] = tried(work, suffix, job, order, lenient, wants_rings, stage, marks)
             _refuse(tries[suffix].problems, work.notices)
@@ -195,9 +195,9 @@ def _converted(
                 texts[name + suffix] = text
                 if out is not None and suffix == suffix_of(out):
                     files[writer.path_next_to(out, name)] = text
-        if "preview" in paths:
+        if "picture" in paths:
             stage("drawing")
-            files[paths["preview"]] = outputs.picture(suffix_of(paths["preview"]), one.work, one.marks)
+            files[paths["picture"]] = outputs.picture(suffix_of(paths["picture"]), one.work, one.marks)
         measured = None
         if figures or "report" in paths:
             stage("measuring")
@@ -282,7 +282,7 @@ def _lowered(z_offset_mm: float) -> list[Notice]:
         return []
     sentence = (
         f"the tool goes {-z_offset_mm:g} mm farther down than where the cell has the paper, which the strokes of "
-        "`brushsvg height` seldom ask for"
+        "`brushsvg setup height` seldom ask for"
     )
     return [Notice("z_offset", sentence, code="unusual-value", about="z_offset")]
 

@@ -206,7 +206,7 @@ def _servo_lift(some: list[Way], cell: Cell) -> Lift | None:
     line = next(way.line for way in some if way.power is not None)
     if any(way.by_angle == 300 for way in some):
         sentence = f"line {line}: its pen goes by M300, which plays a tone on the machines of all cells"
-        raise Error(sentence, code="servo-unknown", advice="brushsvg convert paints its lines")
+        raise Error(sentence, code="servo-unknown", advice="brushsvg convert paints -o its lines")
     if any(way.by_angle for way in some):
         if not up_and_down:
             sentence = f"line {line}: its pen goes by M280, and cell {cell.name} has no such servo"
@@ -250,8 +250,8 @@ def _table_range(cell: Cell) -> tuple[float, float]:
 def _own_table(values: list[float]) -> str:
     said = " and ".join(f"S{value:g}" for value in dict.fromkeys((values[0], values[-1])))
     return (
-        f"write a cell of your own with  brushsvg cell new mine.toml --like {BY_VALUE}  and put the heights of {said} "
-        "into its [servo] table, then give --cell mine.toml"
+        f"write a cell of your own with  brushsvg cell new -o mine.toml --like {BY_VALUE}  and put the heights of "
+        f"{said} into its [servo] table, then give --cell mine.toml"
     )
 
 

@@ -48,12 +48,15 @@ def notes(work: Work) -> tuple[str, ...]:
     return lines
 
 
-def picture(suffix: str, work: Work, marks: _core.Marks, band: Band | None = None) -> bytes:
+def picture(
+    suffix: str, work: Work, marks: _core.Marks, band: Band | None = None, with_toolpath: bool = False
+) -> bytes:
     """The marks as the bytes of a .png, .svg or .json (marks.json); the latter two need their outlines. band: an
-    uncertainty.Band to draw around them."""
+    uncertainty.Band to draw around them; with_toolpath: draw the positions of the tool over them."""
     if suffix == ".json":
         return _core.write_marks(marks).encode()
     colours = [a_pass.colour for a_pass in work.plan.passes]
+    toolpath_mm = [a_pass.poses_mm for a_pass in work.plan.passes] if with_toolpath else []
     bare = [ring for piece in (*work.unreached, *work.missed) for ring in piece.rings]
     if suffix == ".svg":
         how = "" if work.strokes is None else f", {work.options.compensation}"
@@ -68,11 +71,12 @@ def picture(suffix: str, work: Work, marks: _core.Marks, band: Band | None = Non
             band,
             bare,
             work.astray,
+            toolpath_mm,
         )
         return text.encode()
     from ..show import marks_png  # brings OpenCV, which the others do not need
 
-    return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band, bare)
+    return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band, bare, toolpath_mm)
 
 
 def page(suffix: str, work: Work) -> bytes:

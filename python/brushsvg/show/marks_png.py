@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import cv2
 import numpy as np
 
 from .. import _core
 from ..errors import Error, need
-from .marks_svg import BAND, EDGE, Band, check_picture, known_colour
+from .marks_svg import BAND, EDGE, TOOLPATH, Band, check_picture, known_colour, travels
 from .overlap_svg import MISSING
 from .png_canvas import PNG_LONG_SIDE_PX, SUB_PIXEL_BITS, TEXT, bgr, blend, canvas, encoded, write
 
@@ -21,9 +21,11 @@ def marks_png(
     colours: list[str],
     band: Band | None = None,
     blank: Iterable[np.ndarray] = (),
+    toolpath_mm: Sequence[np.ndarray] = (),
 ) -> bytes:
     """The sheet with its paint, anti-aliased, colours over each other in painting order. band: where the edges lie,
-    with a legend; blank: rings of what of shapes stays blank, outlined."""
+    with a legend; blank: rings of what of shapes stays blank, outlined; toolpath_mm: of each pass the positions of the
+    tool (n, 2) or (n, 3), drawn over the paint, thinner where it travels in the air."""
     check_picture(marks, sheet_mm, colours)
     need(brush, _core.Brush, "a brush")
     px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(sheet_mm))
@@ -41,11 +43,19 @@ def marks_png(
         first = last
     if image is None:
         raise Error("there is nothing to draw", code="nothing-to-show")
-    for ring in blank:
-        at = (np.asarray(ring) * (1, -1) + (0, sheet_mm[1])) * px_per_mm - 0.5
+    thick = max(round(EDGE * max(image.shape[:2])), 1)
+
+    def draw_line(points_mm, is_closed: bool, colour: str, thick_px: int) -> None:
+        at = (np.asarray(points_mm)[:, :2] * (1, -1) + (0, sheet_mm[1])) * px_per_mm - 0.5
         fixed = np.round(at * 2**SUB_PIXEL_BITS).astype(np.int32).reshape(-1, 1, 2)
-        thick = max(round(EDGE * max(image.shape[:2])), 1)
-        cv2.polylines(image, [fixed], True, bgr(MISSING), thick, cv2.LINE_AA, SUB_PIXEL_BITS)
+        cv2.polylines(image, [fixed], is_closed, bgr(colour), thick_px, cv2.LINE_AA, SUB_PIXEL_BITS)
+
+    for ring in blank:
+        draw_line(ring, True, MISSING, thick)
+    for line in travels(toolpath_mm):
+        draw_line(line, False, TOOLPATH, 1)
+    for line in toolpath_mm:
+        draw_line(line, False, TOOLPATH, thick)
     if band is not None:
         _draw_band(image, band, window, px_per_mm)
     return encoded(image)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Container, Iterable, Sequence
 from html import escape
+from itertools import pairwise
 from numbers import Real
 from typing import Protocol
 
@@ -16,6 +17,7 @@ from .overlap_svg import MISSING
 from .svg_text import path_data, printable, quoted
 
 BAND = "#e0862b"  # where an edge lies with 95 %
+TOOLPATH = "#2f6fd0"
 EDGE = 0.002  # of the sheet, how wide the line round what stays blank is
 
 
@@ -38,12 +40,14 @@ def marks_svg(
     band: Band | None = None,
     blank: Iterable[np.ndarray] = (),
     astray: Container[str] = (),
+    toolpath_mm: Sequence[np.ndarray] = (),
 ) -> str:
     """One path per pass in its colour, in millimetres of the sheet.
 
     marks: with outlines; tracking_errors: of the passes, if known; made: how, in words; band: where their edges lie,
     with a legend; blank: rings of what of shapes stays blank, outlined; astray: names of strokes that are marked, since
-    their paint lies elsewhere.
+    their paint lies elsewhere; toolpath_mm: of each pass the (n, 2) or (n, 3) positions of the tool, drawn over the
+    paint, dashed where it travels in the air.
     """
     check_picture(marks, sheet_mm, colours)
     width, height = sheet_mm
@@ -67,6 +71,8 @@ def marks_svg(
         lines.append(
             f'<path class="blank" fill="none" stroke="{MISSING}" stroke-width="{wide:g}" d="{data}"/>'
         )
+    if toolpath_mm:
+        lines += _toolpath(toolpath_mm, width, height)
     if band is not None:
         lines += _band(band, width, height)
     return "\n".join([*lines, "</svg>", ""])
@@ -88,6 +94,27 @@ def check_picture(marks: _core.Marks, sheet_mm: tuple[float, float], colours: li
             f"a colour is needed for each of {len(marks.passes)} passes, not {len(colours)}",
             code="wrong-type",
         )
+
+
+def travels(toolpath_mm: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Return the moves in the air: from the end of each pass to the start of the next, each (2, 2) in mm."""
+    return [np.stack((a[-1, :2], b[0, :2])) for a, b in pairwise(toolpath_mm)]
+
+
+def _toolpath(toolpath_mm, width: float, height: float) -> list[str]:
+    thick = round(EDGE * max(width, height), 3)
+    style = f'fill="none" stroke="{TOOLPATH}" stroke-linejoin="round" stroke-width='
+    in_air = "".join(_line_data(line, height) for line in travels(toolpath_mm))
+    painting = "".join(_line_data(line, height) for line in toolpath_mm)
+    return [
+        f'<path class="travel" {style}"{0.6 * thick:g}" stroke-dasharray="{4 * thick:g}" d="{in_air}"/>',
+        f'<path class="toolpath" {style}"{thick:g}" d="{painting}"/>',
+    ]
+
+
+def _line_data(points_mm: np.ndarray, height: float) -> str:
+    """Return SVG path data of an open line; y points down there."""
+    return "M" + "L".join(f"{x:.3f} {height - y:.3f}" for x, y in points_mm[:, :2])
 
 
 def _band(band, width: float, height: float) -> list[str]:

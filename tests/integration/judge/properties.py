@@ -251,7 +251,8 @@ def stepped(source: Path, plan: dict, brush, toml: Path, flags) -> list[str]:
         flags
     ):
         work = preparation.prepare(
-            source, options_of(typed(parse(["convert", str(source), "x.json", "--cell", str(toml), *flags])))
+            source,
+            options_of(typed(parse(["convert", str(source), "-o", "x.json", "--cell", str(toml), *flags]))),
         )
     laws = [Lag(brush)]
     for k, a_pass in enumerate(_core.read_plan(json.dumps(plan)).passes):

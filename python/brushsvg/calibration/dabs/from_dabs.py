@@ -172,7 +172,7 @@ def _fitted(law: str, values: np.ndarray, range_mm, terms: int = 0):
     if abs(off[worst]) > AGREE_MM:
         raise Error(
             f"no law of {law.replace('_', ' ')} over depth runs within {AGREE_MM:g} mm of what the dabs show: at depth "
-            f"{depths[worst]:g} mm it is {off[worst]:.2f} mm off; look at the outlines (--plot)",
+            f"{depths[worst]:g} mm it is {off[worst]:.2f} mm off; look at the outlines (--picture)",
             law,
             off[worst],
             code="law-undetermined",

@@ -177,7 +177,7 @@ def _remedy(key: str, sigma: float, of_photo: bool) -> str:
     of_flags = {
         "height_mm": (
             f": add --height {sigma:g} if you know the height no better. A liner, whose lines are wide where it just "
-            "touches, looks like high paper: measure the height (brushsvg height), add --height 0.05"
+            "touches, looks like high paper: measure the height (brushsvg setup height), add --height 0.05"
         ),
         "displacement_mm": ": add --spread FILE, which brushsvg compare --sheets writes",
     }

@@ -210,7 +210,7 @@ def refuse_no_lag(points) -> None:
     """A pen is not calibrated."""
     if not any(point.value_mm for point in points):
         raise Error(
-            "the lag is 0 mm at every depth: such a pen is made by brushsvg brush new with --lag 0",
+            "the lag is 0 mm at every depth: such a pen is made by brushsvg brush new -o with.json --lag 0",
             points[0].where,
             code="pen-without-lag",
         )

@@ -1,19 +1,19 @@
-"""The commands about brushes: chart, calibrate, brush, article."""
+"""The commands for brushes: chart, calibrate, brush."""
 
 from __future__ import annotations
 
-import argparse
+from dataclasses import fields
 
 from ...photo import PHOTOS
 from ...read import READERS
 from . import values
-from .flags import A_PROGRAM, add_looks, add_writes, add_z_offset
-from .usage_checks import PICTURES, PROGRAMS, check_files, check_job, suffix_of
+from .flags import A_PROGRAM, add_looks, add_output, add_picture, add_writes, add_z_offset
+from .usage_checks import PICTURES, PROGRAMS, check_extension, check_files, check_job, suffix_of
 
 
 def add_chart(commands) -> None:
     chart = commands.add_parser("chart", help="write a chart: the strokes to calibrate a brush with")
-    chart.add_argument("output", metavar="OUT", help=f"a plan (.json) or {A_PROGRAM}")
+    add_output(chart, f"a plan (.json) or {A_PROGRAM}")
     chart.add_argument(
         "--brush", metavar="NAME|FILE", help="the known brush most like yours; default: round-6"
     )
@@ -80,8 +80,13 @@ def add_calibrate(commands) -> None:
         nargs="+",
         help=f"what was measured (.json .csv), or photographs of one painted chart or job ({' '.join(PHOTOS)})",
     )
-    fit.add_argument("-o", metavar="FILE", dest="output", required=True, help="a brush (.json)")
-    _add_photo(fit, False)
+    add_output(fit, "a brush (.json); with --scan, outlines in mm (.json)")
+    fit.add_argument(
+        "--scan",
+        action="store_true",
+        help="only read the outlines of one photograph: calibrate takes them later",
+    )
+    _add_photo(fit)
     fit.add_argument(
         "--plan",
         metavar="FILE",
@@ -142,17 +147,15 @@ def add_calibrate(commands) -> None:
         metavar="MM",
         type=values.noise,
         help="for photographs of strokes: how exactly the paper's height is known (standard deviation), 0.05 behind "
-        "brushsvg height; default: 0.3, as by eye",
+        "brushsvg setup height; default: 0.3, as by eye",
     )
-    fit.add_argument("--plot", metavar="FILE", help="also draw laws, data and residuals (.png .svg)")
+    add_picture(fit, "the brush laws, data and residuals")
     add_writes(fit)
     fit.set_defaults(run="calibrate_file", parser=fit, check=_check_calibrate)
 
 
-def _add_photo(command, needed: bool) -> None:
-    command.add_argument(
-        "--chart", metavar="FILE", required=needed, help="the chart.json of the page in the photograph"
-    )
+def _add_photo(command) -> None:
+    command.add_argument("--chart", metavar="FILE", help="the chart.json of the page in the photograph")
     command.add_argument(
         "--bar",
         metavar="MM",
@@ -171,28 +174,32 @@ def _add_photo(command, needed: bool) -> None:
         help="the photograph was taken from below, through glass and a clear sheet on which the page is printed",
     )
     command.add_argument(
-        "--picture", metavar="FILE", help="also draw what was read over the flattened photograph (.png)"
+        "--marks-picture",
+        metavar="FILE",
+        help="also draw the outlines found over the flattened photograph (.png)",
     )
 
 
 def _check_calibrate(args) -> None:
     from ...jobs.calibration_options import contradiction
 
-    args.options = _options_of(args)
-
     args.input = args.inputs[0]
+    args.options = _options_of(args)
+    if args.scan:
+        return _check_scan(args)
     args.photos = [path for path in args.inputs if suffix_of(path) in PHOTOS]
     _refuse_heic(args, args.inputs)
     if why := contradiction(args.inputs if len(args.inputs) > 1 else args.input, args.options):
         args.parser.error(why)
-    for flag, value in (("--picture", args.picture), ("--plot", args.plot)):
+    for flag, value in (("--marks-picture", args.marks_picture), ("--picture", args.picture)):
         if value and args.plan:
             args.parser.error(f"{flag} is not for a job (--plan)")
-    if args.picture and not args.photos:
-        args.parser.error(f"--picture is for photographs ({' '.join(PHOTOS)})")
+    if args.marks_picture and not args.photos:
+        args.parser.error(f"--marks-picture is for photographs ({' '.join(PHOTOS)})")
     read = [(path, PHOTOS if args.photos else (".json", ".csv")) for path in args.inputs]
     read += [(args.chart, (".json",)), (args.plan, (".json",)), (args.prior, None), (args.spread, (".json",))]
-    check_files(args, read, [(args.output, (".json",)), (args.plot, PICTURES), (args.picture, (".png",))])
+    written = [(args.output, (".json",)), (args.picture, PICTURES), (args.marks_picture, (".png",))]
+    check_files(args, read, written)
 
 
 def _options_of(args):
@@ -217,31 +224,28 @@ def _options_of(args):
     )
 
 
-def add_scan(commands) -> None:
-    scan = commands.add_parser("scan", help="read a painted chart from photographs, without calibrating")
-    scan.add_argument("input", metavar="IN", help=f"a photograph of a painted chart ({' '.join(PHOTOS)})")
-    scan.add_argument("more", nargs="*", help=argparse.SUPPRESS)
-    scan.add_argument(
-        "-o",
-        metavar="FILE",
-        dest="output",
-        required=True,
-        help="outlines in mm, as calibrate takes them (.json)",
-    )
-    _add_photo(scan, True)
-    add_writes(scan)
-    scan.set_defaults(run="scan_file", parser=scan, check=_check_scan)
+OF_A_SCAN = ("chart", "bar_mm", "dpi", "mirrored")  # options that reading a photograph needs
 
 
 def _check_scan(args) -> None:
-    if args.more:
-        args.parser.error("scan takes one picture; calibrate takes several of one sheet")
     from ...jobs.calibration_options import CalibrationOptions, contradiction
 
-    _refuse_heic(args, [args.input])
-    args.options = CalibrationOptions(chart=args.chart, bar_mm=args.bar, dpi=args.dpi, mirrored=args.mirrored)
+    args.run = "scan_file"
+    if len(args.inputs) > 1:
+        args.parser.error("--scan reads one photograph; without --scan, calibrate takes several of one sheet")
+    _refuse_heic(args, args.inputs)
+    given = [
+        each.name
+        for each in fields(CalibrationOptions)
+        if each.name not in OF_A_SCAN and getattr(args.options, each.name) != each.default
+    ]
+    if given or args.picture:
+        flag = "--norm" if given == ["absolute"] else f"--{(given or ['picture'])[0].removesuffix('_mm')}"
+        args.parser.error(f"{flag} is for a fit: leave it or --scan out")
+    if args.chart is None:
+        args.parser.error("--scan needs --chart, the chart.json of the page in the photograph")
     read = [(args.input, PHOTOS), (args.chart, (".json",))]
-    check_files(args, read, [(args.output, (".json",)), (args.picture, (".png",))])
+    check_files(args, read, [(args.output, (".json",)), (args.marks_picture, (".png",))])
     if why := contradiction(args.input, args.options):
         args.parser.error(why)
 
@@ -260,7 +264,7 @@ def add_brush(commands) -> None:
     new = whats.add_parser(
         "new", help="write a brush file from a few numbers; asks for them if you give none"
     )
-    new.add_argument("name", metavar="NAME", help="of the brush; writes NAME.json, or the path given")
+    add_output(new, "the brush file (.json); its name becomes the brush's name")
     new.add_argument(
         "--lag",
         metavar="MM",
@@ -297,12 +301,13 @@ def add_brush(commands) -> None:
     new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
     plot = whats.add_parser("plot", help="draw the brush laws with confidence bands, and the footprints")
     plot.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
-    plot.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
+    add_output(plot, "a picture (.svg .png)")
     add_writes(plot)
     plot.set_defaults(run="brush_plot", parser=plot, check=_check_brush_plot)
 
 
 def _check_brush_new(args) -> None:
+    check_extension(args, args.output, (".json",))
     if args.like is not None:
         given = [("--lag", args.lag), ("--lag-at", args.lag_at or None), ("--widths", args.widths)]
         given += [("--width-at", args.width_at or None), ("--depth-max", args.depth_max)]

@@ -1,4 +1,4 @@
-"""The commands that start from a drawing: convert, predict, report, animate, import, text."""
+"""The commands that start from a drawing: text, preview, convert, batch, compare, simulate-photo."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from .flags import (
     add_corrections,
     add_input,
     add_job,
-    add_layout,
     add_margin_strokes,
     add_order,
+    add_output,
+    add_picture,
     add_quiet,
     add_script,
     add_speed,
@@ -35,7 +36,7 @@ from .usage_checks import (
 def add_convert(commands) -> None:
     convert = commands.add_parser("convert", help="turn a drawing into a robot program")
     add_input(convert)
-    convert.add_argument("output", metavar="OUT", help=plans_and_programs())
+    add_output(convert, plans_and_programs())
     add_choices(convert)
     add_speed(convert)
     add_job(convert)
@@ -46,7 +47,7 @@ def add_convert(commands) -> None:
         action="store_true",
         help="write a program for each colour, the lightest first: OUT-1-ffd400.EXT, OUT-2-1a237e.EXT ...",
     )
-    convert.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
+    add_picture(convert, "what will be painted")
     convert.add_argument(
         "--page", metavar="FILE", help="also write the page to paint on, with markers for compare (.pdf .svg)"
     )
@@ -66,7 +67,7 @@ def _check_convert(args) -> None:
         args.parser.error("--margin-strokes on does not go with --per-colour: leave one of them out")
     written = [
         (args.output, (".json", *PROGRAMS)),
-        (args.preview, PICTURES),
+        (args.picture, PICTURES),
         (args.page, (".pdf", ".svg")),
         (args.report, (".txt", ".json")),
     ]
@@ -82,13 +83,7 @@ def add_batch(commands) -> None:
         nargs="*",
         help=f"drawings ({' '.join(READERS)}), folders of them, patterns with *, lists (.txt, a path on each line)",
     )
-    batch.add_argument(
-        "--out",
-        metavar="DIR",
-        dest="output",
-        required=True,
-        help="a folder for programs, pictures and tables",
-    )
+    add_output(batch, "a folder for programs, pictures and tables")
     batch.add_argument(
         "--words", metavar="FILE", help="a text: each line is set in --font and painted (.txt)"
     )
@@ -143,12 +138,10 @@ def add_compare(commands) -> None:
     add_choices(compare)
     add_corrections(compare)
     add_margin_strokes(compare)
-    compare.add_argument("-o", metavar="FILE", dest="output", help="also write the figures (.json .txt)")
-    compare.add_argument(
-        "--picture",
-        metavar="FILE",
-        help="also draw paint, wanted and predicted; of --sheets the spread (.png)",
+    add_output(
+        compare, "the figures and the corrections for the next sheet (.json), or the report (.txt)", False
     )
+    add_picture(compare, "the paint, the drawing and the prediction; with --sheets the spread", ".png")
     compare.add_argument(
         "--corrected-cell",
         metavar="FILE",
@@ -193,7 +186,7 @@ def add_simulate_photo(commands) -> None:
         "simulate-photo", help="render a photograph of the painted job, to try `compare` without a robot"
     )
     add_input(simulate)
-    simulate.add_argument("output", metavar="OUT", help="a photograph (.jpg)")
+    add_output(simulate, "a photograph (.jpg)")
     add_choices(simulate)
     add_corrections(simulate)
     add_margin_strokes(simulate)
@@ -221,104 +214,93 @@ def _check_simulate_photo(args) -> None:
     check_files(args, [*read, (args.studio, (".toml",))], [(args.output, (".jpg", ".jpeg"))])
 
 
-def add_predict(commands) -> None:
-    predict = commands.add_parser("predict", help="draw what the brush will paint")
-    add_input(predict)
-    predict.add_argument("output", metavar="OUT", help="a picture (.png .svg) or marks (.json)")
-    add_choices(predict)
-    predict.add_argument(
-        "--band",
-        action="store_true",
-        help="also draw the 95 %% confidence band of the edges",
+def add_preview(commands) -> None:
+    preview = commands.add_parser(
+        "preview", help="show what will be painted, and how close it is to the drawing"
     )
-    add_writes(predict)
-    predict.set_defaults(run="predict_file", parser=predict, check=_check_predict)
-
-
-def _check_predict(args) -> None:
-    check_drawing(args)
-    if args.band and suffix_of(args.output) == ".json":
-        args.parser.error("--band is for pictures (.svg .png)")
-    check_files(args, [(args.input, DRAWINGS), (args.brush, None)], [(args.output, (*PICTURES, ".json"))])
-
-
-def add_report(commands) -> None:
-    report = commands.add_parser("report", help="measure how close the predicted paint is to the drawing")
-    add_input(report)
-    add_choices(report, several_brushes=True)
-    add_speed(report)
-    report.add_argument("--all-brushes", action="store_true", help="one line for each brush, the best first")
-    report.add_argument(
-        "--preview", metavar="FILE", help="also draw where paint is missing or too much (.png .svg)"
+    add_input(preview)
+    add_output(
+        preview,
+        "a picture (.png .svg), a page that plays the motion in a browser (.html), or marks (.json); default: none, "
+        "print the report",
+        False,
     )
-    report.add_argument("--json", action="store_true", help="as JSON")
-    add_writes(report)
-    report.set_defaults(run="report_file", parser=report, check=_check_report)
-
-
-def _check_report(args) -> None:
-    check_drawing(args)
-    if len(args.brush or ()) > 1 and not args.all_brushes:
-        args.parser.error("--brush is given more than once, which needs --all-brushes")
-    if args.all_brushes and args.preview:
-        args.parser.error("--preview shows one brush, not --all-brushes")
-    if args.all_brushes and suffix_of(args.input) == ".json":
-        args.parser.error("--all-brushes needs a drawing: a plan is made for one brush")
-    if args.preview and suffix_of(args.input) == ".json":
-        args.parser.error("--preview needs a drawing: a plan does not say what was wanted")
-    brushes = [(brush, None) for brush in args.brush or ()]
-    check_files(args, [(args.input, DRAWINGS), *brushes], [(args.preview, PICTURES)])
-
-
-def add_animate(commands) -> None:
-    animate = commands.add_parser(
-        "animate", help="write a page that plays the motion of the tool and the paint"
+    preview.add_argument(
+        "--show",
+        choices=("paint", "toolpath", "strokes", "errors"),
+        default="paint",
+        help="draw the paint; the paint and the path of the tool; the strokes read from the drawing; or missing and "
+        "surplus paint, with the report; default: paint",
     )
-    add_input(animate)
-    animate.add_argument("output", metavar="OUT", help="a page for any browser, without network (.html)")
-    add_choices(animate)
-    animate.add_argument(
-        "--speed",
-        metavar="FACTOR",
-        type=values.speed,
-        default=1.0,
-        help="how much faster than the robot; default: 1",
+    add_choices(preview, several_brushes=True)
+    add_speed(preview)
+    preview.add_argument(
+        "--band", action="store_true", help="also draw the 95 %% confidence band of the edges of the paint"
     )
-    add_writes(animate)
-    animate.set_defaults(run="animate_file", parser=animate, check=_check_animate)
-
-
-def _check_animate(args) -> None:
-    check_drawing(args)
-    check_files(args, [(args.input, DRAWINGS), (args.brush, None)], [(args.output, (".html",))])
-
-
-def add_import(commands) -> None:
-    look = commands.add_parser("import", help="draw the strokes that brushsvg reads from a drawing")
-    look.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)})")
-    look.add_argument("output", metavar="OUT", help="a picture (.svg .png)")
-    add_layout(look)
-    add_script(look)
-    look.add_argument(
+    preview.add_argument(
         "--editable",
         action="store_true",
-        help="the strokes as lines with a width, to go on drawing with (.svg)",
+        help="with --show strokes: lines with a width, to go on drawing with (.svg)",
     )
-    add_writes(look)
-    look.set_defaults(run="import_file", parser=look, check=_check_import, brush=None, lag=None)
+    preview.add_argument(
+        "--playback",
+        metavar="FACTOR",
+        type=values.speed,
+        help="with .html: how much faster than the robot the page begins; default: 1",
+    )
+    preview.add_argument(
+        "--all-brushes", action="store_true", help="report one line for each brush, the best first"
+    )
+    preview.add_argument("--json", action="store_true", help="print the report as JSON")
+    add_writes(preview)
+    preview.set_defaults(parser=preview, check=_check_preview)
 
 
-def _check_import(args) -> None:
+def _check_preview(args) -> None:
     check_drawing(args)
-    if args.editable and suffix_of(args.output) != ".svg":
-        args.parser.error("--editable writes an SVG")
-    check_files(args, [(args.input, tuple(READERS))], [(args.output, PICTURES)])
+    args.run = _preview_of(args)
+    suffix, error = suffix_of(args.output or ""), args.parser.error
+    shows_report = args.run == "preview_report"
+    if args.show != "paint" and args.output is None:
+        error(f"--show {args.show} needs a picture to draw: add -o FILE.png")
+    if args.show != "paint" and suffix not in PICTURES:
+        error(f"--show {args.show} is for pictures ({' '.join(PICTURES)})")
+    if args.band and (args.run != "preview_paint" or suffix == ".json"):
+        error("--band is for pictures of the paint: add -o FILE.png or -o FILE.svg, without --show")
+    if args.editable and (args.run != "preview_strokes" or suffix != ".svg"):
+        error("--editable needs --show strokes and -o FILE.svg")
+    if args.playback is not None and args.run != "preview_animation":
+        error("--playback needs -o FILE.html")
+    if args.all_brushes and args.output is not None:
+        error("--all-brushes prints a list: leave -o out")
+    if args.json and not shows_report:
+        error("--json is for the report, which is printed without -o, or with --show errors")
+    if len(args.brush or ()) > 1 and not args.all_brushes:
+        error("--brush is given more than once, which needs --all-brushes")
+    if args.all_brushes and suffix_of(args.input) == ".json":
+        error("--all-brushes needs a drawing: a plan is made for one brush")
+    if args.show == "errors" and suffix_of(args.input) == ".json":
+        error("--show errors needs a drawing: a plan does not have the target shapes")
+    brushes = [(brush, None) for brush in args.brush or ()]
+    read = tuple(READERS) if args.show == "strokes" else DRAWINGS
+    check_files(args, [(args.input, read), *brushes], [(args.output, (*PICTURES, ".html", ".json"))])
+    if not args.all_brushes:
+        args.brush = args.brush[0] if args.brush else None
+
+
+def _preview_of(args) -> str:
+    """Return the name of the function of `commands` that shows this view."""
+    if args.show == "strokes":
+        return "preview_strokes"
+    if args.show == "errors" or args.output is None:
+        return "preview_report"
+    return "preview_animation" if suffix_of(args.output) == ".html" else "preview_paint"
 
 
 def add_text(commands) -> None:
     text = commands.add_parser("text", help="write a text in a font as a drawing")
     text.add_argument("input", metavar="TEXT", help="what to write; \\n starts a line")
-    text.add_argument("output", metavar="OUT", help="a drawing (.svg)")
+    add_output(text, "a drawing (.svg)")
     text.add_argument(
         "--font",
         metavar="FILE",

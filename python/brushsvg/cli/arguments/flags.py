@@ -28,6 +28,16 @@ def plans_and_programs() -> str:
     return f"a plan (.json) or {programs()}"
 
 
+def add_output(command: argparse.ArgumentParser, what: str, is_needed: bool = True) -> None:
+    """Add -o, the file or folder that a command writes."""
+    command.add_argument("-o", "--output", metavar="OUT", required=is_needed, help=what)
+
+
+def add_picture(command: argparse.ArgumentParser, what: str, kinds: str = ".png .svg") -> None:
+    """Add --picture, a picture that a command writes in addition to its output."""
+    command.add_argument("--picture", metavar="FILE", help=f"also draw {what} ({kinds})")
+
+
 def add_looks(commands, kind: str, about: str, shown: str, file: str):
     """`brush` or `cell` with list, show and check; what else it does is added to the parsers returned."""
     whats = commands.add_parser(kind, help=about).add_subparsers(metavar="WHAT", required=True)
@@ -82,7 +92,7 @@ def add_margin_strokes(command: argparse.ArgumentParser) -> None:
 
 
 def add_quiet(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--quiet", action="store_true", help="do not say what was written; warnings stay")
+    command.add_argument("--quiet", action="store_true", help="print warnings only")
 
 
 def add_writes(command: argparse.ArgumentParser) -> None:
@@ -90,8 +100,7 @@ def add_writes(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--force",
         action="store_true",
-        help="replace files that are there already: brushes, cells, corrections, drawings, and what was changed since "
-        "brushsvg wrote it",
+        help="replace existing brushes, cells, corrections and drawings, and files edited since brushsvg wrote them",
     )
     add_quiet(command)
 

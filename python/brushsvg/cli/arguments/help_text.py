@@ -6,12 +6,14 @@ import argparse
 from collections.abc import Iterable
 
 COMMANDS = {
-    "Start": ("demo", "doctor", "install-plugin"),
-    "Drawings": ("text", "import", "predict", "convert", "report", "animate", "batch"),
-    "Machines": ("cell", "first-run", "height", "border", "check"),
-    "Brushes": ("brush", "chart", "scan", "calibrate", "compare", "simulate-photo"),
+    "Start": ("demo", "doctor"),
+    "Drawings": ("text", "preview", "convert", "check", "batch"),
+    "Machines": ("cell", "setup"),
+    "Brushes": ("brush", "chart", "calibrate", "compare"),
+    "Research": ("simulate-photo",),
 }
 TOPICS = {
+    "output": "output show picture marks-picture page report playback band editable json all-brushes",
     "brush and machine": "brush cell speed z-offset compensation lag tolerance corrections",
     "size and place": "sheet fit scale origin units",
     "what is painted": "layer select colour background width as lenient pen paper-z skip-region skip-comment",
@@ -23,7 +25,7 @@ RARE = {
     for name in (
         "z-offset compensation lag tolerance corrections origin units select colour background width as lenient pen "
         "paper-z skip-region skip-comment start end corners script join order from-stroke margin-strokes norm total "
-        "spread height dpi mirrored prior noise aim paint"
+        "spread height dpi mirrored prior noise aim paint playback editable at-least"
     ).split()
 }
 IN_CONVERT = {

@@ -1,4 +1,4 @@
-"""The commands about a machine: first-run, border, height, check, cell."""
+"""The commands for a machine: setup, check, cell."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from .flags import (
     add_layout,
     add_looks,
     add_margin_strokes,
+    add_output,
+    add_picture,
     add_script,
     add_speed,
     add_wide,
@@ -24,10 +26,19 @@ from .flags import (
 from .usage_checks import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files
 
 
-def add_first_run(commands) -> None:
+def add_setup(commands) -> None:
+    about = "write programs to set up a machine, and install the Inkscape extension"
+    whats = commands.add_parser("setup", help=about).add_subparsers(metavar="WHAT", required=True)
+    _add_first_run(whats)
+    _add_height(whats)
+    _add_border(whats)
+    _add_inkscape(whats)
+
+
+def _add_first_run(commands) -> None:
     first = commands.add_parser("first-run", help="write a safe first program for a new machine")
     first.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml")
-    first.add_argument("-o", "--output", metavar="OUT", required=True, help=A_PROGRAM)
+    add_output(first, A_PROGRAM)
     first.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     first.add_argument(
         "--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100"
@@ -40,10 +51,10 @@ def _check_first_run(args) -> None:
     check_files(args, [(args.brush, None)], [(args.output, PROGRAMS)])
 
 
-def add_border(commands) -> None:
+def _add_border(commands) -> None:
     border = commands.add_parser("border", help="write a run around the job in the air, at safe height")
     add_input(border)
-    border.add_argument("output", metavar="OUT", help=A_PROGRAM)
+    add_output(border, A_PROGRAM)
     add_choices(border)
     add_z_offset(border)
     add_margin_strokes(border)
@@ -56,9 +67,9 @@ def _check_border(args) -> None:
     check_files(args, [(args.input, DRAWINGS), (args.brush, None)], [(args.output, PROGRAMS)])
 
 
-def add_height(commands) -> None:
+def _add_height(commands) -> None:
     height = commands.add_parser("height", help="write strokes that show how high the paper is")
-    height.add_argument("output", metavar="OUT", help=A_PROGRAM)
+    add_output(height, A_PROGRAM)
     height.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     height.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     height.add_argument(
@@ -91,6 +102,20 @@ def _check_height(args) -> None:
     check_files(args, [(args.brush, None)], [(args.output, PROGRAMS)])
 
 
+def _add_inkscape(commands) -> None:
+    install = commands.add_parser("inkscape", help="install the extension for Inkscape")
+    install.add_argument(
+        "zip", metavar="ZIP", nargs="?", help="brushsvg-inkscape.zip; not needed in a source tree"
+    )
+    install.add_argument("--remove", action="store_true", help="remove the extension again")
+    install.set_defaults(run="install_plugin", parser=install, check=_check_inkscape)
+
+
+def _check_inkscape(args) -> None:
+    if args.remove and args.zip is not None:
+        args.parser.error("--remove needs no zip: leave it out")
+
+
 def add_check(commands) -> None:
     check = commands.add_parser(
         "check", help="read a program back, simulate it, and compare it with its drawing"
@@ -114,7 +139,7 @@ def add_check(commands) -> None:
         "--z-offset", metavar="MM", type=values.height, help="default: the one that the program names"
     )
     check.add_argument("--lenient", action="store_true", help="paint what is sound of damaged geometry")
-    check.add_argument("--preview", metavar="FILE", help="also write what will be painted (.png .svg)")
+    add_picture(check, "what will be painted")
     check.add_argument("--json", action="store_true", help="figures as JSON")
     add_writes(check)
     check.set_defaults(
@@ -140,14 +165,14 @@ def _check_check(args) -> None:
         (args.brush, None),
         (args.corrections, (".json",)),
     ]
-    check_files(args, read, [(args.preview, PICTURES)])
+    check_files(args, read, [(args.picture, PICTURES)])
 
 
 def add_cell(commands) -> None:
     about = "list, show, check and create cells: machines with their limits"
     whats = add_looks(commands, "cell", about, "heights, speeds and limits", "cell.toml")
     new = whats.add_parser("new", help="write a cell file for you to edit")
-    new.add_argument("output", metavar="FILE", help="a cell.toml")
+    add_output(new, "a cell file (.toml); its name becomes the cell's name")
     new.add_argument("--like", metavar="NAME|FILE", help="the cell to start from; default: linuxcnc-3axis")
     new.add_argument(
         "--taught",
@@ -166,7 +191,7 @@ def _add_cell_place(whats) -> None:
     place = whats.add_parser("place", help="find where the paper can be for an arm to reach the drawing")
     place.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml, with an arm")
     place.add_argument("drawing", metavar="IN", nargs="?", help="what is painted; default: the whole sheet")
-    place.add_argument("-o", "--output", metavar="FILE", help="a picture of the table (.png .svg)")
+    add_output(place, "a picture of the table (.png .svg)", False)
     place.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     add_layout(place)
     add_wide(place)

@@ -47,7 +47,7 @@ def ask_measurements(name: str) -> tuple[list[tuple[float, float]], list[tuple[f
         f"--lag-at {depth:g}={lag:g} --width-at {depth:g}={width:g}"
         for (depth, lag), (_, width) in zip(lags, widths, strict=True)
     ]
-    say(f"The same without questions: brushsvg brush new {shlex.quote(name)} {' '.join(flags)}")
+    say(f"The same without questions: brushsvg brush new -o {shlex.quote(name)} {' '.join(flags)}")
     return lags, widths
 
 

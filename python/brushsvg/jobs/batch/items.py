@@ -218,4 +218,4 @@ def _way_out(one: Item, other: Item, items: list[Item]) -> str:
             return f"{each.source} is given twice, as {' and '.join(names)}: leave its folder out"
     if one.path and os.path.dirname(one.path) == os.path.dirname(other.path):
         return "rename one of them"
-    return "give one of them to a batch of its own, with another --out"
+    return "give one of them to a batch of its own, with another folder (-o)"

@@ -119,7 +119,7 @@ class Manifest:
             real = os.path.realpath(os.path.dirname(way))
             if not (self._is_inside(way) and self._is_inside(real)):
                 sentence = f"row {row.name}: {name[:200]!r} is outside of the folder"
-                advice = "delete the manifest, or give another --out"
+                advice = "delete the manifest, or give another folder (-o)"
                 raise Error(sentence, file=str(self.path), code="path-outside", advice=advice)
 
     def _is_inside(self, path: str) -> bool:
@@ -157,7 +157,9 @@ class Manifest:
                 sentence = (
                     f"{here[0][0]} was made of {row.source}: that of {item.source} would be written over it"
                 )
-                raise Error(sentence, file=str(self.folder), code="name-taken", advice="give another --out")
+                raise Error(
+                    sentence, file=str(self.folder), code="name-taken", advice="give another folder (-o)"
+                )
 
     def other_source(self, item: Item, path: str) -> str:
         """The other drawing, still there, that an earlier run made this file of; "" where there is none."""

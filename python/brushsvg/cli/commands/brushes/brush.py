@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 
 from ...._core import remarks, write_brush
-from ....errors import Error, Notice
+from ....errors import Error
 from ....files import read_bytes
 from ....model.describe import LAWS, one_line, page, reach
 from ....model.library import brush_like, brush_names, find_brush, unknown_keys
-from ...console import RefusedError, about, tell, warn
+from ...console import about, tell, warn
 from ...steps.ask_measurements import ask_measurements, few_depths
 from ...steps.output_places import check_places, suffix_of, tell_list, write
 
@@ -35,14 +35,11 @@ def brush_new(args) -> None:
     from ....calibration.numbers.from_widths import new_brush
     from ....calibration.numbers.measurements import read_widths
 
-    path = args.name if suffix_of(args.name) == ".json" else f"{args.name}.json"
+    path = args.output
     name = os.path.splitext(os.path.basename(path))[0]
-    if not os.path.basename(args.name).strip(". "):
-        why = Notice("", "a brush needs a name, as in brushsvg brush new mine", code="name-invalid")
-        raise RefusedError(args.name, [why])
     check_places(args, path, sources=[path])
     if args.like is None and args.lag is None and not (args.lag_at or args.width_at or args.widths):
-        args.lag_at, args.width_at = ask_measurements(args.name)
+        args.lag_at, args.width_at = ask_measurements(path)
     widths = list(args.width_at)
     if args.widths:
         with about(args.widths):

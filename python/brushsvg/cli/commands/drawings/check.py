@@ -18,20 +18,20 @@ RUNNABLE = "OK to run: no problem found"
 
 
 def check_file(args) -> None:
-    check_places(args, args.preview)
+    check_places(args, args.picture)
     with about(""):  # errors name their file
         done = checked(args.program, typed(args), stage, warn)
     with about(args.program):
         if done.is_foreign and args.lenient:
             sentence = "brushsvg did not write it: --lenient would change nothing"
             raise Error(sentence, code="flag-without-effect")
-        if done.work is None and args.preview:
+        if done.work is None and args.picture:
             raise Error("it paints no drawing: there is no picture of it", code="nothing-to-show")
-        if args.preview:
+        if args.picture:
             outlined = prediction.outlined(done.marks, done.work.brush, stage)
-            picture = outputs.picture(suffix_of(args.preview), done.work, outlined)
+            picture = outputs.picture(suffix_of(args.picture), done.work, outlined)
             overlap = None if done.is_foreign else done.figures.total.overlap
-            write(args, {args.preview: picture}, len(done.plan.passes), done.time_s, overlap)
+            write(args, {args.picture: picture}, len(done.plan.passes), done.time_s, overlap)
     if done.job == "painting":
         tell(report.as_text(".json" if args.json else ".txt", done.figures))
     elif args.json:

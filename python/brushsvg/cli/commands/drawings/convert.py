@@ -24,7 +24,7 @@ from ...steps.prepared import prepare
 
 
 def convert_file(args) -> None:
-    check_places(args, args.output, args.preview, args.report, args.page)
+    check_places(args, args.output, args.picture, args.report, args.page)
     chosen = settled(typed(args), args.input)
     # check knows strokes in the margin by the program that paints them: of several, only one would
     work = prepare(on_a_page(chosen) if args.page and not args.per_colour else chosen)
@@ -40,13 +40,13 @@ def convert_file(args) -> None:
         for (path, _), one in reversed([*zip(parts, tries, strict=True)]):
             files = {path_next_to(path, name): text for name, text in one.encoded().items()} | files
         shown = tries[0] if len(tries) == 1 else None
-        if args.preview or args.report:
+        if args.picture or args.report:
             marks = (
-                shown.marks if shown else prediction.predict(work, suffix_of(args.preview) == ".svg", stage)
+                shown.marks if shown else prediction.predict(work, suffix_of(args.picture) == ".svg", stage)
             )
             of_all = shown.work if shown else work
-        if args.preview:
-            files[args.preview] = outputs.picture(suffix_of(args.preview), of_all, marks)
+        if args.picture:
+            files[args.picture] = outputs.picture(suffix_of(args.picture), of_all, marks)
         if args.report:
             figures = outputs.reported(of_all, marks, work.options.cell)
             files[args.report] = report.as_text(suffix_of(args.report), figures)
@@ -107,7 +107,7 @@ def _left_from_before(output: str, files: Collection[str], called_before: list[s
 
 def _tried(args, path: str, work: Work) -> conversion.Tried:
     """A program that may be written. RefusedError with all that forbids it."""
-    rings, job = suffix_of(args.preview) == ".svg", Job(args.z_offset, args.from_stroke)
+    rings, job = suffix_of(args.picture) == ".svg", Job(args.z_offset, args.from_stroke)
     one = conversion.tried(work, suffix_of(path), job, args.order, args.lenient, rings, stage, path=path)
     if one.problems:
         raise RefusedError(args.input, one.problems)

@@ -110,7 +110,7 @@ def _inkscape() -> Iterator[tuple[str, str]]:
     folder = extensions_folder() / FOLDER
     if not (folder / "brushsvg_program.py").is_file():
         zipped = "" if SOURCE.is_dir() else " brushsvg-inkscape.zip"  # a wheel does not hold it
-        yield "extension", f"not installed. Add it with  brushsvg install-plugin inkscape{zipped}"
+        yield "extension", f"not installed. Add it with  brushsvg setup inkscape{zipped}"
         return
     note = folder / NOTE
     runs = os.fsdecode(note.read_bytes()).strip() if note.is_file() else ""

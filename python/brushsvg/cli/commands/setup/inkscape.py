@@ -1,4 +1,4 @@
-"""brushsvg install-plugin: our extension put where a drawing program looks."""
+"""brushsvg setup inkscape: install the extension where Inkscape looks for it."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ def install_plugin(args) -> None:
     from ...install_plugin import install_inkscape, remove_inkscape
 
     if args.remove:
-        with about(args.plugin):
+        with about("inkscape"):
             folder = remove_inkscape()
         tell(f"{folder}: removed; start Inkscape again\n")
         return
-    with about(args.plugin):
+    with about("inkscape"):
         folder = install_inkscape(args.zip)
     tell(f"{folder}: installed; start Inkscape again, and look under Extensions > Brush\n")

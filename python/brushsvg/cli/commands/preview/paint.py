@@ -1,4 +1,4 @@
-"""brushsvg predict: what will be painted."""
+"""brushsvg preview: draw what will be painted."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ...steps.output_places import check_places, suffix_of, write
 from ...steps.prepared import look
 
 
-def predict_file(args) -> None:
+def preview_paint(args) -> None:
     check_places(args, args.output)
     suffix = suffix_of(args.output)
     outlines = suffix != ".png" or args.band
@@ -24,5 +24,5 @@ def predict_file(args) -> None:
             band = band_of(work.plan, work.brush, marks)
             if not any(band.rings):
                 say(work.brush.name, band.words)
-        picture = outputs.picture(suffix, work, marks, band)
+        picture = outputs.picture(suffix, work, marks, band, with_toolpath=args.show == "toolpath")
     write(args, {args.output: picture}, len(work.plan.passes), looked.seconds())

@@ -1,4 +1,4 @@
-"""brushsvg report: how near the paint comes to the drawing, with one brush or with all."""
+"""brushsvg preview without -o, and --show errors: report how close the paint comes to the drawing."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from ...steps.output_places import check_places, suffix_of, write
 from ...steps.prepared import look
 
 
-def report_file(args) -> None:
-    check_places(args, args.preview)
+def preview_report(args) -> None:
+    check_places(args, args.output)
     if args.all_brushes:
         return _all_brushes(args)
-    chosen = settled(typed(args, brush=args.brush[0] if args.brush else None), args.input)
-    looked = look(chosen, outlines=suffix_of(args.preview) == ".svg", partly=True)
+    chosen = settled(typed(args), args.input)
+    looked = look(chosen, outlines=suffix_of(args.output) == ".svg", partly=True)
     work, marks = looked.work, looked.marks
     with about(args.input):
         stage("trying other sizes")
@@ -37,9 +37,9 @@ def report_file(args) -> None:
             advice=advice,
         )
         text = report.as_text(".json" if args.json else ".txt", figures)
-        if args.preview:
-            picture = outputs.overlap_picture(suffix_of(args.preview), work, marks)
-            write(args, {args.preview: picture}, len(figures.strokes), figures.time_s, figures.total.overlap)
+        if args.output:
+            picture = outputs.overlap_picture(suffix_of(args.output), work, marks)
+            write(args, {args.output: picture}, len(figures.strokes), figures.time_s, figures.total.overlap)
     if work.plan.passes or args.json:
         tell(text)
     elif advice:

@@ -1,4 +1,4 @@
-"""brushsvg animate: a program as it is painted, to play in a browser."""
+"""brushsvg preview -o FILE.html: a page that plays the job in a browser."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from ...steps.output_places import check_places, write
 from ...steps.prepared import look
 
 
-def animate_file(args) -> None:
+def preview_animation(args) -> None:
     check_places(args, args.output)
     looked = look(settled(typed(args), args.input), outlines=True, at_loads=True)
     work, loads, cell = looked.work, looked.loads, looked.work.options.cell
     with about(args.input):
-        page = outputs.played(work, loads, looked.marks, cell, args.speed)
+        page = outputs.played(work, loads, looked.marks, cell, args.playback or 1.0)
     write(args, {args.output: page}, len(loads.loads), looked.seconds())

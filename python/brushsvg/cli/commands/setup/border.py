@@ -1,4 +1,4 @@
-"""brushsvg border: the tool goes round where will be painted."""
+"""brushsvg setup border: move the tool around the painted area at safe height."""
 
 from __future__ import annotations
 

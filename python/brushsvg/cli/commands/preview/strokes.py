@@ -1,4 +1,4 @@
-"""brushsvg import: what was understood of a drawing."""
+"""brushsvg preview --show strokes: draw the strokes that are read from a drawing."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ...steps.options import typed
 from ...steps.output_places import check_places, suffix_of, write
 
 
-def import_file(args) -> None:
+def preview_strokes(args) -> None:
     check_places(args, args.output)
     chosen = typed(args)
     warn(args.input, without_effect(chosen))

@@ -1,0 +1,1 @@
+"""`brushsvg preview`, a file for each view."""
