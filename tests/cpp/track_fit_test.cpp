@@ -38,7 +38,7 @@ Track wander(int seed, bool set_down) {
         begun.taut = begun.heading_known = true;
     }
     const std::vector<Arc> arcs;
-    const ToldWay<double> way{track.poses_mm, arcs, 0.0};
+    const CommandedWay<double> way{track.poses_mm, arcs, 0.0};
     trace(law, way, track.pose, set_down ? nullptr : &begun,
           [&](std::size_t k, const Trace<double>& at) { track.seen_mm.row(k) = at.state.contact.transpose(); });
     return track;
