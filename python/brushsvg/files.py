@@ -52,7 +52,8 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
 
 def toml_document(text: str, kind: str) -> dict:
     """What the text of a TOML file says. Error for what is none, kind: as a sentence calls the file."""
-    if found := re.search(rf"(?:[\w-]+\s*\.\s*){{{MOST_PARTS}}}", text):
+    # possessive, and only from the beginning of a word: a long word is read once, not once from each of its letters
+    if found := re.search(rf"(?<![\w-])(?:[\w-]++\s*+\.\s*+){{{MOST_PARTS}}}", text):
         sentence = f"a key of more than {MOST_PARTS} parts: {found[0][:20]!r} ..."
         raise Error(f"the {kind} file is not TOML of ours: {sentence}", code="not-toml")
     try:

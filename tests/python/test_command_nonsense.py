@@ -178,8 +178,8 @@ def test_no_command_is_forgotten():
                 found |= {f"{name} {each}".strip() for each in names(below) or {""}}
         return found
 
-    # test_article.py and test_demo.py have the places of article and demo
-    reads_nothing = {"brush list", "cell list", "demo", "doctor"}
+    # test_demo.py and test_project.py have the places that demo and init write to
+    reads_nothing = {"brush list", "cell list", "demo", "doctor", "init"}
     assert names(command_parser()) - reads_nothing == {
         next(name for name in names(command_parser()) if f"{command} ".startswith(f"{name} "))
         for command in COMMANDS

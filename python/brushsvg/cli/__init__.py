@@ -89,8 +89,11 @@ def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
         tell_in_json(args.messages == "json")
         file = getattr(args, "input", "")
         from . import commands
+        from .steps.project_settings import use_project
 
-        getattr(commands, args.run)(args)
+        run = getattr(commands, args.run)
+        use_project(args, argv)
+        run(args)
     except SystemExit as leaving:
         return leaving.code
     except RefusedError as refused:

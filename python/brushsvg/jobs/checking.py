@@ -28,6 +28,7 @@ from ..read import settings_in
 from ..read.gcode import is_ours
 from ..show.evaluation.report import Report
 from ..verify import against_plan, against_regenerated, pace, setup_programs, simulate_program
+from ..verify.foreign_program import foreign_program
 from ..verify.readback import read_program, text_of_file
 from ..verify.readback.header import made as made_of
 from ..verify.readback.ros2 import as_table
@@ -35,6 +36,7 @@ from ..verify.time_as_run import time_as_run_s
 from . import cancelling, outputs, prediction
 from .cancelling import Cancel
 from .choices import (
+    CHOICES,
     LAYOUT_FLAGS,
     MADE_FLAGS,
     NAMED_OTHERWISE,
@@ -43,13 +45,15 @@ from .choices import (
     brush_of,
     cell_of,
     concerning,
+    drop_from_project,
     name_of,
     options_of,
+    overruled_names,
     suffix_of,
     without_effect,
+    without_overruled,
 )
 from .conversion import chosen_of, of_arm
-from .foreign_program import foreign_program
 from .json_files import read_plan
 from .options import DEFAULT_BRUSH, Options
 from .preparation import preparation
@@ -114,6 +118,7 @@ def check(
     """
     need(program, (str, os.PathLike), "a path, which program is")
     chosen = chosen_of(drawing, choices)
+    chosen = drop_from_project(chosen, SAID)
     for name in SAID:
         if getattr(chosen, name) is not None:
             sentence = f"a program says itself how it was made: {name} would change nothing"
@@ -144,6 +149,7 @@ def checked(
             return _foreign(path, text, chosen, told)
         text = _whole_text(path, suffix, text)
         made = made_of(text)
+        chosen = _as_program_says(chosen, made)
         for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
             if getattr(chosen, kind) is None and name not in names:
                 raise Error(
@@ -202,6 +208,19 @@ def _whole_text(path: str, suffix: str, text: str) -> str:
         )
     called = called_programs(path, text, lambda file: text_of_file(read_bytes(file)))
     return "".join([text, *called.values()])
+
+
+def _as_program_says(chosen: Choices, made) -> Choices:
+    """Drop what a project file chose and the program's header says itself."""
+    if not chosen.from_project:
+        return chosen
+    said = {} if chosen.input is None else settings_in(chosen.input)
+    chosen = without_overruled(chosen, {name: said[name] for name in said if name not in ("brush", "cell")})
+    named = {"brush": made.brush, "cell": made.cell}
+    dropped = {"z_offset"} | overruled_names(chosen, named, unknown=False)
+    if made.sheet_mm and chosen.input is None:
+        dropped.add("sheet")
+    return drop_from_project(chosen, dropped)
 
 
 def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:
@@ -320,6 +339,7 @@ def _foreign(path: str, text: str, chosen: Choices, told: Told) -> Check:
     if chosen.input is not None:
         sentence = "brushsvg did not write it: it paints no drawing that is known; check it alone"
         raise Error(sentence, code="nothing-to-compare")
+    chosen = drop_from_project(chosen, {*CHOICES} - {"brush", "cell", "sheet", "paper_z"})
     for flag in (*LAYOUT_FLAGS, *MADE_FLAGS, "speed", "z-offset", "corrections"):
         given = getattr(chosen, NAMED_OTHERWISE.get(flag, flag))
         if flag not in ("sheet", "paper-z") and given:

@@ -7,7 +7,7 @@ from dataclasses import fields
 from ...photo import PHOTOS
 from ...read import READERS
 from . import values
-from .flags import A_PROGRAM, add_looks, add_output, add_picture, add_writes, add_z_offset
+from .flags import A_PROGRAM, add_explain, add_looks, add_output, add_picture, add_writes, add_z_offset
 from .usage_checks import PICTURES, PROGRAMS, check_extension, check_files, check_job, suffix_of
 
 
@@ -58,6 +58,7 @@ def add_chart(commands) -> None:
         f"default: {values.EDGE_NOISE_MM:g}",
     )
     add_z_offset(chart)
+    add_explain(chart, "drawing")
     add_writes(chart)
     chart.set_defaults(run="chart_file", parser=chart, check=_check_chart)
 

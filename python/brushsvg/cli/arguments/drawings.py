@@ -81,7 +81,8 @@ def add_batch(commands) -> None:
         "inputs",
         metavar="IN",
         nargs="*",
-        help=f"drawings ({' '.join(READERS)}), folders of them, patterns with *, lists (.txt, a path on each line)",
+        help=f"drawings ({' '.join(READERS)}), folders of them, patterns with *, lists (.txt, a path on each line); "
+        "brushsvg.toml near the first one serves all",
     )
     add_output(batch, "a folder for programs, pictures and tables")
     batch.add_argument(
@@ -100,6 +101,7 @@ def add_batch(commands) -> None:
     )
     batch.add_argument("--parquet", action="store_true", help="also write the table as table.parquet")
     add_choices(batch)
+    batch.set_defaults(project_near="inputs")
     add_speed(batch)
     add_z_offset(batch)
     add_order(batch)
@@ -145,7 +147,7 @@ def add_compare(commands) -> None:
     compare.add_argument(
         "--corrected-cell",
         metavar="FILE",
-        help="also write the cell whose table [machine] undoes what is certain, besides what it undid (.toml)",
+        help="also write the cell with the certain errors of the machine corrected (.toml)",
     )
     compare.add_argument(
         "--at-least",
@@ -221,8 +223,7 @@ def add_preview(commands) -> None:
     add_input(preview)
     add_output(
         preview,
-        "a picture (.png .svg), a page that plays the motion in a browser (.html), or marks (.json); default: none, "
-        "print the report",
+        "a picture (.png .svg), a page that plays the motion (.html), or marks (.json); default: print the report",
         False,
     )
     preview.add_argument(
@@ -284,8 +285,6 @@ def _check_preview(args) -> None:
     brushes = [(brush, None) for brush in args.brush or ()]
     read = tuple(READERS) if args.show == "strokes" else DRAWINGS
     check_files(args, [(args.input, read), *brushes], [(args.output, (*PICTURES, ".html", ".json"))])
-    if not args.all_brushes:
-        args.brush = args.brush[0] if args.brush else None
 
 
 def _preview_of(args) -> str:

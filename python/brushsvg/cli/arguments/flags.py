@@ -105,6 +105,19 @@ def add_writes(command: argparse.ArgumentParser) -> None:
     add_quiet(command)
 
 
+def add_explain(command: argparse.ArgumentParser, drawing: str | None = "input") -> None:
+    """For a command that takes settings from a project file.
+
+    drawing: the operand near which the file is searched; None: the current folder.
+    """
+    command.add_argument(
+        "--explain",
+        action="store_true",
+        help="also print each setting and its source: command line, drawing, brushsvg.toml or default",
+    )
+    command.set_defaults(project_near=drawing)
+
+
 def add_input(command: argparse.ArgumentParser) -> None:
     command.add_argument("input", metavar="IN", help=f"a drawing ({' '.join(READERS)}) or plan (.json)")
 
@@ -150,6 +163,7 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add("--start", choices=TERMINALS, help="the start of strokes, where it differs from --terminals")
     add("--end", choices=TERMINALS, help="the end of strokes, where it differs from --terminals")
     add("--lenient", action="store_true", help="paint what is sound of damaged geometry")
+    add_explain(command)
 
 
 def add_colour(command: argparse.ArgumentParser) -> None:

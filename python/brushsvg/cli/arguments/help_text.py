@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Iterable
 
 COMMANDS = {
-    "Start": ("demo", "doctor"),
+    "Start": ("demo", "init", "doctor"),
     "Drawings": ("text", "preview", "convert", "check", "batch"),
     "Machines": ("cell", "setup"),
     "Brushes": ("brush", "chart", "calibrate", "compare"),
@@ -25,7 +25,7 @@ RARE = {
     for name in (
         "z-offset compensation lag tolerance corrections origin units select colour background width as lenient pen "
         "paper-z skip-region skip-comment start end corners script join order from-stroke margin-strokes norm total "
-        "spread height dpi mirrored prior noise aim paint playback editable at-least"
+        "spread height dpi mirrored prior noise aim paint playback editable at-least explain"
     ).split()
 }
 IN_CONVERT = {
@@ -79,11 +79,7 @@ def command_text(parser: argparse.ArgumentParser, is_whole: bool) -> str:
     options = [action for action in parser._actions if action.option_strings]
     rare = RARE if parser.prog.endswith(" convert") else RARE | IN_CONVERT
     is_long = len(options) > MANY and not is_whole
-    hidden = [
-        action
-        for action in options
-        if is_long and rare & {*action.option_strings} and (action.dest != "speed")  # of an animation
-    ]
+    hidden = [action for action in options if is_long and (rare | {"--help-all"}) & {*action.option_strings}]
     kept = {action: action.help for action in hidden}
     for action in hidden:
         action.help = argparse.SUPPRESS
@@ -92,7 +88,7 @@ def command_text(parser: argparse.ArgumentParser, is_whole: bool) -> str:
     parser.usage = None
     for action, words in kept.items():
         action.help = words
-    more = f"\n--help-all shows {len(hidden)} more options.\n"
+    more = f"\n--help-all shows {len(hidden) - 1} more options.\n"
     return text + more * bool(hidden)
 
 

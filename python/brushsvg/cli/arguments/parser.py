@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import argparse
 import functools
+import os
 import re
 from collections.abc import Iterator
 
 from ...suggestions import did_you_mean
 from ..console import say, tell
-from . import brushes, drawings, help_text, installation, machines
+from . import brushes, drawings, help_text, installation, machines, project
 
 
 def parse(argv: list[str] | None = None) -> argparse.Namespace:
     """The choices; `run` names a function of `commands`. SystemExit on --help, --version and wrong usage."""
-    args = command_parser().parse_args(argv)
+    parser = command_parser()
+    if "_ARGCOMPLETE" in os.environ:  # a shell asks for completions
+        from .completion import complete
+
+        complete(parser)
+    args = parser.parse_args(argv)
     if "check" in args:
         args.check(args)
     return args
@@ -93,6 +99,7 @@ def command_parser() -> argparse.ArgumentParser:
     )
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     installation.add_demo(commands)
+    project.add_init(commands)
     drawings.add_text(commands)
     drawings.add_preview(commands)
     drawings.add_convert(commands)

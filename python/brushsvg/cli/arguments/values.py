@@ -6,14 +6,9 @@ import argparse
 
 from ...errors import Error
 from ...jobs.calibration_options import LEAST_DPI, MOST_DPI
+from ...units import PAPERS_MM
 
-SHEETS_MM = {
-    "a2": (420.0, 594.0),
-    "a3": (297.0, 420.0),
-    "a4": (210.0, 297.0),
-    "a5": (148.0, 210.0),
-    "letter": (215.9, 279.4),
-}
+SHEETS_MM = PAPERS_MM
 
 
 def size(text: str) -> tuple[float, float]:
@@ -30,7 +25,9 @@ def noise(text: str) -> float:
 
 
 def sheet(text: str) -> tuple[float, float]:
-    return SHEETS_MM.get(text.lower()) or size(text)
+    from ...units import paper_mm
+
+    return _read(paper_mm, text)
 
 
 def lag(text: str) -> float:

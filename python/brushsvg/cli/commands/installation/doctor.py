@@ -23,6 +23,7 @@ PURPOSE = {  # of each extra that a user may want
     "arm": "the joints of robot arms",
     "cluster": "batch on several computers",
     "parquet": "the table of batch as Parquet",
+    "completion": "commands completed by the shell",
 }
 _WAIT_S = 20  # for Inkscape's version: a Snap starts slowly the first time
 
