@@ -104,7 +104,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
         assert not re.search(rf"{re.escape(absent)}\b", text), absent
     commands = set(re.findall(r"(?m)^  ([a-z]+)(?: |$)", pages[()]))
     assert commands == {
-        *("demo", "doctor", "text", "preview", "convert", "check", "batch", "cell", "setup"),
+        *("demo", "init", "doctor", "text", "preview", "convert", "check", "batch", "cell", "setup"),
         *("brush", "chart", "calibrate", "compare"),
     }
     assert set(re.findall(r"(?m)^    ([a-z]+) ", pages[("brush",)])) == {

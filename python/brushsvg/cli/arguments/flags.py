@@ -113,7 +113,7 @@ def add_explain(command: argparse.ArgumentParser, drawing: str | None = "input")
     command.add_argument(
         "--explain",
         action="store_true",
-        help="also print each setting and its source: command line, drawing, brushsvg.toml or default",
+        help="also print where each setting comes from, for example brushsvg.toml",
     )
     command.set_defaults(project_near=drawing)
 

@@ -29,6 +29,7 @@ RARE = {
     ).split()
 }
 IN_CONVERT = {
+    "--explain",
     "--wide",
     "--detail",
     "--terminals",

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
-from ..errors import Error, need, need_number
-from ..files import read_bytes, toml_document
-from ..suggestions import did_you_mean
-from ..units import length_mm, number, paper_mm, size_mm
+from ...errors import Error, need
+from ...files import read_bytes, toml_document
+from ...suggestions import did_you_mean
+from .values import name_or_path, read_value
 
 NAME = "brushsvg.toml"
 FORMAT, VERSION = "brushsvg/project", 1
@@ -100,7 +100,7 @@ def read_project(path: str | os.PathLike[str]) -> Project:
 
 def options() -> dict[str, str]:
     """Return the keys of [defaults], each with the name of its choice."""
-    from .choices import CHOICES, NAMED_OTHERWISE
+    from ..choices import CHOICES, NAMED_OTHERWISE
 
     flags = {choice: flag for flag, choice in NAMED_OTHERWISE.items()}
     top = {*TOP_KEYS.values(), *OF_ONE_DRAWING}
@@ -151,7 +151,7 @@ def _text(data: bytes) -> str:
 
 
 def _settings(document: dict, folder: str) -> dict[str, object]:
-    from .choices import Choices, checked
+    from ..choices import Choices, checked
 
     if document.pop("format", None) != FORMAT:
         sentence = f'the file is not a project: it lacks the line format = "{FORMAT}"'
@@ -166,12 +166,12 @@ def _settings(document: dict, folder: str) -> dict[str, object]:
     known = options()
     for key in document:
         _refuse_unknown(key, TOP_KEYS, known, "write it below [defaults]")
-    settings = {TOP_KEYS[key]: _value(TOP_KEYS[key], value, key) for key, value in document.items()}
+    settings = {TOP_KEYS[key]: read_value(TOP_KEYS[key], value, key) for key, value in document.items()}
     for key, value in defaults.items():
         _refuse_unknown(key, known, TOP_KEYS, "write it above [defaults]", "defaults.")
-        settings[known[key]] = _value(known[key], value, f"defaults.{key}")
+        settings[known[key]] = read_value(known[key], value, f"defaults.{key}")
     for kind in {"brush", "cell"} & {*settings}:
-        settings[kind] = _name_or_path(kind, settings[kind], folder)
+        settings[kind] = name_or_path(kind, settings[kind], folder)
     checked(Choices(**settings))
     return settings
 
@@ -185,115 +185,3 @@ def _refuse_unknown(key: str, known: Mapping, elsewhere: Mapping, advice: str, p
     listed = "" if advice else f" Known here are {', '.join(known)}"
     sentence = f"a project has no key {prefix}{key[:40]}{meant}{listed}".removesuffix(";")
     raise Error(sentence, where=prefix + key[:40], code="key-unknown", advice=advice)
-
-
-def _value(choice: str, value: object, key: str) -> object:
-    """Read a value as the option of the command line does. Error with the key."""
-    from .choices import ONE_OF
-
-    try:
-        if choice == "join":
-            need(value, bool, f"true or false, which {key} is")
-            return value
-        if choice in ("layer", "skip_region", "skip_comment"):
-            need(value, list, f"a list of texts, which {key} is")
-            return [_read(choice, _as_typed(each, key), key) for each in value]
-        text = _as_typed(value, key)
-        if choice in ONE_OF and text not in ONE_OF[choice]:
-            known = ONE_OF[choice]
-            sentence = (
-                f"{key} {text[:40]!r} is not known{did_you_mean(text, known)} Known are {', '.join(known)}"
-            )
-            raise Error(sentence, code="choice-unknown")
-        return _read(choice, text, key)
-    except Error as refusal:
-        sentence = refusal.sentence if key in refusal.sentence else f"{key}: {refusal.sentence}"
-        raise Error(
-            sentence, key, refusal.value, refusal.range, code=refusal.code, advice=refusal.advice
-        ) from None
-
-
-def _as_typed(value: object, key: str) -> str:
-    """Return the text that a user would type for a value of TOML."""
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        return str(value)[:400]
-    need(value, str, f"a text or a number, which {key} is")
-    return str(value)
-
-
-def _read(choice: str, text: str, key: str) -> object:
-    from .choices import RANGES, colour_of
-
-    readers: dict[str, Callable[[str], object]] = {
-        "sheet": paper_mm,
-        "fit": size_mm,
-        "origin": lambda text: _lengths(text, 2, "a point, as 20,15"),
-        "skip_region": _region,
-        "colour": colour_of,
-        "scale": _factor,
-        "paint_speed": number,
-    } | dict.fromkeys(("width", "lag", "tolerance", "z_offset", "paper_z"), length_mm)
-    found = readers.get(choice, _words)(text)
-    if choice in RANGES:
-        return need_number(found, key, *RANGES[choice])
-    return found
-
-
-def _words(text: str) -> str:
-    if not text.strip():
-        raise Error("the text is empty", code="not-text")
-    return text
-
-
-def _factor(text: str) -> float:
-    return number(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
-
-
-def _lengths(text: str, count: int, shape: str) -> tuple[float, ...]:
-    parts = text.split(",")
-    if len(parts) != count:
-        raise Error(f"{text[:24]!r} is not {shape}", code="wrong-type")
-    return tuple(need_number(length_mm(part), "a number of it", -1e6, 1e6) for part in parts)
-
-
-def _region(text: str) -> tuple[float, ...]:
-    x0, y0, x1, y1 = _lengths(text, 4, "a region, as 0,0,30,20")
-    return min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
-
-
-def _name_or_path(kind: str, text: str, folder: str) -> str:
-    """Return a shipped name as it is, and a file with the folder of the project. Error if there is neither."""
-    from ..machine.cells.cell_file import cell_names
-    from ..model.library import brush_names
-
-    names, suffix = (brush_names(), ".json") if kind == "brush" else (cell_names(), ".toml")
-    if text in names:
-        return text
-    if text.endswith(suffix) or "/" in text or os.sep in text:
-        path = os.path.join(folder, os.path.expanduser(text))
-        if _is_file(path):
-            return path
-        raise Error(
-            f"{kind} {text[:80]!r} is a file that does not exist; looked for {path}",
-            where=kind,
-            code="file-unreadable",
-            advice=f"correct the path, which counts from the folder of {NAME}",
-        )
-    own = f"{text}{suffix}"
-    advice = (
-        f"{own} is in this folder: write it with its ending" if _is_file(os.path.join(folder, own)) else ""
-    )
-    raise Error(
-        f"{kind} {text[:80]!r} is not known{did_you_mean(text, names)} Known are {', '.join(names)}, and any file that "
-        f"ends in {suffix}",
-        where=kind,
-        code=f"{kind}-unknown",
-        advice=advice,
-    )
-
-
-def _is_file(path: str) -> bool:
-    try:
-        return os.path.isfile(path)
-    except ValueError:  # a name that no file can have
-        return False
