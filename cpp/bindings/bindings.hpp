@@ -26,7 +26,6 @@ void bind_marks(py::module_& m);
 void bind_lag(py::module_& m);
 void bind_bristle(py::module_& m);
 void bind_simulate(py::module_& m);
-void bind_many_strokes(py::module_& m);
 void bind_region(py::module_& m);
 void bind_medial_axis(py::module_& m);
 void bind_curve_fit(py::module_& m);

@@ -54,7 +54,6 @@ PYBIND11_MODULE(_core, m) {
     bind_lag(m);
     bind_bristle(m);
     bind_simulate(m);
-    bind_many_strokes(m);
     bind_region(m);
     bind_medial_axis(m);
     bind_curve_fit(m);

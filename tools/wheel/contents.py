@@ -65,7 +65,6 @@ def components(work: Path, tools: Path) -> list[Component]:
     llvm = re.search(r"version (\S+)", clang)[1]
     found = [
         _debian_source("ceres-solver", "2.1.0+really2.1.0+dfsg-1", "BSD-3-Clause", work),
-        _debian_source("highway", "1.0.3-3+deb12u1", "Apache-2.0", work),
         _debian_headers("libeigen3-dev", "Eigen", "MPL-2.0", _copyright("libeigen3-dev")),
         _debian_headers(_boost_package(), "Boost", "BSL-1.0", _boost_licence()),
         _debian_headers("nlohmann-json3-dev", "nlohmann json", "MIT", _copyright("nlohmann-json3-dev")),

@@ -1629,13 +1629,12 @@ def follow_lags(
     depth_range_mm: collections.abc.Sequence[float],
 ) -> list:
     """
-    What patches of K other lags do on the ways of these passes, at the rows of their marks.
+    Follow the TCP of each pass with K other lags, at the rows of its marks.
 
     marks: PassMarks of each pass, simulated with one upright brush. lags: Profiles that are positive on depth_range_mm. For
     each pass: contacts [mm] and headings as unit vectors, (n, 2, K) each. In the air the contact is the TCP.
 
-    Exact at each row, by the closed form; vector instructions carry several lags at once where the library was built with
-    Highway.
+    Exact at each row, by the closed form.
     """
 
 def footprint_at(
