@@ -16,7 +16,6 @@ from ...model.confidence import (
     LEARNED,
     fitted_down_to_mm,
     half_interval_mm,
-    law_band,
     learned_of,
     places,
 )
@@ -354,8 +353,3 @@ def found_height(updated: Updated) -> tuple[float, float]:
     """How much higher the paper lies than taught [mm], and half its 95 % interval."""
     at = height_at(updated.fit)
     return updated.fit.height_mm, float(_core.deviations_of_95() * np.sqrt(updated.covariance[at, at]))
-
-
-def band_before(updated: Updated, law: str, depths: np.ndarray):
-    """As brush.confidence.law_band has it, of the brush that was the prior."""
-    return law_band(updated.before, law, depths)
