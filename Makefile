@@ -117,13 +117,13 @@ lint: $(VENV)/.dev test-system
 	$(BIN)/clang-format --dry-run --Werror $$(git ls-files '*.cpp' '*.hpp')
 	cppcheck -q --std=c++17 --language=c++ --enable=warning,performance,portability --inline-suppr --error-exitcode=1 --suppress=missingIncludeSystem -I cpp/include -I cpp/io -I cpp/posts cpp examples benchmarks
 
-INCLUDES := $(patsubst %,-Icpp/%,include io posts fit/laws fit/marks fit/tracks refine) -Icpp -isystem /usr/include/eigen3
+INCLUDES := $(patsubst %,-Icpp/%,include io posts fit/laws fit/marks refine) -Icpp -isystem /usr/include/eigen3
 
 clang-headers: setup
 	@$(call install,clang)
 	# public headers as a consumer with strict warnings reads them, by both compilers
 	for compiler in clang++ g++; do
-	  { for header in cpp/include/brushsvg/*.hpp cpp/io/{brush,plan,marks}_json.hpp cpp/posts/linuxcnc.hpp cpp/fit/*/{law_fit,angles,track_fit,mark_fit}.hpp cpp/refine/refine.hpp; do
+	  { for header in cpp/include/brushsvg/*.hpp cpp/io/{brush,plan,marks}_json.hpp cpp/posts/linuxcnc.hpp cpp/fit/*/{law_fit,angles,mark_fit}.hpp cpp/refine/refine.hpp; do
 	      if [ -e "$$header" ]; then echo "#include \"$$PWD/$$header\""; fi; done; } | \
 	    $$compiler -x c++ -std=c++17 -fsyntax-only -Wall -Wextra -Wconversion -Wsign-conversion -Werror $(INCLUDES) -
 	done

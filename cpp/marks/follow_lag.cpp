@@ -113,7 +113,7 @@ FollowedRows follow_lag(const Pass& pass, const PassMarks& marks, const LagLaw<d
     Follower follower(lag, motion.count());
     if (motion.count() == 0) return follower.rows();
     if (motion.depth(0) < 0.0) follower.lift(0, motion.tcp(0));
-    walk_pass<double>(motion, false, follower);
+    walk_pass<double>(motion, follower);
     return follower.rows();
 }
 

@@ -41,14 +41,14 @@ struct ToldWay {
 ///     to.move(motion, i, begin, end)      on the paper: a Move, or an ArcMove
 ///     to.is_done()                        whether to stop
 ///
-/// A pass that begins below the paper's surface is set down on the spot, if it is not `down` already, and one that ends
-/// there is lifted on the spot: moves from 0 to 0 of what follows the pose.
+/// A pass that begins below the paper's surface is set down on the spot, and one that ends there is lifted on the
+/// spot: moves from 0 to 0 of what follows the pose.
 template <class T, class Way, class To>
-void walk_pass(const Way& way, bool down, To& to) {
+void walk_pass(const Way& way, To& to) {
     using Index = Eigen::Index;
     const Index last = way.count() - 1;
     const T none(0.0), whole(1.0);
-    if (const T depth = way.depth(0); !down && value_of(depth) >= 0.0) {
+    if (const T depth = way.depth(0); value_of(depth) >= 0.0) {
         to.touch(0, none, way.tcp(0));
         if (value_of(depth) > 0.0) to.move(Move<T>(way.tcp(0), way.tcp(0), none, depth), 0, none, none);
     }

@@ -433,7 +433,7 @@ PassMarks simulated(const Pass& pass, const Brush& brush, double tolerance_mm, b
     Tracer tracer(brush, tolerance_mm, for_outlines, window, pass, way, marks);
     if (const Poses& poses = way.poses_mm; poses.rows() > 0) {
         if (poses(0, 2) > 0.0) tracer.begin_above(poses.row(0).head<2>().transpose(), poses(0, 2));
-        walk_pass<double>(ToldWay<double>{poses, pass.arcs, 0.0}, false, tracer);
+        walk_pass<double>(ToldWay<double>{poses, pass.arcs, 0.0}, tracer);
     }
     tracer.finish();
     return marks;

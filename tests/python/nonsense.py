@@ -496,22 +496,6 @@ def all_mark_options():
     yield mark_options(laws=_core.LawPrior(laws, []))
 
 
-def all_tracks():
-    poses, seen = np.array([[0, 0, 0], [15, 0, -3], [30, 5, -3.0]]), np.array([[8, 0], [15, 1], [23, 3.0]])
-    yield [_core.Track(poses, [1, 1.5, 2], seen)]
-    yield []
-    yield [_core.Track(poses[:1], [0], seen[:1])]
-    yield [_core.Track(poses, [2, 1.5, 1], seen)]
-    yield [_core.Track(poses, [1], seen)]
-    yield [_core.Track(poses, [0, 1, 2], seen)] * 2
-    yield [_core.Track(poses * [1, 1, -1], [0, 1, 2], seen)]
-    for value in NUMBERS[:-1]:
-        yield [_core.Track(np.where(poses == 15, value, poses), [1, 1.5, 2], seen)]
-        yield [_core.Track(np.where(poses == -3, value, poses), [1, 1.5, 2], seen)]
-        yield [_core.Track(poses, [1, value, 2], seen)]
-        yield [_core.Track(poses, [1, 1.5, 2], np.where(seen == 15, value, seen), value)]
-
-
 # the same of what is no name of its own: the fits, which calibration calls, and what makes a value
 FITS = {
     "Stroke.from_points": [
@@ -536,11 +520,6 @@ FITS = {
         lambda: [[2.3, 2.0, 1.6], *([2.3, 2.0, each] for each in NUMBERS), []],
     ],
     "fit_marks": [painted_marks, starts, all_mark_options],
-    "fit_tracks": [
-        all_tracks,
-        lambda: [[5.0], [], [1.0] * 12, [-1.0], *([each] for each in NUMBERS)],
-        [(0, 10), (10, 0), (0, 0), (NAN, 9), (0, INF), (0, 1e300)],
-    ],
 }
 
 

@@ -57,11 +57,6 @@ def mark_fit(noise_mm=0.1):
     return _core.fit_marks(painted, LAWS, options)
 
 
-def track_fit(shift=0.0):
-    poses, seen = [[0, 0, 0], [15, 0, -3], [30, 5, -3.0]], [[8, 0], [15, 1], [23, 3.0 + shift]]
-    return _core.fit_tracks([_core.Track(poses, [1, 1.5, 2], seen)], [5.0], (0, 10))
-
-
 def law_fit(more=0.0):
     return laws.fit_law(DEPTHS, [*VALUES[:-1], VALUES[-1] + more], 1)
 
@@ -257,14 +252,6 @@ VALUES_OF = {
         _core.LawShape(**SHAPE, norm=_core.Norm.absolute),
     ],
     _core.LawFit: lambda _: [law_fit(), law_fit(0.3)],
-    _core.Track: lambda _: [
-        _core.Track(POSES, [1, 2], SQUARE[:2]),
-        _core.Track(POSES[:3], [1, 2], SQUARE[:2]),
-        _core.Track(POSES, [1, 1.5], SQUARE[:2]),
-        _core.Track(POSES, [1, 2], SQUARE[1:3]),
-        _core.Track(POSES, [1, 2], SQUARE[:2], 0.0),
-    ],
-    _core.TrackFit: lambda _: [track_fit(), track_fit(0.2)],
     _core.PaintedMark: lambda _: [
         _core.PaintedMark("a", POSES, [SQUARE]),
         _core.PaintedMark("b", POSES, [SQUARE]),
@@ -391,7 +378,7 @@ def reached(value, way):
 def test_no_value_type_is_forgotten():
     classes = {each for _, each in inspect.getmembers(_core, inspect.isclass)}
     public = {getattr(brushsvg, name) for name in brushsvg.__all__} | {getattr(laws, n) for n in laws.__all__}
-    enums = {_core.Norm, _core.Lines, _core.Displaced}
+    enums = {_core.Norm, _core.Lines}
     wanted = classes - enums | {each for each in public if inspect.isclass(each)} - {brushsvg.Error}
     assert {each.__name__ for each in wanted} <= set(NAMES)
 

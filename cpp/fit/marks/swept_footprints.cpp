@@ -157,13 +157,12 @@ void Footprints::derive_on(const Way& way, const MarkLaws& laws, const Eigen::Ma
                            const std::vector<std::size_t>& rows) {
     std::vector<double> at;
     for (const std::size_t row : rows) at.push_back(rows_[row].place);
-    trace<T>(law_of(law_by<T>(laws.lag, lag_by), 0.0, reach_), way, at, nullptr,
-             [&](std::size_t k, const Trace<T>& row) {
-                 InstantBy& by = by_[rows[k]];
-                 by.contact = by_of(row.state.contact);
-                 by.heading = by_of(row.state.heading);
-                 put_by(row.depth, by.depth);
-             });
+    trace<T>(law_of(law_by<T>(laws.lag, lag_by), 0.0, reach_), way, at, [&](std::size_t k, const Trace<T>& row) {
+        InstantBy& by = by_[rows[k]];
+        by.contact = by_of(row.state.contact);
+        by.heading = by_of(row.state.heading);
+        put_by(row.depth, by.depth);
+    });
     for (const std::size_t row : rows) by_[row].heading = by_[rows_[row].heading_of].heading;
 }
 
@@ -186,7 +185,7 @@ template <class Way>
 void Footprints::walk(const Way& way, const std::vector<double>& at, const MarkLaws& laws) {
     const LagLaw<double> law = law_of(laws.lag, 0.0, reach_);
     rows_.clear();
-    trace<double>(law, way, at, nullptr, [&](std::size_t k, const Trace<double>& row) {
+    trace<double>(law, way, at, [&](std::size_t k, const Trace<double>& row) {
         if (!row.down) return;
         Instant& now = rows_.emplace_back();
         const double d = std::max(0.0, row.depth);

@@ -16,7 +16,6 @@ __all__: list[str] = [
     "Brush",
     "CommonArea",
     "Compensated",
-    "Displaced",
     "Footprint",
     "FootprintTable",
     "LawFit",
@@ -41,8 +40,6 @@ __all__: list[str] = [
     "Settings",
     "Stroke",
     "StrokeId",
-    "Track",
-    "TrackFit",
     "TrackingError",
     "Verdict",
     "WorstPlace",
@@ -65,7 +62,6 @@ __all__: list[str] = [
     "fit_curve",
     "fit_law",
     "fit_marks",
-    "fit_tracks",
     "flatten",
     "follow_lags",
     "footprint_at",
@@ -1028,92 +1024,6 @@ class Lines:
     @property
     def value(self) -> int: ...
 
-class Track:
-    """
-    A stroke along which the patch was seen: lag from it by fit_tracks.
-
-    poses_mm (n, 3): the TCP's way; pose (m,): where on it, fractional between poses; seen_mm (m, 2): where the patch was.
-    heading_rad: at the first pose, the brush being dragged already; nan: it is set down there.
-    """
-    def __copy__(self) -> Track: ...
-    def __deepcopy__(self, memo: dict) -> Track: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __getstate__(self) -> tuple: ...
-    def __hash__(self) -> int: ...
-    def __init__(
-        self,
-        poses_mm: numpy.typing.ArrayLike,
-        pose: collections.abc.Sequence[float],
-        seen_mm: numpy.typing.ArrayLike,
-        heading_rad: float = ...,
-    ) -> None: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, arg0: tuple) -> None: ...
-
-class Displaced:
-    """
-    Members:
-
-      no
-
-      along
-
-      both
-    """
-
-    __members__: typing.ClassVar[dict[str, Displaced]]
-    along: typing.ClassVar[Displaced]
-    both: typing.ClassVar[Displaced]
-    no: typing.ClassVar[Displaced]
-    @typing.overload
-    def __eq__(self, other: Displaced) -> bool: ...
-    @typing.overload
-    def __eq__(self, other: typing.Any) -> bool: ...
-    def __getstate__(self) -> int: ...
-    def __hash__(self) -> int: ...
-    def __index__(self) -> int: ...
-    def __init__(self, value: int) -> None: ...
-    def __int__(self) -> int: ...
-    @typing.overload
-    def __ne__(self, other: Displaced) -> bool: ...
-    @typing.overload
-    def __ne__(self, other: typing.Any) -> bool: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, state: int) -> None: ...
-    def __str__(self) -> str: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def value(self) -> int: ...
-
-class TrackFit:
-    """
-    A lag fitted to tracks, how sure it is, and what it leaves.
-    """
-    def __copy__(self) -> TrackFit: ...
-    def __deepcopy__(self, memo: dict) -> TrackFit: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __getstate__(self) -> tuple: ...
-    def __hash__(self) -> int: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, arg0: tuple) -> None: ...
-    @property
-    def converged(self) -> bool: ...
-    @property
-    def covariance(self) -> tuple[tuple[float, ...], ...]: ...
-    @property
-    def degrees_of_freedom(self) -> int: ...
-    @property
-    def displacement_mm(self) -> numpy.typing.NDArray[numpy.float64]: ...
-    @property
-    def heading_rad(self) -> tuple[float, ...]: ...
-    @property
-    def iterations(self) -> int: ...
-    @property
-    def lag(self) -> Profile: ...
-    @property
-    def residual_mm(self) -> tuple[float, ...]: ...
-
 class PaintedMark:
     """
     What one pass painted.
@@ -1596,23 +1506,6 @@ def fit_marks(
 
     start: MarkLaws to begin from; without them lags of many lengths are tried. Error: no mark, numbers that are not finite,
     marks that no brush paints along these ways.
-    """
-
-def fit_tracks(
-    tracks: collections.abc.Sequence[Track],
-    start: collections.abc.Sequence[float],
-    range_mm: collections.abc.Sequence[float],
-    *,
-    lever_mm: collections.abc.Sequence[float] = [],
-    free_heading: bool = False,
-    displaced: Displaced = ...,
-    most_iterations: int = 50,
-) -> TrackFit:
-    """
-    Lag r(d) from strokes with a known way of the TCP and places where the patch was seen, by least squares.
-
-    start: coefficients to begin from, as many as the law shall have. lever_mm: coefficients of e(d) where the middle of the
-    mark was seen instead of the centre of friction. free_heading, displaced: each stroke's own unknowns.
     """
 
 def flatten(
