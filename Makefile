@@ -8,7 +8,7 @@ SHELL := /bin/bash
 PYTHON ?= $(shell for p in /usr/bin/python3 python3; do $$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 VENV := .venv
 BIN := $(VENV)/bin
-SYSTEM_PACKAGES := g++ ccache cmake ninja-build libeigen3-dev libceres-dev libboost-dev nlohmann-json3-dev libhwy-dev python3 python3-dev python3-venv
+SYSTEM_PACKAGES := g++ ccache cmake ninja-build libeigen3-dev libceres-dev libboost-dev nlohmann-json3-dev python3 python3-dev python3-venv
 TEST_PACKAGES := doctest-dev cppcheck
 CPP_SOURCES := CMakeLists.txt $(shell find cpp cmake -type f)
 # One build tree for the Python module, the C++ tests and the benchmarks: each library is compiled once.
@@ -44,7 +44,7 @@ help:
 	@echo "make deb-test     that package in a bare system: programs are compiled against it and run"
 	@echo "make cross        the C++ library compiled for aarch64 Linux and Windows"
 	@echo "make docs         the documentation as pages to read in a browser, with a search, in docs/_build"
-	@echo "make docs-lint    check the language of the documentation: long sentences, words to avoid, the first sentence"
+	@echo "make docs-lint    check the language of docs and code: long sentences, words to avoid, the first sentence"
 	@echo "make clang-headers  the public headers read by clang and g++ with all warnings as errors"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
 	@echo "make bench        our figures beside the peers' and the floor"
@@ -117,13 +117,13 @@ lint: $(VENV)/.dev test-system
 	$(BIN)/clang-format --dry-run --Werror $$(git ls-files '*.cpp' '*.hpp')
 	cppcheck -q --std=c++17 --language=c++ --enable=warning,performance,portability --inline-suppr --error-exitcode=1 --suppress=missingIncludeSystem -I cpp/include -I cpp/io -I cpp/posts cpp examples benchmarks
 
-INCLUDES := $(patsubst %,-Icpp/%,include io posts fit/laws fit/marks fit/tracks many refine) -Icpp -isystem /usr/include/eigen3
+INCLUDES := $(patsubst %,-Icpp/%,include io posts fit/laws fit/marks refine) -Icpp -isystem /usr/include/eigen3
 
 clang-headers: setup
 	@$(call install,clang)
 	# public headers as a consumer with strict warnings reads them, by both compilers
 	for compiler in clang++ g++; do
-	  { for header in cpp/include/brushsvg/*.hpp cpp/io/{brush,plan,marks}_json.hpp cpp/posts/linuxcnc.hpp cpp/fit/*/{law_fit,angles,track_fit,mark_fit}.hpp cpp/refine/refine.hpp cpp/many/{many_strokes,marks_way}.hpp; do
+	  { for header in cpp/include/brushsvg/*.hpp cpp/io/{brush,plan,marks}_json.hpp cpp/posts/linuxcnc.hpp cpp/fit/*/{law_fit,angles,mark_fit}.hpp cpp/refine/refine.hpp; do
 	      if [ -e "$$header" ]; then echo "#include \"$$PWD/$$header\""; fi; done; } | \
 	    $$compiler -x c++ -std=c++17 -fsyntax-only -Wall -Wextra -Wconversion -Wsign-conversion -Werror $(INCLUDES) -
 	done
@@ -240,10 +240,9 @@ test-times: test-system integration-system
 bench: setup
 	@$(MAKE) --no-print-directory $(VENV)/.dev
 	cmake --preset release >/dev/null
-	cmake --build --preset release --target advance_bench many_bench
+	cmake --build --preset release --target advance_bench
 	$(BIN)/python benchmarks/table.py $(TABLE)
 	build/release/benchmarks/advance_bench
-	build/release/benchmarks/many_bench
 	$(BIN)/python benchmarks/marks.py
 	$(BIN)/python benchmarks/page.py
 	$(BIN)/python benchmarks/read.py
@@ -270,6 +269,7 @@ bench-compare: setup
 # Short sentences, modern words, a first sentence that says who a page is for. tools/banned_words.txt has the words.
 docs-lint:
 	@$(PYTHON) tools/docs_lint.py
+	$(PYTHON) tools/words_lint.py
 
 docs: setup
 	@$(PIP_INSTALL) ".[docs]"

@@ -1,4 +1,4 @@
-// ns per 0.5 mm move with the loose rule, beside the arithmetic it cannot do without and the law written with
+// ns per 0.5 mm move with the loose rule, next to the arithmetic it cannot do without and the law written with
 // trigonometry, in one run. Prints medians of repeated rounds and their ratios.
 #include <algorithm>
 #include <chrono>

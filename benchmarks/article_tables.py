@@ -82,7 +82,7 @@ def come_back(law: Law, repeats: int, rng) -> Back:
 
 @dataclass(frozen=True)
 class Method:
-    """How far laws lie from their data (median RMSE) and from the truth (root mean square, depths 1 to 10)."""
+    """How far laws are from their data (median RMSE) and from the truth (root mean square, depths 1 to 10)."""
 
     lag_rmse_mm: float
     lag_off_mm: float
@@ -107,7 +107,7 @@ def by_angles(noise_rad: float, repeats: int, rng) -> Method:
 
 
 def _read_angles(depth: float, noise_rad: float, rng) -> tuple[float, float]:
-    """r and b from one series: the brush lies across the motion, then is dragged by up to r."""
+    """r and b from one series: the brush is across the motion, then is dragged by up to r."""
     lag, gap = (polyval(depth, law.coefficients) for law in (LAG, TIP_GAP))
     s = np.linspace(0.2, 1.0, 5) * lag
     alpha = 2 * np.arctan(np.exp(-s / lag))  # (7) from 90 degrees

@@ -1,16 +1,16 @@
-"""What `brushsvg compare` says of strokes that robots painted, beside what real_paint.py finds of the same strokes.
+"""What `brushsvg compare` says of strokes that robots painted, next to what real_paint.py finds of the same strokes.
 
     compare_real_paint.py FOLDER [--sets NAME ...] [--every N]
 
-FOLDER: as for real_paint.py. Each stroke is a picture of its own, without markers: its pixels lie where the data say.
+FOLDER: as for real_paint.py. Each stroke is a picture of its own, without markers: its pixels are where the data say.
 Strokes with even numbers are fitted by their edges, those with odd ones are predicted and compared. Displacement, width
 and overlap by `compare` (least squares of pixels, in which a mark may turn and grow as well) are held against a search:
-of all shifts by whole pixels the one that overlaps most, and of all marks whose edges lie so much farther out or in, in
-steps of 0.05 mm, the one that overlaps most where that shift has it. Then against one in which a mark is shifted,
+of all shifts by whole pixels the one that overlaps most, and of all marks whose edges are moved out or in by so much,
+in steps of 0.05 mm, the one that overlaps most where that shift has it. Then against one in which a mark is shifted,
 turned and grown until it overlaps most, as `compare` has it.
 
 Printed: in how many of 100 strokes they agree within 0.25 mm (displacement, width) and 0.01 (overlap with the
-prediction as it lies). A stroke that `compare` does not find agrees in nothing.
+prediction as it is). A stroke that `compare` does not find agrees in nothing.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from real_paint import LEVEL
 from scipy.optimize import minimize
 
 from brushsvg import _core
-from brushsvg.comparison.photographs import Wanted, compare_paint
+from brushsvg.comparison.photographs import TargetStroke, compare_paint
 from brushsvg.comparison.placing import Canvas
 from brushsvg.errors import Error
 from brushsvg.geometry.rings import centroid
@@ -60,7 +60,7 @@ def compared(stroke, rings):
     rings = [ring - (left, bottom) for ring in rings]
     share = np.clip(np.float32(stroke.paint) / (2 * LEVEL), 0, 1)  # half the usual paint: LEVEL
     try:
-        found = compare_paint([Wanted("stroke", None, rings)], share, canvas, "stroke")
+        found = compare_paint([TargetStroke("stroke", None, rings)], share, canvas, "stroke")
     except Error as refusal:
         return refusal.code
     (row,) = found.strokes
@@ -96,13 +96,13 @@ def fully_searched(stroke, predicted, middle_mm, start_mm):
     def missing(x):
         matrix = cv2.getRotationMatrix2D(middle, np.degrees(x[2]), 1.0)
         matrix[:, 2] += (x[0] / stroke.px, -x[1] / stroke.px)
-        lies = cv2.warpAffine(away, matrix, away.shape[::-1], flags=cv2.INTER_LINEAR, borderValue=99.0)
-        return 1 - real_paint.soft_overlap(mask, np.clip(0.5 + (x[3] - lies) / stroke.px, 0, 1))
+        placed = cv2.warpAffine(away, matrix, away.shape[::-1], flags=cv2.INTER_LINEAR, borderValue=99.0)
+        return 1 - real_paint.soft_overlap(mask, np.clip(0.5 + (x[3] - placed) / stroke.px, 0, 1))
 
     steps, found = np.diag([0.5, 0.5, 0.05, 0.2]), []
     for start in (np.array([*start_mm, 0, 0]), np.zeros(4)):
-        told = {"initial_simplex": np.vstack([start, start + steps]), "maxfev": 160, "xatol": 0.01}
-        found.append(minimize(missing, start, method="Nelder-Mead", options=told))
+        simplex = {"initial_simplex": np.vstack([start, start + steps]), "maxfev": 160, "xatol": 0.01}
+        found.append(minimize(missing, start, method="Nelder-Mead", options=simplex))
     best = min(found, key=lambda one: one.fun).x
     return best[:2], float(best[3])
 

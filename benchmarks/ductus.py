@@ -5,7 +5,7 @@ kanjivg`). A glyph and its writing are laid over each other by their boxes; each
 time at which the nearest place is written. A stroke runs right if that time grows along most of it, two strokes follow
 each other right if the middle time of the first is less.
 
-KanjiVG's letters have no serifs. So these are told apart: strokes shorter than 0.7 of another one, and than seven of
+KanjiVG's letters have no serifs. So these are separated: strokes shorter than 0.7 of another one, and than seven of
 its half widths, on which that begins or ends. Main strokes are held against KanjiVG, a serif against its stem, which it
 follows. Dots, up to twice as long as wide, have no direction. Forms that differ (a, g, 1, 4, 7 of many fonts) are
 judged as well as they can be: look at those that are named before believing them.
@@ -39,7 +39,7 @@ DENSE = np.linspace(0.0, 1.0, 60)
 SERIF, SERIF_HALVES = 0.7, 7.0
 DOT = 2.0
 CHARACTERS, SEED = 200, 20260
-OWN_SHARE = 0.7  # of a painted stroke, what lies nearest to one stroke of the reference
+OWN_SHARE = 0.7  # of a painted stroke, what is nearest to one stroke of the reference
 
 
 @cache
@@ -124,7 +124,7 @@ def serifs(lines: list[np.ndarray], halves: list[float]) -> dict[int, int]:
 
 
 def numbers_in_kanjivg(outlined: list[np.ndarray], reference: list[np.ndarray]) -> np.ndarray:
-    """Which stroke of KanjiVG each stroke of hanzi-writer-data is: those that lie nearest, one to one."""
+    """Which stroke of KanjiVG each stroke of hanzi-writer-data is: those that are nearest, one to one."""
     ones, others = boxed([evenly(line) for line in outlined]), boxed(reference)
 
     def far(a: np.ndarray, b: np.ndarray) -> float:
@@ -143,7 +143,7 @@ def are_found_right(shares: list[np.ndarray]) -> bool:
 def characters(folder: Path, script: str) -> str:
     """How well characters drawn as one shape are written, in the order of KanjiVG and in that of their own source.
 
-    Strokes are held against the middle lines of hanzi-writer-data, which lie where the outlines do, and these are
+    Strokes are held against the middle lines of hanzi-writer-data, which are where the outlines do, and these are
     numbered as in KanjiVG: so no stroke is taken for its neighbour because two drawings differ.
     """
     files = sorted(file for file in folder.glob("*.json") if len(file.stem) == 1)

@@ -1,14 +1,14 @@
-"""How long it takes to make a brush of a painted chart, and whether it is the same brush as another build made.
+"""The time to make a brush of a painted chart, and whether it is the same brush as another build made.
 
     fit.py [--sheets 3] [--seed 1] [--rounds 2] [--parts lean,axes,tilt,backlash] [--save a.json] [--against b.json]
 
 The slow stepping simulator of tests/laws paints the chart of `brushsvg chart --sheet a4`, 49 strokes. Timed are one fit
 from no guess (`fit_marks`) and all that `calibrate` makes of a photograph's marks: both tails, and how far it all moves
-where the edges lie farther out; each without and with a machine's numbers. Printed: processor time and time on the
+where the edges are moved out; each without and with a machine's numbers. Printed: processor time and time on the
 clock, each the least of the rounds, and iterations of one fit. The floor is one look at all marks with derivatives: a
 fit needs one for each iteration, and the covariance two.
 
---against: how far values lie from those that --save wrote, and how much longer their intervals are, in half intervals.
+--against: how far values are from those that --save wrote, and how much longer their intervals are, in half intervals.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from brushsvg.calibration.marks.mark_input import read_painted
 
 painter = truth_recovery.painter
 
-EDGE_MM = 0.03  # by which a photograph's edges may lie off together
+EDGE_MM = 0.03  # by which a photograph's edges may be off together
 
 
 def painted(seed: int):
@@ -82,26 +82,26 @@ def one_sheet(seed: int, parts: tuple[str, ...], rounds: int) -> dict:
 
     out: dict = {"seed": seed, "marks": len(sheet.marks), "rows": {}, "values": {}}
     for machine in (False, True):
-        beside = " with machine" if machine else ""
+        suffix = " with machine" if machine else ""
         fit_options = options(machine)
         used, took, fit = least_time(
-            lambda wanted=fit_options: _core.fit_marks(sheet.marks, None, wanted), rounds
+            lambda options=fit_options: _core.fit_marks(sheet.marks, None, options), rounds
         )
-        out["rows"]["one fit" + beside] = (used, took, fit.iterations)
-        out["values"]["one fit" + beside] = values_of(fit, brush.deepest)
+        out["rows"]["one fit" + suffix] = (used, took, fit.iterations)
+        out["values"]["one fit" + suffix] = values_of(fit, brush.deepest)
         used, took, made = least_time(
             lambda machine=machine: calibrate_marks(sheet, "b", options=options(machine), edge_mm=EDGE_MM),
             rounds,
         )
-        out["rows"]["calibrate" + beside] = (used, took, 0)
-        out["values"]["calibrate" + beside] = values_of(made.fit, brush.deepest)
+        out["rows"]["calibrate" + suffix] = (used, took, 0)
+        out["values"]["calibrate" + suffix] = values_of(made.fit, brush.deepest)
         expected = options(machine)
         expected.deepest_mm, expected.noise_mm = brush.deepest, 0.1
         expected.lag_terms = 4
         used, took, _ = least_time(
-            lambda wanted=expected, laws=fit.laws: _core.fit_marks(sheet.marks, laws, wanted), rounds
+            lambda options=expected, laws=fit.laws: _core.fit_marks(sheet.marks, laws, options), rounds
         )
-        out["rows"]["floor: four looks" + beside] = (used, took, 0)
+        out["rows"]["floor: four looks" + suffix] = (used, took, 0)
     return out
 
 

@@ -13,7 +13,7 @@ letters are made of them. The fonts that `docs/evidence/letters.md` judges are n
 The fit maximises the probability of the next stroke, given those that are written (see stroke_order.py), by Adam. Its
 seed is fixed. Another processor or library of linear algebra may round differently and find slightly other weights.
 
-The command above wrote stroke_order.json: run again in a new folder, it gave the same file, digit for digit. It takes
+The command above wrote stroke_order.json: run again in a new folder, it gave the same file, digit for digit. This takes
 about 15 minutes of one processor.
 """
 

@@ -161,12 +161,12 @@ def held(made, law: str) -> np.ndarray:
 
 
 def of_kind(name: str, count: int, seed: int) -> list[str]:
-    measured, told, options = KINDS[name]
+    measured, laws, options = KINDS[name]
     rng = np.random.default_rng(seed)
-    found: dict[str, list] = {law: [] for law in told}
+    found: dict[str, list] = {law: [] for law in laws}
     for _ in range(count):
         made = brushsvg.calibrate({"depth_range_mm": [0, 10], **measured(rng)}, "b", **options)
-        for law in told:
+        for law in laws:
             found[law].append(held(made, law))
     return [line(name, law, np.array(rows)) for law, rows in found.items()]
 

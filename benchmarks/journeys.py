@@ -65,7 +65,7 @@ GROUPS = {
     "long programs of UR, KUKA and EBB within their limits": ["tests/python/test_long_programs.py"],
     "paint stations: stir, wash, rinse, full and short reload": ["tests/python/test_paint.py"],
     "vpype writes the programs of convert": ["tests/integration/test_vpype.py", "-k", "byte"],
-    "no option is shown in Inkscape": ["tests/integration/test_inkscape_tell.py"],
+    "no option is shown in Inkscape": ["tests/integration/test_inkscape_messages.py"],
     "no dialog in Inkscape is wider than 1,000 pixels": ["tests/integration/test_inkscape_dialogs.py"],
     "the preview says when saving will be refused": ["tests/integration/test_inkscape_preview.py"],
 }

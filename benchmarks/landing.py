@@ -3,9 +3,9 @@
     landing.py FOLDER [--sets NAME ...] [--aim edges|overlap] [--refit] [--planted FRAME ALONG ACROSS]
 
 FOLDER, sets and the fit: as for real_paint.py; strokes with even numbers are fitted, odd ones scored. The patch
-lands d = (along, across) away from the place under the tool, across to the left, and lies there until the lag law drags
+lands d = (along, across) away from the place under the tool, across to the left, and is there until the lag law drags
 it on: the pass begins with a pose at that place, and d is cut to what the lag reaches, since farther away no patch
-lies. Frames of d:
+is. Frames of d:
 
     paper     x and y of the sheet
     before    where the patch headed at the end of the stroke before in the file, as the fitted brush paints it: what
@@ -72,12 +72,12 @@ def reach_mm(stroke, brush, fit) -> float:
 def landed(stroke, along, offset_mm, brush, fit):
     """The stroke with its patch landing at an offset in the frame of `along`."""
     x, y = along
-    aside = np.array([[x, y], [-y, x]]).T @ offset_mm
-    size = np.hypot(*aside)
+    displacement = np.array([[x, y], [-y, x]]).T @ offset_mm
+    size = np.hypot(*displacement)
     if size == 0:
         return stroke
     share = min(1.0, reach_mm(stroke, brush, fit) / size)
-    begin = stroke.poses[0] + np.append(aside * share, 0.0)
+    begin = stroke.poses[0] + np.append(displacement * share, 0.0)
     return replace(stroke, poses=np.vstack([begin, stroke.poses]))
 
 
@@ -141,8 +141,8 @@ def error_of_mean(won) -> np.ndarray:
 
 def gain_words(scored, base) -> str:
     won = scored - base
-    told = zip(("fixed", "shift"), scored.mean(axis=0), won.mean(axis=0), error_of_mean(won), strict=True)
-    return "   ".join(f"{what} {mean:.3f} ({gain:+.4f} +- {error:.4f})" for what, mean, gain, error in told)
+    rows = zip(("fixed", "shift"), scored.mean(axis=0), won.mean(axis=0), error_of_mean(won), strict=True)
+    return "   ".join(f"{what} {mean:.3f} ({gain:+.4f} +- {error:.4f})" for what, mean, gain, error in rows)
 
 
 def scored(seen, unseen, fit, options) -> np.ndarray:
@@ -204,8 +204,8 @@ def tried(strokes, name, aim, plant):
         ]
         yield f"{'':16s} {gain_words(scored(*there, fit, options), base)}"
         if plant is None:
-            again, told = fitted(there[0], name, aim)
-            yield f"{'  refitted':16s} {gain_words(scored(*there, again, told), base)}"
+            again, fit_options = fitted(there[0], name, aim)
+            yield f"{'  refitted':16s} {gain_words(scored(*there, again, fit_options), base)}"
 
 
 def refitted(strokes, name, aim):
@@ -218,8 +218,8 @@ def refitted(strokes, name, aim):
         there = all_landed(seen, axes[frame][::2], offset_mm, fit, options)
         out = np.empty(len(seen))
         for k in range(2):
-            again, told = fitted(there[1 - k :: 2], name, aim)
-            marks = real_paint.our_marks(there[k::2], again, told)
+            again, fit_options = fitted(there[1 - k :: 2], name, aim)
+            marks = real_paint.our_marks(there[k::2], again, fit_options)
             fixed, moved, _ = real_paint.scores(there[k::2], marks)
             out[k::2] = (fixed + moved) / 2
         return out

@@ -84,7 +84,7 @@ def case(text: str, font: bytes, size_mm: float, brush_name: str, compensation: 
 
 
 def _picture(rings: list[np.ndarray], px_per_mm: float) -> np.ndarray:
-    """Black on white, whatever else it is held against."""
+    """Black on white, for any comparison."""
     points = np.vstack(rings)
     low, high = points.min(axis=0), points.max(axis=0)
     width, height = np.ceil((high - low) * px_per_mm).astype(int) + 2 * MARGIN_PX

@@ -1,4 +1,4 @@
-"""How well other people's lettering is painted, by every compensation: overlap of predicted and wanted mark as the
+"""How well other people's lettering is painted, by every compensation: overlap of predicted and target mark as the
 report has it, stroke by stroke and whole character by whole character, poses, and milliseconds of processor time.
 
 Chinese characters drawn at random from `hanzi-writer-data`, 100 mm high, and letters of two fonts, all fetched by npm
@@ -35,12 +35,12 @@ TOLERANCE_MM = 0.05
 
 def found(design: Design, brush) -> tuple[list, list]:
     """Strokes to paint, and what each should become."""
-    painted, wanted, _ = within_reach(strokes(design)[0], brush)
-    return painted, wanted
+    painted, target, _ = within_reach(strokes(design)[0], brush)
+    return painted, target
 
 
-def overlap(trace, wanted, brush) -> float:
-    return _core.common_area([trace], [wanted], brush).overlap
+def overlap(trace, target, brush) -> float:
+    return _core.common_area([trace], [target], brush).overlap
 
 
 @dataclass
@@ -90,33 +90,33 @@ def ways(best_mm: float) -> list[Way]:
 def painted(design: Design, name: str, best_mm: float) -> tuple[list[Way], int]:
     """One character by all ways, and how many of its strokes are wider than the brush."""
     brush = find_brush(name)  # processes exchange values, which it is not
-    some, wanted = found(design, brush)
+    some, target = found(design, brush)
     done = ways(best_mm)
     for way in done:
         traces = [way.paint(stroke, brush, design.sheet_mm) for stroke in some]
-        way.alone = [overlap(trace, each, brush) for trace, each in zip(traces, wanted, strict=True)]
-        way.whole = [_core.common_area(traces, wanted, brush).overlap]
+        way.alone = [overlap(trace, each, brush) for trace, each in zip(traces, target, strict=True)]
+        way.whole = [_core.common_area(traces, target, brush).overlap]
     widest = brush.half_width_range_mm()[1]
-    return done, sum(max(half for _, half in each.half_width) > widest for each in wanted)
+    return done, sum(max(half for _, half in each.half_width) > widest for each in target)
 
 
 def by_lag(design: Design, name: str, lags_mm: list[float]) -> np.ndarray:
     """Overlaps of a character's strokes: a row each, a column per lag."""
     brush = find_brush(name)
-    some, wanted = found(design, brush)
+    some, target = found(design, brush)
     return np.array(
         [
             [
                 overlap(Way("", "constant", lag).paint(stroke, brush, (0.0, 0.0)), each, brush)
                 for lag in lags_mm
             ]
-            for stroke, each in zip(some, wanted, strict=True)
+            for stroke, each in zip(some, target, strict=True)
         ]
     ).reshape(-1, len(lags_mm))
 
 
 def best_constant_mm(pool, designs: list[Design], brush) -> tuple[float, int]:
-    """The one lag for all strokes whose marks overlap most with what is wanted, to 0.25 mm; tried on how many."""
+    """The one lag for all strokes whose marks overlap most with the target, to 0.25 mm; tried on how many."""
 
     def best(lags_mm) -> tuple[float, int]:
         work = partial(by_lag, name=brush.name, lags_mm=lags_mm.tolist())
@@ -156,8 +156,8 @@ def one_limit(place: tuple[Design, int], name: str, tries: int, seed: int) -> di
     from limit import search  # brings packages that nothing else here needs
 
     brush, (design, k) = find_brush(name), place
-    some, wanted = found(design, brush)
-    return search(some[k % len(some)], wanted[k % len(some)], brush, tries, seed)
+    some, target = found(design, brush)
+    return search(some[k % len(some)], target[k % len(some)], brush, tries, seed)
 
 
 def limits(designs: list[Design], brush, options) -> None:

@@ -9,9 +9,9 @@ mark compared with its shape.
   overlap   common area over joint area of mark and shape, mean over the glyphs, and the least
   notices   how many, in all
   thorns    corners of the mark beyond 20 degrees that stick out of the shape by more than 0.3 mm
-  notches   what of the shape, deeper in it than 0.15 mm, stays unpainted, mm2 per glyph: wedges at crotches, waves
-            beside stems, blunt corners
-  bulges    how much paint lies farther out of the shape than that
+  notches   unpainted parts of the shape, deeper in it than 0.15 mm, mm2 per glyph: wedges at crotches, waves
+            next to stems, blunt corners
+  bulges    how much paint is farther outside of the shape than that
   turning   how much the mark's outline turns more than the shape's, full turns per glyph; rings below 0.01 mm2 are
             pinholes, and left out
   torn      glyphs whose mark has more pieces than their shape
@@ -53,8 +53,8 @@ GLYPHS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
 LARGEST_MM = 100.0
 STEM = 0.95  # of the brush's widest mark, how wide an l's stem is
 LOST_SHARE = 0.03
-SEEN_MM = 0.15  # how far off the shape's a mark's edge may lie unseen
-EDGE_MM = 0.3  # how far a mark's edge may lie beside the shape's and both are one
+SEEN_MM = 0.15  # how far off the shape's a mark's edge may be unseen
+EDGE_MM = 0.3  # how far a mark's edge may be from the shape's and both count as one
 THORN_RAD = np.radians(20)
 EVEN_MM = 0.5  # what an outline turns within less is an angle of its polygon
 PINHOLE_MM2 = 0.01  # a ring that nobody sees, and that would count a whole turn

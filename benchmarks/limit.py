@@ -22,24 +22,24 @@ WINDOW_PX = 6.0  # per mm
 ROUND_MM = 2.0  # paper round both marks, for what moves out of them
 
 
-def search(stroke, wanted, brush, tries: int, seed: int) -> dict[str, float]:
+def search(stroke, target, brush, tries: int, seed: int) -> dict[str, float]:
     """Overlaps as the report has them: closed, refined, and the best that so many simulations from each find."""
     found, best, most = {}, None, -1.0
     for method, step_mm in STARTS:
         start = _core.compensate([stroke], brush, None, method).plan.passes[0]
-        found[method] = reported(start, wanted, brush)
-        moved = searched(start, wanted, brush, step_mm, tries, seed)
+        found[method] = reported(start, target, brush)
+        moved = searched(start, target, brush, step_mm, tries, seed)
         for each in (start, moved):
-            overlap = reported(each, wanted, brush)
+            overlap = reported(each, target, brush)
             if overlap > most:
                 best, most = each, overlap
     assert best is not None
     return found | {"found": most}
 
 
-def reported(a_pass, wanted, brush) -> float:
+def reported(a_pass, target, brush) -> float:
     (trace,) = _core.simulate(plan_of(a_pass, brush), brush).passes
-    return _core.common_area([trace], [wanted], brush).overlap
+    return _core.common_area([trace], [target], brush).overlap
 
 
 def plan_of(a_pass, brush):
@@ -48,16 +48,16 @@ def plan_of(a_pass, brush):
     return plan
 
 
-def searched(start, wanted, brush, step_mm: float, tries: int, seed: int):
+def searched(start, target, brush, step_mm: float, tries: int, seed: int):
     poses = close_together(np.asarray(start.poses_mm))
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(poses, axis=0), axis=1))])
     knots = np.concatenate([[0.0] * 3, np.linspace(0.0, 1.0, CONTROLS - 2), [1.0] * 3])
     splines = BSpline.design_matrix(along / along[-1], knots, 3).toarray()
     painted = _core.painted_bounds(_core.simulate(plan_of(start, brush), brush).passes[0], brush)
-    points = np.vstack([*_core.wanted_outline(wanted, 0.01), np.reshape(painted, (2, 2))])
+    points = np.vstack([*_core.wanted_outline(target, 0.01), np.reshape(painted, (2, 2))])
     low, size = points.min(axis=0) - ROUND_MM, np.ptp(points, axis=0) + 2 * ROUND_MM
     window = (*low.tolist(), *size.tolist())
-    meant = _core.wanted_coverage([wanted], window, WINDOW_PX)
+    drawn = _core.wanted_coverage([target], window, WINDOW_PX)
 
     def moved(x: np.ndarray):
         out = poses + splines @ x.reshape(CONTROLS, 3)
@@ -68,7 +68,7 @@ def searched(start, wanted, brush, step_mm: float, tries: int, seed: int):
     def worse(x: np.ndarray) -> float:
         marks = _core.simulate(plan_of(moved(x), brush), brush, tolerance_mm=0.05)
         painted = _core.coverage(marks, brush, window, WINDOW_PX)
-        return 1.0 - float(np.minimum(painted, meant).sum() / np.maximum(painted, meant).sum())
+        return 1.0 - float(np.minimum(painted, drawn).sum() / np.maximum(painted, drawn).sum())
 
     options = {"maxfevals": tries, "seed": seed, "verbose": -9, "tolfun": 1e-5}
     done, _ = cma.fmin2(worse, np.zeros(3 * CONTROLS), step_mm, options)

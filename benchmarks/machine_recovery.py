@@ -1,12 +1,12 @@
-"""Random brushes paint a sheet by machines that lean and whose axes are off, and the fit is asked what both are.
+"""Random brushes paint a sheet by machines that lean and whose axes are off, and the fit has to find both.
 
     machine_recovery.py [--brushes 12] [--seed 1] [--processes 2] [--parts lean,axes] [--sheet a4]
                         [--planted lean,axes] [--sine 0.5] [--outside all]
 
-The slow stepping simulator of tests/laws paints, along the ways that the machine runs; the fit is told the ways that it
-was told. Printed: how far the lag is off without --machine and with it (rms over depths and brushes), and how often the
+The slow stepping simulator of tests/laws paints, along the ways that the machine runs; the fit gets the commanded
+ways. Printed: how far the lag is off without --machine and with it (rms over depths and brushes), and how often the
 95 % intervals hold each number of the machine, and the lag. --planted: what the machines do, if that is not what the
-fit is asked for; numbers of what is not planted are 0. With --sine they are off by a sine over the sheet, too, so many
+fit is requested; numbers of what is not planted are 0. With --sine they are off by a sine over the sheet, too, so many
 mm high and as long as the sheet, which is no field that the fit knows. --outside: brushes whose laws are none of the
 fit's, as in truth_recovery.py. Brushes whose lag is off by more than 3 % anywhere are named by their seeds.
 """
@@ -45,7 +45,7 @@ def random_machine(rng, parts) -> dict[str, np.ndarray]:
 
 def with_play(strokes, backlash: np.ndarray) -> list:
     """The strokes one after the other, every 0.4 mm, as axes run them that stand still for so long where they turn."""
-    out, behind = [], np.zeros(2)  # of the place told, at most half of the backlash
+    out, behind = [], np.zeros(2)  # of the commanded place, at most half of the backlash
     last = strokes[0][1][0]
     for name, poses in strokes:
         run_to = []
@@ -61,32 +61,32 @@ def with_play(strokes, backlash: np.ndarray) -> list:
     return out
 
 
-def aside_by(machine, strokes, sine_mm: float, rng):
-    """(n, 2) places to (n, 2) mm by which its field takes the tool aside, over the box of all strokes."""
+def displacement_by(machine, strokes, sine_mm: float, rng):
+    """(n, 2) places to (n, 2) mm by which its field displaces the tool, over the box of all strokes."""
     places = np.concatenate([poses[:, :2] for _, poses in strokes])
     middle, reach = (places.max(axis=0) + places.min(axis=0)) / 2, np.ptp(places, axis=0) / 2
     phases = rng.uniform(0, 2 * np.pi, 2)
 
-    def aside(places):
+    def displaced(places):
         u, v = ((places - middle) / reach).T
         waves = np.column_stack([np.sin(np.pi * v + phases[0]), np.sin(np.pi * u + phases[1])])
         return np.column_stack([u * u, u * v, v * v]) @ machine["field"].T + sine_mm * waves
 
-    return aside
+    return displaced
 
 
-def run(machine, poses: np.ndarray, centre: np.ndarray, height: float, aside) -> np.ndarray:
-    """The way that the machine runs when it is told to come down on the first of these poses, to follow them and to go
-    up again, on paper that lies so much higher."""
+def run(machine, poses: np.ndarray, centre: np.ndarray, height: float, displaced) -> np.ndarray:
+    """The way that the machine runs when it is commanded to come down on the first of these poses, to follow them and
+    to go up again, on paper that is so much higher."""
     up = poses[[0, -1]] * (1, 1, 0) + (0, 0, 1)
     poses = np.vstack([up[:1], poses, up[1:]])
-    if np.any(aside(poses[:, :2])):
+    if np.any(displaced(poses[:, :2])):
         poses = every_mm(poses)  # straight lines are none any more
     at = poses[:, :2] - centre
     z = poses[:, 2] - at @ machine["tilt"]
     scale_x, scale_y, skew = machine["axes"]
     off = np.column_stack([scale_x * at[:, 0] + skew * at[:, 1], scale_y * at[:, 1]])
-    off += aside(poses[:, :2])
+    off += displaced(poses[:, :2])
     return np.column_stack([poses[:, :2] + off + np.outer(height - z, machine["lean"]), z])
 
 
@@ -113,14 +113,14 @@ def recover(
     brush, faults = truth_recovery.brush_for(rng, seed, outside), painter.Faults()
     strokes = truth_recovery.strokes_of(rng, brush, sheet_mm)
     machine = random_machine(rng, parts if planted is None else planted)
-    aside = aside_by(machine, strokes, sine_mm, rng)
+    displaced = displacement_by(machine, strokes, sine_mm, rng)
     centre = np.concatenate([poses[:, :2] for _, poses in strokes]).mean(axis=0)
 
     def regions(brush, strokes, height):
         if machine["backlash"].any():
             strokes = with_play(strokes, machine["backlash"])
         return painter.swept(
-            brush, [(name, run(machine, poses, centre, height, aside)) for name, poses in strokes], height
+            brush, [(name, run(machine, poses, centre, height, displaced)) for name, poses in strokes], height
         )
 
     sheet = painter.paint(rng, brush, strokes, faults, regions)

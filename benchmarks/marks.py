@@ -1,5 +1,5 @@
 """Predicted mark of a 200 mm stroke, footprint 14 x 10 mm, at 20 px/mm on 4000 x 4000 pixels: our coverage
-beside the article's loop (rotate and put down a footprint's picture for every dab) and the floor (filling the
+next to the article's loop (rotate and put down a footprint's picture for every dab) and the floor (filling the
 touched area).
 
 Edge error: along the normal of a dense shapely union's outline, the distance between that outline and the

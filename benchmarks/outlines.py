@@ -1,4 +1,4 @@
-"""Milliseconds of processor time per glyph to find the strokes of filled letters, by stage, beside scikit-image's
+"""Milliseconds of processor time per glyph to find the strokes of filled letters, by stage, next to scikit-image's
 medial axis of the same glyphs drawn at 20 px/mm, which ends where our second stage does: with pixels of a middle line,
 not with strokes.
 

@@ -1,4 +1,4 @@
-"""Seconds for a page of 1,000 strokes through `convert`, by stage, beside what reading the same file with
+"""Seconds for a page of 1,000 strokes through `convert`, by stage, next to what reading the same file with
 svgpathtools alone takes and the floor (parsing the XML)."""
 
 from __future__ import annotations

@@ -1,16 +1,16 @@
-"""Random brushes paint printed charts, random cameras photograph them, and `calibrate` is asked which brush it was.
+"""Random brushes paint printed charts, random cameras photograph them, and `calibrate` has to find the brush.
 
     photographs.py FOLDER [--count 200] [--brushes 40] [--seed 1] [--sheet a4] [--strokes few] [--again]
                           [--height MM] [--half inside|outside]
 
 FOLDER keeps each photograph and what came of it: a run that was stopped goes on where it was, and `--again` reads and
-fits the photographs that are there once more. `--count 0` only tells what is there. `--height`: the paper's height is
-known to so much (standard deviation), as `brushsvg setup height` finds it, and `calibrate --height` is told.
+fits the photographs that are there once more. `--count 0` only shows what is there. `--height`: the paper's height is
+known to so much (standard deviation), as `brushsvg setup height` finds it, and `calibrate --height` uses it.
 
 The paint is the slow stepping simulator's of tests/laws, the pictures the renderer's there: a tilt, a lens of another
 formula, blur, noise, uneven light, shadows, JPEG. Every sixth sheet of either half bulges by a millimetre. Every
 other brush has laws outside of the family that is fitted: a lag that saturates and swings, a width that grows as a
-root, a bent tip gap. The two halves are reported apart. Printed: how far places on the sheet lie off (rms), how far
+root, a bent tip gap. The two halves are reported apart. Printed: how far places on the sheet are off (rms), how far
 the lag is off over the range, how often the 95 % intervals hold the truth, what was refused, and which marks were
 left out.
 """
@@ -61,7 +61,7 @@ def camera_of(rng, sheet_mm, is_bulging: bool) -> photograph.Camera:
         turn_deg=rng.uniform(-2, 2) + rng.choice([0.0, 180.0]),
         bend=rng.uniform(-0.04, 0.03),
         fill=0.88,
-        aside_mm=tuple(rng.uniform(-3, 3, 2)),
+        displacement_mm=tuple(rng.uniform(-3, 3, 2)),
         blur_px=rng.uniform(0.6, 1.2),
         noise=rng.uniform(0.004, 0.015),
         light=tuple(rng.uniform(-0.3, 0.3, 2)),

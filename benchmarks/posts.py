@@ -38,13 +38,13 @@ def plan_of(strokes: int, poses: int, sheet_mm=(400.0, 400.0), down_mm: float | 
 
 
 def tried_with(name: str) -> tuple:
-    """Its brush, and what a plan for it needs besides."""
+    """Its brush, and what a plan for it needs in addition."""
     pen = find_cell(name).pen
     return find_brush("rigid" if pen else "round-6"), {"down_mm": pen.down_mm} if pen else {}
 
 
 def roomy(name: str):
-    """The cell with room for the page, wherever its example paper lies; its arm, if any, is not followed."""
+    """The cell with room for the page, where its example paper is; its arm, if any, is not followed."""
     cell = find_cell(name)
     return replace(
         cell, workspace=Workspace(cell.workspace.margin_mm, cell.workspace.tilt_limit_deg), arm=None
@@ -84,9 +84,9 @@ def main() -> None:
     )
     for name in names:
         brush, own = tried_with(name)
-        asked = plan_of(STROKES, POSES, **own) if own else plan
+        written_plan = plan_of(STROKES, POSES, **own) if own else plan
         begin = time.perf_counter()
-        size = write(name, asked, brush)
+        size = write(name, written_plan, brush)
         print(f"  {name:<48} {time.perf_counter() - begin:7.3f} s {size / 1e6:7.1f} MB")
     print("10 million poses: memory beyond the plan's arrays (aim: 50 MB)")
     for name in names:

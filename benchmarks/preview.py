@@ -39,9 +39,9 @@ from brushsvg.cli import commands
 from brushsvg.machine import paint_reload, preflight
 from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.jobs import outputs, prediction, preparation
-told = []
+reported = []
 def stage(name):
-    told.append((name, time.perf_counter()))
+    reported.append((name, time.perf_counter()))
 stage("imports")
 cell = find_cell()
 work = preparation.prepare({drawing!r})
@@ -53,7 +53,7 @@ preflight.look(loads, work.brush, marks, cell, 0.05)
 stage("limits")
 outputs.picture(".svg", work, marks)
 stage("written")
-for name, end in told:
+for name, end in reported:
     print(name, f"{{end - begin:.3f}}")
     begin = end
 """
@@ -132,17 +132,17 @@ def stages(file: Path) -> list[str]:
             EXTENSION.format(folder=str(SOURCE), drawing=str(file), marks=str(marks), out=str(out)),
         ),
     )
-    told = []
+    report = []
     for python, code in parts:
         begin = time.perf_counter()
         done = subprocess.run([python, "-c", code], check=True, capture_output=True, text=True)
         lines = done.stdout.splitlines()
         start = time.perf_counter() - begin - sum(float(line.rpartition(" ")[2]) for line in lines)
-        told += [
+        report += [
             f"{'brushsvg' if python == sys.executable else 'extension'}: Python itself {start:.3f}",
             *lines,
         ]
-    return told
+    return report
 
 
 def main() -> None:

@@ -1,4 +1,4 @@
-"""Milliseconds to read a drawing of 1,000 elements as Inkscape writes it, by stage, beside two other readers of SVG
+"""Milliseconds to read a drawing of 1,000 elements as Inkscape writes it, by stage, next to two other readers of SVG
 and the floor (expat parsing the XML); then the command as a process, with the heavy modules that it loads.
 
 Every round starts cold: what the reader remembers of values seen before is forgotten.

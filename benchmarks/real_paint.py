@@ -10,7 +10,7 @@ through, with `canvas_w_m` and `canvas_h_m`.
 
 Each set is cleaned up to one blob per stroke; strokes with even numbers are fitted, odd ones scored by overlap
 (intersection over union of pixels). `fixed`: one displacement for the set; `shift`: each stroke may move by up to
-3 mm. Beside ours, on the same strokes: a disc of linear width that is dragged by no lag, by a constant one, by one
+3 mm. Next to ours, on the same strokes: a disc of linear width that is dragged by no lag, by a constant one, by one
 that is linear in depth, each fitted to the largest `fixed`.
 
 Ours twice: `edges` is what `brushsvg calibrate` does, `overlap` what it does with --aim overlap: it goes on from there
@@ -20,16 +20,16 @@ displacement 2 (at one depth lag 1, half width 1, no height); `edges` also a shi
 for `edges` as well, lean 2, axes 3. What `overlap` changes is chosen by fitted strokes that are left out in turn:
 nothing; a dragged disc; laws (at one depth lag 2); those with lean, 2 (none at one depth), and a map of the ways, 4;
 those with a lever of the file's tilt, 2. Then a field over the sheets that strokes were painted on, as far as their
-order in the file tells it, if fifths of the fitted strokes that are left out gain by it: `calibrate` does not ask for
+order in the file shows it, if fifths of the fitted strokes that are left out gain by it: `calibrate` does not ask for
 it.
 
 First comes what can be had at all. Two strokes of nearly equal commands overlap less than 1: they are carried on to
-equal commands along a straight line in the way's and the depth's distance. What each misses to the other lies between
+equal commands along a straight line in the way's and the depth's distance. What each misses to the other is between
 both; a model that is right about the mean of many such strokes misses 1/sqrt(2) of it. --ceilings prints no more.
 
 --tilt: the same brush with the tool tilted as the file says, once `overlap` is fitted, without its lever. Which way a
 positive tilt leans the file does not say: all four are tried, as a tilted plan is simulated. Then a lever of two
-numbers, found on the strokes fitted: the mark lies lever tan(tilt) elsewhere, as of a tool that turns about another
+numbers, found on the strokes fitted: the mark is lever tan(tilt) elsewhere, as in a tool that turns about another
 point than its tip.
 """
 
@@ -51,7 +51,7 @@ from scipy.optimize import minimize
 from brushsvg import _core
 from brushsvg.calibration.marks import machine_found
 from brushsvg.calibration.marks.from_marks import brush_of
-from brushsvg.calibration.overlap.by_overlap_report import aside_in_words, chosen_in_words
+from brushsvg.calibration.overlap.by_overlap_report import chosen_in_words, describe_displacement
 from brushsvg.calibration.overlap.overlap_choice import best_predicting
 from brushsvg.calibration.overlap.overlap_search import (
     Begin,
@@ -138,7 +138,7 @@ def _loops(data) -> list[Stroke]:
 
 def _stroke(poses, paint, window, px, filled=True) -> Stroke:
     """One blob: parts less than twice JOINED_MM apart are one, and the largest is the stroke. filled: so are the gaps
-    between hairs; not where strokes come back beside themselves."""
+    between hairs; not where strokes come back next to themselves."""
     size = 2 * round(JOINED_MM / px) + 1
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     closed = cv2.morphologyEx(np.uint8(paint > LEVEL), cv2.MORPH_CLOSE, near)
@@ -206,7 +206,7 @@ def _missing(a: Stroke, b: Stroke) -> tuple[float, float]:
 
 def ceiling_words(strokes) -> str:
     if len({stroke.mask.shape for stroke in strokes}) > 1:
-        return "what can be had: its strokes lie in different windows"
+        return "its strokes are in different windows"
     found = ceiling(strokes)
     if found is None:
         return "what can be had: too few commands are nearly equal"
@@ -312,8 +312,8 @@ def by_overlap(strokes, fit, options):
     begin = Begin(fit.laws, fit.height_mm, fit.shift_mm)
     order = np.array([stroke.number for stroke in strokes])
     found = best_predicting(marks, targets, begin, options, order=order)
-    changed = {name: getattr(found, name) for name in ("laws", "height_mm", "shift_mm", "led")}
-    return _like(fit, **changed, field=found.aside.field if found.aside else None), found
+    changed = {name: getattr(found, name) for name in ("laws", "height_mm", "shift_mm", "offsets")}
+    return _like(fit, **changed, field=found.displacement.field if found.displacement else None), found
 
 
 def _like(fit, **changed):
@@ -353,7 +353,7 @@ def brush_for(strokes, fit, options) -> _core.Brush:
 
 
 def _as_run(stroke: Stroke, fit) -> np.ndarray:
-    """The TCP's way as the machine ran it, on the paper as high as it was told."""
+    """The TCP's way as the machine ran it, on the paper at its commanded height."""
     lean, axes = machine_of(fit)
     poses = np.array(stroke.poses)
     at, depth = poses[:, :2] - fit.centre_mm, np.maximum(fit.height_mm - poses[:, 2:], 0.0)
@@ -361,53 +361,57 @@ def _as_run(stroke: Stroke, fit) -> np.ndarray:
     poses[:, :2] += depth * lean
     if getattr(fit, "field", None):
         poses[:, :2] += fit.field.at([stroke.number])
-    return fit.led.way(poses, fit.height_mm, np.tan(stroke.tilt_rad)) if hasattr(fit, "led") else poses
+    return (
+        fit.offsets.way(poses, fit.height_mm, np.tan(stroke.tilt_rad)) if hasattr(fit, "offsets") else poses
+    )
 
 
 def _moved(stroke: Stroke, fit) -> _core.Pass:
-    """The same where the fit found paper and sheet to lie."""
+    """The same where the fit found paper and sheet to be."""
     return _core.Pass("stroke", on_paper(_as_run(stroke, fit), fit.height_mm, fit.shift_mm))
 
 
-def our_marks(strokes, fit, options, led=_moved) -> list[np.ndarray]:
+def our_marks(strokes, fit, options, moved=_moved) -> list[np.ndarray]:
     brush = brush_for(strokes, fit, options)
     plan, out = _core.Plan("fitted", "", (1.0, 1.0), []), []
     for stroke in strokes:
-        plan.passes = [led(stroke, fit)]
+        plan.passes = [moved(stroke, fit)]
         marks = _core.simulate(plan, brush)
         out.append(_core.coverage(marks, brush, stroke.window, 1 / stroke.px) > 0.5)
     return out
 
 
 def tilt_words(seen, unseen, fit, options):
-    fit = _like(fit, led=replace(fit.led, lever_mm=np.zeros(2)))
+    fit = _like(fit, offsets=replace(fit.offsets, lever_mm=np.zeros(2)))
 
     def leant(towards):
-        def led(stroke, fit):
+        def moved(stroke, fit):
             one = _moved(stroke, fit)
             axis = [*(np.sin(stroke.tilt_rad) * np.array(towards)), np.cos(stroke.tilt_rad)]
             one.tool_axes = np.tile(axis, (len(one.poses_mm), 1))
             return one
 
-        return led
+        return moved
 
     def moved_by(lever_mm):
-        def led(stroke, fit):
+        def moved(stroke, fit):
             one = _moved(stroke, fit)
             one.poses_mm = one.poses_mm + np.tan(stroke.tilt_rad) * np.array([*lever_mm, 0.0])
             return one
 
-        return led
+        return moved
 
-    def score(strokes, led) -> float:
-        return float(scores(strokes, our_marks(strokes, fit, options, led))[0].mean())
+    def score(strokes, moved) -> float:
+        return float(scores(strokes, our_marks(strokes, fit, options, moved))[0].mean())
 
-    def told(what, led):
-        return f"{what:22s} fixed {score(unseen, led):.4f}  ({score(seen, led):.4f} on the strokes fitted)"
+    def line(what, moved):
+        return (
+            f"{what:22s} fixed {score(unseen, moved):.4f}  ({score(seen, moved):.4f} on the strokes fitted)"
+        )
 
-    yield told("upright", _moved)
+    yield line("upright", _moved)
     for what, towards in (("+x", (1, 0)), ("-x", (-1, 0)), ("+y", (0, 1)), ("-y", (0, -1))):
-        yield told(f"tilted towards {what}", leant(towards))
+        yield line(f"tilted towards {what}", leant(towards))
     found = minimize(
         lambda lever: -score(seen, moved_by(lever)),
         np.zeros(2),
@@ -415,8 +419,8 @@ def tilt_words(seen, unseen, fit, options):
         options={"initial_simplex": [[0, 0], [8, 0], [0, 8]], "maxfev": 50, "xatol": 0.2, "fatol": 1e-4},
     )
     x, y = found.x
-    yield told(f"lever {x:.1f}, {y:.1f} mm", moved_by(found.x))
-    yield told("the same, other sign", moved_by(-found.x))
+    yield line(f"lever {x:.1f}, {y:.1f} mm", moved_by(found.x))
+    yield line("the same, other sign", moved_by(-found.x))
 
 
 def picture(strokes, predicted, shifts, score, path: Path) -> None:
@@ -457,19 +461,19 @@ def picture(strokes, predicted, shifts, score, path: Path) -> None:
 
 
 def laws_in_words(fit) -> str:
-    def told(law):
+    def digits(law):
         return " ".join(f"{c:+.3f} d^{k}" if k else f"{c:.3f}" for k, c in enumerate(law) if k == 0 or c)
 
     laws, (lean, axes) = fit.laws, machine_of(fit)
     return (
-        "; ".join(f"{name} = {told(getattr(laws, name))}" for name in LAWS)
+        "; ".join(f"{name} = {digits(getattr(laws, name))}" for name in LAWS)
         + f"; widest {laws.widest_per_half:.2f} h from the tip, front {laws.front_per_half:.2f} h; paper "
         f"{fit.height_mm:+.2f} mm; shift {fit.shift_mm[0]:+.2f} {fit.shift_mm[1]:+.2f} mm; lean {lean[0]:+.3f} "
         f"{lean[1]:+.3f} mm/mm; scale {1 + axes[0]:.4f} {1 + axes[1]:.4f}, skew {axes[2]:+.4f}"
         + (
-            f"; beside it {np.round(fit.led.lean_mm_per_mm, 3)}, {np.round(fit.led.map, 4)}, "
-            f"lever {np.round(fit.led.lever_mm, 1)}"
-            if hasattr(fit, "led")
+            f"; next to it {np.round(fit.offsets.lean_mm_per_mm, 3)}, {np.round(fit.offsets.map, 4)}, "
+            f"lever {np.round(fit.offsets.lever_mm, 1)}"
+            if hasattr(fit, "offsets")
             else ""
         )
     )
@@ -516,7 +520,7 @@ def _paint_per_mm(strokes) -> float:
 
 
 def _parts(text: str) -> tuple[str, ...]:
-    """These sheets tell nothing of tilt and backlash that their places would not."""
+    """These sheets show no more of tilt and backlash than their places do."""
     parts = values.machine_parts(text)
     if not {"lean", "axes"}.issuperset(parts):
         raise argparse.ArgumentTypeError("only lean and axes are looked for here")
@@ -570,8 +574,8 @@ def main():
             flush=True,
         )
         print(f"    {chosen_in_words(found)}")
-        if found.aside:
-            print(f"    {aside_in_words(found.aside)}")
+        if found.displacement:
+            print(f"    {describe_displacement(found.displacement)}")
         if args.tilt and any(stroke.tilt_rad for stroke in strokes):
             for line in tilt_words(seen, unseen, best, options):
                 print(f"    {line}", flush=True)

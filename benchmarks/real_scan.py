@@ -4,7 +4,7 @@ outlines that `calibrate --scan` would give of them.
     real_scan.py SCAN [--picture FILE]
 
 Grid and bar are those of the sheets of github.com/Ardibid/ArtisticStyleRoboticPainting: square cells, a stroke in each,
-a bar of two inches below. Printed: how far the grid's crossings lie from even ones, the cells' size, and of each stroke
+a bar of two inches below. Printed: how far the grid's crossings are from even ones, the cells' size, and of each stroke
 its area, the number of its parts and holes, and how ragged it is. The picture is to be looked at.
 """
 
@@ -17,7 +17,7 @@ import cv2
 import numpy as np
 
 from brushsvg.geometry.rings import signed_area
-from brushsvg.photo.edges import Room, find_marks
+from brushsvg.photo.edges import StrokeBox, find_marks
 from brushsvg.photo.flatten import Flat
 from brushsvg.photo.photo import read_photo
 
@@ -103,20 +103,20 @@ def main():
     sheet = (columns * cell_mm, rows * cell_mm)
     size = (round(sheet[0] * PX_PER_MM), round(sheet[1] * PX_PER_MM))
     shrink = np.diag([1 / PX_PER_MM, 1 / PX_PER_MM, 1.0])
-    lying = cv2.warpPerspective(
+    flattened = cv2.warpPerspective(
         pixels,
         to_scan @ shrink,
         size,
         flags=cv2.INTER_AREA | cv2.WARP_INVERSE_MAP,
         borderMode=cv2.BORDER_REPLICATE,
     )
-    flat = Flat(lying, PX_PER_MM, sheet)
+    flat = Flat(flattened, PX_PER_MM, sheet)
     rooms, printed = [], []
     for k in range(rows * columns):
         left, top = k % columns * cell_mm, sheet[1] - k // columns * cell_mm
         right, bottom = left + cell_mm, top - cell_mm
         inset = (left + EDGE_MM, bottom + EDGE_MM, right - EDGE_MM, top - EDGE_MM)
-        rooms.append(Room(f"{k + 1:02d}", inset))
+        rooms.append(StrokeBox(f"{k + 1:02d}", inset))
         printed.append(box(right - NUMBER_MM[0], bottom, right, bottom + NUMBER_MM[1]))
     for j in range(columns + 1):
         printed.append(box(j * cell_mm - 0.6, 0, j * cell_mm + 0.6, sheet[1]))
@@ -135,7 +135,7 @@ def main():
             f"{100 * (1 - areas.sum() / hull):.0f} % of its hull bare"
         )
     if args.picture:
-        picture = lying.copy()
+        picture = flattened.copy()
         for rings in marks.outlines_mm.values():
             for ring in rings:
                 points = np.round(flat.to_px(ring) * 16).astype(np.int32)[:, None]

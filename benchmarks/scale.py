@@ -5,9 +5,9 @@ Dask's, and one drawing of 100,000 strokes.
     scale.py cluster [--count 200]
     scale.py strokes [--count 100000]
 
-characters: outlines, closed form, program, picture and figures of each; how long it takes, the memory of this process
+characters: outlines, closed form, program, picture and figures of each; the duration, the memory of this process
 and of the largest worker. cluster: local workers of one thread each, first one, then two, then two of which one is
-killed half way: the files are compared, byte by byte, with those that processes made, and what a task costs besides
+killed half way: the files are compared, byte by byte, with those that processes made, and what a task costs in addition
 the work is measured by tasks that are refused at once. strokes: one `convert` of that many short lines.
 The characters are fetched by npm once.
 """
@@ -49,16 +49,16 @@ def main() -> None:
     parser.add_argument("--count", type=int)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--keep", type=Path)
-    asked = parser.parse_args()
+    given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        out = asked.keep or Path(folder)
+        out = given.keep or Path(folder)
         out.mkdir(parents=True, exist_ok=True)
-        if asked.what == "characters":
-            characters(out, asked.count, asked.jobs)
-        elif asked.what == "cluster":
-            cluster(out, asked.count or 200)
+        if given.what == "characters":
+            characters(out, given.count, given.jobs)
+        elif given.what == "cluster":
+            cluster(out, given.count or 200)
         else:
-            strokes(out, asked.count or 100_000)
+            strokes(out, given.count or 100_000)
 
 
 def drawings(count: int | None) -> list[tuple[str, str]]:
@@ -85,7 +85,7 @@ def characters(out: Path, count: int | None, jobs: int) -> None:
     begin, before = time.perf_counter(), _used()
     # started anew, so that what they use is counted as this process's children's
     with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as executor:
-        done = brushsvg.batch(items, out / "characters", executor=executor, progress=_told)
+        done = brushsvg.batch(items, out / "characters", executor=executor, progress=_report)
     clock, used = time.perf_counter() - begin, _used() - before
     print(file=sys.stderr)
     figures = [row.figures for row in done.rows if row.figures]
@@ -97,7 +97,7 @@ def characters(out: Path, count: int | None, jobs: int) -> None:
     low = np.percentile(overlap, 5)
     print(f"  {len(done.refused)} refused, overlap {overlap.mean():.4f}, 5th percentile {low:.4f}")
     for row in done.refused[:5]:
-        print(f"    {row.name}: {row.told}")
+        print(f"    {row.name}: {row.text}")
     print(
         f"  memory: this process {_peak_mb(resource.RUSAGE_SELF):.0f} MB, the largest worker "
         f"{_peak_mb(resource.RUSAGE_CHILDREN):.0f} MB"
@@ -180,7 +180,7 @@ def strokes(out: Path, count: int) -> None:
             peak: list[float] = []
             watch = threading.Thread(target=_watch, args=(process, peak))
             watch.start()
-            told = process.communicate()[1]
+            errors = process.communicate()[1]
             watch.join()
         clock = time.perf_counter() - begin
         print(
@@ -188,7 +188,7 @@ def strokes(out: Path, count: int) -> None:
             f"{_used() - before:.0f} s of processors, {max(peak, default=0):.0f} MB, exit {process.returncode}"
         )
         if process.returncode:
-            print(told[-500:])
+            print(errors[-500:])
 
 
 def _watch(process: subprocess.Popen, peak: list[float]) -> None:
@@ -211,7 +211,7 @@ def _peak_mb(who: int) -> float:
     return resource.getrusage(who).ru_maxrss / 1024
 
 
-def _told(text: str) -> None:
+def _report(text: str) -> None:
     print(f"\r{text}   ", end="", file=sys.stderr)
 
 

@@ -4,7 +4,7 @@
 
 Each brush is drawn at random and painted with by the slow stepping simulator of tests/laws. It is known at first as a
 person would know it: lag and width typed at three depths, each read to 0.5 mm; one lag and two widths; or not at all,
-with the shipped round-6. Every sheet is laid anew; with --own-mm each stroke lies so far elsewhere, always alike, and
+with the shipped round-6. Every sheet is laid anew; with --own-mm each stroke is so far elsewhere, always alike, and
 once more at random. After each sheet the brush learns from its photograph (`calibrate --plan --prior`), `compare` with
 the new brush writes corrections, and the next sheet is planned with both.
 
@@ -44,7 +44,7 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.margin_strokes import is_margin
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.model.library import save_brush
-from brushsvg.show.evaluation.report import wanted_rings
+from brushsvg.show.evaluation.report import target_rings
 
 SHEETS, WIDEST_MM = 3, 4.0  # of the word
 WORD = re.sub(
@@ -72,7 +72,7 @@ def hidden_brush(number: int):
 
 
 def starts_of(brush) -> dict[str, str]:
-    """By name what somebody types."""
+    """Commands by their names."""
     depths = [round(share * brush.deepest, 1) for share in SHARES]
 
     def read(law, times):
@@ -103,7 +103,7 @@ def run(line: str, folder: Path) -> None:
 
 
 def swept(plan, brush) -> dict:
-    ways = studio.ran(plan, studio.Amiss())
+    ways = studio.ran(plan, studio.Faults())
     regions = painter.swept(brush, ways, 0.0, lasts=[np.inf] * len(ways))
     return {name: region for (name, _), region in zip(ways, regions, strict=True) if region is not None}
 
@@ -136,30 +136,30 @@ def paint_sheets(job: tuple[int, str], folder: Path, margin: str, own_mm: float,
     run("convert word.svg -o plan-true.json --brush true.json", folder)
     ideal = read_plan(folder / "plan-true.json")
     drawn = studio.as_region(
-        wanted_rings(prepare(folder / "word.svg", Options(brush=find_brush(folder / "true.json"))).strokes)
+        target_rings(prepare(folder / "word.svg", Options(brush=find_brush(folder / "true.json"))).strokes)
     )
     perfect = swept(ideal, brush)
     rng = np.random.default_rng([51, number])
     own = {each.stroke: rng.normal(0, own_mm, 2) for each in ideal.passes}
-    amiss = studio.Amiss(own=own, random_mm=own_mm)
+    fault_values = studio.Faults(own=own, random_mm=own_mm)
     result = {"number": number, "start": start, "overlap": [], "true": [], "notes": []}
-    led = ""
+    corrections = ""
     for sheet in range(1, SHEETS + 1):
-        flags = f"--brush mine-{sheet}.json {led} --margin-strokes {margin}"
+        flags = f"--brush mine-{sheet}.json {corrections} --margin-strokes {margin}"
         run(f"convert word.svg -o plan-{sheet}.json {flags} --page page-{sheet}.svg", folder)
         plan = read_plan(folder / f"plan-{sheet}.json")
-        here = replace(amiss, shift=tuple(rng.normal(0, 0.2, 2)), turn=float(rng.normal(0, 0.1)))
+        here = replace(fault_values, shift=tuple(rng.normal(0, 0.2, 2)), turn=float(rng.normal(0, 0.1)))
         seed = 100 * number + sheet
         regions = swept(plan, brush)
-        result["overlap"].append(overlap(studio.laid(regions, plan, amiss, seed), plan, drawn))
-        result["true"].append(overlap(studio.laid(perfect, ideal, amiss, seed), ideal, drawn))
+        result["overlap"].append(overlap(studio.laid(regions, plan, fault_values, seed), plan, drawn))
+        result["true"].append(overlap(studio.laid(perfect, ideal, fault_values, seed), ideal, drawn))
         result["notes"].append(f"{sum(map(is_margin, plan.passes))} in the margin")
         if sheet == SHEETS:
             break
         real = studio.laid(regions, plan, here, seed)
         photo = studio.photographed(plan, real, "word", camera(rng, job_page(plan).size_mm), seed)
         (folder / f"photo-{sheet}.jpg").write_bytes(photo)
-        led = learned(sheet, folder, result["notes"])
+        corrections = learned(sheet, folder, result["notes"])
     result["seconds"] = time.process_time() - began
     (folder / "result.json").write_text(json.dumps(result, indent=1))
     return result
@@ -175,12 +175,12 @@ def learned(sheet: int, folder: Path, notes: list[str]) -> str:
         (folder / now).write_bytes((folder / f"mine-{sheet}.json").read_bytes())
     try:
         run(f"compare {photo} {plan} --brush {now} -o left-{sheet}.json", folder)
-        led = f"--corrections left-{sheet}.json"
-        run(f"convert word.svg -o tried.json --brush {now} {led}", folder)
+        corrections = f"--corrections left-{sheet}.json"
+        run(f"convert word.svg -o tried.json --brush {now} {corrections}", folder)
     except RuntimeError as refusal:
         notes.append(str(refusal))
         return ""
-    return led
+    return corrections
 
 
 def report(rows: list[dict]) -> None:

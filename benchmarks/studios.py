@@ -8,12 +8,12 @@ sheet, up to 0.5 mm of backlash and 1 % of scale, each stroke 0.1 mm elsewhere (
 is that of the slow stepping simulator of tests/laws, the pictures the renderer's. Three sheets are painted. After the
 first the brush learns from it (`calibrate --plan --prior --machine axes,tilt,backlash`), `compare` with this brush
 writes the cell (`--corrected-cell`) and the remaining corrections (`convert --corrections`), and the brush is
-dipped before each stroke, not before every other one, where paint is missing; after the second strokes are led once
+dipped before each stroke, not before every other one, where paint is missing; after the second strokes are moved once
 more by what `compare --corrections` says. Machines run the programs' text.
 
 Printed: overlap of real paint with the drawing; of the gap that repeats (to what a studio paints that knows its brush,
 and where all else is as it should be) how much is closed; strokes that became worse; whether `compare` names the
-largest cause where it takes away more than half of what is lost. --sheets 1: attribution alone.
+largest cause where it removes more than half of what is lost. --sheets 1: attribution alone.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.model.library import save_brush
-from brushsvg.show.evaluation.report import wanted_rings
+from brushsvg.show.evaluation.report import target_rings
 
 STROKES_A_LOAD = 2
 SURE_GAIN = 0.005
@@ -59,11 +59,11 @@ def run(word: str, folder: Path) -> str:
     words = [
         str(folder / each) if "." in each and not each.startswith("-") else each for each in word.split()
     ]
-    told, out = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stderr(told), contextlib.redirect_stdout(out):
+    errors, out = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stderr(errors), contextlib.redirect_stdout(out):
         status = main(words)
     if status != 0:
-        raise RuntimeError(f"{word}: exit {status}: {told.getvalue()[-300:]}")
+        raise RuntimeError(f"{word}: exit {status}: {errors.getvalue()[-300:]}")
     return out.getvalue()
 
 
@@ -75,9 +75,9 @@ def all_of(regions: dict):
     return studio.unary_union(list(regions.values()))
 
 
-def all_wanted(folder: Path):
+def all_target(folder: Path):
     work = prepare(folder / "word.svg", Options(brush=find_brush(folder / "mine-0.json")))
-    return studio.as_region(wanted_rings(work.strokes))
+    return studio.as_region(target_rings(work.strokes))
 
 
 def camera(rng, page_mm) -> Camera:
@@ -94,18 +94,18 @@ def camera(rng, page_mm) -> Camera:
     )
 
 
-def sheet_laid(amiss, rng):
-    return replace(amiss, shift=tuple(rng.normal(0, 0.2, 2)), turn=float(rng.normal(0, 0.1)))
+def sheet_laid(fault_values, rng):
+    return replace(fault_values, shift=tuple(rng.normal(0, 0.2, 2)), turn=float(rng.normal(0, 0.1)))
 
 
 def random_studio(number: int, plan):
     rng = np.random.default_rng([24, number])
-    amiss = studio.random_amiss(rng, [one.stroke for one in plan.passes], plan.sheet_mm)
-    return replace(amiss, lasts_mm=float(rng.uniform(100, 300))), rng
+    fault_values = studio.random_faults(rng, [one.stroke for one in plan.passes], plan.sheet_mm)
+    return replace(fault_values, lasts_mm=float(rng.uniform(100, 300))), rng
 
 
 def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
-    """What came of it, by name."""
+    """A table of the results."""
     began = time.process_time()
     folder.mkdir(parents=True, exist_ok=True)
     save_brush(studio.known_brush(), folder / "mine-0.json")
@@ -124,26 +124,26 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
     for sheet in range(sheets):
         brush, cell = f"mine-{sheet}.json", f"cell-{sheet}.toml"
         flags = f"--brush {brush} --quiet"
-        led = f"--corrections {corrections}" if corrections else ""
-        run(f"convert word.svg -o plan-{sheet}.json --cell {cell} {flags} {led}", folder)
+        corrections_flag = f"--corrections {corrections}" if corrections else ""
+        run(f"convert word.svg -o plan-{sheet}.json --cell {cell} {flags} {corrections_flag}", folder)
         plan = read_plan(folder / f"plan-{sheet}.json")
         if sheet == 0:
-            amiss, rng = random_studio(number, plan)
-            drawn = all_wanted(folder)
+            fault_values, rng = random_studio(number, plan)
+            drawn = all_target(folder)
             # what a studio paints that knows its brush, and where all else is as it should be
-            save_brush(studio.known_brush(lag=amiss.lag, half=amiss.half), folder / "true.json")
+            save_brush(studio.known_brush(lag=fault_values.lag, half=fault_values.half), folder / "true.json")
             run("convert word.svg -o plan-true.json --brush true.json --quiet", folder)
-            ideal = studio.Amiss(lag=amiss.lag, half=amiss.half)
+            ideal = studio.Faults(lag=fault_values.lag, half=fault_values.half)
             perfect = studio.swept(read_plan(folder / "plan-true.json"), ideal)
-            result["truth"] = truth_of(amiss)
-            result["lasts_mm"] = amiss.lasts_mm
-        run(f"convert word.svg -o told-{sheet}.ngc --cell {cell} {flags} {led}", folder)
-        told = studio.told_by((folder / f"told-{sheet}.ngc").read_text(), plan.sheet_mm)
-        swept = studio.swept(told, amiss, strokes_a_load)
-        always = studio.laid(swept, told, replace(amiss, random_mm=0.0), 0)
+            result["truth"] = truth_of(fault_values)
+            result["lasts_mm"] = fault_values.lasts_mm
+        run(f"convert word.svg -o commanded-{sheet}.ngc --cell {cell} {flags} {corrections_flag}", folder)
+        commanded = studio.commanded_by((folder / f"commanded-{sheet}.ngc").read_text(), plan.sheet_mm)
+        swept = studio.swept(commanded, fault_values, strokes_a_load)
+        always = studio.laid(swept, commanded, replace(fault_values, random_mm=0.0), 0)
         seed = 100 * number + sheet
-        here = sheet_laid(amiss, rng)
-        real = studio.laid(swept, told, here, seed)
+        here = sheet_laid(fault_values, rng)
+        real = studio.laid(swept, commanded, here, seed)
         result["overlap"].append(over(all_of(real), drawn))
         result["gap"].append(1 - over(all_of(always), all_of(perfect)))
         result["gap_wanted"].append(over(all_of(perfect), drawn) - over(all_of(always), drawn))
@@ -154,12 +154,12 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
         photo = studio.photographed(plan, real, "word", camera(rng, page.size_mm), seed)
         (folder / f"photo-{sheet}.jpg").write_bytes(photo)
         if sheet == 0:
-            result["gains"] = gains_of(swept, told, here, seed, drawn, result["overlap"][0])
+            result["gains"] = gains_of(swept, commanded, here, seed, drawn, result["overlap"][0])
             result["lost"] = over(all_of(perfect), drawn) - result["overlap"][0]
         if sheet and sheet == sheets - 1:
             break
         text = run(
-            f"compare photo-{sheet}.jpg word.svg --cell {cell} {flags} {led} -o seen-{sheet}.json "
+            f"compare photo-{sheet}.jpg word.svg --cell {cell} {flags} {corrections_flag} -o seen-{sheet}.json "
             + ("" if sheet else "--corrected-cell cell-1.toml"),
             folder,
         )
@@ -177,7 +177,7 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
         if sheets == 1:
             break
         strokes_a_load, corrections = follow(seen, sheet, folder, strokes_a_load)
-        result["brush"].append(brush_off(find_brush(folder / f"mine-{sheet + 1}.json"), amiss))
+        result["brush"].append(brush_off(find_brush(folder / f"mine-{sheet + 1}.json"), fault_values))
     result["seconds"] = time.process_time() - began
     return result
 
@@ -197,68 +197,73 @@ def follow(seen: dict, sheet: int, folder: Path, strokes_a_load: int) -> tuple[i
     words = f"calibrate photo-{sheet}.jpg --plan plan-{sheet}.json --prior mine-{sheet}.json -o mine-{sheet + 1}.json"
     try:
         (folder / f"learnt-{sheet}.txt").write_text(run(f"{words} --machine axes,tilt,backlash", folder))
-    except RuntimeError as refusal:  # nothing is learnt: the cell stays as compare mended it
+    except RuntimeError as refusal:  # nothing is learnt: the cell stays as compare corrected it
         (folder / f"learnt-{sheet}.txt").write_text(str(refusal))
         (folder / f"mine-{sheet + 1}.json").write_bytes((folder / f"mine-{sheet}.json").read_bytes())
         return strokes_a_load, ""
     words = (
         f"compare photo-{sheet}.jpg plan-{sheet}.json --brush mine-{sheet + 1}.json --cell cell-{sheet}.toml"
     )
-    told = run(f"{words} --quiet --corrected-cell cell-{sheet + 1}.toml -o left-{sheet}.json", folder)
-    (folder / f"mended-{sheet}.txt").write_text(told)
+    text = run(f"{words} --quiet --corrected-cell cell-{sheet + 1}.toml -o left-{sheet}.json", folder)
+    (folder / f"corrected-{sheet}.txt").write_text(text)
     left = json.loads((folder / f"left-{sheet}.json").read_text())
     rows = left.get("beside_machine", left)["strokes"]
     return strokes_a_load, f"left-{sheet}.json" if any(row["correction"] for row in rows) else ""
 
 
-def truth_of(amiss) -> dict[str, float]:
+def truth_of(fault_values) -> dict[str, float]:
     """By the names that compare has for its numbers."""
-    pairs = {"scale": amiss.scale, "backlash": amiss.backlash, "tilt": amiss.tilt, "lean": amiss.lean}
+    pairs = {
+        "scale": fault_values.scale,
+        "backlash": fault_values.backlash,
+        "tilt": fault_values.tilt,
+        "lean": fault_values.lean,
+    }
     found = {
         f"{name} in {axis}": float(pair[k]) for name, pair in pairs.items() for k, axis in enumerate("xy")
     }
-    return found | {"lag": float(amiss.lag) - 1, "width": float(amiss.half) - 1}
+    return found | {"lag": float(fault_values.lag) - 1, "width": float(fault_values.half) - 1}
 
 
-def brush_off(brush, amiss) -> list[float]:
+def brush_off(brush, fault_values) -> list[float]:
     """By how much lag and half width are off between 1 and 6 mm, mean share."""
     depths = np.linspace(1, 6, 11)
     return [
         float(np.mean(np.abs([law(d) for d in depths] / (off * polyval(depths, truth)) - 1)))
         for law, off, truth in (
-            (brush.lag, amiss.lag, studio.LAG),
-            (brush.half_width, amiss.half, studio.HALF),
+            (brush.lag, fault_values.lag, studio.LAG),
+            (brush.half_width, fault_values.half, studio.HALF),
         )
     ]
 
 
-def gains_of(swept, told, amiss, seed: int, drawn, overlap: float) -> dict[str, float]:
-    """What of overlap each cause takes away: the same sheet painted without it."""
+def gains_of(swept, commanded, fault_values, seed: int, drawn, overlap: float) -> dict[str, float]:
+    """The part of overlap each cause takes away: the same sheet painted without it."""
     found = {}
     for cause in CAUSES:
-        mended = amiss.mended(cause)
-        again = swept if cause in MOVES else studio.swept(told, mended, STROKES_A_LOAD)
-        regions = studio.laid(again, told, mended, seed)
+        corrected = fault_values.corrected(cause)
+        again = swept if cause in MOVES else studio.swept(commanded, corrected, STROKES_A_LOAD)
+        regions = studio.laid(again, commanded, corrected, seed)
         found[cause] = over(all_of(regions), drawn) - overlap
     return found
 
 
 def report(rows: list[dict]) -> None:
     if (sheets := len(rows[0]["overlap"])) > 1:
-        overlap, gap, by_wanted = (
+        overlap, gap, by_target = (
             np.array([row[key] for row in rows]) for key in ("overlap", "gap", "gap_wanted")
         )
         print(
-            "\nsheet  overlap with wanted: mean, 5th percentile   gap to what should be (repeatable): mean, closed"
+            "\nsheet  overlap with target: mean, 5th percentile   gap to what should be (repeatable): mean, closed"
         )
         for k in range(sheets):
             closed = 1 - gap[:, k].sum() / gap[:, 0].sum()
-            less = 1 - by_wanted[:, k].sum() / by_wanted[:, 0].sum()
+            less = 1 - by_target[:, k].sum() / by_target[:, 0].sum()
             each = np.quantile(1 - gap[:, k] / gap[:, 0], (0.05, 0.5))
             low = np.quantile(overlap[:, k], 0.05)
             print(
                 f"{k + 1}      {overlap[:, k].mean():.3f}  {low:.3f}   {gap[:, k].mean():.4f}  {closed:6.1%} "
-                f"(of a studio: median {each[1]:.1%}, 5th percentile {each[0]:.1%}; by overlap with wanted {less:.1%})"
+                f"(of a studio: median {each[1]:.1%}, 5th percentile {each[0]:.1%}; by overlap with target {less:.1%})"
             )
         for k in range(1, sheets):
             for before in range(k):

@@ -1,4 +1,4 @@
-"""What is waited for, as a table: this tree's times beside floors, peers, and those of another tree.
+"""What is waited for, as a table: this tree's times next to floors, peers, and those of another tree.
 
     table.py [--against TREE] [--rounds 3] [--only WORD]
 
@@ -70,8 +70,8 @@ class Row:
     unit: str
     aim: str
     measure: Callable[[Path], Spent]  # of a tree
-    beside: str = ""  # floor or peer
-    measure_beside: Callable[[], Spent] | None = None
+    reference: str = ""  # floor or peer
+    measure_reference: Callable[[], Spent] | None = None
 
 
 def run(words: list) -> tuple[Spent, str]:
@@ -136,7 +136,7 @@ def letters(file: Path) -> None:
 
 
 def refined(drawing: Path, out: Path, strokes: int) -> Callable[[Path], Spent]:
-    """One stroke's refinement: what it takes beyond the closed form."""
+    """One stroke's refinement: the time beyond the closed form."""
 
     def measure(tree: Path) -> Spent:
         closed = brushsvg("convert", drawing, "-o", out)(tree)
@@ -149,8 +149,8 @@ def refined(drawing: Path, out: Path, strokes: int) -> Callable[[Path], Spent]:
 
 def outlines(drawing: Path) -> Callable[[Path], Spent]:
     def measure(tree: Path) -> Spent:
-        _, told = run([python(tree), "-c", STROKES_OF, drawing])
-        return Spent(*map(float, told.split())).over(len(LETTERS))
+        _, output = run([python(tree), "-c", STROKES_OF, drawing])
+        return Spent(*map(float, output.split())).over(len(LETTERS))
 
     return measure
 
@@ -162,8 +162,8 @@ def advance(row: str) -> Callable[[Path], Spent]:
         bench = tree / "build" / "release" / "benchmarks" / "advance_bench"
         if not bench.exists():
             sys.exit(f"{bench} is not there: make bench builds it")
-        _, told = run([bench])
-        ns = float(re.search(rf"{re.escape(row)}.*? ([\d.]+) ns", told)[1])
+        _, output = run([bench])
+        ns = float(re.search(rf"{re.escape(row)}.*? ([\d.]+) ns", output)[1])
         return Spent(ns / 1e9, ns / 1e9)
 
     return measure
@@ -263,11 +263,11 @@ def main() -> None:
                 cells += [shown(that.used, row.unit), f"{ratio:.2f}"]
                 if ratio > SLOWER:
                     slower.append(f"{row.name} ({ratio:.2f})")
-            beside = ""
-            if row.measure_beside:
-                spent = least([row.measure_beside], options.rounds)[0]
-                beside = f"{row.beside} {shown(spent.used, row.unit)}"
-            print("| " + " | ".join([*cells, row.aim, beside]) + " |", flush=True)
+            reference = ""
+            if row.measure_reference:
+                spent = least([row.measure_reference], options.rounds)[0]
+                reference = f"{row.reference} {shown(spent.used, row.unit)}"
+            print("| " + " | ".join([*cells, row.aim, reference]) + " |", flush=True)
     if options.against:
         print(f"\nslower than that tree: {', '.join(slower) or 'nothing'}")
 

@@ -1,4 +1,4 @@
-"""Random brushes paint a calibration sheet, and the fit is asked which brush it was.
+"""Random brushes paint a calibration sheet, and the fit has to find it.
 
     truth_recovery.py [--brushes 300] [--seed 1] [--processes 2] [--sheet a4] [--outside all]
 

@@ -25,7 +25,7 @@ import brushsvg
 from brushsvg._core import MarkLaws
 from brushsvg.calibration.marks.from_marks import brush_of
 from brushsvg.calibration.numbers.from_widths import lag_of_turn, new_brush
-from brushsvg.show.evaluation.report import wanted_rings
+from brushsvg.show.evaluation.report import target_rings
 
 READ_TO_MM = 0.5
 SHARES = (0.25, 0.6, 1.0)  # of the greatest depth
@@ -65,10 +65,10 @@ def main() -> None:
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     words.add_argument("--brushes", type=int, default=12)
     words.add_argument("--seed", type=int, default=1)
-    asked = words.parse_args()
+    given = words.parse_args()
     found: dict[str, list[float]] = {}
-    for number in range(asked.brushes):
-        rng = np.random.default_rng((asked.seed, number))
+    for number in range(given.brushes):
+        rng = np.random.default_rng((given.seed, number))
         hidden = painter.random_brush(rng)
         size = 0.75 * 2 * hidden.law("half_width")(hidden.deepest) / WIDEST_OF_WORD_MM
         with tempfile.TemporaryDirectory() as folder:
@@ -85,7 +85,7 @@ def main() -> None:
             ways = [(one.stroke, painter.dense(np.array(one.poses_mm), one.arcs)) for one in plan.passes]
             regions = painter.swept(hidden, ways, 0.0)
             painted = {str(k): region for k, region in enumerate(regions) if region is not None}
-            overlap = studio.overlap(painted, {"": studio.as_region(wanted_rings(strokes))})
+            overlap = studio.overlap(painted, {"": studio.as_region(target_rings(strokes))})
             found.setdefault(name, []).append(overlap)
         print(number, {name: round(values[-1], 3) for name, values in found.items()}, flush=True)
     for name, values in found.items():

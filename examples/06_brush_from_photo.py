@@ -1,7 +1,7 @@
 """Calibrate a brush from a photograph of a painted chart.
 
 Run: python examples/06_brush_from_photo.py. It writes the chart, a simulated photograph of it (photo.jpg), the brush
-(mine.json) and what brushsvg read in the photograph (read.png). It takes half a minute. With a real machine, you print
+(mine.json) and what brushsvg read in the photograph (read.png). The run takes half a minute. For a real machine, print
 page.pdf, paint chart.ngc on it, and take the photograph yourself.
 """
 

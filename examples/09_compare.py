@@ -1,7 +1,7 @@
 """Compare a photograph of a painted sheet with the drawing, and correct the next sheet.
 
 Run: python examples/09_compare.py. It writes two simulated photographs (first.jpg, second.jpg), what compare sees in
-the first one (seen.png), and the corrections (corrections.json). It takes half a minute. With a real machine, you paint
+the first one (seen.png), and the corrections (corrections.json). The run takes half a minute. For a real machine, paint
 the sheets and take the photographs yourself.
 """
 

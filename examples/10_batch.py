@@ -26,7 +26,7 @@ def main() -> None:
         if row.figures:
             print(f"{row.name}: overlap {row.figures.overlap:.3f}")
         else:
-            print(f"{row.name}: refused: {row.told}")
+            print(f"{row.name}: refused: {row.text}")
     print(f"{len(done.rows)} drawings, {len(done.refused)} refused, {done.resumed} done by an earlier run")
 
 

@@ -23,6 +23,6 @@ def pytest_collection_finish():
 
 @pytest.fixture(autouse=True)
 def arms_reach_all(request, monkeypatch):
-    """Tests lay the paper of cells that come along where their arms do not reach: only those marked arm ask these."""
+    """Place the paper of shipped cells where their arms do not reach in tests: only those marked arm check arms."""
     if request.node.get_closest_marker("arm") is None:
         monkeypatch.setattr("brushsvg.machine.program.unreachable", lambda *_: [])

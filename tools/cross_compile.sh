@@ -29,7 +29,7 @@ for target in "${targets[@]}"; do
     -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE= -DBRUSHSVG_WERROR=ON \
     -DCMAKE_CXX_FLAGS="-pedantic-errors -isystem $PWD/include -D_LIBCPP_ENABLE_CXX17_REMOVED_UNARY_BINARY_FUNCTION -Wno-enum-constexpr-conversion" \
     -DEigen3_DIR=/usr/share/eigen3/cmake -DBoost_INCLUDE_DIR="$PWD/include" -DBoost_NO_BOOST_CMAKE=ON \
-    -Dnlohmann_json_DIR=/usr/share/cmake/nlohmann_json -DBRUSHSVG_HIGHWAY=OFF -DBRUSHSVG_INSTALL=OFF >/dev/null
+    -Dnlohmann_json_DIR=/usr/share/cmake/nlohmann_json -DBRUSHSVG_INSTALL=OFF >/dev/null
   cmake --build "$target/build" ${JOBS:+-j "$JOBS"} --target brushsvg_core brushsvg_io brushsvg_posts >/dev/null
   for example in 12_embedding 01_first_word; do
     "$target/c++" -std=c++17 -I"$tree/cpp/include" -I"$target/build/headers" -isystem /usr/include/eigen3 "$tree/examples/$example.cpp" \

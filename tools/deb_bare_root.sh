@@ -11,7 +11,7 @@ if [ ! -e root/usr/bin/cmake ]; then
   rm -rf root
   sources=()
   for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.{list,sources}; do [ ! -f "$list" ] || sources+=("$list"); done
-  mmdebstrap --quiet --variant=minbase --include=g++,cmake,ninja-build,pkg-config,libeigen3-dev,libceres-dev,libhwy-dev \
+  mmdebstrap --quiet --variant=minbase --include=g++,cmake,ninja-build,pkg-config,libeigen3-dev,libceres-dev \
     "$suite" root "${sources[@]}"
 fi
 rm -rf root/work && mkdir -p root/work
@@ -33,8 +33,6 @@ build word -DEXAMPLE=/work/examples/12_embedding.cpp
 word/consumer
 build brush -DEXAMPLE=/work/examples/01_first_word.cpp
 brush/consumer round-6.json cmake.ngc
-build many -DMANY=ON
-many/many
 build fit -DFIT=ON
 fit/fit
 c++ -std=c++17 examples/01_first_word.cpp $(pkg-config --cflags --libs brushsvg) -o by_pkg_config

@@ -35,9 +35,9 @@ def pages() -> list[Path]:
     return [page for page in found if page.is_file() and page.relative_to(DOCS).as_posix() not in GENERATED]
 
 
-def banned_words() -> list[tuple[re.Pattern[str], str]]:
+def banned_words(file: Path = BANNED_WORDS) -> list[tuple[re.Pattern[str], str]]:
     """Return a pattern for each banned word or phrase, with the words to write instead."""
-    rows = [line.strip() for line in BANNED_WORDS.read_text(encoding="utf-8").splitlines()]
+    rows = [line.strip() for line in file.read_text(encoding="utf-8").splitlines()]
     pairs = [row.partition("->") for row in rows if row and not row.startswith("#")]
     return [
         (re.compile(rf"(?<![\w-]){re.escape(word.strip())}(?![\w-])", re.IGNORECASE), instead.strip())

@@ -1,6 +1,6 @@
 """Draws docs/explanation/ends.png: how strokes begin (pointed, round, butt), and below how they end.
 
-Grey is painted and wanted, red wanted and not painted, blue painted and not wanted; the tool's path on the paper is
+Grey is painted target, red is unpainted target, blue is paint outside of it; the tool's path on the paper is
 green. Needs nothing but the package.
 """
 
@@ -55,12 +55,12 @@ def cell(stroke, brush, **how: str) -> np.ndarray:
     marks = _core.simulate(plan, brush)
     window = (-AT_MM[0], -AT_MM[1], *SIZE_MM)
     paint = _core.coverage(marks, brush, window, PX_PER_MM)[..., None]
-    meant = _core.wanted_coverage([stroke], window, PX_PER_MM)[..., None]
+    target = _core.wanted_coverage([stroke], window, PX_PER_MM)[..., None]
     image = np.full((*paint.shape[:2], 3), 255.0)
     for share, name in (
-        (np.minimum(paint, meant), "both"),
-        (np.maximum(meant - paint, 0), "wanted"),
-        (np.maximum(paint - meant, 0), "painted"),
+        (np.minimum(paint, target), "both"),
+        (np.maximum(target - paint, 0), "wanted"),
+        (np.maximum(paint - target, 0), "painted"),
     ):
         image += share * (np.array(COLOURS[name]) - 255.0)
     points = (with_chords(plan.passes[0]).poses_mm[:, :2] - window[:2]) * PX_PER_MM

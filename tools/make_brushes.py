@@ -147,7 +147,7 @@ def liner_1() -> dict:
         **{
             name: {
                 "coefficients": [round(share * c, 6) for c in half],
-                "source": f"Assumed: {share:g} half widths, as of round brushes.",
+                "source": f"Assumed: {share:g} half widths, as in round brushes.",
                 "assumed": True,
             }
             for name, share in shares.items()
@@ -165,7 +165,7 @@ def liner_1() -> dict:
                 for h in [half[0] + half[1] * d]
             ],
             "pressed": [],
-            "source": "Assumed: drops, as of round brushes; the same when pressed straight down.",
+            "source": "Assumed: drops, as in round brushes; the same when pressed straight down.",
             "assumed": True,
         },
     }

@@ -14,9 +14,9 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1] / "python" / "brushsvg"
 
-# What a signature of pybind11 does not tell: a name is taken for a StrokeId, any value may be compared, a number gives
+# What a signature of pybind11 does not show: a name is taken for a StrokeId, any value may be compared, a number gives
 # a number and an array an array.
-TOLD = (
+REPLACEMENTS = (
     (r"def __eq__\(self, arg0: \w+\) -> bool", "def __eq__(self, other: object, /) -> bool"),
     (r"\b(id|stroke): StrokeId = ''", r"\1: StrokeId | str = ''"),
     (r"(def (?:id|stroke)\(self, arg1): StrokeId\)", r"\1: StrokeId | str)"),
@@ -52,17 +52,15 @@ def stub_files() -> dict[str, str]:
     """File name -> text of the stubs, below the package."""
     with tempfile.TemporaryDirectory() as folder:
         words = ["-m", "pybind11_stubgen", "brushsvg._core", "--output-dir", folder]
-        enums = [f"--enum-class-locations={name}:brushsvg._core" for name in ("Norm", "Lines", "Displaced")]
+        enums = [f"--enum-class-locations={name}:brushsvg._core" for name in ("Norm", "Lines")]
         exact = ["--numpy-array-wrap-with-annotated", "--exit-code"]
         subprocess.run([sys.executable, *words, *enums, *exact], check=True, capture_output=True, text=True)
         made = {path.name: path.read_text() for path in sorted(Path(folder).rglob("*.pyi"))}
     for name, text in made.items():
-        for said, meant in TOLD:
-            text = re.sub(said, meant, text)
+        for said, replacement in REPLACEMENTS:
+            text = re.sub(said, replacement, text)
         if "Notice" in text:
-            text = text.replace(
-                "import typing\n", "preview typing\nfrom -o ..errors --show strokes import Notice\n", 1
-            )
+            text = text.replace("import typing\n", "import typing\nfrom ..errors import Notice\n", 1)
         format_it = [sys.executable, "-m", "ruff", "format", "--stdin-filename", name, "-"]
         done = subprocess.run(format_it, input=text, capture_output=True, text=True, check=True, cwd=PACKAGE)
         made[name] = done.stdout

@@ -1,7 +1,7 @@
 """Run the tests under other arithmetic and list what changes: `make test-variants`.
 
-Processors differ in the last bits of sums and functions: fused multiply-adds, other kernels of OpenBLAS, numpy, glibc
-and Highway. No test may depend on them. Each variant here is a processor: everything that calculates takes the way that
+Processors differ in the last bits of sums and functions: fused multiply-adds, other kernels of OpenBLAS, numpy and
+glibc. No test may depend on them. Each variant here is a processor: everything that calculates takes the way that
 it would take there. What fails under one is tried again under each of its parts, which are variants as well.
 
     tools/test_variants.py --variant haswell --variant glibc-no-fma --suite python --tests 'test_fit*'
@@ -25,11 +25,10 @@ ROOT = Path(__file__).resolve().parent.parent
 SITE = ROOT / "tools/variant_site"
 BUILDS = ROOT / "build/variants"
 OPENBLAS_CORES = ("Nehalem", "Haswell", "Zen", "SkylakeX")
-HIGHWAY_BITS = (("baseline", "14"), ("ssse3", "12"), ("sse4", "11"), ("avx2", "9"))  # hwy/detect_targets.h
 # of the parts of find_variants: what these processors are made of. The first has no FMA, the second no AVX-512.
 PROCESSORS = {
-    "nehalem": ("glibc-no-fma", "numpy-baseline", "openblas-nehalem", "highway-sse4"),
-    "haswell": ("v3-fma", "numpy-no-avx512", "openblas-haswell", "highway-avx2"),
+    "nehalem": ("glibc-no-fma", "numpy-baseline", "openblas-nehalem"),
+    "haswell": ("v3-fma", "numpy-no-avx512", "openblas-haswell"),
     "skylake-x": ("openblas-skylakex",),
     "no-contraction": ("no-contract",),
 }
@@ -73,7 +72,6 @@ def find_variants(plain: dict) -> list[Variant]:
         ("numpy-no-avx512", "numpy", "NPY_DISABLE_CPU_FEATURES", " ".join(of_512)),
         ("numpy-baseline", "numpy", "NPY_DISABLE_CPU_FEATURES", " ".join(plain["numpy"])),
         *((f"openblas-{core.lower()}", "blas", "OPENBLAS_CORETYPE", core) for core in OPENBLAS_CORES),
-        *((f"highway-{name}", "highway", "BRUSHSVG_VARIANT_HIGHWAY_BIT", bit) for name, bit in HIGHWAY_BITS),
     ):
         out.append(Variant(name, (changes,), environment={switch: value}))
     return out
@@ -256,8 +254,6 @@ def main() -> int:
             rows.append((variant.name, "", "runs here"))
             continue
         for suite in suites:
-            if suite == "cpp" and variant.changes == ("highway",):
-                continue  # these tests go through all targets on their own
             now = results[variant.name, suite] = run_suite(variant, suite, options.tests, options.processes)
             failed = [name for name, passed in now.items() if not passed]
             rows.append((variant.name, suite, f"{len(now) - len(failed)} passed, {len(failed)} failed"))

@@ -162,7 +162,7 @@ class _File:
                 self.constants.append((name, value))
 
     def _constants(self) -> None:
-        """Constants of the file: wherever its functions use them they are another number."""
+        """Constants of the file: where its functions use them they are another number."""
         for name, value in self.constants:
             word, number = self._text(name), self._text(value)
             other = another(number.replace("'", ""))

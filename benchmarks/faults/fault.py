@@ -45,7 +45,7 @@ class Fault:
 
     @property
     def identity(self) -> tuple[str, str, int, str]:
-        """The same as long as its line is, wherever that stands in the file."""
+        """The same as long as its line is, where that stands in the file."""
         return self.file, self.code, self.column, self.change
 
     @property

@@ -179,9 +179,9 @@ def take_all(choice: Choice, count: int, sources: dict[str, bytes]) -> list[Faul
         folder = file.rpartition("/")[0]
         if folder in sizes:
             sizes[folder] += source.count(b"\n")
-    wanted = shares(count, sizes)
+    counts = shares(count, sizes)
     for folder in sorted(sizes, key=sizes.get):  # small ones first: they have the least choice of kinds
-        for _ in range(wanted[folder]):
+        for _ in range(counts[folder]):
             if (fault := choice.take(folder)) is None:
                 print(f"{folder} has no more faults")
             else:
@@ -207,7 +207,7 @@ def configure(tree: Path) -> None:
 
 
 class Compiler:
-    """Tells whether a fault compiles: in its file, or for a header in a file that includes it."""
+    """Return whether a fault compiles: in its file, or for a header in a file that includes it."""
 
     def __init__(self, tree: Path):
         self.tree = tree

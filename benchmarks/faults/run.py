@@ -317,7 +317,7 @@ def reaching(tests: dict[str, Test], hits: set[str]) -> tuple[list[Test], list[T
     direct = [test for test in passing if test.name in hits or test.file in files]
     near_files = {test.file for test in direct if not test.name.startswith(CPP)}
     fixtures = {name for test in direct for name in test.shared}
-    # a hit by a test that fails without faults still tells of its file
+    # a hit by a test that fails without faults still identifies its file
     near_files |= {name.split("::")[0] for name in hits if not name.startswith(CPP)}
     known = {test.name for test in direct}
     if any("::" not in name for name in hits):  # what an import computes, others find there

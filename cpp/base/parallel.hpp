@@ -14,7 +14,7 @@
 
 namespace brushsvg {
 
-/// Asked once: the system reads a file each time, a thirtieth of a page's convert.
+/// Queried once: the system reads a file each time, a thirtieth of a page's convert.
 inline std::size_t processors() {
     static const std::size_t count = std::max(1u, std::thread::hardware_concurrency());
     return count;

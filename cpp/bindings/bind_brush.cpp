@@ -3,7 +3,7 @@
 
 namespace {
 
-/// A copy of a law that can be asked at the depths of its brush alone, however the brush was made.
+/// A copy of a law that is defined at the depths of its brush alone, for any origin of the brush.
 auto law_of(brushsvg::Profile brushsvg::Brush::* law) {
     return [law](const brushsvg::Brush& brush) {
         brushsvg::Profile copy = brush.*law;

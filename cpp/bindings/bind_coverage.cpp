@@ -24,7 +24,7 @@ void bind_coverage(py::module_& m) {
             return coverage_of_pieces(convex, Window{w[0], w[1], w[2], w[3]}, px_per_mm);
         },
         py::arg("convex_rings"), py::arg("window_mm"), py::arg("px_per_mm"), unlocked,
-        "The same for the union of convex counter-clockwise rings, which may lie over each other.");
+        "The same for the union of convex counter-clockwise rings, which may overlap.");
     m.def(
         "trace_outlines",
         [](Marks& marks, const Brush& brush, const py::object& progress) {

@@ -17,8 +17,7 @@ void bind_fit(py::module_& m) {
     using namespace brushsvg::fit;
     const auto unlocked = py::call_guard<Unlocked>();
     py::enum_<Norm>(m, "Norm").value("squares", Norm::squares).value("absolute", Norm::absolute);
-    py::class_<LawShape> law_shape(m, "LawShape",
-                                   "What is asked of a fitted law; positive and rising hold on range_mm.");
+    py::class_<LawShape> law_shape(m, "LawShape", "Constraints on a fitted law; positive and rising hold on range_mm.");
     law_shape
         .def(py::init([](std::array<double, 2> range_mm, int degree, bool through_zero, bool positive, bool rising,
                          double floor, Norm norm, double smoothing) {

@@ -2,6 +2,7 @@
 #include "bindings.hpp"
 #include "brushsvg/lag_arc.hpp"
 #include "law_between.hpp"
+#include "marks/follow_lag.hpp"
 
 namespace {
 
@@ -90,6 +91,40 @@ py::dict follow(const Rows& tcp_mm, const std::vector<double>& depth_mm, const P
     return rows;
 }
 
+using Table = py::array_t<double, py::array::c_style>;
+
+/// One table (rows, 2) for each lag, next to each other.
+Table next_to_each_other(const std::vector<FollowedRows>& lags, Ring FollowedRows::* table) {
+    const auto rows = lags.empty() ? 0 : (lags[0].*table).rows();
+    Table out({rows, Eigen::Index(2), Eigen::Index(lags.size())});
+    auto to = out.mutable_unchecked<3>();
+    for (Eigen::Index k = 0; k < Eigen::Index(lags.size()); ++k)
+        for (Eigen::Index i = 0; i < rows; ++i)
+            for (Eigen::Index axis = 0; axis < 2; ++axis) to(i, axis, k) = (lags[std::size_t(k)].*table)(i, axis);
+    return out;
+}
+
+py::list follow_lags(const std::vector<Pass>& passes, const std::vector<PassMarks>& marks,
+                     const std::vector<Profile>& lags, const std::array<double, 2>& depth_range_mm) {
+    if (passes.size() != marks.size())
+        throw Error("sizes-differ", std::to_string(passes.size()) + " passes and marks of " +
+                                        std::to_string(marks.size()) + ": each pass needs its own");
+    std::vector<LagLaw<double>> laws;
+    for (const Profile& lag : lags) laws.push_back(law_between(lag, depth_range_mm[0], depth_range_mm[1]));
+    std::vector<std::vector<FollowedRows>> followed(passes.size());
+    {
+        const Unlocked unlocked;
+        on_all_processors(0, passes.size(), [&](std::size_t i) {
+            for (const LagLaw<double>& law : laws) followed[i].push_back(follow_lag(passes[i], marks[i], law));
+        });
+    }
+    py::list out;
+    for (const auto& of_pass : followed)
+        out.append(py::make_tuple(next_to_each_other(of_pass, &FollowedRows::contact_mm),
+                                  next_to_each_other(of_pass, &FollowedRows::heading)));
+    return out;
+}
+
 }  // namespace
 
 void bind_lag(py::module_& m) {
@@ -131,4 +166,11 @@ void bind_lag(py::module_& m) {
     lag.def("follow", &follow, py::arg("tcp_mm"), py::arg("depth_mm"), py::arg("profile"),
             py::arg("contact_mm") = py::none(),
             "Contact, heading and tension at each place of the TCP, taut and loose (article 2.1, 2.2).");
+    m.def("follow_lags", &follow_lags, py::arg("passes"), py::arg("marks"), py::arg("lags"), py::arg("depth_range_mm"),
+          R"(Follow the TCP of each pass with K other lags, at the rows of its marks.
+
+marks: PassMarks of each pass, simulated with one upright brush. lags: Profiles that are positive on depth_range_mm. For
+each pass: contacts [mm] and headings as unit vectors, (n, 2, K) each. In the air the contact is the TCP.
+
+Exact at each row, by the closed form.)");
 }

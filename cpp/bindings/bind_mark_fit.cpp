@@ -1,18 +1,5 @@
 #include "bindings.hpp"
 #include "mark_fit.hpp"
-#include "track_fit.hpp"
-
-template <>
-inline constexpr auto members<brushsvg::fit::Track> =
-    std::tuple(&brushsvg::fit::Track::poses_mm, &brushsvg::fit::Track::pose, &brushsvg::fit::Track::seen_mm,
-               &brushsvg::fit::Track::heading_rad);
-
-template <>
-inline constexpr auto members<brushsvg::fit::TrackFit> =
-    std::tuple(&brushsvg::fit::TrackFit::lag, &brushsvg::fit::TrackFit::covariance,
-               &brushsvg::fit::TrackFit::heading_rad, &brushsvg::fit::TrackFit::displacement_mm,
-               &brushsvg::fit::TrackFit::residual_mm, &brushsvg::fit::TrackFit::degrees_of_freedom,
-               &brushsvg::fit::TrackFit::iterations, &brushsvg::fit::TrackFit::converged);
 
 template <>
 inline constexpr auto members<brushsvg::fit::PaintedMark> =
@@ -72,55 +59,6 @@ inline constexpr auto members<brushsvg::fit::MarkFit> =
 void bind_mark_fit(py::module_& m) {
     using namespace brushsvg::fit;
     const auto unlocked = py::call_guard<Unlocked>();
-    py::class_<Track> track(m, "Track",
-                            R"(A stroke along which the patch was seen: lag from it by fit_tracks.
-
-poses_mm (n, 3): the TCP's way; pose (m,): where on it, fractional between poses; seen_mm (m, 2): where the patch was.
-heading_rad: at the first pose, the brush being dragged already; nan: it is set down there.)");
-    track
-        .def(py::init(
-                 [](brushsvg::Poses poses_mm, std::vector<double> pose, brushsvg::Ring seen_mm, double heading_rad) {
-                     return Track{std::move(poses_mm), std::move(pose), std::move(seen_mm), heading_rad};
-                 }),
-             py::arg("poses_mm"), py::arg("pose"), py::arg("seen_mm"),
-             py::arg("heading_rad") = std::numeric_limits<double>::quiet_NaN())
-        .def("__repr__", [](const Track& v) {
-            return "<Track: " + counted(std::size_t(v.poses_mm.rows()), "pose") + ", seen at " +
-                   counted(v.pose.size(), "place") + ">";
-        });
-    as_fixed_value(track);
-    py::enum_<Displaced>(m, "Displaced")
-        .value("no", Displaced::no)
-        .value("along", Displaced::along)
-        .value("both", Displaced::both);
-    py::class_<TrackFit> track_fit(m, "TrackFit", "A lag fitted to tracks, how sure it is, and what it leaves.");
-    track_fit.def_property_readonly("lag", [](const TrackFit& f) { return f.lag; })
-        .def_property_readonly("covariance", frozen_copy(&TrackFit::covariance))
-        .def_property_readonly("heading_rad", frozen_copy(&TrackFit::heading_rad))
-        .def_readonly("displacement_mm", &TrackFit::displacement_mm)
-        .def_property_readonly("residual_mm", frozen_copy(&TrackFit::residual_mm))
-        .def_readonly("degrees_of_freedom", &TrackFit::degrees_of_freedom)
-        .def_readonly("iterations", &TrackFit::iterations)
-        .def_readonly("converged", &TrackFit::converged)
-        .def("__repr__", [](const TrackFit& v) {
-            return "<TrackFit: " + repr_of(v.lag) + ", " + std::to_string(v.degrees_of_freedom) +
-                   " degrees of freedom>";
-        });
-    as_fixed_value(track_fit);
-    m.def(
-        "fit_tracks",
-        [](const std::vector<Track>& tracks, const std::vector<double>& start, std::array<double, 2> range_mm,
-           std::vector<double> lever_mm, bool free_heading, Displaced displaced, int most_iterations) {
-            return fit_tracks(tracks, start, {range_mm, std::move(lever_mm), free_heading, displaced, most_iterations});
-        },
-        py::arg("tracks"), py::arg("start"), py::arg("range_mm"), py::kw_only(),
-        py::arg("lever_mm") = std::vector<double>{}, py::arg("free_heading") = false,
-        py::arg_v("displaced", Displaced::no, "Displaced.no"), py::arg("most_iterations") = 50, unlocked,
-        R"(Lag r(d) from strokes with a known way of the TCP and places where the patch was seen, by least squares.
-
-start: coefficients to begin from, as many as the law shall have. lever_mm: coefficients of e(d) where the middle of the
-mark was seen instead of the centre of friction. free_heading, displaced: each stroke's own unknowns.)");
-
     py::class_<PaintedMark> painted_mark(m, "PaintedMark", R"(What one pass painted.
 
 stroke: its id; poses_mm (n, 3): the TCP's way, z = -depth; outline_mm: rings [(n, 2) mm], holes among them; arcs: of

@@ -3,7 +3,7 @@
 
 void bind_mark_overlap(py::module_& m) {
     using namespace brushsvg;
-    py::class_<CommonArea> type(m, "CommonArea", "Areas [mm^2] of paint and wanted mark.");
+    py::class_<CommonArea> type(m, "CommonArea", "Areas [mm^2] of paint and target mark.");
     type.def(py::init([](double common_mm2, double together_mm2) { return CommonArea{common_mm2, together_mm2}; }),
              py::arg("common_mm2"), py::arg("together_mm2"))
         .def_readonly("common_mm2", &CommonArea::common_mm2)
@@ -31,5 +31,5 @@ void bind_mark_overlap(py::module_& m) {
         py::arg("wanted"), py::arg("window_mm"), py::arg("px_per_mm"), py::call_guard<Unlocked>(),
         "What strokes should cover of every pixel, float32, row 0 at the top; window = (x, y, width, height) [mm].");
     m.def("touching", &touching, py::arg("wanted"), py::call_guard<Unlocked>(),
-          "Numbers of strokes whose wanted marks touch, a list per letter; those that stand alone are not named.");
+          "Numbers of strokes whose target marks touch, a list per letter; those that stand alone are not named.");
 }

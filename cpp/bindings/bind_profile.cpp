@@ -59,7 +59,7 @@ unknown keys of its file, as JSON. A value: it is not changed, but another one m
         .def_readonly("extra", &Profile::extra)
         .def_property_readonly(
             "depth_range_mm", frozen_copy(&Profile::depth_range_mm),
-            "Depths [mm] at which it can be asked, of a law of a Brush: its depth_range_mm. None: any.")
+            "Depths [mm] at which it is defined, of a law of a Brush: its depth_range_mm. None: any.")
         .def("__repr__", [](const Profile& p) {
             std::string out;
             for (std::size_t i = 0; i < p.coefficients.size(); ++i) {

@@ -29,13 +29,13 @@ void bind_region(py::module_& m) {
           "is first crossed; infinite where it is not. Error where there are not as many ways as places.");
     m.def("area", &area, py::arg("rings"),
           "Area [mm^2], clockwise rings, which are holes, taken off: negative where they outweigh.");
-    m.def(
-        "excess_turning", &excess_turning, py::arg("mark"), py::arg("wanted"),
-        "How much more the outlines of a mark turn than those wanted, in full turns; each as a polygon within 0.1 mm.");
+    m.def("excess_turning", &excess_turning, py::arg("mark"), py::arg("wanted"),
+          "How much more the outlines of a mark turn than those of the target, in full turns; each as a "
+          "polygon within 0.1 mm.");
     m.def("thorns", &thorns, py::arg("mark"), py::arg("wanted"),
-          "How many corners of a mark's outlines beyond 20 degrees stick out of what was wanted by more than 0.3 mm; "
+          "How many corners of a mark's outlines beyond 20 degrees stick out of the target by more than 0.3 mm; "
           "each "
-          "outline as a polygon within 0.05 mm, wanted given as for unite.");
+          "outline as a polygon within 0.05 mm, target given as for unite.");
     m.def("overlap", &overlap, py::arg("rings_a"), py::arg("rings_b"), unlocked,
           "Area of the intersection over area of the union, each given as for unite; 1 when both are empty.");
 }

@@ -148,5 +148,5 @@ is not positive.)")
             return wanted_outline(stroke, tolerance_mm);
         },
         py::arg("stroke"), py::arg("tolerance_mm") = 0.005, py::call_guard<Unlocked>(),
-        "Rings of the wanted mark: the path with its width, round caps and round joins.");
+        "Rings of the target mark: the path with its width, round caps and round joins.");
 }

@@ -26,7 +26,6 @@ void bind_marks(py::module_& m);
 void bind_lag(py::module_& m);
 void bind_bristle(py::module_& m);
 void bind_simulate(py::module_& m);
-void bind_many_strokes(py::module_& m);
 void bind_region(py::module_& m);
 void bind_medial_axis(py::module_& m);
 void bind_curve_fit(py::module_& m);
@@ -42,7 +41,7 @@ void bind_fit(py::module_& m);
 void bind_mark_fit(py::module_& m);
 
 /// Without the interpreter's lock, while Ctrl-C is heard: the main thread asks at checkpoints. Any thread is given up
-/// by PyThreadState_SetAsyncExc, which is heard by whoever runs a line of Python, as here every now and then.
+/// by PyThreadState_SetAsyncExc, which is seen when a line of Python runs, as here every now and then.
 class Unlocked {
  public:
     Unlocked()
@@ -71,7 +70,7 @@ inline py::object frozen(const py::object& copy) {
     return copy;
 }
 
-/// What `frozen` makes of it, as type checkers are told.
+/// What `frozen` makes of it, as type checkers see it.
 template <class Value>
 struct FrozenType {
     using type = Value;
@@ -142,7 +141,7 @@ auto replace(Value Owner::* member) {
     };
 }
 
-/// A warning as Python tells it. `about`: alike are only those that are about the same.
+/// A warning as Python reports it. `about`: alike are only those that are about the same.
 inline py::object notice(const brushsvg::Warning& warning, const std::string& about = "") {
     return py::module_::import("brushsvg.errors")
         .attr("Notice")(warning.where, warning.sentence, py::arg("code") = warning.code, py::arg("about") = about);

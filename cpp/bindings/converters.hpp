@@ -16,12 +16,12 @@
 
 #include "brushsvg/error.hpp"
 
-// How Python's lists and arrays become ours: as pybind11 does it, but nothing is made room for, and numpy is asked for
+// How Python's lists and arrays become ours: as pybind11 does it, but no memory is reserved, and numpy is called for
 // nothing, before it is known how much there is.
 
 namespace py = pybind11;
 
-/// No list is longer that anybody has a use for; the memory for a longer one is not even asked for.
+/// No list is longer that anybody has a use for; the memory for a longer one is not even requested.
 inline constexpr py::ssize_t kMostEntries = 10'000'000;
 
 /// What one argument holds so far: the lists within a list count together, a row of numbers as one entry.
@@ -62,7 +62,7 @@ namespace pybind11::detail {
 
 using DoubleArray = array_t<double, array::c_style | array::forcecast>;
 
-/// Values that are masked are nan: what lies below a mask nobody meant.
+/// Values that are masked are nan: values below a mask are not data.
 inline object unmasked(handle source) {
     if (!isinstance<array>(source) || !hasattr(source, "filled")) return reinterpret_borrow<object>(source);
     return source.attr("astype")("float64").attr("filled")(std::numeric_limits<double>::quiet_NaN());

@@ -15,7 +15,7 @@
 // What a value consists of: two are equal, and a copy is whole, where all of these are. A member that is not named here
 // is lost when a value is pickled.
 
-/// The members of a value type, as a tuple of pointers; a number for whatever is no value type of ours.
+/// The members of a value type, as a tuple of pointers; a number for anything that is no value type of ours.
 template <class Value>
 inline constexpr auto members = 0;
 

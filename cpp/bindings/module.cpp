@@ -38,7 +38,7 @@ PYBIND11_MODULE(_core, m) {
         }
     });
 
-#ifdef GOOGLE_STRIP_LOG  // Ceres logs by glog, not by its miniglog: searches that lead nowhere are told by our errors
+#ifdef GOOGLE_STRIP_LOG  // Ceres logs by glog, not by its miniglog: failed searches are reported by our errors
     if (!std::getenv("GLOG_minloglevel")) FLAGS_minloglevel = google::GLOG_ERROR;
 #endif
 
@@ -54,7 +54,6 @@ PYBIND11_MODULE(_core, m) {
     bind_lag(m);
     bind_bristle(m);
     bind_simulate(m);
-    bind_many_strokes(m);
     bind_region(m);
     bind_medial_axis(m);
     bind_curve_fit(m);

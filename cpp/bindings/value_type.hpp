@@ -14,8 +14,8 @@
 #include "converters.hpp"
 #include "members.hpp"
 
-// What every value type has in Python beside its fields: equality, pickle, copy and, where it cannot be changed, a
-// hash.
+// What every value type has in Python in addition to its fields: equality, pickle, copy and, where it cannot be
+// changed, a hash.
 
 template <class Value>
 inline constexpr bool has_members = !std::is_same_v<decltype(members<Value>), const int>;

@@ -110,16 +110,16 @@ std::optional<Depths> depths_of_turns(const BrushMoves& moves) {
 
 constexpr double kLongestLagMm = 1000.0;  // no brush is longer
 
-/// What the steps along the line use up of the tolerance where poses are thinned out afterwards: more leaves too little
-/// of it for that, less costs time, and poses where the brush is loose, which stay as they are.
+/// What the steps along the line use up of the tolerance where the path is simplified afterwards: more leaves too
+/// little of it for that, less costs time, and poses where the brush is loose, which stay as they are.
 constexpr double kStepShare = 0.35;
 /// And no more of it than of the default one: the steps' own corners would show, and from the same steps a coarser
 /// tolerance has no more poses left than a finer one.
 constexpr double kMostStepToleranceMm = 0.00875;
 /// Below a tolerance those that are tried as well.
 constexpr double kFinerTolerancesMm[] = {0.5, 0.2, 0.1, 0.05};
-/// Shares of the tolerance: what thinning out may use up, and the tracking error that is accepted then. Rows of the
-/// check lie a little off the truth between them: at 0.95 a mark was 0.0002 mm off too far.
+/// Shares of the tolerance: what simplification may use up, and the tracking error that is accepted then. Rows of the
+/// check are a little off the truth between them: at 0.95 a mark was 0.0002 mm off too far.
 constexpr double kThinShare = 0.9, kSurely = 0.9;
 /// And what fewer poses may add to a tracking error that is larger anyway: with none a cusp's poses were all kept for
 /// 1e-4 mm. A plainer beginning has to win more, for what is missed elsewhere is none of its.
@@ -175,7 +175,7 @@ CompensatedPass led(const Pass& plain, bool few_poses, const Stroke& stroke, con
             result.tracking_error = error;
             result.pass = trial;
         }
-        // rows of the check lie a little off the truth between them; fewer poses need more to spare
+        // rows of the check are a little off the truth between them; fewer poses need more to spare
         const bool sure = !few_poses && error.largest_mm <= 0.9 * tolerance_mm;
         if (sure || ((turns || (few_poses && result.tracking_error.within_tolerance)) && !better) ||
             trial.poses_mm.rows() >= Index(kMostSamples))
@@ -191,7 +191,7 @@ CompensatedPass led(const Pass& plain, bool few_poses, const Stroke& stroke, con
     return result;
 }
 
-/// `all_poses`: where to, if it is asked for.
+/// `all_poses`: where to, if it is requested.
 CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
                                  Pass* all_poses = nullptr) {
     check(stroke);

@@ -6,7 +6,7 @@
 namespace brushsvg {
 
 /// What is left of the depth while the brush turns over, and where a mark ends in a point. Its footprint is so small
-/// then that the way it goes round does not show, in a mark as fine as 1 mm; a paper that lies lower by half as much is
+/// then that the way it goes round does not show, in a mark as fine as 1 mm; a paper that is lower by half as much is
 /// touched still.
 inline constexpr double kTurnOverDepthMm = 0.5;
 
@@ -21,11 +21,11 @@ struct Stance {
 /// and P was not moved.
 void land(const Stance& first, const Brush& brush, PoseList& out, double from_mm = 0.0);
 
-/// Holds P and comes back along q = P + r(depth) u, a little inside, until the depth is what is asked for: no tail.
+/// Holds P and comes back along q = P + r(depth) u, a little inside, until the depth is the requested one: no tail.
 void lift(const Stance& last, const Brush& brush, PoseList& out, double until_mm = 0.0);
 
 /// Lifts the brush until it hardly touches, goes back over P and presses anew, heading elsewhere: P rests. At full
-/// depth the footprint would be swept round P, and where the handle passes beside it says which way.
+/// depth the footprint would be swept round P, and where the handle passes it says which way.
 void turn_over(const Stance& before, const Stance& after, const Brush& brush, PoseList& out);
 
 }  // namespace brushsvg

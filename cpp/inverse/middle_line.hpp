@@ -12,7 +12,7 @@ namespace brushsvg {
 
 /// Between two samples the heading turns by at most this angle, so that it is never far from what they say.
 constexpr double kTurnStepRad = 0.2;
-/// A chord of a turn in place. The patch rests whatever it is; much more lets the bristles relax half way, by its
+/// A chord of a turn in place. The patch rests for any of them; much more lets the bristles relax half way, by its
 /// cosine.
 constexpr double kTurnChordRad = 0.4;
 /// Beyond those it begins with. Where a line asks for more (a taper far too steep for the lever), finer steps no longer
@@ -110,11 +110,11 @@ class Line {
     std::vector<double> start_;
 };
 
-/// How far a sample's TCP lies from the chord between two others, in mm, a depth off the chord's counted half.
+/// How far a sample's TCP is from the chord between two others, in mm, a depth off the chord's counted half.
 double off_chord(const Sample& a, const Sample& b, const Sample& between);
 
 /// Splits the steps along the line until no chord of the TCP's path is farther than `tolerance` from it, depth
-/// included. Looks at both thirds of a step: the middle of an S lies on its chord. `solve` fills contact, heading and
+/// included. Looks at both thirds of a step: the middle of an S is on its chord. `solve` fills contact, heading and
 /// tcp of all samples.
 template <class Solve>
 void refine_steps(const Line& line, Samples& samples, double tolerance, Solve&& solve) {

@@ -11,7 +11,7 @@ namespace brushsvg {
 /// What counts as one circle: far more than rounding, far less than is written to a file.
 inline constexpr double kSameCircleMm = 1e-8;
 
-/// Poses of a pass as they are found, and the circles that some of them lie on.
+/// Poses of a pass as they are found, and the circles through some of them.
 class PoseList {
  public:
     void add(const Eigen::Vector2d& tcp_mm, double depth_mm);

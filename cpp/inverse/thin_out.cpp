@@ -29,13 +29,13 @@ constexpr double kLeastMoveMm = 1e-6;
 /// From one move to the next the tool turns by no more, up and down counted: or it would have to stop there. Bends this
 /// tight slow it down anyway: 0.6 needs 8 % more poses and takes as long.
 constexpr double kMostTurnRad = 1.0;
-/// How far beside the path a move may end, in second differences over half its length: a third for an even curve. More
+/// How far off the path a move may end, in second differences over half its length: a third for an even curve. More
 /// of them win less than 1 % of the poses, none but the third loses a tenth.
 constexpr double kBeside[] = {1.0 / 3.0, 0.25, 0.45, 0.15, 0.0};
 /// And how much of that in depth, which the brush does not smooth: half the sagitta at a third.
 constexpr double kDeeper = 0.75;
 /// The mark's middle may be so many tolerances ahead of or behind where it was after the same share of the way. Where
-/// poses lie far apart, on straight lines, a mark beside the line is what else it would be next to: other sides of a
+/// poses are far apart, on straight lines, a mark next to the line would be next to something else: other sides of a
 /// triangle, a there with no back.
 constexpr double kSlipShare = 10.0;
 /// The edges of the mark turn by no more where two moves meet, eight degrees less a margin for what is rounded; and at
@@ -46,16 +46,16 @@ constexpr double kMostCornerRad = 0.125, kMostOffRad = 0.07;
 constexpr double kEndShare = 0.5;
 /// Steps that are tried where none keeps its direction.
 constexpr Index kTries = 6;
-/// Arcs: flatter ones are lines, and what is nearly a whole circle is told by no two places; far centres hold too few
-/// digits in a program. Between two of its poses an arc turns by no more, for who only knows the chords.
+/// Arcs: flatter ones are lines, and what is nearly a whole circle is determined by no two places; far centres hold too
+/// few digits in a program. Between two of its poses an arc turns by no more, for who only knows the chords.
 constexpr double kLeastTurnRad = 0.05, kMostArcRad = 5.0, kArcStepRad = 0.4;
 constexpr double kLeastRadiusMm = 2.0 * kArcRadiusMm[0], kMostRadiusMm = 1000.0;
 constexpr double kSameDepthMm = 1e-9;
 constexpr double kPi = 3.14159265358979323846;
-/// The footprint's tip may be off by so many tolerances: it lies inside the mark, its sides are what shows.
+/// The footprint's tip may be off by so many tolerances: it is inside the mark, its sides are what shows.
 constexpr double kTipShare = 3.0;
 
-/// Poses that lead on, and the circles that some of them lie on.
+/// Poses that continue, and the circles through some of them.
 struct Way {
     std::vector<Vector3d> poses;
     std::vector<Arc> arcs;
@@ -66,7 +66,7 @@ struct Circle {
     Vector2d centre;
     double radius, turn;
 
-    /// Through three places; none where they lie on a line, or where no plan has such a circle.
+    /// Through three places; none where they are on a line, or where no plan has such a circle.
     static std::optional<Circle> through(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
         const Vector2d ab = b - a, ac = c - a;
         const double cross = ab.x() * ac.y() - ab.y() * ac.x();
@@ -85,7 +85,7 @@ struct Circle {
         const Vector2d spoke = (at - centre) / radius;
         return turn > 0.0 ? Vector2d(-spoke.y(), spoke.x()) : Vector2d(spoke.y(), -spoke.x());
     }
-    /// Poses on it, beside the one that it begins at: a robot is told a pose on its way.
+    /// Poses on it, after the one that it begins at: a robot gets a pose on its way.
     int poses() const { return std::max(2, int(std::ceil(std::abs(turn) / kArcStepRad))); }
 };
 
@@ -154,7 +154,7 @@ class Walk {
         edges_ = step.edges;
     }
 
-    /// How far one move goes: to a pose, or beside it. Chords lie inside a curve, and the brush follows their mean. Out
+    /// How far one move goes: to a pose, or off it. Chords are inside a curve, and the brush follows their mean. Out
     /// by q'' L^2 / 12 their error has none, and what is left goes back and forth too quickly for the brush. Where the
     /// curve changes on the way, more or less than that is better.
     std::pair<Index, Step> farthest(Index i, Index stride) const {
@@ -310,7 +310,7 @@ class Walk {
     double tolerance_;
     Index first_ = 0, last_ = 0;
     LagState<double> state_;
-    Vector3d at_, way_;  ///< where the walk is, and the way that led there
+    Vector3d at_, way_;  ///< where the walk is, and the way to there
     Edges edges_;        ///< of the mark there
 };
 
@@ -324,7 +324,7 @@ Pass thinned(const Pass& pass, const Brush& brush, const LagLaw<double>& law, co
         poses.push_back(pass.poses_mm.row(i).transpose());
     };
     Pass out = pass;
-    out.tool_axes.resize(0, 3);  // upright, as are all that are thinned out
+    out.tool_axes.resize(0, 3);  // upright, as are all that are simplified
     out.arcs.clear();
     Walk walk(was, brush, law, tolerance_mm);
     for (Index i = 0; i < n;) {
@@ -356,7 +356,7 @@ Pass thinned(const Pass& pass, const Brush& brush, const LagLaw<double>& law, co
     return out;
 }
 
-/// Farthest that the middle of a mark, its widest points, lies from that of another, from the first taut row to the
+/// Farthest that the middle of a mark, its widest points, is from that of another, from the first taut row to the
 /// last.
 double apart(const PassMarks& marks, const Ring& widest, const Ring& middle) {
     Nearest<Ring> nearest(middle);
@@ -373,7 +373,7 @@ double apart(const PassMarks& marks, const Ring& widest, const Ring& middle) {
 }  // namespace
 
 Pass thin_out(const Pass& pass, const Brush& brush, double tolerance_mm) {
-    refuse_tilted(pass, "poses are thinned out for an upright brush");
+    refuse_tilted(pass, "a path is simplified for an upright brush");
     require_tolerance(tolerance_mm, pass.stroke);
     const double exact_mm = std::min(0.02, 0.1 * tolerance_mm);
     const PassMarks marks = simulate(pass, brush, exact_mm, false);
@@ -386,7 +386,7 @@ Pass thin_out(const Pass& pass, const Brush& brush, double tolerance_mm) {
         const Pass trial = thinned(pass, brush, law, was, share * tolerance_mm);
         const PassMarks now = simulate(trial, brush, exact_mm, false);
         const Ring there = widest_points(now, brush);
-        // both ways: a mark that lacks a part is nowhere beside what it should be
+        // both ways: a mark that lacks a part is nowhere next to what it should be
         if (apart(now, there, middle) <= tolerance_mm && apart(marks, middle, there) <= tolerance_mm) return trial;
     }
     return pass;

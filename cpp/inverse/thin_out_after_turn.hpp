@@ -11,7 +11,7 @@ namespace brushsvg {
 constexpr double kCoarseMm = 1.0;
 
 /// thin_out() of what follows the last time that the brush turns over: where P rests then, fewer poses would put the
-/// brush down beside it.
+/// brush down next to it.
 inline Pass thin_out_after_turn(const Pass& pass, const Brush& brush, double tolerance_mm) {
     using Eigen::Index;
     // where the brush is loose there are rows however coarse they are

@@ -59,7 +59,7 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
     while (begin < end && !marks.taut[begin]) ++begin;
     while (end > begin && !marks.taut[end - 1]) --end;
     TrackingError error;
-    double before = 0.0, travelled = 0.0;  // by length and not by rows, which lie closer where a tolerance asks for it
+    double before = 0.0, travelled = 0.0;  // by length and not by rows, which are closer where a tolerance needs it
     const auto look = [&](std::size_t from, std::size_t to, auto& path) {
         std::optional<Eigen::Vector2d> last;
         along(widest, Index(from), Index(to), kLookEveryMm, [&](const Eigen::Vector2d& point) {

@@ -41,7 +41,7 @@ Profile read_profile(Field field) {
     if (const auto floor = fields.find("floor")) profile.floor = number(*floor);
     if (const auto slope = fields.find("floor_slope")) {
         profile.floor_slope = number(*slope);
-        if (!std::isfinite(profile.floor)) slope->refuse("key-missing", "floor_slope needs a floor beside it");
+        if (!std::isfinite(profile.floor)) slope->refuse("key-missing", "floor_slope needs a floor");
     }
     if (const auto calibrated = fields.find("calibrated_mm")) profile.calibrated_mm = interval(*calibrated);
     if (const auto source = fields.find("source")) profile.source = text(*source);
@@ -59,7 +59,7 @@ Profile read_profile(Field field) {
         profile.degrees_of_freedom = number(*freedom);
         if (!(*profile.degrees_of_freedom >= 1.0 && *profile.degrees_of_freedom <= kMostFreedom))
             throw Error("out-of-range",
-                        "degrees_of_freedom must lie within [1, 1e9], not be " + in_words(*profile.degrees_of_freedom),
+                        "degrees_of_freedom must be within [1, 1e9], not be " + in_words(*profile.degrees_of_freedom),
                         freedom->path, *profile.degrees_of_freedom, std::array<double, 2>{1.0, kMostFreedom});
     }
     profile.extra = fields.extra();
@@ -101,7 +101,7 @@ Paint read_paint(Field field) {
     return paint;
 }
 
-/// Outlines of one kind; unknown keys of each go to `notes` beside their depth.
+/// Outlines of one kind; unknown keys of each go to `notes` with their depth.
 std::vector<Footprint> read_outlines(Field field, Eigen::Index& vertex_count, Json& notes) {
     std::vector<Footprint> outlines;
     for (Field& member : members(std::move(field))) {

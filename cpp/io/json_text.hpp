@@ -33,7 +33,7 @@ inline void append_exact(std::string& out, double value, const char* what) {
 /// A number inside a sentence.
 inline std::string in_words(double value) {
     if (!std::isfinite(value)) return "a number that is not finite";
-    if (std::abs(value) >= 1e9) {  // three hundred digits tell nobody more
+    if (std::abs(value) >= 1e9) {  // three hundred digits add nothing
         std::array<char, 32> digits;
         char* end =
             std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 6).ptr;

@@ -84,7 +84,7 @@ Coverage coverage(const Rings& rings, const Window& window, double px_per_mm) {
             for (double y = top; y < bottom;) {
                 checkpoint();
                 const double until = std::min(bottom, std::floor(y) + 1.0);
-                // a clipped row in x may bend the edge at the window's side: what lies beyond it does not show
+                // a clipped row in x may bend the edge at the window's side: beyond it nothing shows
                 add(x0 + (y - y0) * slope, y, x0 + (until - y0) * slope, until, sign);
                 y = until;
             }
@@ -140,7 +140,7 @@ std::array<double, 4> painted_bounds(const PassMarks& marks, const Brush& brush)
         box = {std::min(box[0], ring.col(0).minCoeff()), std::min(box[1], ring.col(1).minCoeff()),
                std::max(box[2], ring.col(0).maxCoeff()), std::max(box[3], ring.col(1).maxCoeff())};
     };
-    // what lies within what is known already tells nothing
+    // an area inside of the known one adds nothing
     sweep(
         marks, brush, [&](const Ring&, const Ring& b) { include(b); }, include, [](const Ring&) {},
         [&](const auto& low, const auto& high) {

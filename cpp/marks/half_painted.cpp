@@ -12,7 +12,7 @@ using Eigen::RowVector2d;
 
 constexpr float kHalf = 0.5f;
 
-/// Marching squares: between the middles of four pixels, with blank ones round the picture. A crossing lies between two
+/// Marching squares: between the middles of four pixels, with blank ones round the picture. A crossing is between two
 /// of them, to the right of one (even) or below it (odd), and lines keep what is painted to their left.
 class Squares {
  public:

@@ -21,7 +21,7 @@ constexpr double kSheetPxPerMm = 5.0;  // of tiles: overlaps to 1e-3 still
 constexpr double kMostSheetPx = 6e7;   // of all of them: bounds the time
 constexpr double kTilePx = 1000.0;
 constexpr double kOutlineMm = 0.01;
-constexpr double kBesideMm = 0.3;  // round the box: what lies on its edge is seen whole
+constexpr double kBesideMm = 0.3;  // round the box: paint on its edge is seen whole
 // Shares of two strokes in one pixel that count as touching: the parts of a letter's outline meet at their borders.
 constexpr float kTouching = 0.8f;
 

@@ -18,7 +18,7 @@ struct AboveStretch {
 
 /// The TCP's way as it stands in a pass. deeper_mm: how much deeper than -z the brush is pressed.
 template <class T>
-struct ToldWay {
+struct CommandedWay {
     const Poses& poses;
     const std::vector<Arc>& arcs;
     T deeper_mm;
@@ -33,22 +33,22 @@ struct ToldWay {
 };
 
 /// The TCP's way in a pass, stretch by stretch, on any scalar: where it is above the paper, meets it and draws on it.
-/// Way: a ToldWay, or what else tells places, depths and arcs. Called, with i the pose before and shares of the move
-/// from there to the next one:
+/// Way: a CommandedWay, or another type with places, depths and arcs. Called, with i the pose before and shares of the
+/// move from there to the next one:
 ///
 ///     to.above(i, stretch, end, touches)  above the paper, up to `end` of the move, where it is set down or not
 ///     to.touch(i, at, tcp)                set down
 ///     to.move(motion, i, begin, end)      on the paper: a Move, or an ArcMove
 ///     to.is_done()                        whether to stop
 ///
-/// A pass that begins below the paper's surface is set down on the spot, if it is not `down` already, and one that ends
-/// there is lifted on the spot: moves from 0 to 0 of what follows the pose.
+/// A pass that begins below the paper's surface is set down on the spot, and one that ends there is lifted on the
+/// spot: moves from 0 to 0 of what follows the pose.
 template <class T, class Way, class To>
-void walk_pass(const Way& way, bool down, To& to) {
+void walk_pass(const Way& way, To& to) {
     using Index = Eigen::Index;
     const Index last = way.count() - 1;
     const T none(0.0), whole(1.0);
-    if (const T depth = way.depth(0); !down && value_of(depth) >= 0.0) {
+    if (const T depth = way.depth(0); value_of(depth) >= 0.0) {
         to.touch(0, none, way.tcp(0));
         if (value_of(depth) > 0.0) to.move(Move<T>(way.tcp(0), way.tcp(0), none, depth), 0, none, none);
     }

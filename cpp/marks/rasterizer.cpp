@@ -14,7 +14,7 @@
 namespace brushsvg {
 namespace {
 
-// a picture of more would not fit into most memories; finer pixels tell nothing of paint
+// a picture of more would not fit into most memories; finer pixels show nothing of paint
 constexpr double kMostPixels = 4e8;
 constexpr std::array<double, 2> kPxPerMm{1e-6, 1e6};
 // what is left of sums in single precision where nothing is painted

@@ -18,7 +18,7 @@ class Rasterizer {
  public:
     Rasterizer(const Window& window, double px_per_mm);
 
-    /// Whether a box, from its lower left to its upper right corner, lies on one side of the picture: nothing of it
+    /// Whether a box, from its lower left to its upper right corner, is on one side of the picture: nothing of it
     /// shows.
     bool is_beside(const Eigen::RowVector2d& low, const Eigen::RowVector2d& high) const;
 
@@ -28,7 +28,7 @@ class Rasterizer {
     /// Any polygon, non-zero winding.
     void polygon(const Rings& rings);
 
-    /// What another one of the same picture was given, too. In which order tells nothing.
+    /// What another one of the same picture was given, too. Their order does not matter.
     void absorb(const Rasterizer& other);
 
     /// On all processors where the picture is large.
@@ -54,8 +54,8 @@ class Rasterizer {
     /// Rows from `first` to before `last` of the picture, of sorted spans.
     void rows(Eigen::Index first, Eigen::Index last, Coverage& out) const;
 
-    /// Adds to disjoint full spans what parts of the band paint beside them: at every x the highest part that stands on
-    /// the band's lower side and the longest that hangs from its upper one.
+    /// Adds to disjoint full spans what parts of the band paint next to them: at every x the highest part that stands
+    /// on the band's lower side and the longest that hangs from its upper one.
     static void outside(std::vector<Span>& full, const std::vector<Span>& parts);
 
     double to_x(double x_mm) const { return (x_mm - window_.x_mm) * scale_; }

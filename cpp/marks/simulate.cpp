@@ -56,7 +56,7 @@ constexpr double kSamePose = 1e-9;
 ///
 /// While its tip goes straight down on the paper, or up from it, a leaning brush's axis wanders over the paper. The
 /// patch trails it from where it is at the deepest: bristles that are pressed down would else fall the way that the
-/// brush leans however little it does, and real strokes (benchmarks/real_paint.py --tilt) lie worse so.
+/// brush leans however little it does, and real strokes (benchmarks/real_paint.py --tilt) fit worse so.
 struct AxisWay {
     Ring lean{0, 2};  ///< per pose, s = (a_x, a_y) / a_z of the tool axis a; empty: upright
     Poses poses_mm;
@@ -177,7 +177,7 @@ class Tracer {
         double depth, pull;
         Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity();  ///< of a tilted brush, about the contact
         Eigen::Matrix<double, 2, 5> corners;  ///< of its bounding box, and the widest section's centre
-        mutable Columns outline;              ///< once it was asked for: both parts of a way ask for their common end's
+        mutable Columns outline;              ///< once it was needed: both parts of a way need their common end's
     };
 
     template <class Piece, class Motion>
@@ -234,7 +234,7 @@ class Tracer {
     }
 
     /// Whether a footprint on its way from one instant to the next is on one side of the window. Both of them are
-    /// within their corners; on the way none is farther out than the way is long, twice over.
+    /// within their corners; on the way none is off by more than twice the length of the way.
     template <class Motion>
     bool is_beside(const Instant& a, const Instant& b, const Motion& m) const {
         if (!window_ || !moved_) return false;
@@ -353,7 +353,7 @@ class Tracer {
     }
 
     const Brush& brush_;
-    const Window* window_;  ///< beside which no rows are wanted but those of ends; none: there is no such place
+    const Window* window_;  ///< outside of which only the rows of ends are kept; none: there is no such place
     const Ring& lean_;      ///< per pose; empty: upright
     LagLaw<double> law_;
     Extents extents_;
@@ -379,7 +379,7 @@ void refuse_bad_poses(const Pass& pass, const Brush& brush, bool may_rise) {
         const double largest = pass.poses_mm.row(i).cwiseAbs().maxCoeff();
         if (largest > kLargestMm) {
             char text[120];
-            std::snprintf(text, sizeof text, "pose %ld lies at %.3g mm, outside the range [-1e6, 1e6] mm", long(i),
+            std::snprintf(text, sizeof text, "pose %ld is at %.3g mm, outside the range [-1e6, 1e6] mm", long(i),
                           largest);
             throw Error("geometry-out-of-range", text, pass.stroke, largest,
                         std::array<double, 2>{-kLargestMm, kLargestMm});
@@ -408,10 +408,9 @@ void refuse_bad_poses(const Pass& pass, const Brush& brush, bool may_rise) {
     }
     if (lowest > 0.0) {  // all of it: a wrong sign, for a way above the paper paints nothing
         char text[200];
-        std::snprintf(
-            text, sizeof text,
-            "the brush never touches the paper: its lowest pose lies %.3g mm above it; z is the negative depth",
-            lowest);
+        std::snprintf(text, sizeof text,
+                      "the brush never touches the paper: its lowest pose is %.3g mm above it; z is the negative depth",
+                      lowest);
         throw Error("never-pressed", text, pass.stroke, lowest);
     }
 }
@@ -433,7 +432,7 @@ PassMarks simulated(const Pass& pass, const Brush& brush, double tolerance_mm, b
     Tracer tracer(brush, tolerance_mm, for_outlines, window, pass, way, marks);
     if (const Poses& poses = way.poses_mm; poses.rows() > 0) {
         if (poses(0, 2) > 0.0) tracer.begin_above(poses.row(0).head<2>().transpose(), poses(0, 2));
-        walk_pass<double>(ToldWay<double>{poses, pass.arcs, 0.0}, false, tracer);
+        walk_pass<double>(CommandedWay<double>{poses, pass.arcs, 0.0}, tracer);
     }
     tracer.finish();
     return marks;

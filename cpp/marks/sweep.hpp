@@ -39,7 +39,7 @@ void swept_by_edge(const Eigen::RowVector2d& a, const Eigen::RowVector2d& b, con
     };
     P x;
     if (crossing(a, b, d, c, x)) {
-        // a little into the shapes (to the left of both edges): rounded, it would else leave a gap beside them
+        // a little into the shapes (to the left of both edges): rounded, it would else leave a gap next to them
         const P inwards(-(b - a).y(), (b - a).x());
         x += 5e-5 * inwards.normalized();
         emit(a, x, d);
@@ -49,7 +49,7 @@ void swept_by_edge(const Eigen::RowVector2d& a, const Eigen::RowVector2d& b, con
         emit(a, c, d);
         emit(a, b, d);
         emit(b, c, d);
-    } else if ((cross(b - a, c - b) > 0.0) == (cross(d - c, a - d) > 0.0)) {  // the diagonal a c lies inside
+    } else if ((cross(b - a, c - b) > 0.0) == (cross(d - c, a - d) > 0.0)) {  // the diagonal a c is inside
         emit(a, b, c);
         emit(a, c, d);
     } else {
@@ -58,7 +58,7 @@ void swept_by_edge(const Eigen::RowVector2d& a, const Eigen::RowVector2d& b, con
     }
 }
 
-/// What sweep() is told where all of it is asked for.
+/// The argument of sweep() for all of it.
 struct Everywhere {};
 
 /// A box about an outline, its tip at (0, 0) and its axis +x.
@@ -106,7 +106,7 @@ class OutlineBoxes {
 /// The painted area of a pass as simple polygons, counter-clockwise: for every two neighbouring rows what the footprint
 /// sweeps between them. `convex(a, b)` is called with the footprint at both rows when every outline is convex (the
 /// swept area is their hull), else `polygon(ring)` for the footprint and `piece(ring)`, convex, for each edge's sweep.
-/// Convex ones of which `is_beside(low, high)` says that their box is not asked for are not made.
+/// Convex ones of which `is_beside(low, high)` says that their box is outside are not made.
 template <class Convex, class Polygon, class Piece, class IsBeside = Everywhere>
 void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&& polygon, Piece&& piece,
            [[maybe_unused]] IsBeside&& is_beside = {}) {

@@ -12,8 +12,8 @@ constexpr double kPi = 3.14159265358979323846;
 
 double grown(int n) { return std::sqrt(2.0 * kPi / n / std::sin(2.0 * kPi / n)); }
 
-/// Hull of two discs as a ring: polygons of n sides (a multiple of 4) whose vertices across the segment lie on the
-/// circle, so that the flanks are exact, and whose others lie a little outside, so that the caps have the disc's area.
+/// Hull of two discs as a ring: polygons of n sides (a multiple of 4) whose vertices across the segment are on the
+/// circle, so that the flanks are exact, and whose others are a little outside, so that the caps have the disc's area.
 Ring hull_of_discs(const Eigen::Vector2d& a, double ra, const Eigen::Vector2d& b, double rb, int n) {
     const double grow = grown(n);
     const double along = std::atan2(b.y() - a.y(), b.x() - a.x());

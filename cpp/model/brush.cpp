@@ -257,7 +257,7 @@ void check_shapes(const Brush& brush, const std::vector<Footprint>& shapes, cons
         if (crosses_itself(shape.outline_mm)) throw Error("footprint-invalid", "the outline crosses itself", here);
         if (d > brush.depth_range_mm[1]) continue;
         const WidestSection seen = widest_section(shape.outline_mm);
-        // several sections may be equally wide: the law must lie on one of them
+        // several sections may be equally wide: the law must be one of them
         const double x_law = brush.tip_to_widest(d), h_law = brush.half_width(d);
         if (std::abs(seen.half_width_mm - h_law) > kLawAgainstOutlineMm)
             throw Error(
@@ -300,8 +300,12 @@ double Brush::depth_for_half_width(double half_width_mm, const std::string& wher
         throw Error("width-out-of-reach",
                     format("width %.3f mm is outside the range [%.3f, %.3f] mm", 2.0 * half_width_mm, 2.0 * narrow,
                            2.0 * wide) +
-                        " that brush " + name + " can paint: draw it " +
-                        (half_width_mm > narrow ? "narrower" : "wider") + ", or take another brush",
+                        " that brush " + name + " can paint: " +
+                        (half_width_mm > narrow
+                             ? format("draw it narrower, scale the drawing to %.2f, or make the line a filled shape",
+                                      std::floor(100.0 * wide / half_width_mm) / 100.0)
+                             : std::string("draw it wider")) +
+                        ", or take another brush",
                     where, 2.0 * half_width_mm, std::array<double, 2>{2.0 * narrow, 2.0 * wide});
     double a = depth_range_mm[0], b = depth_range_mm[1];
     // At depth 0 a brush only touches the paper: a program that goes no deeper paints nothing.
@@ -399,7 +403,7 @@ std::vector<Warning> remarks(const Brush& brush) {
                         "so the brush is pressed down on the spot before it runs"});
         if (!gap)
             out.push_back(Warning{"contact-outside-footprint", "tip_gap",
-                                  "the centre of friction lies outside the footprint at some depths"});
+                                  "the centre of friction is outside the footprint at some depths"});
         const Fall fall = greatest_fall(brush.lag, lo, hi);
         if (fall.mm > kUnseenMm)
             out.push_back(
@@ -411,7 +415,7 @@ std::vector<Warning> remarks(const Brush& brush) {
             const double front = shape.outline_mm.col(0).maxCoeff(), contact = brush.tip_gap(shape.depth_mm);
             if (!(shape.depth_mm <= hi && contact > front + kUnseenMm)) continue;
             out.push_back(Warning{"contact-outside-footprint", "tip_gap",
-                                  format("at depth %.2f mm the centre of friction lies %.2f mm from the tip, "
+                                  format("at depth %.2f mm the centre of friction is %.2f mm from the tip, "
                                          "beyond the footprint, which is %.2f mm long",
                                          shape.depth_mm, contact, front)});
             break;

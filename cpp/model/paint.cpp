@@ -14,7 +14,7 @@ constexpr double kRounding = 1e-4;                        // of a correlation: w
 
 void require_within(double value, const std::array<double, 2>& range, const char* key, const char* in_words) {
     if (!(value >= range[0] && value <= range[1]))
-        throw Error("out-of-range", std::string(key) + " must lie within " + in_words, std::string("paint.") + key,
+        throw Error("out-of-range", std::string(key) + " must be within " + in_words, std::string("paint.") + key,
                     value, range);
 }
 

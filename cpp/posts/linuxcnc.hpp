@@ -20,7 +20,7 @@ struct FlatCell {
     double press_mm_s = 8.0;    ///< straight down into the paper, and up again
     double paint_mm_s = 50.0;   ///< the most while painting
     double blending_mm = 0.01;  ///< how far from the joint of two moves the machine may pass; 0: exactly through it
-    double travel_mm_s = 60.0;  ///< at the safe height: for the time that the header tells, as is the next
+    double travel_mm_s = 60.0;  ///< at the safe height: for the time in the header, as is the next
     double acceleration_mm_s2 = 500.0;
     std::string name = "linuxcnc-3axis";  ///< what the header calls the machine
 };

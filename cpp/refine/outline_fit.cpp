@@ -15,8 +15,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-// Shares of the mark's width. Places along the wanted outline, and at most so many: at twice the distance corners slip
-// through and the worst strokes lose 0.02 of overlap, at half of it nothing is won and it takes twice as long.
+// Shares of the mark's width. Places along the target outline, and at most so many: at twice the distance corners slip
+// through and the worst strokes lose 0.02 of overlap, at half of it nothing is won in twice the time.
 constexpr double kSpacing = 0.12;
 constexpr double kMostPlaces = 1500.0;
 // How far an outline of fewer corners may be off: at twice as much the worst strokes lose 0.02.
@@ -110,7 +110,7 @@ class Outlines {
             add(near_[j], near_[j].distance_mm, places_.at[j]);
         }
         of_places_ = pulls_.size();
-        // the wanted outline sees no tail that runs far out of it: the first and the last footprint must not
+        // the target outline sees no tail that runs far out of it: the first and the last footprint must not
         for (const std::size_t i : {std::size_t(0), samples_.size() - 1})
             for (Index k = 0; k < edge_.corners(); ++k) {
                 EdgePoint corner;
@@ -123,7 +123,7 @@ class Outlines {
         return 0.5 * (sum + x.dot(keeping_ * x));
     }
 
-    /// About the unknowns of which the value was asked last.
+    /// About the unknowns of which the value was computed last.
     Near near(const VectorXd& x) const {
         std::vector<SampleSlope> slopes(samples_.size(), SampleSlope::Zero());
         std::vector<Eigen::Matrix4d> squares(samples_.size(), Eigen::Matrix4d::Zero());

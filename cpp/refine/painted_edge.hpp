@@ -9,7 +9,7 @@
 
 namespace brushsvg::fit {
 
-/// Where a point lies to rings, or to what a brush paints on its way.
+/// Where a point is relative to rings, or to what a brush paints on its way.
 struct EdgePoint {
     std::size_t sample = 0;    ///< whose footprint is nearest, or holds the point deepest
     Eigen::Index edge = 0;     ///< of that footprint's outline, the nearest one,
@@ -29,7 +29,7 @@ class Edges {
     Eigen::Vector2d place(Eigen::Index edge, double t) const {
         return {ax_[edge] + t * bx_[edge], ay_[edge] + t * by_[edge]};
     }
-    /// Unit vector from the inside to the outside where a point was found to lie.
+    /// Unit vector from the inside to the outside where a point was found.
     Eigen::Vector2d outwards(const Eigen::Vector2d& point_mm, const EdgePoint& found) const;
 
  private:
@@ -47,7 +47,7 @@ class Edges {
     std::vector<Some> parts_;
 };
 
-/// What of a sum grows with a sample's x, y, heading and depth: per mm, per rad.
+/// The part of a sum that grows with a sample's x, y, heading and depth: per mm, per rad.
 using SampleSlope = Eigen::Vector4d;
 
 /// What the brush paints on its way, as footprints side by side: the signed distance from their union.
@@ -78,7 +78,7 @@ class PaintedEdge {
         Edges outline;
         std::array<double, kAxes> ahead, behind;
         double depth, reach;
-        mutable Ring by_depth;  ///< how the outline grows, once it was asked for
+        mutable Ring by_depth;  ///< how the outline grows, once it was needed
 
         Eigen::Vector2d seen_from(const Eigen::Vector2d& p) const {
             const Eigen::Vector2d from = p - contact;

@@ -20,7 +20,7 @@ constexpr double kPi = 3.14159265358979323846;
 /// A turn in place counts as so much way per radian: it needs samples and controls of its own.
 constexpr double kWayPerRadian = 1.0;
 /// Neighbours with the patch at rest in one place and headings more than 120 degrees apart are those before and after
-/// the brush turns over: samples of a turn in place lie closer.
+/// the brush turns over: samples of a turn in place are closer.
 constexpr double kTurnedOver = -0.5, kRestsMm = 0.01;
 /// A dab is given some way, or no factor could make it a stroke.
 constexpr double kLeastWayMm = 1.0;
@@ -202,7 +202,7 @@ PatchSamples patch_path(const Pass& pass, const Brush& brush, double step_mm, st
     if (begin == end) return {};
     PatchSamples out;
     double heading = marks.heading_rad[begin];
-    for (const TurnOver& turn : turns_over(marks)) {  // P rests there: what lies between both ends is not painted
+    for (const TurnOver& turn : turns_over(marks)) {  // P rests there: the part between both ends is not painted
         const Rows rows(marks, begin, turn.first, heading);
         if (rows.samples.size() > 1) rows.into(out, step_mm, 2, most);
         begin = turn.last;

@@ -17,7 +17,7 @@ struct PatchSample {
 };
 using PatchSamples = std::vector<PatchSample>;
 
-/// The way of a patch that is dragged, never pushed: it moves along its heading or rests, whatever the unknowns are.
+/// The way of a patch that is dragged, never pushed: it moves along its heading or rests, for any unknowns.
 /// They bend the way it began with: where it starts, and as cubic B-splines along it by how much the heading is
 /// turned [rad], by which factor steps are longer [log], by how much the brush is pressed deeper [mm].
 class PatchPath {

@@ -40,7 +40,7 @@ constexpr double kTrust = 1e4, kLessTrust = 3e2, kMissed = 0.01;
 // the latter a tenth of them is saved, and the overlap loses as much again (0.0025 on characters) as it did (0.0006).
 constexpr double kChords = 0.2, kThinned = 0.5;
 constexpr double kRingTolerance = 0.01;  // as in the report
-// Pixels of what is tried: on half the width of the mark, for each mm, and in all. The report's lie elsewhere, and may
+// Pixels of what is tried: on half the width of the mark, for each mm, and in all. The report's are elsewhere, and may
 // count so much more or less of overlap.
 constexpr double kAcrossPx = 6.0, kMostPx = 4e6, kPixelsErr = 0.005;
 constexpr std::array<double, 2> kPxPerMm{8.0, 40.0};
@@ -84,7 +84,7 @@ std::array<double, 4> box_of(const Poses& poses) {
     return {poses.col(0).minCoeff(), poses.col(1).minCoeff(), poses.col(0).maxCoeff(), poses.col(1).maxCoeff()};
 }
 
-/// What is wanted of a stroke, in pixels as well: made once for all that is tried.
+/// The target of a stroke, in pixels as well: made once for all that is tried.
 struct Target {
     Rings outline;
     Window window{};
@@ -115,7 +115,7 @@ struct Target {
 /// A pass and how well it paints its stroke.
 struct Tried {
     std::array<double, 4> painted_bounds, tool_bounds;
-    double overlap, turning;  ///< the latter of the mark's outline beyond the wanted one [full turns]
+    double overlap, turning;  ///< the latter of the mark's outline beyond the target [full turns]
     int thorns;
     Tried(const Pass& pass, const Target& target, const Brush& brush, Terminal start) {
         const PassMarks marks = simulate(pass, brush);
@@ -124,7 +124,7 @@ struct Tried {
         const Rings mark = outline(marks, brush);
         overlap = target.overlap_with(mark);
         turning = excess_turning(mark, target.outline);
-        // the point of a beginning that is to be pointed was asked for
+        // the point of a beginning that was requested as pointed
         thorns = std::max(0, brushsvg::thorns(mark, target.outline) - (start == Terminal::pointed ? 1 : 0));
     }
     /// Turning counts below none as well: the pieces of a letter that strokes are to paint are ragged where others were
@@ -147,7 +147,7 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
     how.end = options.end;
     WithAllPoses made = compensate_with_all_poses(stroke, brush, how);
     closed.plan = std::move(made.plan);
-    const Pass& dense = made.all_poses;  // of few poses those beside the path would be taken for its bends
+    const Pass& dense = made.all_poses;  // of few poses those off the path would be taken for its bends
     const double half_width = mean_half_width(stroke, brush);
     const PatchSamples base = patch_path(dense, brush, kStep * half_width, kMostSamples);
     const Rings wanted = wanted_outline(stroke, kRingTolerance);
@@ -200,7 +200,7 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
     for (const double turn : {kFirstTurn, -kFirstTurn})
         if (most < kGood) go(turn, kTrust);
     if (best.poses_mm.rows() == 0) return closed;
-    // nothing is kept that the report finds worse: its pixels lie elsewhere
+    // nothing is kept that the report finds worse: its pixels are elsewhere
     if (overlap < before.overlap + kPixelsErr &&
         !(reported_overlap(best, stroke, brush) > reported_overlap(closed.plan.pass, stroke, brush)))
         return closed;

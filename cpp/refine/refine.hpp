@@ -22,15 +22,15 @@ struct RefineOptions {
 
 struct RefinedPass {
     CompensatedPass plan;
-    /// Area of intersection over area of union of predicted and wanted mark, by their outlines, of the plan in closed
+    /// Area of intersection over area of union of predicted and target mark, by their outlines, of the plan in closed
     /// form, and of this plan. Zero where nothing was tried. The report's pixels, common_area(), find within 0.005 of
-    /// it, and are asked where no more is won.
+    /// it, and are used where no more is won.
     double overlap_closed = 0.0;
     double overlap = 0.0;
     bool bettered = false;  ///< false: this plan is the one in closed form
 };
 
-/// The plan in closed form, moved until the outline of its mark lies best on the wanted one: where the patch goes, how
+/// The plan in closed form, moved until the outline of its mark fits the target best: where the patch goes, how
 /// deep it is pressed, where it starts and ends; where that is not good, again from a beginning that comes in from the
 /// side. The patch is never pushed, so q = P + r(depth) u holds all along. The
 /// plan is simulated, and kept only where its mark overlaps better by the report's own measure, stays in bounds, and

@@ -41,14 +41,14 @@ Corners corners_of(const Ring& ring, double units_per_mm) {
     return corners;
 }
 
-/// On which side of the edge from `from` to `to` a corner of the second shape lies, 1 left, -1 right. No corner lies on
+/// On which side of the edge from `from` to `to` a corner of the second shape is, 1 left, -1 right. No corner is on
 /// an edge of the other shape: the second one counts as shifted by (e, e^2) for an e that is less than any length.
 int side_of_second(const Corner& from, const Corner& to, const Corner& corner) {
     const Corner edge = to - from;
     const Unit twice = cross(edge, corner - from);
     return twice != 0 ? sign(twice) : edge.y != 0 ? -sign(edge.y) : sign(edge.x);
 }
-/// The same of a corner of the first shape beside an edge of the second.
+/// The same of a corner of the first shape relative to an edge of the second.
 int side_of_first(const Corner& from, const Corner& to, const Corner& corner) {
     const Corner edge = to - from;
     const Unit twice = cross(edge, corner - from);
@@ -64,7 +64,7 @@ struct Crossing {
     bool first_enters;
     Corner place;
 
-    /// Whether it comes before another one on the same edge of a shape; where they are at one place the shift tells.
+    /// Whether it comes before another one on the same edge of a shape; where they are at one place the shift decides.
     bool comes_before(const Crossing& other, int of) const {
         __extension__ using Exact = __int128;
         const Exact mine = Exact(along[of]) * other.slant, others = Exact(other.along[of]) * slant;
@@ -162,7 +162,7 @@ bool in_turn(const std::vector<Crossing>& all, int of, std::vector<std::size_t>&
     return order.size() % 2 == 0;
 }
 
-/// 1 where a place lies inside of an outline, -1 outside, 0 on it.
+/// 1 where a place is inside of an outline, -1 outside, 0 on it.
 int depth_in(const Corners& corners, const Corner& place) {
     bool inside = false;
     for (std::size_t i = 0, n = corners.size(); i < n; ++i) {
@@ -175,7 +175,7 @@ int depth_in(const Corners& corners, const Corner& place) {
     return inside ? 1 : -1;
 }
 
-/// Whether the first corner of an outline's part that lies on neither side of the other one by chance lies where its
+/// Whether the first corner of an outline's part that is on neither side of the other one by chance is where its
 /// crossings say: they are wrong where rounding has made a shape cross itself.
 bool lies(const Corners& corners, std::size_t after, std::size_t last, int depth, const Corners& other) {
     for (std::size_t i = after, n = corners.size(); i != last;) {

@@ -19,8 +19,8 @@ Ring ring_of(const std::vector<Vector2d>& points) {
     return ring;
 }
 
-/// What lies nearest to the branch whose first and last half edges are given: the outline along its right side forward,
-/// along its left side back, round its free ends.
+/// The part of the shape nearest to the branch whose first and last half edges are given: the outline along its right
+/// side forward, along its left side back, round its free ends.
 Rings part_of(const VoronoiAxis& axis, const Outline& outline, std::size_t first, std::size_t last) {
     const auto is_free = [&](std::size_t p) { return axis.out[p].size() == 1; };
     const std::size_t a = axis.from[first], b = axis.to(last);

@@ -32,7 +32,7 @@ void along(const Points& rows, Eigen::Index begin, Eigen::Index end, double step
     }
 }
 
-/// Distance to a polyline (columns x, y and any others) in a tree of boxes about its pieces; successive queries lie
+/// Distance to a polyline (columns x, y and any others) in a tree of boxes about its pieces; successive queries are
 /// close to each other.
 template <class Polyline>
 class Nearest {

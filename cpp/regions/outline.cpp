@@ -28,7 +28,7 @@ double distance(const Vector2d& point, const Vector2d& a, const Vector2d& b) {
     return (point - a - at * along).norm();
 }
 
-/// Whether a direction lies in the smaller of the angles between two others.
+/// Whether a direction is in the smaller of the angles between two others.
 bool is_between(const Vector2d& a, const Vector2d& b, const Vector2d& direction) {
     const double turn = cross(a, b);
     return cross(a, direction) * turn > 0.0 && cross(direction, b) * turn > 0.0;
@@ -75,7 +75,7 @@ void Outline::move_apart() {
     std::sort(order.begin(), order.end(), is_before);
     const std::vector<Vector2i> as_given = starts_;
     const auto place = [&](std::size_t k) -> Vector2d { return as_given[k].cast<double>(); };
-    // A corner in whose smaller angle another one lies stays where it is: that one moves away from it.
+    // A corner in whose smaller angle there is another one stays where it is: that one moves away from it.
     const auto has_another_inside = [&](std::size_t k, std::size_t first, std::size_t last) {
         const Vector2d in = place(before(k)) - place(k), out = place(after(k)) - place(k);
         return std::any_of(order.begin() + Index(first), order.begin() + Index(last), [&](std::size_t j) {

@@ -179,7 +179,7 @@ Ring both(const Ring& a, const Ring& b) {
     return points;
 }
 
-/// work(rings ...), so that it can be given up whatever Boost is at.
+/// work(rings ...), so that it can be given up at any step of Boost.
 template <class Work, class... Shapes>
 auto heard(const Work& work, const Shapes&... shapes) {
     Eigen::Index corners = 0;
@@ -256,7 +256,7 @@ std::optional<Set> wound_oddly(const Rings& outlines, int most) {
             const Set level = wound(outlines, turns, reversed);
             if (level.empty()) break;
             if (turns > most) return std::nullopt;
-            filled.insert(level, turns % 2 == 0);  // each level lies in the one before
+            filled.insert(level, turns % 2 == 0);  // each level is in the one before
         }
     }
     filled.clean();
@@ -297,13 +297,13 @@ Rings filled_by(const Rings& outlines, FillRule rule) {
     return to_rings(filled);
 }
 
-/// Which of the four sides of a window a corner lies beyond, a bit each.
+/// Which of the four sides of a window a corner is beyond, a bit each.
 int beyond_sides(const Eigen::RowVector2d& corner, const Eigen::AlignedBox2d& window) {
     return (corner.x() < window.min().x()) | (corner.x() > window.max().x()) << 1 |
            (corner.y() < window.min().y()) << 2 | (corner.y() > window.max().y()) << 3;
 }
 
-/// The ring without corners between two others that lie beyond the same side of a window: in the window nothing
+/// The ring without corners between two others beyond the same side of a window: in the window nothing
 /// changes.
 Ring seen_in(const Ring& ring, const Eigen::AlignedBox2d& window) {
     std::vector<Eigen::Index> kept;
@@ -445,7 +445,7 @@ Rings pieces_between(const Rings& chain) {
         pairs.push_back(both(chain[i], chain[i + 1]));
         hulls.push_back(hull_order(pairs.back()));
     }
-    // Between two corners of F_i that stay, others of F_i can go: what they enclose lies in F_i, so in the hull before.
+    // Between two corners of F_i that stay, others of F_i can go: what they enclose is in F_i, so in the hull before.
     // So can corners of F_i+1 that are none of the next hull: what they enclose is in that, and is not what it loses.
     Rings pieces;
     std::vector<bool> in_next;

@@ -14,7 +14,7 @@ constexpr double kLeastCorner = 0.02;
 // nearly as much. Lines to corners that are blunter end in hooks, of which the eye sees more than of what is left
 // blank.
 constexpr double kLeastEnd = 0.5, kEndStandsOut = 1.4;
-// What the end of a stem adds, beside or beyond what leaves it there, over what any branch must: its two corners
+// What the end of a stem adds, next to or beyond what leaves it there, over what any branch must: its two corners
 // together, 0.43 if they are right-angled, are too much to be left blank, and a line to where they part leaves little
 // of them.
 constexpr double kStemEnd = 0.5;

@@ -8,12 +8,12 @@
 
 namespace brushsvg {
 
-/// What is dropped of an axis, and what then lies between nodes.
+/// What is dropped of an axis, and the part then between nodes.
 class KeptBranches {
  public:
     explicit KeptBranches(VoronoiAxis& axis);
     /// Drops branches with a free end that add less to the disc they leave, in squares of its radius, unless they are
-    /// limbs: what lies beyond some place of a limb adds least_share to the disc there, and least_limb to the disc it
+    /// limbs: the part beyond some place of a limb adds least_share to the disc there, and least_limb to the disc it
     /// leaves.
     void drop(double least_share, double least_limb);
 

@@ -52,7 +52,7 @@ bool seen_from(const Vector2d& point, const Ring& ring, Star& star) {
     return true;
 }
 
-/// How far a place lies beyond the line through an edge, as seen from the point.
+/// How far a place is beyond the line through an edge, as seen from the point.
 double beyond(const Vector2d& from, const Vector2d& to, const Vector2d& place) {
     const Vector2d edge = to - from;
     return -cross(edge, place - from) / edge.norm();
@@ -62,13 +62,13 @@ double beyond(const Vector2d& from, const Vector2d& to, const Vector2d& place) {
 struct Edges {
     Vector2d a0, a1, b0, b1;
 
-    /// Which one is farther out in the direction of a corner of one of them: 1 a, -1 b, else `before`.
+    /// Which one reaches farther in the direction of a corner of one of them: 1 a, -1 b, else `before`.
     int outer_at(const Vector2d& corner, bool is_of_a, int before) const {
         const double by = is_of_a ? beyond(b0, b1, corner) : -beyond(a0, a1, corner);
         return by > kSameMm ? 1 : by < -kSameMm ? -1 : before;
     }
     /// Where they cross between two directions; where rounding says that they do elsewhere, where the one that is
-    /// farther out then begins: so near to the other that they count as one there.
+    /// the outer one then begins: so near to the other that they count as one there.
     Vector2d crossing(const Vector2d& from, const Vector2d& to, bool is_a_then) const {
         const Vector2d along = a1 - a0, other = b1 - b0;
         const double slant = cross(along, other);

@@ -45,7 +45,7 @@ Site site_of(const Diagram::cell_type& cell, const Outline& outline) {
     return {is_end ? outline.after(k) : k, cell.contains_point()};
 }
 
-/// Whether the edge between two sites, from p to q, lies in the shape.
+/// Whether the edge between two sites, from p to q, is in the shape.
 bool is_inside(const Site& a, const Site& b, const Vector2d& p, const Vector2d& q, const Outline& outline) {
     for (const Site& site : {a, b}) {
         if (site.is_corner) continue;

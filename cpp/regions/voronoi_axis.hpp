@@ -7,7 +7,7 @@
 
 namespace brushsvg {
 
-/// What of the outline is nearest on one side of the axis: an edge, or the corner at which it starts.
+/// The part of the outline that is nearest on one side of the axis: an edge, or the corner at which it starts.
 struct Site {
     std::size_t edge;
     bool is_corner;

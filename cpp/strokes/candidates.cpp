@@ -18,7 +18,7 @@ constexpr double kLanding = 2.5;       // half widths that a line is longer than
 constexpr double kRoom = 0.9;          // of its half width that a line has on either side
 constexpr double kEvenMm = 0.2;        // between places on a line
 constexpr std::size_t kLookedAt = 60;  // places of an area that are looked at
-constexpr double kTouching = 0.4;      // half widths of the brush: so near to a corner an area lies in it
+constexpr double kTouching = 0.4;      // half widths of the brush: so near to a corner an area is in it
 constexpr double kTip = 0.03;          // half width of a line where it begins in a corner, in those of the brush
 constexpr double kRound = -0.85;  // half width won per length where a limb ends round or square: there its line ends
 

@@ -31,11 +31,11 @@ constexpr double kSmoothed = 0.03;       // of its half width, how far a line ma
 constexpr double kBesideHalves =
     2.0;                           // of the brush's greatest half width round a shape: no paint that counts is further
 constexpr double kMiddleMm = 0.1;  // of middle lines, to which the nearest place is looked for
-// Of strokes that are led otherwise: narrower by so much, cut so many half widths short.
+// Of strokes with another path: narrower by so much, cut so many half widths short.
 constexpr std::array<double, 2> kNarrower{0.95, 0.88};
 constexpr std::array<double, 4> kCuts{0.1, 0.4, 0.8, 1.5};
 constexpr double kNoiseMm2 = 0.4;         // what sticks out of a shape, as it is counted: less is a pixel's noise
-constexpr double kWorthMm2 = 0.05;        // won by another way: less is not worth to differ from what was asked for
+constexpr double kWorthMm2 = 0.05;        // won by another way: less is not worth to differ from the request
 constexpr double kBesideStroke = 3.0;     // half widths of a stroke: no way to lead it paints further out
 constexpr std::size_t kMostLedBack = 40;  // of one shape
 constexpr float kBare = 0.4f;  // share of a pixel without paint from which it is bare: of strips, at their edges
@@ -70,7 +70,7 @@ class Search {
         return found;
     }
 
-    /// are_free: whether strokes may be led otherwise, and not only added.
+    /// are_free: whether strokes may get another path, and not only added.
     SearchedShape run(const std::vector<Stroke>& strokes, bool are_free) {
         SearchedShape found;
         for (const Stroke& stroke : strokes) found.strokes.push_back({stroke});
@@ -486,7 +486,7 @@ class Search {
     Outline outline_;
     Coverage paint_;
     Mask refused_;
-    std::vector<Tile> tiles_;  ///< of the given strokes, as they are led now
+    std::vector<Tile> tiles_;  ///< of the given strokes, with their current paths
     std::vector<MiddlePolyline> middles_;
     mutable Pixels pixels_;  ///< of the area that is looked at
 };

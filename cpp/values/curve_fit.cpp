@@ -21,7 +21,7 @@ using Cubic = std::array<Vector2d, 4>;
 constexpr int kMoves = 6;      // of the parameters: more gain less than a split
 constexpr double kStep = 8.0;  // tolerances between points: fewer cut bends short, more only cost time
 constexpr double kLeastPieces = 8.0, kMostPieces = 2000.0;
-// Points this many tolerances apart tell a direction: nearer ones would tell the noise.
+// Points this many tolerances apart show a direction: nearer ones would show the noise.
 constexpr double kTangentReach = 12.0;
 
 Vector2d at(const Cubic& c, double t) {
@@ -288,7 +288,7 @@ void smooth(const WideLine& line, Index first, Index last, double tolerance, boo
             worst = i;
         }
         if (worst < 0) {
-            if (part.middle_mm.rows() > to - from)  // finer than the points lie: the fit follows their chords
+            if (part.middle_mm.rows() > to - from)  // finer than the points are: the fit follows their chords
                 for (Index i = from; i < to; ++i) straight(i);
             else
                 for (Index i = 0; i < part.middle_mm.rows(); ++i) out.emplace_back(part.middle_mm.row(i));

@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 
 /// Files are rounded to 1e-7 mm; a depth that differs by more is a depth that changes.
 constexpr double kSameDepthMm = 1e-6;
-/// Nearer to half a turn than this the direction of a chord no longer tells on which side the arc lies.
+/// Nearer to half a turn than this the direction of a chord no longer shows on which side the arc is.
 constexpr double kAlmostHalfTurnRad = 1e-6;
 
 constexpr double kPi = 3.14159265358979323846;
@@ -34,7 +34,7 @@ double tilt_deg(const Eigen::RowVector3d& axis) { return std::atan2(axis.head<2>
 void check_sheet(const std::array<double, 2>& sheet_mm) {
     for (const double side_mm : sheet_mm) {
         if (side_mm > 0.0 && side_mm <= kLargestSheetMm) continue;
-        throw Error("out-of-range", text_of("both sides of the sheet must lie within (0, 1e6] mm, not be %g", side_mm),
+        throw Error("out-of-range", text_of("both sides of the sheet must be within (0, 1e6] mm, not be %g", side_mm),
                     "sheet_mm", side_mm, std::array<double, 2>{0.0, kLargestSheetMm});
     }
 }
@@ -93,7 +93,7 @@ void check_tool_axes(const Pass& pass, const std::string& where) {
                         std::to_string(pass.poses_mm.rows()),
                     where);
     if (!pass.arcs.empty())
-        throw Error("arc-invalid", stroke + " has tool_axes and arcs: a tilted brush is led on straight moves", where);
+        throw Error("arc-invalid", stroke + " has tool_axes and arcs: a tilted brush makes straight moves", where);
     for (Eigen::Index i = 0; i < axes.rows(); ++i) {
         const std::string row = "row " + std::to_string(i) + " of tool_axes of " + stroke;
         const double length = axes.row(i).norm();

@@ -21,9 +21,9 @@ using Eigen::Vector2d;
 /// Lines that are joined meet within as much. What is farther apart would be painted straight across.
 constexpr double kGapMm = 0.01;
 
-/// What parameters at a length are told to: 47 halves of a cubic, less than a hair of a metre of it.
+/// Precision of parameters at a length: 47 halves of a cubic, less than a hair of a metre of it.
 constexpr double kParameterStep = 0x1p-47;
-/// Such steps that are looked at where Newton's way ends: rounding ends it beside the right one now and then.
+/// Such steps that are looked at where Newton's way ends: rounding ends it next to the right one now and then.
 constexpr int kStepsBeside = 4;
 /// After a step of Newton's that is no longer than this the next one leads there to rounding.
 constexpr double kLastStep = 1e-6;
@@ -185,7 +185,7 @@ void check(const Stroke& stroke) {
     for (const Ring& ring : stroke.wanted_mm)
         if (ring.rows() > 0 && !(ring.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 1e6))
             throw Error("geometry-out-of-range",
-                        "the wanted outline has a coordinate that is not finite or beyond 1e6 mm", stroke.id);
+                        "the target outline has a coordinate that is not finite or beyond 1e6 mm", stroke.id);
 }
 
 namespace {

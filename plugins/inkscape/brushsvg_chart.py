@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Calibration sheet: the page that a brush is calibrated on, beside the document's own, and the program that paints it.
+"""Calibration sheet: the page that a brush is calibrated on, next to the document, and the program that paints it.
 
-Its marks lie in a locked layer, which no command paints. Run again, it replaces its page.
+Its marks are in a locked layer, which no command paints. Run again, it replaces its page.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from __future__ import annotations
 import os
 import sys
 
+from brushsvg_dialogs import show_message
 from brushsvg_preview import INKSCAPE, SODIPODI, SVG, locked_layer, remove_layer
 from brushsvg_program import DRAWING, Run, StopError, arguments, choices, guarded
-from brushsvg_tell import tell
 
 LAYER_ID, PAGE_ID = "brushsvg-chart", "brushsvg-chart-page"
 GAP_MM = 10
@@ -39,14 +39,14 @@ def main() -> None:
 
         document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))
         measured = inkex.load_svg(args.input_file).getroot()
-        told, warnings = run.finish()
+        report, warnings = run.finish()
         page, made, read_by = (run.made(name) for name in ("page.svg", program, "read-by.json"))
-    _insert(etree, document.getroot(), measured, etree.fromstring(page), told.splitlines()[0])
+    _insert(etree, document.getroot(), measured, etree.fromstring(page), report.splitlines()[0])
     document.write(sys.stdout.buffer)
     if wished:
-        beside = f"{os.path.splitext(wished)[0]}.chart.json"
-        _save({wished: made, beside: read_by})
-        tell("\n".join([f"Saved: {wished} and {beside}.", *warnings]))
+        chart_path = f"{os.path.splitext(wished)[0]}.chart.json"
+        _save({wished: made, chart_path: read_by})
+        show_message("\n".join([f"Saved: {wished} and {chart_path}.", *warnings]))
 
 
 def _save(files: dict[str, bytes]) -> None:
@@ -58,7 +58,7 @@ def _save(files: dict[str, bytes]) -> None:
             raise StopError(f"{path} cannot be written: {problem.strerror}.") from None
 
 
-def _insert(etree, root, measured, page, told: str) -> None:
+def _insert(etree, root, measured, page, report: str) -> None:
     remove_layer(root, LAYER_ID)
     remove_layer(root, PAGE_ID)
     unit = measured.unittouu("1mm")
@@ -76,7 +76,7 @@ def _insert(etree, root, measured, page, told: str) -> None:
     at = max(float(each.get("x")) + float(each.get("width")) for each in pages) + GAP_MM * unit
     size_mm = [float(page.get(name)[: -len("mm")]) for name in ("width", "height")]
     _page(etree, view, at, y, *(unit * side for side in size_mm)).set("id", PAGE_ID)
-    layer = locked_layer(etree, LAYER_ID, f"Calibration sheet: {told}")
+    layer = locked_layer(etree, LAYER_ID, f"Calibration sheet: {report}")
     layer.set("transform", f"translate({at:.9g},{y:.9g}) scale({unit:.9g})")
     layer.extend(child for child in list(page) if child.tag != f"{SVG}title")
     root.append(layer)

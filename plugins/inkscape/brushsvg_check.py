@@ -22,7 +22,7 @@ HALO = "paint-order:stroke;stroke:#ffffff"  # letters can be read on top of a dr
 def main() -> None:
     args = arguments(brush="document", brush_file="", cell="document", cell_file="", compensation="document")
     with Run(args.executable, args.input_file, "preview", DRAWING, "--json", *choices(args)) as run:
-        import inkex  # while brushsvg runs: it knows where things lie
+        import inkex  # while brushsvg runs: it knows where things are
         from lxml import etree
 
         document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))

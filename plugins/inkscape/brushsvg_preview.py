@@ -48,10 +48,10 @@ def own_ids(drawing: str, ids: list[str]) -> list[str]:
     with open(drawing, "rb") as file:
         if not ids or SKIPPED.encode() not in file.read():
             return ids
-    root, wanted = ElementTree.parse(drawing).getroot(), set(ids)
+    root, chosen = ElementTree.parse(drawing).getroot(), set(ids)
     parents = {child: parent for parent in root.iter() for child in parent}
     found = []
-    for node in (node for node in root.iter() if node.get("id") in wanted):
+    for node in (node for node in root.iter() if node.get("id") in chosen):
         above = [node]
         while above[-1] in parents:
             above.append(parents[above[-1]])
@@ -129,7 +129,7 @@ def _label(paths, missed: int, marks, warnings: int, save_refuses: list[str]) ->
 
 
 def own_undone(root) -> str:
-    """The inverse of the root's own transform, for layers of ours: they lie on what they are about where it is applied,
+    """The inverse of the root's own transform, for layers of ours: they cover their objects where it is applied,
     as SVG and brushsvg do, and where it is not, as in Inkscape 1.2."""
     if not root.get("transform"):
         return ""

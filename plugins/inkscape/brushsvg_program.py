@@ -13,14 +13,14 @@ import sys
 import tempfile
 from xml.etree import ElementTree
 
-from brushsvg_tell import in_dialogs, tell
+from brushsvg_dialogs import in_dialogs, show_message
 
 NEEDED = (0, 1, 0)
 INSTALL = "pipx install brushsvg"
 DRAWING = "drawing.svg"
-BESIDE = "brushsvg-executable.txt"  # written by `brushsvg setup inkscape`
+EXECUTABLE_NOTE = "brushsvg-executable.txt"  # written by `brushsvg setup inkscape`
 LONGEST = 30_000 if sys.platform == "win32" else 120_000  # bytes: systems allow 32 768 and 131 072 in a word
-# What Inkscape's Python has to have beside its own modules, and the packages of Debian and Ubuntu that bring it.
+# What Inkscape's Python has to have next to its own modules, and the packages of Debian and Ubuntu that bring it.
 PACKAGES = {name: f"python3-{name}" for name in ("lxml", "cssselect", "numpy", "packaging", "tinycss2")}
 # Where pipx, uv, pip and Homebrew put programs, and where pipx and uv keep them: a desktop's PATH may lack all of them.
 # Folders whose variable is not set are left out.
@@ -45,7 +45,7 @@ USUAL = (
 
 
 class StopError(Exception):
-    """What the person at the drawing program is told, in sentences."""
+    """A message for the person at the drawing program, in sentences."""
 
 
 def arguments(**choices: str) -> argparse.Namespace:
@@ -59,20 +59,22 @@ def arguments(**choices: str) -> argparse.Namespace:
 
 
 def guarded(main) -> None:
-    """Run main; whatever goes wrong is a sentence in Inkscape's dialog, which shows stderr, and status 1."""
+    """Run main; any failure is a sentence in Inkscape's dialog, which shows stderr, and status 1."""
     try:
         main()
     except StopError as stop:
-        told = str(stop)
+        message = str(stop)
     except OSError as problem:  # a full disk, no folder for temporary files
-        told = f"{problem.filename or 'Temporary files'} cannot be written or read: {problem.strerror}."
+        message = f"{problem.filename or 'Temporary files'} cannot be written or read: {problem.strerror}."
     except ImportError as problem:
-        told = _lacking((problem.name or str(problem)).partition(".")[0])
+        message = _lacking((problem.name or str(problem)).partition(".")[0])
     except Exception as mistake:
-        told = f"brushsvg's extension made a mistake, please report it: {type(mistake).__name__}: {mistake}"
+        message = (
+            f"brushsvg's extension made a mistake, please report it: {type(mistake).__name__}: {mistake}"
+        )
     else:
         return
-    tell(told)
+    show_message(message)
     sys.exit(1)
 
 
@@ -130,7 +132,7 @@ def _sandbox() -> str:
 def _version(program: str) -> str:
     """What the program says of its version, such as "brushsvg 0.1.0", empty if it is another program."""
     try:
-        asked = subprocess.run(
+        answer = subprocess.run(
             [program, "--version"],
             capture_output=True,
             encoding="utf-8",
@@ -138,22 +140,22 @@ def _version(program: str) -> str:
             check=False,
             env=_environment(),
         )
-        found = re.match(r"brushsvg \d+\.\d+\.\d+", asked.stdout)
+        found = re.match(r"brushsvg \d+\.\d+\.\d+", answer.stdout)
     except (OSError, ValueError, subprocess.TimeoutExpired):
         found = None
     return found[0] if found else ""
 
 
 def _noted() -> str:
-    beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), BESIDE)
-    if not os.path.exists(beside):
+    note = os.path.join(os.path.dirname(os.path.abspath(__file__)), EXECUTABLE_NOTE)
+    if not os.path.exists(note):
         return ""
-    with open(beside, "rb") as file:
+    with open(note, "rb") as file:
         return os.fsdecode(file.read()).strip()
 
 
 class Run:
-    """One brushsvg command beside a copy of the drawing, called DRAWING, started at once. In a `with`, so that its
+    """One brushsvg command next to a copy of the drawing, called DRAWING, started at once. In a `with`, so that its
     folder goes away."""
 
     def __init__(self, chosen: str, drawing: str, *words: str):
@@ -196,18 +198,18 @@ class Run:
             for _, notice in notices
             if notice and (notice["damaged"] or notice["refused"])
         ]
-        told = [self._in_words(notice) if notice else line for line, notice in notices]
+        lines = [self._in_words(notice) if notice else line for line, notice in notices]
         status = self.process.returncode
         if status == 0 or (may_refuse and status == 1 and out):
-            return out, told
+            return out, lines
         if status != 1:
             self._stop_if_too_old()
         if not any(
             notice or line.startswith("brushsvg: ") for line, notice in notices
         ):  # its Python broke down before it could say anything
-            reason = f": {told[-1]}" if told else f" ({status})"
+            reason = f": {lines[-1]}" if lines else f" ({status})"
             raise StopError(f"{self.program} does not run{reason}\nInstall it anew:  {INSTALL} --force")
-        raise StopError("\n".join(["brushsvg refuses:", *told]))
+        raise StopError("\n".join(["brushsvg refuses:", *lines]))
 
     def _in_words(self, notice: dict) -> str:
         """A line for the dialog. Files of ours, which the person never sees, are not named."""
@@ -242,7 +244,7 @@ class Run:
         return report
 
     def _stop_if_too_old(self) -> None:
-        """Asked only when something went wrong: it would cost each preview a tenth of a second."""
+        """Run only when something went wrong: it would cost each preview a tenth of a second."""
         found = _version(self.program)
         if not found:
             raise StopError(f"{self.program} is not the program brushsvg: choose another one under Program.")
@@ -296,7 +298,7 @@ def selection(ids: list[str]) -> list[str]:
     words = ", ".join(f'[id="{each}"]' for each in chosen)
     if len(words.encode()) > LONGEST:
         raise StopError(
-            f"{len(ids)} objects are selected, more than can be told to brushsvg: select their layer or group "
+            f"{len(ids)} objects are selected, more than can be passed to brushsvg: select their layer or group "
             "instead, or nothing for the page."
         )
     return ["--select", words] if chosen else []

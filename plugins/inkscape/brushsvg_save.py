@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import sys
 
+from brushsvg_dialogs import show_message
 from brushsvg_program import DRAWING, Run, arguments, choices, guarded, root_of
-from brushsvg_tell import tell
 
 
 def main() -> None:
@@ -31,7 +31,7 @@ def main() -> None:
         _, warnings = run.finish()
         sys.stdout.buffer.write(run.made(out))
     if warnings:
-        tell("\n".join(["Saved. brushsvg warns:", *warnings]))
+        show_message("\n".join(["Saved. brushsvg warns:", *warnings]))
 
 
 if __name__ == "__main__":

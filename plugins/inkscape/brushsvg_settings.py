@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Brush settings: what the document says of the whole job, to brushsvg on the command line, too.
 
-Inkscape cannot show in a dialog what a document says: fields start with "leave as it is", and what is stored is told.
+Inkscape cannot show in a dialog what a document says: fields start with "leave as it is", and stored values are
+reported.
 """
 
 from __future__ import annotations
@@ -10,8 +11,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
+from brushsvg_dialogs import show_message
 from brushsvg_program import StopError, arguments, described, guarded
-from brushsvg_tell import tell
 
 PREFIX = "data-brushsvg-"
 OWN = {  # what brushsvg does where the document says nothing
@@ -49,7 +50,7 @@ def main() -> None:
         elif value not in KEEP:
             root.set(PREFIX + name, value)
     document.write(sys.stdout.buffer)
-    tell("\n".join([*_told(before, _said(root)), f"The program that is used: {described()}"]))
+    show_message("\n".join([*_changes(before, _said(root)), f"The program that is used: {described()}"]))
 
 
 def _tolerance(typed: str) -> str:
@@ -70,7 +71,7 @@ def _said(root) -> dict[str, str]:
     return {key.removeprefix(PREFIX): value for key, value in root.items() if key.startswith(PREFIX)}
 
 
-def _told(before: dict[str, str], after: dict[str, str]) -> Iterator[str]:
+def _changes(before: dict[str, str], after: dict[str, str]) -> Iterator[str]:
     yield "The document says now:" if before != after else "Nothing was changed. The document says:"
     for name in [*OWN, *(name for name in after if name not in OWN)]:
         own = f"nothing, and brushsvg takes {OWN.get(name)}"

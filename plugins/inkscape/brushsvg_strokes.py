@@ -13,9 +13,9 @@ import sys
 import tempfile
 from xml.etree import ElementTree
 
+from brushsvg_dialogs import show_message
 from brushsvg_preview import INKSCAPE, OUTLINE, SKIPPED, SVG, own_ids, user_from_mm
 from brushsvg_program import DRAWING, Run, StopError, arguments, element_of, guarded, selection
-from brushsvg_tell import tell
 from brushsvg_text import name_of, with_letters
 
 STROKES = "strokes.svg"
@@ -49,15 +49,15 @@ def main() -> None:
             drawn = ElementTree.fromstring(run.made(STROKES))
     per_shape = _of_shapes(by_id, drawn)
     if not per_shape:
-        told = "There is no filled shape: lines with a width are strokes already."
-        raise StopError("\n".join([told, *warnings]))
+        message = "There is no filled shape: lines with a width are strokes already."
+        raise StopError("\n".join([message, *warnings]))
     effects = {each.get("id"): each for each in drawn.iter(EFFECT)}
     writer = _Writer(etree, inkex, svg, effects, _mm(drawn.get("width")), _mm(drawn.get("height")))
     for shape, paths in per_shape:
         writer.replace(shape, paths)
     document.write(sys.stdout.buffer)
     if warnings:
-        tell("\n".join(["Converted. brushsvg warns:", *warnings]))
+        show_message("\n".join(["Converted. brushsvg warns:", *warnings]))
 
 
 def _mm(length: str) -> float:
@@ -106,7 +106,7 @@ class _Writer:
         kept.append(shape)
         is_plain = self._is_plain(parent)
         place = -self._place(parent if is_plain else self.svg) @ self.user_from_mm
-        if not is_plain:  # in a drawing within the drawing: its strokes lie above all
+        if not is_plain:  # in a drawing within the drawing: its strokes come on top of all
             strokes = self.etree.SubElement(self.svg, f"{SVG}g", id=self._free(f"{shape.get('id')}-strokes"))
             strokes.set(f"{INKSCAPE}label", group.get(f"{INKSCAPE}label"))
             group = strokes
@@ -121,7 +121,8 @@ class _Writer:
         return node is not None
 
     def _place(self, node):
-        """The transform of all that holds what lies in a node. (That of inkex writes anew what nobody touched.)"""
+        """The transform of the groups around the contents of a node. (That of inkex writes anew what nobody
+        touched.)"""
         place = self.inkex.Transform()
         while node is not None:
             place = self.inkex.Transform(node.get("transform")) @ place

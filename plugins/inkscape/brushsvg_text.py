@@ -12,7 +12,7 @@ LETTERS = "letters.svg"
 
 
 def with_letters(etree, root, drawing: str, folder: str) -> tuple[str, dict]:
-    """A drawing without text, and which element of root is meant by each id in it. Where Inkscape cannot be run, the
+    """A drawing without text, and which element of root each id in it means. Where Inkscape cannot be run, the
     drawing stays as it is: brushsvg says then that it does not read text."""
     by_id = {node.get("id"): node for node in root.iter() if node.get("id")}
     if not any(_may_be_painted(text) for text in root.iter(*TEXT)):

@@ -1,7 +1,7 @@
 """brushsvg: vector lettering to brush strokes that a robot can paint.
 
 The public names are those of __all__. Each is imported when it is first used: importing the package costs
-nothing, and no more is loaded than what is asked for.
+nothing, and only the parts in use are loaded.
 """
 
 from __future__ import annotations
@@ -46,6 +46,7 @@ if TYPE_CHECKING:  # what the table below resolves to
     from .jobs.comparing import PaintedJob, compare
     from .jobs.conversion import Conversion, convert
     from .jobs.json_files import read_marks, read_plan
+    from .jobs.project import Project, find_project, read_project
     from .machine.cells.cell import Cell
     from .machine.cells.cell_file import cell_names, find_cell, read_cell, write_cell
     from .machine.writer import write_program
@@ -92,6 +93,9 @@ _HOME = {
     "convert": "jobs.conversion",
     "Batch": "jobs.batch.run",
     "batch": "jobs.batch.run",
+    "Project": "jobs.project",
+    "find_project": "jobs.project",
+    "read_project": "jobs.project",
     "read_marks": "jobs.json_files",
     "read_plan": "jobs.json_files",
     "write_program": "machine.writer",
@@ -148,6 +152,7 @@ __all__ = [
     "Pass",
     "Plan",
     "Profile",
+    "Project",
     "ReadOptions",
     "Settings",
     "Stroke",
@@ -166,6 +171,7 @@ __all__ = [
     "coverage",
     "find_brush",
     "find_cell",
+    "find_project",
     "flatten",
     "laws",
     "lifted_at_corners",
@@ -179,6 +185,7 @@ __all__ = [
     "read_drawing",
     "read_marks",
     "read_plan",
+    "read_project",
     "save_brush",
     "simulate",
     "stroke_from_path",

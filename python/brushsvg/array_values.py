@@ -19,8 +19,8 @@ class ArrayValue:
     __hash__ = None
 
     def __repr__(self) -> str:
-        told = (f"{f.name}={_told(getattr(self, f.name))}" for f in fields(self))
-        return f"<{type(self).__name__} {', '.join(told)}>"
+        given = (f"{f.name}={_show(getattr(self, f.name))}" for f in fields(self))
+        return f"<{type(self).__name__} {', '.join(given)}>"
 
 
 def _same(a, b) -> bool:
@@ -29,5 +29,5 @@ def _same(a, b) -> bool:
     return type(a) is type(b) and bool(a == b)
 
 
-def _told(value) -> str:
+def _show(value) -> str:
     return f"array of shape {value.shape}" if isinstance(value, np.ndarray) and value.ndim else repr(value)

@@ -1,4 +1,5 @@
-"""What a person is told: the one error a user can cause (everything else is a bug), and notices, which stop nothing.
+"""Report problems: Error, the one exception that a user can cause (all others are bugs), and Notice, which stops
+nothing.
 
 Both have a code for their kind, listed in docs/reference/diagnostics.md. Decisions ask for the code, never for words
 of a sentence.
@@ -38,7 +39,7 @@ class Error(ValueError):
         code: str = "",
         advice: str = "",
     ):
-        super().__init__(told(sentence, advice))
+        super().__init__(join_advice(sentence, advice))
         self.sentence = sentence
         self.where = where
         self.value = value
@@ -47,7 +48,7 @@ class Error(ValueError):
         self.code = code
         self.advice = advice
         for name in (name for name in (file, where) if isinstance(name, str) and name):
-            self.add_note(f"in {name}")  # for whoever meets it as a traceback
+            self.add_note(f"in {name}")  # shown in a traceback
 
     def notice(self, where: str | None = None) -> Notice:
         """The same as something that stops nothing; where: its element, where that is known better."""
@@ -61,9 +62,8 @@ class Notice:
     """A warning about one element, or the reason why it was left out or may not be run.
 
     where: the element, stroke or key, "" if none. damaged: the geometry itself is broken and was read up to the error;
-    convert refuses it unless lenient. layer: where the element lies, None for what concerns the whole drawing.
-    code: of what kind it is. about: what of that kind, where alike
-    are only those of the same: a CSS property, a kind of element. advice: what to type, see Error. refused: `convert`
+    code: its kind. about: a CSS property or a kind of element; notices of one kind are alike only if this is the same.
+    advice: what to type, see Error. refused: `convert`
     writes no program because of it.
     """
 
@@ -78,25 +78,25 @@ class Notice:
 
     def __iter__(self):
         """For `where, sentence = notice`."""
-        return iter((self.where, self.told))
+        return iter((self.where, self.text))
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         """The sentence with its advice."""
-        return told(self.sentence, self.advice)
+        return join_advice(self.sentence, self.advice)
 
     def as_json(self) -> dict[str, str | bool]:
         """For programs that read us: the sentence ends in the advice."""
-        told = {"where": self.where, "sentence": self.told, "code": self.code}
-        return told | {"advice": self.advice, "damaged": self.damaged, "refused": self.refused}
+        made = {"where": self.where, "sentence": self.text, "code": self.code}
+        return made | {"advice": self.advice, "damaged": self.damaged, "refused": self.refused}
 
     @property
     def kind(self) -> tuple[str, str, bool]:
-        """What notices have in common that are told as one."""
+        """The part that alike notices share: they are reported as one."""
         return (self.code, self.about, self.damaged) if self.code else ("", self.sentence, self.damaged)
 
 
-def told(sentence: str, advice: str) -> str:
+def join_advice(sentence: str, advice: str) -> str:
     return f"{sentence}; {advice}" if advice else sentence
 
 
@@ -150,7 +150,7 @@ def need_one_of(value, choices: tuple, what: str) -> None:
 
 
 def lacking(what: str, *packages: str) -> Error:
-    """A refusal for want of packages of an extra, with what installs them where this runs."""
+    """Return a refusal because packages of an extra are missing, with the command that installs them."""
     return Error(
         f"{what} {' and '.join(packages)}: install with  {command_to_add(*packages)}", code="package-missing"
     )

@@ -21,7 +21,7 @@ except ImportError:  # Windows: there what a killed run left stays
 
 MOST_PARTS = 20  # of a TOML key, a.b.c; many of them take minutes to read
 LARGEST_BYTES = 500 * 2**20  # no drawing is; a device may have no end
-READ_AT_ONCE = 4 * 2**20  # memory is asked for as it is needed
+READ_AT_ONCE = 4 * 2**20  # memory is allocated as it is needed
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
@@ -52,7 +52,8 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
 
 def toml_document(text: str, kind: str) -> dict:
     """What the text of a TOML file says. Error for what is none, kind: as a sentence calls the file."""
-    if found := re.search(rf"(?:[\w-]+\s*\.\s*){{{MOST_PARTS}}}", text):
+    # possessive, and only from the beginning of a word: a long word is read once, not once from each of its letters
+    if found := re.search(rf"(?<![\w-])(?:[\w-]++\s*+\.\s*+){{{MOST_PARTS}}}", text):
         sentence = f"a key of more than {MOST_PARTS} parts: {found[0][:20]!r} ..."
         raise Error(f"the {kind} file is not TOML of ours: {sentence}", code="not-toml")
     try:
@@ -64,7 +65,7 @@ def toml_document(text: str, kind: str) -> dict:
 
 
 def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.PathLike[str]) -> Path:
-    """Where a brush or cell lies: that of a name among the shipped ones, or a user's own file.
+    """Return the path of a brush or cell: a shipped one with this name, or a user's own file.
 
     Error, naming the kind and the shipped ones, for a name that is neither.
     """
@@ -81,7 +82,7 @@ def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.Path
         f"{kind} {name_or_path!r} is not known{did_you_mean(name_or_path, names)} Known are {known}, and any file "
         f"that ends in {suffix}",
         code=f"{kind}-unknown",
-        advice=f"{own} lies here: give its name with the ending" if _is_file(own) else "",
+        advice=f"{own} is in this folder: give its name with the ending" if _is_file(own) else "",
     )
 
 
@@ -98,17 +99,17 @@ def names_in(folder: Path, suffix: str) -> list[str]:
 
 
 def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[str]]) -> None:
-    """Put data at each path, at all of them or at none: written beside them, then renamed. Text, whole or in
+    """Put data at each path, at all of them or at none: written next to them, then renamed. Text, whole or in
     pieces, becomes UTF-8.
 
     Error, with the path in `file`, when a place cannot be written; every path is then as it was before. The
     one gap: a rename that fails after others were made, as where a file is a mount point of its own.
-    Devices and pipes are written through, once all the rest lies ready. What a killed run left beside a path is
-    cleared by the next one that writes there.
+    Devices and pipes are written through, once all other files are ready. Files that a killed run left next to a path
+    are cleared by the next one that writes there.
     """
     path: str | os.PathLike[str] = ""
     targets: dict[str | os.PathLike[str], str] = {}
-    beside: dict[str | os.PathLike[str], str] = {}
+    staged: dict[str | os.PathLike[str], str] = {}
     through = []
     held = ExitStack()
     try:
@@ -124,20 +125,20 @@ def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[st
             folder, name = os.path.split(target)
             prefix = f".{name.encode('utf-8', 'surrogateescape')[:80].decode('utf-8', 'ignore')}."
             _clear_left(folder, prefix)
-            handle, beside[path] = _new_part(folder, prefix, 0o666 if mode is None else mode & 0o777)
+            handle, staged[path] = _new_part(folder, prefix, 0o666 if mode is None else mode & 0o777)
             held.callback(os.close, os.dup(handle))  # keeps the lock until the file has its name
             with os.fdopen(handle, "wb") as file:
                 file.writelines(_pieces(files[path]))
                 file.flush()
                 os.fsync(file.fileno())
             if mode is not None:
-                os.chmod(beside[path], mode & 0o777)
+                os.chmod(staged[path], mode & 0o777)
         for path in through:  # must not be renamed over; a folder refuses
             with open(targets[path], "wb") as file:
                 file.writelines(_pieces(files[path]))
-        for path in list(beside):
-            os.replace(beside[path], targets[path])
-            del beside[path]
+        for path in list(staged):
+            os.replace(staged[path], targets[path])
+            del staged[path]
     except Error:  # of what is written, made while it is written
         raise
     except (OSError, ValueError) as problem:  # ValueError: a name that no file can have
@@ -145,7 +146,7 @@ def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[st
             f"the file cannot be written: {reason(problem)}", file=os.fspath(path), code="file-unwritable"
         ) from None
     finally:
-        for left in beside.values():
+        for left in staged.values():
             Path(left).unlink(missing_ok=True)
         held.close()
 

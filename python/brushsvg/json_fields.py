@@ -44,11 +44,11 @@ def _once(pairs: list[tuple[str, object]]) -> dict:
     return found
 
 
-def refuse_unknown(content: dict, known, where: str = "", told=None) -> None:
-    """Error for the first key that is not known; told: those that are worth naming, None for all."""
+def refuse_unknown(content: dict, known, where: str = "", listed=None) -> None:
+    """Raise Error for the first key that is not known. listed: the keys that the sentence names, None for all."""
     for key in content:
         if key not in known:
-            names = ", ".join(told or known)
+            names = ", ".join(listed or known)
             here, path = (" here", f"{where}.{key}") if where else ("", key)
             raise Error(f"this is not known{here}; known are {names}", path, code="key-unknown")
 
@@ -78,6 +78,6 @@ def number(value, where: str, least: float = -math.inf, greatest: float = math.i
 def numbers(values, where: str, count: int | None = None) -> tuple[float, ...]:
     """count: None for any."""
     if not isinstance(values, list) or (count is not None and len(values) != count):
-        wanted = "a list of numbers" if count is None else f"{count} finite numbers"
-        raise Error(f"this must be {wanted}", where, code="wrong-type")
+        expected = "a list of numbers" if count is None else f"{count} finite numbers"
+        raise Error(f"this must be {expected}", where, code="wrong-type")
     return tuple(number(value, f"{where}[{i}]") for i, value in enumerate(values))

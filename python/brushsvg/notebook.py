@@ -62,7 +62,7 @@ def marks_picture(marks: _core.Marks) -> str | None:
     right, top = np.vstack(rings).max(axis=0) + ROOM_MM
     try:
         return marks_svg(marks, (float(right), float(top)), ["#22252b"] * len(marks.passes))
-    except Error:  # beside any sheet
+    except Error:  # off any sheet
         return None
 
 

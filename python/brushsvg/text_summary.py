@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from .errors import Notice
 
-MOST_ALIKE = 3  # of a kind, told one by one
+MOST_ALIKE = 3  # of a kind, each on a line of its own
 MOST_NAMED = 4  # whose sentence is the very same: a brush has as many laws
 
 

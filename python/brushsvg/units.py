@@ -10,6 +10,13 @@ from .errors import Error
 
 MM_PER = {"mm": 1.0, "cm": 10.0, "q": 0.25, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6, "px": 25.4 / 96}
 PX_PER = {"mm": 96 / 25.4, "cm": 960 / 25.4, "q": 24 / 25.4, "in": 96.0, "pt": 96 / 72, "pc": 16.0, "px": 1.0}
+PAPERS_MM = {
+    "a2": (420.0, 594.0),
+    "a3": (297.0, 420.0),
+    "a4": (210.0, 297.0),
+    "a5": (148.0, 210.0),
+    "letter": (215.9, 279.4),
+}
 FONT_PX = 16.0  # of a font whose size nobody says
 _OF_FONT = {"em": 1.0, "ex": 0.5, "rem": 1.0}
 
@@ -97,6 +104,11 @@ def size_mm(text: str, default_unit: str = "mm") -> tuple[float, float]:
             sentence = f"{value} mm in the size {_shown(text)} is outside the range (0, 1000000] mm"
             raise Error(sentence, value=value, range=(0.0, 1e6), code="out-of-range")
     return size
+
+
+def paper_mm(text: str) -> tuple[float, float]:
+    """Read a paper's name or size as width and height in mm. Error if it is neither."""
+    return PAPERS_MM.get(text.strip().lower()) or size_mm(text)
 
 
 def clock(seconds: float) -> str:

@@ -61,12 +61,12 @@ def _in_words(function: Callable, words: str, is_method: bool = False) -> Callab
         except TypeError as wrong:
             if _MARK not in str(wrong):
                 raise
-            raise TypeError(_told(words, ways(), own, named)) from None
+            raise TypeError(_explain(words, ways(), own, named)) from None
 
     return called
 
 
-def _told(words: str, ways: list[dict[str, str]], given: tuple, named: dict) -> str:
+def _explain(words: str, ways: list[dict[str, str]], given: tuple, named: dict) -> str:
     shown = ", ".join([*map(_short, given), *(f"{name}={_short(value)}" for name, value in named.items())])
     if (
         len(ways) == 1
@@ -80,7 +80,7 @@ def _told(words: str, ways: list[dict[str, str]], given: tuple, named: dict) -> 
 
 
 def _truth(way: dict[str, str], given: tuple, named: dict) -> str:
-    """What is said of True or False where numbers are asked for, "" where there is none."""
+    """Return the words about True or False where numbers are expected, "" where there is none."""
     for name, value in [*zip(way, given, strict=False), *named.items()]:
         if _takes_numbers(way.get(name, "")) and _has_truth(value):
             return (
@@ -89,7 +89,7 @@ def _truth(way: dict[str, str], given: tuple, named: dict) -> str:
     return ""
 
 
-@functools.cache  # asked at each call of anything
+@functools.cache  # called by every function
 def _takes_numbers(kind: str) -> bool:
     return bool(re.search("number|array|float", kind)) and "bool" not in kind
 
@@ -106,7 +106,7 @@ def _short(value: object) -> str:
 
 
 def _signatures(doc: str, is_method: bool) -> Iterator[dict[str, str]]:
-    """Arguments with their types in words, of each way in which a function can be called, as pybind11 tells them."""
+    """Return the arguments with their types in words, for each signature that pybind11 lists."""
     for line in doc.splitlines():
         found = re.match(r"(?:\d+\. )?[\w.]*\((.*)\)(?: -> .*)?$", line.strip())
         if found and found[1] != "*args, **kwargs":

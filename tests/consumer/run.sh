@@ -76,8 +76,6 @@ if grep -q "^BRUSHSVG_SHARED:BOOL=ON" "$build/CMakeCache.txt"; then
   readelf -d "$libraries/libbrushsvg.so" | grep -q "SONAME.*libbrushsvg.so.${version%.*}\]"
   if ldd "$libraries/libbrushsvg.so" | grep -i ceres; then echo "libbrushsvg.so needs Ceres" >&2; exit 1; fi
 fi
-consume many -DMANY=ON
-"$work/many/many"
 if grep -q "^BRUSHSVG_FIT:BOOL=ON" "$build/CMakeCache.txt"; then
   consume fit -DFIT=ON
   "$work/fit/fit"

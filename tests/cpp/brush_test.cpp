@@ -110,8 +110,9 @@ TEST_CASE("width to depth and back, and the refusal names the reachable range") 
     for (double h : {0.1, 0.42, 2.0, 4.2})
         CHECK(brush.half_width(brush.depth_for_half_width(h, "")) == doctest::Approx(h));
     const auto wide = ::refusal([&] { brush.depth_for_half_width(5.0, "p1"); });
-    REQUIRE(agrees(wide, "width-out-of-reach", "p1", {"10.000", "[0.000, 8.400]"}));
+    REQUIRE(agrees(wide, "width-out-of-reach", "p1", {"10.000", "[0.000, 8.400]", "0.84"}));
     CHECK(*wide->value() == doctest::Approx(10.0));
+    CHECK(agrees(::refusal([&] { brush.depth_for_half_width(5.95, "p1"); }), "width-out-of-reach", "p1", {"0.70"}));
     CHECK(shipped("rigid").depth_for_half_width(7.0, "") == shipped("rigid").paint_depth_mm);
 }
 

@@ -1,4 +1,4 @@
-// Whatever the public functions are given ends in a result or in Error: no crash, no hang.
+// Any input of the public functions ends in a result or in Error: no crash, no hang.
 #include "brushsvg/brushsvg.hpp"
 
 #include <doctest/doctest.h>
@@ -311,7 +311,7 @@ TEST_CASE("any rings") {
     }
 }
 
-TEST_CASE("any number where one is asked for") {
+TEST_CASE("any number where one is requested") {
     const Brush brush = shipped("round-6");
     const Stroke stroke = strokes()[1].second;
     const Pass pass = passes()[1].second;
@@ -366,6 +366,6 @@ TEST_CASE("any number where one is asked for") {
 TEST_CASE("a footprint no brush has is refused when the file is checked") {
     Brush brush = shipped("round-6");
     brush.footprints.dragged.back().outline_mm(4, 0) = 5.5e9;
-    brush.depth_range_mm[1] = 5.0;  // the last outline lies beyond, and was looked at by nobody
+    brush.depth_range_mm[1] = 5.0;  // the last outline is beyond, and was looked at by nobody
     CHECK_THROWS_AS(check(brush), Error);
 }

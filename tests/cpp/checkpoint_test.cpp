@@ -19,7 +19,7 @@ using namespace brushsvg;
 
 namespace {
 
-/// Asked at every checkpoint that is worth so much work, if the pause of 50 ms is over.
+/// Called at every checkpoint that is worth so much work, if the pause of 50 ms is over.
 void work_for(int rounds) {
     for (int i = 0; i < rounds; ++i) {
         checkpoint(1000);
@@ -31,7 +31,7 @@ void work_for(int rounds) {
 
 TEST_CASE("without anybody who asks, work goes on") { CHECK_NOTHROW(work_for(100)); }
 
-TEST_CASE("what runs is given up when it is asked to, and not before") {
+TEST_CASE("what runs is given up on request, and not before") {
     int asked = 0;
     {
         const CancelWhen third([&] { return ++asked == 3; });
@@ -56,7 +56,7 @@ TEST_CASE("the innermost question counts, then the one before it") {
     CHECK_THROWS_AS(work_for(100000), Cancelled);
 }
 
-TEST_CASE("threads that work for this one end with it, and only this one is asked") {
+TEST_CASE("threads that work for this one end with it, and only this one is polled") {
     const auto here = std::this_thread::get_id();
     int asked = 0;
     const CancelWhen second([&] {
@@ -77,7 +77,7 @@ TEST_CASE("a stroke is given up inside of itself") {
     CHECK_THROWS_AS(compensate(stroke, brush), Cancelled);
 }
 
-TEST_CASE("work without checkpoints is given up from beside, and ends at its next checkpoint") {
+TEST_CASE("work without checkpoints is given up from outside, and ends at its next checkpoint") {
     std::atomic<bool> goes_on{true}, ended{false};
     const auto here = std::this_thread::get_id();
     int asked = 0;

@@ -319,7 +319,7 @@ Stroke hook() {
 
 }  // namespace
 
-TEST_CASE("steps round a cusp come to an end, however fine they are asked for") {
+TEST_CASE("steps round a cusp come to an end, at any requested fineness") {
     const Stroke stroke = hook();
     const Brush brush = shipped("round-6");
     const Line line(stroke, brush);

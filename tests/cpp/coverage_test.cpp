@@ -99,7 +99,7 @@ TEST_CASE("a picture that cannot be made is refused") {
     CHECK_THROWS_AS(coverage(Rings{}, Window{0, 0, 1e6, 1e6}, 20.0), Error);
 }
 
-TEST_CASE("coverage of convex pieces that lie over each other is that of their union") {
+TEST_CASE("coverage of convex pieces that overlap is that of their union") {
     Ring a(4, 2), b(4, 2);
     a << 1, 1, 5, 1, 5, 3, 1, 3;
     b << 3, 1, 8, 1, 8, 3, 3, 3;  // shares two edges with the first
@@ -109,11 +109,11 @@ TEST_CASE("coverage of convex pieces that lie over each other is that of their u
     CHECK((found - coverage(unite({a, b}), window, 1.7)).cwiseAbs().maxCoeff() < 0.13);
 }
 
-TEST_CASE("a picture of a part of the paper is made of what lies there, to the last bit as of all") {
+TEST_CASE("a picture of a part of the paper is made of what is there, to the last bit as in the whole") {
     for (const Brush& brush : {shipped("round-6"), crescent_brush()}) {
         const Marks all = marks_of(brush, 0.1);
         const auto rows = [](const Marks& marks) { return marks.passes[0].pose.size(); };
-        // what lies beside the window cancels out of shapes that are not convex but for rounding
+        // what is next to the window cancels out of shapes that are not convex but for rounding
         const float hair = is_convex(brush.footprints.dragged[0].outline_mm) ? 0.0f : 1e-5f;
         std::size_t fewest = rows(all);
         for (double x = 10.0; x < 70.0; x += 7.0)

@@ -62,7 +62,7 @@ TEST_CASE("a pinhole below a hundredth of a square millimetre does not count, a 
     CHECK(excess_turning({disc[0], curl}, disc) == 0.0);
 }
 
-TEST_CASE("thorns are sharp, point outwards and stick out of what was wanted, or into a hole of it") {
+TEST_CASE("thorns are sharp, point outwards and stick out of the target, or into a hole of it") {
     const auto square_with = [](double peak) {
         return Rings{corners({{0, 0}, {10, 0}, {10, 10}, {5.5, 10}, {5, 10 + peak}, {4.5, 10}, {0, 10}})};
     };

@@ -1,4 +1,4 @@
-// A program of its own: it takes the place of pthread_create, as a container that limits its processes would.
+// A program of its own: it replaces pthread_create, as a container that limits its processes would.
 #include <dlfcn.h>
 #include <pthread.h>
 

@@ -176,7 +176,7 @@ TEST_CASE("derivatives of edge distances are those of small steps, events and la
 }
 
 TEST_CASE("where the TCP passes the resting patch the mark's edge moves no faster than the lag grows") {
-    Poses poses(3, 3);  // the footprint turns round at once, by so much more the less the TCP keeps aside
+    Poses poses(3, 3);  // the footprint turns round at once, by so much more the less the TCP keeps off
     poses << 0, 0, -6, 0, 28, -6, 1, 4, -6;
     MarkLaws laws;
     laws.lag = {3.0, 0.5, 0.05, 0.0};
@@ -257,7 +257,7 @@ TEST_CASE("marks that no brush paints are refused, and one of them is named") {
         return out;
     };
     Ring square(4, 2);
-    square << 0, 0, 40, 0, 40, 40, 0, 40;  // huge footprints lie on each other, and the work is counted
+    square << 0, 0, 40, 0, 40, 40, 0, 40;  // huge footprints overlap, and the work is counted
     const std::string sentence = no_brush_paints("this one").what();
     const auto check_refused = [&](const std::function<void()>& does) {
         try {

@@ -28,7 +28,7 @@ TEST_CASE("pixels count what rings measure") {
     CHECK(mark_overlap({marks}, {shape}, brush).px_per_mm == doctest::Approx(8.0));
 }
 
-TEST_CASE("strokes that lie over each other count once") {
+TEST_CASE("strokes that overlap count once") {
     const Brush brush = shipped("round-6");
     Stroke a, b;
     a.wanted_mm = {box(0, 0, 20, 4)};
@@ -57,7 +57,7 @@ TEST_CASE("a large sheet is counted tile by tile") {
     CHECK(touching(strokes) == std::vector<std::vector<std::size_t>>{{0, 1, 3}});
 }
 
-TEST_CASE("nothing wanted and nothing painted overlap; hairlines and huge sheets have pixels") {
+TEST_CASE("an empty target and no paint overlap; hairlines and huge sheets have pixels") {
     const Brush brush = shipped("round-6");
     CHECK(common_area(mark_overlap({}, {}, brush)).overlap() == 1.0);
     const Stroke thin = stroke_of(polyline({V(0, 0), V(3, 0)}), {{0.0, 0.01}});

@@ -49,7 +49,7 @@ double distance_to(const Rings& rings, const Eigen::Vector2d& p) {
 
 }  // namespace
 
-TEST_CASE("a limb that is thin beside what it leaves stays, a corner does not") {
+TEST_CASE("a limb that is thin next to what it leaves stays, a corner does not") {
     const Rings t = unite({box(0, 0, 8, 40), box(8, 30, 3, 2)});
     CHECK(medial_axis(t, kNoCorners).branches.size() == 2);  // the stem, above and below it
     CHECK(medial_axis(t, kNoCorners, 0.1).branches.size() == 3);
@@ -67,12 +67,12 @@ TEST_CASE("a bar is one line that stops half a width before its ends") {
     CHECK(area(axis.branches[0].part) == doctest::Approx(80.0));
 }
 
-TEST_CASE("corners stay when they are asked for: a right angle adds 1 - pi/4 of the disc's square") {
+TEST_CASE("corners stay when they are requested: a right angle adds 1 - pi/4 of the disc's square") {
     CHECK(medial_axis({box(0, 0, 20, 4)}, 0.21).branches.size() == 5);
     CHECK(medial_axis({box(0, 0, 20, 4)}, 0.22).branches.size() == 1);
 }
 
-TEST_CASE("every point lies as far from the outline as it says, parabolas too") {
+TEST_CASE("every point is as far from the outline as it says, parabolas too") {
     Ring l(6, 2);
     l << 0, 0, 30, 0, 30, 5, 7, 6, 6, 40, 0, 40;
     const MedialAxis axis = medial_axis({l}, 0.0);
@@ -84,7 +84,7 @@ TEST_CASE("every point lies as far from the outline as it says, parabolas too") 
     CHECK(area_of_parts(axis) == doctest::Approx(area({l})));
 }
 
-TEST_CASE("a corner on the way is a node that tells its size") {
+TEST_CASE("a corner on the way is a node with its size") {
     const MedialAxis axis = medial_axis(unite({box(0, 0, 4, 30), box(0, 0, 30, 4)}), kNoCorners);
     REQUIRE(axis.branches.size() == 2);
     double corner = 0.0;
@@ -119,7 +119,7 @@ TEST_CASE("the parts of all branches are the shape, with crossings, holes and a 
     }
 }
 
-TEST_CASE("squares that touch in corners, as of markers and pixel letters, have parts that are the shape") {
+TEST_CASE("squares that touch in corners, as in markers and pixel letters, have parts that are the shape") {
     std::mt19937 random(1);
     for (int trial = 0; trial < 60; ++trial) {
         Rings squares;

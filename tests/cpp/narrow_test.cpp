@@ -43,7 +43,7 @@ TEST_CASE("a mark narrows by the way since the dip, from pass to pass until pain
     Marks marks = simulate(plan, brush);
     narrow(marks, paint, {{0.0}, {}, {0.0, 100.0}});
     const double wide = 2.0 * brush.half_width(4.0);
-    // the widest section lies behind the TCP by the same way everywhere: at x the TCP has gone x + that
+    // the widest section is behind the TCP by the same way everywhere: at x the TCP has gone x + that
     const double behind = brush.lag(4.0) - brush.lever_to_widest(4.0);
     const auto is_wide = [&](double x, double y, double way) {
         CHECK(height_at(marks, brush, x, y) == doctest::Approx(wide * std::exp(-1.5e-3 * way)).epsilon(0.004));

@@ -25,7 +25,7 @@ Stroke line() { return stroke_of(polyline({V(20, 20), V(50, 28)}), {{0.0, 1.7}})
 Stroke taper() { return stroke_of(polyline({V(20, 20), V(60, 20)}), {{0.0, 2.6}, {1.0, 0.6}}); }
 Stroke corner() { return stroke_of(polyline({V(20, 50), V(50, 50), V(44, 20)}), {{0.0, 1.7}}); }
 Stroke hook() { return stroke_of(polyline({V(50, 60), V(50, 20), V(41, 28)}), {{0.0, 2.0}, {1.0, 1.0}}); }
-/// A blunt head that lies across: the pointed footprint must come in from the side.
+/// A blunt head that is across: the pointed footprint must come in from the side.
 Stroke head() {
     Stroke s = stroke_of(polyline({V(39, 38), V(30.5, 30)}), {{0.0, 3.1}, {1.0, 0.6}});
     Ring wanted(9, 2);
@@ -200,7 +200,7 @@ TEST_CASE("what is nearest is so of all edges, whichever are left out") {
     }
 }
 
-TEST_CASE("whatever the unknowns are, the brush does what the way says") {
+TEST_CASE("for any unknowns the brush does what the way says") {
     const Brush brush = shipped("round-6");
     std::mt19937 random(6);
     for (const Stroke& s : {line(), taper(), corner(), hook(), curve()}) {
@@ -293,14 +293,14 @@ TEST_CASE("dabs, hairlines, closed lines, pens and threads are painted or left a
 
 TEST_CASE("no paint and no tool leaves the sheet for it") {
     const Brush brush = shipped("round-6");
-    // the closed form begins 0.9 mm inside the wanted mark's end, which lies on the sheet's side
+    // the closed form begins 0.9 mm inside the target mark's end, which is on the sheet's side
     const Stroke s = stroke_of(polyline({V(1.7, 20), V(40, 20)}), {{0.0, 1.7}});
     RefineOptions on_sheet;
     on_sheet.sheet_mm = {60.0, 40.0};
     const RefinedPass kept = refine(s, brush, on_sheet);
     CHECK(painted_bounds(simulate(kept.plan.pass, brush), brush)[0] >=
           std::min(0.0, painted_bounds(simulate(compensate(s, brush).pass, brush), brush)[0]));
-    on_sheet.sheet_mm = {60.0, 20.0};  // half of it lies beyond: no farther than before
+    on_sheet.sheet_mm = {60.0, 20.0};  // half of it is beyond: no farther than before
     const RefinedPass half = refine(s, brush, on_sheet);
     CHECK(painted_bounds(simulate(half.plan.pass, brush), brush)[3] <=
           painted_bounds(simulate(compensate(s, brush).pass, brush), brush)[3] + 1e-9);

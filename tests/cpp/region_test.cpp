@@ -56,7 +56,7 @@ TEST_CASE("clockwise rings are holes in nothing: they are refused, not lost") {
     CHECK(unite({square, turned}).empty());  // a hole as large as the shape
 }
 
-TEST_CASE("a box held against a large shape with holes has what lies in it, wherever it lies") {
+TEST_CASE("a box held against a large shape with holes has what is in it, at any place") {
     // a comb of many corners, folded: its teeth reach past the box on all sides, and it has a hole larger than the box
     Rings shape;
     Ring comb(402, 2);

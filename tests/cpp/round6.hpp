@@ -10,7 +10,7 @@
 #include "brushsvg/brush.hpp"
 #include "brushsvg/stroke.hpp"
 
-/// The shipped brush by name.
+/// The shipped brush of that name.
 inline brushsvg::Brush shipped(const std::string& name) {
     std::ifstream file(std::string(BRUSHES_DIR) + "/" + name + ".json");
     std::stringstream text;

@@ -6,7 +6,7 @@
 
 using brushsvg::StrokeId;
 
-TEST_CASE("a name says what tells a stroke from others, and no more") {
+TEST_CASE("a name says what separates a stroke from others, and no more") {
     CHECK(StrokeId("a").name() == "a");
     CHECK(StrokeId("a", 2).name() == "a/2");
     CHECK(StrokeId("a", 2, 3).name() == "a/2#3");

@@ -29,7 +29,7 @@ MiddlePolyline line_of(const V& a, const V& b, double half) {
 
 }  // namespace
 
-TEST_CASE("width across a line, whatever its direction") {
+TEST_CASE("width across a line, in any direction") {
     struct Case {
         Rings rings;
         double width;
@@ -37,10 +37,10 @@ TEST_CASE("width across a line, whatever its direction") {
     const V middle(10.0, 5.0);
     for (const double turn : {0.0, 0.5, 1.5707963267948966, 3.7})
         for (const Case& each : {Case{{box(0, 3.5, 20, 7)}, 3.5},
-                                 {{box(0, 5.5, 20, 7)}, 1.5},                     // beside the line, but within reach
+                                 {{box(0, 5.5, 20, 7)}, 1.5},                     // next to the line, but within reach
                                  {{box(0, 9, 20, 12)}, 0.0},                      // too far off to be this line's mark
                                  {{box(0, 3, 20, 7), hole(1, 4, 19, 6)}, 1.0},    // the line runs in the hole
-                                 {{box(0, 3, 20, 7), box(0, 7.5, 20, 30)}, 4.0},  // another mark beside it
+                                 {{box(0, 3, 20, 7), box(0, 7.5, 20, 30)}, 4.0},  // another mark next to it
                                  {{}, 0.0}}) {
             Eigen::Matrix2d rotation;
             rotation << std::cos(turn), std::sin(turn), -std::sin(turn), std::cos(turn);

@@ -63,7 +63,7 @@ TEST_CASE("a limb without a stroke gets one, and the mark is nearer to the shape
     CHECK(overlap(mark_of(all_of(found[0]), brush), shape) > overlap(mark_of({stem}, brush), shape) + 0.15);
 }
 
-TEST_CASE("a stroke that sticks out of its shape is led back") {
+TEST_CASE("a stroke that sticks out of its shape is moved back") {
     const Brush brush = shipped("round-6");
     const Rings shape{box(10, 10, 17, 40)};
     const Stroke longer = straight({13.5, 36.5}, {13.5, 10.5}, 3.5);  // half a width too far

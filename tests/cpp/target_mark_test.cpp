@@ -13,7 +13,7 @@ constexpr double kPi = 3.14159265358979323846;
 
 }  // namespace
 
-TEST_CASE("the wanted mark of a straight stroke is a stadium, of a dot a disc, of a closed ring a ring") {
+TEST_CASE("the target mark of a straight stroke is a stadium, of a dot a disc, of a closed ring a ring") {
     Stroke s;
     s.id = "s";
     s.middle_mm = polyline({V(0, 0), V(30, 0)});
@@ -28,7 +28,7 @@ TEST_CASE("the wanted mark of a straight stroke is a stadium, of a dot a disc, o
     CHECK(area({ring[1]}) == doctest::Approx(-26.0 * 26.0).epsilon(1e-4));
 }
 
-TEST_CASE("an outline that was drawn is wanted as it is") {
+TEST_CASE("a drawn outline is its own target") {
     Stroke s;
     Ring triangle(3, 2);
     triangle << 0, 0, 4, 0, 0, 3;
@@ -36,7 +36,7 @@ TEST_CASE("an outline that was drawn is wanted as it is") {
     CHECK(wanted_outline(s)[0] == triangle);
 }
 
-TEST_CASE("pieces of the wanted mark cover it, as convex rings") {
+TEST_CASE("pieces of the target mark cover it, as convex rings") {
     Stroke s;
     s.id = "s";
     s.middle_mm = polyline({V(0, 0), V(30, 0), V(30, 20)});

@@ -76,7 +76,7 @@ TEST_CASE("fewer poses leave the mark within the tolerance, its ends and its dep
     CHECK(after < 0.55 * before);
 }
 
-TEST_CASE("a pass thinned out twice stays near itself, and arcs, landings and lifts stay what they are") {
+TEST_CASE("a pass simplified twice stays near itself, and arcs, landings and lifts stay what they are") {
     const Brush brush = shipped("round-6");
     Stroke stroke;
     stroke.id = "s";
@@ -136,7 +136,7 @@ TEST_CASE("tight bends and cusps keep no more poses than they need") {
     CHECK(compensate(stroke_of(cusps, {{0.0, 1.0}}), brush, {}).pass.poses_mm.rows() < 160);  // 189
 }
 
-TEST_CASE("nothing to thin out is no fault") {
+TEST_CASE("nothing to simplify is no fault") {
     const Brush brush = shipped("round-6"), pen = shipped("rigid");
     Pass pass;
     pass.stroke = "s";
@@ -153,7 +153,7 @@ TEST_CASE("nothing to thin out is no fault") {
         CHECK(std::abs(drawn.poses_mm.row(i).head<2>().norm() - 40.0) < 0.05);
 }
 
-TEST_CASE("edges of which nothing is known show nothing, whatever lay where they are") {
+TEST_CASE("edges of which nothing is known show nothing, for any paint there") {
     // where no move kept their direction, they were what the memory held: plans differed from run to run
     alignas(Edges) volatile unsigned char memory[sizeof(Edges)];
     for (volatile unsigned char& byte : memory) byte = 0x3f;

@@ -13,7 +13,7 @@
 using namespace brushsvg;
 using V = Eigen::Vector2d;
 
-TEST_CASE("a pass beside its stroke misses by what lies between them") {
+TEST_CASE("a pass next to its stroke misses by what is between them") {
     const Brush brush = shipped("round-6");
     Stroke stroke;
     stroke.id = "s";

@@ -79,12 +79,12 @@ def _known(build: Path) -> list[tuple[str, str]]:
     return [(name, "cpp") for name in cpp] + [(name, "python") for name in TARGETS]
 
 
-def _chosen(known: list[tuple[str, str]], wanted: list[str]) -> list[tuple[str, str]]:
+def _chosen(known: list[tuple[str, str]], target: list[str]) -> list[tuple[str, str]]:
     exact = {name for name, _ in known}
     return [
         (name, language)
         for name, language in known
-        if not wanted or any(name == one or (one not in exact and name.startswith(one)) for one in wanted)
+        if not target or any(name == one or (one not in exact and name.startswith(one)) for one in target)
     ]
 
 

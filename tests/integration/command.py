@@ -25,14 +25,14 @@ class Done:
     err: tuple[str, ...]
 
     @property
-    def told(self) -> list[tuple[str, Notice]]:
+    def reported(self) -> list[tuple[str, Notice]]:
         """Of `--messages json`, with the file that each is about."""
         return heard(self.err)
 
 
 def brushsvg(*words, cwd, status=None, env=None, before=(), timeout_s=60, **settings) -> Done:
     """Run the installed command; status: what must come back. stderr holds only lines of ours, always; of JSON where
-    that was asked for.
+    that was requested.
 
     before: words of a program that starts it. env: changes to the environment, None removes.
     """
@@ -82,6 +82,6 @@ def refused(folder, *words, status=1, **settings):
 
 
 def refusal(folder, *words, **settings) -> tuple[str, Notice]:
-    """The same for programs: the file and what is told of it."""
-    (told,) = heard([refused(folder, "--messages", "json", *words, **settings)])
-    return told
+    """The same for programs: the file and its notices."""
+    (reported,) = heard([refused(folder, "--messages", "json", *words, **settings)])
+    return reported

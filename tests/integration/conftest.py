@@ -52,7 +52,7 @@ def plugin(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def drawing(tmp_path_factory, inkscape):
-    """A function: name of a source -> its SVG file, made when first asked for."""
+    """A function: name of a source -> its SVG file, made when first requested."""
     folder = tmp_path_factory.mktemp("drawings")
     make = {
         "vincent": lambda _: ROOT / "examples" / "vincent.svg",

@@ -64,7 +64,7 @@ net change iocontrol.0.tool-change => iocontrol.0.tool-changed
 
 
 def ran(program: str, folder: Path, fastest_mm_s: float, acceleration_mm_s2: float) -> np.ndarray:
-    """(n, 3) where the axes are told to be [mm], from one millisecond to the next; AssertionError with LinuxCNC's words
+    """(n, 3) commanded places of the axes [mm], from one millisecond to the next; AssertionError with LinuxCNC's words
     if it does not run the program."""
     of = {"v": fastest_mm_s, "a": acceleration_mm_s2, "display": DISPLAY}
     parts = [AXIS.format(name=name, **of) for name in "XYZ"]
@@ -77,7 +77,7 @@ def ran(program: str, folder: Path, fastest_mm_s: float, acceleration_mm_s2: flo
     environment = {**os.environ, "HOME": str(folder)}
     environment.pop("DISPLAY", None)
     with tempfile.TemporaryDirectory() as socket:  # of a short name
-        if os.getuid() == 0:  # it gives the rights of root away, to whom it has to be told
+        if os.getuid() == 0:  # it gives the rights of root away, to the user in this variable
             Path(socket).chmod(0o777)
             environment |= {"RTAPI_UID": str(NOBODY), "RTAPI_FIFO_PATH": f"{socket}/fifo"}
         done = subprocess.run(

@@ -9,7 +9,7 @@ from pathlib import Path
 SVG = "{http://www.w3.org/2000/svg}"
 KANJI_SCALE = 1.5
 
-# As a person would leave it: layers, live shapes and transforms, in mm. Inkscape turns what it is told into
+# As a person would leave it: layers, live shapes and transforms, in mm. Inkscape turns its objects into
 # paths, moves things, and writes the rest in its own way.
 SKETCH = """<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="100mm" viewBox="0 0 150 100"
   xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"

@@ -1,4 +1,5 @@
-"""Small DXF drawings of one feature each. By name, in tables: a function that draws into (document, model space)."""
+"""Small DXF drawings of one feature each. Tables of names and functions: each that draws into (document, model
+space)."""
 
 from brushsvg.read.dxf.ezdxf_import import ezdxf
 
@@ -963,16 +964,16 @@ OWN = {
     "mtext heights": "letters of several heights in one word hang from one line with it, and stand on one in CAD",
     "mtext aligned middle": "as above",
     "defpoints": "this layer is never plotted",
-    "text in a sheared block": "it takes blocks apart into TEXT, which cannot be sheared",
+    "text in a sheared block": "it splits blocks into TEXT, which cannot be sheared",
     "mtext in a stretched block": "as above, stretched",
     "mtext in a sheared block": "as above",
-    "blocks in blocks": "it takes blocks apart into blocks, which cannot be sheared",
+    "blocks in blocks": "it splits blocks into blocks, which cannot be sheared",
     "attribute constant": "it does not show them: there is no ATTRIB in their place",
-    "layer missing": "it hides what lies on a layer that no table names",
+    "layer missing": "it hides what is on a layer that no table names",
     "insert on a layer that is off": "only a frozen layer hides what a block holds on other layers",
     "colour 255": "white ink on white paper: ours is black",
     "dashed circle": "it goes another way round",
-    "dashed polyline by segments": "it dashes on over the corners, whatever the polyline's flag says",
+    "dashed polyline by segments": "it dashes on over the corners, with any flag of the polyline",
     "dashed wide polyline": "it does not dash them",
 }
 

@@ -78,7 +78,7 @@ def _even_odd(rings):
 
 
 def painted(data: bytes) -> tuple[dict[str, shapely.Geometry], list[str]]:
-    """What we read, and every sentence told but those of what is read as it is meant."""
+    """What we read, and every notice except those of parts that are read as intended."""
     try:
         design = read_dxf(data, ReadOptions(sheet_mm=(1000, 1000), lenient=True))
     except Error as refusal:
@@ -87,12 +87,12 @@ def painted(data: bytes) -> tuple[dict[str, shapely.Geometry], list[str]]:
     for element in design.elements:
         found.setdefault(element.colour, []).append(_of_element(element))
     usual = ("dashed", "text-outlined")
-    told = [
+    reported = [
         f"{n.where}: {n.sentence}"
         for n in design.notices
         if n.code not in usual and (n.code, n.where) != ("hidden", "Defpoints")
     ]
-    return {colour: shapely.union_all(marks) for colour, marks in found.items()}, told
+    return {colour: shapely.union_all(marks) for colour, marks in found.items()}, reported
 
 
 def _of_element(element):

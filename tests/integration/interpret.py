@@ -11,7 +11,7 @@ import sys
 
 import gcode
 
-MM = 25.4  # the module speaks inches, whatever the program does
+MM = 25.4  # the module speaks inches, in any program
 HARMLESS = {"next_line", "set_plane", "set_xy_rotation", "set_g5x_offset", "set_g92_offset"}
 
 

@@ -73,7 +73,7 @@ def letter(font: bytes, text: str, size_mm: float = 60.0):
 
 
 def swept(strokes) -> list[np.ndarray]:
-    """What a disc of the found width paints along the found lines, their own outlines aside."""
+    """What a disc of the found width paints along the found lines, without their own outlines."""
     bare = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in strokes]
     return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, 0.02)])
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""In place of LinuxCNC's screen: the program beside the .ini is run once, and where the axes are told to be is written
+"""In place of LinuxCNC's screen: the program next to the .ini is run once, and the commanded places are written
 down, a row for each millisecond. Started by LinuxCNC, see controller.py."""
 
 import subprocess

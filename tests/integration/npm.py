@@ -30,8 +30,8 @@ def fetched(folder: Path, packages: dict[str, str]) -> Path:
 def _install(folder: Path, packages: dict[str, str]) -> None:
     options = ("--no-package-lock", "--no-save", "--no-audit", "--no-fund", "--ignore-scripts")
     # all of them: what is left out, npm removes
-    wanted = [f"{name}@{version}" for name, version in packages.items()]
-    words = ["npm", "install", "--prefix", str(folder), *options, *wanted]
+    target = [f"{name}@{version}" for name, version in packages.items()]
+    words = ["npm", "install", "--prefix", str(folder), *options, *target]
     try:
         done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=LIMIT_S)
     except subprocess.TimeoutExpired:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from command import COMMAND
 
-SHIPPED = "/usr/share/inkscape/extensions"  # Inkscape lets scripts import what lies there
+SHIPPED = "/usr/share/inkscape/extensions"  # Inkscape lets scripts import what is there
 SOURCE = Path(__file__).parents[2] / "plugins" / "inkscape"
 
 
@@ -73,6 +73,6 @@ class Plugin:
 
 
 def sentence(done: subprocess.CompletedProcess) -> str:
-    told = done.stderr.decode()
-    assert done.returncode == 1 and done.stdout == b"" and told and "Traceback" not in told
-    return told
+    reported = done.stderr.decode()
+    assert done.returncode == 1 and done.stdout == b"" and reported and "Traceback" not in reported
+    return reported

@@ -12,7 +12,7 @@ from drawings import SVG
 
 PACKAGE = "@resvg/resvg-js"
 PACKAGES = {PACKAGE: "2.6.2"}
-# A tree leaves the root's viewBox to whoever paints it, so it is read again as a nested svg: then resvg has placed
+# A tree leaves the root's viewBox to anyone who paints it, so it is read again as a nested svg: then resvg has placed
 # everything itself. Without fonts it drops text, which we do not read either.
 SCRIPT = """
 const { Resvg } = require(process.argv[1]);

@@ -50,7 +50,7 @@ def _shown(drawings: list[str], folder) -> list[np.ndarray]:
 
 
 def painted(text: str, cap: str = "round"):
-    """Darkness (h, w) of what we take a drawing for, and every sentence told about it."""
+    """Darkness (h, w) of what we take a drawing for, and every sentence reported about it."""
     try:
         design = read_svg(text.encode(), ReadOptions(lenient=True))
     except Error as refusal:
@@ -59,8 +59,8 @@ def painted(text: str, cap: str = "round"):
     mark = shapely.union_all([_mark(element, cap) for element in design.elements]).intersection(
         shapely.box(*sheet)
     )
-    told = [f"{n.where}: {n.sentence}" for n in design.notices if n.code != "dashed"]
-    return _pixels(mark, design.sheet_mm[1]), told
+    reported = [f"{n.where}: {n.sentence}" for n in design.notices if n.code != "dashed"]
+    return _pixels(mark, design.sheet_mm[1]), reported
 
 
 def _mark(element, cap: str):

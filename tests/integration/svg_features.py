@@ -1,6 +1,6 @@
-"""Small drawings, each of one thing that SVG can do, as text. test_resvg.py says what is asked of them.
+"""Small drawings, each of one thing that SVG can do, as text. test_resvg.py says what is checked of them.
 
-DRAWINGS: by name. ROUND: names of those with arcs, which every reader splits into curves of its own.
+DRAWINGS: a table of names. ROUND: names of those with arcs, which every reader splits into curves of its own.
 TOLD_OTHERWISE: the same drawing in words that resvg 2.6 knows, for what it does not read.
 """
 
@@ -176,7 +176,7 @@ NESTED = {
     "nested svg in millimetres": in_millimetres(
         '<svg x="10" y="10" width="50mm" height="40" viewBox="0 0 5 4"><path d="M0 0L5 4" stroke-width=".1"/></svg>'
     ),
-    "nested svg that shows what lies outside": page(
+    "nested svg that shows what is outside": page(
         '<svg x="90" y="90" width="40" height="40" overflow="visible"><path d="M-60-50l15 20"/></svg>'
     ),
     "nested svg with a transform": page(
@@ -223,7 +223,7 @@ USES = {
     "use in millimetres and by style": page(
         '<path id="a" d="M2 3l15 20"/><use href="#a" x="5mm" y="1cm" style="stroke:red" class="b"/>'
     ),
-    "use of what lies in a group": page(
+    "use of what is in a group": page(
         '<g transform="translate(9 9)" stroke="red"><path id="a" transform="rotate(9)" d="M2 3l15 20"/></g>'
         '<use href="#a" x="50"/>'
     ),
@@ -271,7 +271,7 @@ ROUND = {
     "circles and ellipses",
     "skewed circles",
 }
-TOLD_OTHERWISE = {
+REPORTED_OTHERWISE = {
     "transform-origin": page(
         '<path transform="rotate(30 50 60)" d="M0 9h20l5 9"/>'
         '<path transform="translate(-30-10)scale(2)" d="M0 9h20l5 9"/><g transform="rotate(30 50 60)">'

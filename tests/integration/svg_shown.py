@@ -1,4 +1,4 @@
-"""Small drawings of one thing each that changes what is seen, as text. test_shown.py says what is asked of them.
+"""Small drawings of one thing each that changes what is seen, as text. test_shown.py says what is checked of them.
 
 Page of 200 x 200 px, black lines of 8 px with round ends and corners, no fill.
 """
@@ -384,7 +384,7 @@ def references() -> dict[str, str]:
             f'<defs><path id="ä b" {LINE}/></defs><use href="#%C3%A4%20b"/><path d="M5 5h9"/>'
         ),
         "href to a file": page('<use href="x.svg#a"/><path d="M5 5h9"/>'),
-        "href to this file by name": page(f'{a}<use href="./#a"/><path d="M5 5h9"/>'),
+        "href to this file and a name": page(f'{a}<use href="./#a"/><path d="M5 5h9"/>'),
         "two of one id": page(f'<defs><path id="a" {LINE}/><path id="a" {SHAPE}/></defs><use href="#a"/>'),
         "use of a symbol hidden": page(
             f'<symbol id="s" display="none"><path {LINE}/></symbol><use href="#s"/><path {SHAPE}/>'

@@ -211,7 +211,7 @@ PAINTS = {
 }
 DRAWINGS = CHOICES | STYLES | PAINTS
 ROUND = {"geometry in a rule"}
-TOLD_OTHERWISE = {
+REPORTED_OTHERWISE = {
     "attributes and first-child": page(
         '<path stroke-width="4" stroke="red" d="M0 5h9"/><path stroke="lime" d="M0 6h9"/>'
         '<path stroke="blue" d="M0 7h9"/><path stroke="#123" d="M0 8h9"/><path stroke="#456" d="M0 9h9"/>'

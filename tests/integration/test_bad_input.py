@@ -6,7 +6,7 @@ import resource
 
 import pytest
 from command import LINE, OPEN, SOUND, brush_file, brushsvg, path, refusal, refused
-from diagnostics import agrees, is_told
+from diagnostics import agrees, is_reported
 from sampling import sample
 
 ROOM = 3 << 30  # bytes of address space: a bomb that goes off must not take the machine with it
@@ -71,9 +71,9 @@ def test_a_bad_drawing_is_refused_by_every_command(desk, case):
     if content is not None:
         (desk / "x.svg").write_bytes(content if isinstance(content, bytes) else content.encode())
     words = ["--picture", "out.png", "--report", "out.txt"]
-    file, told = refusal(desk, "convert", "x.svg", "-o", "out.ngc", *words, **bounded())
-    assert file == "x.svg" and agrees(told, said), told
-    line = ": ".join(part for part in (file, told.where, told.told) if part)
+    file, reported = refusal(desk, "convert", "x.svg", "-o", "out.ngc", *words, **bounded())
+    assert file == "x.svg" and agrees(reported, said), reported
+    line = ": ".join(part for part in (file, reported.where, reported.text) if part)
     assert refused(desk, "convert", "x.svg", "-o", "old.ngc", "--force", **bounded()) == line
     if case not in ("NaN", "1e30", "beyond all numbers", "off the sheet"):  # there one may look at the rest
         assert refused(desk, "preview", "x.svg", "-o", "out.svg", **bounded()) == line
@@ -85,23 +85,25 @@ def test_damaged_geometry_is_drawn_up_to_there_on_request(desk, case):
     (desk / "x.svg").write_text(DRAWINGS[case][0])
     (desk / "whole.svg").write_text(path("M20 40 L60 40"))
     brushsvg("convert", "whole.svg", "-o", "whole.json", cwd=desk, status=0)
-    json_told = ("--messages", "json")
+    json_reported = ("--messages", "json")
     words = ("convert", "x.svg", "-o", "x.json", "--lenient", "--quiet")
-    ((file, told),) = brushsvg(*json_told, *words, cwd=desk, status=0, **bounded()).told
-    assert file == "x.svg" and agrees(told, DRAWINGS[case][1])
+    ((file, reported),) = brushsvg(*json_reported, *words, cwd=desk, status=0, **bounded()).reported
+    assert file == "x.svg" and agrees(reported, DRAWINGS[case][1])
     plans = [json.loads((desk / name).read_text()) for name in ("x.json", "whole.json")]
     assert plans[0]["passes"] == plans[1]["passes"]
     brushsvg("convert", "x.svg", "-o", "x.ngc", "--lenient", "--quiet", cwd=desk, status=0)
     assert re.search(r"^\(warnings: 1, 1 ", (desk / "x.ngc").read_text(), re.MULTILINE)
     for words in (("preview", "x.svg", "-o", "x.png", "--quiet"), ("preview", "x.svg")):
-        assert brushsvg(*json_told, *words, cwd=desk, status=0, **bounded()).told == [(file, told)]
+        assert brushsvg(*json_reported, *words, cwd=desk, status=0, **bounded()).reported == [
+            (file, reported)
+        ]
 
 
-def test_what_lies_off_the_sheet_may_be_looked_at(desk):
+def test_what_is_off_the_sheet_may_be_looked_at(desk):
     (desk / "x.svg").write_text(DRAWINGS["off the sheet"][0])
     for words in (("preview", "x.svg", "-o", "x.svg.png", "--quiet"), ("preview", "x.svg", "--json")):
         done = brushsvg("--messages", "json", *words, cwd=desk, status=0)
-        assert len(done.err) == 1 and is_told(done.told, "mark-off-sheet left", "p")
+        assert len(done.err) == 1 and is_reported(done.reported, "mark-off-sheet left", "p")
 
 
 def test_a_directory_is_no_drawing(desk):
@@ -112,8 +114,8 @@ def test_a_directory_is_no_drawing(desk):
         ("convert", "x.json", "-o", "out.ngc"),
         ("brush", "check", "x.json"),
     ):
-        file, told = refusal(desk, *words)
-        assert file.startswith("x.") and file in words and agrees(told, "file-unreadable"), words
+        file, reported = refusal(desk, *words)
+        assert file.startswith("x.") and file in words and agrees(reported, "file-unreadable"), words
 
 
 def changed_brush(desk, **changes):
@@ -137,25 +139,25 @@ BRUSHES = {
 def test_a_bad_brush_is_refused_by_every_command(desk, case):
     changes, where, said = BRUSHES[case]
     changed_brush(desk, **changes)
-    file, told = refusal(desk, "brush", "check", "mine.json")
-    assert file == "mine.json" and agrees(told, said, where), told
+    file, reported = refusal(desk, "brush", "check", "mine.json")
+    assert file == "mine.json" and agrees(reported, said, where), reported
     flags = ["--brush", "mine.json"]
-    assert refusal(desk, "convert", "sound.svg", "-o", "out.ngc", *flags) == (file, told)
-    assert refusal(desk, "preview", "sound.svg", "-o", "out.png", *flags) == (file, told)
-    assert refusal(desk, "preview", "sound.svg", *flags) == (file, told)
-    assert refusal(desk, "brush", "show", "mine.json") == (file, told)
+    assert refusal(desk, "convert", "sound.svg", "-o", "out.ngc", *flags) == (file, reported)
+    assert refusal(desk, "preview", "sound.svg", "-o", "out.png", *flags) == (file, reported)
+    assert refusal(desk, "preview", "sound.svg", *flags) == (file, reported)
+    assert refusal(desk, "brush", "show", "mine.json") == (file, reported)
 
 
 def test_an_unknown_brush_is_refused_with_those_there_are(desk):
-    file, told = refusal(desk, "convert", "sound.svg", "-o", "out.ngc", "--brush", "round-7")
-    assert file == "round-7" and agrees(told, "brush-unknown round-7 rigid round-6")
-    assert refusal(desk, "brush", "show", "round-7") == (file, told)
-    file, told = refusal(desk, "convert", "sound.svg", "-o", "out.ngc", "--brush", "gone.json")
-    assert (file, told.code) == ("gone.json", "file-unreadable")
+    file, reported = refusal(desk, "convert", "sound.svg", "-o", "out.ngc", "--brush", "round-7")
+    assert file == "round-7" and agrees(reported, "brush-unknown round-7 rigid round-6")
+    assert refusal(desk, "brush", "show", "round-7") == (file, reported)
+    file, reported = refusal(desk, "convert", "sound.svg", "-o", "out.ngc", "--brush", "gone.json")
+    assert (file, reported.code) == ("gone.json", "file-unreadable")
 
 
 FAR = "geometry-out-of-range 1 line '[-1e6, 1e6] mm'"
-PLANS = {  # a change, and what is told of which key or stroke
+PLANS = {  # a change, and which key or stroke is reported how
     "unknown version": (lambda plan: plan.update(version=3), "version", "version-unknown 3 2"),
     "another format": (
         lambda plan: plan.update(format="brushsvg/marks"),
@@ -204,13 +206,13 @@ def test_a_bad_plan_is_refused(desk, case):
     change, where, said = PLANS[case]
     change(plan)
     (desk / "x.json").write_text(json.dumps(plan))
-    file, told = refusal(desk, "convert", "x.json", "-o", "out.ngc", **bounded())
-    assert file == "x.json" and agrees(told, said, where), told
+    file, reported = refusal(desk, "convert", "x.json", "-o", "out.ngc", **bounded())
+    assert file == "x.json" and agrees(reported, said, where), reported
 
 
 @pytest.mark.parametrize("content", ["", "moo", '{"format": "brushsvg/plan", "ver', "[" * 100_000, "\xff\0"])
 def test_what_is_no_plan_at_all_is_refused(desk, content):
     (desk / "x.json").write_text(content, encoding="latin-1")
-    told = refused(desk, "convert", "x.json", "-o", "out.ngc", **bounded())
-    assert told.startswith("x.json: ")
+    reported = refused(desk, "convert", "x.json", "-o", "out.ngc", **bounded())
+    assert reported.startswith("x.json: ")
     refused(desk, "brush", "check", "x.json", **bounded())

@@ -101,10 +101,10 @@ def overlap(image: np.ndarray, marks, work) -> float:
     width, height = work.plan.sheet_mm
     px_per_mm = seen.shape[1] / width
     assert seen.shape[0] == pytest.approx(height * px_per_mm, abs=1.5)
-    wanted = package.coverage(marks, work.brush, (0.0, 0.0, width, height), px_per_mm)
-    h, w = (min(a, b) for a, b in zip(seen.shape, wanted.shape, strict=True))
-    seen, wanted = seen[:h, :w], wanted[:h, :w]
-    return float(np.minimum(seen, wanted).sum() / np.maximum(seen, wanted).sum())
+    target = package.coverage(marks, work.brush, (0.0, 0.0, width, height), px_per_mm)
+    h, w = (min(a, b) for a, b in zip(seen.shape, target.shape, strict=True))
+    seen, target = seen[:h, :w], target[:h, :w]
+    return float(np.minimum(seen, target).sum() / np.maximum(seen, target).sum())
 
 
 def until(marks, number: int, pose: float):
@@ -178,7 +178,7 @@ def test_between_rows_far_apart_the_footprint_is_swept(tmp_path, browser, notch)
     assert 0.2 < painted(half).sum() / painted(image).sum() < 0.8
 
 
-def test_wanted_mark_and_path_are_shown_and_fit_a_telephone(page, browser):
+def test_target_mark_and_path_are_shown_and_fit_a_telephone(page, browser):
     with_all, said = browser.shown(page, "t=31.3", (500, 800))
     bare, _ = browser.shown(page, "t=31.3&bare", (500, 800))
     assert said == []
@@ -191,7 +191,7 @@ def test_wanted_mark_and_path_are_shown_and_fit_a_telephone(page, browser):
         assert counts[0] > counts[1] + least
 
 
-def test_words_tell_the_stroke_and_the_time(page, browser):
+def test_words_show_the_stroke_and_the_time(page, browser):
     text = browser.text(page, "t=31.3")
     assert '<h1 id="title">Vincent</h1>' in text
     assert re.search(r'<b id="what">stroke \d+ of 13: ', text)
@@ -201,15 +201,15 @@ def test_words_tell_the_stroke_and_the_time(page, browser):
 # a browser without a window whose time is virtual shows one frame only
 FRAMES = "<script>requestAnimationFrame = (f) => setTimeout(() => f(performance.now()), 16);</script>"
 KEYS = """<script>
-const told = [];
+const reported = [];
 const text = (id) => document.getElementById(id).textContent;
 const press = (key) => {
   const event = new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true });
   document.getElementById("slider").dispatchEvent(event);
-  told.push(text("clock").split(" ")[0] + " " + text("what"));
+  reported.push(text("clock").split(" ")[0] + " " + text("what"));
 };
 ["ArrowRight", "ArrowRight", "ArrowLeft", "ArrowDown", "ArrowUp", "End", "Home", " "].forEach(press);
-setTimeout(() => { press(" "); document.body.append("told " + JSON.stringify(told)); }, 1500);
+setTimeout(() => { press(" "); document.body.append("reported " + JSON.stringify(reported)); }, 1500);
 </script></body>"""
 
 
@@ -217,10 +217,10 @@ def test_keys_move_and_play(page, browser, played):
     _, _, rows = played
     keyed = page.with_name("keyed.html")
     keyed.write_text(page.read_text().replace("<head>", f"<head>{FRAMES}").replace("</body>", KEYS))
-    told = json.loads(re.search(r"told (\[.*\])", browser.text(keyed, ""))[1])
+    reported = json.loads(re.search(r"reported (\[.*\])", browser.text(keyed, ""))[1])
     first, second, last = (f"stroke {number} of 13" for number in (1, 2, 13))
     second_s = rows.time_s[rows.chapters[1].first_row]
-    clocks, words = zip(*(each.split(" ", 1) for each in told), strict=True)
+    clocks, words = zip(*(each.split(" ", 1) for each in reported), strict=True)
     assert clocks[:3] == ("0:01.0", "0:02.0", "0:01.0")
     assert float(clocks[3][2:]) == pytest.approx(second_s, abs=0.1)
     assert clocks[5] == f"1:{np.floor((rows.time_s[-1] - 60) * 10) / 10:04.1f}"

@@ -82,8 +82,8 @@ def test_masks_of_white_and_black_shapes_are_what_chromium_shows(tmp_path):
         )
     seen = shown(list(drawings.values()), tmp_path)
     for (name, text), dark in zip(drawings.items(), seen, strict=True):
-        ours, told = painted(text)
-        assert not told and difference(dark, ours) <= 0.01, (name, told)
+        ours, reported = painted(text)
+        assert not reported and difference(dark, ours) <= 0.01, (name, reported)
 
 
 @pytest.fixture(scope="module")
@@ -100,8 +100,8 @@ def test_clipped_drawings_are_what_chromium_shows(pairs):
     missing."""
     alike = {}
     for each, (text, seen) in pairs.items():
-        ours, told = painted(text, cap="flat")
-        assert not [one for one in told if "clip" in one and "left out" not in one], (each, told)
+        ours, reported = painted(text, cap="flat")
+        assert not [one for one in reported if "clip" in one and "left out" not in one], (each, reported)
         alike[each] = 1.0 - difference(seen, ours)
     assert len(alike) == 40
     worst = sorted(alike.items(), key=lambda item: item[1])

@@ -17,10 +17,10 @@ import cv2
 import ezdxf
 from command import COMMAND
 from sampling import sample
-from shown_code import FOLLOWED, HOUSE, PAGES, Block, blocks, name_of, why_not_run
+from shown_code import FOLLOWED, PAGES, REPOSITORY, Block, blocks, name_of, why_not_run
 
 for place in ("tools", "tests/laws"):
-    sys.path.insert(0, str(HOUSE / place))
+    sys.path.insert(0, str(REPOSITORY / place))
 import test_flatbed  # noqa: E402
 import test_paint_found  # noqa: E402
 from painted_chart import photo_of  # noqa: E402
@@ -31,7 +31,7 @@ from brushsvg.cli.arguments.parser import parse  # noqa: E402
 # tests/python/test_doc_code.py; FOLLOWED: test_pages_followed.py
 ELSEWHERE = ("README.md",)
 LONGEST_S = 900
-ROBOT = (HOUSE / "examples" / "robot.svg").read_text()
+ROBOT = (REPOSITORY / "examples" / "robot.svg").read_text()
 FOREIGN = "G21\nG90\nG0 Z5\nG0 X30 Y40\nG1 Z-3 F600\nG1 X80 Y60 F1200\nG1 X120 Y30\nG0 Z5\nG0 X0 Y0\nM2\n"
 TABLE = [
     "kind,depth_mm,value_mm",
@@ -117,19 +117,19 @@ def _written(words: list[str]) -> set[str | None]:
     """The files that a command writes."""
     args = parse(words)
     names = ["output", "picture", "marks_picture", "page", "report", "corrected_cell"]
-    names += {"chart": ["chart"], "brush": ["name"], "cell": ["name"]}.get(words[0], [])
+    names += ["chart"] if words[0] == "chart" else []
     return {getattr(args, name, None) for name in names}
 
 
 def _photographing(photo: str, words: list[str]) -> str:
-    """The command that takes a photograph of the job which a command reads from it, painted as that is told."""
+    """The command that takes a photograph of the job which a command reads from it, painted as that job is."""
     flags = dict(pair for pair in pairwise(words) if pair[0].startswith("--"))
     job = flags.get("--plan") or next(word for word in words[2:] if word.endswith((".svg", ".json")))
     painted = {"--brush": flags.get("--brush") or flags.get("--prior")}
     painted |= {name: flags.get(name) for name in ("--cell", "--corrections")}
-    told = [word for name, value in painted.items() if value for word in (name, value)]
+    reported = [word for name, value in painted.items() if value for word in (name, value)]
     seed = re.sub(r"\D", "", photo) or "9"
-    return shlex.join(["brushsvg", "simulate-photo", job, "-o", photo, "--seed", seed, *told])
+    return shlex.join(["brushsvg", "simulate-photo", job, "-o", photo, "--seed", seed, *reported])
 
 
 def _letters(desk: Desk, *names: str) -> None:
@@ -159,8 +159,8 @@ def _scan(desk: Desk) -> None:
 
 def _one_load(desk: Desk) -> None:
     _, sheet = test_paint_found.sheet(6, 0.8, True)
-    told = {"format": "brushsvg/measurements", "version": 1, **sheet}
-    (desk.folder / "one-load.json").write_text(json.dumps(told))
+    reported = {"format": "brushsvg/measurements", "version": 1, **sheet}
+    (desk.folder / "one-load.json").write_text(json.dumps(reported))
 
 
 # Name of a file -> its text, the command that makes it, or a function of the desk.
@@ -211,4 +211,9 @@ def test_a_block_of_commands_can_be_typed_as_it_stands(block, tmp_path):
             desk.make_all(line)
             desk.type(line)
             for name in re.findall(r"(?:-o|--picture|--marks-picture|--page|--chart|>) +(\S+\.\w+)", line):
-                assert (desk.folder / name).stat().st_size > 0, line
+                path = Path(name)
+                pattern = (
+                    f"{path.stem}-*{path.suffix}" if f"-o {name}" in line and "--per-colour" in line else name
+                )
+                written = [*desk.folder.glob(pattern)]
+                assert written and all(file.stat().st_size > 0 for file in written), line

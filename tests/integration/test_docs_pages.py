@@ -10,21 +10,31 @@ import pytest
 import brushsvg
 from brushsvg.cli.arguments.parser import command_parser
 
-HOUSE = Path(__file__).parents[2]
+REPOSITORY = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("docs")
-    command = [sys.executable, "-m", "sphinx", "-q", "-W", "-b", "html", str(HOUSE / "docs"), str(folder)]
+    command = [
+        sys.executable,
+        "-m",
+        "sphinx",
+        "-q",
+        "-W",
+        "-b",
+        "html",
+        str(REPOSITORY / "docs"),
+        str(folder),
+    ]
     subprocess.run(command, check=True, capture_output=True, text=True)
     return folder
 
 
 def test_every_page_is_built_and_can_be_searched(site):
-    for page in (HOUSE / "docs").rglob("*.md"):
+    for page in (REPOSITORY / "docs").rglob("*.md"):
         if "_build" not in page.parts:
-            assert (site / page.relative_to(HOUSE / "docs").with_suffix(".html")).is_file()
+            assert (site / page.relative_to(REPOSITORY / "docs").with_suffix(".html")).is_file()
     index = (site / "searchindex.js").read_text(encoding="utf-8")
     words = ("bristl", "footprint", "backlash", "compensate", "urscript")
     assert [word for word in words if f'"{word}"' not in index] == []

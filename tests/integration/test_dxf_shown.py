@@ -1,8 +1,8 @@
 """Nothing of a DXF is misread without a word: 450 small drawings of one feature each, as ezdxf's own drawing add-on
 shows them, held against what we would paint.
 
-Where they differ by more than 3 % of the area, something must have been told of it, and so of what the add-on does
-not show either. Where the add-on itself is simpler than the DXF reference, dxf_features.OWN says in what.
+Where they differ by more than 3 % of the area, something must have been reported about it, and so of what the add-on
+does not show either. Where the add-on itself is simpler than the DXF reference, dxf_features.OWN says in what.
 """
 
 import platform
@@ -45,22 +45,22 @@ def written(draw) -> bytes:
 
 
 def off(draw):
-    """How much differs, and what is told."""
+    """How much differs, and what is reported."""
     data = written(draw)
-    ours, told = dxf_shown.painted(data)
-    return dxf_shown.difference(dxf_shown.shown(data), ours), told
+    ours, reported = dxf_shown.painted(data)
+    return dxf_shown.difference(dxf_shown.shown(data), ours), reported
 
 
 @sample("table", dxf_features.TABLES, keep=5)
-def test_what_is_not_painted_as_shown_is_told(table):
+def test_what_is_not_painted_as_shown_is_reported(table):
     silent, stale = {}, []
     for name, draw in dxf_features.TABLES[table].items():
-        share, told = off(draw)
+        share, reported = off(draw)
         if name in dxf_features.OWN:
             stale += [name] if share <= LEAST else []
-        elif share > LEAST and not told:
+        elif share > LEAST and not reported:
             silent[name] = round(share, 3)
-        elif not told and name in dxf_features.NAMED:
+        elif not reported and name in dxf_features.NAMED:
             silent[name] = "not named"
     assert (silent, stale) == ({}, [])
 

@@ -37,7 +37,7 @@ def test_too_little_memory_is_a_sentence(desk, room_mb, is_enough):
     assert done.status == (0 if is_enough else 1), done
     assert set(listing(desk)) == {"line.svg", *(words[2::2] if is_enough else ())}
     if not is_enough:
-        assert done.told[-1][1].code == "memory-exhausted"
+        assert done.reported[-1][1].code == "memory-exhausted"
 
 
 @pytest.mark.parametrize(
@@ -164,10 +164,10 @@ def test_killed_at_any_instant_all_files_are_old_or_all_are_new(desk):
 
 def test_two_processes_with_one_output_leave_one_of_both(desk):
     (desk / "other.svg").write_text(SOUND.replace("M20 40", "M25 42"))
-    wanted = []
+    target = []
     for name in ("line", "other"):
         brushsvg("convert", f"{name}.svg", "-o", f"{name}.ngc", cwd=desk, status=0)
-        wanted.append((desk / f"{name}.ngc").read_bytes())
+        target.append((desk / f"{name}.ngc").read_bytes())
     for _ in range(4):
         (desk / "out.ngc").unlink(missing_ok=True)
         both = [
@@ -179,7 +179,7 @@ def test_two_processes_with_one_output_leave_one_of_both(desk):
             for name in ("line", "other")
         ]
         assert [process.wait() for process in both] == [0, 0]
-        assert (desk / "out.ngc").read_bytes() in wanted
+        assert (desk / "out.ngc").read_bytes() in target
     assert {each.suffix for each in desk.iterdir()} == {".svg", ".ngc"}, "nothing else is left"
 
 

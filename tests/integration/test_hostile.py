@@ -4,7 +4,7 @@ import math
 import resource
 
 from command import brushsvg
-from diagnostics import is_told
+from diagnostics import is_reported
 from sampling import sample
 
 ROOM = 3 << 30  # bytes of address space
@@ -26,7 +26,7 @@ def cycle():
     return f'{LINE}<g id="a"><use id="u" href="#b"/></g><defs><g id="b"><use href="#a"/></g></defs>'
 
 
-# name: (what the drawing holds, exit status of import, what is told)
+# name: (what the drawing holds, exit status of import, what is reported)
 CASES = {
     "100 MB of path data": (
         lambda: f'<path d="M30 30{"l1 1-1-1" * 12_500_000}"/>',
@@ -188,7 +188,7 @@ def test_read_or_refused_within_bounds(name, tmp_path):
     (tmp_path / "hostile.svg").write_text(f"{HEAD}{body()}</svg>")
     words = ("--messages", "json", "preview", "hostile.svg", "-o", "seen.svg", "--show", "strokes")
     done = brushsvg(*words, cwd=tmp_path, status=status, preexec_fn=bounded, timeout_s=300)
-    assert not said or is_told(done.told, said), done.err
+    assert not said or is_reported(done.reported, said), done.err
     assert (tmp_path / "seen.svg").exists() == (status == 0)
 
 
@@ -199,4 +199,4 @@ def test_rough_discs_are_filled_within_bounds(edges, tmp_path):
     (tmp_path / "rough.svg").write_text(f"{HEAD}{body}</svg>")
     words = ("--messages", "json", "convert", "rough.svg", "-o", "rough.json", "--wide", "passes")
     done = brushsvg(*words, cwd=tmp_path, preexec_fn=bounded, timeout_s=300)
-    assert is_told(done.told, "width-out-of-reach passes"), done.err
+    assert is_reported(done.reported, "width-out-of-reach passes"), done.err

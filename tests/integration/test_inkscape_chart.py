@@ -1,4 +1,4 @@
-"""Calibration sheet in the real Inkscape: its page beside the document's, its marks where brushsvg chart puts them."""
+"""Calibration sheet in the real Inkscape: its page next to the document's, its marks where brushsvg chart puts them."""
 
 import xml.etree.ElementTree as ET
 
@@ -22,7 +22,7 @@ def markers_mm(path, select=None):
 
 
 @pytest.mark.parametrize("view_box", ["0 0 120 60", "0 0 480 240"])
-def test_its_page_lies_beside_the_documents(plugin, tmp_path, view_box):
+def test_its_page_is_next_to_the_documents(plugin, tmp_path, view_box):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(SOUND.replace('viewBox="0 0 120 60"', f'viewBox="{view_box}"'))
     once = plugin.effect("chart", drawing, tmp_path / "once.svg")
@@ -62,14 +62,16 @@ def test_the_program_and_what_it_is_read_by_are_those_of_the_command_line(plugin
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "reported"),
     [
         ("sheet.txt", ".ngc .script .jks .mod .py .src .lua .ls .drl .csv .ebb .json"),
         ("nowhere/sheet.ngc", "cannot be written"),
     ],
 )
-def test_what_cannot_be_saved_is_told(plugin, tmp_path, name, told):
+def test_what_cannot_be_saved_is_reported(plugin, tmp_path, name, reported):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(SOUND)
     done = plugin.script("chart", drawing, f"--output={tmp_path / name}")
-    assert done.returncode == 1 and told in done.stderr.decode() and "Traceback" not in done.stderr.decode()
+    assert (
+        done.returncode == 1 and reported in done.stderr.decode() and "Traceback" not in done.stderr.decode()
+    )

@@ -88,7 +88,7 @@ def assert_alike(shown, predicted):
 
 
 @pytest.mark.parametrize("head", HEADS)
-def test_marks_lie_where_predict_puts_them_and_originals_stay(plugin, tmp_path, head):
+def test_marks_are_where_predict_puts_them_and_originals_stay(plugin, tmp_path, head):
     source = tmp_path / "drawing.svg"
     source.write_text(drawing(head))
     shown = plugin.effect("preview", source, tmp_path / "shown-in.svg")
@@ -154,7 +154,7 @@ def test_our_own_layer_is_not_what_is_selected(plugin, tmp_path):
     assert again.stdout == shown.read_bytes(), again.stderr
 
 
-def test_of_refined_marks_those_are_red_that_lie_elsewhere(plugin, tmp_path):
+def test_of_refined_marks_those_are_red_that_are_elsewhere(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(
         drawing("mm").replace("110,93 22,95", "110,91 22,92")
@@ -212,11 +212,11 @@ def test_a_page_whose_ratio_says_nothing(plugin, tmp_path):
     assert done.returncode == 0, done.stderr
 
 
-def test_too_many_to_be_told_are_refused_in_a_sentence(plugin, tmp_path):
+def test_too_many_to_be_reported_are_refused_in_a_sentence(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(SOUND)
-    told = sentence(plugin.script("preview", source, *[f"--id=path{k}" for k in range(8000)]))
-    assert gives(told, "8000")
+    reported = sentence(plugin.script("preview", source, *[f"--id=path{k}" for k in range(8000)]))
+    assert gives(reported, "8000")
     done = plugin.script("preview", source, "--id=line", *[f"--id=path{k}" for k in range(3000)])
     assert re.search(rb"round-6, \w+: 1 ", done.stdout), done.stderr
 

@@ -20,9 +20,9 @@ def drawing(tmp_path):
 
 
 @pytest.mark.parametrize("script", SCRIPTS)
-def test_a_missing_program_is_told_with_the_way_to_install_it(tmp_path, drawing, script):
-    told = sentence(Plugin(tmp_path, command=None).script(script, drawing))
-    assert told.splitlines()[0].endswith(":  pipx install brushsvg")
+def test_a_missing_program_is_reported_with_the_way_to_install_it(tmp_path, drawing, script):
+    reported = sentence(Plugin(tmp_path, command=None).script(script, drawing))
+    assert reported.splitlines()[0].endswith(":  pipx install brushsvg")
 
 
 def programs(tmp_path, text):
@@ -33,7 +33,7 @@ def programs(tmp_path, text):
 
 
 @pytest.mark.parametrize(
-    ("does", "told"),
+    ("does", "reported"),
     [
         ('test "$1" = --version && echo brushsvg 0.0.9 && exit; exit 2', "brushsvg 0.0.9"),
         ("echo ModuleNotFoundError: gone >&2; exit 1", ": ModuleNotFoundError: gone\n"),
@@ -44,15 +44,15 @@ def programs(tmp_path, text):
     ],
 )
 @pytest.mark.parametrize("script", SCRIPTS)
-def test_another_program_is_told(plugin, tmp_path, drawing, script, does, told):
+def test_another_program_is_reported(plugin, tmp_path, drawing, script, does, reported):
     other = programs(tmp_path, does)
     said = sentence(plugin.script(script, drawing, f"--executable={other}"))
-    assert told in said if told else said.startswith(f"{other} ") and said.count("\n") == 1
+    assert reported in said if reported else said.startswith(f"{other} ") and said.count("\n") == 1
 
 
-def test_one_that_is_chosen_but_is_not_there_is_told(plugin, tmp_path, drawing):
-    told = sentence(plugin.script("save", drawing, f"--executable={tmp_path / 'nothing'}"))
-    assert told.startswith(f"{tmp_path / 'nothing'} ")
+def test_one_that_is_chosen_but_is_not_there_is_reported(plugin, tmp_path, drawing):
+    reported = sentence(plugin.script("save", drawing, f"--executable={tmp_path / 'nothing'}"))
+    assert reported.startswith(f"{tmp_path / 'nothing'} ")
 
 
 def test_the_place_noted_when_it_was_installed_is_used(tmp_path, drawing):
@@ -98,16 +98,16 @@ def test_it_is_found_where_pipx_and_uv_keep_it(tmp_path, drawing, variable, fold
 def test_a_sandbox_is_named_with_a_way_round_it(tmp_path, drawing, variable, name):
     alone = Plugin(tmp_path, command=None)
     alone.env[variable] = "org.inkscape.Inkscape"
-    told = sentence(alone.script("save", drawing))
-    assert name in told and "brushsvg convert" in told and "pipx" not in told
+    reported = sentence(alone.script("save", drawing))
+    assert name in reported and "brushsvg convert" in reported and "pipx" not in reported
 
 
 def test_the_settings_show_which_program_is_used(plugin, tmp_path, drawing):
-    told = plugin.script("settings", drawing).stderr.decode()
-    assert str(plugin.folder / "programs" / "brushsvg") in told and "brushsvg 0." in told
+    reported = plugin.script("settings", drawing).stderr.decode()
+    assert str(plugin.folder / "programs" / "brushsvg") in reported and "brushsvg 0." in reported
     (tmp_path / "none").mkdir()
-    told = Plugin(tmp_path / "none", command=None).script("settings", drawing).stderr.decode()
-    assert "pipx install brushsvg" in told
+    reported = Plugin(tmp_path / "none", command=None).script("settings", drawing).stderr.decode()
+    assert "pipx install brushsvg" in reported
 
 
 @pytest.mark.parametrize("typed", [[COMMAND], [sys.executable, "-m", "brushsvg"]])
@@ -141,7 +141,7 @@ def test_a_place_that_was_noted_and_is_gone_does_no_harm(plugin, drawing):
 
 
 @pytest.mark.parametrize("script", ["save", "preview", "strokes"])
-def test_a_disk_that_takes_nothing_is_told(plugin, drawing, script):
+def test_a_disk_that_takes_nothing_is_reported(plugin, drawing, script):
     # 4 bytes: the probe with which Python looks for a folder of temporary files still fits
-    told = sentence(plugin.script(script, drawing, before=("/usr/bin/prlimit", "--fsize=4")))
-    assert told.endswith(": File too large.\n"), "the system's words, and no mistake of ours"
+    reported = sentence(plugin.script(script, drawing, before=("/usr/bin/prlimit", "--fsize=4")))
+    assert reported.endswith(": File too large.\n"), "the system's words, and no mistake of ours"

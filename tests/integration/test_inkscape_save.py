@@ -110,7 +110,7 @@ def test_the_document_chooses_unless_the_dialog_does(plugin, tmp_path):
         assert b"brush: " + brush in program
 
 
-def test_warnings_are_shown_beside_the_program(plugin, tmp_path):
+def test_warnings_are_shown_next_to_the_program(plugin, tmp_path):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(SOUND.replace("</svg>", '<text id="word" x="10" y="10">a</text></svg>'))
     done = plugin.script("save", drawing)
@@ -123,8 +123,8 @@ def test_a_refusal_is_shown_and_nothing_written(plugin, tmp_path):
     drawing.write_text(path("M20 30 H90", width="30"))
     plugin.save(drawing, saved)
     assert not saved.exists()
-    told = sentence(plugin.script("save", drawing))
-    assert told.splitlines()[1].startswith("p: ") and gives(told, "30.000 mm")
+    reported = sentence(plugin.script("save", drawing))
+    assert reported.splitlines()[1].startswith("p: ") and gives(reported, "30.000 mm")
 
 
 CHECK = """
@@ -146,8 +146,8 @@ def test_a_job_of_several_programs_is_not_saved_as_its_first(plugin, tmp_path):
     wide = brushsvg("cell", "new", "-o", "wide.toml", "--like", "ur5e", cwd=tmp_path, status=0)
     assert wide is not None
     words = ["--format=script", f"--cell_file={tmp_path / 'wide.toml'}"]
-    told = sentence(plugin.script("save", tmp_path / "drawing.svg", *words))
-    assert gives(told, "several", "OUT.script")
+    reported = sentence(plugin.script("save", tmp_path / "drawing.svg", *words))
+    assert gives(reported, "several", "OUT.script")
 
 
 def test_the_descriptions_are_valid_by_inkscapes_own_schema(tmp_path):

@@ -1,4 +1,4 @@
-"""Brush settings in the real Inkscape: what is touched is stored, the rest stays, and what is stored is told."""
+"""Brush settings in the real Inkscape: what is touched is stored, the rest stays, and what is stored is reported."""
 
 from xml.etree import ElementTree
 
@@ -28,7 +28,7 @@ def stored(text) -> dict:
     return {key.removeprefix(prefix): value for key, value in attributes.items() if key.startswith(prefix)}
 
 
-def test_what_nobody_touches_stays_and_is_told(plugin, drawing):
+def test_what_nobody_touches_stays_and_is_reported(plugin, drawing):
     done = plugin.script("settings", drawing)
     assert stored(done.stdout) == STORED
     _, *settings, used = done.stderr.decode().splitlines()
@@ -38,7 +38,7 @@ def test_what_nobody_touches_stays_and_is_told(plugin, drawing):
 
 
 @pytest.mark.parametrize(
-    ("word", "changed", "told"),
+    ("word", "changed", "reported"),
     [
         ("--brush=rigid", {"brush": "rigid"}, ("rigid", "mine")),
         ("--brush=default", {"brush": None}, ("round-6", "mine")),
@@ -57,18 +57,18 @@ def test_what_nobody_touches_stays_and_is_told(plugin, drawing):
         ("--tolerance=default", {"tolerance": None}, ("0.05mm", "0.1mm")),
     ],
 )
-def test_one_field_changes_one_setting(plugin, drawing, word, changed, told):
+def test_one_field_changes_one_setting(plugin, drawing, word, changed, reported):
     done = plugin.script("settings", drawing, word)
     expected = {name: value for name, value in {**STORED, **changed}.items() if value is not None}
     assert stored(done.stdout) == expected
     _, *settings, used = done.stderr.decode().splitlines()
     assert used.endswith(f"(brushsvg {__version__})")
     (line,) = [line for line in settings if line.endswith(")")]
-    assert gives(line, *told)
+    assert gives(line, *reported)
 
 
 @pytest.mark.parametrize(
-    ("typed", "told"),
+    ("typed", "reported"),
     [
         ("fine", ("'fine'", "default")),
         ("0", ("0 mm", "[1e-05, 10] mm")),
@@ -76,8 +76,8 @@ def test_one_field_changes_one_setting(plugin, drawing, word, changed, told):
         ("nan", ("nan mm", "[1e-05, 10] mm")),
     ],
 )
-def test_a_tolerance_that_is_none_is_told(plugin, drawing, typed, told):
-    assert gives(sentence(plugin.script("settings", drawing, f"--tolerance={typed}")), *told)
+def test_a_tolerance_that_is_none_is_reported(plugin, drawing, typed, reported):
+    assert gives(sentence(plugin.script("settings", drawing, f"--tolerance={typed}")), *reported)
 
 
 def test_the_dialog_names_what_brushsvg_chooses_itself(monkeypatch):

@@ -85,7 +85,7 @@ def test_inkscape_draws_and_we_paint_the_strokes_as_the_letters_were(plugin, ink
 
 def assert_painted_alike(letters: Path, strokes: Path) -> None:
     """The same strokes with the same marks; poses may differ within the tolerance of the mark. A PowerStroke has no
-    slanted cap: where a letter ends in a slanted cut, as an S does, its stroke ends round, 0.13 mm beside it."""
+    slanted cap: where a letter ends in a slanted cut, as an S does, its stroke ends round, 0.13 mm from it."""
     plans, marks = [], []
     for drawn in (letters, strokes):
         for command, found in (("convert", plans), ("preview", marks)):
@@ -119,7 +119,7 @@ def attributes(text: str) -> dict:
     }
 
 
-def test_letters_stay_hidden_beside_their_strokes_and_all_else_as_it_was(plugin, tmp_path):
+def test_letters_stay_hidden_next_to_their_strokes_and_all_else_as_it_was(plugin, tmp_path):
     source = tmp_path / "letters.svg"
     source.write_text(drawing("mm"))
     done = converted(plugin, source)
@@ -162,19 +162,19 @@ def test_widths_can_be_edited(plugin, inkscape, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("body", "told"),
+    ("body", "reported"),
     [
         (SOUND, "no filled shape"),
         (f"{OPEN}</svg>", "nothing to paint"),
         (f'{OPEN}<text id="word" x="20" y="20"> </text></svg>', "nothing to paint"),
     ],
 )
-def test_what_cannot_be_converted_is_told(plugin, tmp_path, body, told):
+def test_what_cannot_be_converted_is_reported(plugin, tmp_path, body, reported):
     source = tmp_path / "drawing.svg"
     source.write_text(body)
     done = plugin.script("strokes", source)
     assert done.returncode == 1 and not done.stdout
-    assert told in done.stderr.decode() and "Traceback" not in done.stderr.decode()
+    assert reported in done.stderr.decode() and "Traceback" not in done.stderr.decode()
 
 
 def test_copies_and_drawings_within_the_drawing(plugin, inkscape, tmp_path):
@@ -190,7 +190,7 @@ def test_copies_and_drawings_within_the_drawing(plugin, inkscape, tmp_path):
     assert overlap(ink(inkscape, source), ink(inkscape, out)) > 0.9
 
 
-def test_converted_again_beside_text_lines_stay_lines(plugin, tmp_path):
+def test_converted_again_next_to_text_lines_stay_lines(plugin, tmp_path):
     """Inkscape draws text as paths for us, and with it every PowerStroke as an outline."""
     source = tmp_path / "letters.svg"
     source.write_text(drawing("mm"))

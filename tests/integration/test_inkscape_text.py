@@ -30,7 +30,7 @@ def text_of(root):
 
 @pytest.mark.parametrize("select", ["", "word", "layer"])
 def test_text_becomes_the_strokes_of_its_letters(plugin, inkscape, drawing, select):
-    """Headless: nothing is left to be told, which a dialog would wait for."""
+    """Headless: no notice is left, which a dialog would wait for."""
     done = plugin.effect("strokes", drawing, drawing.with_name("strokes.svg"), select)
     root = ET.parse(done).getroot()
     parents = {child: parent for parent in root.iter() for child in parent}

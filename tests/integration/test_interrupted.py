@@ -1,4 +1,4 @@
-"""Ctrl-C: at once, exit status 130, nothing written. And progress, which only a terminal is told."""
+"""Ctrl-C: at once, exit status 130, nothing written. And progress, which only a terminal shows."""
 
 import os
 import pty
@@ -26,7 +26,7 @@ def long_drawing():
 
 
 def started_at_terminal(folder, *words):
-    """(process, the terminal's end) with stderr at a terminal, so that progress is told."""
+    """(process, the terminal's end) with stderr at a terminal, so that progress is shown."""
     terminal, its_end = pty.openpty()
     process = subprocess.Popen(
         [COMMAND, *words],
@@ -73,10 +73,10 @@ def test_ctrl_c_stops_at_once_and_leaves_nothing(desk, long_drawing, stage):
         seen = read_until(terminal, stage)
         assert stage in seen, seen[-300:]
         process.send_signal(signal.SIGINT)
-        asked = time.monotonic()
+        requested = time.monotonic()
         rest = read_until(terminal, b"\0 never", timeout_s=10)
         assert process.wait(timeout=10) == 130, rest
-        assert time.monotonic() - asked < 2
+        assert time.monotonic() - requested < 2
         assert rest.decode().splitlines()[-1].endswith("brushsvg: interrupted")
         assert b"Traceback" not in rest
     finally:
@@ -86,7 +86,7 @@ def test_ctrl_c_stops_at_once_and_leaves_nothing(desk, long_drawing, stage):
     assert listing(desk) == before
 
 
-def test_progress_is_told_to_a_terminal_only(desk):
+def test_progress_is_reported_to_a_terminal_only(desk):
     process, terminal = started_at_terminal(desk, "convert", "sound.svg", "-o", "out.ngc")
     assert b"compensated" in read_until(terminal, b"\0 never")
     assert process.wait(timeout=30) == 0

@@ -77,23 +77,23 @@ def errors_of(npm, tmp_path_factory):
     lexer, parser = (next(folder.glob(f"*{kind}.py")).stem for kind in ("Lexer", "Parser"))
     lexer, parser = (getattr(importlib.import_module(name), name) for name in (lexer, parser))
 
-    class Told(ErrorListener):
+    class Reported(ErrorListener):
         def __init__(self):
-            self.told = []
+            self.reported = []
 
         def syntaxError(self, recognizer, offending, line, column, message, error):  # noqa: N802
-            self.told.append(f"line {line}: {message}")
+            self.reported.append(f"line {line}: {message}")
 
     def errors(text: str) -> list[str]:
-        told, reads = Told(), lexer(antlr4.InputStream(text))
+        reported, reads = Reported(), lexer(antlr4.InputStream(text))
         parses = parser(antlr4.CommonTokenStream(reads))
         parses.buildParseTrees = False
         for each in (reads, parses):
             each.removeErrorListeners()
-            each.addErrorListener(told)
+            each.addErrorListener(reported)
         first = parser.ruleNames[0]
         getattr(parses, first if hasattr(parses, first) else f"{first}_")()  # where Python has that word
-        return told.told
+        return reported.reported
 
     yield errors
     sys.path.remove(str(folder))

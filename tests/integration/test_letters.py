@@ -128,12 +128,12 @@ def test_capitals_of_a_sans_have_the_strokes_one_writes(lettering):
 
 
 def painted(design, brush, method="closed", lag_mm=None, wide="clamp") -> float:
-    """Overlap of what the brush would paint with what is wanted, on the whole drawing."""
-    made, wanted, _ = within_reach(strokes(design)[0], brush, wide)
+    """Overlap of the predicted paint with the target, on the whole drawing."""
+    made, target, _ = within_reach(strokes(design)[0], brush, wide)
     plan = _core.compensate(made, brush, design.sheet_mm, method, 0.05, lag_mm).plan
     marks = _core.simulate(plan, brush)
     _core.trace_outlines(marks, brush)
-    shape = _core.unite([ring for stroke in wanted for ring in _core.wanted_outline(stroke, 0.02)])
+    shape = _core.unite([ring for stroke in target for ring in _core.wanted_outline(stroke, 0.02)])
     return _core.overlap(marks.outline_mm, shape)
 
 

@@ -95,24 +95,24 @@ def check_points(before, sections, passes):
     assert first[0] == "rapid"
     assert safe >= 5
     assert len(sections) == len(passes)
-    for section, wanted in zip(sections, passes, strict=True):
-        assert section.stroke == wanted["stroke"]
-        poses = wanted["poses_mm"]
+    for section, target in zip(sections, passes, strict=True):
+        assert section.stroke == target["stroke"]
+        poses = target["poses_mm"]
         (x0, y0, _), (x1, y1, _) = poses[0], poses[-1]
         clearance = section.events[1][3]
         assert 0 < clearance < safe
-        arcs = {last: (first, *circle) for first, last, *circle in wanted.get("arcs", ())}
+        arcs = {last: (first, *circle) for first, last, *circle in target.get("arcs", ())}
         on_an_arc = {k for last, (first, *_) in arcs.items() for k in range(first + 1, last)}
         painted = [
             ("arc" if k in arcs else "feed", pose) for k, pose in enumerate(poses) if k not in on_an_arc
         ]
-        meant = [
+        expected = [
             *(("rapid", (x0, y0, safe)), ("feed", (x0, y0, clearance))),
             *painted,
             *(("feed", (x1, y1, clearance)), ("rapid", (x1, y1, safe))),
         ]
-        assert [event[0] for event in section.events] == [kind for kind, _ in meant]
-        for event, (_, point) in zip(section.events, meant, strict=True):
+        assert [event[0] for event in section.events] == [kind for kind, _ in expected]
+        for event, (_, point) in zip(section.events, expected, strict=True):
             assert event[1:4] == pytest.approx(point, abs=NEAR_MM, rel=0)
         circles = [event for event in section.events if event[0] == "arc"]
         for event, (last, (first, x, y, turn)) in zip(circles, sorted(arcs.items()), strict=True):
@@ -146,11 +146,11 @@ def check_rapids(before, sections):
 
 def check_feeds(sections, passes, limit_mm_s):
     """No feed faster than the brush endures; each stroke painted at its own speed."""
-    for section, wanted in zip(sections, passes, strict=True):
+    for section, target in zip(sections, passes, strict=True):
         feeds = [event[4] for event in section.events if event[0] != "rapid"]
         assert min(feeds) > 0
         assert max(feeds) <= 60 * limit_mm_s + 1e-6
-        speed = 60 * wanted["speed_mm_s"]
+        speed = 60 * target["speed_mm_s"]
         at = [event[1:4] for event in section.events if event[0] != "rapid"]
         steps = list(zip(feeds[2:-1], at[1:], at[2:], strict=False))
         moving = [feed for feed, here, there in steps if here[:2] != there[:2]]
@@ -270,7 +270,7 @@ def test_the_marks_are_the_plans(way, made, tmp_path):
 
 
 def planned_pass(each):
-    """In the same small steps: edges of thin marks are asked for more exactly than the simulator's tolerance."""
+    """In the same small steps: edges of thin marks are requested more exactly than the simulator's tolerance."""
     poses, rows = each["poses_mm"], []
     circle = {k: arc for arc in each.get("arcs", ()) for k in range(arc[0] + 1, arc[1] + 1)}
     for k, pose in enumerate(poses):

@@ -27,7 +27,7 @@ def made(name, dialect, tmp_path):
 
 
 @sample("dialect", CELLS, keep=3)
-def test_check_tells_dangerous_from_harmless(dialect, tmp_path, capsys):
+def test_check_separates_dangerous_from_harmless(dialect, tmp_path, capsys):
     figures = Figures()
     for name in WORKS:
         measure(
@@ -56,7 +56,7 @@ def test_check_tells_dangerous_from_harmless(dialect, tmp_path, capsys):
 
 
 @sample("dialect", [name for name in CELLS if name not in LIKE_GRBL], keep=3)
-def test_the_judge_tells_them_apart(dialect, tmp_path):
+def test_the_judge_separates_them(dialect, tmp_path):
     """What every kind of damage may be, so that the table above says something."""
     whole = made("two lines", dialect, tmp_path).whole
     assert judged(whole.text, whole) == ("harmless", "")

@@ -49,17 +49,17 @@ def test_a_page_of_a_thousand_strokes_is_run_through_all_its_places(dialect):
     run = job.interpret(text)
     assert not run.refused and not run.acts and len(json.loads(_core.write_plan(plan))["passes"]) == STROKES
     ends = places.moved(job.back, np.array([leg.end for leg in run.legs]))
-    wanted = np.vstack([a_pass.poses_mm for a_pass in plan.passes])
+    target = np.vstack([a_pass.poses_mm for a_pass in plan.passes])
     if cell.servo or cell.pen:  # heights go in steps, places in units
         within_mm = unit_mm(cell) / 2 * 2**0.5 + 1e-6
-        off = cKDTree(ends[:, :2]).query(wanted[:, :2])[0]
+        off = cKDTree(ends[:, :2]).query(target[:, :2])[0]
         deepest = ends[:, 2].min()
-        assert abs(deepest - wanted[:, 2].min()) <= (
+        assert abs(deepest - target[:, 2].min()) <= (
             value_mm(cell) / 2 + cell.servo.step_mm if cell.servo else 1e-9
         )
     else:
         within_mm = EXACT_MM
-        off = cKDTree(ends).query(wanted)[0]
+        off = cKDTree(ends).query(target)[0]
     assert off.max() <= within_mm
     assert len([words for words, _ in run.titles if words.startswith("stroke ")]) == STROKES
     touching = [leg for leg, end in zip(run.legs, ends, strict=True) if end[2] < -0.05 and leg.kind != "jump"]

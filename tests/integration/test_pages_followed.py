@@ -5,6 +5,7 @@ name of the file. It is added to the file if it exists, else written. Python run
 """
 
 import re
+from pathlib import Path
 
 import pytest
 from sampling import sample
@@ -42,7 +43,10 @@ def follow(desk: Desk, line: str) -> None:
     desk.make_all(line, replace=False)
     desk.type(line)
     for name in WRITES.findall(line):
-        assert (desk.folder / name).stat().st_size > 0, line
+        path = Path(name)
+        pattern = f"{path.stem}-*{path.suffix}" if f"-o {name}" in line and "--per-colour" in line else name
+        written = [*desk.folder.glob(pattern)]
+        assert written and all(file.stat().st_size > 0 for file in written), line
 
 
 @pytest.mark.parametrize("page", FOLLOWED, ids=name_of)

@@ -1,4 +1,4 @@
-"""Spiro, BSpline, mirrors and PowerStroke beside them: what Inkscape draws and saves, and what we paint of its file.
+"""Spiro, BSpline, mirrors and PowerStroke next to them: what Inkscape draws and saves, and what we paint of its file.
 
 Each drawing is changed and saved by Inkscape, so that it computes the effects itself; then its picture of the saved
 file is held against what we read of the same file.
@@ -51,7 +51,7 @@ def source(kinds, stroked):
 
 @pytest.fixture(scope="module")
 def saved(inkscape, tmp_path_factory):
-    """By name: the file that Inkscape wrote after it had moved the line, and its darkness (h, w) there."""
+    """A table of names: the file that Inkscape wrote after it had moved the line, and its darkness (h, w) there."""
     folder, found = tmp_path_factory.mktemp("effects"), {}
     for number, (name, (kinds, stroked)) in enumerate(DRAWN.items()):
         given, out = folder / f"{number}.svg", folder / f"{number}-saved.svg"
@@ -111,9 +111,9 @@ def test_as_inkscape_shows_its_own_file(name, saved):
     assert ours.shape == theirs.shape
     assert theirs.sum() / PX_PER_MM**2 > 80, "Inkscape has not drawn the effect"
     assert np.abs(theirs - ours).sum() / np.maximum(theirs, ours).sum() < LEAST
-    beside = len(DRAWN[name][0]) > 1 and "power" in DRAWN[name][0]
+    near_by = len(DRAWN[name][0]) > 1 and "power" in DRAWN[name][0]
     assert any(notice.code == "path-effect-unread" for notice in design.notices) == (
-        beside or "mirror" in DRAWN[name][0]
+        near_by or "mirror" in DRAWN[name][0]
     )
 
 

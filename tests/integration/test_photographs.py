@@ -1,5 +1,5 @@
 """Twelve rendered photographs of charts that random brushes painted: what they give, and which are refused.
-benchmarks/photographs.py has any number of them, and tells how often intervals hold."""
+benchmarks/photographs.py has any number of them, and shows how often intervals hold."""
 
 import sys
 from pathlib import Path

@@ -38,8 +38,8 @@ def polygon_of_stroke(stroke):
     line = flatten(stroke, 0.002)
     along = np.gradient(line[:, :2], axis=0)
     along /= np.hypot(*along.T)[:, None]
-    aside = np.column_stack([-along[:, 1], along[:, 0]]) * line[:, 3:]
-    return shapely.Polygon(np.vstack([line[:, :2] + aside, (line[:, :2] - aside)[::-1]])).buffer(0)
+    displaced = np.column_stack([-along[:, 1], along[:, 0]]) * line[:, 3:]
+    return shapely.Polygon(np.vstack([line[:, :2] + displaced, (line[:, :2] - displaced)[::-1]])).buffer(0)
 
 
 @pytest.mark.parametrize("kind", ["Linear", "CubicBezierJohan", "CentripetalCatmullRom"])

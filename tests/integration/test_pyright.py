@@ -1,7 +1,7 @@
 """pyright, strict, over all Python that README, docs, examples, notebooks and the article's figures show, and over
 every public name with its members: no error. Mistakes that a user could make in them are found.
 
-What is not asked, and why: matplotlib's functions take keywords without types, so members of which a part is unknown
+What is not checked, and why: matplotlib's functions take keywords without types, so members of which a part is unknown
 pass in files that draw (those of brushsvg are held whole by every_name.py); svgpathtools has no types at all; a cell of
 a notebook may end in an expression, which is shown.
 """
@@ -16,17 +16,17 @@ from operator import attrgetter
 from pathlib import Path
 
 import pytest
-from shown_code import HOUSE, NOTEBOOKS, PAGES, blocks, cells, name_of
+from shown_code import NOTEBOOKS, PAGES, REPOSITORY, blocks, cells, name_of
 
 import brushsvg
 
 PACKAGES = {"pyright": "1.1.414"}
-PACKAGE = HOUSE / "python" / "brushsvg"
-FIGURES = HOUSE / "examples" / "article" / "figures"
+PACKAGE = REPOSITORY / "python" / "brushsvg"
+FIGURES = REPOSITORY / "examples" / "article" / "figures"
 OTHERS = "machines/ebb.md", "machines/ur.md"  # programs that import no brushsvg
 # what a page speaks of without saying where it is from
 GIVEN = {}
-NOT_ASKED = {
+NOT_REQUESTED = {
     "matplotlib": "reportUnknownMemberType=false",
     "svgpathtools": "reportMissingTypeStubs=false",
     "notebook": "reportUnusedExpression=false",
@@ -67,7 +67,7 @@ PLANTED = (
 def shown() -> dict[str, str]:
     """Name of a file -> code as it is shown."""
     found = {f"figure {path.stem}": path.read_text() for path in FIGURES.glob("*.py")}
-    found |= {f"example {path.stem}": path.read_text() for path in (HOUSE / "examples").glob("*.py")}
+    found |= {f"example {path.stem}": path.read_text() for path in (REPOSITORY / "examples").glob("*.py")}
     found |= {f"notebook {path.stem}": "\n".join(cells(path)) for path in NOTEBOOKS}
     for page in PAGES:
         code = [block.code for block in blocks(page) if block.kind == "python"]
@@ -77,12 +77,14 @@ def shown() -> dict[str, str]:
     return found
 
 
-def asked(name: str, code: str) -> str:
-    """The code below a line that says what is not asked of it."""
+def requested(name: str, code: str) -> str:
+    """The code below a line that says what is not checked of it."""
     spared = [
-        rule for reason, rule in NOT_ASKED.items() if f"import {reason}" in code or reason == name.split()[0]
+        rule
+        for reason, rule in NOT_REQUESTED.items()
+        if f"import {reason}" in code or reason == name.split()[0]
     ]
-    spared += [NOT_ASKED["matplotlib"]] if "from matplotlib" in code else []
+    spared += [NOT_REQUESTED["matplotlib"]] if "from matplotlib" in code else []
     return f"# pyright: {', '.join(spared)}\n{code}" if spared else code
 
 
@@ -103,9 +105,9 @@ def every_name() -> str:
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory, npm):
+def reported(tmp_path_factory, npm):
     """What pyright says of each file: name -> [(rule, line and sentence)]. The package is found where an installed one
-    is, beside others, so that it counts as one that ships its types."""
+    is, next to others, so that it counts as one that ships its types."""
     pyright = npm("pyright", PACKAGES) / "pyright" / "index.js"
     folder = tmp_path_factory.mktemp("pyright")
     shutil.copytree(
@@ -113,7 +115,7 @@ def told(tmp_path_factory, npm):
     )
     programs = folder / "programs"
     programs.mkdir()
-    files = {name: asked(name, code) for name, code in shown().items()} | {"every_name": every_name()}
+    files = {name: requested(name, code) for name, code in shown().items()} | {"every_name": every_name()}
     files |= {f"planted {number}": PROGRAM.replace(*pair) for number, (*pair, _) in enumerate(PLANTED)}
     for name, code in (files | {"sound": PROGRAM}).items():
         (programs / f"{name}.py").write_text(code, encoding="utf-8")
@@ -133,18 +135,18 @@ def told(tmp_path_factory, npm):
     return found
 
 
-def test_all_that_is_shown_is_asked():
+def test_all_that_is_shown_is_checked():
     kinds = [name.split()[0] for name in shown()]
     assert {"README", "python"} <= {name.split()[-1] for name in shown()}
     assert [kinds.count(kind) for kind in ("figure", "example", "notebook")] == [18, 13, 3]
 
 
-def test_what_is_shown_has_no_error_of_types(told):
-    assert {name: said for name, said in told.items() if said and not name.startswith("planted")} == {}
+def test_what_is_shown_has_no_error_of_types(reported):
+    assert {name: said for name, said in reported.items() if said and not name.startswith("planted")} == {}
 
 
 @pytest.mark.parametrize("number", range(len(PLANTED)), ids=lambda number: PLANTED[number][1])
-def test_planted_errors_are_found(told, number):
+def test_planted_errors_are_found(reported, number):
     right, wrong, rule = PLANTED[number]
     assert PROGRAM.count(right) == 1
-    assert rule in [said for said, _ in told[f"planted {number}"]], (wrong, told[f"planted {number}"])
+    assert rule in [said for said, _ in reported[f"planted {number}"]], (wrong, reported[f"planted {number}"])

@@ -11,7 +11,7 @@ FIRST = 100
 
 
 @sample("dialect", CELLS, keep=5)
-def test_whatever_is_written_keeps_the_limits_and_is_allowed(dialect, tmp_path):
+def test_all_that_is_written_keeps_the_limits_and_is_allowed(dialect, tmp_path):
     jobs = 20 if dialect in FEWER else JOBS
     with quick_check() as check:
         all_ = [

@@ -1,4 +1,4 @@
-"""Real drawings end to end: what is planned, predicted and reported; Inkscape renders what was wanted."""
+"""Real drawings end to end: what is planned, predicted and reported; Inkscape renders the target."""
 
 import json
 import re
@@ -98,18 +98,18 @@ def test_the_report_counts_what_the_plan_holds(source, converted, reported):
 
 
 def test_only_what_is_left_out_is_warned_of(source, drawing, converted, tmp_path):
-    """Numbers beside the strokes of a character, depths the brush was not measured at: nothing else."""
+    """Numbers next to the strokes of a character, depths the brush was not measured at: nothing else."""
     words = ("--messages", "json", "convert", drawing(source), "-o", "again.ngc", "--quiet")
-    told = brushsvg(*words, cwd=tmp_path, status=0).told
+    notices = brushsvg(*words, cwd=tmp_path, status=0).reported
     count = 0
     if source == "kanji-eternity":
-        (_, texts), (_, depths) = told  # five of one kind, five of another, folded
+        (_, texts), (_, depths) = notices  # five of one kind, five of another, folded
         assert agrees(texts, "text-unread 'text 1' 4")
         strokes = ids_in_order(drawing(source))
         assert agrees(depths, f"depth-not-measured '{strokes[0]}' {len(strokes) - 1} 0.94")
         count = len(strokes) + 5
     else:
-        assert told == []
+        assert notices == []
     program = (converted(source) / "program.ngc").read_text(encoding="ascii")
     assert f"(warnings: {count})" in program
 
@@ -142,15 +142,15 @@ def test_the_prediction_is_written_in_three_ways(source, drawing, converted, tmp
 
 @pytest.mark.parametrize("compensation", ["closed", "none"])
 def test_overlap_as_inkscape_sees_the_drawing(source, compensation, drawing, reported, inkscape, tmp_path):
-    """Inkscape renders what was wanted, OpenCV fills marks.json: nothing of ours comes between."""
+    """Inkscape renders the target, OpenCV fills marks.json: nothing of ours comes between."""
     width_mm, height_mm = SHEETS_MM[source]
     px_per_mm = PIXELS_ACROSS / width_mm
-    wanted = cv2.imread(str(inkscape.paint(drawing(source), px_per_mm)), cv2.IMREAD_UNCHANGED)[:, :, 3] / 255
+    target = cv2.imread(str(inkscape.paint(drawing(source), px_per_mm)), cv2.IMREAD_UNCHANGED)[:, :, 3] / 255
     flags = ["--compensation", compensation]
     brushsvg("preview", drawing(source), "-o", "marks.json", *flags, cwd=tmp_path, status=0)
     rings = json.loads((tmp_path / "marks.json").read_text(encoding="utf-8"))["outline_mm"]
-    painted = filled(rings, height_mm, px_per_mm, wanted.shape)
-    overlap = np.minimum(painted, wanted).sum() / np.maximum(painted, wanted).sum()
+    painted = filled(rings, height_mm, px_per_mm, target.shape)
+    overlap = np.minimum(painted, target).sum() / np.maximum(painted, target).sum()
     total = reported(source, *flags)["total"]
     assert overlap == pytest.approx(total["overlap"], abs=0.004)
 

@@ -21,7 +21,7 @@ from brushsvg.read import ReadOptions
 from brushsvg.read.svg.element import Painted as OurPainted
 
 DRAWINGS = svg_features.DRAWINGS | svg_styles.DRAWINGS
-TOLD_OTHERWISE = svg_features.TOLD_OTHERWISE | svg_styles.TOLD_OTHERWISE
+REPORTED_OTHERWISE = svg_features.REPORTED_OTHERWISE | svg_styles.REPORTED_OTHERWISE
 ROUND = svg_features.ROUND | svg_styles.ROUND
 PX_PER_MM = 96 / 25.4
 NEAR_PX = 0.01
@@ -35,7 +35,7 @@ def resvg(npm):
 
 @pytest.fixture(scope="session")
 def pages(resvg):
-    return resvg.pages(DRAWINGS | TOLD_OTHERWISE)
+    return resvg.pages(DRAWINGS | REPORTED_OTHERWISE)
 
 
 def read(text: str, folder) -> Page:
@@ -71,26 +71,26 @@ def differences(ours: Page, theirs: Page, *, is_round: bool, near_px: float = NE
         found.append(f"the page has {ours.size_px}, not {theirs.size_px}")
     if len(ours.painted) != len(theirs.painted):
         return [*found, f"{len(ours.painted)} painted, not {len(theirs.painted)}"]
-    for number, (mine, wanted) in enumerate(zip(ours.painted, theirs.painted, strict=True), start=1):
-        if abs(mine.stroke_width_px - wanted.stroke_width_px) > 1e-5 * max(1, wanted.stroke_width_px):
-            found.append(f"{number}: width {mine.stroke_width_px}, not {wanted.stroke_width_px}")
-        if mine.fill_rule != wanted.fill_rule:
-            found.append(f"{number}: fill {mine.fill_rule!r}, not {wanted.fill_rule!r}")
-        if wanted.colour and mine.colour != wanted.colour:
-            found.append(f"{number}: colour {mine.colour}, not {wanted.colour}")
-        if len(mine.lines) != len(wanted.lines):
-            found.append(f"{number}: {len(mine.lines)} sub-paths, not {len(wanted.lines)}")
+    for number, (mine, target) in enumerate(zip(ours.painted, theirs.painted, strict=True), start=1):
+        if abs(mine.stroke_width_px - target.stroke_width_px) > 1e-5 * max(1, target.stroke_width_px):
+            found.append(f"{number}: width {mine.stroke_width_px}, not {target.stroke_width_px}")
+        if mine.fill_rule != target.fill_rule:
+            found.append(f"{number}: fill {mine.fill_rule!r}, not {target.fill_rule!r}")
+        if target.colour and mine.colour != target.colour:
+            found.append(f"{number}: colour {mine.colour}, not {target.colour}")
+        if len(mine.lines) != len(target.lines):
+            found.append(f"{number}: {len(mine.lines)} sub-paths, not {len(target.lines)}")
             continue
-        for part, lines in enumerate(zip(mine.lines, wanted.lines, strict=True), start=1):
+        for part, lines in enumerate(zip(mine.lines, target.lines, strict=True), start=1):
             found.extend(f"{number}/{part}: {each}" for each in unlike(*lines, is_round, near_px))
     return found
 
 
-def unlike(mine: Line, wanted: Line, is_round: bool, near_px: float) -> list[str]:
-    a, b = without_dots(mine.cubics), without_dots(wanted.cubics)
+def unlike(mine: Line, target: Line, is_round: bool, near_px: float) -> list[str]:
+    a, b = without_dots(mine.cubics), without_dots(target.cubics)
     dots = len(a) == len(b) == 1 and not np.ptp(b, axis=1).any()
-    if mine.closed != wanted.closed and not dots:
-        return [f"closed is {mine.closed}, not {wanted.closed}"]
+    if mine.closed != target.closed and not dots:
+        return [f"closed is {mine.closed}, not {target.closed}"]
     if not is_round:
         if len(a) != len(b):
             return [f"{len(a)} cubics, not {len(b)}"]
@@ -148,7 +148,9 @@ def resaved(resvg, inkscape, tmp_path_factory):
 
     def save(*words):
         folder = tmp_path_factory.mktemp("resaved")
-        names = {f"{number}.svg": name for number, name in enumerate(DRAWINGS) if name not in TOLD_OTHERWISE}
+        names = {
+            f"{number}.svg": name for number, name in enumerate(DRAWINGS) if name not in REPORTED_OTHERWISE
+        }
         for file, name in names.items():
             (folder / file).write_text(DRAWINGS[name], encoding="utf-8")
         inkscape("--export-type=svg", *words, *(folder / file for file in names))
@@ -207,12 +209,12 @@ DASHED = {
 
 
 @pytest.mark.parametrize("name", DASHED)
-def test_dashes_lie_where_the_pattern_puts_them(name, resvg, tmp_path):
+def test_dashes_are_where_the_pattern_puts_them(name, resvg, tmp_path):
     """Each is a piece of the line that resvg draws; where it is cut is reckoned here, by hand."""
     d, words, pattern, offset = DASHED[name]
     drawing = svg_features.page(f'<path d="{d}" stroke-dasharray="{words}" stroke-dashoffset="{offset}"/>')
     (whole,) = resvg.pages({name: drawing})[name].painted
-    wanted = []
+    target = []
     for line in whole.lines:
         points = LineString(sampled(line.cubics, 1000))
         at = -(offset % sum(pattern))
@@ -220,11 +222,11 @@ def test_dashes_lie_where_the_pattern_puts_them(name, resvg, tmp_path):
             for dash, gap in zip(pattern[::2], pattern[1::2], strict=True):
                 if at + dash > 0 and at < points.length:
                     piece = substring(points, max(at, 0), min(at + dash, points.length))
-                    wanted.append(np.array(piece.coords))
+                    target.append(np.array(piece.coords))
                 at += dash + gap
     (ours,) = read(drawing, tmp_path).painted
-    assert len(ours.lines) == len(wanted)
-    for line, piece in zip(ours.lines, wanted, strict=True):
+    assert len(ours.lines) == len(target)
+    for line, piece in zip(ours.lines, target, strict=True):
         assert not line.closed
         assert np.abs(evenly(sampled(line.cubics)) - evenly(piece)).max() < 2 * NEAR_PX
 

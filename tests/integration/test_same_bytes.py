@@ -1,4 +1,4 @@
-"""The same drawing gives the same bytes, wherever it lies and whoever converts it."""
+"""The same drawing gives the same bytes, in any folder and for any user."""
 
 import os
 import subprocess

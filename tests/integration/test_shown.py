@@ -1,7 +1,8 @@
 """Nothing is lost in reading without a word: small drawings as Chromium shows them, held against what we would paint.
 
-Where the pictures differ, something must have been told of it; and what is plain must be painted as it is shown, with
-nothing told. Dashes are always told, so that does not count. Caps and joins are round here: ours always are.
+Where the pictures differ, something must have been reported about it; and what is plain must be painted as it is shown,
+with nothing reported. Dashes are always reported, so that does not count. Caps and joins are round here: ours always
+are.
 """
 
 import numpy as np
@@ -38,13 +39,13 @@ def pictures(tmp_path_factory):
 
 
 @pytest.mark.parametrize("name", svg_shown.TABLES)
-def test_what_is_not_painted_as_shown_is_told(name, pictures):
+def test_what_is_not_painted_as_shown_is_reported(name, pictures):
     table = svg_shown.TABLES[name]
     silent = {}
     for drawing, text in table.items():
-        ours, told = shown.painted(text)
+        ours, reported = shown.painted(text)
         off = shown.difference(pictures[text], ours)
-        if off > LEAST and not told and drawing not in svg_shown.CHROMIUMS_OWN:
+        if off > LEAST and not reported and drawing not in svg_shown.CHROMIUMS_OWN:
             silent[drawing] = round(off, 2)
     assert silent == {}
 
@@ -53,9 +54,9 @@ def test_what_is_plain_is_painted_as_shown_without_a_word(pictures):
     found = {}
     for name in svg_shown.PLAIN:
         theirs = pictures[DRAWINGS[name]]
-        ours, told = shown.painted(DRAWINGS[name])
-        if told or not theirs.any() or shown.difference(theirs, ours) > LEAST:
-            found[name] = told, round(shown.difference(theirs, ours), 2)
+        ours, reported = shown.painted(DRAWINGS[name])
+        if reported or not theirs.any() or shown.difference(theirs, ours) > LEAST:
+            found[name] = reported, round(shown.difference(theirs, ours), 2)
     assert found == {}
 
 

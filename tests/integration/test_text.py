@@ -66,15 +66,15 @@ def test_single_lines_come_back_as_they_are_in_the_font(name, tmp_path):
         assert element.stroke_width_mm == pytest.approx(WIDTH_MM)
         assert len(element.subpaths) == d.count("M")
         ends = [np.vstack((each.cubics[:1, 0], each.cubics[:, 3])) for each in element.subpaths]
-        wanted = points_of(d) * SIZE_MM / 1000 + (pen_mm, 0)  # up is up on paper, too
+        target = points_of(d) * SIZE_MM / 1000 + (pen_mm, 0)  # up is up on paper, too
         if first is None:
-            first = ends[0][0] - wanted[0]
-        assert np.abs(nearest(wanted + first, np.vstack(ends))).max() < 2e-4
+            first = ends[0][0] - target[0]
+        assert np.abs(nearest(target + first, np.vstack(ends))).max() < 2e-4
         ink.append(np.vstack([each.cubics.reshape(-1, 2) for each in element.subpaths]))
         pen_mm += advance * SIZE_MM / 1000
     ink = np.vstack(ink)
     margin = 20 + WIDTH_MM / 2
-    assert ink.min(axis=0) == pytest.approx([margin, margin], abs=0.5)  # handles may lie beyond the ink
+    assert ink.min(axis=0) == pytest.approx([margin, margin], abs=0.5)  # handles may be beyond the ink
     assert ink.max(axis=0) == pytest.approx(np.array(design.sheet_mm) - margin, abs=0.5)
 
 

@@ -13,13 +13,13 @@ from diagnostics import agrees
 
 
 def test_output_into_a_directory_that_is_not_there(desk):
-    file, told = refusal(desk, "convert", "sound.svg", "-o", "no/where/out.ngc")
-    assert file == "no/where/out.ngc" and agrees(told, "file-unwritable")
-    file, told = refusal(desk, "convert", "sound.svg", "-o", "out.ngc", "--picture", "no/where/out.png")
-    assert file == "no/where/out.png" and agrees(told, "file-unwritable")
+    file, reported = refusal(desk, "convert", "sound.svg", "-o", "no/where/out.ngc")
+    assert file == "no/where/out.ngc" and agrees(reported, "file-unwritable")
+    file, reported = refusal(desk, "convert", "sound.svg", "-o", "out.ngc", "--picture", "no/where/out.png")
+    assert file == "no/where/out.png" and agrees(reported, "file-unwritable")
     (desk / "out.ngc").mkdir()
-    file, told = refusal(desk, "convert", "sound.svg", "-o", "out.ngc")
-    assert file == "out.ngc" and agrees(told, "file-unwritable")
+    file, reported = refusal(desk, "convert", "sound.svg", "-o", "out.ngc")
+    assert file == "out.ngc" and agrees(reported, "file-unwritable")
 
 
 @pytest.fixture
@@ -51,13 +51,13 @@ def test_without_the_right_to_write_or_read(as_nobody):
     (folder / "open").chmod(0o777)
     folder.chmod(0o555)
 
-    def told(*words):
-        ((_, notice),) = brushsvg("--messages", "json", *words, cwd=folder, status=1, **settings).told
+    def reported(*words):
+        ((_, notice),) = brushsvg("--messages", "json", *words, cwd=folder, status=1, **settings).reported
         return notice
 
-    assert agrees(told("convert", "sound.svg", "-o", "out.ngc"), "file-unwritable")
-    assert agrees(told("convert", "sound.svg", "-o", "open/old.ngc", "--force"), "file-unwritable")
-    assert agrees(told("convert", "secret.svg", "-o", "open/out.ngc"), "file-unreadable")
+    assert agrees(reported("convert", "sound.svg", "-o", "out.ngc"), "file-unwritable")
+    assert agrees(reported("convert", "sound.svg", "-o", "open/old.ngc", "--force"), "file-unwritable")
+    assert agrees(reported("convert", "secret.svg", "-o", "open/out.ngc"), "file-unreadable")
     assert (folder / "open" / "old.ngc").read_text() == "kept\n"
     assert sorted(os.listdir(folder / "open")) == ["old.ngc"]
     assert sorted(os.listdir(folder)) == ["open", "secret.svg", "sound.svg"]
@@ -71,8 +71,8 @@ def test_a_file_that_grows_too_large_leaves_nothing(desk, out):
     def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300))
 
-    file, told = refusal(desk, "convert", "sound.svg", "-o", out, "--force", preexec_fn=limit)
-    assert file == out and agrees(told, "file-unwritable")
+    file, reported = refusal(desk, "convert", "sound.svg", "-o", out, "--force", preexec_fn=limit)
+    assert file == out and agrees(reported, "file-unwritable")
 
 
 def test_standard_output_that_is_closed_or_full(desk):
@@ -118,7 +118,7 @@ def test_a_full_disk_leaves_nothing(desk, full_disk, words):
     before = listing(desk)
     words = ("--messages", "json", "convert", "sound.svg", *words, "--force")
     done = brushsvg(*words, cwd=desk, before=full_disk, status=1)
-    ((_, told),) = done.told
-    assert agrees(told, "file-unwritable")
+    ((_, reported),) = done.reported
+    assert agrees(reported, "file-unwritable")
     assert done.out == "filler old.ngc kept\n"
     assert listing(desk) == before

@@ -47,7 +47,7 @@ USAGE = [
     "batch in -o x --format .txt",
     "brush wash round-6",
 ]
-# of house rules, but not there yet: neither understood nor promised
+# of package rules, but not there yet: neither understood nor promised
 LATER = {
     "flags": ["--caps"],
     "commands": ["learn"],
@@ -104,7 +104,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
         assert not re.search(rf"{re.escape(absent)}\b", text), absent
     commands = set(re.findall(r"(?m)^  ([a-z]+)(?: |$)", pages[()]))
     assert commands == {
-        *("demo", "doctor", "text", "preview", "convert", "check", "batch", "cell", "setup"),
+        *("demo", "init", "doctor", "text", "preview", "convert", "check", "batch", "cell", "setup"),
         *("brush", "chart", "calibrate", "compare"),
     }
     assert set(re.findall(r"(?m)^    ([a-z]+) ", pages[("brush",)])) == {
@@ -179,5 +179,5 @@ def test_help_names_what_there_is_and_nothing_else(desk):
     }
 
 
-def test_the_version_is_told(desk):
+def test_the_version_is_reported(desk):
     assert re.fullmatch(r"brushsvg \d+\.\d+\.\d+\n", brushsvg("--version", cwd=desk, status=0).out)

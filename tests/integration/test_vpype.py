@@ -26,7 +26,7 @@ DRAWING = f"""{OPEN.replace("<svg", '<svg xmlns:inkscape="http://www.inkscape.or
 
 @pytest.fixture(scope="session")
 def vpype(tmp_path_factory):
-    """A function that runs vpype; brushsvg is the one under test, found beside vpype's own packages."""
+    """A function that runs vpype; brushsvg is the one under test, found next to vpype's own packages."""
     folder = tmp_path_factory.mktemp("vpype")
     environment = folder / "env"
     python = environment / "bin" / "python"
@@ -36,8 +36,8 @@ def vpype(tmp_path_factory):
         done = subprocess.run([python, "-m", "pip", "install", "-q", *words], capture_output=True, text=True)
         if done.returncode:
             pytest.skip(f"vpype cannot be installed here: {done.stderr.splitlines()[-1]}")
-    beside = f"import site; site.addsitedir({sysconfig.get_path('purelib')!r})\n"
-    (next(environment.glob("lib/python*/site-packages")) / "brushsvg.pth").write_text(beside)
+    near_by = f"import site; site.addsitedir({sysconfig.get_path('purelib')!r})\n"
+    (next(environment.glob("lib/python*/site-packages")) / "brushsvg.pth").write_text(near_by)
 
     def run(*words, cwd, status=0):
         done = subprocess.run(
@@ -101,8 +101,8 @@ def test_refined_strokes_are_those_of_the_command_line(vpype, desk):
 def test_layers_keep_their_settings(vpype, desk):
     vpype("read", "x.svg", "brush", "write", "marks.svg", cwd=desk)
     text = (desk / "marks.svg").read_text()
-    for told in ('inkscape:label="Ink"', 'inkscape:label="Red"', 'stroke="#203060"', 'stroke="#f00"'):
-        assert told in text or told.replace("#f00", "#ff0000") in text, told
+    for reported in ('inkscape:label="Ink"', 'inkscape:label="Red"', 'stroke="#203060"', 'stroke="#f00"'):
+        assert reported in text or reported.replace("#f00", "#ff0000") in text, reported
     design = read_drawing(desk / "marks.svg")
     widths = {each.layer: round(each.stroke_width_mm, 3) for each in design.elements}
     assert widths == {"Ink": 3, "Red": 2}
@@ -122,7 +122,7 @@ def test_brushwrite_paints_each_layer_with_its_own_width(vpype, desk):
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "reported"),
     [
         (("line", "0", "0", "5cm", "5cm", "brushwrite", "o.ngc"), "layer 1"),
         (("read", "x.svg", "brushwrite", "o.xyz"), ".xyz"),
@@ -139,8 +139,8 @@ def test_brushwrite_paints_each_layer_with_its_own_width(vpype, desk):
         ),
     ],
 )
-def test_what_cannot_be_painted_is_told_in_a_sentence(vpype, desk, words, told):
-    assert told in vpype(*words, cwd=desk, status=1)
+def test_what_cannot_be_painted_is_reported_in_a_sentence(vpype, desk, words, reported):
+    assert reported in vpype(*words, cwd=desk, status=1)
     assert not list(desk.glob("o.*"))
 
 

@@ -53,7 +53,7 @@ def photographed(at: Path) -> None:
 
 
 def photograph(at: Path, *flags: str) -> Path:
-    """A small chart, painted and photographed in a studio in which nothing is amiss."""
+    """A small chart, painted and photographed in a studio in which nothing is wrong."""
     plan, chart, photo, studio = (
         at.with_suffix(end) for end in (".plan.json", ".chart.json", ".jpg", ".toml")
     )

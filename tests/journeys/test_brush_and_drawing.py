@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from desk import BRUSHES, DRAWINGS, SLOW_BRUSHES, brush_file, drawing_file
-from diagnostics import in_json, is_told
+from diagnostics import in_json, is_reported
 
 # Brush and drawing: what is refused, and why no brush of this kind can do it.
 REFUSED = {
@@ -20,14 +20,14 @@ def paints(desk: Path, brush: str, drawing: str, capsys) -> None:
     out = desk / "out.ngc"
     out.unlink(missing_ok=True)
     words = "convert", drawing_file(desk, drawing), "-o", out, "--brush", brush_file(desk, brush)
-    status, _, told = in_json(capsys, *words)
+    status, _, reported = in_json(capsys, *words)
     if code := REFUSED.get((brush, drawing)):
-        assert status == 1 and is_told(told, code), told
+        assert status == 1 and is_reported(reported, code), reported
         assert not out.exists()
         return
-    assert status == 0, told
+    assert status == 0, reported
     assert "G1" in out.read_text()
-    assert not is_told(told, "internal-error")
+    assert not is_reported(reported, "internal-error")
 
 
 @pytest.mark.parametrize("drawing", DRAWINGS)
@@ -47,9 +47,9 @@ def test_every_photographed_brush_paints_every_drawing(desk, capsys, brush, draw
 @pytest.mark.parametrize("drawing", ["shape", "line", "dots"])
 def test_every_brush_is_reported_on_and_its_program_checked(desk, capsys, brush, drawing):
     at = drawing_file(desk, drawing)
-    status, _, told = in_json(capsys, "preview", at, "--brush", brush_file(desk, brush))
-    assert status == 0, told
+    status, _, reported = in_json(capsys, "preview", at, "--brush", brush_file(desk, brush))
+    assert status == 0, reported
     out = desk / "checked.ngc"
     assert in_json(capsys, "convert", at, "-o", out, "--brush", brush_file(desk, brush))[0] == 0
-    status, _, told = in_json(capsys, "check", out, at, "--brush", brush_file(desk, brush))
-    assert status == 0, told
+    status, _, reported = in_json(capsys, "check", out, at, "--brush", brush_file(desk, brush))
+    assert status == 0, reported

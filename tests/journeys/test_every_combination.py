@@ -13,7 +13,7 @@ import shutil
 import pytest
 from allpairspy import AllPairs
 from desk import BRUSHES, DRAWINGS, SLOW_BRUSHES, STUDIO, brush_file, drawing_file
-from diagnostics import in_json, is_told
+from diagnostics import in_json, is_reported
 from sampling import sample
 
 from brushsvg.machine.cells.cell_file import cell_names, find_cell
@@ -117,12 +117,12 @@ def tried(desk, folder, capsys, record_property, brush, drawing, cell, command) 
     options = ("--brush", brush_file(desk, brush), "--cell", cell)
     [steps] = [each for each in COMMANDS if each.__name__ == command]
     for words, promised in steps(drawing_file(desk, drawing), options, folder):
-        status, _, told = in_json(capsys, *words)
-        codes = [notice.code for _, notice in told]
+        status, _, reported = in_json(capsys, *words)
+        codes = [notice.code for _, notice in reported]
         if status == 0:
             assert all(file.exists() for file in promised)
             continue
-        assert status == 1 and codes and codes[-1] in PHYSICAL, (words, told)
+        assert status == 1 and codes and codes[-1] in PHYSICAL, (words, reported)
         record_property("refused", codes[-1])
         assert not any(file.is_file() for file in promised)
         return
@@ -177,5 +177,5 @@ def test_a_brush_on_a_machine_with_a_pen_is_refused(desk, tmp_path, capsys, cell
         "--brush",
         "round-6",
     )
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and is_told(told, "pen-depth"), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and is_reported(reported, "pen-depth"), reported

@@ -99,8 +99,8 @@ def desk(tmp_path, monkeypatch):
 
 
 def run(capsys, *words) -> None:
-    status, _, told = in_json(capsys, *words)
-    assert status == 0, (words, told)
+    status, _, reported = in_json(capsys, *words)
+    assert status == 0, (words, reported)
 
 
 def some_of(options: dict, *names: str) -> list[str]:
@@ -183,9 +183,11 @@ def test_each_pair_of_options_of_compare_works(desk, capsys, options):
     if options["-o"] == "fit.json":
         suffix = {"ur5e": ".script", "grbl-servo": ".nc"}.get(options["--cell"], ".ngc")
         words = "convert", "d.svg", "-o", f"next{suffix}", "--corrections", "fit.json", *planned
-        status, _, told = in_json(capsys, *words)
+        status, _, reported = in_json(capsys, *words)
         # corrected, a stroke may have to be pressed deeper than this servo goes
-        assert status == 0 or (told[-1][1].code == "too-low" and options["--cell"] == "grbl-servo"), told
+        assert status == 0 or (reported[-1][1].code == "too-low" and options["--cell"] == "grbl-servo"), (
+            reported
+        )
 
 
 OF_CALIBRATE = {

@@ -1,5 +1,5 @@
-"""From a typed brush to the third sheet, without a chart: each sheet is compared and learned from, whatever it was
-planned with, and the next brush, corrections and cell fit together."""
+"""From a typed brush to the third sheet, without a chart: each sheet is compared and learned from, with any
+plan, and the next brush, corrections and cell fit together."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 
 import pytest
-from diagnostics import in_json, is_told
+from diagnostics import in_json, is_reported
 
 from brushsvg.cli import main
 
@@ -60,9 +60,9 @@ def desk(tmp_path):
 
 def paint_three_sheets(desk: Desk) -> list[float]:
     """Overlap with the drawing on each. The brush learns from each sheet; the next is planned with what is left."""
-    overlaps, led = [], ""
+    overlaps, moved = [], ""
     for sheet in (1, 2, 3):
-        planned = f"--brush mine-{sheet}.json --cell cell-{sheet}.toml {led}"
+        planned = f"--brush mine-{sheet}.json --cell cell-{sheet}.toml {moved}"
         desk.run(f"convert word.svg -o plan-{sheet}.json {planned} --page page-{sheet}.svg")
         desk.run(f"convert word.svg -o job-{sheet}.ngc {planned} --page page.svg --force")
         desk.run(f"check job-{sheet}.ngc word.svg {planned}")
@@ -83,7 +83,7 @@ def paint_three_sheets(desk: Desk) -> list[float]:
             f"compare photo-{sheet}.jpg plan-{sheet}.json --brush mine-{sheet + 1}.json --cell cell-{sheet}.toml "
             f"--corrected-cell cell-{sheet + 1}.toml -o left-{sheet}.json"
         )
-        led = f"--corrections left-{sheet}.json"
+        moved = f"--corrections left-{sheet}.json"
     return overlaps
 
 
@@ -108,5 +108,5 @@ def test_a_sheet_planned_for_another_brush_teaches_with_a_warning(desk, capsys):
     )
     words = "calibrate photo.jpg --plan plan.json --prior mine.json -o mine-2.json".split()
     words = [str(desk.at / each) if "." in each else each for each in words]
-    status, _, told = in_json(capsys, *words)
-    assert status == 0 and is_told(told, "plan-of-other-brush round-6"), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 0 and is_reported(reported, "plan-of-other-brush round-6"), reported

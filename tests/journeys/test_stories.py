@@ -156,7 +156,7 @@ def test_a_researcher_works_in_python(user):
 
     strokes, notices = brushsvg.strokes(brushsvg.read_drawing("word.svg"))
     assert [stroke.id for stroke in strokes] == ["arch", "line", "wave", "slash"] and not notices
-    wanted = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.wanted_outline(stroke, 0.01)])
+    target = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.wanted_outline(stroke, 0.01)])
 
     reached = {}
     for method in ("none", "closed"):
@@ -164,5 +164,5 @@ def test_a_researcher_works_in_python(user):
         marks = brushsvg.simulate(plan, brush)
         brushsvg.trace_outlines(marks, brush)
         painted = [np.array(ring) for one in marks.passes for ring in one.outline_mm]
-        reached[method] = brushsvg.overlap(brushsvg.unite(painted), wanted)
+        reached[method] = brushsvg.overlap(brushsvg.unite(painted), target)
     assert reached["closed"] > 0.8 > 0.6 > reached["none"]

@@ -516,7 +516,7 @@ def union_of(outlines):
 
 
 def united(regions):
-    """Of neighbours in pairs, and of these again: a third quicker than all at once where each lies on the next."""
+    """Of neighbours in pairs, and of these again: a third quicker than all at once where each is on the next."""
     while len(regions) > 1:
         even = len(regions) // 2 * 2
         regions = np.concatenate([shapely.union(regions[0:even:2], regions[1:even:2]), regions[even:]])

@@ -128,7 +128,8 @@ class Curve:
 
 @dataclass
 class Stranger(TrueBrush):
-    """A brush whose laws are no polynomials: curves by name, tip_to_widest among them; front: over the half width."""
+    """A brush whose laws are no polynomials: a table of curves, tip_to_widest among them; front: over the half
+    width."""
 
     curves: dict = field(default_factory=dict)
 
@@ -335,7 +336,7 @@ def chart_strokes(deepest, depths=5):
 def paint(rng, brush, strokes, faults, regions=None):
     """A Sheet: what this brush paints along the strokes, with faults drawn at random.
 
-    regions: asked in place of swept(), for who has swept these strokes on paper of this height before.
+    regions: used in place of swept(), for who has swept these strokes on paper of this height before.
     """
     height = rng.normal(0, faults.height)
     shift, turn = rng.normal(0, faults.placement, 2), rng.normal(0, faults.turn)

@@ -45,7 +45,7 @@ def known_brush(sure=0.08, lag=1.0, half=1.0):
 
 
 @dataclass(frozen=True)
-class Amiss:
+class Faults:
     """What is: lag and half width times so much; scale - 1, skew (from the work zero, the sheet's corner), lean,
     backlash of the machine; the paper higher at the sheet's middle, tilted about it; the sheet's place; own: by stroke,
     always alike; random_mm: sigma; lasts_mm: the way that a load of paint lasts."""
@@ -64,9 +64,9 @@ class Amiss:
     random_mm: float = 0.0
     lasts_mm: float = np.inf
 
-    def mended(self, cause):
+    def corrected(self, cause):
         """The same without what one cause, by the name that compare has for it, does."""
-        good = Amiss()
+        good = Faults()
         keys = {
             "place of the sheet": ("shift", "turn"),
             "machine": ("scale", "skew", "lean", "backlash"),
@@ -78,10 +78,10 @@ class Amiss:
         return replace(self, **{key: getattr(good, key) for key in keys})
 
 
-def random_amiss(rng, names, sheet_mm):
+def random_faults(rng, names, sheet_mm):
     """A brush up to 20 % off, up to 2 mm of tilt over the sheet, 0.5 mm of backlash, 1 % of scale."""
     tilt = rng.uniform(-1, 1, 2) * rng.dirichlet([1, 1]) * 2 / np.array(sheet_mm)
-    return Amiss(
+    return Faults(
         *(1 + rng.uniform(-0.2, 0.2, 2)),
         scale=tuple(rng.uniform(-0.01, 0.01, 2)),
         backlash=tuple(rng.uniform(0, 0.5, 2)),
@@ -91,8 +91,8 @@ def random_amiss(rng, names, sheet_mm):
     )
 
 
-def told_by(program, sheet_mm):
-    """What a program for LinuxCNC tells the machine of each stroke, from the air on: every place that it names, those
+def commanded_by(program, sheet_mm):
+    """The commands of a program for LinuxCNC for each stroke, from the air on: every place that it names, those
     of circles close together."""
     at, found = np.array([0.0, 0.0, 50.0]), []
     for line in program.splitlines():
@@ -115,7 +115,7 @@ def told_by(program, sheet_mm):
     return SimpleNamespace(passes=found, sheet_mm=tuple(sheet_mm))
 
 
-def ran(plan, amiss):
+def ran(plan, fault_values):
     """[(stroke, poses)]: where the tool was, z over the true paper."""
     middle = 0.5 * np.array(plan.sheet_mm)
     play, last, out = np.zeros(2), None, []
@@ -124,14 +124,15 @@ def ran(plan, amiss):
         place = poses[:, :2].copy()
         for k, here in enumerate(poses[:, :2]):  # the slide stands still while the screw crosses its play
             play = np.clip(
-                play + (here - (here if last is None else last)), *np.outer([-0.5, 0.5], amiss.backlash)
+                play + (here - (here if last is None else last)),
+                *np.outer([-0.5, 0.5], fault_values.backlash),
             )
             place[k] -= play
             last = here
         at = place - middle
-        z = poses[:, 2] - amiss.height - at @ amiss.tilt
-        at = place + place * amiss.scale + np.outer(place[:, 1], [amiss.skew, 0.0])
-        at += np.outer(np.maximum(-z, 0), amiss.lean)
+        z = poses[:, 2] - fault_values.height - at @ fault_values.tilt
+        at = place + place * fault_values.scale + np.outer(place[:, 1], [fault_values.skew, 0.0])
+        at += np.outer(np.maximum(-z, 0), fault_values.lean)
         low = np.flatnonzero(
             z < AIR_MM
         )  # a program's way through the air moves the slides and paints nothing
@@ -141,32 +142,32 @@ def ran(plan, amiss):
     return out
 
 
-def painted(plan, amiss, seed=0, strokes_a_load=1):
+def painted(plan, fault_values, seed=0, strokes_a_load=1):
     """By stroke its region on the sheet."""
-    return laid(swept(plan, amiss, strokes_a_load), plan, amiss, seed)
+    return laid(swept(plan, fault_values, strokes_a_load), plan, fault_values, seed)
 
 
-def swept(plan, amiss, strokes_a_load=1):
+def swept(plan, fault_values, strokes_a_load=1):
     """By stroke its region, as the machine of such a studio paints it without anything of its own or at random."""
-    brush = painter.TrueBrush(DEEPEST, amiss.lag * LAG, GAP, amiss.half * HALF, WIDEST, FRONT)
-    ways, lasts, come = ran(plan, amiss), [], 0.0
+    brush = painter.TrueBrush(DEEPEST, fault_values.lag * LAG, GAP, fault_values.half * HALF, WIDEST, FRONT)
+    ways, lasts, come = ran(plan, fault_values), [], 0.0
     for k, (_, poses) in enumerate(ways):
         come = come if k % strokes_a_load else 0.0
-        lasts.append(max(amiss.lasts_mm - come, 2.0))
+        lasts.append(max(fault_values.lasts_mm - come, 2.0))
         come += float(np.hypot(*np.diff(poses[:, :2], axis=0).T).sum())
     regions = painter.swept(brush, ways, 0.0, lasts=lasts)
     return {name: region for (name, _), region in zip(ways, regions, strict=True) if region is not None}
 
 
-def laid(regions, plan, amiss, seed):
-    """Where these lie on a sheet."""
+def laid(regions, plan, fault_values, seed):
+    """Where these are on a sheet."""
     rng = np.random.default_rng(seed)
     middle = tuple(0.5 * np.array(plan.sheet_mm))
     out = {}
     for name, region in regions.items():
-        aside = amiss.own.get(name, np.zeros(2)) + rng.normal(0, amiss.random_mm, 2)
-        region = affinity.rotate(affinity.translate(region, *aside), amiss.turn, middle)
-        out[name] = affinity.translate(region, *amiss.shift)
+        displaced = fault_values.own.get(name, np.zeros(2)) + rng.normal(0, fault_values.random_mm, 2)
+        region = affinity.rotate(affinity.translate(region, *displaced), fault_values.turn, middle)
+        out[name] = affinity.translate(region, *fault_values.shift)
     return out
 
 
@@ -185,8 +186,8 @@ def photographed(plan, regions, title="", camera=None, seed=1):
     return photograph.photograph(sheet, camera, seed)
 
 
-def overlap(regions, wanted):
-    one, other = (unary_union(list(each.values())) for each in (regions, wanted))
+def overlap(regions, target):
+    one, other = (unary_union(list(each.values())) for each in (regions, target))
     return one.intersection(other).area / one.union(other).area
 
 

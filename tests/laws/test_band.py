@@ -88,11 +88,11 @@ def seen(brush, trace, pose):
 @pytest.mark.thorough
 def test_against_monte_carlo(brush, painted):
     work, marks, brushes = painted
-    told = uncertainty.uncertainty(work.plan, brush, marks)
-    assert told.source == uncertainty.COVARIANCE
+    reported = uncertainty.uncertainty(work.plan, brush, marks)
+    assert reported.source == uncertainty.COVARIANCE
     runs = [_core.simulate(work.plan, each) for each in brushes]
     compared = 0
-    for k, (trace, sure) in enumerate(zip(marks.passes, told.strokes, strict=True)):
+    for k, (trace, sure) in enumerate(zip(marks.passes, reported.strokes, strict=True)):
         taut = np.flatnonzero(np.asarray(trace.taut, bool) & (np.asarray(trace.depth_mm) > 0))
         if sure.middle_mm is None:
             assert not len(taut)
@@ -117,7 +117,7 @@ def test_against_monte_carlo(brush, painted):
 
 
 def test_the_band_holds_the_edges(brush, painted):
-    """Along a stroke some 95 % of the edges of brushes drawn from the covariance lie in it."""
+    """Along a stroke some 95 % of the edges of brushes drawn from the covariance are in it."""
     work, marks, brushes = painted
     band = uncertainty.band(work.plan, brush, marks)
     k = next(k for k, a_pass in enumerate(work.plan.passes) if a_pass.stroke == "n-arch")

@@ -17,29 +17,29 @@ if not hasattr(core, "fit_marks"):
 import brushsvg  # noqa: E402
 from brushsvg.calibration.marks import machine_found  # noqa: E402
 from brushsvg.calibration.overlap import by_overlap, overlap_choice, overlap_field  # noqa: E402
-from brushsvg.calibration.overlap.by_overlap_report import aside_in_words, chosen_in_words, report  # noqa: E402
+from brushsvg.calibration.overlap.by_overlap_report import chosen_in_words, describe_displacement, report  # noqa: E402
 from brushsvg.calibration.overlap.overlap_search import Begin, Target  # noqa: E402
 
 pytestmark = pytest.mark.long
 
-ASIDE_MM, ASIDE_LITTLE_MM = 1.5, 0.1
+DISPLACED_MM, DISPLACED_LITTLE_MM = 1.5, 0.1
 NUMBER = re.compile(r"[+-]\d+\.\d+")
 
 
 @cache
 def sheet():
-    """Marks of a round tail that lie 1.5 mm aside by chance, as those of real robots do."""
-    return painted(ASIDE_MM)
+    """Marks of a round tail displaced by 1.5 mm by chance, as those of real robots do."""
+    return painted(DISPLACED_MM)
 
 
-def painted(aside_mm, lean=(0.0, 0.0), by_map=((0.0, 0.0), (0.0, 0.0)), **faults):
+def painted(displaced_mm, lean=(0.0, 0.0), by_map=((0.0, 0.0), (0.0, 0.0)), **faults):
     """A brush, and the marks of a machine that leans and runs ways by a map, as a file of them."""
     rng = np.random.default_rng(3)
     brush = painter.random_brush(rng)
     brush.round_tail, brush.widest_per_half = True, brush.widest_per_half - 0.8
     strokes = painter.chart_strokes(brush.deepest, 3)
     centre = np.vstack([poses for _, poses in strokes])[:, :2].mean(axis=0)
-    led = [
+    as_run = [
         (
             name,
             poses
@@ -47,7 +47,9 @@ def painted(aside_mm, lean=(0.0, 0.0), by_map=((0.0, 0.0), (0.0, 0.0)), **faults
         )
         for name, poses in strokes
     ]
-    painted = painter.paint(rng, brush, led, painter.Faults(displacement=aside_mm, **faults), painter.swept)
+    painted = painter.paint(
+        rng, brush, as_run, painter.Faults(displacement=displaced_mm, **faults), painter.swept
+    )
     return brush, {
         "plan": {
             "passes": [
@@ -58,19 +60,19 @@ def painted(aside_mm, lean=(0.0, 0.0), by_map=((0.0, 0.0), (0.0, 0.0)), **faults
             {"stroke": name, "outline_mm": [ring.tolist() for ring in rings]}
             for name, _, rings in painted.marks
         ],
-        "expected": {"displacement_mm": aside_mm},
+        "expected": {"displacement_mm": displaced_mm},
     }
 
 
 @cache
 def calibrated():
-    told = []
-    return brushsvg.calibrate(sheet()[1], "b", aim="overlap", progress=told.append).fit, told
+    reported = []
+    return brushsvg.calibrate(sheet()[1], "b", aim="overlap", progress=reported.append).fit, reported
 
 
 @pytest.mark.thorough
-def test_where_marks_lie_aside_the_brush_is_little_wider_than_it_is():
-    # by the overlap where marks lie alone it was 38 % wider at half of the depth, its lag 10 % longer
+def test_where_marks_are_displaced_the_brush_is_little_wider_than_it_is():
+    # by the overlap where marks are alone it was 38 % wider at half of the depth, its lag 10 % longer
     brush, _ = sheet()
     made, _ = calibrated()
     for share, wider in ((0.5, 0.2), (1.0, 0.1)):
@@ -80,34 +82,34 @@ def test_where_marks_lie_aside_the_brush_is_little_wider_than_it_is():
 
 
 def test_marks_overlap_no_less_than_by_edges_and_no_interval_is_claimed():
-    made, told = calibrated()
+    made, reported = calibrated()
     assert made.found.overlap >= made.found.before
     assert not any(made.brush.half_width.half_interval_95)
     assert not len(made.brush.covariance)
-    assert told and not re.search(r"\+- \d", report(made))
+    assert reported and not re.search(r"\+- \d", report(made).text(True))
 
 
 def test_lean_that_edges_did_not_look_for_comes_back():
     # a simplex alone held lean for lag: 0.06 and -0.18
-    _, marks = painted(ASIDE_LITTLE_MM, lean=(0.3, -0.2), turn=0.0, height=0.1)
-    led = machine_beside(brushsvg.calibrate(marks, "b").fit).led
-    assert led.lean_mm_per_mm == pytest.approx((0.3, -0.2), abs=0.08)
-    assert led.map == pytest.approx(np.zeros((2, 2)), abs=0.006)
+    _, marks = painted(DISPLACED_LITTLE_MM, lean=(0.3, -0.2), turn=0.0, height=0.1)
+    as_run = machine_added(brushsvg.calibrate(marks, "b").fit).offsets
+    assert as_run.lean_mm_per_mm == pytest.approx((0.3, -0.2), abs=0.08)
+    assert as_run.map == pytest.approx(np.zeros((2, 2)), abs=0.006)
 
 
 @pytest.mark.thorough
 def test_a_map_that_edges_did_not_look_for_comes_back_with_the_turn():
     by_map = np.array([[0.01, -0.03], [0.05, 0.012]])
-    _, marks = painted(ASIDE_LITTLE_MM, by_map=by_map, turn=0.0, height=0.1)
+    _, marks = painted(DISPLACED_LITTLE_MM, by_map=by_map, turn=0.0, height=0.1)
     made = brushsvg.calibrate(marks, "b").fit
-    untold = SimpleNamespace(
+    unreported = SimpleNamespace(
         laws=made.fit.laws, turn_rad=0.0, shift_mm=(0.0, 0.0), centre_mm=made.fit.centre_mm
     )
-    assert machine_beside(made, untold).led.map == pytest.approx(by_map, abs=0.006)
+    assert machine_added(made, unreported).offsets.map == pytest.approx(by_map, abs=0.006)
 
 
-def machine_beside(made, fit=None):
-    """As for the largest overlap, of edges that held the machine for one that does as it is told."""
+def machine_added(made, fit=None):
+    """As for the largest overlap, of edges that held the machine for one without errors."""
     options = copy(made.expected)
     options.deepest_mm = made.brush.depth_range_mm[1]
     machine_found.ask_for(options, ("lean", "axes"))
@@ -122,9 +124,9 @@ def machine_beside(made, fit=None):
 @pytest.mark.thorough
 def test_the_report_says_lean_and_map_of_edges_and_overlap_together():
     lean, by_map = (0.3, -0.2), ((0.02, 0.01), (0.0, -0.02))
-    _, marks = painted(ASIDE_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
+    _, marks = painted(DISPLACED_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
     made = brushsvg.calibrate(marks, "b", machine=("lean", "axes")).fit
-    text = report(by_overlap._calibrated(made, machine_beside(made)))
+    text = report(by_overlap._calibrated(made, machine_added(made))).text(True)
     said = {line.split(":")[0]: NUMBER.findall(line) for line in text.splitlines()}
     assert np.array(said["lean"][:2], float) == pytest.approx(lean, abs=0.08)
     assert np.array(said["ways"][:4], float) == pytest.approx(np.ravel(by_map), abs=0.006)
@@ -133,21 +135,21 @@ def test_the_report_says_lean_and_map_of_edges_and_overlap_together():
 @pytest.mark.thorough
 def test_edges_that_know_the_machine_predict_best_and_keep_their_intervals():
     lean, by_map = (0.3, -0.2), ((0.02, 0.01), (0.0, -0.02))
-    _, marks = painted(ASIDE_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
+    _, marks = painted(DISPLACED_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
     made = brushsvg.calibrate(marks, "b", aim="overlap", machine=("lean", "axes")).fit
     assert made.found.kind == "edges"
     assert all(made.brush.lag.half_interval_95)
     assert np.array(made.brush.covariance).size
-    assert re.search(r"\+- \d", report(made))
+    assert re.search(r"\+- \d", report(made).text(True))
 
 
-def targets_of(strokes, brush, aside=lambda k: np.zeros(2), leant=lambda k: 0.0):
+def targets_of(strokes, brush, displaced=lambda k: np.zeros(2), leant=lambda k: 0.0):
     """What the brush paints, each mark moved, without faults of edges."""
     faults = painter.Faults(0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
     sheet = painter.paint(np.random.default_rng(1), brush, strokes, faults, painter.swept)
     out = []
     for k, (_, poses, rings) in enumerate(sheet.marks):
-        moved = [np.asarray(ring) + aside(k) for ring in rings]
+        moved = [np.asarray(ring) + displaced(k) for ring in rings]
         seen = np.vstack([poses[:, :2], *moved])
         corner, size = seen.min(axis=0) - 12.0, np.ceil(2 * np.ptp(seen, axis=0) + 48.0) / 2
         window = (*corner.tolist(), *size.tolist())
@@ -165,7 +167,7 @@ def laws(brush, lag) -> object:
     return core.MarkLaws(lag, brush.tip_gap.tolist(), brush.half_width.tolist(), 1.0, 1.0, True)
 
 
-def told(brush) -> object:
+def reported(brush) -> object:
     options = core.MarkOptions()
     options.deepest_mm, options.displacement_mm = brush.deepest, 1.5
     options.height_mm = core.Prior(0.0, 0.0)
@@ -187,7 +189,7 @@ def by_one_depth(brush):
         for name, poses in painter.chart_strokes(brush.deepest, 2)
     ]
     begin = Begin(laws(brush, [float(brush.law("lag")(brush.deepest))]), 0.0)
-    found = overlap_choice.largest_overlap(targets_of(strokes, brush), begin, told(brush))
+    found = overlap_choice.largest_overlap(targets_of(strokes, brush), begin, reported(brush))
     return np.polynomial.Polynomial(found.laws.lag)
 
 
@@ -197,33 +199,33 @@ def test_the_lever_of_a_tilted_tool_comes_back():
     strokes = painter.chart_strokes(brush.deepest, 2)
     leant = 0.1 * np.random.default_rng(2).standard_normal(len(strokes))
     targets = targets_of(strokes, brush, lambda k: leant[k] * lever, lambda k: leant[k])
-    found = overlap_choice.largest_overlap(targets, Begin(laws(brush, [1.0, 1.0]), 0.0), told(brush))
+    found = overlap_choice.largest_overlap(targets, Begin(laws(brush, [1.0, 1.0]), 0.0), reported(brush))
     assert found.kind == "lever"
-    assert found.led.lever_mm == pytest.approx(lever, abs=1.5)
+    assert found.offsets.lever_mm == pytest.approx(lever, abs=1.5)
 
 
 @pytest.mark.thorough
 def test_what_is_changed_is_what_predicts_marks_that_had_no_part_and_the_report_says_so():
-    # lean that edges are not asked for: laws alone cannot make up for it on marks left out
+    # lean that the fit by edges holds at 0: laws alone cannot make up for it on marks left out
     brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 3)
     lean, moved = np.array([0.9, -0.7]), np.random.default_rng(4).normal(0, 0.3, (len(strokes), 2))
-    led = [(name, poses + np.pad(-poses[:, 2:] * lean, ((0, 0), (0, 1)))) for name, poses in strokes]
+    as_run = [(name, poses + np.pad(-poses[:, 2:] * lean, ((0, 0), (0, 1)))) for name, poses in strokes]
     targets = [
         replace(target, poses_mm=poses)
-        for target, (_, poses) in zip(targets_of(led, brush, lambda k: moved[k]), strokes, strict=True)
+        for target, (_, poses) in zip(targets_of(as_run, brush, lambda k: moved[k]), strokes, strict=True)
     ]
     marks = [
         core.PaintedMark(name, poses, outlines(target))
         for (name, poses), target in zip(strokes, targets, strict=True)
     ]
-    options = told(brush)
+    options = reported(brush)
     options.height_mm = core.Prior(0.0, 0.2)
     options.lag_terms, options.half_width_terms, options.round_tail = 2, 2, True
     options.widest_per_half, options.turn_rad = core.Prior(1.0, 0.4), 0.0
     machine_found.ask_for(options, ("lean",))
     found = overlap_choice.best_predicting(marks, targets, Begin(laws(brush, [1.0, 1.0]), 0.0), options)
     assert found.kind == "machine"
-    assert found.led.lean_mm_per_mm == pytest.approx(lean, abs=0.15)
+    assert found.offsets.lean_mm_per_mm == pytest.approx(lean, abs=0.15)
     assert sum(found.left_out["machine"]) > sum(found.left_out["laws"]) + 0.02
     assert chosen_in_words(found)
 
@@ -236,35 +238,35 @@ def outlines(target):
     return mask_outlines(paint, 127, 1 / target.px_per_mm, (left, bottom + height))
 
 
-def aside_of(strokes, brush, aside):
-    """What is found of marks that lie aside by these (n, 2), taught every second stroke."""
-    targets = targets_of(strokes, brush, lambda k: aside[k])
+def displacement_of(strokes, brush, displaced):
+    """The field found for marks displaced by these (n, 2), taught every second stroke."""
+    targets = targets_of(strokes, brush, lambda k: displaced[k])
     begin, order = Begin(laws(brush, [1.0, 1.0]), 0.0), 2 * np.arange(len(strokes))
-    search = overlap_choice.Search(begin, told(brush), targets, np.zeros(2))
+    search = overlap_choice.Search(begin, reported(brush), targets, np.zeros(2))
     found = overlap_choice._predicting(search, "laws", search.begin, targets, lambda: None, order)
-    return found, found.aside.field.at(order) if found.aside.field else np.zeros_like(aside)
+    return found, found.displacement.field.at(order) if found.displacement.field else np.zeros_like(displaced)
 
 
 @pytest.mark.thorough
-def test_marks_aside_by_their_place_on_the_sheet_are_predicted_there_and_no_wider(monkeypatch):
+def test_marks_displaced_by_their_place_on_the_sheet_are_predicted_there_and_no_wider(monkeypatch):
     monkeypatch.setattr(overlap_field, "FEWEST", 10)
     brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 3)
     row = 2 * np.arange(len(strokes)) // 5 % 6
-    aside = np.column_stack([np.zeros(len(row)), 3.0 - 1.2 * row])
-    found, told_aside = aside_of(strokes, brush, aside)
-    left = aside - aside.mean(axis=0) - told_aside
-    assert found.aside.won > 3 * found.aside.error
-    assert (left**2).sum() < 0.1 * ((aside - aside.mean(axis=0)) ** 2).sum()
+    displaced = np.column_stack([np.zeros(len(row)), 3.0 - 1.2 * row])
+    found, found_displaced = displacement_of(strokes, brush, displaced)
+    left = displaced - displaced.mean(axis=0) - found_displaced
+    assert found.displacement.won > 3 * found.displacement.error
+    assert (left**2).sum() < 0.1 * ((displaced - displaced.mean(axis=0)) ** 2).sum()
     assert found.overlap > 0.85
     assert np.polynomial.Polynomial(found.laws.half_width)(4.0) == pytest.approx(0.6 * 4.0, rel=0.05)
-    assert aside_in_words(found.aside)
+    assert describe_displacement(found.displacement)
 
 
-def test_few_marks_tell_no_field():
+def test_few_marks_show_no_field():
     brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 1)
-    found, _ = aside_of(strokes, brush, np.zeros((len(strokes), 2)))
-    assert found.aside.field is None
-    assert aside_in_words(found.aside)
+    found, _ = displacement_of(strokes, brush, np.zeros((len(strokes), 2)))
+    assert found.displacement.field is None
+    assert describe_displacement(found.displacement)
 
 
 def test_of_few_marks_it_is_not_known_what_predicts():
@@ -274,6 +276,8 @@ def test_of_few_marks_it_is_not_known_what_predicts():
         core.PaintedMark(name, poses, outlines(target))
         for (name, poses), target in zip(strokes, targets, strict=True)
     ]
-    found = overlap_choice.best_predicting(marks, targets, Begin(laws(brush, [1.0, 1.0]), 0.0), told(brush))
+    found = overlap_choice.best_predicting(
+        marks, targets, Begin(laws(brush, [1.0, 1.0]), 0.0), reported(brush)
+    )
     assert (found.kind, found.parts, found.left_out) == ("laws", 0, {})
     assert chosen_in_words(found)

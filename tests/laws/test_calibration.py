@@ -152,8 +152,8 @@ def test_the_scatter_of_a_series_is_that_of_repeated_readings():
         [row] = from_dict(angles=[noisy_series(np.random.default_rng(0), 0.0, 0.0)[int(d) - 1]]).rows[
             "angles"
         ]
-        told = scatter_of_series(row, lag(d), GAP * d, False)
-        assert told == pytest.approx(seen, rel=0.12)
+        reported = scatter_of_series(row, lag(d), GAP * d, False)
+        assert reported == pytest.approx(seen, rel=0.12)
 
 
 def middle_line(depth, rng, mm):
@@ -240,7 +240,7 @@ def test_the_angular_stroke_is_read_with_e():
 
 def test_side_view_and_straight_stroke_give_the_tip_gap():
     """(18) counts from first touch; (17) as printed lacks the lag. A straight slow landing: the tip begins to mark at
-    0 and lies r + b behind the TCP, which has gone s_L; D is from the mark's start to its widest place."""
+    0 and is r + b behind the TCP, which has gone s_L; D is from the mark's start to its widest place."""
     known = {
         "lag": values(DEPTHS, lag(DEPTHS)),
         "tip_to_widest": values(DEPTHS, widest(DEPTHS)),
@@ -295,7 +295,7 @@ def test_the_covariance_is_that_of_repeated_calibrations():
     """Against the scatter of 600 calibrations, correlations between laws included."""
     rng = np.random.default_rng(2)
     depths = np.repeat(DEPTHS, 2)
-    found, told = [], []
+    found, reported = [], []
     for _ in range(600):
         rows = {
             "tip_to_widest": values(depths, widest(depths) + rng.normal(0, 0.3, depths.size)),
@@ -306,16 +306,16 @@ def test_the_covariance_is_that_of_repeated_calibrations():
         made = calibrate(from_dict(angular=values(depths, sums), **rows), "b")
         laws = [made.brush.lag, made.brush.tip_gap, made.brush.tip_to_widest]
         found.append(np.concatenate([each.coefficients for each in laws]))
-        told.append(np.array(made.brush.covariance)[:11, :11])
-    told, seen = np.mean(told, axis=0), np.cov(np.array(found).T)
+        reported.append(np.array(made.brush.covariance)[:11, :11])
+    reported, seen = np.mean(reported, axis=0), np.cov(np.array(found).T)
     # of the laws' values at depths, not of coefficients, whose sizes differ by thousands
     at = np.array([2.0, 5.0, 9.0])
     values_of = np.zeros((9, 11))
     for k, (first, count) in enumerate(((0, 5), (5, 2), (7, 4))):
         values_of[3 * k : 3 * k + 3, first : first + count] = np.vander(at, count, increasing=True)
-    told, seen = (values_of @ c @ values_of.T for c in (told, seen))
+    reported, seen = (values_of @ c @ values_of.T for c in (reported, seen))
     size = np.sqrt(np.outer(np.diag(seen), np.diag(seen)))
-    np.testing.assert_allclose(told / size, seen / size, atol=0.15)
+    np.testing.assert_allclose(reported / size, seen / size, atol=0.15)
 
 
 @pytest.mark.parametrize("total", [False, True])

@@ -1,4 +1,4 @@
-"""From the chart to a brush: the chart of round-6 painted by another brush, on a sheet that lies elsewhere, each mark
+"""From the chart to a brush: the chart of round-6 painted by another brush, on a sheet that is elsewhere, each mark
 displaced, edges uneven; the outlines give that other brush back."""
 
 import json
@@ -81,8 +81,8 @@ def test_as_sure_as_was_said_before(painted):
         assert np.mean(off <= 1.5 * after) > 0.6, (law, off, after)
 
 
-def test_edges_that_all_lie_off_are_in_the_intervals():
-    """A picture shows all paint 0.04 mm wider than it is: no mark tells that from a wider brush."""
+def test_a_common_shift_of_edges_is_in_the_intervals():
+    """A picture shows all paint 0.04 mm wider than it is: no mark separates that from a wider brush."""
     made = chart(find_brush("round-6"), (148.0, 210.0), "few")
     marks = _core.simulate(made.plan, truth())
     _core.trace_outlines(marks, truth())
@@ -92,8 +92,8 @@ def test_edges_that_all_lie_off_are_in_the_intervals():
         rows.append({"stroke": trace.stroke, "outline_mm": [np.array(shape.exterior.coords)[:-1].tolist()]})
     painted = read_painted(json.loads(_core.write_plan(made.plan)), rows, None)
     made = calibrate_marks(painted, "own", edge_mm=0.04)
-    told, known = made.brush, np.array(made.fit.covariance)
-    blind = brush_of(made.fit.laws, "blind", told.depth_range_mm, known)
-    off = np.array([told.half_width(d) - truth().half_width(d) for d in DEPTHS])
-    before, after = (law_band(brush, "half_width", DEPTHS)[0] for brush in (blind, told))
+    reported, known = made.brush, np.array(made.fit.covariance)
+    blind = brush_of(made.fit.laws, "blind", reported.depth_range_mm, known)
+    off = np.array([reported.half_width(d) - truth().half_width(d) for d in DEPTHS])
+    before, after = (law_band(brush, "half_width", DEPTHS)[0] for brush in (blind, reported))
     assert (after > 1.5 * before).all() and (np.abs(off) < after).all(), (off, before, after)

@@ -33,6 +33,7 @@ from brushsvg.jobs.options import Options  # noqa: E402
 from brushsvg.jobs.preparation.preparation import prepare  # noqa: E402
 from brushsvg.model.confidence import law_band  # noqa: E402
 from brushsvg.model.library import save_brush  # noqa: E402
+from brushsvg.reporting.report_text import GOOD  # noqa: E402
 
 pytestmark = pytest.mark.long
 
@@ -113,7 +114,7 @@ def photographed(name):
 
 
 def calibrated(folder, capsys, photo, *words, before=None):
-    """Status, report, what was told, and the brush's path."""
+    """Status, report, what was reported, and the brush's path."""
     (folder / "photo.jpg").write_bytes(photo)
     (folder / "dabs.json").write_text(write_chart(printed()))
     save_brush(before or assumed(), folder / "before.json")
@@ -151,9 +152,9 @@ def wide_at(outline, x):
     keep=1,
 )
 def test_outlines_and_widths_come_back(name, tmp_path, capsys):
-    """Of drops that were assumed with the true widths, outlines lie 0.2 to 0.7 mm off."""
-    status, report, told, path = calibrated(tmp_path, capsys, photographed(name))
-    assert status == 0 and not [notice for file, notice in told if file.endswith("photo.jpg")], told
+    """Of drops that were assumed with the true widths, outlines are 0.2 to 0.7 mm off."""
+    status, report, reported, path = calibrated(tmp_path, capsys, photographed(name))
+    assert status == 0 and not [notice for file, notice in reported if file.endswith("photo.jpg")], reported
     found = find_brush(path)
     assert len(found.footprints.dragged) == 6
     for shape in found.footprints.dragged:
@@ -165,7 +166,7 @@ def test_outlines_and_widths_come_back(name, tmp_path, capsys):
         )
         assert off < 0.1 < 0.2 < was, (depth, off, was)
         assert abs(2 * found.half_width(depth) - np.ptp(contour[:, 1])) < 0.05, depth
-        # the top is flat: what can be told is a place that is as wide
+        # the top is flat: the answer is a place that is as wide
         assert np.ptp(contour[:, 1]) - wide_at(contour, found.tip_to_widest(depth)) < 0.05, depth
         assert abs(found.tip_gap(depth) - GAP[1] * depth) < 0.25, depth
     # the front is behind that of depth 6.7 on the way; of the egg by too little to see
@@ -191,8 +192,10 @@ def predicted_overlap(plan, brush, painted):
     """Mean over strokes."""
     marks = core.simulate(plan, brush)
     core.trace_outlines(marks, brush)
-    told = [whole(shapely.make_valid(shapely.Polygon(max(one.outline_mm, key=len)))) for one in marks.passes]
-    both = zip(told, painted, strict=True)
+    reported = [
+        whole(shapely.make_valid(shapely.Polygon(max(one.outline_mm, key=len)))) for one in marks.passes
+    ]
+    both = zip(reported, painted, strict=True)
     return np.mean([one.intersection(other).area / one.union(other).area for one, other in both])
 
 
@@ -210,7 +213,7 @@ def with_lag(brush, coefficients):
 )
 def test_a_word_is_predicted_better(name, drops, own_outlines, tmp_path, capsys):
     """By a brush of the same lag and of the true widths, whose outlines are drops: so far right, and no farther. How
-    far a lopsided dab lies aside is known to 0.03 mm."""
+    far a lopsided dab is to the side is known to 0.03 mm."""
     _, _, _, path = calibrated(tmp_path, capsys, photographed(name))
     before, own = with_lag(assumed(), LAG), with_lag(find_brush(path), LAG)
     plan = prepare(WORD, Options(brush=before)).plan
@@ -228,7 +231,7 @@ def test_a_word_is_predicted_better(name, drops, own_outlines, tmp_path, capsys)
 def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys):
     """The whole way: lag, and eggs for outlines, from a chart of strokes; then the brush's own outlines from dabs, and
     by these the lag of the strokes anew. An egg is as good from the strokes, since its widest section may move with
-    depth; beside a lopsided brush an egg's lag is 0.3 mm too short."""
+    depth; next to a lopsided brush an egg's lag is 0.3 mm too short."""
     made = chart(assumed(), A5, "few")
     strokes = [(one.stroke, oracle.chords(one.poses_mm, one.arcs, step=1.0)) for one in made.plan.passes]
     faults = replace(FAULTS, height=0.05)
@@ -240,8 +243,8 @@ def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys
     marks = read_painted(json.loads(core.write_plan(made.plan)), rows, None)
     made_of_strokes = calibrate_marks(marks, "before", leave_out_strays=True)
     before = made_of_strokes.brush
-    status, _, told, path = calibrated(tmp_path, capsys, photographed(name), before=before)
-    assert status == 0, told
+    status, _, reported, path = calibrated(tmp_path, capsys, photographed(name), before=before)
+    assert status == 0, reported
     plan = prepare(WORD, Options(brush=before)).plan
     painted = painted_word(plan, SHAPES[name])
     was, now = (predicted_overlap(plan, brush, painted) for brush in (before, find_brush(path)))
@@ -254,24 +257,24 @@ def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys
     off = np.array([found.brush.lag(depth) for depth in depths]) - true
     assert np.abs(off).max() < 0.15, off
     assert np.mean(np.abs(off) < law_band(found.brush, "lag", depths)[0]) > 0.7, off
-    told = report(found)
-    assert gives(told, found.own.name)
-    assert ("\nnote: " in told) == (name == "egg"), told
+    reported = report(found)
+    assert gives(reported.text(True), found.own.name)
+    assert (reported.verdict == GOOD) == (name != "egg"), reported
 
 
 def test_the_same_from_below_through_glass(tmp_path, capsys):
-    """On a clear sheet; a picture that is mirrored, and one that is not, are refused where the other was told."""
+    """On a clear sheet; a picture that is mirrored, and one that is not, are refused where the other was given."""
     photo = photo_of(painted(lopsided), mirrored=True)
-    status, _, told, path = calibrated(tmp_path, capsys, photo, "--mirrored")
-    assert status == 0, told
+    status, _, reported, path = calibrated(tmp_path, capsys, photo, "--mirrored")
+    assert status == 0, reported
     above = tmp_path / "above"
     above.mkdir()
     *_, other = calibrated(above, capsys, photographed("lopsided"))
     pairs = zip(find_brush(path).footprints.dragged, find_brush(other).footprints.dragged, strict=True)
     assert max(outline_off(one.outline_mm, two.outline_mm).max() for one, two in pairs) < 0.03
     for picture, words in ((photo, ()), (photographed("lopsided"), ("--mirrored",))):
-        status, _, told, _ = calibrated(tmp_path, capsys, picture, *words)
-        assert status == 1 and told[-1][1].code == "photo-mirrored", told
+        status, _, reported, _ = calibrated(tmp_path, capsys, picture, *words)
+        assert status == 1 and reported[-1][1].code == "photo-mirrored", reported
 
 
 def test_a_chart_of_dabs_needs_the_brush_whose_lag_is_known(tmp_path, capsys):

@@ -1,4 +1,4 @@
-"""Whose fault: what is amiss of a studio is named and measured on sheets that another simulator paints."""
+"""Faults of a studio are named and measured on sheets that another simulator paints."""
 
 import json
 
@@ -40,9 +40,11 @@ def job(tmp_path_factory):
     return folder, read_plan(folder / "word.json")
 
 
-def compared(job, amiss, seed=1, *flags):
+def compared(job, fault_values, seed=1, *flags):
     folder, plan = job
-    (folder / "photo.jpg").write_bytes(studio.photographed(plan, studio.painted(plan, amiss, seed), "word"))
+    (folder / "photo.jpg").write_bytes(
+        studio.photographed(plan, studio.painted(plan, fault_values, seed), "word")
+    )
     words = ["compare", "--force", "photo.jpg", "word.svg", "--brush", "mine.json", "-o", "seen.json"]
     words = [str(folder / word) if "." in word else word for word in words]
     assert main([*words, "--quiet", *flags]) == 0
@@ -51,34 +53,34 @@ def compared(job, amiss, seed=1, *flags):
 
 ONE = {
     "place of the sheet": (
-        studio.Amiss(shift=(0.8, -0.6), turn=0.4),
+        studio.Faults(shift=(0.8, -0.6), turn=0.4),
         {"shift in x": 0.8, "shift in y": -0.6, "turn": 0.4},
     ),
     "machine": (
-        studio.Amiss(scale=(0.01, -0.008), lean=(0.1, -0.08), backlash=(0.5, 0.3)),
+        studio.Faults(scale=(0.01, -0.008), lean=(0.1, -0.08), backlash=(0.5, 0.3)),
         {"scale in x": 0.01, "scale in y": -0.008, "lean in x": 0.1, "lean in y": -0.08}
         | {"backlash in x": 0.5, "backlash in y": 0.3},
     ),
     "height and tilt of the paper": (
-        studio.Amiss(height=0.3, tilt=(0.008, -0.01)),
+        studio.Faults(height=0.3, tilt=(0.008, -0.01)),
         {"tilt in x": 0.008, "tilt in y": -0.01},
     ),
-    "brush": (studio.Amiss(lag=1.15, half=0.88), {"lag": 0.15, "width": -0.12}),
+    "brush": (studio.Faults(lag=1.15, half=0.88), {"lag": 0.15, "width": -0.12}),
     "each stroke's own place": (
-        studio.Amiss(
+        studio.Faults(
             own={name: np.array([0.6 * (-1) ** k, 0.5 * (-1) ** (k // 2)]) for k, name in enumerate(NAMES)}
         ),
         {},
     ),
-    "missing paint": (studio.Amiss(lasts_mm=38.0), {}),
+    "missing paint": (studio.Faults(lasts_mm=38.0), {}),
 }
 
 
 @sample("cause", ONE, keep=2)
-def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
-    amiss, numbers = ONE[cause]
+def test_what_is_wrong_is_named_and_measured(job, cause, capsys):
+    fault_values, numbers = ONE[cause]
     folder, _ = job
-    found = compared(job, amiss, 1, "--corrected-cell", str(folder / "corrected.toml"))
+    found = compared(job, fault_values, 1, "--corrected-cell", str(folder / "corrected.toml"))
     assert found["mend_first"] == cause, found["causes"]
     rows = {row["name"]: row for row in found["numbers"]}
     for name, truth in numbers.items():
@@ -86,42 +88,44 @@ def test_what_is_amiss_is_named_and_measured(job, cause, capsys):
         assert abs(row["value"] - truth) < max(2 * row["half_95"], 0.12 * abs(truth)), (name, truth, row)
     if cause == "machine":
         seen = json.loads((folder / "seen.json").read_text())
-        beside_old, beside_mended = (
+        with_old, with_corrected = (
             np.hypot(*np.transpose([row["correction"]["shift_mm"] for row in rows]))
             for rows in (seen["strokes"], seen["beside_machine"]["strokes"])
         )
-        assert beside_mended.mean() < 0.6 * beside_old.mean(), "the cell undoes what they lie aside"
-        mended = read_cell(folder / "corrected.toml")
-        assert mended.name not in cell_names(), (
+        assert with_corrected.mean() < 0.6 * with_old.mean(), "the cell undoes their displacement"
+        corrected = read_cell(folder / "corrected.toml")
+        assert corrected.name not in cell_names(), (
             "a program that names it is not checked with the cell as it was"
         )
-        assert mended.machine.scale == pytest.approx((1.01, 0.992), abs=0.002)
+        assert corrected.machine.scale == pytest.approx((1.01, 0.992), abs=0.002)
     gains = {row["cause"]: row["gain"] for row in found["causes"]}
     _, plan = job
-    wanted = studio.painted(plan, studio.Amiss())
-    gap = 1 - studio.overlap(studio.painted(plan, amiss, 1), wanted)
+    target = studio.painted(plan, studio.Faults())
+    gap = 1 - studio.overlap(studio.painted(plan, fault_values, 1), target)
     assert gains[cause] == pytest.approx(gap, abs=0.25 * gap + 0.01)
     assert all(gain < 0.4 * gap + 0.01 for other, gain in gains.items() if other != cause), gains
 
 
 @sample("number", [104, 105], keep=1)
-def test_all_of_it_at_once_lies_within_its_intervals(job, number, capsys):
-    """Brush, paper and machine amiss together: height of the paper, lag and width look much alike."""
+def test_all_of_it_at_once_is_within_its_intervals(job, number, capsys):
+    """Faults of brush, paper and machine together: height of the paper, lag and width look much alike."""
     _, plan = job
     rng = np.random.default_rng([24, number])
-    amiss = studio.random_amiss(rng, NAMES, plan.sheet_mm)
-    found = compared(job, amiss, number)
-    truth = {"lag": amiss.lag - 1, "width": amiss.half - 1}
+    fault_values = studio.random_faults(rng, NAMES, plan.sheet_mm)
+    found = compared(job, fault_values, number)
+    truth = {"lag": fault_values.lag - 1, "width": fault_values.half - 1}
     for name in ("scale", "backlash", "tilt"):
-        truth |= {f"{name} in {axis}": value for axis, value in zip("xy", getattr(amiss, name), strict=True)}
+        truth |= {
+            f"{name} in {axis}": value for axis, value in zip("xy", getattr(fault_values, name), strict=True)
+        }
     rows = {row["name"]: row for row in found["numbers"]}
     off = {name: (rows[name]["value"] - value) / rows[name]["half_95"] for name, value in truth.items()}
     assert all(abs(each) < 1.2 for each in off.values()), off
     assert rows["lag"]["half_95"] < 0.06 and rows["width"]["half_95"] < 0.06
 
 
-def test_nothing_amiss_is_nobodys_fault(job, capsys):
-    found = compared(job, studio.Amiss())
+def test_without_faults_no_cause_is_certain(job, capsys):
+    found = compared(job, studio.Faults())
     assert found["mend_first"] is None, found
     rows = {row["name"]: row for row in found["numbers"]}
     assert abs(rows["scale in x"]["value"]) < 0.001 and abs(rows["lag"]["value"]) < 0.02

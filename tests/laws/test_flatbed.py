@@ -1,4 +1,4 @@
-"""A flatbed's scan of strokes on plain paper: its place is found by the strokes themselves, however the sheet lies on
+"""A flatbed's scan of strokes on plain paper: its place is found by the strokes themselves, however the sheet is on
 the glass, or it is refused in a sentence that says what to do."""
 
 import re
@@ -17,7 +17,7 @@ from sampling import sample
 from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.file import write_chart
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.chart.photograph import read_chart_photos, remarks, told
+from brushsvg.calibration.chart.photograph import describe_reading, read_chart_photos, remarks
 from brushsvg.cli import main
 from brushsvg.errors import Error
 from brushsvg.photo.place_by_strokes import _along_ways
@@ -55,7 +55,7 @@ def sheet(paper=0.85, colour=tuple(BLUE)):
 
 
 def placed(points_mm, turn_deg):
-    """Places of the sheet on the glass, both y up: the sheet's middle lies near the glass's."""
+    """Places of the sheet on the glass, both y up: the sheet's middle is near the glass's."""
     turn = np.radians(turn_deg)
     to = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
     return (np.asarray(points_mm) - np.array(A5) / 2) @ to + np.array(GLASS) / 2 + [2.0, -3.0]
@@ -63,7 +63,7 @@ def placed(points_mm, turn_deg):
 
 @lru_cache(maxsize=1)  # of hundreds of megabytes
 def blurred(dpi, **how):
-    """The sheet as the scanner's lens has it, however it lies."""
+    """The sheet as the scanner's lens has it, in any pose."""
     made = sheet(**how)
     return cv2.GaussianBlur(made.shown, None, 0.4 * photograph.TEXELS * 25.4 / dpi)
 
@@ -75,7 +75,8 @@ def grain(shape):
 
 @lru_cache(maxsize=1)  # what is refused is refused of the same scan; more would be hundreds of megabytes
 def scanned(dpi=300, turn_deg=0.0, **how):
-    """Pixels as a scanner writes them, red first: the mean light over each, some noise, a grey lid beside the sheet."""
+    """Pixels as a scanner writes them, red first: the mean light over each, some noise, a grey lid next to the "
+    "sheet."""
     made, fine = blurred(dpi, **how), dpi / 25.4
     texels = np.array([(0, 0), (made.shape[1], 0), (0, made.shape[0])], float)
     corners = placed([(0, A5[1]), A5, (0, 0)], turn_deg)
@@ -105,7 +106,7 @@ def shape(rings):
 
 
 def similarity_off(found) -> tuple[float, float, float]:
-    """Turn [degrees], scale and shift [mm] by which marks lie where they were painted, and how well, rms mm."""
+    """Turn [degrees], scale and shift [mm] by which marks are where they were painted, and how well, rms mm."""
     both = [stroke for stroke in marks() if stroke in found.marks.outlines_mm]
     was, seen = (
         np.array([complex(*shape(rings[stroke]).centroid.coords[0]) for stroke in both])
@@ -122,16 +123,18 @@ def similarity_off(found) -> tuple[float, float, float]:
     [(0, 300), (90, 300), (180, 300), (2, 300), (268, 150), (-1, 600)],
     keep=2,
 )
-def test_marks_are_found_however_the_sheet_lies(turn_deg, dpi):
+def test_marks_are_found_for_any_pose_of_the_sheet(turn_deg, dpi):
     """Rigidly: a turn and shift of the whole sheet are the fit's to find, as on any sheet."""
     found = read(scanned(dpi, turn_deg), dpi)
     assert not found.marks.missing and not found.marks.joined and not remarks(found)
     turn, scale, shift, left = similarity_off(found)
     assert abs(turn) < 0.6 and shift < 0.7, (turn, shift)
     assert abs(scale - 1) < 5e-4 and left < 0.03, (scale, left)
-    degrees, right = re.search(r"turned by (\d+\.\d) degrees( to the right)?", told(found)).groups()
+    degrees, right = re.search(
+        r"turned by (\d+\.\d) degrees( to the right)?", describe_reading(found)
+    ).groups()
     shown = float(degrees) * (-1 if right else 1)
-    assert abs((shown - turn_deg + 180) % 360 - 180) < 0.6 and "24 strokes" in told(found)
+    assert abs((shown - turn_deg + 180) % 360 - 180) < 0.6 and "24 strokes" in describe_reading(found)
 
 
 @pytest.mark.parametrize("margin_mm", [0, 10, 20])
@@ -170,14 +173,14 @@ def test_light_paint_on_dark_paper_is_read():
 
 
 def test_paper_that_is_nearly_black_is_refused():
-    """Marks were found on it, 0.4 mm beside where they were painted."""
+    """Marks were found on it, 0.4 mm from where they were painted."""
     code, sentence = code_of(scanned(paper=0.03, colour=(0.8, 0.8, 0.75)))
     assert code == "photo-too-dark" and "3.5" in sentence
 
 
 @pytest.mark.parametrize("paper", [0.85, 1.05])
 def test_who_forgets_the_resolution_of_a_scan_is_reminded(paper):
-    """White paper on the glass is as white as can be: that was told as overexposed."""
+    """White paper on the glass is as white as can be: that was reported as overexposed."""
     with pytest.raises(Error) as refusal:
         read(scanned(paper=paper), dpi=None)
     assert refusal.value.code == ("photo-markers-missing" if paper < 1 else "photo-overexposed")
@@ -185,8 +188,8 @@ def test_who_forgets_the_resolution_of_a_scan_is_reminded(paper):
 
 
 @pytest.mark.parametrize(("turn_deg", "side"), [(2, "left"), (-3, "right"), (180, ""), (180.5, "")])
-def test_how_a_scan_is_turned_is_told_without_a_sign(turn_deg, side):
-    sentence = told(read(scanned(turn_deg=turn_deg)))
+def test_how_a_scan_is_turned_is_reported_without_a_sign(turn_deg, side):
+    sentence = describe_reading(read(scanned(turn_deg=turn_deg)))
     degrees = re.search(r"turned by (\S+) degrees( to the )?(\w*)", sentence)
     assert float(degrees[1]) == pytest.approx(abs(turn_deg), abs=1.5) and degrees[3] == side, sentence
 
@@ -215,7 +218,7 @@ def test_another_chart_is_refused():
 
 
 def test_the_mirrored_scan_of_another_chart_is_one_of_another_chart():
-    """It once was told to be mirrored, as any picture was in one of two cases."""
+    """It once was said to be mirrored, as any picture was in one of two cases."""
     other = chart(find_brush("round-6"), A5, "few", deepest_mm=9.0)
     assert code_of(np.ascontiguousarray(scanned()[:, ::-1]), made=other)[0] == "photo-paint-elsewhere"
 

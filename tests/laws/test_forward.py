@@ -43,18 +43,18 @@ def test_taut_law_is_its_differential_equation(name):
         kinks = [(k - depths[0]) / (depths[1] - depths[0]) for k in law(name).kinks()]
         cuts = [0.0, *sorted(t for t in kinks if 0 < t < 1), 1.0]
         for a, b in itertools.pairwise(cuts):
-            wanted, heading = oracle.taut(law(name), poses[0] + np.outer([a, b], poses[1] - poses[0]), theta)
+            target, heading = oracle.taut(law(name), poses[0] + np.outer([a, b], poses[1] - poses[0]), theta)
             theta = heading[0]
-        assert found == pytest.approx(wanted[0], abs=1e-9)
+        assert found == pytest.approx(target[0], abs=1e-9)
 
 
 @pytest.mark.parametrize("depths", [(0.0, 10.0), (10.0, 0.0), (0.0, 1e-3), (4.0, 4.0), (2.0, 8.0)])
 def test_taut_law_over_the_whole_depth_range(depths):
     poses = np.array([[0, 0, depths[0]], [12.0, 5.0, depths[1]]])
-    wanted, _ = oracle.taut(ROUND, poses, 2.0)
+    target, _ = oracle.taut(ROUND, poses, 2.0)
     contact = -ROUND(depths[0]) * oracle.unit(2.0)
     found = core.lag.drag_straight(contact, [0, 0], [12.0, 5.0], *depths, profile(*LAGS["round"]))
-    assert found == pytest.approx(wanted[0], abs=1e-9)
+    assert found == pytest.approx(target[0], abs=1e-9)
 
 
 @pytest.mark.parametrize("lag", [0.1, 3.0, 8.0, 39.999, 40.0, 40.001, 60.0])
@@ -111,19 +111,19 @@ def test_simulator_against_slow_stepping(lifts):
     names = [name for name in LAGS if name != "floor"] * 8
     plans = [random_poses(rng, 9, lifts=lifts) for _ in names]
     stepped = oracle.step_all(plans, [law(n) for n in names], 1200)
-    for name, poses, wanted in zip(names, plans, stepped, strict=True):
+    for name, poses, target in zip(names, plans, stepped, strict=True):
         rows = rows_of(poses, make_brush(LAGS[name]))
         down = poses[:, 2] <= 0
-        assert rows.contact_mm[at_poses(rows)][down] == pytest.approx(wanted[down], abs=1e-5)
+        assert rows.contact_mm[at_poses(rows)][down] == pytest.approx(target[down], abs=1e-5)
 
 
 def test_simulator_against_slow_stepping_of_a_law_with_a_floor():
     rng = np.random.default_rng(8)
     plans = [random_poses(rng, 6) for _ in range(12)]
     stepped = oracle.step_all(plans, [law("floor")] * 12, 1000)
-    for poses, wanted in zip(plans, stepped, strict=True):
+    for poses, target in zip(plans, stepped, strict=True):
         rows = rows_of(poses, make_brush(LAGS["floor"]))
-        assert rows.contact_mm[at_poses(rows)] == pytest.approx(wanted, abs=1e-5)
+        assert rows.contact_mm[at_poses(rows)] == pytest.approx(target, abs=1e-5)
 
 
 def test_the_two_slow_simulators_and_the_reference_agree():
@@ -342,8 +342,8 @@ def test_round_6_is_the_article_s_brush():
     assert [f.depth_mm for f in brush.footprints.dragged] == list(range(1, 11))
     for footprint in brush.footprints.dragged:
         d = footprint.depth_mm
-        wanted = oracle.section_6_outline(brush.tip_to_widest(d), 0.42 * d)
-        assert footprint.outline_mm == pytest.approx(wanted, abs=1e-4)
+        target = oracle.section_6_outline(brush.tip_to_widest(d), 0.42 * d)
+        assert footprint.outline_mm == pytest.approx(target, abs=1e-4)
 
 
 # Symmetries ---------------------------------------------------------------------------------------

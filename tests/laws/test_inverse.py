@@ -316,9 +316,9 @@ def test_contact_comes_back(bend, wide):
         return (wide[0] + (wide[1] - wide[0]) * np.asarray(s) / length) / 0.42
 
     rows = painted.taut[(painted.s[painted.taut] > 5) & (painted.s[painted.taut] < length - 1e-3)]
-    wanted = contact_behind(parts, depth_at, painted.s[rows], painted.widest[rows])
+    target = contact_behind(parts, depth_at, painted.s[rows], painted.widest[rows])
     assert len(rows) > 10
-    assert painted.rows.contact_mm[rows] == pytest.approx(wanted, abs=1e-6)
+    assert painted.rows.contact_mm[rows] == pytest.approx(target, abs=1e-6)
 
 
 @sample("half_width", [0.25, 0.4, 1.0, 2.0], keep=2)
@@ -342,7 +342,7 @@ def test_contact_settles_on_its_own_circle(half_width):
 
 
 def test_tcp_is_a_lag_ahead_along_the_heading():
-    """q = P + r T wherever the brush is taut, at the poses themselves."""
+    """q = P + r T where the brush is taut, at the poses themselves."""
     painted = Painted(stroke_of(smooth(np.random.default_rng(8), 3), [(0.0, 0.8), (1.0, 2.0)]), 1e-3, parts=1)
     rows, k = painted.rows, painted.taut
     ahead = LAG(rows.depth_mm[k])[:, None] * oracle.unit(rows.heading_rad[k])
@@ -372,7 +372,7 @@ def reach(painted, point, direction, rows):
 @pytest.mark.parametrize("half_width", [0.25, 0.5, 1.0, 1.68, 2.5, 4.0])
 @sample("seed", [11, 12], keep=1)
 def test_ends_of_the_mark(half_width, seed):
-    """No tail after the lift, nothing before the wanted start; the patch rests while the brush is lifted."""
+    """No tail after the lift, nothing before the requested start; the patch rests while the brush is lifted."""
     painted = Painted(
         stroke_of(smooth(np.random.default_rng(seed), 3), [(0.0, half_width)]), 1e-3, parts=12, step=0.5
     )
@@ -457,13 +457,13 @@ def test_constant_runs_a_constant_lag_ahead(lag, tolerance):
         assert poses[-1] == pytest.approx([*poses[-2, :2], 0], abs=0)
         s = np.linspace(0, on.length, 40001)
         points, tangents = on.at(s)
-        wanted = points + r0 * tangents
+        target = points + r0 * tangents
         if has_corner:
             turn = np.linspace(0, np.pi / 2, 4001)
-            wanted = np.vstack([wanted, [20, 0] + r0 * oracle.unit(turn)])
-        near, _ = oracle.cKDTree(wanted).query(oracle.subdivide(poses[1:-1], 4)[:, :2])
+            target = np.vstack([target, [20, 0] + r0 * oracle.unit(turn)])
+        near, _ = oracle.cKDTree(target).query(oracle.subdivide(poses[1:-1], 4)[:, :2])
         assert near.max() <= tolerance + 2e-3  # 2e-3: spacing of the samples, rounding of the median
-        far, _ = oracle.cKDTree(oracle.subdivide(poses[1:-1], 1, 1e-2)[:, :2]).query(wanted[::20])
+        far, _ = oracle.cKDTree(oracle.subdivide(poses[1:-1], 1, 1e-2)[:, :2]).query(target[::20])
         assert far.max() <= tolerance + 8e-3
 
 
@@ -544,8 +544,8 @@ def painted_region(poses, step=0.25, from_x=-np.inf):
 
 
 def beginning(middle, half_width, start):
-    """Overlap of mark and wanted mark within two half widths of the path's first point, and the greatest distance of
-    paint beyond the wanted mark there."""
+    """Overlap of mark and target mark within two half widths of the path's first point, and the greatest distance of
+    paint beyond the target mark there."""
     import shapely
 
     found = core.compensate([stroke_of(middle, [(0.0, half_width)])], ROUND, (200.0, 200.0), start=start)
@@ -554,12 +554,12 @@ def beginning(middle, half_width, start):
     assert poses[0, 2] == poses[-1, 2] == 0.0
     assert (poses[1:-1, 2] < 0.0).all()  # one touch
     points = np.vstack([oracle.bezier(cubic, np.linspace(0, 1, 40)) for cubic in middle])
-    wanted = shapely.LineString(points).buffer(half_width, quad_segs=64)
+    target = shapely.LineString(points).buffer(half_width, quad_segs=64)
     near = shapely.Point(points[0]).buffer(2 * half_width)
     mark = painted_region(poses)
-    here, meant = mark & near, wanted & near
-    beyond = shapely.hausdorff_distance(here | meant, meant)
-    return (here & meant).area / (here | meant).area, beyond
+    here, expected = mark & near, target & near
+    beyond = shapely.hausdorff_distance(here | expected, expected)
+    return (here & expected).area / (here | expected).area, beyond
 
 
 @pytest.mark.parametrize("half_width", [0.8, 1.4, 2.0])
@@ -620,12 +620,12 @@ def test_what_has_no_room_for_a_way_back_is_turned_round_first(middle, half_widt
     assert turned[0, 2] == turned[-1, 2] == 0.0
     assert (turned[1:-1, 2] < 0.0).all()  # one touch
     np.testing.assert_array_equal(poses_of(middle, half_width, start="auto"), turned)
-    wanted = shapely.union_all([shapely.Polygon(ring) for ring in core.wanted_outline(stroke, 0.01)])
+    target = shapely.union_all([shapely.Polygon(ring) for ring in core.wanted_outline(stroke, 0.01)])
     near = shapely.Point(middle[0, :2]).buffer(2 * half_width[0][1])
 
     def overlap(poses):
         mark = painted_region(poses)
-        return (mark & wanted & near).area / ((mark | wanted) & near).area
+        return (mark & target & near).area / ((mark | target) & near).area
 
     assert overlap(turned) > least > overlap(poses_of(middle, half_width)) + 0.04
 
@@ -639,11 +639,11 @@ def test_a_dot_is_round(half_width, length, least):
     import shapely
 
     points = np.array([(50.0, 50.0), (50.0 + 0.6 * length * half_width, 50.0 + 0.8 * length * half_width)])
-    wanted = (shapely.LineString(points) if length else shapely.Point(points[0])).buffer(half_width, 64)
+    target = (shapely.LineString(points) if length else shapely.Point(points[0])).buffer(half_width, 64)
 
     def overlap(poses):
         mark = painted_region(poses)
-        return (mark & wanted).area / (mark | wanted).area
+        return (mark & target).area / (mark | target).area
 
     stroke = stroke_of(line(*points), [(0.0, half_width)])
     found = core.compensate([stroke], ROUND, (200.0, 200.0), start="round")
@@ -669,11 +669,11 @@ def test_a_dot_with_corners_is_square(sides, turned_rad, least):
     middle = np.array([50.0, 50.0])
     off = (length - width) / 2 * along
     box = shapely.box(-length / 2, -width / 2, length / 2, width / 2)
-    wanted = shapely.affinity.translate(
+    target = shapely.affinity.translate(
         shapely.affinity.rotate(box, turned_rad, (0, 0), use_radians=True), *middle
     )
     stroke = stroke_of(line(middle - off, middle + off), [(0.0, width / 2)])
-    stroke.wanted_mm = [np.asarray(wanted.exterior.coords)[:-1]]
+    stroke.wanted_mm = [np.asarray(target.exterior.coords)[:-1]]
 
     def overlap(start):
         found = core.compensate([stroke], ROUND, (200.0, 200.0), start=start)
@@ -682,7 +682,7 @@ def test_a_dot_with_corners_is_square(sides, turned_rad, least):
         assert poses[0, 2] == poses[-1, 2] == 0.0
         assert (poses[1:-1, 2] < 0.0).all()  # one touch
         mark = painted_region(poses)
-        return (mark & wanted).area / (mark | wanted).area, len(poses)
+        return (mark & target).area / (mark | target).area, len(poses)
 
     (butt, count), (said, _), (rounded, before) = map(overlap, ("auto", "butt", "round"))
     assert butt == said > least > rounded + 0.1
@@ -756,7 +756,7 @@ def test_a_dot_without_corners_stays_round(corners):
     ],
 )
 def test_wide_lines_begin_round_however_they_bend(cubic, half_width):
-    """For want of room they began pointed: 0.94 of what was drawn."""
+    """Without room they began pointed: 0.94 of what was drawn."""
     stroke = stroke_of(np.array([cubic], float), [(0.0, half_width)])
     drawn = shapely.union_all([shapely.Polygon(ring) for ring in core.wanted_outline(stroke, 0.02)])
 
@@ -774,7 +774,7 @@ def test_wide_lines_begin_round_however_they_bend(cubic, half_width):
 
 @pytest.mark.parametrize("half_width", [1.0, 2.0, 3.0, 3.9, 4.1])
 def test_bars_of_all_widths_begin_alike(half_width):
-    """Wide ones began pointed beside round ones: a roof on every stem of a sans."""
+    """Wide ones began pointed next to round ones: a roof on every stem of a sans."""
     bar = line((60, 90), (60, 40))
     rounded = poses_of(bar, [(0.0, half_width)], start="round")
     np.testing.assert_array_equal(poses_of(bar, [(0.0, half_width)], start="auto"), rounded)
@@ -816,9 +816,9 @@ def test_a_pointed_end_is_a_pointed_beginning_mirrored(middle, half_width):
 
 def cut_bar(half_width, slope):
     """A bar whose end is cut half a width beyond its path's, and so much farther back on its left."""
-    x, aside = 40 + half_width, slope * half_width
+    x, displaced = 40 + half_width, slope * half_width
     low, high = 20 - half_width, 20 + half_width
-    return [(20.0, low), (x + aside, low), (x - aside, high), (20.0, high)]
+    return [(20.0, low), (x + displaced, low), (x - displaced, high), (20.0, high)]
 
 
 def end_of_bar(half_width, slope, **options):
@@ -836,11 +836,11 @@ def end_of_bar(half_width, slope, **options):
     )
     assert poses[0, 2] == poses[-1, 2] == 0.0
     assert (poses[1:-1, 2] < 0.0).all()  # one touch
-    wanted = shapely.Polygon(cut_bar(half_width, slope))
+    target = shapely.Polygon(cut_bar(half_width, slope))
     near = shapely.box(40 - half_width, 0, 100, 40)
-    here, meant = painted_region(poses, from_x=40 - 3 * half_width) & near, wanted & near
-    beyond = shapely.hausdorff_distance(here | meant, meant)
-    return (here & meant).area / (here | meant).area, beyond, poses
+    here, expected = painted_region(poses, from_x=40 - 3 * half_width) & near, target & near
+    beyond = shapely.hausdorff_distance(here | expected, expected)
+    return (here & expected).area / (here | expected).area, beyond, poses
 
 
 @sample(("half_width", "slope"), [(1.5, 0.0), (2.0, -0.6), (2.0, 1.0), (3.0, 0.3)], keep=2)
@@ -885,11 +885,11 @@ def beginning_of_bar(half_width, slope, poses):
     distance of paint beyond the bar there."""
     import shapely
 
-    wanted = shapely.Polygon(begun_bar(half_width, slope))
+    target = shapely.Polygon(begun_bar(half_width, slope))
     near = shapely.box(0, 0, 20 + 3 * half_width, 40)
-    here, meant = painted_region(poses) & near, wanted & near
-    beyond = shapely.hausdorff_distance(here | meant, meant)
-    return (here & meant).area / (here | meant).area, beyond
+    here, expected = painted_region(poses) & near, target & near
+    beyond = shapely.hausdorff_distance(here | expected, expected)
+    return (here & expected).area / (here | expected).area, beyond
 
 
 @sample(
@@ -935,40 +935,40 @@ ROUND_CAP = [
 
 
 @pytest.mark.parametrize(
-    ("half_width", "wanted"),
+    ("half_width", "target"),
     [
         (2.0, ROUND_CAP),
         (
             0.5,
             [(20, 19.5), (60.5, 19.5), (60.5, 20.5), (20, 20.5)],
-        ),  # finer than what can be led into a corner
+        ),  # finer than a path can follow into a corner
         (2.0, [(20, 18), (58, 18), (62, 20), (58, 22), (20, 22)]),  # pointed
         (2.0, [(20, 18), (62, 18), (60, 20), (62, 22), (20, 22)]),  # a swallow's tail
         (2.0, [(20, 18), (70, 18), (70, 22), (20, 22)]),  # goes on in another stroke
     ],
 )
-def test_what_is_no_cut_ends_round(half_width, wanted):
+def test_what_is_no_cut_ends_round(half_width, target):
     stroke = stroke_of(line((20, 20), (60, 20)), [(0.0, half_width)])
-    stroke.wanted_mm = [np.array(wanted, float)]
+    stroke.wanted_mm = [np.array(target, float)]
     plans = [core.compensate([stroke], ROUND, (200.0, 200.0), end=end).plan for end in ("round", "butt")]
     np.testing.assert_array_equal(*(plan.passes[0].poses_mm for plan in plans))
 
 
 @pytest.mark.parametrize(
-    ("half_width", "wanted"),
+    ("half_width", "target"),
     [
         (2.0, mirrored(ROUND_CAP)),
         (
             0.5,
             [(19.5, 19.5), (60, 19.5), (60, 20.5), (19.5, 20.5)],
-        ),  # finer than what can be led into a corner
+        ),  # finer than a path can follow into a corner
         (2.0, [(22, 18), (60, 18), (60, 22), (22, 22), (18, 20)]),  # pointed
         (2.0, [(10, 18), (60, 18), (60, 22), (10, 22)]),  # goes on in another stroke
     ],
 )
-def test_what_begins_with_no_cut_is_round(half_width, wanted):
+def test_what_begins_with_no_cut_is_round(half_width, target):
     stroke = stroke_of(line((20, 20), (60, 20)), [(0.0, half_width)])
-    stroke.wanted_mm = [np.array(wanted, float)]
+    stroke.wanted_mm = [np.array(target, float)]
     plans = [
         core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("round", "butt")
     ]
@@ -977,7 +977,7 @@ def test_what_begins_with_no_cut_is_round(half_width, wanted):
 
 @pytest.mark.parametrize("middle", [line((20, 20), (28, 20)), line((20, 20), (25, 20), (25, 50))])
 def test_a_beginning_without_room_for_the_way_back_is_round(middle):
-    """Too short for the tip that is set down inside, or it would come out beside a corner."""
+    """Too short for the tip that is set down inside, or it would come out next to a corner."""
     rounded = poses_of(middle, [(0.0, 3.0)], start="round")
     np.testing.assert_array_equal(poses_of(middle, [(0.0, 3.0)], start="butt"), rounded)
 

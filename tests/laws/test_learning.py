@@ -8,7 +8,7 @@ import numpy as np
 import painter
 import photograph
 import pytest
-from diagnostics import in_json, is_told
+from diagnostics import in_json, is_reported
 from numpy.polynomial.polynomial import polyval
 from photograph import BLUE, INK, Camera
 
@@ -41,7 +41,7 @@ BARS = "".join(
     f'<path id="bar-{k}" d="M20 {20 * k} L{80 + 10 * k} {20 * k}" stroke-width="4"/>' for k in (1, 2, 3, 4)
 )
 CAMERA = Camera(size_px=(1800, 1170), fill=0.95)
-ASIDE = Camera(size_px=(1800, 1170), tilt_deg=(-6.0, 5.0), fill=0.9)
+DISPLACED = Camera(size_px=(1800, 1170), tilt_deg=(-6.0, 5.0), fill=0.9)
 FAULTS = painter.Faults(
     noise=0.05, noise_length=0.5, displacement=0.2, placement=0.6, turn=0.006, height=0.15
 )
@@ -92,7 +92,7 @@ class Studio:
             sheet.paint([tick], INK)
         for _, _, rings in painted.marks:
             sheet.paint([ring + page.frame_mm for ring in rings], BLUE)
-        for name, camera in ((photo, CAMERA), (f"aside-{photo}", ASIDE)):
+        for name, camera in ((photo, CAMERA), (f"aside-{photo}", DISPLACED)):
             (self.folder / name).write_bytes(photograph.photograph(sheet, camera))
 
     def words(self, out="mine-2.json", photo="photo.jpg", plan="word.json", prior="mine.json"):
@@ -112,7 +112,7 @@ def deepest(plan):
     return max(float(-np.array(one.poses_mm)[:, 2].min()) for one in plan.passes)
 
 
-# seed: truth, and how sure the file is: the second lies five standard deviations from what it says
+# seed: truth, and how sure the file is: the second is five standard deviations from what it says
 STUDIOS = {1: (true_brush(1.18, 0.9), 0.08), 2: (true_brush(0.83, 0.86), 0.03)}
 
 
@@ -142,10 +142,10 @@ def test_a_word_brings_the_brush_nearer_to_the_truth(learnt):
         assert np.all(band < 0.1 * true), law
 
 
-def test_told_twice_it_is_refused(learnt, capsys):
+def test_given_twice_it_is_refused(learnt, capsys):
     studio, _ = learnt
-    status, _, told = in_json(capsys, *studio.words("mine-3.json", prior="mine-2.json"))
-    assert status == 1 and is_told(told, "photo-learned-twice mine-2"), told
+    status, _, reported = in_json(capsys, *studio.words("mine-3.json", prior="mine-2.json"))
+    assert status == 1 and is_reported(reported, "photo-learned-twice mine-2"), reported
     assert not (studio.folder / "mine-3.json").exists()
 
 
@@ -161,7 +161,7 @@ def test_marks_that_say_less_than_is_known_leave_the_brush_as_it_was(tmp_path, c
 
 
 def test_one_depth_says_less_of_others(tmp_path, capsys):
-    """What is told at one depth and above it leaves what lies far below it open, and the truth within."""
+    """What is learned at one depth and above it leaves what is far below it open, and the truth within."""
     studio = Studio(tmp_path, ONE_DEPTH, 0.08)
     studio.paint(3, true_brush(1.06, 0.96))
     assert in_json(capsys, *studio.words())[0] == 0
@@ -187,26 +187,26 @@ def test_what_is_not_this_job_is_refused(tmp_path, capsys):
         tmp_path / "mine.json",
     ]
     assert main([*map(str, words), "--quiet"]) == 0
-    status, _, told = in_json(capsys, *studio.words(plan="other.json"))
-    assert status == 1 and is_told(told, "photo-of-another-chart"), told
+    status, _, reported = in_json(capsys, *studio.words(plan="other.json"))
+    assert status == 1 and is_reported(reported, "photo-of-another-chart"), reported
     assert main([*studio.words(), "--chart", "chart.json"]) == 2
     assert main([*studio.words()[:4], "-o", str(tmp_path / "out.json")]) == 2
     assert not (tmp_path / "mine-2.json").exists()
 
 
-def test_strokes_that_share_paint_are_left_out_by_name(tmp_path, capsys):
+def test_strokes_that_share_paint_are_left_out_with_their_names(tmp_path, capsys):
     studio = Studio(tmp_path, WORD + '<path id="slash" d="M20 84 L44 66" stroke-width="3"/>')
     studio.paint(5, true_brush(1.05, 0.95))
-    status, _, told = in_json(capsys, *studio.words())
+    status, _, reported = in_json(capsys, *studio.words())
     assert status == 0
-    named = sorted(notice.where for _, notice in told if notice.code == "marks-touch")
-    assert named == ["line", "slash"], told
+    named = sorted(notice.where for _, notice in reported if notice.code == "marks-touch")
+    assert named == ["line", "slash"], reported
     brush = studio.brush()
     assert abs(brush.lag(4.0) / (1.05 * polyval(4.0, LAG)) - 1) < 0.03
 
 
 @pytest.mark.thorough
-def test_a_second_look_that_finds_no_lone_stroke_leaves_what_the_first_told(tmp_path, capsys, monkeypatch):
+def test_a_second_look_that_finds_no_lone_stroke_keeps_the_first_result(tmp_path, capsys, monkeypatch):
     studio = Studio(tmp_path, WORD + '<path id="slash" d="M20 84 L44 66" stroke-width="3"/>')
     studio.paint(5, true_brush(1.05, 0.95))
     looks = []

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import painter
 import pytest
-from diagnostics import are_told
+from diagnostics import are_reported
 from sampling import sample
 
 core = pytest.importorskip("brushsvg._core")
@@ -32,30 +32,30 @@ LEAN, SCALE, SKEW, TILT = (0.3, -0.2), (1.012, 0.993), 0.01, (0.006, -0.004)
 FIELD = ((0.8, -0.5, 0.6), (-0.7, 0.4, 0.9))
 
 
-def run(poses, centre, height, lean, axes, tilt, aside=None):
+def run(poses, centre, height, lean, axes, tilt, displaced=None):
     """Come down on the first pose and gone up from the last one, too."""
     up = poses[[0, -1]] * (1, 1, 0) + (0, 0, 1)
     poses = np.vstack([up[:1], poses, up[1:]])
-    if aside:  # lines are none any more
+    if displaced:  # lines are none any more
         parts = [a + np.linspace(0, 1, 12)[1:, None] * (b - a) for a, b in pairwise(poses)]
         poses = np.vstack([poses[:1], *parts])
     at = poses[:, :2] - centre
     z = poses[:, 2] - at @ tilt
     off = np.column_stack([axes[0] * at[:, 0] + axes[2] * at[:, 1], axes[1] * at[:, 1]])
-    off += aside(poses[:, :2]) if aside else 0.0
+    off += displaced(poses[:, :2]) if displaced else 0.0
     return np.column_stack([poses[:, :2] + off + np.outer(height - z, lean), z])
 
 
-def aside_of(strokes):
-    """(n, 2) places to how far FIELD takes the tool aside there, over the box of all strokes."""
+def displacement_of(strokes):
+    """(n, 2) places to how far FIELD displaces the tool there, over the box of all strokes."""
     places = np.concatenate([poses[:, :2] for _, poses in strokes])
     low, high = places.min(axis=0), places.max(axis=0)
 
-    def aside(at):
+    def displaced(at):
         u, v = (2 * at - low - high).T / (high - low)[:, None]
         return np.column_stack([a * u**2 + b * u * v + c * v**2 for a, b, c in FIELD])
 
-    return aside
+    return displaced
 
 
 def painted_by(seed, parts, one_way=False):
@@ -75,10 +75,10 @@ def painted_by(seed, parts, one_way=False):
     axes = np.array([SCALE[0] - 1, SCALE[1] - 1, SKEW]) * ("axes" in parts)
     tilt = np.array(TILT) * ("tilt" in parts)
 
-    aside = aside_of(strokes) if "field" in parts else None
+    displaced = displacement_of(strokes) if "field" in parts else None
 
     def regions(brush, strokes, height):
-        ways = [(name, run(poses, centre, height, lean, axes, tilt, aside)) for name, poses in strokes]
+        ways = [(name, run(poses, centre, height, lean, axes, tilt, displaced)) for name, poses in strokes]
         return painter.swept(brush, ways, height)
 
     sheet = painter.paint(rng, brush, strokes, painter.Faults(displacement=0.3), regions)
@@ -133,7 +133,7 @@ def test_brush_and_machine_come_back(parts):
         assert abs(one.value - truth[one.name]) < 2 * one.half, one
         assert one.half < 0.6 * machine_found.PARTS[one.part][1], f"{one}: hardly more than the prior"
     assert lag_off(made, brush) < 0.03
-    text = report(made)
+    text = report(made).text(True)
     table = tomllib.loads(text[text.index("[machine]") :].partition("\n\n")[0])["machine"]
     if "lean" in parts:
         assert table["lean_mm_per_mm"] == pytest.approx(made.fit.machine.lean_mm_per_mm, abs=1e-4)
@@ -150,8 +150,8 @@ def test_without_a_field_none_is_said_to_be_certain(seed):
     made = calibrate_marks(painted, "b", options=options_for(("field",)))
     found = machine_found.numbers(made.fit, made.covariance, made.expected)
     assert len(found) == 6 and not machine_found.has_field(found), found
-    assert len(machine_found.told(found)) == 7, "and that none is certain"
-    assert "field_mm" not in report(made)
+    assert len(machine_found.describe_numbers(found)) == 7, "and that none is certain"
+    assert "field_mm" not in report(made).text(True)
 
 
 def test_without_the_machine_the_lag_is_off():
@@ -171,9 +171,9 @@ def test_no_lag_that_looks_like_lean_is_where_the_fit_begins(seed):
     assert max(half for _, half in found["numbers"].values()) < 0.15, "and it is known what it is"
 
 
-def test_strokes_of_one_direction_are_said_to_tell_lean_from_lag_badly():
+def test_strokes_of_one_direction_are_said_to_separate_lean_from_lag_badly():
     _, painted = painted_by(5, ("lean",), one_way=True)
-    assert are_told(machine_found.doubts(painted, options_for(("lean",))), "lean-like-lag 0 0.8")
+    assert are_reported(machine_found.doubts(painted, options_for(("lean",))), "lean-like-lag 0 0.8")
     assert machine_found.doubts(painted, options_for(())) == []
     _, both = painted_by(5, ("lean",))
     assert machine_found.doubts(both, options_for(("lean",))) == []
@@ -194,8 +194,8 @@ def test_an_exact_machine_is_found_to_be_exact():
 
 @pytest.mark.parametrize("seed", [5, 6])
 def test_no_lean_is_known_no_better_than_some(seed):
-    """A brush that is pressed on the spot points to wherever a lean of micrometres takes the tool: of such a lean the
-    marks seem to tell everything, of none at all another thing."""
+    """A brush that is pressed on the spot points to where a lean of micrometres takes the tool: of such a lean the
+    marks seem to determine everything, of none at all another thing."""
     _, upright = painted_by(seed, ())
     _, leaning = painted_by(seed, ("lean",))
     known = {}

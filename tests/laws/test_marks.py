@@ -88,7 +88,7 @@ def brush_of(shape, lag="round"):
 
 
 @functools.cache
-def wanted_mark(name, shape):
+def target_mark(name, shape):
     return dense_union(PASSES[name], shape)
 
 
@@ -161,17 +161,17 @@ def marks_of(poses, brush, tolerance_mm=0.02):
 
 @sample(("name", "shape"), CASES, keep=6)
 def test_outline_area_against_a_dense_union(name, shape):
-    wanted = wanted_mark(name, shape)
+    target = target_mark(name, shape)
     marks = marks_of(PASSES[name], brush_of(shape), 5e-4)
     rings = marks.passes[0].outline_mm
     region, signed = region_of(rings)
     assert all(len(r) >= 3 and not np.array_equal(r[0], r[-1]) for r in rings)
     assert all(shapely.Polygon(r).is_simple for r in rings)
-    assert signed.sum() == pytest.approx(region.area, rel=1e-9)  # holes lie inside, outer rings apart
+    assert signed.sum() == pytest.approx(region.area, rel=1e-9)  # holes are inside, outer rings apart
     assert core.area(rings) == pytest.approx(signed.sum(), rel=1e-9)
-    assert signed.sum() == pytest.approx(wanted.area, rel=2e-4)
-    assert region.symmetric_difference(wanted).area < 4e-4 * wanted.area + 1e-3 * wanted.length
-    assert (signed < -1e-3).sum() == sum(shapely.Polygon(h).area > 1e-3 for h in holes_of(wanted))
+    assert signed.sum() == pytest.approx(target.area, rel=2e-4)
+    assert region.symmetric_difference(target).area < 4e-4 * target.area + 1e-3 * target.length
+    assert (signed < -1e-3).sum() == sum(shapely.Polygon(h).area > 1e-3 for h in holes_of(target))
 
 
 def holes_of(region):
@@ -181,10 +181,10 @@ def holes_of(region):
 def test_outline_at_the_default_tolerance():
     """Chords of rows 0.02 mm off the curve: no edge is farther off than that."""
     for name, shape in CASES:
-        wanted = wanted_mark(name, shape)
+        target = target_mark(name, shape)
         region, _ = region_of(marks_of(PASSES[name], brush_of(shape)).outline_mm)
-        assert region.difference(wanted.buffer(0.021)).area < 1e-6, (name, shape)
-        assert wanted.difference(region.buffer(0.021)).area < 1e-6, (name, shape)
+        assert region.difference(target.buffer(0.021)).area < 1e-6, (name, shape)
+        assert target.difference(region.buffer(0.021)).area < 1e-6, (name, shape)
 
 
 def test_outline_area_on_random_passes():
@@ -201,10 +201,10 @@ def test_outline_area_on_random_passes():
     keep=4,
 )
 def test_coverage_against_rings_and_union(name, shape):
-    brush, wanted = brush_of(shape), wanted_mark(name, shape)
+    brush, target = brush_of(shape), target_mark(name, shape)
     marks = marks_of(PASSES[name], brush, 2e-4)
     left, bottom, right, top = core.painted_bounds(marks.passes[0], brush)
-    assert (left, bottom, right, top) == pytest.approx(wanted.bounds, abs=0.01)
+    assert (left, bottom, right, top) == pytest.approx(target.bounds, abs=0.01)
     px = 40.0 if name == "two dabs" else 20.0  # small marks: an edge is as wide as a pixel
     size = np.ceil((np.array([right - left, top - bottom]) + 1) * px) / px
     window = (left - 0.5, bottom - 0.5, *size)
@@ -213,17 +213,17 @@ def test_coverage_against_rings_and_union(name, shape):
     assert image.shape == (round(size[1] * px), round(size[0] * px))
     assert image.min() >= 0
     assert image.max() <= 1
-    assert image.sum(dtype=float) / px**2 == pytest.approx(wanted.area, rel=2e-4)
+    assert image.sum(dtype=float) / px**2 == pytest.approx(target.area, rel=2e-4)
     rings = core.coverage(marks.outline_mm, window, px)
     assert rings.sum(dtype=float) / px**2 == pytest.approx(core.area(marks.outline_mm), rel=2e-4)
-    assert np.abs(image - rings).mean() * image.size / max(1.0, wanted.length * px) < 0.05
+    assert np.abs(image - rings).mean() * image.size / max(1.0, target.length * px) < 0.05
 
     rng = np.random.default_rng(1)
     edge = np.argwhere((image > 0) & (image < 1))
     picked = np.concatenate([edge[rng.permutation(len(edge))[:300]], rng.integers(0, image.shape, (200, 2))])
     x, y = window[0] + picked[:, 1] / px, window[1] + size[1] - (picked[:, 0] + 1) / px  # row 0 is the top
-    shapely.prepare(wanted)
-    exact = shapely.area(shapely.intersection(shapely.box(x, y, x + 1 / px, y + 1 / px), wanted)) * px**2
+    shapely.prepare(target)
+    exact = shapely.area(shapely.intersection(shapely.box(x, y, x + 1 / px, y + 1 / px), target)) * px**2
     found = image[picked[:, 0], picked[:, 1]]
     assert np.abs(found - exact).mean() < 0.05
     assert np.abs(found - exact).max() < 0.35
@@ -285,8 +285,8 @@ def test_footprint_blending(shape):
     table = brush_of(shape).footprints
     for depth in (0.0, 0.4, 1.0, 1.99, 2.0, 3.7, 5.0, 8.5, 10.0, 12.0):
         for pull in (0.0, 0.3, 1.0):
-            wanted = oracle.footprint_at(dragged, pressed, depth, pull)
-            assert core.footprint_at(table, depth, pull) == pytest.approx(wanted, abs=1e-12)
+            target = oracle.footprint_at(dragged, pressed, depth, pull)
+            assert core.footprint_at(table, depth, pull) == pytest.approx(target, abs=1e-12)
 
 
 def test_nothing_painted_is_nothing():

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import photograph
 import pytest
-from diagnostics import in_json, is_told
+from diagnostics import in_json, is_reported
 from photograph import BLUE, INK, Camera
 from sampling import sample
 from scipy.spatial.transform import Rotation
@@ -23,7 +23,7 @@ from brushsvg.comparison.job_page import job_page
 from brushsvg.jobs.json_files import read_plan
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.realised.arc_chords import with_chords
-from brushsvg.machine.realised.distortion import told_pass
+from brushsvg.machine.realised.distortion import commanded_pass
 from brushsvg.model.library import find_brush, save_brush
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="110mm" height="70mm" viewBox="0 0 110 70">
@@ -45,7 +45,10 @@ class Studio:
         (folder / "five.svg").write_text(DRAWING)
         self.axes = np.eye(2) + self.rng.normal(0, 0.002, (2, 2))
         self.own, self.sheets, self.brush = {}, 0, BRUSH
-        self.grown, self.cut = {}, {}  # by stroke: how much farther out its edges lie; where its paint ends
+        self.grown, self.cut = (
+            {},
+            {},
+        )  # by stroke: how much farther from the middle its edges are; where its paint ends
 
     def plan(self, *flags):
         path = self.folder / "plan.json"
@@ -67,10 +70,17 @@ class Studio:
             if name in self.cut:  # its paint ends by so many mm before its tip, along a direction
                 way, mm = self.cut[name]
                 far = np.array(shape.exterior.coords) @ way
-                aside = 90 * np.array([-way[1], way[0]])
+                displaced = 90 * np.array([-way[1], way[0]])
                 low = way * (far.min() + mm)
                 shape = shape.intersection(
-                    Polygon([low - aside, low + aside, low + aside + 200 * way, low - aside + 200 * way])
+                    Polygon(
+                        [
+                            low - displaced,
+                            low + displaced,
+                            low + displaced + 200 * way,
+                            low - displaced + 200 * way,
+                        ]
+                    )
                 )
             found[name] = [np.array(ring) @ self.axes.T + own for ring in outlines(shape)]
         return found
@@ -90,9 +100,9 @@ class Studio:
         path.write_bytes(photograph.photograph(sheet, CAMERA))
         return path
 
-    def told(self, plan, cell):
-        """What a machine is told that undoes what this cell says."""
-        passes = [told_pass(with_chords(each), find_cell(cell)) for each in plan.passes]
+    def reported(self, plan, cell):
+        """The commands of a machine that undoes what this cell says."""
+        passes = [commanded_pass(with_chords(each), find_cell(cell)) for each in plan.passes]
         return _core.Plan("", "", plan.sheet_mm, passes)
 
     def compared(self, photo, *flags):
@@ -114,13 +124,13 @@ def outlines(shape):
     return [np.array(ring.coords)[:-1] for part in parts for ring in (part.exterior, *part.interiors)]
 
 
-def apart(painted, wanted):
-    """Of each stroke 1 - intersection over union, by shapely; the sheet shifted and turned as its strokes lie best."""
-    ours, theirs = ([area(rings[name]) for name in wanted] for rings in (painted, wanted))
+def apart(painted, target):
+    """Of each stroke 1 - intersection over union, by shapely; the sheet shifted and turned as its strokes fit best."""
+    ours, theirs = ([area(rings[name]) for name in target] for rings in (painted, target))
     a, b = (np.array([each.centroid.coords[0] for each in some]) for some in (ours, theirs))
     turn = Rotation.align_vectors(*(np.column_stack([c - c.mean(axis=0), 0 * c[:, 0]]) for c in (b, a)))[0]
     matrix, found = turn.as_matrix()[:2, :2], {}
-    for name, one, other in zip(wanted, ours, theirs, strict=True):
+    for name, one, other in zip(target, ours, theirs, strict=True):
         laid = transform(one, lambda points: (points - a.mean(axis=0)) @ matrix.T + b.mean(axis=0))
         found[name] = 1 - laid.intersection(other).area / laid.union(other).area
     return found
@@ -130,14 +140,14 @@ def apart(painted, wanted):
 def test_each_round_comes_nearer(tmp_path, capsys, seed):
     studio = Studio(tmp_path, seed)
     plan = studio.plan()
-    wanted = studio.rings(plan)
-    before = apart(studio.painted(plan), wanted)
+    target = studio.rings(plan)
+    before = apart(studio.painted(plan), target)
     first = studio.compared(studio.photographed(plan))
     plan_2 = studio.plan("--corrections", first)
-    after_one = apart(studio.painted(plan_2), wanted)
+    after_one = apart(studio.painted(plan_2), target)
     second = studio.compared(studio.photographed(plan_2), "--corrections", first)
     plan_3 = studio.plan("--corrections", second)
-    after_two = apart(studio.painted(plan_3), wanted)
+    after_two = apart(studio.painted(plan_3), target)
     means = [np.mean([*each.values()]) for each in (before, after_one, after_two)]
     assert means[1] < 0.4 * means[0] and means[2] < 0.2 * means[0], means
     assert all(after_two[name] < before[name] for name in before)
@@ -150,10 +160,10 @@ def test_corrections_are_those_of_this_job(tmp_path, capsys):
     (tmp_path / "moved.svg").write_text(DRAWING.replace("M14 30", "M14.5 30"))
     (tmp_path / "other.svg").write_text(DRAWING.replace('id="bow"', 'id="bough"'))
     for name in ("moved.svg", "other.svg"):
-        status, _, told = in_json(
+        status, _, reported = in_json(
             capsys, "convert", tmp_path / name, "-o", tmp_path / "a.ngc", "--corrections", found
         )
-        assert status == 1 and is_told(told, "corrections-of-another-job", "bow"), told
+        assert status == 1 and is_reported(reported, "corrections-of-another-job", "bow"), reported
     (tmp_path / "wider.svg").write_text(
         DRAWING.replace('M16 58 L70 54" stroke-width="3"', 'M16 58 L70 54" stroke-width="4"')
     )
@@ -166,12 +176,16 @@ def test_corrections_are_those_of_this_job(tmp_path, capsys):
         ("five.svg", "bow", ("--compensation", "constant")),
     ):
         words = ("convert", tmp_path / name, "-o", tmp_path / "a.ngc", "--corrections", found, *flags)
-        status, _, told = in_json(capsys, *words)
-        assert status == 1 and is_told(told, "corrections-of-another-job", stroke), (name, flags, told)
+        status, _, reported = in_json(capsys, *words)
+        assert status == 1 and is_reported(reported, "corrections-of-another-job", stroke), (
+            name,
+            flags,
+            reported,
+        )
     words = ("convert", drawing, "-o", tmp_path / "a.ngc", "--corrections", found)
     assert in_json(capsys, *words)[0] == 0
-    status, _, told = in_json(capsys, "check", tmp_path / "a.ngc", drawing)
-    assert status == 1 and is_told(told, "corrections-missing"), told
+    status, _, reported = in_json(capsys, "check", tmp_path / "a.ngc", drawing)
+    assert status == 1 and is_reported(reported, "corrections-missing"), reported
     assert in_json(capsys, "check", tmp_path / "a.ngc", drawing, "--corrections", found)[0] == 0
     text = (tmp_path / "a.ngc").read_text()
     (tmp_path / "b.ngc").write_text(text.replace("(corrections: 5", "(corrections: 4"))
@@ -189,24 +203,24 @@ def sheet_with_the_bar_elsewhere(folder):
 
 
 @pytest.mark.thorough
-def test_strokes_that_lie_farther_aside_are_told(tmp_path, capsys):
+def test_strokes_that_are_displaced_more_are_reported(tmp_path, capsys):
     """A stroke that the machine leads elsewhere on the second sheet, and no other."""
     first, photo = sheet_with_the_bar_elsewhere(tmp_path)
     out = tmp_path / "second.json"
     words = ("compare", "--force", photo, tmp_path / "five.svg", "--corrections", first, "-o", out)
-    status, _, told = in_json(capsys, *words)
-    assert status == 0 and is_told(told, "stroke-farther", "bar"), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 0 and is_reported(reported, "stroke-farther", "bar"), reported
     before, now = (
         {row["stroke"]: row["aside_mm"] for row in json.loads(path.read_text())["strokes"]}
         for path in (first, out)
     )
     farther = {name for name in now if now[name] > before[name] + 0.1}
-    assert {notice.where for _, notice in told if notice.code == "stroke-farther"} == farther
+    assert {notice.where for _, notice in reported if notice.code == "stroke-farther"} == farther
     assert now["bar"] > 0.8 and len(farther) < 4, (before, now)
 
 
 def test_corrections_are_read_once(tmp_path, capsys):
-    """From a pipe, which is empty then. A row without a name says of no stroke how far it lay aside."""
+    """From a pipe, which is empty then. A row without a name gives no displacement of a stroke."""
     first, photo = sheet_with_the_bar_elsewhere(tmp_path)
     made = json.loads(first.read_text())
     made["strokes"].append({"stroke": ["bow"], "aside_mm": 1.0, "correction": None})
@@ -215,9 +229,9 @@ def test_corrections_are_read_once(tmp_path, capsys):
     os.close(into)
     (tmp_path / "pipe.json").symlink_to(f"/dev/fd/{out}")
     words = ("compare", photo, tmp_path / "five.svg", "--corrections", tmp_path / "pipe.json")
-    status, _, told = in_json(capsys, *words)
+    status, _, reported = in_json(capsys, *words)
     os.close(out)
-    assert status == 0 and is_told(told, "stroke-farther", "bar"), told
+    assert status == 0 and is_reported(reported, "stroke-farther", "bar"), reported
 
 
 def test_a_corrected_plan_holds_its_corrections_and_the_plan_before(tmp_path, capsys):
@@ -237,8 +251,8 @@ def test_a_corrected_plan_holds_its_corrections_and_the_plan_before(tmp_path, ca
     for one, other in zip(*seen, strict=True):
         np.testing.assert_allclose(one["shift_mm"], other["shift_mm"], atol=0.005)
         assert one["turn_deg"] == pytest.approx(other["turn_deg"], abs=0.05)
-    status, _, told = in_json(capsys, "compare", photo, plan, "--corrections", found)
-    assert status == 1 and is_told(told, "corrections-twice"), told
+    status, _, reported = in_json(capsys, "compare", photo, plan, "--corrections", found)
+    assert status == 1 and is_reported(reported, "corrections-twice"), reported
     assert in_json(capsys, "convert", plan, "-o", tmp_path / "a.ngc")[0] == 0
     assert main(["check", str(tmp_path / "a.ngc"), "--corrections", str(found)]) == 2  # of which drawing?
 
@@ -268,8 +282,8 @@ def test_damaged_corrections_in_a_plan_are_refused(tmp_path, capsys, change, cod
         ("compare", photo, plan),
         ("convert", plan, "-o", tmp_path / "a.ngc", "--corrections", found),
     ):
-        status, _, told = in_json(capsys, *words)
-        assert status == 1 and is_told(told, code), told
+        status, _, reported = in_json(capsys, *words)
+        assert status == 1 and is_reported(reported, code), reported
 
 
 @pytest.mark.parametrize(
@@ -292,8 +306,8 @@ def test_damaged_corrections_are_refused(tmp_path, capsys, change, code):
     made = {"format": "brushsvg/comparison", "version": 1, "strokes": rows}
     (tmp_path / "c.json").write_text(json.dumps(made))
     words = ("convert", tmp_path / "five.svg", "-o", tmp_path / "a.ngc", "--corrections", tmp_path / "c.json")
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and is_told(told, code), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and is_reported(reported, code), reported
     assert not (tmp_path / "a.ngc").exists() and studio.sheets == 0
 
 
@@ -316,18 +330,18 @@ def test_a_new_brush_and_corrections_in_one_round(tmp_path, capsys):
     longer = longer_lag(tmp_path)
     studio.brush = find_brush(longer)
     photo = studio.photographed(plan)
-    beside_the_old = studio.compared(photo)
+    with_the_old = studio.compared(photo)
     drawing, out = tmp_path / "five.svg", tmp_path / "out.json"
-    words = ("convert", drawing, "-o", out, "--brush", longer, "--corrections", beside_the_old)
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and is_told(told, "corrections-of-another-brush"), told
+    words = ("convert", drawing, "-o", out, "--brush", longer, "--corrections", with_the_old)
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and is_reported(reported, "corrections-of-another-brush"), reported
     again = tmp_path / "again.json"
     words = ("compare", "--force", photo, tmp_path / "first.json", "--brush", longer, "-o", again)
     assert in_json(capsys, *words)[0] == 0
     plan_1 = studio.plan("--brush", longer)
     plan_2 = studio.plan("--brush", longer, "--corrections", again)
-    wanted = studio.rings(plan_1)
-    gaps = [np.mean([*apart(studio.painted(each), wanted).values()]) for each in (plan, plan_1, plan_2)]
+    target = studio.rings(plan_1)
+    gaps = [np.mean([*apart(studio.painted(each), target).values()]) for each in (plan, plan_1, plan_2)]
     assert gaps[1] < 0.8 * gaps[0] and gaps[2] < 0.4 * gaps[1], gaps
 
 
@@ -340,53 +354,54 @@ def test_the_plan_for_another_brush_may_begin_elsewhere(tmp_path, capsys, planne
     made |= {"brush_sha256": BRUSH.sha256, "plan_brush_sha256": planned}
     (tmp_path / "c.json").write_text(json.dumps(made))
     words = ("convert", tmp_path / "five.svg", "-o", tmp_path / "a.ngc", "--corrections", tmp_path / "c.json")
-    found, _, told = in_json(capsys, *words)
-    assert found == status and (status == 0 or is_told(told, "corrections-of-another-job")), told
+    found, _, reported = in_json(capsys, *words)
+    assert found == status and (status == 0 or is_reported(reported, "corrections-of-another-job")), reported
 
 
-def test_two_strokes_tell_no_corrections(tmp_path, capsys):
-    """Their places are not told from the sheet's."""
+def test_two_strokes_show_no_corrections(tmp_path, capsys):
+    """Their places are not separated from the sheet's."""
     few = DRAWING[: DRAWING.index('<path id="cross"')] + "</g></svg>"
     studio = Studio(tmp_path, 5)
     (tmp_path / "five.svg").write_text(few)
     found = studio.compared(studio.photographed(studio.plan()))
     assert [row["correction"] for row in json.loads(found.read_text())["strokes"]] == [None, None]
     words = ("convert", tmp_path / "five.svg", "-o", tmp_path / "a.ngc", "--corrections", found)
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and is_told(told, "corrections-missing 2 3", "strokes"), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and is_reported(reported, "corrections-missing 2 3", "strokes"), reported
     rows = json.loads(found.read_text())
     rows["strokes"] += [{**rows["strokes"][0], "stroke": "third"}]
     found.write_text(json.dumps(rows))
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and is_told(told, "corrections-missing 3", "strokes"), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and is_reported(reported, "corrections-missing 3", "strokes"), reported
 
 
 @pytest.fixture(scope="module")
 def stretched(tmp_path_factory):
-    """A machine that goes 2 % too far, compared: the studio, the wanted rings, the file, the mended cell."""
+    """A machine that goes 2 % too far, compared: the studio, the target rings, the file, the corrected cell."""
     studio = Studio(tmp_path_factory.mktemp("stretched"), 12)
     studio.axes = np.diag([1.02, 0.985])
     plan = studio.plan()
     studio.own = {a_pass.stroke: studio.rng.normal(0, 0.12, 2) for a_pass in plan.passes}
-    mended = studio.folder / "corrected.toml"
-    found = studio.compared(studio.photographed(plan), "--corrected-cell", mended)
-    return studio, studio.rings(plan), found, mended
+    corrected_cell = studio.folder / "corrected.toml"
+    found = studio.compared(studio.photographed(plan), "--corrected-cell", corrected_cell)
+    return studio, studio.rings(plan), found, corrected_cell
 
 
 def test_a_corrected_cell_and_corrections_in_one_round(stretched):
-    """Beside the mended cell strokes are led by what it leaves alone; either file alone is right for its own cell."""
-    studio, wanted, found, mended = stretched
+    """With the corrected cell, strokes are moved by what it leaves alone; either file alone is right for its own
+    cell."""
+    studio, target, found, corrected_cell = stretched
     plan = studio.plan()
-    with_both = studio.plan("--cell", mended, "--corrections", found)
-    beside_the_old = studio.plan("--corrections", found)
+    with_both = studio.plan("--cell", corrected_cell, "--corrections", found)
+    with_the_old = studio.plan("--corrections", found)
     gap, cell_alone, both, old_alone, twice = (
-        float(np.mean([*apart(studio.painted(each), wanted).values()]))
+        float(np.mean([*apart(studio.painted(each), target).values()]))
         for each in (
             plan,
-            studio.told(plan, mended),
-            studio.told(with_both, mended),
-            beside_the_old,
-            studio.told(beside_the_old, mended),
+            studio.reported(plan, corrected_cell),
+            studio.reported(with_both, corrected_cell),
+            with_the_old,
+            studio.reported(with_the_old, corrected_cell),
         )
     )
     assert cell_alone < 0.9 * gap and both < 0.75 * cell_alone and old_alone < 0.4 * gap, (
@@ -397,10 +412,10 @@ def test_a_corrected_cell_and_corrections_in_one_round(stretched):
     assert both < 0.8 * twice, (both, twice)
 
 
-def test_corrections_beside_another_cell_are_refused(stretched, capsys):
-    studio, _, found, mended = stretched
+def test_corrections_of_another_cell_are_refused(stretched, capsys):
+    studio, _, found, corrected_cell = stretched
     other = studio.folder / "other.toml"
-    cell = parse_cell(mended.read_text())
+    cell = parse_cell(corrected_cell.read_text())
     other.write_text(write_cell(replace(cell, machine=replace(cell.machine, skew=0.003))))
     words = (
         "convert",
@@ -411,32 +426,32 @@ def test_corrections_beside_another_cell_are_refused(stretched, capsys):
         found,
         "--cell",
     )
-    assert in_json(capsys, *words, mended)[0] == 0
-    status, _, told = in_json(capsys, *words, other)
-    assert status == 1 and is_told(told, "corrections-of-another-cell"), told
+    assert in_json(capsys, *words, corrected_cell)[0] == 0
+    status, _, reported = in_json(capsys, *words, other)
+    assert status == 1 and is_reported(reported, "corrections-of-another-cell"), reported
 
 
 @pytest.mark.parametrize("by_mm", [-0.4, 0.3])
-def test_a_width_is_corrected_where_it_lies(tmp_path, by_mm):
-    """Each edge lies so much farther out, by shapely: middle line and ends stay."""
+def test_a_width_is_corrected_where_it_is(tmp_path, by_mm):
+    """Each edge is so much farther from the middle, by shapely: middle line and ends stay."""
     studio = Studio(tmp_path, 13)
     plan = studio.plan()
     before = studio.rings(plan)
-    asked = tuple(
+    requested = tuple(
         Correction(
             a_pass.stroke, tuple(a_pass.poses_mm[0][:2]), (50.0, 30.0), (0.0, 0.0), 0.0, wider_mm=by_mm
         )
         for a_pass in plan.passes
     )
-    after = studio.rings(corrected(plan, asked, BRUSH))
+    after = studio.rings(corrected(plan, requested, BRUSH))
     for name, rings in before.items():
-        meant, led = area(rings).buffer(by_mm), area(after[name])
-        apart_mm2 = meant.symmetric_difference(led).area
-        assert apart_mm2 < 0.25 * meant.symmetric_difference(area(rings)).area, (name, apart_mm2)
+        expected, moved = area(rings).buffer(by_mm), area(after[name])
+        apart_mm2 = expected.symmetric_difference(moved).area
+        assert apart_mm2 < 0.25 * expected.symmetric_difference(area(rings)).area, (name, apart_mm2)
 
 
 def test_widths_are_corrected_from_a_photograph(tmp_path, capsys):
-    """A brush that paints one stroke wider than another; one that is wider than any depth paints is told."""
+    """A brush that paints one stroke wider than another; one that is wider than any depth paints is reported."""
     studio = Studio(tmp_path, 14)
     plan = studio.plan()
     rings = studio.rings(plan)
@@ -462,8 +477,8 @@ def test_a_width_that_no_depth_paints_is_refused(tmp_path, capsys):
     (tmp_path / "c.json").write_text(json.dumps(made))
     words = ("convert", tmp_path / "five.svg", "-o", tmp_path / "a.ngc", "--corrections", tmp_path / "c.json")
     assert in_json(capsys, *words)[0] == 0
-    status, _, told = in_json(capsys, *words, "--brush", brush)
-    assert status == 1 and is_told(told, "width-correction-refused", "line"), told
+    status, _, reported = in_json(capsys, *words, "--brush", brush)
+    assert status == 1 and is_reported(reported, "width-correction-refused", "line"), reported
     studio.own = {each.stroke: np.zeros(2) for each in plan.passes}
     studio.grown = {"line": 0.5}
     photo = studio.photographed(studio.plan("--brush", brush))
@@ -477,8 +492,8 @@ def test_a_width_that_no_depth_paints_is_refused(tmp_path, capsys):
         "-o",
         tmp_path / "seen.json",
     )
-    status, _, told = in_json(capsys, *words)
-    assert status == 0 and is_told(told, "width-correction-refused", "line"), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 0 and is_reported(reported, "width-correction-refused", "line"), reported
     rows = {row["stroke"]: row for row in json.loads((tmp_path / "seen.json").read_text())["strokes"]}
     assert rows["line"]["correction"]["wider_mm"] == 0 and rows["line"]["wider_mm"] > 0.4
 
@@ -494,8 +509,8 @@ def measured_between(folder, least_mm, deepest_mm):
     return folder / "measured.json"
 
 
-def test_where_strokes_begin_and_end_is_told(tmp_path, capsys):
-    """Strokes that begin 1.5 mm late, end 1 mm late, or end 2 mm early, wherever the sheet lies."""
+def test_where_strokes_begin_and_end_is_reported(tmp_path, capsys):
+    """Strokes that begin 1.5 mm late, end 1 mm late, or end 2 mm early, where the sheet is."""
     studio = Studio(tmp_path, 16)
     plan = studio.plan()
     rings = studio.rings(plan)
@@ -524,7 +539,7 @@ def test_where_strokes_begin_and_end_is_told(tmp_path, capsys):
 
 @pytest.mark.thorough
 def test_a_stroke_that_ran_dry_moves_no_other(tmp_path, capsys):
-    """Where half of a stroke has no paint, the sheet's place is told by the others."""
+    """Where half of a stroke has no paint, the sheet's place comes from the others."""
     studio = Studio(tmp_path, 17)
     plan = studio.plan()
     studio.own = {each.stroke: np.zeros(2) for each in plan.passes}

@@ -70,14 +70,14 @@ def test_intervals_outside_of_the_family_hold_the_truth(strangers):
     assert len(missed) <= 7, missed
 
 
-def test_a_brush_that_marks_hardly_tell_from_the_family():
+def test_a_brush_that_marks_hardly_separate_from_the_family():
     """Hooked near the touch, where another form looks like paper of another height: laws that were held to their few
     numbers unless departing is plainly likelier held 4 of 9."""
     found, _ = fitted(painter.random_stranger(np.random.default_rng(2), "hooked"), 2)
     assert held(found).sum() >= 8, found
 
 
-def test_a_height_that_marks_hardly_tell_is_in_all_intervals():
+def test_a_height_that_marks_hardly_determine_is_in_all_intervals():
     """Powers of depth look nearly the same from paper 0.17 mm lower. Where departures were expected to be as small as
     the marks let them be, that chose the height, and 2 of 9 were held."""
     rng = np.random.default_rng(38)

@@ -54,7 +54,7 @@ def stepped(plan, brush):
     return regions
 
 
-def wanted_region(stroke):
+def target_region(stroke):
     """Union of the discs along the middle line: hulls of neighbours."""
     if stroke.wanted_mm:
         return shapely.union_all([shapely.make_valid(shapely.Polygon(ring)) for ring in stroke.wanted_mm])
@@ -86,16 +86,16 @@ def check_figures(strokes, compensation, brush_name="round-6"):
     for each, a_pass in zip(plan["passes"], done.plan.passes, strict=True):
         each["poses_mm"] = oracle.chords(a_pass.poses_mm, a_pass.arcs, 0.1)
     painted = stepped(plan, json.loads(_core.write_brush(brush)))
-    wanted = [wanted_region(stroke) for stroke in strokes]
-    for row, mark, meant in zip(rows, painted, wanted, strict=True):
-        assert row.overlap == pytest.approx(overlap(mark, meant), abs=0.005), row.stroke
+    target = [target_region(stroke) for stroke in strokes]
+    for row, mark, expected in zip(rows, painted, target, strict=True):
+        assert row.overlap == pytest.approx(overlap(mark, expected), abs=0.005), row.stroke
     assert total.overlap == pytest.approx(
-        overlap(shapely.union_all(painted), shapely.union_all(wanted)), abs=0.005
+        overlap(shapely.union_all(painted), shapely.union_all(target)), abs=0.005
     )
     number = {stroke.id: k for k, stroke in enumerate(strokes)}
     for group in groups:
         members = [number[name] for name in group.strokes]
-        found = [shapely.union_all([regions[k] for k in members]) for regions in (painted, wanted)]
+        found = [shapely.union_all([regions[k] for k in members]) for regions in (painted, target)]
         assert group.overlap == pytest.approx(overlap(*found), abs=0.005), group.strokes
     return groups
 

@@ -48,13 +48,13 @@ def sheet(seed, narrows_per_m, mixed=False):
 
 @sample(("seed", "rate", "mixed"), [(1, 0.5, False), (6, 0.8, True)], keep=1)
 def test_the_rate_and_the_freshly_dipped_brush_come_back(seed, rate, mixed):
-    brush, told = sheet(seed, rate, mixed)
-    made = calibrate(told, "b", paint=True)
+    brush, reported = sheet(seed, rate, mixed)
+    made = calibrate(reported, "b", paint=True)
     paint = made.brush.paint
     sigma = np.sqrt(paint.covariance[0][0])
     assert abs(paint.narrows_per_m - rate) < 3 * sigma < 0.1
     assert 600 < paint.calibrated_mm[1] < 700
-    plain = calibrate_marks(read_painted(told["plan"], told["marks"], None), "b").brush
+    plain = calibrate_marks(read_painted(reported["plan"], reported["marks"], None), "b").brush
     half = brush.law("half_width")(brush.deepest)
     assert made.brush.half_width(brush.deepest) == pytest.approx(half, rel=0.02)
     assert plain.half_width(brush.deepest) < 0.9 * half, "taken for marks of a brush always freshly dipped"
@@ -72,7 +72,8 @@ def test_the_rate_and_the_freshly_dipped_brush_come_back(seed, rate, mixed):
 
 @cache
 def chart_sheet(seed, law):
-    """Of a chart made for one load: the brush, what the chart told beforehand, what calibrates, and the way in mm."""
+    """Of a chart made for one load: the brush, what the chart reported beforehand, what calibrates, and the way in "
+    "mm."""
     rng = np.random.default_rng(1000 + seed)
     brush = painter.random_brush(rng)
     laws = core.MarkLaws(
@@ -84,16 +85,16 @@ def chart_sheet(seed, law):
     )
     known = brush_of(laws, "b", (0.0, round(brush.deepest, 2)))
     made = chart(known, (210.0, 297.0), "few", one_load=True)
-    told = expected_paint(made.plan, known, 0.1, expected_marks(made.plan, known))
+    reported = expected_paint(made.plan, known, 0.1, expected_marks(made.plan, known))
     strokes = [(one.stroke, np.array(one.poses_mm)) for one in made.plan.passes]
 
     def regions(brush, strokes, height):
-        return painter.swept(brush, strokes, height, share=lambda way: law(way, told.way_mm))
+        return painter.swept(brush, strokes, height, share=lambda way: law(way, reported.way_mm))
 
     sheet = painter.paint(rng, brush, strokes, painter.Faults(), regions)
     marks = [{"stroke": name, "outline_mm": [r.tolist() for r in rings]} for name, _, rings in sheet.marks]
     plan = json.loads(core.write_plan(made.plan))
-    return brush, told, calibrate({"plan": plan, "marks": marks}, "b", paint=True)
+    return brush, reported, calibrate({"plan": plan, "marks": marks}, "b", paint=True)
 
 
 def rate_of(made):
@@ -104,12 +105,12 @@ def rate_of(made):
 
 
 @sample(("seed", "rate"), [(0, 0.7), (3, 0.25), (3, 0.0)], keep=1)
-def test_a_chart_for_one_load_tells_laws_and_paint_at_once(seed, rate):
-    brush, told, made = chart_sheet(seed, lambda way, _: np.exp(-rate * way / 1000))
+def test_a_chart_for_one_load_shows_laws_and_paint_at_once(seed, rate):
+    brush, reported, made = chart_sheet(seed, lambda way, _: np.exp(-rate * way / 1000))
     found, half = rate_of(made)
-    assert told.told_by_depth < 0.3
+    assert reported.explained_by_depth < 0.3
     assert abs(found - rate) < half < 0.06
-    assert 0.4 < half / told.half_per_m < 2.5, "as the chart told"
+    assert 0.4 < half / reported.half_per_m < 2.5, "as the chart reported"
     depths = np.linspace(0.2, 1.0, 5) * brush.deepest
     for law in ("lag", "half_width"):
         half = law_band(made.brush, law, depths)[0]
@@ -119,7 +120,7 @@ def test_a_chart_for_one_load_tells_laws_and_paint_at_once(seed, rate):
 
 
 @pytest.mark.thorough
-def test_paint_that_runs_out_by_another_law_is_told():
+def test_paint_that_runs_out_by_another_law_is_reported():
     """Fast at first, then hardly: the one rate makes the freshly dipped brush too narrow, by more than its interval."""
     brush, _, made = chart_sheet(1, lambda way, whole: 0.7 + 0.3 * np.exp(-way / (0.25 * whole)))
     assert made.paint_bends > 3
@@ -127,13 +128,13 @@ def test_paint_that_runs_out_by_another_law_is_told():
     assert brush.law("half_width")(brush.deepest) - made.brush.half_width(brush.deepest) > half
     _, _, usual = chart_sheet(3, lambda way, _: np.exp(-0.25 * way / 1000))
     assert usual.paint_bends < 2
-    assert len(report(made).splitlines()) > len(report(usual).splitlines()), "it is told"
+    assert len(report(made).details) > len(report(usual).details), "it is reported"
 
 
 @pytest.mark.thorough
 def test_paint_that_does_not_run_out_is_not_said_to():
-    _, told = sheet(8, 0.0)
-    made = calibrate(told, "b", paint=True)
+    _, reported = sheet(8, 0.0)
+    made = calibrate(reported, "b", paint=True)
     paint = made.brush.paint
     assert paint.narrows_per_m < 3 * np.sqrt(paint.covariance[0][0]) < 0.1
 
@@ -152,9 +153,9 @@ def test_marks_that_seem_to_widen_a_little_are_marks_that_do_not_narrow():
 
 
 def test_the_command_writes_it(tmp_path, capsys):
-    _, told = sheet(6, 0.8, True)
+    _, reported = sheet(6, 0.8, True)
     path, out = tmp_path / "m.json", tmp_path / "b.json"
-    path.write_text(json.dumps({"format": "brushsvg/measurements", "version": 1, **told}))
+    path.write_text(json.dumps({"format": "brushsvg/measurements", "version": 1, **reported}))
     assert main(["calibrate", "--force", str(path), "-o", str(out), "--paint"]) == 0
     paint = json.loads(out.read_text())["paint"]
     assert paint["narrows_per_m"] == pytest.approx(0.8, abs=0.06) and paint["assumed"] is False
@@ -162,16 +163,20 @@ def test_the_command_writes_it(tmp_path, capsys):
 
 
 def test_marks_that_get_wider_are_refused():
-    """Told in the other order than they were painted in."""
-    _, told = sheet(6, 0.8, True)
+    """Listed in another order than painted."""
+    _, reported = sheet(6, 0.8, True)
     with refused("paint-undetermined"):
-        calibrate({"plan": {"passes": told["plan"]["passes"][::-1]}, "marks": told["marks"]}, "b", paint=True)
+        calibrate(
+            {"plan": {"passes": reported["plan"]["passes"][::-1]}, "marks": reported["marks"]},
+            "b",
+            paint=True,
+        )
 
 
 def test_an_order_by_depth_alone_is_refused():
     """Of each depth one stroke, the deeper the later, drawn out so that the way within a stroke says little."""
-    _, told = sheet(1, 0.5)
-    arcs = [each for each in told["plan"]["passes"] if not each["stroke"].startswith("ramp")]
+    _, reported = sheet(1, 0.5)
+    arcs = [each for each in reported["plan"]["passes"] if not each["stroke"].startswith("ramp")]
     apart = [
         {"stroke": f"gap{k}", "poses_mm": [[0, -900, -1], [4000, -900, -1]], "speed_mm_s": 20}
         for k in range(3)
@@ -179,7 +184,7 @@ def test_an_order_by_depth_alone_is_refused():
     by_depth = [[each for each in arcs if each["stroke"].endswith(f"-{k}")] for k in (1, 2, 3)]
     passes = [one for k in range(3) for one in (apart[k], *by_depth[k])]
     names = {each["stroke"] for each in arcs}
-    marks = [mark for mark in told["marks"] if mark["stroke"] in names]
+    marks = [mark for mark in reported["marks"] if mark["stroke"] in names]
     with refused("paint-undetermined"):
         calibrate({"plan": {"passes": passes}, "marks": marks}, "b", paint=True)
 
@@ -211,19 +216,19 @@ def run_dry(lasts_mm, gone=()):
 
 
 @sample("share", [0.0, 0.4], keep=1)
-def test_marks_that_end_dry_tell_how_long_a_load_lasts(share):
+def test_marks_that_end_dry_show_how_long_a_load_lasts(share):
     """The load ends between two strokes or within one; a mark that is missing earlier says nothing of it."""
     _, ends = run_dry(1e6)
     strokes, way = list(ends), list(ends.values())
     whole, dry = way[-4], way[-3]
     lasts_mm = whole + share * (dry - whole)
-    told, _ = run_dry(lasts_mm, {strokes[2]})
-    made = calibrate(told, "b", paint=True)
+    reported, _ = run_dry(lasts_mm, {strokes[2]})
+    made = calibrate(reported, "b", paint=True)
     paint = made.brush.paint
     assert paint.lasts_mm == pytest.approx(whole) and made.dry.dry_mm == pytest.approx(dry)
     assert (made.dry.whole, made.dry.dry) == (strokes[-4], strokes[-3])
     assert paint.lasts_mm - 1e-6 <= lasts_mm <= made.dry.dry_mm
-    assert gives(report(made), f"{whole:.0f} mm", f"{dry:.0f} mm", strokes[-3])
+    assert gives(report(made).text(True), f"{whole:.0f} mm", f"{dry:.0f} mm", strokes[-3])
     assert paint.narrows_per_m == pytest.approx(0.8, abs=0.15)
     again = core.read_brush(core.write_brush(made.brush)).paint
     assert again.lasts_mm == paint.lasts_mm and len(again.covariance) == 2
@@ -231,7 +236,7 @@ def test_marks_that_end_dry_tell_how_long_a_load_lasts(share):
 
 @pytest.mark.thorough
 def test_a_load_that_lasts_is_said_to():
-    told, ends = run_dry(1e6)
-    made = calibrate(told, "b", paint=True)
+    reported, ends = run_dry(1e6)
+    made = calibrate(reported, "b", paint=True)
     assert made.dry is None and made.brush.paint.lasts_mm is None
-    assert gives(report(made), f"{max(ends.values()):.0f} mm")
+    assert gives(report(made).text(True), f"{max(ends.values()):.0f} mm")

@@ -1,4 +1,4 @@
-"""A painted job in a rendered photograph: where each mark lies comes back, and other pictures are refused."""
+"""A painted job in a rendered photograph: where each mark is comes back, and other pictures are refused."""
 
 import copy
 import json
@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import photograph
 import pytest
-from diagnostics import in_json, is_told
+from diagnostics import in_json, is_reported
 from photograph import BLUE, INK, Camera
 from sampling import sample
 from shapely import affinity
@@ -77,9 +77,9 @@ def compare(folder, capsys, photo="photo.jpg", *flags):
 
 def test_every_mark_is_found_where_it_was_painted(job, capsys):
     folder, _, rings, painted = job
-    status, told = compare(folder, capsys, "photo.jpg", "--json", "--picture", str(folder / "seen.png"))
+    status, reported = compare(folder, capsys, "photo.jpg", "--json", "--picture", str(folder / "seen.png"))
     assert status == 0
-    found = json.loads(told.out)
+    found = json.loads(reported.out)
     assert [row["stroke"] for row in found["strokes"]] == ["bow", "line", "cross", "bar"]
     for row in found["strokes"]:
         before, after = (np.array(centre(each[row["stroke"]])) for each in (rings, painted))
@@ -97,7 +97,7 @@ def test_every_mark_is_found_where_it_was_painted(job, capsys):
     assert (folder / "seen.png").stat().st_size > 10_000
 
 
-def test_wider_paint_and_a_missing_stroke_are_told(job, capsys):
+def test_wider_paint_and_a_missing_stroke_are_reported(job, capsys):
     folder, page, _, painted = job
     wider = {
         name: [np.array(Polygon(ring).buffer(0.3).exterior.coords)[::-1] for ring in rings]
@@ -106,9 +106,9 @@ def test_wider_paint_and_a_missing_stroke_are_told(job, capsys):
     }
     (folder / "wide.jpg").write_bytes(shown(page, wider))
     words = ("compare", folder / "wide.jpg", folder / "four.svg", "--json")
-    status, out, told = in_json(capsys, *words)
+    status, out, reported = in_json(capsys, *words)
     rows = {row["stroke"]: row for row in json.loads(out)["strokes"]}
-    assert status == 0 and is_told(told, "mark-missing", "line"), told
+    assert status == 0 and is_reported(reported, "mark-missing", "line"), reported
     assert not rows["line"]["found"] and rows["line"]["missing"] == 1
     for name in ("bow", "cross", "bar"):
         assert rows[name]["wider_mm"] == pytest.approx(0.3, abs=0.05)
@@ -142,9 +142,9 @@ def test_another_place_of_one_stroke_is_not_a_missing_one(job, capsys):
     folder, page, rings, _ = job
     moved = dict(rings) | {"line": [ring + np.array([0.0, 3.5]) for ring in rings["line"]]}
     (folder / "moved.jpg").write_bytes(shown(page, moved))
-    status, told = compare(folder, capsys, "moved.jpg", "--json")
-    row = next(row for row in json.loads(told.out)["strokes"] if row["stroke"] == "line")
-    assert status == 0 and told.err == "" and row["shift_mm"] == pytest.approx([0, 3.5], abs=0.05)
+    status, reported = compare(folder, capsys, "moved.jpg", "--json")
+    row = next(row for row in json.loads(reported.out)["strokes"] if row["stroke"] == "line")
+    assert status == 0 and reported.err == "" and row["shift_mm"] == pytest.approx([0, 3.5], abs=0.05)
 
 
 def test_paint_of_a_paler_colour_is_paint(job, capsys):
@@ -163,8 +163,8 @@ def test_photographs_of_two_sheets_are_refused(job, capsys):
     moved = {name: [ring + np.array([1.5, 0.0]) for ring in rings] for name, rings in painted.items()}
     (folder / "two.jpg").write_bytes(shown(page, moved))
     words = ["compare", *(str(folder / name) for name in ("photo.jpg", "two.jpg", "four.svg"))]
-    status, _, told = in_json(capsys, *words, "--quiet")
-    assert status == 1 and is_told(told, "photos-differ"), told
+    status, _, reported = in_json(capsys, *words, "--quiet")
+    assert status == 1 and is_reported(reported, "photos-differ"), reported
     (folder / "aside.jpg").write_bytes(
         shown(page, painted, Camera((1500, 1050), tilt_deg=(-8.0, 6.0), fill=0.9))
     )
@@ -172,7 +172,7 @@ def test_photographs_of_two_sheets_are_refused(job, capsys):
     assert main([*words, "--quiet"]) == 0
 
 
-def test_a_blot_is_told(job, capsys):
+def test_a_blot_is_reported(job, capsys):
     folder, page, _, painted = job
     blot = np.array(Polygon([(30, 21), (36, 21), (36, 16), (30, 16)]).exterior.coords)[:-1]
     (folder / "blot.jpg").write_bytes(shown(page, painted | {"blot": [blot]}))
@@ -185,8 +185,8 @@ def test_scripts_can_ask_for_an_overlap(job, capsys):
     folder = job[0]
     assert compare(folder, capsys, "photo.jpg", "--at-least", "0.2")[0] == 0
     words = ("compare", folder / "photo.jpg", folder / "four.svg", "--at-least", "0.99")
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and is_told(told, "overlap-low 0.99"), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and is_reported(reported, "overlap-low 0.99"), reported
 
 
 def test_other_pictures_are_refused(job, capsys):
@@ -206,8 +206,8 @@ def test_other_pictures_are_refused(job, capsys):
         ("chart.jpg", "photo-of-another-chart"),
         ("none.jpg", "photo-markers-missing"),
     ):
-        status, _, ((_, told),) = in_json(capsys, "compare", folder / name, folder / "four.svg")
-        assert (status, told.code) == (1, code), (name, told)
+        status, _, ((_, reported),) = in_json(capsys, "compare", folder / name, folder / "four.svg")
+        assert (status, reported.code) == (1, code), (name, reported)
 
 
 SKIN = np.array([0.55, 0.36, 0.26])
@@ -224,26 +224,30 @@ def with_a_thing(page, painted, ring):
 
 
 def seen(job, capsys, photo):
-    """Status, what was told, and by stroke whether it was found and is corrected."""
+    """Status, what was reported, and by stroke whether it was found and is corrected."""
     folder, out = job[0], job[0] / "bad.json"
     out.unlink(missing_ok=True)
-    status, _, told = in_json(capsys, "compare", "--force", folder / photo, folder / "four.svg", "-o", out)
+    status, _, reported = in_json(
+        capsys, "compare", "--force", folder / photo, folder / "four.svg", "-o", out
+    )
     rows = json.loads(out.read_text())["strokes"] if out.exists() else []
-    return status, told, {row["stroke"]: (row["found"], row["correction"] is not None) for row in rows}
+    return status, reported, {row["stroke"]: (row["found"], row["correction"] is not None) for row in rows}
 
 
-def test_a_finger_in_the_picture_is_told_and_corrects_nothing_it_covers(job, capsys):
+def test_a_finger_in_the_picture_is_reported_and_corrects_nothing_it_covers(job, capsys):
     folder, page, _, painted = job
     finger = Polygon([(31, -30), (49, -30), (49, 55), (40, 62), (31, 55)]).exterior.coords[:-1]
     (folder / "finger.jpg").write_bytes(with_a_thing(page, painted, finger))
-    status, told, rows = seen(job, capsys, "finger.jpg")
-    assert status == 0 and is_told(told, "photo-covered", "sheet"), told
+    status, reported, rows = seen(job, capsys, "finger.jpg")
+    assert status == 0 and is_reported(reported, "photo-covered", "sheet"), reported
     assert rows["bow"] == rows["line"] == (False, False), rows
     assert rows["cross"][0] and rows["bar"][0]
     hand = Polygon([(20, -40), (115, -40), (115, 50), (60, 75), (15, 50)]).exterior.coords[:-1]
     (folder / "hand.jpg").write_bytes(with_a_thing(page, painted, hand))
-    status, ((_, told),), rows = seen(job, capsys, "hand.jpg")
-    assert status == 1 and told.code in ("photo-of-another-job", "photo-without-paint") and not rows, told
+    status, ((_, reported),), rows = seen(job, capsys, "hand.jpg")
+    assert status == 1 and reported.code in ("photo-of-another-job", "photo-without-paint") and not rows, (
+        reported
+    )
 
 
 @pytest.mark.parametrize("half", ["left", "right", "upper", "lower", "two thirds"])
@@ -259,8 +263,8 @@ def test_half_a_sheet_is_refused(job, capsys, half):
         "two thirds": pixels[:, : 4 * columns // 3],
     }[half]
     (folder / "half.jpg").write_bytes(photograph.encoded(part))
-    status, ((_, told),), found = seen(job, capsys, "half.jpg")
-    assert status == 1 and told.code == "photo-cropped" and not found, told
+    status, ((_, reported),), found = seen(job, capsys, "half.jpg")
+    assert status == 1 and reported.code == "photo-cropped" and not found, reported
 
 
 def test_another_plan_on_this_page_is_refused(job, capsys):
@@ -276,8 +280,8 @@ def test_another_plan_on_this_page_is_refused(job, capsys):
     }
     for kind, painted in elsewhere.items():
         (folder / "wrong.jpg").write_bytes(shown(page, painted))
-        status, ((_, told),), found = seen(job, capsys, "wrong.jpg")
-        assert status == 1 and told.code == "photo-of-another-job" and not found, (kind, told)
+        status, ((_, reported),), found = seen(job, capsys, "wrong.jpg")
+        assert status == 1 and reported.code == "photo-of-another-job" and not found, (kind, reported)
 
 
 def test_paint_that_is_unlike_a_mark_corrects_it_not(job, capsys):
@@ -288,8 +292,8 @@ def test_paint_that_is_unlike_a_mark_corrects_it_not(job, capsys):
     comb = unary_union([line, *teeth])
     near = {"line": [np.array(comb.exterior.coords)[:-1][::-1]]}
     (folder / "unlike.jpg").write_bytes(shown(page, painted | near))
-    status, told, rows = seen(job, capsys, "unlike.jpg")
-    assert status == 0 and is_told(told, "mark-unlike", "line"), (told, rows)
+    status, reported, rows = seen(job, capsys, "unlike.jpg")
+    assert status == 0 and is_reported(reported, "mark-unlike", "line"), (reported, rows)
     assert rows["line"] == (True, False)
     assert rows["bow"][1] and rows["bar"][1] and rows["cross"][1], rows
 
@@ -315,17 +319,21 @@ def test_the_page_names_its_plan(job, tmp_path, capsys):
     )
     assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
     work = prepare(folder / "four.svg")
-    assert job_page(nearest_first(work).plan).printed.id == page.printed.id, "whatever the order"
+    assert job_page(nearest_first(work).plan).printed.id == page.printed.id, "in any order"
 
 
-def test_python_is_told_what_the_command_tells(job, capsys, tmp_path):
+def test_python_reports_what_the_command_shows(job, capsys, tmp_path):
     folder, page, _, painted = job
     named = tmp_path / "told.json", tmp_path / "told.png", tmp_path / "corrected.toml"
     flags = [f"--{flag}={path}" for flag, path in zip(("picture", "corrected-cell"), named[1:], strict=True)]
-    status, told = compare(folder, capsys, "photo.jpg", "-o", str(named[0]), *flags)
+    status, reported = compare(folder, capsys, "photo.jpg", "-o", str(named[0]), *flags)
     stages = []
     found = brushsvg.compare(folder / "four.svg", folder / "photo.jpg", progress=stages.append)
-    assert status == 0 and found.text == told.out and found.json == named[0].read_text()
+    assert (
+        status == 0
+        and found.report.text(picture=str(named[1])) == reported.out
+        and found.json == named[0].read_text()
+    )
     assert found.picture() == named[1].read_bytes()
     assert brushsvg.write_cell(found.cell) == named[2].read_text() and not found.is_corrected
     assert round(found.overlap, 4) == json.loads(found.json)["overlap_wanted"] < 0.7

@@ -88,7 +88,7 @@ def test_the_brush_comes_back_with_honest_intervals(seed):
     sure = np.sqrt(np.array(made.fit.covariance)[-4, -4])
     assert abs(made.fit.height_mm - painted.height) < 4 * sure < 0.4  # 1.2 is what was known before
     assert made.fit.noise_mm == pytest.approx(0.1, rel=0.25), "the noise that was put on"
-    assert made.fit.effective_samples < 0.5 * made.fit.samples, "neighbours tell the same"
+    assert made.fit.effective_samples < 0.5 * made.fit.samples, "neighbours are correlated"
     assert made.round_tail_gain < -40 and not made.fit.laws.round_tail
 
 
@@ -126,14 +126,14 @@ def test_displacements_come_back():
 
 def test_more_displacement_than_expected_is_said():
     _, strokes, painted = sheet(3, displacement=2.5)
-    told = report(calibrate_marks(read_painted(*as_file(strokes, painted), None), "b"))
-    assert re.search(r'2\.\d mm.* 1 mm .*\{"displacement_mm": 3\}', told)
+    reported = report(calibrate_marks(read_painted(*as_file(strokes, painted), None), "b"))
+    assert re.search(r'2\.\d mm.* 1 mm .*\{"displacement_mm": 3\}', reported)
     _, _, usual = calibrated(3)
     assert '{"displacement_mm"' not in report(usual)
 
 
 def found(displacements=(), shift=(0.0, 0.0), height=0.0, turn=0.0):
-    """What a report is made of, as far as it tells what was not expected."""
+    """What a report is made of, as far as it reports the unexpected."""
     marks = [SimpleNamespace(displacement_mm=moved) for moved in displacements or [(0.1, 0.0)] * 4]
     fit = SimpleNamespace(marks=marks, shift_mm=shift, height_mm=height, turn_rad=turn)
     painted = SimpleNamespace(marks=[SimpleNamespace(stroke=f"s{k}") for k in range(len(marks))])
@@ -151,7 +151,7 @@ def found(displacements=(), shift=(0.0, 0.0), height=0.0, turn=0.0):
         (found(turn=0.11), r' 6.3 degrees.* 1.1 degrees.*\{"turn_deg": 7\}'),
     ],
 )
-def test_what_lies_far_beyond_what_was_expected_is_said(made, said):
+def test_what_is_far_beyond_what_was_expected_is_said(made, said):
     assert re.search(said, "".join(mark_report._unexpected(made)))
     assert bool(said) == bool(mark_report._unexpected(made))
 
@@ -161,7 +161,7 @@ def test_what_lies_far_beyond_what_was_expected_is_said(made, said):
     [
         (found(height=-1.31), r"--height 2\b"),
         (found([(2.4, -2.4)] * 4), "--spread FILE"),
-        (found(shift=(1.0, -7.0)), "--picture"),
+        (found(shift=(1.0, -7.0)), "--marks-picture"),
     ],
 )
 def test_a_photograph_has_flags_and_no_measurement_file(made, flag):
@@ -171,22 +171,23 @@ def test_a_photograph_has_flags_and_no_measurement_file(made, flag):
 
 def test_marks_unlike_their_predictions_are_said(monkeypatch):
     _, _, made = calibrated(3)
-    assert "[0.5, 1]" not in report(made)
+    assert "[0.5, 1]" not in report(made).text(True)
     monkeypatch.setattr(mark_report, "overlaps", lambda _: (0.3, 0.36))
-    assert gives(report(made), "0.36", "[0.5, 1]")
+    assert gives(report(made).text(True), "0.36", "[0.5, 1]")
+    assert report(made).verdict.startswith("do not use")
 
 
 @pytest.mark.parametrize("widths", [1.0, 1.3])
-def test_a_mark_that_lies_its_width_aside_is_found(widths):
+def test_a_mark_displaced_by_its_width_is_found(widths):
     """Once its near edge was taken for the far one, and half of the mark was masked."""
     brush, strokes, painted = sheet(5)
     plan, marks = as_file(strokes, painted)
     k = [name for name, _ in strokes].index("straight-3")
-    aside = np.array([0.0, 2 * widths * brush.law("half_width")(brush.deepest)])
-    marks[k]["outline_mm"] = [(np.array(ring) + aside).tolist() for ring in marks[k]["outline_mm"]]
+    displaced = np.array([0.0, 2 * widths * brush.law("half_width")(brush.deepest)])
+    marks[k]["outline_mm"] = [(np.array(ring) + displaced).tolist() for ring in marks[k]["outline_mm"]]
     made = calibrate_marks(read_painted(plan, marks, None), "b")
     found = np.array(made.fit.marks[k].displacement_mm)
-    np.testing.assert_allclose(found, painted.displacements[k] + aside, atol=0.7)
+    np.testing.assert_allclose(found, painted.displacements[k] + displaced, atol=0.7)
     assert made.fit.left_aside < 0.002
 
 
@@ -258,7 +259,7 @@ def test_an_uncertain_edge_is_as_far_off_as_it_was_moved(seed):
 
 
 def test_a_height_just_below_0_is_not_surer_than_the_paper_above_allows():
-    """Landings on a slope from height 0 move with paper that lies lower, and not with paper that lies higher."""
+    """Landings on a slope from height 0 move with paper that is lower, and not with paper that is higher."""
     brush, _, clean = sheet(11, noise=1e-9, height=1e-9, **STILL)
 
     def sure(height):
@@ -336,7 +337,7 @@ def test_points_never_count_as_more_than_there_are():
     assert intervals(made).min() > 0.015
 
 
-def test_paper_that_lies_millimetres_higher_than_it_was_taught():
+def test_paper_that_is_millimetres_higher_than_it_was_taught():
     """The fit once stood before a wall at 2 mm."""
     brush, _, painted = sheet(3)
     marks = [
@@ -360,10 +361,10 @@ def test_what_to_expect_is_what_comes():
     promised, remarks = expected_brush(plan, made.brush, noise_mm=0.1, noise_length_mm=1.0)
     assert not remarks
     for law, count in (("lag", 4), ("half_width", 3)):
-        told = np.array(getattr(promised, law).half_interval_95)
+        reported = np.array(getattr(promised, law).half_interval_95)
         came = np.array(getattr(made.brush, law).half_interval_95)
         at = slice(0 if law == "lag" else 1, count)
-        assert np.all(np.abs(np.log(told[at] / came[at])) < np.log(1.7))
+        assert np.all(np.abs(np.log(reported[at] / came[at])) < np.log(1.7))
 
 
 def test_laws_that_are_known_add_their_information():

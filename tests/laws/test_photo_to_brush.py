@@ -11,7 +11,7 @@ import numpy as np
 import painter
 import photograph
 import pytest
-from diagnostics import are_told, gives, in_json, refused
+from diagnostics import are_reported, gives, in_json, refused
 from photograph import BLUE, INK, Camera
 
 core = pytest.importorskip("brushsvg._core")
@@ -27,6 +27,7 @@ from brushsvg.calibration.marks.sheet_scale import SheetScale  # noqa: E402
 from brushsvg.calibration.marks.stray_marks import strays  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
 from brushsvg.model.confidence import law_band  # noqa: E402
+from brushsvg.reporting.report_text import GOOD  # noqa: E402
 
 pytestmark = pytest.mark.long
 
@@ -54,7 +55,7 @@ def marks():
 
 
 def photo_of(painted, *things, camera=CAMERA):
-    """things: rings and their colour, that lie on the paint."""
+    """things: rings and their colour, that are on the paint."""
     sheet = photograph.page(printed())
     for rings in painted.values():
         sheet.paint(rings, BLUE)
@@ -98,9 +99,9 @@ def test_one_photograph_gives_the_brush_back(desk, capsys):
         )
         == 0
     )
-    told = capsys.readouterr()
-    assert re.search(r"\b24 .*\b6 [a-z ]+ 0\.0", told.err)
-    assert gives(told.out, "0.01 mm")
+    reported = capsys.readouterr()
+    assert re.search(r"\b24 .*\b6 [a-z ]+ 0\.0", reported.err)
+    assert reported.out.splitlines()[0] == GOOD
     found = find_brush(desk / "own.json")
     off = {}
     for law in ("lag", "half_width"):
@@ -127,8 +128,8 @@ def calibrating(folder):
 
 
 def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
-    """By 0.4 mm the brush comes back; by 0.8 mm the markers only hint at it, and marks lie so far aside that the sheet
-    seems to be of another scale: it is told that paper which bulges does that, too."""
+    """By 0.4 mm the brush comes back; by 0.8 mm the markers only hint at it, and marks are displaced so far that the
+    sheet seems to be of another scale: it is reported that paper which bulges does that, too."""
     (tmp_path / "chart.json").write_text(write_chart(printed()))
     words = calibrating(tmp_path)
     (tmp_path / "photo.jpg").write_bytes(photo_of(marks(), camera=replace(CAMERA, sag_mm=0.4)))
@@ -141,8 +142,10 @@ def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
         assert np.mean(np.abs(values - truth) < band) >= 0.9, (law, values - truth, band)
         assert np.abs(values / truth - 1).max() < 0.02, (law, values / truth)
     (tmp_path / "photo.jpg").write_bytes(photo_of(marks(), camera=replace(CAMERA, sag_mm=0.8)))
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and are_told([each for _, each in told], "photo-not-flat", "marks-scaled"), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and are_reported([each for _, each in reported], "photo-not-flat", "marks-scaled"), (
+        reported
+    )
 
 
 @pytest.mark.thorough
@@ -151,8 +154,8 @@ def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, caps
     drops with which this brush paints, so the lag stays what it was."""
     photo = ["calibrate", "--force", str(desk / "photo.jpg"), "--chart", str(desk / "chart.json")]
     assert main([*photo, "-o", str(desk / "surer.json"), "--height", "0.005"]) == 0
-    told = re.search(r"(0\.\d+) \+- (0\.\d+) mm [a-z]", capsys.readouterr().out)
-    assert float(told[1]) < 0.02 and float(told[2]) <= 0.01, told[0]
+    reported = re.search(r"(0\.\d+) \+- (0\.\d+) mm [a-z]", capsys.readouterr().out)
+    assert float(reported[1]) < 0.02 and float(reported[2]) <= 0.01, reported[0]
     surer = json.loads((desk / "surer.json").read_text())
     surer["footprints"]["assumed"] = False
     (desk / "own.json").write_text(json.dumps(surer))
@@ -166,7 +169,7 @@ def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, caps
         "--picture",
         pictures[0],
     ]
-    assert main([*words, "--picture", pictures[1]]) == 0
+    assert main([*words, "--marks-picture", pictures[1]]) == 0
     assert gives(capsys.readouterr().out, "surer")
     found = find_brush(desk / "lag.json")
     off = [found.lag(depth) / TRUTH.law("lag")(depth) - 1 for depth in DEPTHS]
@@ -185,8 +188,8 @@ def test_a_lag_by_outlines_needs_outlines_that_were_measured(desk, capsys):
         "--brush",
         "round-6",
     ]
-    status, _, told = in_json(capsys, *words, "-o", str(desk / "none.json"))
-    assert status == 1 and told[-1][1].code == "footprints-assumed", told
+    status, _, reported = in_json(capsys, *words, "-o", str(desk / "none.json"))
+    assert status == 1 and reported[-1][1].code == "footprints-assumed", reported
     assert not (desk / "none.json").exists()
 
 
@@ -200,18 +203,18 @@ def test_marks_that_are_covered_or_elsewhere_are_named_and_left_out(tmp_path, ca
     photo.write_bytes(photo_of(moved, (disc, INK)))
     (tmp_path / "chart.json").write_text(write_chart(printed()))
     words = ["calibrate", "--force", str(photo), "--chart", str(tmp_path / "chart.json"), "-o", str(out)]
-    status, report, told = in_json(capsys, *words)
+    status, report, reported = in_json(capsys, *words)
     assert status == 0
-    named = [notice for _, notice in told if notice.code == "mark-astray"]
-    assert are_told(named, "mark-astray straight-3", "mark-astray arc-3")
-    aside = re.search(r" (\d\.\d) mm [a-z]* ?\(\+(\d\.\d), \+(\d\.\d)\)", named[1].sentence)
-    assert [float(number) for number in aside.groups()] == pytest.approx([2.2, 2.0, 1.0], abs=0.4)
+    named = [notice for _, notice in reported if notice.code == "mark-astray"]
+    assert are_reported(named, "mark-astray straight-3", "mark-astray arc-3")
+    displaced = re.search(r" (\d\.\d) mm [a-z]* ?\(\+(\d\.\d), \+(\d\.\d)\)", named[1].sentence)
+    assert [float(number) for number in displaced.groups()] == pytest.approx([2.2, 2.0, 1.0], abs=0.4)
     for notice, stroke in zip(named, ("straight-3", "arc-3"), strict=True):
-        corners = re.findall(r"-?\d+\.\d", notice.told.split(";")[1])
+        corners = re.findall(r"-?\d+\.\d", notice.text.split(";")[1])
         found, expected = np.array(corners, float).reshape(2, 4)
-        assert gives(notice.told, "2")
+        assert gives(notice.text, "2")
         assert 1.5 < np.abs(found - expected).max() < 3.5, stroke
-    assert re.search(r"^note: .*: straight-3, arc-3", report, re.MULTILINE), report
+    assert re.search(r"^[a-z].*: straight-3, arc-3$", report, re.MULTILINE), report
     off = [abs(find_brush(out).lag(depth) / TRUTH.law("lag")(depth) - 1) for depth in DEPTHS]
     assert max(off) < 0.03, off
 
@@ -239,7 +242,7 @@ def test_a_mark_is_held_against_the_others_alone():
     fit = fitted(24, {})
     fit.marks[5].rms_mm, fit.marks[5].distance_mm = 0.3, np.append(np.zeros(90), np.full(10, 0.9))
     assert [stray.mark for stray in strays(list("abcdefghijklmnopqrstuvwx"), fit)] == ["f"]
-    assert not strays(list("abcd"), fitted(4, {0: np.array([5.0, 0.0])})), "four tell nothing of one"
+    assert not strays(list("abcd"), fitted(4, {0: np.array([5.0, 0.0])})), "four do not single out one"
 
 
 def test_many_marks_astray_are_refused():
@@ -267,6 +270,6 @@ def test_the_table_round_paper_that_is_smaller_than_the_print_is_no_mark(tmp_pat
     (tmp_path / "photo.jpg").write_bytes(photograph.photograph(sheet, CAMERA))
     (tmp_path / "chart.json").write_text(write_chart(printed()))
     words = calibrating(tmp_path)
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and are_told([told[-1][1]], "marks-scaled smaller bar"), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and are_reported([reported[-1][1]], "marks-scaled smaller bar"), reported
     assert in_json(capsys, *words, "--bar", f"{1.03 * printed().bar.length_mm:.1f}")[0] == 0

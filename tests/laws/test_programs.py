@@ -219,7 +219,7 @@ def in_paper_frame(moves, cell, name, z_offset):
 
 @sample("name", LANGUAGES, keep=4)
 @given(seed=st.integers(0, 2**32 - 1))
-def test_whatever_is_written_is_safe(name, seed):
+def test_all_that_is_written_is_safe(name, seed):
     rng = np.random.default_rng(seed)
     cell, brush = random_cell(rng, name), make_brush(name="made")
     brush.max_speed_mm_s = float(rng.uniform(3, 40))
@@ -259,7 +259,7 @@ def test_whatever_is_written_is_safe(name, seed):
 
 
 def test_every_language_is_tried():
-    # whatever a user's own post writes; and a pen, which draws no plan of this kind: test_hpgl, test_marlin_servo
+    # anything a user's own post writes; and a pen, which draws no plan of this kind: test_hpgl, test_marlin_servo
     posts = set(POSTS) - {"robodk", "hpgl", "marlin-servo"}
     assert {find_cell(name).language for name in LANGUAGES} == posts
 

@@ -159,8 +159,8 @@ def test_lemma_1_in_general(end):
     z = np.linspace(0, 1, 201)
     of_article = laws.bristle(lambda x: np.exp(1 - x), lambda x: np.exp(1 - x), end)
     assert of_article(z) == pytest.approx(laws.bristle_of_article(z, end), abs=1e-12)
-    wanted = {"shear_free": 0.0318328549, "third_derivative": 0.0260351676}[end]
-    assert of_article(1.0) == pytest.approx(wanted, abs=1e-10)
+    target = {"shear_free": 0.0318328549, "third_derivative": 0.0260351676}[end]
+    assert of_article(1.0) == pytest.approx(target, abs=1e-10)
 
     def rigidity(x):
         return 1.3 + np.sin(3 * x)

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import photograph
 import pytest
-from diagnostics import in_json, is_told
+from diagnostics import in_json, is_reported
 from photograph import BLUE, INK, Camera
 
 from brushsvg import _core
@@ -36,13 +36,13 @@ class Sheets:
         _core.trace_outlines(marks, self.work.brush)
         self.rings = {one.stroke: [np.array(ring) for ring in one.outline_mm] for one in marks.passes}
 
-    def photographed(self, name, aside, shift=(0.0, 0.0)):
+    def photographed(self, name, displaced, shift=(0.0, 0.0)):
         page = job_page(self.work.plan, "eight")
         sheet = photograph.page(page.printed)
         for tick in page.ticks:
             sheet.paint([tick], INK)
         for stroke, rings in self.rings.items():
-            sheet.paint([ring + aside[stroke] + shift + page.frame_mm for ring in rings], BLUE)
+            sheet.paint([ring + displaced[stroke] + shift + page.frame_mm for ring in rings], BLUE)
         (self.folder / name).write_bytes(photograph.photograph(sheet, CAMERA))
         return str(self.folder / name)
 
@@ -57,28 +57,28 @@ def sheets(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def painted(sheets):
-    """Photographs of three sheets, and where each stroke lay on them beside the place of the sheet."""
+    """Photographs of three sheets, and where each stroke was on them next to the place of the sheet."""
     rng = np.random.default_rng(4)
     always = {name: np.array([PLAY / 2 if name in TO_THE_RIGHT else -PLAY / 2, 0.0]) for name in sheets.rings}
-    aside = [{name: always[name] + rng.normal(0, 0.15, 2) for name in sheets.rings} for _ in range(3)]
+    displaced = [{name: always[name] + rng.normal(0, 0.15, 2) for name in sheets.rings} for _ in range(3)]
     places = [(0.8, -0.5), (0.0, 0.0), (-0.6, 0.9)]
     return [
-        sheets.photographed(f"{k}.jpg", *each) for k, each in enumerate(zip(aside, places, strict=True))
-    ], aside
+        sheets.photographed(f"{k}.jpg", *each) for k, each in enumerate(zip(displaced, places, strict=True))
+    ], displaced
 
 
 def test_the_spread_and_the_hysteresis_come_back(sheets, painted, capsys):
-    photos, aside = painted
+    photos, displaced = painted
     out = sheets.folder / "spread.json"
     picture = sheets.folder / "spread.png"
     assert main(sheets.words(photos, "-o", str(out), "--picture", str(picture))) == 0
     shown = cv2.imread(str(picture))
     assert shown.shape[0] > 1000 and len(np.unique(shown[: len(shown) // 2].reshape(-1, 3), axis=0)) > 100
     found = json.loads(out.read_text())
-    at = np.array([[each[name] for name in sheets.rings] for each in aside])
+    at = np.array([[each[name] for name in sheets.rings] for each in displaced])
     at -= at.mean(axis=1, keepdims=True)  # which is the place of the sheet
     off = at - at.mean(axis=0)
-    truth = np.sqrt(np.square(off).sum() / (2 * 7 * 2 - 2))  # a turn of each sheet beside
+    truth = np.sqrt(np.square(off).sum() / (2 * 7 * 2 - 2))  # a turn of each sheet in addition
     assert found["displacement_mm"] == pytest.approx(truth, rel=0.12)
     assert found["displacement_95_mm"][0] < 0.15 < found["displacement_95_mm"][1]
     value, half = found["hysteresis_mm"]["x"]
@@ -92,10 +92,10 @@ def test_the_spread_and_the_hysteresis_come_back(sheets, painted, capsys):
 
 
 def test_copies_on_one_sheet_are_sheets_enough(sheets, painted, capsys):
-    photos, aside = painted
+    photos, displaced = painted
     assert main(sheets.words(photos[:1])) == 0
     found = json.loads(capsys.readouterr().out)
-    at = np.array([aside[0][name] for name in sheets.rings])
+    at = np.array([displaced[0][name] for name in sheets.rings])
     (row,) = found["strokes"]
     assert row["seen"] == 8 and row["spread_mm"] == pytest.approx(
         np.sqrt(np.square(at - at.mean(axis=0)).sum() / 14), rel=0.2
@@ -126,7 +126,7 @@ def test_the_next_calibration_takes_the_spread(sheets, painted, tmp_path, capsys
         ]
         assert main(words) == 0, capsys.readouterr().err
         laws.append(json.loads((tmp_path / f"brush-{k}.json").read_text())["lag"]["coefficients"])
-    assert laws[1] != laws[0], "the fit was told"
+    assert laws[1] != laws[0], "the fit used it"
     damaged = json.loads(out.read_text()) | {"displacement_mm": -1}
     (tmp_path / "bad.json").write_text(json.dumps(damaged))
     words = [
@@ -140,11 +140,11 @@ def test_the_next_calibration_takes_the_spread(sheets, painted, tmp_path, capsys
         "-o",
         str(tmp_path / "no.json"),
     ]
-    status, _, told = in_json(capsys, *words, "--spread", tmp_path / "bad.json")
-    assert status == 1 and is_told(told, "out-of-range"), told
+    status, _, reported = in_json(capsys, *words, "--spread", tmp_path / "bad.json")
+    assert status == 1 and is_reported(reported, "out-of-range"), reported
 
 
-def test_strokes_that_are_painted_once_tell_no_spread(tmp_path, capsys):
+def test_strokes_that_are_painted_once_show_no_spread(tmp_path, capsys):
     drawing = f"{HEAD}" + "".join(
         f'<path id="t{k}" fill="none" stroke="#000" stroke-width="3" d="M{20 + 30 * k} 30 l{18 + k} 4 l0 {9 + k}"/>'
         for k in range(4)
@@ -152,12 +152,12 @@ def test_strokes_that_are_painted_once_tell_no_spread(tmp_path, capsys):
     (tmp_path / "four.svg").write_text(drawing + "</svg>")
     words = ["simulate-photo", str(tmp_path / "four.svg"), "-o", str(tmp_path / "a.jpg"), "--quiet"]
     assert main(words) == 0
-    status, _, told = in_json(capsys, "compare", tmp_path / "a.jpg", tmp_path / "four.svg", "--sheets")
-    assert status == 1 and is_told(told, "too-few-repeats"), told
+    status, _, reported = in_json(capsys, "compare", tmp_path / "a.jpg", tmp_path / "four.svg", "--sheets")
+    assert status == 1 and is_reported(reported, "too-few-repeats"), reported
     twice = (tmp_path / "a.jpg", tmp_path / "a.png", tmp_path / "four.svg")
     cv2.imwrite(str(twice[1]), cv2.imread(str(twice[0])))  # other bytes, the same pixels
-    status, _, told = in_json(capsys, "compare", *twice, "--sheets")
-    assert status == 1 and is_told(told, "too-few-repeats"), told
+    status, _, reported = in_json(capsys, "compare", *twice, "--sheets")
+    assert status == 1 and is_reported(reported, "too-few-repeats"), reported
     assert (
         main(
             ["compare", str(tmp_path / "a.jpg"), str(tmp_path / "four.svg"), "--sheets", "--at-least", "0.5"]

@@ -13,7 +13,7 @@ import numpy as np
 import photograph
 import pytest
 import shapely
-from diagnostics import agrees, in_json, is_told, refused
+from diagnostics import agrees, in_json, is_reported, refused
 from photograph import BLUE, Camera, replace
 from sampling import sample
 
@@ -22,7 +22,7 @@ from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import expected, marks_of, read_chart_photos
 from brushsvg.cli import main
-from brushsvg.photo.edges import Room, paint_seen, told_apart
+from brushsvg.photo.edges import StrokeBox, assign_marks, paint_seen
 from brushsvg.photo.flatten import Flat
 from brushsvg.photo.markers import Printed, find_view
 from brushsvg.photo.photo import read_photo
@@ -95,7 +95,9 @@ def off_mm(read_rings, rings):
     [
         SMALL,
         replace(SMALL, tilt_deg=(-12.0, 9.0), turn_deg=80.0, size_px=(1700, 1400), bend=0.02, fill=0.9),
-        replace(SMALL, turn_deg=181.0, bend=-0.05, fill=0.8, aside_mm=(8.0, 8.0), size_px=(1200, 1500)),
+        replace(
+            SMALL, turn_deg=181.0, bend=-0.05, fill=0.8, displacement_mm=(8.0, 8.0), size_px=(1200, 1500)
+        ),
     ],
     ids=["straight above", "tilted", "upside down"],
 )
@@ -136,7 +138,7 @@ def test_three_markers_are_enough():
     ids=["blue", "shadow", "red", "yellow", "pale grey"],
     keep=2,
 )
-def test_outlines_lie_where_paint_ends(camera, colour, most_mm):
+def test_outlines_are_where_paint_ends(camera, colour, most_mm):
     marks = painted_marks()
     found = read(photograph.exposed(painted_sheet(marks.values(), colour), camera))
     assert not found.marks.missing and not found.marks.joined
@@ -165,7 +167,7 @@ def test_a_soft_shadow_over_few_narrow_marks_is_not_taken_for_paint(is_lighter):
     fine, size = 5.0, (210.0, 297.0)
     y, x = np.mgrid[0 : round(size[1] * fine), 0 : round(size[0] * fine)] / fine
     number = np.where(is_lighter, 0.35, 0.8) * (1 - 0.3 / (1 + np.exp(-(x / 210 - y / 297 + 0.1) * 25)))
-    lines = [Room(f"{k}", (20.0 + 25 * k, 220.0, 40.0 + 25 * k, 280.0)) for k in range(7)]
+    lines = [StrokeBox(f"{k}", (20.0 + 25 * k, 220.0, 40.0 + 25 * k, 280.0)) for k in range(7)]
     middles = [room.box_mm[0] + 10 for room in lines]
     for middle in middles:
         number[(np.abs(x - middle) < 0.5) & (y > 20) & (y < 70)] *= np.where(is_lighter, 2.0, 0.3)
@@ -176,7 +178,7 @@ def test_a_soft_shadow_over_few_narrow_marks_is_not_taken_for_paint(is_lighter):
 
 
 def test_narrow_marks_of_a_blurred_picture_are_as_wide_as_they_were_painted():
-    """Blur takes from the middle of a narrow mark, too: half way up to what is left there once lay 0.05 mm outside."""
+    """Blur takes from the middle of a narrow mark, too: half way up to what is left there once was 0.05 mm outside."""
     marks = dict(painted_marks())
     for stroke, width in (("auxiliary-1", 0.7), ("straight-1", 0.9)):
         left, bottom, right, top = shape(marks[stroke]).bounds
@@ -212,25 +214,25 @@ def test_a_mark_that_strays_stays_whole_and_two_that_touch_are_cut():
 
 
 def test_a_mark_that_is_displaced_into_the_next_room_stays_whole():
-    """As by a tool that leans: a quarter of it lies where the next one should, which does so, too."""
+    """As by a tool that leans: a quarter of it is where the next one should, which does so, too."""
     fine, sheet_mm = 5, (170, 50)
     lefts = {"a": 10, "b": 21} | {str(k): 30 + 15 * k for k in range(1, 9)}
-    rooms = [Room(name, (left, 10, left + 10, 40)) for name, left in lefts.items()]
+    stroke_boxes = [StrokeBox(name, (left, 10, left + 10, 40)) for name, left in lefts.items()]
     at = {name: left + 1 for name, left in lefts.items()} | {"a": 14.4, "b": 25.4}
-    wanted = {name: np.array([[x, 12], [x + 8, 12], [x + 8, 38], [x, 38.0]]) for name, x in at.items()}
+    target = {name: np.array([[x, 12], [x + 8, 12], [x + 8, 38], [x, 38.0]]) for name, x in at.items()}
     paint = np.zeros((sheet_mm[1] * fine, sheet_mm[0] * fine), np.float32)
-    for ring in wanted.values():
+    for ring in target.values():
         (left, bottom), (right, top) = np.int32(ring.min(axis=0) * fine), np.int32(ring.max(axis=0) * fine)
         paint[len(paint) - top : len(paint) - bottom, left:right] = 1
-    found = told_apart(paint, Flat(np.zeros((*paint.shape, 3), np.uint8), fine, sheet_mm), rooms, [])
+    found = assign_marks(paint, Flat(np.zeros((*paint.shape, 3), np.uint8), fine, sheet_mm), stroke_boxes, [])
     assert not found.joined and not found.missing
-    for name, ring in wanted.items():
+    for name, ring in target.items():
         assert _core.overlap(found.outlines_mm[name], [ring]) > 0.9, name
 
 
 @pytest.mark.parametrize("lean", [(-0.6, 0.5), (0.0, 0.8)])
 def test_marks_of_a_tool_that_leans_much_are_those_of_their_strokes(lean):
-    """So much that they lie in the rooms of others: every mark is that of its stroke, and none is lost."""
+    """So much that they are in the boxes of others: every mark is that of its stroke, and none is lost."""
     depth = {one.id: one.depth_mm for one in a5().strokes}
     marks = {
         name: [ring + np.multiply(lean, depth[name]) for ring in rings]
@@ -271,10 +273,10 @@ def test_a_stroke_without_paint_is_named(tmp_path, capsys):
         "-o",
         str(desk / "marks.json"),
     ]
-    assert main([*words, "--picture", str(desk / "read.png")]) == 0
+    assert main([*words, "--marks-picture", str(desk / "read.png")]) == 0
     assert re.search(r"\b22 [a-z]+ 24 .*\b6 [a-z ]+ 0\.0", capsys.readouterr().err)
-    status, _, told = in_json(capsys, *words)
-    assert status == 0 and is_told(told, "mark-missing straight-1 arc-2"), told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 0 and is_reported(reported, "mark-missing straight-1 arc-2"), reported
     content = json.loads((desk / "marks.json").read_text())
     assert [row["stroke"] for row in content["marks"]] == [one.id for one in a5().strokes if one.id in marks]
     assert cv2.imread(str(desk / "read.png")).shape[0] > 1000
@@ -317,7 +319,7 @@ def test_what_is_no_picture_is_refused(data, said):
 
 @pytest.mark.parametrize("depth", [np.uint8, np.uint16])
 @pytest.mark.parametrize("suffix", [".png", ".tif"])
-def test_what_is_seen_through_lies_on_white(suffix, depth):
+def test_what_is_seen_through_is_on_white(suffix, depth):
     """The black that stands below what is seen through was taken for paint."""
     full = np.iinfo(depth).max
     picture = np.zeros((40, 30, 4), depth)
@@ -649,9 +651,11 @@ def test_refusals_name_the_file(tmp_path, capsys):
     photo.write_bytes(cv2.imencode(".png", np.full((300, 300, 3), 200, np.uint8))[1].tobytes())
     file.write_text("{")
     words = ["calibrate", "--force", str(photo), "--chart", str(file), "-o", str(out)]
-    status, _, ((about, told),) = in_json(capsys, *words)
-    assert (status, about) == (1, str(file)) and agrees(told, "not-json"), told
+    status, _, ((about, reported),) = in_json(capsys, *words)
+    assert (status, about) == (1, str(file)) and agrees(reported, "not-json"), reported
     file.write_text(write_chart(a5()))
-    status, _, ((about, told),) = in_json(capsys, *words)
-    assert (status, about) == (1, str(photo)) and agrees(told, f"photo-markers-missing {a5().id}"), told
+    status, _, ((about, reported),) = in_json(capsys, *words)
+    assert (status, about) == (1, str(photo)) and agrees(reported, f"photo-markers-missing {a5().id}"), (
+        reported
+    )
     assert not out.exists()

@@ -82,8 +82,8 @@ def test_a_line_says_how_sure_it_is():
     off = np.array(
         [(turn.lag_mm - lag(8.0), turn.turning_mm - lag(8.0) + widest(8.0) - GAP * 8) for turn in read]
     )
-    told = np.array([np.sqrt(np.diag(turn.covariance_mm2)) for turn in read])
-    assert off.std(axis=0) == pytest.approx(np.median(told, axis=0), rel=0.4)
+    reported = np.array([np.sqrt(np.diag(turn.covariance_mm2)) for turn in read])
+    assert off.std(axis=0) == pytest.approx(np.median(reported, axis=0), rel=0.4)
 
 
 def test_a_line_read_from_about_the_right_lengths_scatters_as_its_points_say():
@@ -136,7 +136,7 @@ def test_skeleton_and_turning_point_are_found_in_a_picture(picture, turned, towa
     assert turn.rmse_mm < 0.1
 
 
-def test_pictures_stand_beside_their_file(picture, tmp_path):
+def test_pictures_stand_next_to_their_file(picture, tmp_path):
     (tmp_path / "six.png").write_bytes(picture)
     seen = {
         "depth_mm": 6,
@@ -224,7 +224,7 @@ def test_one_fit_survives_an_outlier_by_its_norm_and_names_it(absolute):
     rows = whole(np.random.default_rng(8))
     rows["side_view"][6]["value_mm"] += 12.0
     made = calibrate(from_dict(**rows), "b", absolute=absolute)
-    assert any("side_view[6]" in told for law in made.laws for told in law.outliers_told())
+    assert any("side_view[6]" in reported for law in made.laws for reported in law.list_outliers())
     off = abs(made.brush.tip_gap(7.0) - GAP * 7)
     assert off < (0.8 if absolute else 2.5)
 
@@ -232,10 +232,10 @@ def test_one_fit_survives_an_outlier_by_its_norm_and_names_it(absolute):
 def test_a_dict_is_a_file(tmp_path):
     rows = {"depth_range_mm": [0, 10], "name": "mine"} | FOOTPRINTS | {"lag": values(DEPTHS, lag(DEPTHS))}
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
-    told = brushsvg.calibrate(
+    reported = brushsvg.calibrate(
         rows | {"lag": [{"depth_mm": np.float64(d), "value_mm": lag(d)} for d in DEPTHS]}
     )
-    assert told.brush == brushsvg.calibrate(tmp_path / "m.json").brush
+    assert reported.brush == brushsvg.calibrate(tmp_path / "m.json").brush
     with refused("wrong-type"):
         brushsvg.calibrate({"lag": object()})
     with refused("key-unknown", "lags"):

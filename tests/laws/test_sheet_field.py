@@ -19,11 +19,11 @@ def planted(columns, rows, order):
 
 
 @pytest.mark.parametrize("columns, rows", [(5, 6), (7, 5)])
-def test_odd_strokes_lie_where_even_ones_told(columns, rows):
+def test_odd_strokes_are_where_even_ones_predict(columns, rows):
     truth, rng = planted(columns, rows, ALL), np.random.default_rng(columns)
     found = sheet_field(ALL[::2], truth[::2] + rng.normal(0, NOISE_MM, (120, 2)))
-    told = found.at(ALL[1::2])
-    left = truth[1::2] - truth.mean(axis=0) - told
+    reported = found.at(ALL[1::2])
+    left = truth[1::2] - truth.mean(axis=0) - reported
     assert found.probability > 0.99
     # ten numbers of 120 strokes: a least squares fit of the true layout is off by this
     assert left.std() < 1.5 * NOISE_MM * np.sqrt(10 / 120)
@@ -32,8 +32,8 @@ def test_odd_strokes_lie_where_even_ones_told(columns, rows):
 def test_sheets_that_were_laid_anew():
     order, rng = np.arange(0, 150, 2), np.random.default_rng(1)
     truth = planted(5, 3, np.arange(150)) + rng.normal(0, 1.5, (10, 2))[np.arange(150) // 15]
-    told = sheet_field(order, truth[::2] + rng.normal(0, 0.3, (75, 2))).at(order + 1)
-    before, left = truth[1::2] - truth[1::2].mean(axis=0), truth[1::2] - truth[::2].mean(axis=0) - told
+    reported = sheet_field(order, truth[::2] + rng.normal(0, 0.3, (75, 2))).at(order + 1)
+    before, left = truth[1::2] - truth[1::2].mean(axis=0), truth[1::2] - truth[::2].mean(axis=0) - reported
     assert (left**2).sum() < 0.25 * (before**2).sum()
 
 
@@ -57,7 +57,7 @@ def test_a_stroke_far_off_moves_no_others():
     assert sheet_field(ALL[::2], far).at(ALL) == pytest.approx(sheet_field(ALL[::2], moved).at(ALL), abs=0.15)
 
 
-def test_too_few_strokes_tell_nothing():
+def test_too_few_strokes_show_nothing():
     found = sheet_field([0, 2, 4], [[0.0, 1.0], [2.0, 0.0], [3.0, 1.0]])
     assert found.probability == 0
     assert not found.at([1, 3]).any()

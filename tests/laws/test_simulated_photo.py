@@ -1,4 +1,4 @@
-"""simulate-photo: what its studio says is amiss is what compare sees, and it cannot be taken for a photograph."""
+"""simulate-photo: the faults of its studio are what compare finds, and it cannot be taken for a photograph."""
 
 import json
 import re
@@ -7,7 +7,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from diagnostics import gives, in_json, is_told
+from diagnostics import gives, in_json, is_reported
 
 from brushsvg.cli import main
 from brushsvg.model.library import find_brush
@@ -47,7 +47,7 @@ def shown(drawing, capsys, toml, *flags):
     return json.loads(capsys.readouterr().out)
 
 
-def test_a_studio_in_which_nothing_is_amiss_paints_what_was_predicted(drawing, capsys):
+def test_a_studio_in_which_nothing_is_wrong_paints_what_was_predicted(drawing, capsys):
     found = shown(drawing, capsys, "")
     assert found["overlap_predicted"] > 0.98 and found["faults"]["mend_first"] is None
 
@@ -57,8 +57,8 @@ def test_each_key_does_what_it_says(drawing, capsys):
     assert found["sheet"]["turn_deg"] == pytest.approx(0.6, abs=0.05)
     middle = np.array(found["sheet"]["middle_mm"]) - [60, 40]
     c, s = np.cos(np.radians(0.6)), np.sin(np.radians(0.6))
-    beside = np.array([[c, -s], [s, c]]) @ middle - middle + [1.5, -1.0]
-    assert found["sheet"]["shift_mm"] == pytest.approx(beside, abs=0.05)
+    near_by = np.array([[c, -s], [s, c]]) @ middle - middle + [1.5, -1.0]
+    assert found["sheet"]["shift_mm"] == pytest.approx(near_by, abs=0.05)
     found = shown(drawing, capsys, "[paint]\nlasts_mm = 15\n")
     missing = {row["cause"]: row["gain"] for row in found["faults"]["causes"]}
     assert found["faults"]["mend_first"] == "missing paint" and missing["missing paint"] > 0.1
@@ -69,7 +69,7 @@ def test_each_key_does_what_it_says(drawing, capsys):
     assert main(words) == 1, "which cannot be pressed as deep as the plan presses it"
 
 
-def test_the_same_seed_is_the_same_photograph_and_its_studio_is_told(drawing, capsys):
+def test_the_same_seed_is_the_same_photograph_and_its_studio_is_reported(drawing, capsys):
     folder = drawing.parent
     for name, seed in (("a", 7), ("b", 7), ("c", 8)):
         assert (
@@ -104,7 +104,7 @@ def test_no_seed_draws_paper_that_a_chart_cannot_be_painted_on(tmp_path, capsys,
         )
     Path("s.toml").write_text(HEAD + "[machine]\nheight_mm = 1.0\n")
     status, _, said = in_json(capsys, "simulate-photo", "c.json", "-o", "p.jpg", "--studio", "s.toml")
-    assert status == 1 and is_told(said, "depth-out-of-range 11.000 machine.height_mm")
+    assert status == 1 and is_reported(said, "depth-out-of-range 11.000 machine.height_mm")
 
 
 def test_letters_of_the_page_end_where_its_layout_has_them(monkeypatch):
@@ -159,9 +159,9 @@ def test_what_it_cannot_do_is_refused(drawing, capsys, toml, code):
     big = DRAWING.replace('stroke-width="3"', 'stroke-width="7"')
     drawing.write_text(big if not code else DRAWING)
     words = ("simulate-photo", drawing, "-o", folder / "p.jpg", "--studio", folder / "studio.toml")
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and not (folder / "p.jpg").exists(), told
-    assert is_told(told, code) if code else len(told) >= 1, told
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and not (folder / "p.jpg").exists(), reported
+    assert is_reported(reported, code) if code else len(reported) >= 1, reported
 
 
 @pytest.mark.thorough
@@ -173,9 +173,9 @@ def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, ca
     page = str(tmp_path / "page.svg")
     assert main(["chart", "-o", plan, "--sheet", "a5", "--page", page, "--chart", chart, "--quiet"]) == 0
     assert main(["simulate-photo", plan, "-o", photo, "--quiet"]) == 0
-    status, _, told = in_json(capsys, "calibrate", "--force", photo, "--chart", chart, "-o", found)
-    assert status == 1 and is_told(told, "photo-of-another-chart"), told
-    assert all(flag in told[-1][1].advice for flag in ("--plan", "--prior", "--chart"))
+    status, _, reported = in_json(capsys, "calibrate", "--force", photo, "--chart", chart, "-o", found)
+    assert status == 1 and is_reported(reported, "photo-of-another-chart"), reported
+    assert all(flag in reported[-1][1].advice for flag in ("--plan", "--prior", "--chart"))
     assert (
         main(["calibrate", "--force", photo, "--plan", plan, "--prior", "round-6", "-o", found, "--quiet"])
         == 0
@@ -185,7 +185,7 @@ def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, ca
 
 @pytest.fixture(scope="module")
 def letters(tmp_path_factory):
-    """A word whose strokes touch each other, its plan, and two sheets of studios in which much is amiss."""
+    """A word whose strokes touch each other, its plan, and two sheets of studios with many faults."""
     folder = tmp_path_factory.mktemp("letters")
     for words in (
         ("convert", EXAMPLE, "-o", folder / "word.json"),
@@ -197,23 +197,23 @@ def letters(tmp_path_factory):
 
 
 @pytest.mark.thorough
-def test_where_no_stroke_lies_alone_a_chart_is_advised(letters, drawing, capsys):
+def test_where_no_stroke_is_alone_a_chart_is_advised(letters, drawing, capsys):
     """Never what would be refused: from the same photograph no brush is learnt."""
     words = ("--plan", letters / "word.json", "--prior", "round-6", "-o", letters / "u.json")
-    status, _, told = in_json(capsys, "calibrate", letters / "3.jpg", *words)
-    assert status == 1 and is_told(told, "marks-touch 9 7 2 30"), told
-    assert "calibrate --chart" in told[-1][1].advice
+    status, _, reported = in_json(capsys, "calibrate", letters / "3.jpg", *words)
+    assert status == 1 and is_reported(reported, "marks-touch 9 7 2 30"), reported
+    assert "calibrate --chart" in reported[-1][1].advice
     status, text, _ = in_json(capsys, "compare", letters / "3.jpg", EXAMPLE)
     assert status == 0 and "--prior" not in text and text.count("calibrate --chart") == 1
-    as_it_lies, placed = (float(each) for each in re.search(r"by (0\.\d+); .*? by (0\.\d+)", text).groups())
-    assert placed < as_it_lies
+    as_painted, placed = (float(each) for each in re.search(r"(0\.\d+); (0\.\d+) ", text).groups())
+    assert placed < as_painted
     main(["simulate-photo", str(drawing), "-o", str(letters / "six.jpg"), "--seed", "5", "--quiet"])
     status, text, _ = in_json(capsys, "compare", letters / "six.jpg", drawing)
-    as_it_lies, placed = (float(each) for each in re.search(r"by (0\.\d+); .*? by (0\.\d+)", text).groups())
-    assert placed > as_it_lies and "calibrate --chart" not in text
+    as_painted, placed = (float(each) for each in re.search(r"(0\.\d+); (0\.\d+) ", text).groups())
+    assert placed > as_painted and "calibrate --chart" not in text
 
 
-def test_strokes_that_repeats_tells_nothing_of_are_named(letters, capsys):
+def test_strokes_without_repeats_are_named(letters, capsys):
     words = ("compare", letters / "3.jpg", letters / "4.jpg", EXAMPLE, "--sheets")
     status, text, _ = in_json(capsys, *words, "--json")
     found = json.loads(text)
@@ -243,13 +243,13 @@ def test_a_photograph_that_is_given_twice_is_refused(letters, capsys):
                 letters / "u.json",
             ),
         ):
-            status, _, told = in_json(capsys, *words)
-            assert status == 1 and told[-1][0] == str(photos[-1]), told
-            assert is_told(told, "photo-twice 3.jpg"), told
+            status, _, reported = in_json(capsys, *words)
+            assert status == 1 and reported[-1][0] == str(photos[-1]), reported
+            assert is_reported(reported, "photo-twice 3.jpg"), reported
 
 
 def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
-    """Of a studio in which nothing is amiss the brush that was named comes back; from the plan alone it would be
+    """Of a studio without faults the brush that was named comes back; from the plan alone it would be
     another page."""
     plan, chart, photo, found = (
         str(tmp_path / name) for name in ("plan.json", "chart.json", "p.jpg", "own.json")
@@ -263,10 +263,12 @@ def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
         values, truth = (np.array([getattr(each, law)(d) for d in depths]) for each in (own, true))
         assert np.abs(values / truth - 1).max() < 0.05, (law, values / truth)
     capsys.readouterr()
-    status, _, told = in_json(capsys, "calibrate", "--force", photo, "--chart", plan, "-o", found)
-    assert status == 1 and is_told([each for _, each in told], "format-unknown '--chart FILE'"), told
+    status, _, reported = in_json(capsys, "calibrate", "--force", photo, "--chart", plan, "-o", found)
+    assert status == 1 and is_reported([each for _, each in reported], "format-unknown '--chart FILE'"), (
+        reported
+    )
 
 
 def test_a_plan_that_is_not_there_is_reported(tmp_path, capsys):
-    status, _, told = in_json(capsys, "simulate-photo", tmp_path / "none.json", "-o", tmp_path / "x.jpg")
-    assert status == 1 and is_told(told, "file-unreadable"), told
+    status, _, reported = in_json(capsys, "simulate-photo", tmp_path / "none.json", "-o", tmp_path / "x.jpg")
+    assert status == 1 and is_reported(reported, "file-unreadable"), reported

@@ -19,7 +19,7 @@ ROUND = brushsvg.find_brush("round-6")
 SHEET_MM = (400.0, 400.0)
 CORNER_RAD = np.radians(8)
 WINDOW_MM, STEP_MM = 0.25, 0.05  # a corner is what turns within two windows
-SAME_MM = 0.6  # corners of both marks that lie so near are one
+SAME_MM = 0.6  # corners of both marks that are so near are one
 SHOWS_MM = 0.05  # from the outline of the mark; an inner edge that turns back is painted over
 VINCENT = Path(__file__).parents[2] / "examples" / "vincent.svg"
 

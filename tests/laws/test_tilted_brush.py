@@ -133,15 +133,15 @@ def test_the_mark_is_what_sections_of_the_leaning_brush_sweep(lean):
     dragged = [(float(d), oracle.section_6_outline(float(WIDEST(d)), 0.42 * d, 33)) for d in range(1, 11)]
     brush, lean = make_brush(footprints=dragged), np.array(lean, float)
     tips, depths = np.array([[0, 0], [15, 2], [45, 20.0]]), np.array([0.0, 6.0, 6.0])
-    wanted = oracle_mark(tips, depths, lean, brush, dragged)
+    target = oracle_mark(tips, depths, lean, brush, dragged)
     marks = simulated(tips, depths, unit_axes(lean), brush)
     core.trace_outlines(marks, brush)
     found = oracle.union_of([np.array(ring) for ring in marks.passes[0].outline_mm])
-    assert found.symmetric_difference(wanted).area < 0.02 * wanted.length
+    assert found.symmetric_difference(target).area < 0.02 * target.length
     upright = simulated(tips, depths, np.zeros((0, 3)), brush)
     core.trace_outlines(upright, brush)
     before = oracle.union_of([np.array(ring) for ring in upright.passes[0].outline_mm])
-    assert before.symmetric_difference(wanted).area > 0.2 * wanted.length
+    assert before.symmetric_difference(target).area > 0.2 * target.length
 
 
 def test_the_widest_point_is_stretched_with_the_mark():
@@ -156,7 +156,7 @@ def test_the_widest_point_is_stretched_with_the_mark():
     )
 
 
-def test_set_down_on_the_spot_the_patch_lies_under_the_axis_and_the_tip_stays():
+def test_set_down_on_the_spot_the_patch_is_under_the_axis_and_the_tip_stays():
     brush, tips, lean = make_brush(), np.array([[0, 0], [40, 9.0]]), np.array([[0.4, 0.1], [-0.2, 0.5]])
     axes = unit_axes(lean)
     short = simulated(tips, [5.0, 7.0], axes, brush).passes[0]

@@ -1,5 +1,5 @@
-"""Photographs that cannot be read, or not whole, in more than twenty ways: each is refused, or told, with the code of
-its cause, and what is read of the others lies where it was painted."""
+"""Photographs that cannot be read, or not whole, in twenty ways: each is refused, or reported, with the code of
+its cause, and what is read of the others is where it was painted."""
 
 from functools import cache
 
@@ -115,7 +115,7 @@ REFUSED = {
         "mark-missing",
     ),
 }
-TOLD = {
+REPORTED = {
     "two strokes missing": (
         lambda: shot({k: rings for k, rings in painted_marks().items() if k not in ("arc-2", "straight-1")}),
         "mark-missing",
@@ -155,12 +155,12 @@ def test_a_picture_that_was_saved_too_small_is_refused():
     assert not found.marks.missing and not remarks(found)
 
 
-@pytest.mark.parametrize("kind", TOLD)
-def test_what_can_be_read_in_part_is_told(kind):
-    make, code = TOLD[kind]
+@pytest.mark.parametrize("kind", REPORTED)
+def test_what_can_be_read_in_part_is_reported(kind):
+    make, code = REPORTED[kind]
     found = read_chart_photos(a5(), [("", photograph.encoded(make()))])
-    told = {notice.code for notice in remarks(found)}
-    assert code in told
+    reported = {notice.code for notice in remarks(found)}
+    assert code in reported
     touched = {stroke for pair in found.marks.joined for stroke in pair}
     for stroke, rings in painted_marks().items():
         if stroke not in touched and stroke not in found.marks.missing:

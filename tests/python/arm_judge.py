@@ -39,9 +39,9 @@ class Eaik:
 
     def solutions(self, flange):
         """All angles (k, 6) for a flange frame [mm]."""
-        wanted = np.linalg.inv(self.base) @ flange @ np.linalg.inv(self.behind)
-        wanted[:3, 3] *= 1e-3
-        found = self.robot.IK(wanted)
+        target = np.linalg.inv(self.base) @ flange @ np.linalg.inv(self.behind)
+        target[:3, 3] *= 1e-3
+        found = self.robot.IK(target)
         exact = [q for q, least_squares in zip(found.Q, found.is_LS, strict=True) if not least_squares]
         return np.array(exact).reshape(-1, 6) - self.theta
 
@@ -96,10 +96,10 @@ def missing(some, others) -> int:
 
 
 def compare(name: str, count: int, seed: int = 0) -> dict:
-    """How many random places agree, differ, and lie near a singularity; and how many angles each has found."""
+    """How many random places agree, differ, and are near a singularity; and how many angles each has found."""
     arm, random = find_cell(name).arm, np.random.default_rng(seed)
     joints, judge = joints_of(arm), Eaik(arm)
-    told = {
+    reported = {
         "agree": 0,
         "differ": 0,
         "singular": 0,
@@ -117,11 +117,11 @@ def compare(name: str, count: int, seed: int = 0) -> dict:
         both = np.vstack([ours, theirs])
         turn = np.linalg.norm(rates(arm, both, flange[:3, 3]), axis=-1).max()
         if turn > SINGULAR_RAD_MM:
-            told["singular"] += 1
+            reported["singular"] += 1
             continue
         leads = max(np.abs(judge.flange(one) - flange).max() for one in both) < 1e-4
         same = missing(theirs, ours) == 0 and missing(ours, theirs) == 0
-        told["agree" if leads and same else "differ"] += 1
-        told["ours"] += len(ours)
-        told["theirs"] += len(ours) - missing(ours, theirs)
-    return told
+        reported["agree" if leads and same else "differ"] += 1
+        reported["ours"] += len(ours)
+        reported["theirs"] += len(ours) - missing(ours, theirs)
+    return reported

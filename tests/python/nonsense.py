@@ -248,6 +248,7 @@ ARGUMENTS = {
     "Check": [],
     "BrushCalibration": [],
     "PaintedJob": [],
+    "Project": [],
     "Error": [["a sentence", *TEXTS], ["", *NUMBERS], [None, *NUMBERS], [None, *NUMBERS]],
     "Footprint": [[3.0, *NUMBERS], [[[0, 0], [4, -2], [6, 0], [4, 2]], [], [[NAN, 0]] * 3, [[1e300, 0]] * 3]],
     "FootprintTable": [
@@ -316,6 +317,7 @@ ARGUMENTS = {
     ],
     "find_brush": [["round-6", *NAMES]],
     "find_cell": [["grbl-3axis", *NAMES]],
+    "find_project": [[str(FOLDER), *PATHS, *NAMES]],
     "flatten": [some_strokes, [0.01, *NUMBERS]],
     "marks_png": [marks, brushes, SHEETS, COLOURS],
     "marks_svg": [marks, SHEETS, COLOURS],
@@ -340,6 +342,7 @@ ARGUMENTS = {
     "overlap": [rings, rings],
     "path_from_pass": [lambda: [a_pass(), brushsvg.Pass()], [None, *NUMBERS]],
     "path_from_stroke": [some_strokes, [None, *NUMBERS]],
+    "read_project": [[*PATHS, FOLDER / "broken.toml", FOLDER / "huge.toml", *TEXTS]],
     "read_cell": [[SOUND_CELL, *PATHS, FOLDER / "broken.toml", FOLDER / "huge.toml", *TEXTS]],
     "read_drawing": [[FOLDER / "d.svg", *PATHS], lambda: read_options()],
     "read_marks": [lambda: [brushsvg.write_marks(next(marks())), *TEXTS]],
@@ -404,7 +407,7 @@ def sound_program():
 def sound_photo():
     photo = FOLDER / "photo.jpg"
     if not photo.exists():
-        with contextlib.redirect_stdout(io.StringIO()):  # its studio is told
+        with contextlib.redirect_stdout(io.StringIO()):  # its studio is printed
             assert command(["simulate-photo", str(FOLDER / "d.svg"), "-o", str(photo), "--quiet"]) == 0
     return photo
 
@@ -418,7 +421,7 @@ def read_options():
         yield brushsvg.ReadOptions(select=value)
 
 
-def laws_asked():
+def laws_requested():
     for span in [(0, 10), (10, 0), (3, 3), (NAN, 9), (0, INF), (-INF, 1e300)]:
         yield _core.LawShape(span, 1)
     for degree in (0, -1, 9, 2**31 - 1):
@@ -496,22 +499,6 @@ def all_mark_options():
     yield mark_options(laws=_core.LawPrior(laws, []))
 
 
-def all_tracks():
-    poses, seen = np.array([[0, 0, 0], [15, 0, -3], [30, 5, -3.0]]), np.array([[8, 0], [15, 1], [23, 3.0]])
-    yield [_core.Track(poses, [1, 1.5, 2], seen)]
-    yield []
-    yield [_core.Track(poses[:1], [0], seen[:1])]
-    yield [_core.Track(poses, [2, 1.5, 1], seen)]
-    yield [_core.Track(poses, [1], seen)]
-    yield [_core.Track(poses, [0, 1, 2], seen)] * 2
-    yield [_core.Track(poses * [1, 1, -1], [0, 1, 2], seen)]
-    for value in NUMBERS[:-1]:
-        yield [_core.Track(np.where(poses == 15, value, poses), [1, 1.5, 2], seen)]
-        yield [_core.Track(np.where(poses == -3, value, poses), [1, 1.5, 2], seen)]
-        yield [_core.Track(poses, [1, value, 2], seen)]
-        yield [_core.Track(poses, [1, 1.5, 2], np.where(seen == 15, value, seen), value)]
-
-
 # the same of what is no name of its own: the fits, which calibration calls, and what makes a value
 FITS = {
     "Stroke.from_points": [
@@ -528,7 +515,7 @@ FITS = {
         [3.0, [3, 4], [3, 4, 5], [3, -4], [3, NAN], np.ones((2, 1)), np.ones((2, 2)), *NUMBERS],
         ["a", *TEXTS],
     ],
-    "fit_law": [readings, readings, laws_asked],
+    "fit_law": [readings, readings, laws_requested],
     "from_angles": [
         [1.5, *NUMBERS],
         lambda: [[1, 3, 6], *([1, 3, each] for each in NUMBERS), [6, 3, 1], [0, 0, 0], []],
@@ -536,11 +523,6 @@ FITS = {
         lambda: [[2.3, 2.0, 1.6], *([2.3, 2.0, each] for each in NUMBERS), []],
     ],
     "fit_marks": [painted_marks, starts, all_mark_options],
-    "fit_tracks": [
-        all_tracks,
-        lambda: [[5.0], [], [1.0] * 12, [-1.0], *([each] for each in NUMBERS)],
-        [(0, 10), (10, 0), (0, 0), (NAN, 9), (0, INF), (0, 1e300)],
-    ],
 }
 
 
@@ -599,7 +581,7 @@ def methods(name):
 
 
 def shown_and_copied(value):
-    """What every value can do, whatever it holds."""
+    """What every value can do, for any contents."""
     repr(value)
     for made in (copy.copy(value), pickle.loads(pickle.dumps(value))):
         if made != value:
@@ -627,7 +609,7 @@ def main(names):
             words = f"{name}({', '.join(repr(each)[:60] for each in arguments)})"
             print(words, file=sys.stderr, flush=True)  # what was last begun, should the process end here
             if count == 0 and arguments:
-                public(*arguments)  # the sound one: what it is to be nonsense beside
+                public(*arguments)  # the sound one: what it is to be nonsense next to
             if wrong := outcome(lambda f=public, given=arguments: f(*given), words):
                 print(wrong, flush=True)
         for arguments in truths(name):

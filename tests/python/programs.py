@@ -3,7 +3,7 @@
 import re
 from dataclasses import replace
 
-from diagnostics import in_json, is_told
+from diagnostics import in_json, is_reported
 
 from brushsvg.cli import main
 from brushsvg.cli.commands.drawings import check
@@ -36,8 +36,8 @@ RUNNABLE = check.RUNNABLE  # what is said of a sound program
 def call(capsys, *words):
     """Exit status, standard output, and the lines of standard error."""
     status = main(list(words))
-    told = capsys.readouterr()
-    return status, told.out, told.err.splitlines()
+    reported = capsys.readouterr()
+    return status, reported.out, reported.err.splitlines()
 
 
 def whole(plan):
@@ -58,8 +58,8 @@ def problems(plan, brush, marks, cell, tolerance_mm):
     return look(whole(plan), brush, marks, cell, tolerance_mm).problems
 
 
-def is_refused_when_damaged(capsys, path, old, new, told, *words):
-    """That check allows a program, and no longer where one pattern of it is replaced; told: codes, any of them."""
+def is_refused_when_damaged(capsys, path, old, new, reported, *words):
+    """That check allows a program, and no longer where one pattern of it is replaced; reported: codes, any of them."""
     text = path.read_text()
     check = ("check", path, *words)
     assert in_json(capsys, *check)[0] == 0
@@ -67,4 +67,4 @@ def is_refused_when_damaged(capsys, path, old, new, told, *words):
     assert count == 1
     path.write_text(damaged)
     status, _, said = in_json(capsys, *check)
-    return status == 1 and any(is_told(said, code) for code in told.split("|"))
+    return status == 1 and any(is_reported(said, code) for code in reported.split("|"))

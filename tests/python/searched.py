@@ -7,12 +7,12 @@ from brushsvg.strokes.wide_shapes import within_reach
 
 def passes_of(strokes, brush):
     """The strokes that fill shapes, those that the search adds among them."""
-    painted, wanted, _ = within_reach(strokes, brush, "passes")
+    painted, target, _ = within_reach(strokes, brush, "passes")
 
     def compensated(some):
         return _core.compensate(some, brush, None, start="auto", end="auto")
 
-    return searched(strokes, painted, wanted, compensated, brush).painted
+    return searched(strokes, painted, target, compensated, brush).painted
 
 
 def mark_of(strokes, brush):

@@ -6,17 +6,17 @@ import textwrap
 from dataclasses import dataclass
 from pathlib import Path
 
-HOUSE = Path(__file__).parents[2]
-DOCS = HOUSE / "docs"
+REPOSITORY = Path(__file__).parents[2]
+DOCS = REPOSITORY / "docs"
 GENERATED = {
     DOCS / "reference" / f"{name}.md" for name in ("commands", "python", "cells")
 }  # by made_pages.py
 FOLLOWED = [page for folder in ("start", "howto") for page in sorted((DOCS / folder).glob("*.md"))]
 PAGES = [
-    HOUSE / "README.md",
+    REPOSITORY / "README.md",
     *sorted(page for page in DOCS.rglob("*.md") if page not in GENERATED and "_build" not in page.parts),
 ]
-NOTEBOOKS = sorted((HOUSE / "examples" / "notebooks").glob("*.ipynb"))
+NOTEBOOKS = sorted((REPOSITORY / "examples" / "notebooks").glob("*.ipynb"))
 # fenced, or indented behind an empty line: what goes on with a list has a line of it right above
 BLOCK = re.compile(
     r"^ *```(?P<fence>\S*)\n(?P<fenced>[\s\S]*?)^ *```$|(?<=\n\n)(?P<plain>(?:    .*\n(?:\n+(?=    ))?)+)",

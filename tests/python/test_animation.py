@@ -65,11 +65,11 @@ def test_the_rings_are_those_of_the_prediction(tmp_path):
         points = np.cumsum(np.reshape(sent, (-1, 2)), axis=0) / 100
         nearest = np.linalg.norm(ring[:, None] - points[None], axis=2).min(axis=1)
         assert nearest.max() < 0.0075
-    (wanted,) = data["wanted"]
-    assert len(wanted) == 1
+    (target,) = data["wanted"]
+    assert len(target) == 1
 
 
-def test_a_plan_does_not_say_what_was_wanted(tmp_path):
+def test_a_plan_does_not_hold_its_target(tmp_path):
     work, marks = work_of(tmp_path)
     object.__setattr__(work, "strokes", None)
     assert data_of(outputs.played(work, whole(work.plan), marks, find_cell()))["wanted"] == []

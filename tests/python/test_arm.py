@@ -143,35 +143,35 @@ def test_an_arms_links_put_the_flange_where_its_own_description_puts_it(name):
 
 
 @pytest.mark.parametrize("name", ARMS)
-def test_all_angles_that_are_found_put_the_flange_where_it_was_asked_for(name):
+def test_all_found_angles_put_the_flange_at_the_requested_place(name):
     arm, rng = find_cell(name).arm, np.random.default_rng(2)
     joints = joints_of(arm)
     for joints_rad in rng.uniform(-2.5, 2.5, (20, 6)):
-        wanted = frames(arm, joints_rad)[-1]
-        found = joints.solutions(wanted)
+        target = frames(arm, joints_rad)[-1]
+        found = joints.solutions(target)
         assert len(found) >= 2
         there = frames(arm, found)[:, -1]
-        assert there == pytest.approx(np.broadcast_to(wanted, there.shape), abs=1e-6)
+        assert there == pytest.approx(np.broadcast_to(target, there.shape), abs=1e-6)
         turns = (found - joints_rad + np.pi) % (2 * np.pi) - np.pi
         assert np.abs(turns).max(axis=1).min() < 1e-6
 
 
 def test_near_a_singularity_angles_are_as_exact():
-    """There two steps of Newton's left 4e-6 mm, and joints 1e-6 rad beside where they should be."""
+    """There two steps of Newton's left 4e-6 mm, and joints 1e-6 rad off their target."""
     arm = find_cell("xarm6").arm
-    wanted = frames(arm, (-2.05282, -0.04117, -0.86343, 1.96439, -0.19169, 0.47531))[-1]
-    there = frames(arm, joints_of(arm).solutions(wanted))[:, -1]
-    assert there == pytest.approx(np.broadcast_to(wanted, there.shape), abs=1e-8)
+    target = frames(arm, (-2.05282, -0.04117, -0.86343, 1.96439, -0.19169, 0.47531))[-1]
+    there = frames(arm, joints_of(arm).solutions(target))[:, -1]
+    assert there == pytest.approx(np.broadcast_to(target, there.shape), abs=1e-8)
 
 
 @pytest.mark.parametrize("name", ARMS)
 def test_another_library_finds_the_same_angles(name):
     is_xarm = name.startswith("xarm")
-    told = compare(name, 15 if is_xarm else 60, seed=3)
-    assert told["differ"] == 0
-    assert told["agree"] > (12 if is_xarm else 50)
-    assert told["judge"] == ("Newton" if is_xarm else "EAIK")
-    assert told["theirs"] >= 0.97 * told["ours"]
+    reported = compare(name, 15 if is_xarm else 60, seed=3)
+    assert reported["differ"] == 0
+    assert reported["agree"] > (12 if is_xarm else 50)
+    assert reported["judge"] == ("Newton" if is_xarm else "EAIK")
+    assert reported["theirs"] >= 0.97 * reported["ours"]
 
 
 def test_links_of_another_arm_are_refused():

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from arm_judge import judge_of
-from diagnostics import agrees, gives, in_json, is_told
+from diagnostics import agrees, gives, in_json, is_reported
 from sampling import sample
 from test_arm import DESCRIBED, about, placed
 
@@ -112,7 +112,7 @@ def test_joint_rates_are_those_of_two_places_close_together():
 
 
 def test_the_nearest_place_may_be_a_turn():
-    """Behind the robot, beside the place that joint 1 cannot pass: lengthwise the stroke stays clear of it."""
+    """Behind the robot, next to the place that joint 1 cannot pass: lengthwise the stroke stays clear of it."""
     cell, plan = job("irb120", (-450, 90, 20), (), ACROSS, (), {})
     (problem,) = look(cell, plan).problems
     assert problem.code == "joint-limit"
@@ -123,7 +123,7 @@ def test_the_nearest_place_may_be_a_turn():
     assert found.turn_deg != 0
     there = place.cell_at(cell, found.frame)
     assert look(there, plan).problems == []
-    assert gives(found.told, f"{found.turn_deg:g}")
+    assert gives(found.text, f"{found.turn_deg:g}")
 
 
 def test_convert_and_check_ask_the_arm(tmp_path, capsys):
@@ -133,16 +133,16 @@ def test_convert_and_check_ask_the_arm(tmp_path, capsys):
     far.write_text(write_cell(cell))
     near.write_text(write_cell(replace(cell, paper=replace(cell.paper, origin_mm=(-50.0, -500.0, 20.0)))))
     program = tmp_path / "line.script"
-    status, _, told = in_json(capsys, "convert", drawing, "-o", program, "--cell", far)
-    assert status == 1 and is_told(told, "arm-out-of-reach UR5e", "line") and not program.exists()
+    status, _, reported = in_json(capsys, "convert", drawing, "-o", program, "--cell", far)
+    assert status == 1 and is_reported(reported, "arm-out-of-reach UR5e", "line") and not program.exists()
     assert main(["convert", str(drawing), "-o", str(program), "--cell", str(near), "--quiet"]) == 0
     assert main(["check", str(program), "--cell", str(near)]) == 0
     text = program.read_text()
     assert text.count("-0.5000000") == 1  # in the line that sets the paper
     program.write_text(text.replace("-0.5000000", "-0.9800000").replace("-500.0 20.0", "-980.0 20.0"))
     capsys.readouterr()
-    status, _, told = in_json(capsys, "check", program, "--cell", far)
-    assert status == 1 and is_told(told, "arm-out-of-reach UR5e", "line")
+    status, _, reported = in_json(capsys, "check", program, "--cell", far)
+    assert status == 1 and is_reported(reported, "arm-out-of-reach UR5e", "line")
 
 
 def test_without_the_library_a_sentence_says_what_to_install(tmp_path, capsys, monkeypatch):
@@ -152,28 +152,28 @@ def test_without_the_library_a_sentence_says_what_to_install(tmp_path, capsys, m
     far.write_text(write_cell(cell))
     monkeypatch.setitem(sys.modules, "ssik", None)
     joints.joints_of.cache_clear()
-    status, _, told = in_json(capsys, "convert", drawing, "-o", tmp_path / "a.script", "--cell", far)
-    assert status == 0 and is_told(told, "arm-not-followed ssik UR5e")
-    status, _, told = in_json(capsys, "cell", "place", far)
-    assert status == 1 and is_told(told, "package-missing ssik")
+    status, _, reported = in_json(capsys, "convert", drawing, "-o", tmp_path / "a.script", "--cell", far)
+    assert status == 0 and is_reported(reported, "arm-not-followed ssik UR5e")
+    status, _, reported = in_json(capsys, "cell", "place", far)
+    assert status == 1 and is_reported(reported, "package-missing ssik")
 
 
-def test_place_tells_where_the_paper_would_do_and_draws_the_table(tmp_path, capsys):
+def test_place_shows_where_the_paper_would_do_and_draws_the_table(tmp_path, capsys):
     cell, plan = job(*JOBS[0][:-1])
     drawing, far, near, picture = (tmp_path / n for n in ("plan.json", "far.toml", "near.toml", "table.svg"))
     drawing.write_text(_core.write_plan(plan))
     box = ((-400.0, -1000.0, -50.0), (400.0, -700.0, 500.0))
     cell = replace(cell, workspace=replace(cell.workspace, box_mm=box))
     far.write_text(write_cell(cell))
-    status, said, told = in_json(capsys, "cell", "place", far, drawing, "-o", picture)
-    assert status == 1 and is_told(told, "arm-out-of-reach UR5e")
+    status, said, reported = in_json(capsys, "cell", "place", far, drawing, "-o", picture)
+    assert status == 1 and is_reported(reported, "arm-out-of-reach UR5e")
     assert picture.read_text().count('class="sheet"') == 2
     numbers = re.search(r"origin_mm = \[(.*?)\]", said).group(1).split(",")
     paper = replace(cell.paper, origin_mm=tuple(map(float, numbers)))
     near.write_text(write_cell(replace(cell, paper=paper)))
     assert in_json(capsys, "cell", "place", near, drawing)[0] == 0
-    status, _, told = in_json(capsys, "cell", "place", "linuxcnc-3axis")
-    assert status == 1 and is_told(told, "arm-missing")
+    status, _, reported = in_json(capsys, "cell", "place", "linuxcnc-3axis")
+    assert status == 1 and is_reported(reported, "arm-missing")
 
 
 def elbow_mm(name, joints_rad):

@@ -32,7 +32,7 @@ CELLS = {"linuxcnc-3axis": ".ngc", "grbl-3axis": ".gcode", "klipper-3axis": ".gc
 
 @pytest.fixture(params=CELLS)
 def desk(tmp_path, request):
-    """A folder with a drawing and two cells: one that knows nothing, one that knows the backlash; the paper lies askew
+    """A folder with a drawing and two cells: one that knows nothing, one that knows the backlash; the paper is askew
     on the machine, which has its own x and y. And the extension of programs."""
     (tmp_path / "a.svg").write_text(DRAWING)
     cell = replace(find_cell(request.param), paper=Paper((30.0, 20.0, 0.0), (0.0, 0.0, 25.0)))
@@ -168,26 +168,26 @@ def test_damage_to_what_takes_up_play_is_found(tmp_path, capsys):
     assert first.startswith("G0") and again.startswith("G0") and stands.startswith("G1")
     moved = re.sub(r"X([\d.]+)", lambda x: f"X{float(x[1]) + 0.1:.3f}", stands)
     moved = re.sub(r"Y([\d.]+)", lambda y: f"Y{float(y[1]) + 0.1:.3f}", moved)
-    for old, new, told in (
+    for old, new, reported in (
         (f"{stands}\n", f"{stands.replace('G1', 'G0')}\n", "rapid-too-low"),
         (f"{stands}\n", f"F9000\n{stands}\n", "speed-out-of-range"),
         (f"{stands}\n", f"{moved}\n", "path-elsewhere"),
         (f"{first}\n", f"{again}\n", "backlash-not-taken-up"),
     ):
-        assert is_refused_when_damaged(capsys, path, old, new, told, *words), (old, told)
+        assert is_refused_when_damaged(capsys, path, old, new, reported, *words), (old, reported)
         path.write_text(text)
 
 
 def test_a_circle_is_cut_where_an_axis_turns_back():
-    """On paper that lies askew, too: nowhere else, and once."""
+    """On paper that is askew, too: nowhere else, and once."""
     angles = np.radians([200.0, 260.0, 330.0, 390.0, 450.0, 480.0])
     poses = np.column_stack([40 + 8 * np.cos(angles), 30 + 8 * np.sin(angles), np.full(6, -2.0)])
     arcs = [core.Arc(0, 5, (40.0, 30.0), 1)]
     a_pass = core.Pass(stroke="s", poses_mm=poses, speed_mm_s=20.0, arcs=arcs)
-    for turned_deg, wanted in ((0.0, [270, 360, 450]), (25.0, [245, 335, 425])):
+    for turned_deg, target in ((0.0, [270, 360, 450]), (25.0, [245, 335, 425])):
         cut = cut_at_extremes(a_pass, np.radians(turned_deg))
         ends = np.array(cut.poses_mm)[[arc.last for arc in cut.arcs][:-1], :2] - (40, 30)
-        assert np.degrees(np.arctan2(*ends.T[::-1])) % 360 == pytest.approx(np.array(wanted) % 360, abs=1e-6)
+        assert np.degrees(np.arctan2(*ends.T[::-1])) % 360 == pytest.approx(np.array(target) % 360, abs=1e-6)
         assert np.hypot(*ends.T) == pytest.approx(8.0)
         assert [arc.first for arc in cut.arcs] == [0, *(arc.last for arc in cut.arcs[:-1])]
         assert cut.arcs[-1].last == len(cut.poses_mm) - 1
@@ -199,12 +199,12 @@ def test_a_circle_is_cut_where_an_axis_turns_back():
     )
 
 
-def test_axes_are_told_half_of_it_ahead():
+def test_axes_are_commanded_half_of_it_ahead():
     way = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, -1.0], [3.0, 2.0, -1.0], [1.0, 3.0, -1.0]])
     half = np.array([0.2, 0.1])
-    told, side = ahead(way[1:], way[0], np.array([1.0, -1.0]), half)
-    wanted = [[3.2, -0.1, -1], [3.2, 0.1, -1], [3.2, 2.1, -1], [2.8, 2.1, -1], [0.8, 3.1, -1]]
-    assert told == pytest.approx(np.array(wanted)) and side.tolist() == [-1, 1]
+    reported, side = ahead(way[1:], way[0], np.array([1.0, -1.0]), half)
+    target = [[3.2, -0.1, -1], [3.2, 0.1, -1], [3.2, 2.1, -1], [2.8, 2.1, -1], [0.8, 3.1, -1]]
+    assert reported == pytest.approx(np.array(target)) and side.tolist() == [-1, 1]
     in_all = from_air_mm(way, 2 * half)
     assert in_all[:3, :2] == pytest.approx(np.array([[-0.2, -0.1], [0.2, 0.1], [0.2, 0.1]]))
     assert in_all[:2, 2].min() > 1 and in_all[2, 2] == 0
@@ -212,7 +212,7 @@ def test_axes_are_told_half_of_it_ahead():
 
 
 @pytest.mark.parametrize(
-    "name, value, told",
+    "name, value, reported",
     [
         ("linuxcnc-3axis", "[0.1]", "wrong-type 2"),
         ("linuxcnc-3axis", "[-0.1, 0.0]", "out-of-range -0.1 0 3"),
@@ -223,9 +223,9 @@ def test_axes_are_told_half_of_it_ahead():
         ("axidraw-ebb", "[0.1, 0.0]", "cell-machine 0.1 0"),
     ],
 )
-def test_backlash_that_cannot_be_undone_is_refused(name, value, told):
+def test_backlash_that_cannot_be_undone_is_refused(name, value, reported):
     text = write_cell(find_cell(name))
-    with refused(told, "machine.backlash_mm"):
+    with refused(reported, "machine.backlash_mm"):
         parse_cell(f"{text}\n[machine]\nbacklash_mm = {value}\n")
 
 

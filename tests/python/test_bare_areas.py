@@ -145,7 +145,7 @@ def test_it_begins_under_paint_and_stays_in_the_shape(tmp_path):
 
 
 def test_each_stroke_is_held_against_what_it_shall_paint(tmp_path):
-    """The stem was still asked for its flag, and the flag for where it begins under paint."""
+    """The target of the stem still held its flag, and that of the flag its covered beginning."""
     work = prepared(tmp_path, FLAG)
     rows, _ = report.measure(work.plan, predict(work), work.brush, work.strokes)
     assert all(row.overlap > 0.9 for row in rows)

@@ -1,4 +1,4 @@
-"""brushsvg batch: many drawings, the same rows and files whatever does the work, and nothing done twice."""
+"""brushsvg batch: many drawings, the same rows and files in any process, and nothing done twice."""
 
 import csv
 import json
@@ -17,7 +17,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from diagnostics import are_told, gives, in_json, is_told, refused
+from diagnostics import are_reported, gives, in_json, is_reported, refused
 from sampling import sample
 from test_conversion import LINE, PAGE
 
@@ -101,7 +101,7 @@ def test_each_becomes_what_convert_makes_of_it(desk):
 
 
 @pytest.mark.slow
-def test_it_is_the_same_whatever_does_the_work(desk):
+def test_it_is_the_same_in_any_process(desk):
     made = {}
     for name, place in {
         "threads": threads(),
@@ -198,8 +198,8 @@ def test_nothing_outdated_stays_under_a_refused_row(desk, capsys):
         with open("out/manifest.jsonl", "ab") as file:  # as a run that was ended left it
             file.writelines(refused_once.splitlines(keepends=True)[1:])
     Path("in/1.svg").write_text(drawing(1, width=30))
-    status, _, told = in_json(capsys, "batch", "in", "-o", "out", "--jobs", "1")
-    assert status == 1 and is_told(told, "outdated-removed") and "programs/1.ngc" not in contents()
+    status, _, reported = in_json(capsys, "batch", "in", "-o", "out", "--jobs", "1")
+    assert status == 1 and is_reported(reported, "outdated-removed") and "programs/1.ngc" not in contents()
 
 
 def test_a_drawing_of_the_same_name_is_not_written_over_another(desk, monkeypatch):
@@ -240,9 +240,9 @@ def test_two_of_one_name_say_the_way_out(desk):
 @pytest.mark.parametrize("name", ["a\nb.svg", "a\x1bb.svg", "a\udce9b.svg"])
 def test_a_name_that_cannot_be_printed_is_a_row(desk, capsys, name):
     Path("in", name).write_text(drawing(0))
-    status, _, told = in_json(capsys, "batch", "in", "-o", "out", "--jobs", "1")
+    status, _, reported = in_json(capsys, "batch", "in", "-o", "out", "--jobs", "1")
     shown = name.encode("unicode_escape", "surrogatepass").decode()
-    assert status == 1 and f"in/{shown}" in {notice.where for _, notice in told}
+    assert status == 1 and f"in/{shown}" in {notice.where for _, notice in reported}
     assert "programs/1.ngc" in contents()
     table = list(csv.DictReader(Path("out/table.csv").read_text().splitlines()))
     assert [(each["source"], each["code"]) for each in table if each["code"]] == [
@@ -269,7 +269,7 @@ def test_another_batch_into_the_folder_leaves_what_is_known_of_the_first(desk, m
         Path(name).unlink()
     brushsvg.batch(["in/1.svg"], "out", jobs=1, wide="refuse")
     rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
-    assert [row["name"] for row in rows] == ["1", "0"], "of what lies there no more nothing is kept"
+    assert [row["name"] for row in rows] == ["1", "0"], "no row is kept of files that are gone"
 
 
 def test_equal_drawings_are_each_done_once(desk, monkeypatch):
@@ -299,11 +299,11 @@ def test_two_runs_do_not_write_to_one_folder(desk):
 def test_words_are_set_as_the_command_text_sets_them(desk, capsys):
     Path("font.svg").write_text(FONT)
     Path("words.txt").write_text("TT\n\n T T \nTX\nTT\nT\\nT\n", encoding="utf-8")
-    status, _, told = in_json(
+    status, _, reported = in_json(
         capsys, *"batch --words words.txt --font font.svg --size 30 -o out --jobs 1".split()
     )
     assert status == 1
-    assert [notice.code for _, notice in told if notice.code] == ["glyph-missing"]
+    assert [notice.code for _, notice in reported if notice.code] == ["glyph-missing"]
     rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
     assert [row["name"] for row in rows] == ["TT", "T_T", "TX", "TT~2", "T_nT"]
     assert main(["text", "T T", "-o", "t.svg", "--font", "font.svg", "--size", "30", "--quiet"]) == 0
@@ -311,12 +311,12 @@ def test_words_are_set_as_the_command_text_sets_them(desk, capsys):
     assert Path("out/programs/T_T.ngc").read_bytes() == Path("t.ngc").read_bytes()
 
 
-def test_warnings_of_a_kind_are_told_as_one(desk, capsys):
+def test_warnings_of_a_kind_are_reported_as_one(desk, capsys):
     for k in range(6):
         Path(f"in/{k}.svg").write_text(drawing(k).replace("</svg>", "<text>A</text></svg>"))
-    status, _, told = in_json(capsys, "batch", "in", "-o", "out", "--jobs", "1")
-    assert status == 1 and are_told(
-        [n for _, n in told], "text-unread in/0.svg 5", "width-out-of-reach 30.000"
+    status, _, reported = in_json(capsys, "batch", "in", "-o", "out", "--jobs", "1")
+    assert status == 1 and are_reported(
+        [n for _, n in reported], "text-unread in/0.svg 5", "width-out-of-reach 30.000"
     )
     rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
     assert [len(row["notices"]) for row in rows if not row["code"]] == [1] * 6
@@ -512,16 +512,18 @@ def test_parquet_holds_the_same_table(desk, monkeypatch):
         brushsvg.batch(["in"], "out", executor=executor, parquet=True)
     rows = pyarrow.read_table("out/table.parquet").to_pylist()
     table = list(csv.DictReader(Path("out/table.csv").read_text().splitlines()))
-    for row, told in zip(rows, table, strict=True):
-        assert row.keys() == told.keys()
+    for row, reported in zip(rows, table, strict=True):
+        assert row.keys() == reported.keys()
         for name, value in row.items():
-            assert value == (type(value)(told[name]) if value is not None else told[name] or None), name
+            assert value == (type(value)(reported[name]) if value is not None else reported[name] or None), (
+                name
+            )
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     with refused("package-missing pyarrow"):
         brushsvg.batch(["in"], "out", jobs=1, parquet=True)
 
 
-def test_progress_tells_rate_and_time_left_and_cancel_is_heard(desk):
+def test_progress_shows_rate_and_time_left_and_cancel_is_heard(desk):
     said, is_over = [], threading.Event()
 
     def progress(text):

@@ -67,7 +67,7 @@ def arc(radius_mm, half_mm, from_rad, sweep_rad):
 
 
 @pytest.mark.thorough
-def test_arcs_begin_and_end_as_the_best_of_all_that_can_be_asked_for():
+def test_arcs_begin_and_end_as_the_best_of_all_that_can_be_requested():
     """Wide arcs, each other one of at most 11 mm radius and all but the brush's full width: of those 18 began pointed,
     as the judge went straight on half a width before the path along its first chord, not its tangent."""
     brush, rng = find_brush("round-6"), np.random.default_rng(21)
@@ -106,7 +106,7 @@ def test_a_ball_at_the_beginning_is_turned_round_where_that_is_better_than_going
             assert overlap(stroke, brush, start) > 0.972, "going back 0.959 and 0.962 were reached"
 
 
-def test_a_ball_is_filled_where_the_line_begins_beside_its_middle():
+def test_a_ball_is_filled_where_the_line_begins_next_to_its_middle():
     """A disc about the line's first point, as wide as the line is there, leaves a crescent of the ball of a c."""
     brush = find_brush("round-6")
     stroke = ball(3.5, 2.8, 0.7)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import are_told
+from diagnostics import are_reported
 from programs import problems
 
 from brushsvg import _core
@@ -58,7 +58,7 @@ def test_corners_of_circles_are_cut_as_those_of_lines(tolerance):
 
 
 def test_a_circle_that_is_left_at_a_small_angle_is_not_left_far_before_its_end():
-    """The chord of what is left out would lie farther from it than the tolerance."""
+    """The chord of what is left out would be farther from it than the tolerance."""
     path = TURN_IN_PLACE.copy()
     path[4] = (24, 20, -2)
     radii = blend_radii(path, Blending(0.01), [QUARTER])
@@ -106,7 +106,7 @@ def test_blends_that_move_the_mark_too_far_are_refused():
     brush = find_brush("round-6")
     plan, marks = marks_and_plan(brush)
     wide = replace(find_cell(), blending=Blending(2.0))
-    assert are_told(problems(plan, brush, marks, wide, 0.05), "shifted-by-blends angle 2 linuxcnc-3axis")
+    assert are_reported(problems(plan, brush, marks, wide, 0.05), "shifted-by-blends angle 2 linuxcnc-3axis")
     assert problems(plan, brush, marks, wide, 5.0) == []
     assert problems(plan, brush, marks, as_exact_as(wide, 0.05), 0.05) == []
 
@@ -137,7 +137,7 @@ def with_circle(brush):
 
 @pytest.mark.parametrize("cut_mm", [0.0005, 0.005, 0.05])
 def test_a_circle_is_no_row_of_corners(cut_mm):
-    """Its poses may lie far apart; only where it ends there is something to cut."""
+    """Its poses may be far apart; only where it ends there is something to cut."""
     brush = find_brush("round-6")
     plan = with_circle(brush)
     marks = _core.simulate(plan, brush)

@@ -247,7 +247,7 @@ PAINT = {
 }
 
 
-def test_paint_is_kept_shown_and_asked_for_by_its_keys(changed, capsys, tmp_path):
+def test_paint_is_kept_shown_and_checked_by_its_keys(changed, capsys, tmp_path):
     path = changed(_set("paint", to=PAINT))
     brush = find_brush(path)
     assert brush.paint.width_share(500) == pytest.approx(math.exp(-0.2))
@@ -255,7 +255,7 @@ def test_paint_is_kept_shown_and_asked_for_by_its_keys(changed, capsys, tmp_path
     assert [notice.where for notice in unknown_keys(brush)] == ["paint.medium"]
     assert "law-assumed" in {each.code for each in _core.remarks(brush) if each.where == "paint"}
     main(["brush", "show", str(path)])
-    told = capsys.readouterr().out
+    reported = capsys.readouterr().out
     # 2.228 of Student's t with 10 degrees, by a table, times 0.02
     for part in (
         "exp(-0.4 s / 1000)",
@@ -264,7 +264,7 @@ def test_paint_is_kept_shown_and_asked_for_by_its_keys(changed, capsys, tmp_path
         "0 to 700 mm",
         "By eye.",
     ):
-        assert part in told
+        assert part in reported
     like = brushsvg.brush_like("mine", brush)
     assert like.paint.assumed and not like.paint.covariance and like.paint.narrows_per_m == 0.4
 
@@ -335,14 +335,14 @@ def mistyped(tmp_path):
     return path
 
 
-def test_a_key_that_is_not_known_is_named_with_the_one_that_may_be_meant(tmp_path, capsys):
-    status, _, told = in_json(capsys, "brush", "check", mistyped(tmp_path))
-    unknown = {one.where: one.sentence for _, one in told if one.code == "key-unknown"}
-    meant = {
+def test_a_key_that_is_not_known_is_named_with_the_one_that_may_be_intended(tmp_path, capsys):
+    status, _, reported = in_json(capsys, "brush", "check", mistyped(tmp_path))
+    unknown = {one.where: one.sentence for _, one in reported if one.code == "key-unknown"}
+    expected = {
         where: re.findall(r"[\w.]+_mm_s|lag\.\w+|footprints\.\w+", sentence)
         for where, sentence in unknown.items()
     }
-    assert status == 0 and meant == {
+    assert status == 0 and expected == {
         "max_sped_mm_s": ["max_speed_mm_s"],
         "lag.rmse": ["lag.rmse_mm"],
         "footprints.sources": ["footprints.source"],
@@ -355,22 +355,22 @@ def test_a_shipped_brush_has_no_unknown_key(name):
     assert not unknown_keys(find_brush(name))
 
 
-def test_who_paints_is_told_of_mistyped_keys_and_not_of_notes(tmp_path):
+def test_mistyped_keys_are_reported_and_notes_are_not(tmp_path):
     done = brushsvg.convert(ROOT / "examples" / "robot.svg", brush=mistyped(tmp_path))
-    told = [one for one in done.notices if one.code == "key-unknown"]
-    assert {one.where for one in told} == {"brush round-6"} and len(told) == 3
+    reported = [one for one in done.notices if one.code == "key-unknown"]
+    assert {one.where for one in reported} == {"brush round-6"} and len(reported) == 3
     again = brushsvg.convert(done.plan, brush=mistyped(tmp_path))
     assert sum(one.code == "key-unknown" for one in again.notices) == 3
 
 
 @pytest.mark.parametrize("extra", ["", "[", "[]", "[" * 100_000, '{"footprints": 3}'])
-def test_whatever_a_brush_made_by_hand_says_beside_its_laws(extra):
+def test_a_brush_made_by_hand_may_say_anything_next_to_its_laws(extra):
     brush = find_brush("round-6")
     brush.extra = extra
     assert unknown_keys(brush) == []
 
 
-def test_a_file_that_lies_here_is_named_where_its_ending_was_left_out(tmp_path, monkeypatch):
+def test_a_file_that_is_here_is_named_where_its_ending_was_left_out(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     save_brush(find_brush("round-6"), "own.json")
     with refused("brush-unknown own.json"):
@@ -407,7 +407,7 @@ def test_a_law_of_a_brush_refuses_depths_that_the_brush_cannot_have(law):
         with refused("depth-out-of-range 50"):
             value([1.0, 50.0])
         assert value.extrapolated(50) > 10 and value.depth_range_mm == (0.0, 10.0)
-        brush.depth_range_mm = (0.0, 60.0)  # the law that is asked is that of the brush as it is
+        brush.depth_range_mm = (0.0, 60.0)  # the law that is checked is that of the brush as it is
         assert getattr(brush, law)(50) == value.extrapolated(50)
         alone = brushsvg.Profile(value.coefficients)
         assert alone.depth_range_mm is None and alone(50) == pytest.approx(alone.extrapolated(50))

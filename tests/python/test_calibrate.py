@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import agrees, are_told, gives, in_json, refused
+from diagnostics import agrees, are_reported, gives, in_json, refused
 from scipy import special
 
 import brushsvg
@@ -35,9 +35,11 @@ def test_from_a_table_to_a_brush_with_a_report(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out, picture = tmp_path / "own.json", tmp_path / "own.svg"
     assert main(["calibrate", str(tmp_path / "m.csv"), "-o", str(out), "--picture", str(picture)]) == 0
-    told = capsys.readouterr().out
-    assert "tip_to_widest = " in told and gives(told, "1.8")
-    assert gives(told.splitlines()[-1], "tip_to_widest"), "what to measure next"
+    reported = capsys.readouterr().out
+    report = brushsvg.calibrate(tmp_path / "m.csv", "own").report
+    assert reported == report.text(picture=str(picture)) and len(reported.splitlines()) <= 10
+    assert "tip_to_widest = " in report.text(details=True) and gives(reported, "1.8")
+    assert gives(report.lines[-1], "tip_to_widest"), "what to measure next"
     brush = find_brush(out)
     assert brush.name == "own" and picture.read_bytes().startswith(b"<?xml")
     assert [getattr(brush, law).assumed for law in ("lag", "tip_gap", "tip_to_widest", "half_width")] == [
@@ -82,8 +84,8 @@ def test_an_outlier_is_named_and_least_absolute_residuals_survive_it(tmp_path, c
 def test_no_file_unless_it_is_usable(text, said, tmp_path, capsys):
     (tmp_path / "m.csv").write_text(text)
     words = ("calibrate", tmp_path / "m.csv", "-o", tmp_path / "b.json")
-    status, _, ((file, told),) = in_json(capsys, *words)
-    assert (status, file) == (1, str(tmp_path / "m.csv")) and agrees(told, said), told
+    status, _, ((file, reported),) = in_json(capsys, *words)
+    assert (status, file) == (1, str(tmp_path / "m.csv")) and agrees(reported, said), reported
     assert not (tmp_path / "b.json").exists()
 
 
@@ -190,8 +192,12 @@ MIXED = [3, 7, 1, 9, 0, 5, 2, 8, 4, 6]
 )
 def test_what_no_brush_can_have_is_refused_with_what_to_do(rows, where, said, tmp_path, capsys):
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
-    status, _, ((file, told),) = in_json(capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json")
-    assert (status, file, told.where) == (1, str(tmp_path / "m.json"), where) and agrees(told, said), told
+    status, _, ((file, reported),) = in_json(
+        capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json"
+    )
+    assert (status, file, reported.where) == (1, str(tmp_path / "m.json"), where) and agrees(
+        reported, said
+    ), reported
     assert not (tmp_path / "b.json").exists()
 
 
@@ -228,11 +234,11 @@ FALLS = np.where(DEPTHS == 2, LAG[0] - 1.4, LAG)
 )
 def test_what_is_odd_is_said(rows, where, said, tmp_path, capsys):
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
-    status, _, told = in_json(capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json")
-    of_it = [one for file, one in told if file == str(tmp_path / "m.json")]
+    status, _, reported = in_json(capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json")
+    of_it = [one for file, one in reported if file == str(tmp_path / "m.json")]
     assert status == 0
     if said:
-        assert any(one.where == where and agrees(one, said) for one in of_it), told
+        assert any(one.where == where and agrees(one, said) for one in of_it), reported
     else:
         assert not of_it
 
@@ -262,7 +268,7 @@ def test_a_table_that_names_another_unit_is_refused(head, row, where):
         ("", "measurement-missing lag"),
     ],
 )
-def test_a_row_that_is_refused_is_told_how_to_write_it(row, expected):
+def test_a_refused_row_is_shown_how_to_write_it(row, expected):
     with refused(expected):
         read_measurements(f"kind,depth_mm,value_mm\n{row}\n".encode(), ".csv")
 
@@ -337,8 +343,8 @@ def test_decimal_commas_are_not_read_as_whole_numbers(tmp_path, capsys, columns)
     made = ["calibrate", tmp_path / "m.csv", "-o", tmp_path / "b.json"]
     if columns.startswith("depth"):
         made = ["brush", "new", "-o", tmp_path / "b.json", "--lag", "5", "--widths", tmp_path / "m.csv"]
-    status, _, ((_, told),) = in_json(capsys, *made)
-    assert status == 1 and agrees(told, "table-columns 33 2"), told
+    status, _, ((_, reported),) = in_json(capsys, *made)
+    assert status == 1 and agrees(reported, "table-columns 33 2"), reported
     assert not (tmp_path / "b.json").exists()
 
 
@@ -384,8 +390,8 @@ def test_half_widths_and_widths_with_noise_go_together():
 
 def test_a_column_that_stands_twice_is_refused(tmp_path, capsys):
     (tmp_path / "m.csv").write_text("kind,depth_mm,depth_mm,value_mm\nlag,1,2,3\n")
-    status, _, ((_, told),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", tmp_path / "b.json")
-    assert status == 1 and agrees(told, "key-twice depth_mm", "line 1"), told
+    status, _, ((_, reported),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", tmp_path / "b.json")
+    assert status == 1 and agrees(reported, "key-twice depth_mm", "line 1"), reported
 
 
 @pytest.mark.parametrize(
@@ -399,15 +405,16 @@ def test_a_column_that_stands_twice_is_refused(tmp_path, capsys):
 def test_a_width_that_none_can_have_is_refused_with_its_line(line, column, said, tmp_path, capsys):
     (tmp_path / "w.csv").write_text(f"depth_mm,width_mm\n{line}\n")
     words = ("brush", "new", "-o", tmp_path / "b.json", "--lag", "5", "--widths", tmp_path / "w.csv")
-    status, _, ((file, told),) = in_json(capsys, *words)
-    assert (status, file) == (1, str(tmp_path / "w.csv")) and agrees(told, said, f"line 2, {column}"), told
+    status, _, ((file, reported),) = in_json(capsys, *words)
+    assert (status, file) == (1, str(tmp_path / "w.csv")) and agrees(reported, said, f"line 2, {column}"), (
+        reported
+    )
 
 
-def test_of_exact_values_no_rounding_is_told(tmp_path, capsys):
+def test_of_exact_values_no_rounding_is_reported(tmp_path):
     rows = {"lag": values(2 + 0.5 * DEPTHS), "width": values(DEPTHS)}
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
-    assert main(["calibrate", str(tmp_path / "m.json"), "-o", str(tmp_path / "b.json")]) == 0
-    assert "+- 0, 0, 0 " in capsys.readouterr().out
+    assert "+- 0, 0, 0 " in brushsvg.calibrate(tmp_path / "m.json").report.text(details=True)
 
 
 def test_few_values_give_a_law_that_does_not_follow_their_noise(tmp_path, capsys):
@@ -425,9 +432,9 @@ def test_a_slip_of_the_pen_is_named_among_ten_readings(tmp_path, capsys, norm):
     rows = [("lag", d, round(3 + 0.8 * d + 0.1 * (-1) ** (d // 2), 2)) for d in range(1, 11)]
     rows[4] = ("lag", 5, 70.0)
     table(tmp_path, rows + WIDTHS, "--norm", norm)
-    told = "".join(capsys.readouterr())
-    assert re.search(r"\b6 .*: \+", told)
-    assert not re.search(r"\b5 .*: [+-]", told)
+    reported = "".join(capsys.readouterr())
+    assert re.search(r"\b6 .*: \+", reported)
+    assert not re.search(r"\b5 .*: [+-]", reported)
 
 
 def test_two_depths_side_by_side_leave_the_lag_open(tmp_path, capsys):
@@ -435,8 +442,8 @@ def test_two_depths_side_by_side_leave_the_lag_open(tmp_path, capsys):
     code, out = table(tmp_path, rows + WIDTHS[:3] + [("width", 5.3, 5.3)])
     assert code == 1 and not out.exists()
     capsys.readouterr()
-    _, _, ((_, told),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out)
-    assert agrees(told, "law-undetermined lag"), told
+    _, _, ((_, reported),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out)
+    assert agrees(reported, "law-undetermined lag"), reported
 
 
 def test_normal_noise_is_seldom_called_an_outlier():
@@ -467,8 +474,8 @@ def test_angles_that_do_not_begin_with_the_first_are_refused(tmp_path, capsys, c
     widths = [{"depth_mm": d, "value_mm": width} for _, d, width in WIDTHS]
     content = {"format": "brushsvg/measurements", "version": 1, "angles": rows, "width": widths}
     (tmp_path / "m.json").write_text(json.dumps(content))
-    status, _, ((_, told),) = in_json(capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json")
-    assert status == 1 and agrees(told, said, "angles[0]"), told
+    status, _, ((_, reported),) = in_json(capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json")
+    assert status == 1 and agrees(reported, said, "angles[0]"), reported
 
 
 def readings(**laws):
@@ -486,8 +493,8 @@ WIDEST = np.polynomial.Polynomial([-2.35, 2.75, -0.42, 0.024])
 @pytest.mark.parametrize("floored", [1, 3])
 @pytest.mark.slow
 def test_normal_noise_above_a_floor_is_seldom_called_an_outlier(floored):
-    """Readings where the law lies on its floor say nothing of its coefficients: 15 % of such calibrations were told to
-    measure the first depth again."""
+    """Readings where the law is on its floor say nothing of its coefficients: 15 % of such calibrations were refused
+    with advice to measure the first depth again."""
     rng, depths = np.random.default_rng(3), np.linspace(1, 10, 10)
     law = np.maximum(0, WIDEST(depths - (floored - 1) * 0.8))
     sizes, named = [], 0
@@ -611,8 +618,10 @@ def test_parts_of_a_machine_that_there_are_not_are_refused_with_those_that_there
 def test_measured_numbers_say_nothing_of_a_machine(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out = tmp_path / "own.json"
-    status, _, ((_, told),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--machine", "lean")
-    assert status == 1 and agrees(told, "options-contradict --machine")
+    status, _, ((_, reported),) = in_json(
+        capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--machine", "lean"
+    )
+    assert status == 1 and agrees(reported, "options-contradict --machine")
     assert not out.exists()
 
 
@@ -620,7 +629,7 @@ def test_measured_numbers_say_nothing_of_a_machine(tmp_path, capsys):
 def test_every_cell_takes_the_table_of_what_is_looked_for_with_it(name):
     """16 of 21 cells refused the table that --machine printed for them."""
     cell = find_cell(name)
-    parts, told = undoable_parts(tuple(PARTS), cell)
+    parts, reported = undoable_parts(tuple(PARTS), cell)
     values = {
         "lean": {"lean_mm_per_mm": (-0.03, 0.04)},
         "axes": {"scale": (1.01, 0.99), "skew": 0.002},
@@ -638,32 +647,34 @@ def test_every_cell_takes_the_table_of_what_is_looked_for_with_it(name):
     for part in rest:
         with refused("cell-machine"):
             parse_cell(write_cell(replace(cell, machine=Machine(**values[part]))))
-    assert len(told) == bool(rest)
-    assert all(agrees(each, f"machine-not-undone {name} {' '.join(rest)}") for each in told)
+    assert len(reported) == bool(rest)
+    assert all(agrees(each, f"machine-not-undone {name} {' '.join(rest)}") for each in reported)
 
 
 def test_what_a_machine_cannot_undo_is_reported_once_and_not_looked_for(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     words = ("calibrate", tmp_path / "m.csv", "-o", tmp_path / "own.json", "--cell", "grbl-servo")
-    status, _, told = in_json(capsys, *words, "--machine", "lean,tilt")
+    status, _, reported = in_json(capsys, *words, "--machine", "lean,tilt")
     assert status == 0 and (tmp_path / "own.json").exists()
-    assert [each.code for _, each in told].count("machine-not-undone") == 1
+    assert [each.code for _, each in reported].count("machine-not-undone") == 1
     assert in_json(capsys, *words)[0] == 2, "--cell alone says nothing"
 
 
 def test_measured_numbers_say_nothing_of_paint(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out = tmp_path / "own.json"
-    status, _, ((_, told),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--paint")
-    assert status == 1 and agrees(told, "options-contradict --paint")
+    status, _, ((_, reported),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--paint")
+    assert status == 1 and agrees(reported, "options-contradict --paint")
     assert not out.exists()
 
 
 def test_an_overlap_needs_marks(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out = tmp_path / "own.json"
-    status, _, told = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--aim", "overlap")
-    assert status == 1 and are_told([notice for _, notice in told], "options-contradict --aim overlap")
+    status, _, reported = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--aim", "overlap")
+    assert status == 1 and are_reported(
+        [notice for _, notice in reported], "options-contradict --aim overlap"
+    )
     assert not out.exists()
 
 

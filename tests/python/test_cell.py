@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import agrees, are_told, in_json, is_told, refused
+from diagnostics import agrees, are_reported, in_json, is_reported, refused
 
 from brushsvg.cli import main
 from brushsvg.machine.cells.cell import Paper, Reload, Servo, Station, Tool, robot_from_paper
@@ -179,7 +179,7 @@ def test_what_is_written_is_read_back():
         ({"tool": Tool((0.0, 0.0, 99000.0))}, "tool.tcp_mm", "out-of-range 99000 -2000 2000"),
     ],
 )
-def test_what_no_single_key_tells_is_refused_too(change, where, said):
+def test_what_no_single_key_shows_is_refused_too(change, where, said):
     with refused(said, where):
         parse_cell(write_cell(replace(FULL, **change)))
 
@@ -200,16 +200,16 @@ def test_what_no_single_key_tells_is_refused_too(change, where, said):
         ({"reach_mm": (1500.0, 1600.0)}, "sheet-out-of-reach 816 1500 1600"),
     ],
 )
-def test_a_cell_that_reaches_no_paper_is_told(workspace, said):
+def test_a_cell_that_reaches_no_paper_is_reported(workspace, said):
     cell = find_cell("ur5e")
     assert out_of_reach(cell) == []
-    (told,) = out_of_reach(replace(cell, workspace=replace(cell.workspace, **workspace)))
-    assert told.where == f"workspace.{next(iter(workspace))}" and agrees(told, said), told
+    (reported,) = out_of_reach(replace(cell, workspace=replace(cell.workspace, **workspace)))
+    assert reported.where == f"workspace.{next(iter(workspace))}" and agrees(reported, said), reported
 
 
 @pytest.mark.slow
 def test_what_is_out_of_reach_is_what_no_point_of_the_sheet_meets():
-    """Against points tried one by one, on papers that lie anywhere."""
+    """Against points tried one by one, on papers that are anywhere."""
     random = np.random.default_rng(5)
     found = {True: 0, False: 0}
     for _ in range(200):
@@ -258,8 +258,8 @@ def test_what_is_out_of_reach_is_what_no_point_of_the_sheet_meets():
 def test_what_is_odd_is_remarked_on(table, change, said):
     cell = replace(find_cell("ur5e"), paper=replace(find_cell("ur5e").paper, example=False))
     assert remarks(cell) == []
-    (told,) = remarks(replace(cell, **{table: replace(getattr(cell, table), **change)}))
-    assert told.where.startswith(table) and agrees(told, said), told
+    (reported,) = remarks(replace(cell, **{table: replace(getattr(cell, table), **change)}))
+    assert reported.where.startswith(table) and agrees(reported, said), reported
 
 
 @pytest.mark.parametrize("name", cell_names())
@@ -291,7 +291,7 @@ def test_a_language_that_needs_a_table_says_so(language, where):
         parse_cell(text)
 
 
-def test_paper_that_was_taught_for_a_servo_lies_level_with_it():
+def test_paper_that_was_taught_for_a_servo_is_level_with_it():
     text = (SHIPPED / "grbl-servo.toml").read_text(encoding="utf-8")
     level = "taught_mm = [[10, 5, 0], [110, 15, 0], [0, 105, 0]]"
     assert parse_cell(text.replace("[paper]", f"[paper]\n{level}")).paper.taught_mm
@@ -304,7 +304,7 @@ def test_paper_that_was_taught_for_a_servo_lies_level_with_it():
 
 
 @pytest.mark.parametrize("towards", [(1, 0), (0, -1), (-0.6, 0.8)])
-def test_a_wall_that_was_taught_facing_away_is_told(towards):
+def test_a_wall_that_was_taught_facing_away_is_reported(towards):
     """Before a robot that looks that way, from left to right, and up."""
     x, y = towards
     left, right = ((600 * x - side * y, 600 * y + side * x, 300.0) for side in (150.0, -150.0))
@@ -315,7 +315,7 @@ def test_a_wall_that_was_taught_facing_away_is_told(towards):
     for each in (towards_it, away):
         check(each)
     assert [notice for notice in remarks(towards_it) if notice.code == "paper-faces-away"] == []
-    assert are_told([notice for notice in remarks(away) if notice.where == "paper"], "paper-faces-away")
+    assert are_reported([notice for notice in remarks(away) if notice.where == "paper"], "paper-faces-away")
 
 
 @pytest.mark.parametrize(
@@ -351,7 +351,7 @@ def test_rotation_vectors_turn_as_the_matrix_does():
         assert cv2.Rodrigues(rotation_vector(turned))[0] == pytest.approx(turned, abs=1e-12)
 
 
-def test_too_many_boxes_to_keep_out_of_are_told_by_their_number():
+def test_too_many_boxes_to_keep_out_of_are_reported_by_their_number():
     box = [[0, 0, 0], [1, 1, 1]]
     text = write_cell(find_cell()).replace("[workspace]", f"[workspace]\nkeep_out_mm = {[box] * 1001}")
     with refused("out-of-range workspace.keep_out_mm 1001 1000") as refusal:
@@ -360,7 +360,7 @@ def test_too_many_boxes_to_keep_out_of_are_told_by_their_number():
 
 
 @pytest.mark.parametrize(
-    ("value", "where", "wanted"),
+    ("value", "where", "target"),
     [
         ("7", "workspace.keep_out_mm", "2 rows of 3 numbers"),
         ("[[0, 0, 0], [1, 1, 1]]", "workspace.keep_out_mm[0]", "2 rows of 3 numbers"),
@@ -373,9 +373,9 @@ def test_too_many_boxes_to_keep_out_of_are_told_by_their_number():
         ("[[]]", "workspace.keep_out_mm[0]", "2 rows of 3 numbers"),
     ],
 )
-def test_boxes_of_another_shape_are_told_by_their_place_and_with_the_shape(value, where, wanted):
+def test_boxes_of_another_shape_are_reported_by_their_place_and_with_the_shape(value, where, target):
     text = write_cell(find_cell()).replace("[workspace]", f"[workspace]\nkeep_out_mm = {value}")
-    with refused(f"wrong-type {where} {wanted}") as refusal:
+    with refused(f"wrong-type {where} {target}") as refusal:
         parse_cell(text)
     assert refusal.value.where.startswith("workspace.keep_out_mm")
 
@@ -391,6 +391,6 @@ def test_a_new_cell_is_not_called_as_one_that_comes_along(tmp_path, monkeypatch,
         '<path d="M20 20L50 30" fill="none" stroke="#000" stroke-width="4"/></svg>'
     )
     assert main(["convert", "a.svg", "-o", "a.script", "--cell", "ur5e.toml"]) == 0
-    status, _, told = in_json(capsys, "check", "a.script", "a.svg")
-    assert status == 1 and is_told(told, "cell-unknown my-ur5e"), told
+    status, _, reported = in_json(capsys, "check", "a.script", "a.svg")
+    assert status == 1 and is_reported(reported, "cell-unknown my-ur5e"), reported
     assert in_json(capsys, "check", "a.script", "a.svg", "--cell", "ur5e.toml")[0] == 0

@@ -101,8 +101,8 @@ def test_what_is_on_it():
     assert straight[1, 2] / np.hypot(*(straight[1] - straight[0])[:2]) == pytest.approx(-0.25)
     # the auxiliary stroke of an angular one runs as its second line does
     second = np.diff(by_id["angular-3"].poses_mm[2:4, :2], axis=0)[0]
-    beside = np.diff(by_id["auxiliary-3"].poses_mm[1:3, :2], axis=0)[0]
-    assert second @ beside == pytest.approx(np.hypot(*second) * np.hypot(*beside))
+    near_by = np.diff(by_id["auxiliary-3"].poses_mm[1:3, :2], axis=0)[0]
+    assert second @ near_by == pytest.approx(np.hypot(*second) * np.hypot(*near_by))
     # arcs leave the brush taut
     marks = _core.simulate(made.plan, brush)
     for trace in marks.passes:
@@ -122,7 +122,7 @@ def test_a_larger_sheet_has_more_strokes():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("strokes", [None, "few", "normal", "many"])
-def test_a_sheet_that_is_too_small_is_told_what_would_do(strokes):
+def test_a_sheet_that_is_too_small_is_refused_with_a_size_that_fits(strokes):
     brush = find_brush("round-6")
     with refused("sheet-too-small 60 90", "sheet") as refusal:
         chart(brush, (60.0, 90.0), strokes)
@@ -137,7 +137,7 @@ def all_but_the_first_slow(names):
     return [*names[:1], *(pytest.param(name, marks=pytest.mark.slow) for name in names[1:])]
 
 
-SMALL_ARMS = ("irb120", "ur3e")  # A4 is nearly too large for them: asked of their joints, too
+SMALL_ARMS = ("irb120", "ur3e")  # A4 is nearly too large for them: checked for their joints, too
 
 
 @pytest.mark.slow
@@ -271,15 +271,15 @@ def test_the_pdf_has_the_size_and_the_shapes_of_the_page(sheet):
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["chart -o plan.json --sheet a5", "convert a.svg -o plan.json"])
 def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monkeypatch, capsys, command):
-    """It was told as a mistake of ours."""
+    """It was reported as a mistake of ours."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="50mm" viewBox="0 0 90 50">'
         '<path d="M20 20h50" stroke="#000" stroke-width="3"/></svg>'
     )
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    status, _, ((file, told),) = in_json(capsys, *command.split(), "--page", "page.pdf")
-    assert (status, file) == (1, "page.pdf") and agrees(told, "package-missing PDF matplotlib")
+    status, _, ((file, reported),) = in_json(capsys, *command.split(), "--page", "page.pdf")
+    assert (status, file) == (1, "page.pdf") and agrees(reported, "package-missing PDF matplotlib")
     assert [each.name for each in tmp_path.iterdir()] == ["a.svg"]
     assert main([*command.split(), "--page", "page.svg"]) == 0
 
@@ -365,8 +365,8 @@ def test_it_says_how_sure_the_brush_will_be(tmp_path, capsys):
 
     def lag_bands(*flags):
         assert main(["chart", "-o", str(tmp_path / "p.json"), *flags]) == 0
-        told = capsys.readouterr().out
-        return np.array([float(half) for half in re.findall(r"(?m)^ +[\d.]+ +[\d.]+ \+- ([\d.]+)", told)])
+        reported = capsys.readouterr().out
+        return np.array([float(half) for half in re.findall(r"(?m)^ +[\d.]+ +[\d.]+ \+- ([\d.]+)", reported)])
 
     a5, a4 = lag_bands("--sheet", "a5"), lag_bands("--sheet", "a4")
     rough = lag_bands("--sheet", "a5", "--noise", "0.3")
@@ -396,12 +396,12 @@ def test_no_depth_is_rounded_beyond_the_brush(deepest):
 
 @pytest.mark.parametrize("sheet", ["9x9", "1x5000"])
 def test_a_sheet_without_room_for_its_markers_is_refused(sheet, tmp_path, capsys):
-    status, _, ((_, told),) = in_json(capsys, "chart", "-o", tmp_path / "c.json", "--sheet", sheet)
-    assert status == 1 and agrees(told, "sheet-too-small markers"), told
+    status, _, ((_, reported),) = in_json(capsys, "chart", "-o", tmp_path / "c.json", "--sheet", sheet)
+    assert status == 1 and agrees(reported, "sheet-too-small markers"), reported
 
 
 @pytest.mark.parametrize("sheet", [A5, A4, (420.0, 594.0)], ids=["a5", "a4", "a2"])
-def test_one_load_is_painted_in_an_order_that_tells_depth_from_way(sheet):
+def test_one_load_is_painted_in_an_order_that_shows_depth_from_way(sheet):
     """The same strokes in the same places; how far the tool came hardly says how deep it is."""
     brush = find_brush("round-6")
     usual, made = chart(brush, sheet), chart(brush, sheet, one_load=True)
@@ -409,7 +409,7 @@ def test_one_load_is_painted_in_an_order_that_tells_depth_from_way(sheet):
     def places(of):
         return {one.stroke: np.asarray(one.poses_mm).tolist() for one in of.plan.passes}
 
-    def told(of):
+    def reported(of):
         """Of the way's variance by a parabola of depth, at points every 1 mm."""
         come, way, depth = 0.0, [], []
         for one, stroke in zip(of.plan.passes, of.strokes, strict=True):
@@ -424,7 +424,7 @@ def test_one_load_is_painted_in_an_order_that_tells_depth_from_way(sheet):
     assert places(usual) == places(made)
     assert usual.labels[:-1] == made.labels[:-1], "the page is the same, but for the chart's id"
     assert usual.id != made.id
-    assert told(usual) > 0.6 and told(made) < 0.1
+    assert reported(usual) > 0.6 and reported(made) < 0.1
     assert {one.settings.reload for one in made.plan.passes} == {False}
 
 
@@ -439,16 +439,16 @@ def test_one_load_is_fetched_once():
 
 @pytest.mark.slow
 def test_it_says_how_sure_the_paint_will_be(tmp_path, capsys):
-    def told(*flags):
+    def reported(*flags):
         assert main(["chart", "-o", str(tmp_path / "p.json"), "--sheet", "a5", *flags]) == 0
         return capsys.readouterr().out
 
-    assert int(re.findall(r"(\d+) %", told())[-1]) > 55
+    assert int(re.findall(r"(\d+) %", reported())[-1]) > 55
     halves = []
     for noise in ("0.1", "0.2"):
         found = re.search(
             r"\+- ([\d.]+); [a-z ]+ (\d+) %.* (\d+) mm",
-            told("--paint", "--noise", noise),
+            reported("--paint", "--noise", noise),
         )
         half, share, way = map(float, found.groups())
         assert share < 30
@@ -458,7 +458,7 @@ def test_it_says_how_sure_the_paint_will_be(tmp_path, capsys):
     assert halves[1] == pytest.approx(2 * halves[0], rel=0.1)
 
 
-def test_dabs_do_not_tell_paint(tmp_path, capsys):
+def test_dabs_do_not_show_paint(tmp_path, capsys):
     assert main(["chart", "-o", str(tmp_path / "p.json"), "--dabs", "--paint"]) == 2
     assert gives(capsys.readouterr().err, "--paint")
     with refused("options-contradict"):

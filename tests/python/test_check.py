@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import in_json, is_told, refused
+from diagnostics import in_json, is_reported, refused
 
 import brushsvg
 
@@ -39,16 +39,16 @@ def test_a_sound_program_with_its_drawing(desk):
 def test_it_says_what_the_command_says(desk, capsys):
     lines = Path("two.ngc").read_text().splitlines(keepends=True)
     Path("short.ngc").write_text("".join(line for line in lines if not line.startswith("G2 ")))
-    status, _, told = in_json(capsys, "check", "short.ngc", "two.svg")
+    status, _, reported = in_json(capsys, "check", "short.ngc", "two.svg")
     found = brushsvg.check("short.ngc", "two.svg")
     assert status == 1 and found.problems
-    assert {problem.code for problem in found.problems} == {each.code for _, each in told}
+    assert {problem.code for problem in found.problems} == {each.code for _, each in reported}
 
     _, output, _ = in_json(capsys, "check", "two.ngc", "two.svg", "--json")
     alone = brushsvg.check(desk / "two.ngc")
     assert not alone.is_compared
-    told = json.loads(output)["total"]["overlap"]
-    assert brushsvg.check("two.ngc", "two.svg").figures.total.overlap == pytest.approx(told, abs=1e-3)
+    reported = json.loads(output)["total"]["overlap"]
+    assert brushsvg.check("two.ngc", "two.svg").figures.total.overlap == pytest.approx(reported, abs=1e-3)
 
 
 def test_notices_are_returned_and_not_printed(desk, capsys):
@@ -57,7 +57,7 @@ def test_notices_are_returned_and_not_printed(desk, capsys):
     brushsvg.convert("white.svg", "white.ngc")
     found = brushsvg.check("white.ngc", "white.svg")
     assert found.notices and capsys.readouterr() == ("", "")
-    assert is_told(found.notices, "white-paint", "w")
+    assert is_reported(found.notices, "white-paint", "w")
 
 
 def test_a_program_of_others_paints_with_a_brush(desk):
@@ -77,7 +77,7 @@ def test_a_program_before_the_first_stroke(desk, capsys):
     assert 15 < left < 25 < 90 < right < 120 and 10 < bottom < top < 60
     moved = TWO.replace("M20 40", "M5 50")
     Path("moved.svg").write_text(moved)
-    assert is_told(brushsvg.check("border.ngc", "moved.svg").problems, "border-elsewhere")
+    assert is_reported(brushsvg.check("border.ngc", "moved.svg").problems, "border-elsewhere")
 
 
 def test_what_cannot_be_read_or_changes_nothing_is_refused(desk):

@@ -10,7 +10,7 @@ from pathlib import Path
 from shutil import copytree
 
 import pytest
-from diagnostics import agrees, gives, heard, in_json, is_told
+from diagnostics import agrees, gives, heard, in_json, is_reported
 from sampling import sample
 
 from brushsvg.cli import commands, main
@@ -72,7 +72,8 @@ def test_convert_writes_program_preview_and_report(desk, capsys):
     assert report["total"]["overlap"] > 0.9
     time, overlap = re.search(r"\(time: (.*)\)", code)[1], report["total"]["overlap"]
     (line,) = err
-    assert (status, out) == (0, "") and line.startswith("brushsvg: a.ngc, p.png, r.json: ")
+    assert (status, out) == (0, f"{report['verdict']}\n")
+    assert line.startswith("brushsvg: a.ngc, p.png, r.json: ")
     assert gives(line.partition(";")[2], "2", time.removeprefix("about "), f"{overlap:.3f}")
 
 
@@ -169,13 +170,14 @@ def test_predict_draws_and_report_prints(desk, capsys, source):
     assert json.loads((desk / "out.json").read_text())["format"] == "brushsvg/marks"
     status, out, err = run(capsys, "preview", source)
     assert (status, err) == (0, [])
-    assert "line" in out
-    assert "dab" in out
+    assert len(out.splitlines()) <= 10
     status, out, err = run(capsys, "preview", source, "--json")
+    assert [row["stroke"] for row in json.loads(out)["strokes"]] == ["line", "dab"]
+    assert json.loads(out)["verdict"]
     assert (json.loads(out)["total"]["overlap"] is None) == (source == "plan.json")
 
 
-def test_same_input_same_bytes_wherever_it_lies(desk, capsys):
+def test_same_input_same_bytes_in_any_folder(desk, capsys):
     (desk / "elsewhere").mkdir()
     (desk / "elsewhere" / "b.svg").write_bytes((desk / "a.svg").read_bytes())
     for name in ("x.ngc", "x.json"):
@@ -201,7 +203,7 @@ def test_flags_reach_the_plan(desk, capsys):
     assert len(finer["passes"][0]["poses_mm"]) > len(default["passes"][0]["poses_mm"])
 
 
-REFUSED = {  # file, what it holds, flags, what is told of which file and element
+REFUSED = {  # file, what it holds, flags, the reported code, file and element
     "no file": ("missing.svg", None, [], "file-unreadable", "missing.svg", ""),
     "no plan file": ("missing.json", None, [], "file-unreadable", "missing.json", ""),
     "not XML": ("x.svg", "moo", [], "not-xml", "x.svg", ""),
@@ -260,9 +262,9 @@ def test_refused_with_one_sentence_and_nothing_written(desk, capsys, case):
     words = ("convert", name, "-o", "out.ngc", "--report", "out.txt", *flags)
     status, out, err = run(capsys, *words)
     assert (status, out, len(err)) == (1, "", 1), err
-    status, out, ((about, told),) = in_json(capsys, *words)
-    assert (status, out, about) == (1, "", file) and agrees(told, said, where), (about, told)
-    assert err == [": ".join(part for part in ("brushsvg", file, where, told.told) if part)]
+    status, out, ((about, reported),) = in_json(capsys, *words)
+    assert (status, out, about) == (1, "", file) and agrees(reported, said, where), (about, reported)
+    assert err == [": ".join(part for part in ("brushsvg", file, where, reported.text) if part)]
     assert listing(desk) == before
 
 
@@ -290,17 +292,19 @@ def edited_plan(desk, **changes):
 )
 def test_a_plan_beyond_limits_is_refused(desk, capsys, changes, said):
     edited_plan(desk, **changes)
-    status, _, told = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
-    assert (status, {file for file, _ in told}) == (1, {"x.json"})
-    assert is_told(told, said, "line"), told
+    status, _, reported = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
+    assert (status, {file for file, _ in reported}) == (1, {"x.json"})
+    assert is_reported(reported, said, "line"), reported
     assert not (desk / "out.ngc").exists()
 
 
-def test_whoever_only_looks_is_warned(desk, capsys):
+def test_a_preview_alone_warns(desk, capsys):
     edited_plan(desk, speed_mm_s=30, sheet_mm=[120, 20])
-    status, _, told = in_json(capsys, "preview", "x.json", "-o", "out.svg")
+    status, _, reported = in_json(capsys, "preview", "x.json", "-o", "out.svg")
     assert status == 0
-    assert is_told(told, "speed-out-of-range 30") and is_told(told, "mark-off-sheet upper"), told
+    assert is_reported(reported, "speed-out-of-range 30") and is_reported(reported, "mark-off-sheet upper"), (
+        reported
+    )
     status, out, _ = run(capsys, "preview", "x.json")
     assert status == 0
     assert gives(out, "line", "30 mm/s")
@@ -310,7 +314,7 @@ BAD = '<path id="bad" d="M30 40 L60 45 L nan 4" fill="none" stroke="#000" stroke
 
 
 def test_a_refusal_for_damage_says_what_would_be_drawn_of_it(desk, capsys):
-    """Told once, at the end, and nothing claims that anything was painted."""
+    """Reported once, at the end, and nothing claims that anything was painted."""
     worse = BAD.replace('"bad"', '"worse" transform="turn(3)" stroke-dasharray="2" opacity=".5"')
     off = BAD.replace('"bad" d="M30 40 L60 45 L nan 4"', '"off" d="M-3 30h20"')
     (desk / "x.svg").write_text(drawing(LINE, worse, off))
@@ -319,8 +323,8 @@ def test_a_refusal_for_damage_says_what_would_be_drawn_of_it(desk, capsys):
     assert [line.split(": ")[2] for line in err] == ["worse", "worse", "off", "worse", "worse"]
     hint = "; --lenient draws what is sound"
     assert err[-1].endswith(hint) and not any(hint in line for line in err[:-1])
-    _, told = in_json(capsys, "convert", "x.svg", "-o", "out.ngc")[2][-1]
-    assert agrees(told, "geometry-damaged 17 'nan 4'", "worse") and told.damaged
+    _, reported = in_json(capsys, "convert", "x.svg", "-o", "out.ngc")[2][-1]
+    assert agrees(reported, "geometry-damaged 17 'nan 4'", "worse") and reported.damaged
     assert not any(word in line for line in err for word in ("drawn", "painted", "ignored"))
     (desk / "x.svg").write_text(drawing(off))
     assert not any("--lenient" in line for line in run(capsys, "convert", "x.svg", "-o", "out.ngc")[2])
@@ -334,29 +338,29 @@ def test_damaged_geometry_with_lenient_and_on_looking(desk, capsys):
         status, _, err = run(capsys, *words)
         assert (status, len(err)) == (0, 2)
         assert err[0].startswith("brushsvg: x.svg: bad: ")
-        assert err[1].startswith(f"brushsvg: {words[2]}: ")
+        assert err[1].startswith(f"brushsvg: {words[3]}: ")
         assert "--lenient" not in err[0]
     assert re.search(r"^\(warnings: 1, 1 ", (desk / "out.ngc").read_text(), re.MULTILINE)
 
 
 def test_a_plan_keeps_its_brush(desk, capsys):
     edited_plan(desk, brush_sha256="0" * 64)
-    status, _, ((file, told),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc", "--quiet")
-    assert (status, file) == (0, "x.json") and agrees(told, "plan-of-other-brush round-6", "brush_sha256")
+    status, _, ((file, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc", "--quiet")
+    assert (status, file) == (0, "x.json") and agrees(reported, "plan-of-other-brush round-6", "brush_sha256")
     words = ("preview", "plan.json", "-o", "out.png", "--brush", "rigid", "--compensation", "none")
-    (file, told), *_ = in_json(capsys, *words)[2]
-    assert file == "plan.json" and agrees(told, "flag-without-effect --compensation")
+    (file, reported), *_ = in_json(capsys, *words)[2]
+    assert file == "plan.json" and agrees(reported, "flag-without-effect --compensation")
     (desk / "mine.json").write_text("{}")
     edited_plan(desk, brush="mine.json")
-    status, _, ((file, told),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
-    assert (status, file) == (1, "mine.json") and agrees(told, "key-missing format")
+    status, _, ((file, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
+    assert (status, file) == (1, "mine.json") and agrees(reported, "key-missing format")
     edited_plan(desk, brush="my-brush")
-    status, _, ((_, told),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
-    assert status == 1 and agrees(told, "brush-unknown my-brush")
-    status, _, ((_, told),) = in_json(
+    status, _, ((_, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
+    assert status == 1 and agrees(reported, "brush-unknown my-brush")
+    status, _, ((_, reported),) = in_json(
         capsys, "convert", "x.json", "-o", "out.ngc", "--brush", "round-6", "--quiet"
     )
-    assert status == 0 and agrees(told, "plan-of-other-brush my-brush round-6", "brush")
+    assert status == 0 and agrees(reported, "plan-of-other-brush my-brush round-6", "brush")
 
 
 @pytest.mark.parametrize(
@@ -456,8 +460,8 @@ def test_values_below_nothing_are_no_flags(desk, capsys, flag, said):
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80">'
         '<path d="M20 20H60" stroke="#000" stroke-width="4"/></svg>'
     )
-    status, _, told = run(capsys, "convert", "a.svg", "-o", "a.ngc", *flag.split())
-    assert status and said in " ".join(told)
+    status, _, reported = run(capsys, "convert", "a.svg", "-o", "a.ngc", *flag.split())
+    assert status and said in " ".join(reported)
 
 
 def test_compare_with_the_drawing_first_says_where_it_stands(desk, capsys):
@@ -479,9 +483,9 @@ def test_compare_with_the_drawing_first_says_where_it_stands(desk, capsys):
     ],
 )
 def test_a_program_that_the_cell_does_not_speak_says_which_cells_do(desk, capsys, command, out, flags, cells):
-    status, _, ((file, told),) = in_json(capsys, *command.split(), "-o", out, *flags.split())
-    assert (status, file, told.advice) == (1, out, "give --cell"), "of this file, not of the drawing"
-    assert agrees(told, f"program-format {Path(out).suffix.lower()} {cells}"), told
+    status, _, ((file, reported),) = in_json(capsys, *command.split(), "-o", out, *flags.split())
+    assert (status, file, reported.advice) == (1, out, "give --cell"), "of this file, not of the drawing"
+    assert agrees(reported, f"program-format {Path(out).suffix.lower()} {cells}"), reported
     for cell in cells.split(" or "):  # which is true of each
         assert run(capsys, "setup", "height", "-o", out, "--cell", cell)[0] == 0
 
@@ -492,11 +496,15 @@ def test_messages_for_programs_are_lines_of_json_with_codes(desk, capsys):
     )
     words = ("convert", "thin.svg", "-o", "x.ngc", "--quiet")
     assert main(["--messages", "json", *words]) == 0
-    (told,) = map(json.loads, capsys.readouterr().err.splitlines())
-    assert (told["file"], told["code"]) == ("thin.svg", "depth-not-measured")
-    assert gives(told["where"], "p1", "4")
-    assert told["sentence"].endswith(f"; {told['advice']}") and not told["damaged"]
-    assert run(capsys, *words) == (0, "", [f"brushsvg: thin.svg: {told['where']}: {told['sentence']}"])
+    (reported,) = map(json.loads, capsys.readouterr().err.splitlines())
+    assert (reported["file"], reported["code"]) == ("thin.svg", "depth-not-measured")
+    assert gives(reported["where"], "p1", "4")
+    assert reported["sentence"].endswith(f"; {reported['advice']}") and not reported["damaged"]
+    assert run(capsys, *words) == (
+        0,
+        "",
+        [f"brushsvg: thin.svg: {reported['where']}: {reported['sentence']}"],
+    )
     (desk / "odd.svg").write_text(drawing(LINE, '<image id="i"/>'))
     (warned,) = json.loads(run(capsys, "preview", "odd.svg", "--json")[1])["warnings"]
     assert (warned["where"], warned["code"]) == ("i", "element-unread")
@@ -512,8 +520,8 @@ def test_outputs_that_cannot_be_written_leave_nothing(desk, capsys):
         (["preview", "a.svg", "-o", "no/where/out.html"], "no/where/out.html"),
     ):
         before = listing(desk)
-        status, _, ((file, told),) = in_json(capsys, *words)
-        assert (status, file, told.code) == (1, name, "file-unwritable"), told
+        status, _, ((file, reported),) = in_json(capsys, *words)
+        assert (status, file, reported.code) == (1, name, "file-unwritable"), reported
         assert listing(desk) == before
 
 
@@ -528,7 +536,7 @@ def test_several_outputs_are_written_all_or_none(desk, capsys, full):
         else:
             (desk / name).write_text("old")
     before = sorted(os.listdir(desk))
-    status, _, ((file, told),) = in_json(
+    status, _, ((file, reported),) = in_json(
         capsys,
         "convert",
         "a.svg",
@@ -540,7 +548,7 @@ def test_several_outputs_are_written_all_or_none(desk, capsys, full):
         outputs[2],
         "--force",
     )
-    assert (status, file) == (1, full) and agrees(told, "file-unwritable"), told
+    assert (status, file) == (1, full) and agrees(reported, "file-unwritable"), reported
     assert all((desk / name).read_text() == "old" for name in outputs if name != full)
     assert sorted(os.listdir(desk)) == before
 
@@ -553,11 +561,11 @@ def test_a_name_cannot_break_the_line_or_the_terminal(capsys):
 def test_a_turn_too_sharp_for_the_brush_is_a_warning(desk, capsys):
     hairpin = LINE.replace("M20 40 C40 10 60 10 90 30", "M20 30 L90 30 L20 33")
     (desk / "x.svg").write_text(drawing(hairpin))
-    status, _, ((_, told),) = in_json(
+    status, _, ((_, reported),) = in_json(
         capsys, "convert", "x.svg", "-o", "out.ngc", "--quiet", "--corners", "turn"
     )
-    assert status == 0 and agrees(told, "off-middle-line 0.05", "line"), told
-    assert re.search(r" \d\.\d+ mm [a-z]+ x \d+\.\d, y \d+\.\d mm", told.sentence)
+    assert status == 0 and agrees(reported, "off-middle-line 0.05", "line"), reported
+    assert re.search(r" \d\.\d+ mm [a-z]+ x \d+\.\d, y \d+\.\d mm", reported.sentence)
     flags = ("--compensation", "none", "--quiet")
     assert run(capsys, "convert", "x.svg", "-o", "out.ngc", *flags) == (0, "", [])
 
@@ -595,8 +603,8 @@ def test_a_faulty_brush_is_refused_everywhere(desk, capsys, key, value, code):
         ["brush", "check", "mine.json"],
         ["convert", "a.svg", "-o", "out.ngc", "--brush", "mine.json"],
     ):
-        status, out, ((file, told),) = in_json(capsys, *words)
-        assert (status, out, file, told.code) == (1, "", "mine.json", code)
+        status, out, ((file, reported),) = in_json(capsys, *words)
+        assert (status, out, file, reported.code) == (1, "", "mine.json", code)
     assert not (desk / "out.ngc").exists()
 
 
@@ -729,8 +737,8 @@ def test_a_full_disk_under_stdout_is_said(desk):
         as_json = spawn("--messages", "json", "preview", "a.svg", stdout=full, stderr=subprocess.PIPE)
     assert done.returncode == as_json.returncode == 1
     assert done.stderr == b"brushsvg: standard output: no space left on device\n"
-    ((file, told),) = heard(as_json.stderr.decode().splitlines())
-    assert file == "standard output" and agrees(told, "file-unwritable")
+    ((file, reported),) = heard(as_json.stderr.decode().splitlines())
+    assert file == "standard output" and agrees(reported, "file-unwritable")
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
@@ -786,6 +794,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
     job = {"--z-offset", "--from-stroke", "--order", "--per-colour"}
     assert flags == choices | job | {
         "--corrections",
+        "--explain",
         "--help",
         "--help-all",
         "--margin-strokes",
@@ -836,24 +845,24 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
         ("name =", "nom =", "nom", "key-unknown nom decimals"),
     ):
         (desk / "my.toml").write_text(text.replace(old, new))
-        status, out, ((file, told),) = in_json(capsys, "cell", "check", "my.toml")
-        assert (status, out, file) == (1, "", "my.toml") and agrees(told, said, where), told
+        status, out, ((file, reported),) = in_json(capsys, "cell", "check", "my.toml")
+        assert (status, out, file) == (1, "", "my.toml") and agrees(reported, said, where), reported
     (desk / "my.toml").write_text(text.replace("paint_mm_s = 40.0", "paint_mm_s = 9"))
     assert run(capsys, "convert", "a.svg", "-o", "slow.ngc", "--cell", "my.toml", "--quiet") == (0, "", [])
     assert "F540.0" in (desk / "slow.ngc").read_text(), "a slow machine paints slowly"
     (desk / "my.toml").write_text(text.replace("margin_mm = 30.0", "margin_mm = 0.0"))
-    status, _, told = in_json(
+    status, _, reported = in_json(
         capsys, "convert", "a.svg", "-o", "x.ngc", "--cell", "my.toml", "--sheet", "96x60"
     )
-    assert status == 1 and is_told(told, "tool-off-sheet right"), told
+    assert status == 1 and is_reported(reported, "tool-off-sheet right"), reported
     for cell, said in (("mine", "cell-unknown mine grbl-3axis"), ("no.toml", "file-unreadable")):
-        status, _, ((_, told),) = in_json(capsys, "convert", "a.svg", "-o", "x.ngc", "--cell", cell)
-        assert status == 1 and agrees(told, said), told
+        status, _, ((_, reported),) = in_json(capsys, "convert", "a.svg", "-o", "x.ngc", "--cell", cell)
+        assert status == 1 and agrees(reported, said), reported
     assert not (desk / "x.ngc").exists()
 
 
 @pytest.mark.parametrize(
-    ("words", "meant"),
+    ("words", "expected"),
     [
         ("convrt a.svg b.ngc", "convert"),
         ("brush shw round-6", "show"),
@@ -863,13 +872,13 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
         ("cell show grbl-3axs", "grbl-3axis"),
     ],
 )
-def test_a_mistyped_name_is_answered_with_the_nearest(capsys, words, meant):
+def test_a_mistyped_name_is_answered_with_the_nearest(capsys, words, expected):
     try:
         status = main(words.split())
     except SystemExit as ended:
         status = ended.code
     assert status == (1 if "show" in words else 2)
-    assert f" {meant}?" in capsys.readouterr().err
+    assert f" {expected}?" in capsys.readouterr().err
 
 
 def test_nothing_is_suggested_where_nothing_is_alike(capsys):

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from diagnostics import agrees, in_json, is_told, read, refused
+from diagnostics import agrees, gives, in_json, is_reported, read, refused
 
 import brushsvg
 from brushsvg.cli import main
@@ -31,42 +31,43 @@ def desk(tmp_path, monkeypatch):
 
 
 def plan(desk, capsys, *words, drawing="d.svg"):
-    """Its passes, and what was told."""
+    """Its passes, and what was reported."""
     capsys.readouterr()
-    status, _, told = in_json(capsys, "convert", drawing, "-o", "plan.json", "--quiet", *words)
-    assert status == 0, told
-    return json.loads((desk / "plan.json").read_text())["passes"], [notice for _, notice in told]
+    status, _, reported = in_json(capsys, "convert", drawing, "-o", "plan.json", "--quiet", *words)
+    assert status == 0, reported
+    return json.loads((desk / "plan.json").read_text())["passes"], [notice for _, notice in reported]
 
 
 def refusal(capsys, *words):
-    status, _, (*_, (_, told)) = in_json(capsys, *words)
+    status, _, (*_, (_, reported)) = in_json(capsys, *words)
     assert status == 1
-    return told
+    return reported
 
 
 def test_layers_and_selections(desk, capsys):
-    passes, told = plan(desk, capsys, "--layer", "Ink")
-    assert ([each["stroke"] for each in passes], told) == (["a"], [])
-    passes, (told,) = plan(desk, capsys, "--select", "#b, text")
+    passes, reported = plan(desk, capsys, "--layer", "Ink")
+    assert ([each["stroke"] for each in passes], reported) == (["a"], [])
+    passes, (reported,) = plan(desk, capsys, "--select", "#b, text")
     assert [each["stroke"] for each in passes] == ["b"]
-    assert agrees(told, "text-unread --export-text-to-path", "t")
-    told = refusal(capsys, "convert", "d.svg", "-o", "x.json", "--layer", "Blue")
-    assert agrees(told, "layer-unknown Blue Ink Red", "layer")
-    told = refusal(capsys, "convert", "d.svg", "-o", "x.json", "--select", "#c")
-    assert agrees(told, "selector-matches-nothing #c")
+    assert agrees(reported, "text-unread --export-text-to-path", "t")
+    reported = refusal(capsys, "convert", "d.svg", "-o", "x.json", "--layer", "Blue")
+    assert agrees(reported, "layer-unknown Blue Ink Red", "layer")
+    reported = refusal(capsys, "convert", "d.svg", "-o", "x.json", "--select", "#c")
+    assert agrees(reported, "selector-matches-nothing #c")
 
 
-def test_what_was_told_of_a_drawing_stands_before_its_refusal(desk, capsys):
+def test_what_was_reported_of_a_drawing_stands_before_its_refusal(desk, capsys):
     """A thick line in metres that were none: the width was refused, and nobody heard of the unit."""
     head = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n"
     line = "0\nLWPOLYLINE\n8\nINK\n90\n2\n70\n0\n43\n0.1\n10\n0\n20\n0\n10\n9\n20\n0\n"
     (desk / "thick.dxf").write_text(head + "0\nSECTION\n2\nENTITIES\n" + line + "0\nENDSEC\n0\nEOF\n")
     for command, *out in (("convert", "-o", "x.json"), ("preview", "-o", "x.json"), ("preview",)):
         status, _, said = in_json(capsys, command, "thick.dxf", *out)
-        assert status == 1 and [is_told([each], "unit-doubtful metres") for each in said] == [True, False], (
-            said
-        )
-        assert is_told(said[1:], "width-out-of-reach 100.000")
+        assert status == 1 and [is_reported([each], "unit-doubtful metres") for each in said] == [
+            True,
+            False,
+        ], said
+        assert is_reported(said[1:], "width-out-of-reach 100.000")
     with pytest.raises(brushsvg.Error) as caught:
         brushsvg.convert("thick.dxf")
     assert agrees(caught.value.notices[0], "unit-doubtful metres")
@@ -74,7 +75,7 @@ def test_what_was_told_of_a_drawing_stands_before_its_refusal(desk, capsys):
     assert row.figures is None and agrees(row.notices[0], "unit-doubtful metres")
 
 
-def test_what_was_told_stands_before_what_no_machine_runs(desk):
+def test_what_was_reported_stands_before_what_no_machine_runs(desk):
     with pytest.raises(brushsvg.Error) as caught:
         brushsvg.convert("d.svg", origin=(-20, 0))
     assert caught.value.code == "mark-off-sheet" and agrees(caught.value.notices[0], "text-unread", "t")
@@ -123,12 +124,12 @@ def test_size_and_place(desk, capsys):
 
 def test_flags_have_no_effect_on_a_plan(desk, capsys):
     plan(desk, capsys)
-    status, _, told = in_json(
+    status, _, reported = in_json(
         capsys, "convert", "plan.json", "-o", "p2.json", "--fit", "50x50", "--layer", "Ink"
     )
     assert status == 0
     for flag in ("--fit", "--layer"):
-        assert is_told(told, f"flag-without-effect {flag}"), told
+        assert is_reported(reported, f"flag-without-effect {flag}"), reported
 
 
 @pytest.mark.parametrize("command", ["convert", "preview"])
@@ -136,11 +137,11 @@ def test_flags_for_gcode_have_no_effect_on_an_svg(desk, capsys, command):
     out = ["-o", "d.ngc"] if command == "convert" else ["-o", "seen.png", "--show", "strokes"]
     flags = {"--pen": "servo", "--paper-z": "0", "--skip-region": "0,0,1,1", "--skip-comment": "dip"}
     words = [word for pair in flags.items() for word in pair]
-    status, _, told = in_json(capsys, command, "d.svg", *out, *words)
+    status, _, reported = in_json(capsys, command, "d.svg", *out, *words)
     assert status == 0
     for flag in flags:
-        assert is_told(told, f"flag-without-effect {flag}"), told
-    assert not is_told(in_json(capsys, command, "d.svg", *out)[2], "flag-without-effect")
+        assert is_reported(reported, f"flag-without-effect {flag}"), reported
+    assert not is_reported(in_json(capsys, command, "d.svg", *out)[2], "flag-without-effect")
 
 
 def test_settings_steer_the_plan(desk, capsys):
@@ -149,13 +150,13 @@ def test_settings_steer_the_plan(desk, capsys):
     )
     text = text.replace('id="a"', 'id="a" data-brushsvg-brush="rigid"')
     (desk / "d.svg").write_text(text)
-    passes, told = plan(desk, capsys)
+    passes, reported = plan(desk, capsys)
     assert [(each["stroke"], each["speed_mm_s"]) for each in passes] == [("b", 7), ("b#2", 7), ("a", 20)]
     assert passes[0]["settings"] == {"order": -1, "passes": 2, "speed_mm_s": 7}
-    assert is_told(told, "brush-asked-for rigid round-6", "a"), told
+    assert is_reported(reported, "brush-asked-for rigid round-6", "a"), reported
     (desk / "d.svg").write_text(text.replace('speed="7"', 'speed="26"'))
-    status, _, told = in_json(capsys, "convert", "d.svg", "-o", "out.ngc")
-    assert status == 1 and is_told(told, "speed-out-of-range 26 [0.000001, 25.0]"), told
+    status, _, reported = in_json(capsys, "convert", "d.svg", "-o", "out.ngc")
+    assert status == 1 and is_reported(reported, "speed-out-of-range 26 [0.000001, 25.0]"), reported
 
 
 def test_dxf_needs_its_units(desk, capsys):
@@ -178,8 +179,8 @@ def test_import_draws_what_was_understood(desk, capsys):
 
 def test_import_shows_damage_that_convert_refuses(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M30 60 H90 L"))
-    status, _, told = in_json(capsys, "convert", "d.svg", "-o", "x.json", "--layer", "Red")
-    assert status == 1 and is_told(told, "geometry-damaged 13", "b"), told
+    status, _, reported = in_json(capsys, "convert", "d.svg", "-o", "x.json", "--layer", "Red")
+    assert status == 1 and is_reported(reported, "geometry-damaged 13", "b"), reported
     assert main(["preview", "d.svg", "-o", "seen.png", "--show", "strokes"]) == 0
     assert main(["convert", "d.svg", "-o", "x.json", "--layer", "Ink"]) == 0, (
         "damage elsewhere does not count"
@@ -190,26 +191,26 @@ def test_filled_shapes_become_strokes_unless_they_hold_nothing(desk, capsys):
     (desk / "f.svg").write_text(
         DRAWING.replace('fill="none" stroke="#203060"', "").replace('stroke="red"', "")
     )
-    told = refusal(capsys, "convert", "f.svg", "-o", "x.json", "--as", "stroke")
-    assert told.code == "nothing-to-paint"
+    reported = refusal(capsys, "convert", "f.svg", "-o", "x.json", "--as", "stroke")
+    assert reported.code == "nothing-to-paint"
     assert main(["preview", "f.svg", "-o", "seen.png", "--show", "strokes", "--as", "stroke"]) == 0
     capsys.readouterr()
     bar = '<path id="bar" d="M20 20H70V26H20Z"/><rect id="wide" x="20" y="35" width="60" height="12"/>'
     (desk / "bar.svg").write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">{bar}</svg>'
     )
-    passes, told = plan(desk, capsys, "--wide", "clamp", drawing="bar.svg")
+    passes, reported = plan(desk, capsys, "--wide", "clamp", drawing="bar.svg")
     assert [each["stroke"] for each in passes] == ["bar", "wide"]
-    assert agrees(told[0], "width-out-of-reach 12 nearest", "wide"), told
+    assert agrees(reported[0], "width-out-of-reach 12 nearest", "wide"), reported
     for flags in ((), ("--wide", "passes")):
         passes, _ = plan(desk, capsys, *flags, drawing="bar.svg")
         names = [each["stroke"] for each in passes]
         assert names == ["bar", "wide", *(f"wide~{k}" for k in range(2, len(passes)))] and len(names) > 4
-    told = refusal(capsys, "convert", "bar.svg", "-o", "x.json", "--wide", "refuse")
-    assert agrees(told, "width-out-of-reach 12", "wide") and "nearest" not in told.told
+    reported = refusal(capsys, "convert", "bar.svg", "-o", "x.json", "--wide", "refuse")
+    assert agrees(reported, "width-out-of-reach 12", "wide") and "nearest" not in reported.text
 
 
-def test_fonts_of_inkscape_are_found_by_name(desk, capsys, monkeypatch):
+def test_fonts_of_inkscape_are_found_with_their_names(desk, capsys, monkeypatch):
     (desk / "fonts").mkdir()
     (desk / "fonts" / "Lines.svg").write_text(
         """<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>
@@ -220,8 +221,8 @@ def test_fonts_of_inkscape_are_found_by_name(desk, capsys, monkeypatch):
         assert main(["text", "T", "-o", f"by-{name}.svg", "--font", name]) == 0
     assert (desk / "by-Lines.svg").read_bytes() == (desk / "by-Lines.svg.svg").read_bytes()
     capsys.readouterr()
-    told = refusal(capsys, "text", "T", "-o", "t.svg", "--font", "./Lines.svg")
-    assert told.code == "file-unreadable"
+    reported = refusal(capsys, "text", "T", "-o", "t.svg", "--font", "./Lines.svg")
+    assert reported.code == "file-unreadable"
 
 
 def test_text(desk, capsys):
@@ -231,12 +232,12 @@ def test_text(desk, capsys):
     assert (
         main(["text", "T\\nTT", "-o", "t.svg", "--font", "font.svg", "--size", "30", "--width", "2.5"]) == 0
     )
-    passes, told = plan(desk, capsys, drawing="t.svg")
-    assert (len(passes), told) == (6, [])
-    told = refusal(capsys, "text", "T", "-o", "u.svg", "--font", "none.svg")
-    assert agrees(told, "file-unreadable Inkscape")
-    told = refusal(capsys, "text", "x", "-o", "u.svg", "--font", "font.svg")
-    assert agrees(told, "nothing-to-paint U+0078")
+    passes, reported = plan(desk, capsys, drawing="t.svg")
+    assert (len(passes), reported) == (6, [])
+    reported = refusal(capsys, "text", "T", "-o", "u.svg", "--font", "none.svg")
+    assert agrees(reported, "file-unreadable Inkscape")
+    reported = refusal(capsys, "text", "x", "-o", "u.svg", "--font", "font.svg")
+    assert agrees(reported, "nothing-to-paint U+0078")
     for words in (["T", "-o", "t.png"], ["T", "-o", "t.svg", "--size", "0"], ["T"]):
         assert main(["text", *words, "--font", "font.svg"]) == 2
 
@@ -249,18 +250,18 @@ def test_widths_out_of_reach_are_one_line_that_names_the_way_out(desk, capsys):
 
     drawing(0.3)
     for command in (("convert", "w.svg", "-o", "x.json"), ("preview", "w.svg", "-o", "x.png")):
-        status, _, ((file, told),) = in_json(capsys, *command, "--quiet")
+        status, _, ((file, reported),) = in_json(capsys, *command, "--quiet")
         assert (status, file) == (0, "w.svg")
-        assert agrees(told, "depth-not-measured p0 5 0.36 [1.0, 10.0]")
-        assert told.advice.startswith("--width MM")
-    passes, (told,) = plan(desk, capsys, "--width", "0.3", drawing="w.svg")
-    assert len(passes) == 6 and (told.code, told.advice) == ("depth-not-measured", "")
+        assert agrees(reported, "depth-not-measured p0 5 0.36 [1.0, 10.0]")
+        assert reported.advice.startswith("--width MM")
+    passes, (reported,) = plan(desk, capsys, "--width", "0.3", drawing="w.svg")
+    assert len(passes) == 6 and (reported.code, reported.advice) == ("depth-not-measured", "")
     drawing(30)
-    told = refusal(capsys, "convert", "w.svg", "-o", "x.json")
-    assert agrees(told, "width-out-of-reach 30.000", "p0")
+    reported = refusal(capsys, "convert", "w.svg", "-o", "x.json")
+    assert agrees(reported, "width-out-of-reach 30.000", "p0")
     drawing('2" transform="translate(-30)')
-    told = refusal(capsys, "convert", "w.svg", "-o", "x.json")
-    assert agrees(told, "mark-off-sheet p0 5 left --fit")
+    reported = refusal(capsys, "convert", "w.svg", "-o", "x.json")
+    assert agrees(reported, "mark-off-sheet p0 5 left --fit")
 
 
 def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsys):
@@ -275,7 +276,7 @@ def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsy
 
 @pytest.mark.parametrize(("d", "is_marked"), [("M20 60C80 75 20 75 80 60", False), ("M30 60H60L40 62", True)])
 def test_no_stroke_is_marked_for_less_than_the_brush_itself_is_off(desk, capsys, d, is_marked):
-    """0.095 mm in place of 0.05 was red, and told, of a brush whose lag is known to 0.58 mm."""
+    """0.095 mm in place of 0.05 was red, and reported, of a brush whose lag is known to 0.58 mm."""
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", d))
     assert main(["preview", "d.svg", "-o", "x.svg", "--corners", "turn"]) == 0
     assert ("d.svg: b: " in capsys.readouterr().err) == is_marked
@@ -298,33 +299,33 @@ def test_a_brush_that_is_known_exactly_is_warned_of_less(desk, capsys):
 
 
 def test_a_width_is_advised_only_for_lines(desk, capsys):
-    """Outlines have no single width: --width was advised, and told to be without effect when it was taken."""
+    """Outlines have no single width: --width was advised, and reported to be without effect when it was taken."""
     hair = '<path id="hair" fill="none" stroke="#000" stroke-width="0.3" d="M10 10H80"/>'
     sliver = '<path id="sliver" d="M10 40H80V40.3H10Z"/>'
     size = 'width="100mm" height="60mm" viewBox="0 0 100 60"'
     (desk / "thin.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{hair}{sliver}</svg>')
-    _, told = plan(desk, capsys, drawing="thin.svg")
-    thin = {each.where: each.advice for each in told if each.code == "depth-not-measured"}
+    _, reported = plan(desk, capsys, drawing="thin.svg")
+    thin = {each.where: each.advice for each in reported if each.code == "depth-not-measured"}
     assert thin.keys() == {"hair", "sliver"} and thin["sliver"] == ""
     (width,) = re.findall(r"--width MM, [a-z]+ ([0-9.]+)", thin["hair"])
-    _, told = plan(desk, capsys, "--width", str(float(width) + 0.05), drawing="thin.svg")
-    assert "hair" not in {each.where for each in told if each.code == "depth-not-measured"}
+    _, reported = plan(desk, capsys, "--width", str(float(width) + 0.05), drawing="thin.svg")
+    assert "hair" not in {each.where for each in reported if each.code == "depth-not-measured"}
 
 
 def test_a_report_names_every_stroke_that_cannot_be_painted(desk, capsys):
     text = DRAWING.replace('id="b"', 'id="b" stroke-width="30"')
     bad = "".join(f'<path id="c{k}" stroke-width="{20 + k}" d="M30 {70 + k} H90"/>' for k in range(5))
     (desk / "d.svg").write_text(text.replace("</svg>", bad + "</svg>"))
-    status, out, told = in_json(capsys, "preview", "d.svg", "--json")
+    status, out, reported = in_json(capsys, "preview", "d.svg", "--json")
     assert status == 1
     report = json.loads(out)
     assert [each["where"] for each in report["refused"]] == ["b", "c0", "c1", "c2", "c3", "c4"]
     assert agrees(read(report["refused"][3]), "width-out-of-reach 22.000")
     assert [each["stroke"] for each in report["strokes"]] == ["a"]
-    assert agrees(told[-1][1], "width-out-of-reach b 5 30.000")
+    assert agrees(reported[-1][1], "width-out-of-reach b 5 30.000")
     assert main(["preview", "d.svg"]) == 1
-    out = capsys.readouterr().out
-    assert re.search(r": 6\n  b: .*30\.000 mm", out), out
+    (line,) = [line for line in capsys.readouterr().out.splitlines() if "30.000" in line]
+    assert gives(line, "6", "b", "5", "0.28")
     assert main(["convert", "d.svg", "-o", "x.ngc"]) == 1
     assert not (desk / "x.ngc").exists()
 
@@ -360,8 +361,8 @@ def test_ends_at_less_depth_than_was_measured_are_no_warning(desk, capsys):
     (desk / "drops.svg").write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">{drops}{hair}</svg>'
     )
-    _, told = plan(desk, capsys, drawing="drops.svg")
-    assert [each.where for each in told if each.code == "depth-not-measured"] == ["hair"]
+    _, reported = plan(desk, capsys, drawing="drops.svg")
+    assert [each.where for each in reported if each.code == "depth-not-measured"] == ["hair"]
 
 
 def test_a_dot_is_warned_of_by_the_depth_that_it_is_turned_at(desk, capsys):
@@ -374,8 +375,8 @@ def test_a_dot_is_warned_of_by_the_depth_that_it_is_turned_at(desk, capsys):
         f'<g stroke="#000" stroke-linecap="round">{dots}</g></svg>'
     )
     for start, count in (("round", 1), ("pointed", 0)):
-        passes, told = plan(desk, capsys, "--start", start, drawing="dots.svg")
-        thin = [each for each in told if each.code == "depth-not-measured"]
+        passes, reported = plan(desk, capsys, "--start", start, drawing="dots.svg")
+        thin = [each for each in reported if each.code == "depth-not-measured"]
         depths = [-min(z for _, _, z in each["poses_mm"]) for each in passes]
         assert [each.where for each in thin] == [
             each["stroke"] for each, d in zip(passes, depths, strict=True) if d < 1.0

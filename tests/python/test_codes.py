@@ -1,4 +1,4 @@
-"""docs/reference/diagnostics.md lists the codes of all that a person is told, and nothing else."""
+"""docs/reference/diagnostics.md lists the codes of all notices, and nothing else."""
 
 import ast
 import re
@@ -17,12 +17,13 @@ LIBRARY = ROOT / "cpp"
 TESTS = ROOT / "tests"
 CODE = re.compile("[a-z]+(-[a-z]+)*")
 FOUR_WORDS = re.compile(r"(?<![\w-])[A-Za-z][a-z]+(?: [a-z]+(?:'[a-z]+)?){3}(?![\w-])")
-QUOTED = {  # file: how many texts of four plain words and more its tests expect, for no code tells them
+QUOTED = {  # file: how many texts of four plain words and more its tests expect, for no code replaces them
     "integration/command.py": 1,  # what a mistake of ours begins with
     "python/test_checking.py": 3,  # lines of a program's header and end
     "python/test_jaka.py": 1,
     "python/test_ros2.py": 1,  # the end of a table
     "python/test_docs_lint.py": 2,  # sentences that the linter must find
+    "python/test_words_lint.py": 1,
     "python/test_examples.py": 4,  # output of the examples
     "python/test_imports.py": 4,  # for developers
 }
@@ -92,7 +93,7 @@ def test_the_table_lists_the_codes_that_there_are():
     assert sorted(each for each in listed if not any(fnmatch(each, code) for code in found)) == []
 
 
-def test_python_is_told_the_codes_of_the_library():
+def test_python_has_the_codes_of_the_library():
     with pytest.raises(Error) as refused:
         _core.read_plan('{"format": "brushsvg/plan", "version": 3}')
     assert (refused.value.code, refused.value.value) == ("version-unknown", 3)
@@ -136,8 +137,10 @@ def test_tests_expect_codes_and_numbers_and_quote_no_sentences():
 
 def test_tests_of_the_library_ask_refusals_for_codes_and_numbers():
     """refusal.hpp alone looks into sentences, for numbers and names; nonsense.cpp asks whether there is one."""
-    asked = {file.name for file in (TESTS / "cpp").iterdir() if "what()" in file.read_text(encoding="utf-8")}
-    assert asked <= {"refusal.hpp", "brushsvg_test.cpp", "fit_nonsense.cpp", "mark_fit_test.cpp"}
+    requested = {
+        file.name for file in (TESTS / "cpp").iterdir() if "what()" in file.read_text(encoding="utf-8")
+    }
+    assert requested <= {"refusal.hpp", "brushsvg_test.cpp", "fit_nonsense.cpp", "mark_fit_test.cpp"}
     words = {
         file.name for file in (TESTS / "cpp").iterdir() if "THROWS_WITH" in file.read_text(encoding="utf-8")
     }

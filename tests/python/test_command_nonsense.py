@@ -7,7 +7,7 @@ import pytest
 
 from brushsvg.cli import main
 
-SOUND = {  # the word that stands for a file, and what lies there when it is sound
+SOUND = {  # the word that stands for a file, and what is there when it is sound
     "IN": "a.svg",
     "BRUSH": "mine.json",
     "CELL": "mine.toml",
@@ -22,6 +22,8 @@ SOUND = {  # the word that stands for a file, and what lies there when it is sou
     "ZIP": "extension.zip",
 }
 COMMANDS = [
+    "init --cell CELL",
+    "init --cell ur5e --brush BRUSH",
     "convert IN -o OUT.ngc",
     "convert IN -o OUT.json",
     "convert PLAN -o OUT.ngc",
@@ -132,7 +134,7 @@ def refused(desk, capsys, words) -> list[str]:
     "command", [each for each in COMMANDS if any(word in SOUND for word in each.split())]
 )
 @pytest.mark.slow
-def test_whatever_is_read_may_be_nonsense(desk, capsys, command):
+def test_all_that_is_read_may_be_nonsense(desk, capsys, command):
     for word in {*command.split()} & {*SOUND}:
         path = desk / f"bad{Path(SOUND[word]).suffix}"
         for kind, data in NONSENSE.items():
@@ -155,7 +157,7 @@ def test_whatever_is_read_may_be_nonsense(desk, capsys, command):
     [each for each in COMMANDS if "OUT" in each and not {"MEASURED", "PHOTO", "photo.jpg"} & {*each.split()}],
 )
 @pytest.mark.slow
-def test_whatever_is_written_may_have_no_place(desk, capsys, command):
+def test_all_that_is_written_may_have_no_place(desk, capsys, command):
     for kind, place in PLACES.items():
         suffix = next(Path(word).suffix for word in command.split() if word.startswith("OUT"))
         out = desk / f"{place}{suffix}"
@@ -178,7 +180,7 @@ def test_no_command_is_forgotten():
                 found |= {f"{name} {each}".strip() for each in names(below) or {""}}
         return found
 
-    # test_article.py and test_demo.py have the places of article and demo
+    # test_demo.py has the places that demo writes to
     reads_nothing = {"brush list", "cell list", "demo", "doctor"}
     assert names(command_parser()) - reads_nothing == {
         next(name for name in names(command_parser()) if f"{command} ".startswith(f"{name} "))

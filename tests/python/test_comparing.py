@@ -1,4 +1,4 @@
-"""How far a path that was read lies from the one that was meant."""
+"""How far a path that was read is from the one that was intended."""
 
 import itertools
 import re
@@ -40,17 +40,17 @@ def test_the_farthest_point_is_found_without_looking_at_every_move(seed, moves, 
         random.choice([-1.0, 0.0, 1.0], (moves, 3)), axis=0
     )  # on itself, too, and standing still
     at = np.sort(random.integers(0, moves, points))
-    asked = path[{"along": at, "back": at[::-1], "anywhere": random.permutation(at)}[how]]
-    asked = asked + away_mm * random.choice([-1, 0, 1], (points, 3))
-    assert _farthest(asked, path) == pytest.approx(by_every_move(asked, path), abs=1e-9)
+    requested = path[{"along": at, "back": at[::-1], "anywhere": random.permutation(at)}[how]]
+    requested = requested + away_mm * random.choice([-1, 0, 1], (points, 3))
+    assert _farthest(requested, path) == pytest.approx(by_every_move(requested, path), abs=1e-9)
 
 
 def test_a_detour_in_the_middle_of_many_poses_is_found():
     t = np.linspace(0, 60, 5000)
     path = np.column_stack([10 * np.sin(7 * t), t, -2 + np.cos(t)])
-    asked = path.copy()
-    asked[3333, 2] += 0.3
-    assert _farthest(asked, path) == pytest.approx(by_every_move(asked[3333:3334], path))
+    requested = path.copy()
+    requested[3333, 2] += 0.3
+    assert _farthest(requested, path) == pytest.approx(by_every_move(requested[3333:3334], path))
 
 
 ARC = np.array([(0, 0, -2), (5, 0, -2), (10, 5, -2), (5, 10, -2), (0, 10, -2)], dtype=float)
@@ -62,8 +62,8 @@ def turned(poses, centre_mm, direction=1):
     )
 
 
-def strayed(a_pass, meant):
-    return _strayed(a_pass, np.arange(1, 1 + len(a_pass.poses_mm)), meant, find_cell())
+def strayed(a_pass, expected):
+    return _strayed(a_pass, np.arange(1, 1 + len(a_pass.poses_mm)), expected, find_cell())
 
 
 def test_a_circle_is_the_same_with_fewer_poses_on_it():
@@ -74,8 +74,8 @@ def test_a_circle_is_the_same_with_fewer_poses_on_it():
 @pytest.mark.parametrize("away_mm", [0.001, 0.5])
 def test_a_circle_about_another_centre_or_the_other_way_round_is_another_path(away_mm):
     whole = turned(ARC, (5, 5))
-    told = strayed(turned(ARC, (5 + away_mm, 5)), whole)
-    assert len(told) == (away_mm > 0.02)
+    reported = strayed(turned(ARC, (5 + away_mm, 5)), whole)
+    assert len(reported) == (away_mm > 0.02)
     lens = [(0, 5, -2), (5, 5, -2), (8, 5.5, -2), (8, 9, -2)]
     one, other = turned(lens, (6.25, 6.75)), turned(lens, (6.25, 6.75), -1)
     (notice,) = strayed(other, one)
@@ -99,13 +99,13 @@ def test_a_flat_circle_read_from_rounded_places_is_the_same_path(chord_mm, rise_
         points = np.column_stack(
             [centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]), [-2] * 7]
         )
-        meant = turned(points[[0, 0, *inner, 6, 6]], centre, -1)
+        expected = turned(points[[0, 0, *inner, 6, 6]], centre, -1)
         read = np.round(points[[0, 3, 6]], decimals)
         again = turned(read[[0, 0, 1, 2, 2]], centre_of(read[:, :2]), -1)
-        assert strayed(again, meant) == []
+        assert strayed(again, expected) == []
         lower = np.round(points[[0, 3, 6]] - [[0], [0.04], [0]] * outwards, decimals)
         other = turned(lower[[0, 0, 1, 2, 2]], centre_of(lower[:, :2]), -1 if rise_mm > 0.04 else 1)
-        assert [notice.code for notice in strayed(other, meant)] == ["path-elsewhere"]
+        assert [notice.code for notice in strayed(other, expected)] == ["path-elsewhere"]
 
 
 def centre_of(places):
@@ -120,10 +120,10 @@ def test_a_flat_circle_run_along_its_chords_is_the_same_path_where_they_keep_to_
         return np.column_stack([600 * np.sin(angles), 600 * np.cos(angles) - 600, np.full(len(angles), -2.0)])
 
     few, many = (on_circle(np.linspace(-0.04, 0.04, n)) for n in (3, count + 1))
-    meant = turned(few[[0, 0, 1, 2, 2]], (0, -600), -1)
+    expected = turned(few[[0, 0, 1, 2, 2]], (0, -600), -1)
     chords = _core.Pass("turn", many[[0, *range(len(many)), -1]], 20.0)
     off_mm = 600 * (1 - np.cos(0.04 / count))
-    assert bool(strayed(chords, meant)) == (off_mm > 0.02)
+    assert bool(strayed(chords, expected)) == (off_mm > 0.02)
 
 
 STEP_MM = 0.05
@@ -161,49 +161,52 @@ def leash_mm(one, other):
 @pytest.mark.slow
 def test_whether_a_path_follows_another_is_decided_as_by_walking_it(seed, moves, how, away_mm, limit_mm):
     random = np.random.default_rng(seed)
-    asked = np.cumsum(
+    requested = np.cumsum(
         random.choice([-0.7, 0.0, 0.7], (moves + 1, 3)), axis=0
     )  # on itself, and standing still
     some_ = int(random.integers(0, moves + 1))
     found = {
-        "same": asked,
-        "other poses": dense(asked)[
-            np.unique(np.r_[0, random.integers(0, len(dense(asked)), 4), -1 % len(dense(asked))])
+        "same": requested,
+        "other poses": dense(requested)[
+            np.unique(np.r_[0, random.integers(0, len(dense(requested)), 4), -1 % len(dense(requested))])
         ],
-        "scrubbed": np.vstack([asked[: some_ + 1], asked[:some_][::-1], asked]),
-        "backwards": asked[::-1],
-        "swapped": asked[random.permutation(moves + 1)],
-        "shorter": asked[: some_ + 1],
+        "scrubbed": np.vstack([requested[: some_ + 1], requested[:some_][::-1], requested]),
+        "backwards": requested[::-1],
+        "swapped": requested[random.permutation(moves + 1)],
+        "shorter": requested[: some_ + 1],
         "any": np.cumsum(random.choice([-0.7, 0.0, 0.7], (3, 3)), axis=0),
     }[how]
     found = found + away_mm * random.uniform(-1, 1, found.shape)
-    leash = leash_mm(dense(found), dense(asked))
-    at = follows(found, asked, limit_mm)
+    leash = leash_mm(dense(found), dense(requested))
+    at = follows(found, requested, limit_mm)
     if at is None:
         assert leash <= limit_mm + STEP_MM
     else:
         assert leash > limit_mm - 1e-9 and 0 <= at < max(len(found), 2)
 
 
-def test_the_place_where_a_path_leaves_the_other_is_told():
-    asked = np.array([(x, 0.0, -1.0) for x in range(10)])
-    scrubbed = np.vstack([asked[:6], asked[3:5][::-1], asked[3:]])
-    assert follows(scrubbed, asked, 0.02) in (6, 7)
-    assert follows(asked[::-1], asked, 0.02) == 0
-    assert follows(asked[:-1], asked, 0.02) == len(asked) - 2
-    assert follows(np.vstack([asked, asked[-2:]]), asked, 0.02) in (len(asked), len(asked) + 1)
-    assert follows(asked[::3], asked, 0.02) is None
+def test_the_place_where_a_path_leaves_the_other_is_reported():
+    requested = np.array([(x, 0.0, -1.0) for x in range(10)])
+    scrubbed = np.vstack([requested[:6], requested[3:5][::-1], requested[3:]])
+    assert follows(scrubbed, requested, 0.02) in (6, 7)
+    assert follows(requested[::-1], requested, 0.02) == 0
+    assert follows(requested[:-1], requested, 0.02) == len(requested) - 2
+    assert follows(np.vstack([requested, requested[-2:]]), requested, 0.02) in (
+        len(requested),
+        len(requested) + 1,
+    )
+    assert follows(requested[::3], requested, 0.02) is None
 
 
-def test_long_paths_take_no_more_than_what_lies_beside_them(monkeypatch):
+def test_long_paths_take_no_more_than_what_is_next_to_them(monkeypatch):
     """Of the cells of two paths few are looked at: a page is compared in its own time, not in the square of it."""
     from brushsvg.verify import against_plan
 
     t = np.linspace(0, 60, 3000)
-    asked = np.column_stack([10 * np.sin(7 * t), t, -2 + np.cos(t)])
-    found = np.repeat(asked, 2, axis=0)
+    requested = np.column_stack([10 * np.sin(7 * t), t, -2 + np.cos(t)])
+    found = np.repeat(requested, 2, axis=0)
     counted = []
     within = against_plan._within
     monkeypatch.setattr(against_plan, "_within", lambda *some_: counted.append(1) or within(*some_))
-    assert follows(found, asked, 0.02) is None
+    assert follows(found, requested, 0.02) is None
     assert len(counted) < 8 * len(found)

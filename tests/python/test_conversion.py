@@ -53,31 +53,31 @@ def desk(tmp_path, monkeypatch):
     ],
 )
 def test_it_does_what_the_command_does(desk, out, flags, choices):
-    beside = {"picture": "o.svg", "report": "o.txt", "page": "p.svg"}
-    typed = itertools.chain(*((f"--{name}", path) for name, path in beside.items()))
+    near_by = {"picture": "o.svg", "report": "o.txt", "page": "p.svg"}
+    typed = itertools.chain(*((f"--{name}", path) for name, path in near_by.items()))
     assert main(["convert", "two.svg", "-o", out, *typed, *flags.split()]) == 0
-    names = [out, *beside.values()]
+    names = [out, *near_by.values()]
     by_command = {name: Path(name).read_bytes() for name in names}
     for name in names:
         Path(name).unlink()
     if "--order" in flags:
         choices = choices | {"order": "nearest", "from_stroke": 2}
-    done = brushsvg.convert("two.svg", out, **beside, **choices)
+    done = brushsvg.convert("two.svg", out, **near_by, **choices)
     assert {name: Path(name).read_bytes() for name in names} == by_command
     assert sorted(done.files) == sorted(names) and done.files[0] == out
     assert list(done.texts) == [Path(out).suffix] and done.text.encode() == by_command[out]
     assert f"{done.figures.total.overlap:.3f}" in by_command["o.txt"].decode()
 
 
-@pytest.mark.parametrize(("z_offset", "is_told"), [(-20, True), (-2, True), (-1, False), (20, False)])
-def test_a_tool_that_is_told_far_below_the_paper_is_warned_of(desk, z_offset, is_told):
+@pytest.mark.parametrize(("z_offset", "is_reported"), [(-20, True), (-2, True), (-1, False), (20, False)])
+def test_a_tool_commanded_far_below_the_paper_is_warned_of(desk, z_offset, is_reported):
     """--z-offset -3 for -0.3: the brush is crushed, or the table, and nothing said a word."""
-    told = [
+    reported = [
         notice
         for notice in brushsvg.convert("two.svg", z_offset=z_offset).notices
         if notice.where == "z_offset"
     ]
-    assert [agrees(each, f"unusual-value {-z_offset} cell") for each in told] == [True] * is_told
+    assert [agrees(each, f"unusual-value {-z_offset} cell") for each in reported] == [True] * is_reported
     assert not brushsvg.convert("two.svg", formats=[".json"]).notices
 
 
@@ -108,7 +108,7 @@ def _ezdxf():
 
 
 @pytest.mark.parametrize("kind", ["Path", "Design", "ElementTree", "svgpathtools", "Plan"])
-def test_whatever_a_drawing_is_it_becomes_the_same(desk, kind):
+def test_any_form_of_a_drawing_becomes_the_same(desk, kind):
     source = {
         "Path": lambda: Path("two.svg"),
         "Design": lambda: brushsvg.read_drawing("two.svg"),
@@ -160,11 +160,13 @@ def test_what_a_drawing_says_is_heard_as_the_command_hears_it(desk):
     ],
 )
 def test_what_it_cannot_do_is_one_sentence_and_nothing_is_written(desk, choices, said):
-    with pytest.raises(brushsvg.Error) as told:
+    with pytest.raises(brushsvg.Error) as reported:
         brushsvg.convert("two.svg", **{"out": "o.ngc", **choices})
     assert [path.name for path in desk.iterdir()] == ["two.svg"]
     code, *numbers = said.split()
-    assert code in told.value.code and all(number in str(told.value) + told.value.where for number in numbers)
+    assert code in reported.value.code and all(
+        number in str(reported.value) + reported.value.where for number in numbers
+    )
 
 
 def test_numbers_of_an_array_are_as_those_of_a_list(desk):
@@ -180,9 +182,9 @@ def test_numbers_of_an_array_are_as_those_of_a_list(desk):
 
 
 def test_of_several_reasons_the_others_are_notes(desk):
-    with refused("tool-off-sheet right") as told:
+    with refused("tool-off-sheet right") as reported:
         brushsvg.convert("two.svg", sheet=(60, 60))
-    assert any("b" in note for note in told.value.__notes__)
+    assert any("b" in note for note in reported.value.__notes__)
 
 
 @pytest.mark.parametrize("name", [name for name in CHOICES if name != "input"])
@@ -233,7 +235,7 @@ def test_a_choice_that_there_is_not_is_a_type_error(desk):
 
 
 def test_ranges_are_those_of_the_flags():
-    """Whoever changes one changes the other."""
+    """A change of one changes the other."""
     flags = {
         action.dest: action
         for action in command_parser()._subparsers._group_actions[0].choices["convert"]._actions
@@ -282,7 +284,7 @@ def still_working() -> list[str]:
 
 @sample("word", ["reading", "finding", "compensated", "simulated", "writing", "drawing"], keep=2)
 @pytest.mark.slow
-def test_it_is_given_up_wherever_it_is(desk, word):
+def test_it_is_given_up_at_any_step(desk, word):
     Path("long.svg").write_text(
         waves({"reading": 200, "finding": 40, "writing": 60, "drawing": 60}.get(word, 10))
         .replace("1200mm", "5000")

@@ -104,7 +104,7 @@ def test_the_nearest_first_leaves_the_work_as_it_was(tmp_path):
     assert moved.plan.sheet_mm == work.plan.sheet_mm and moved.plan.brush_sha256 == work.plan.brush_sha256
 
 
-def test_the_loads_of_a_stroke_stay_together_whatever_begins_nearer():
+def test_the_loads_of_a_stroke_stay_together_even_if_others_begin_nearer():
     """The second load counted as one of another stroke, behind which it came."""
     rows = {"a": (0, 40, 1), "a+2": (35, 80, 2), "b": (40, 20, 0)}
     passes = []
@@ -143,7 +143,7 @@ depth_mm = 2
 @pytest.mark.parametrize("when", ["length", "stroke", "layer"])
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "ur5e"])
 def test_a_program_by_way_of_a_plan_is_the_one_of_the_drawing(tmp_path, monkeypatch, name, when):
-    """But for what no plan tells, in the header: the drawing's title, and how it was planned."""
+    """Except what no plan holds, in the header: the drawing's title, and how it was planned."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "some.svg").write_text(FEW_COLOURS)
     (tmp_path / "mine.toml").write_text((SHIPPED / f"{name}.toml").read_text() + PAINT.format(when=when))
@@ -157,21 +157,21 @@ def test_a_program_by_way_of_a_plan_is_the_one_of_the_drawing(tmp_path, monkeypa
         assert main(["convert", *each, "--cell", "mine.toml", "--quiet"]) == 0
     ours, theirs = ((tmp_path / f"{one}{suffix}").read_text().splitlines() for one in ("by", "direct"))
     planned = re.compile(r"(\(|  # )(title|compensation|warnings): .*")
-    told = [[line for line in lines if not planned.fullmatch(line)] for lines in (ours, theirs)]
-    assert told[0] == told[1]
+    reported = [[line for line in lines if not planned.fullmatch(line)] for lines in (ours, theirs)]
+    assert reported[0] == reported[1]
     parts = [line for line in theirs if "stroke " in line]
     assert any("a+2" in line for line in parts) == (when == "length") and any("a#2" in line for line in parts)
     assert sum("paint: " in line for line in theirs) >= 3
 
 
-def test_what_a_program_has_of_a_stroke_and_its_time_are_asked_once(drawing, tmp_path, monkeypatch):
-    asked, timed = [], []
+def test_a_stroke_of_a_program_and_its_time_are_computed_once(drawing, tmp_path, monkeypatch):
+    requested, timed = [], []
     as_written, duration_s = program.as_written, motion._duration_s
     monkeypatch.setattr(
-        program, "as_written", lambda *args: asked.append(args[0].stroke) or as_written(*args)
+        program, "as_written", lambda *args: requested.append(args[0].stroke) or as_written(*args)
     )
     monkeypatch.setattr(motion, "_duration_s", lambda made: timed.append(made) or duration_s(made))
     assert main(["convert", str(drawing), "-o", str(tmp_path / "a.ngc"), "--quiet"]) == 0
-    assert asked
-    assert len(asked) == len(set(asked))
+    assert requested
+    assert len(requested) == len(set(requested))
     assert len(timed) == 1

@@ -44,9 +44,9 @@ def test_a_closed_line_begins_amid_its_longest_straight_side_and_paints_no_thorn
     assert start == pytest.approx([35, 35], abs=1e-9) or start == pytest.approx([35, 5], abs=1e-9)
     assert made.middle_mm[-1, 6:] == pytest.approx(start, abs=1e-12)
     assert length_mm(made) == pytest.approx(140, abs=1e-6)
-    wanted = _core.wanted_outline(made, 0.01)
+    target = _core.wanted_outline(made, 0.01)
     points = np.concatenate(marks_of([made], brush))
-    box = np.concatenate(wanted)
+    box = np.concatenate(target)
     beyond = np.maximum(box.min(axis=0) - points.min(axis=0), points.max(axis=0) - box.max(axis=0))
     assert beyond.max() < 0.3  # 1.7 before
 
@@ -69,7 +69,7 @@ def test_widths_go_with_the_line_when_it_begins_elsewhere():
     at, half = np.array(widths).T
     assert (np.diff(at) >= 0).all()
     assert (at[0], at[-1]) == (0, 1)
-    # 15, 45 and 65 mm along the old line of 80 mm lie 0, 30 and 50 mm along the new one
+    # 15, 45 and 65 mm along the old line of 80 mm are 0, 30 and 50 mm along the new one
     assert np.interp(np.array([0, 30, 50, 65, 80]) / 80, at, half) == pytest.approx(
         [1.75, 2.75, 1.75, 1.0, 1.75]
     )
@@ -82,8 +82,8 @@ def test_it_is_lifted_at_sharp_corners_where_a_turn_would_leave_a_blot(brush, d,
     assert [part.id for part in parts] == ["p", *(f"p~{k}" for k in range(2, count + 1))]
     assert sum(map(length_mm, parts)) == pytest.approx(length_mm(made[0]), abs=1e-6)
     assert all(a.middle_mm[-1, 6:] == pytest.approx(b.middle_mm[0, :2]) for a, b in itertools.pairwise(parts))
-    wanted = _core.wanted_outline(made[0], 0.01)
-    turned, lifted = (_core.overlap(marks_of(some, brush), wanted) for some in (made, parts))
+    target = _core.wanted_outline(made[0], 0.01)
+    turned, lifted = (_core.overlap(marks_of(some, brush), target) for some in (made, parts))
     assert lifted > turned + 0.004
 
 

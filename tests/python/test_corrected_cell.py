@@ -1,11 +1,12 @@
-"""What `compare` finds amiss, besides what the cell undid, goes into the next cell; how sure a brush is beforehand."""
+"""The faults that `compare` finds, in addition to those undone, go into the next cell; how sure a brush is
+beforehand."""
 
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import agrees, are_told
+from diagnostics import agrees, are_reported
 
 core = pytest.importorskip("brushsvg._core")
 
@@ -17,7 +18,7 @@ from brushsvg.comparison.placing import Placed  # noqa: E402
 from brushsvg.jobs.comparing import _not_undone, _undoable  # noqa: E402
 from brushsvg.machine.cells.cell import Machine, Paper, axes_along_paper  # noqa: E402
 from brushsvg.machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell  # noqa: E402
-from brushsvg.machine.realised.distortion import told_mm, true_mm  # noqa: E402
+from brushsvg.machine.realised.distortion import commanded_mm, true_mm  # noqa: E402
 
 MIDDLE = np.array([70.0, 40.0])
 TRUE = Machine((0.1, -0.05), (1.01, 0.992), 0.004, -0.3, (0.006, -0.008))
@@ -55,19 +56,19 @@ def places(count=40):
 
 @pytest.mark.parametrize("undone", [UNDONE, LEANING])
 def test_what_was_undone_before_stays_undone(undone):
-    """Where the painted job went is asked of the true machine; what is amiss beyond the cell, of least squares."""
-    wanted = places(400)
-    went = true_mm(told_mm(wanted, undone), TRUE)
+    """Where the painted job went comes from the true machine; faults beyond the cell from least squares."""
+    target = places(400)
+    went = true_mm(commanded_mm(target, undone), TRUE)
     depth = np.maximum(-went[:, 2], 0)
-    x, y, ones = wanted[:, 0], wanted[:, 1], np.ones(len(wanted))
+    x, y, ones = target[:, 0], target[:, 1], np.ones(len(target))
     to_x = np.linalg.lstsq(np.column_stack([x, y, depth]), went[:, 0], rcond=None)[0]
     to_y = np.linalg.lstsq(np.column_stack([y, depth]), went[:, 1], rcond=None)[0]
-    to_z = np.linalg.lstsq(np.column_stack([ones, x, y]), wanted[:, 2] - went[:, 2], rcond=None)[0]
+    to_z = np.linalg.lstsq(np.column_stack([ones, x, y]), target[:, 2] - went[:, 2], rcond=None)[0]
     beyond = Machine((to_x[2], to_y[1]), (to_x[0], to_y[0]), to_x[1], to_z[0], (to_z[1], to_z[2]))
     now = corrected_machine(found(beyond), MIDDLE, undone)
-    off = true_mm(told_mm(wanted, now), TRUE) - wanted
+    off = true_mm(commanded_mm(target, now), TRUE) - target
     assert np.abs(off).max() < 0.01, np.abs(off).max(axis=0)
-    before = true_mm(told_mm(wanted, undone), TRUE) - wanted
+    before = true_mm(commanded_mm(target, undone), TRUE) - target
     assert np.abs(before).max() > 0.3
 
 
@@ -87,11 +88,11 @@ def test_the_map_of_the_paper_stays():
     )
 
 
-@pytest.mark.parametrize("along, wanted", [((0, 1), (0.5, 0.2)), ((1, 0), (0.1, 0.6)), (None, (0.1, 0.2))])
-def test_backlash_goes_into_the_cell_on_top_of_what_it_undid(along, wanted):
+@pytest.mark.parametrize("along, target", [((0, 1), (0.5, 0.2)), ((1, 0), (0.1, 0.6)), (None, (0.1, 0.2))])
+def test_backlash_goes_into_the_cell_on_top_of_what_it_undid(along, target):
     """By which of the machine's axes go along x and y of the paper."""
     before = replace(UNDONE, backlash_mm=(0.1, 0.2))
-    assert corrected_machine(found(TRUE), MIDDLE, before, along).backlash_mm == pytest.approx(wanted)
+    assert corrected_machine(found(TRUE), MIDDLE, before, along).backlash_mm == pytest.approx(target)
     assert corrected_machine(found(TRUE, half=10.0), MIDDLE, before, along) is None
 
 
@@ -119,7 +120,9 @@ def test_a_number_that_no_cell_may_have_is_left_out():
     far = replace(TRUE, scale=(1.2, 1.0))
     machine, left_out = _undoable(found(far), MIDDLE, find_cell("linuxcnc-3axis"), (0, 1))
     assert machine.scale == (1.0, 1.0) and machine.lean_mm_per_mm == TRUE.lean_mm_per_mm
-    assert are_told(_not_undone(found(far), find_cell("linuxcnc-3axis"), left_out), "machine-not-undone 1.2")
+    assert are_reported(
+        _not_undone(found(far), find_cell("linuxcnc-3axis"), left_out), "machine-not-undone 1.2"
+    )
 
 
 def test_a_page_printed_at_97_percent_is_no_machine_that_is_3_percent_off():
@@ -127,7 +130,7 @@ def test_a_page_printed_at_97_percent_is_no_machine_that_is_3_percent_off():
     printed, cell = replace(TRUE, scale=(1 / 0.97, 1 / 0.9702)), find_cell("linuxcnc-3axis")
     machine, left_out = _undoable(found(printed), MIDDLE, cell, (0, 1))
     assert machine.scale == (1.0, 1.0) and machine.lean_mm_per_mm == TRUE.lean_mm_per_mm
-    assert are_told(_not_undone(found(printed), cell, left_out), "page-scale 97.0")
+    assert are_reported(_not_undone(found(printed), cell, left_out), "page-scale 97.0")
     for scale in ((1.031, 1.0), (1.012, 1.012)):  # one axis; as little as a machine may be off
         machine, left_out = _undoable(found(replace(TRUE, scale=scale)), MIDDLE, cell, (0, 1))
         assert machine.scale == scale and not left_out
@@ -158,7 +161,7 @@ def test_a_brush_that_learnt_from_these_marks_holds_its_laws():
 
 
 @pytest.mark.parametrize(
-    ("aside_mm", "one_mm", "share", "of_one"),
+    ("displaced_mm", "one_mm", "share", "of_one"),
     [
         (0.1, 0.1, 0.3, 0.3),
         (0.15, 0.15, 1 - 0.02 / (0.15**2 * 8 / 5), 1 - 0.02 / (0.15**2 * 8 / 5)),
@@ -167,9 +170,9 @@ def test_a_brush_that_learnt_from_these_marks_holds_its_laws():
         (1.0, 1.0, 0.8, 0.8),
     ],
 )
-def test_of_what_may_be_chance_less_is_taken_back(aside_mm, one_mm, share, of_one):
-    """Of all strokes by their spread (8 numbers, of which 3 are the sheet's place), of one by how far it lies."""
-    asides = [one_mm, -aside_mm, aside_mm, -aside_mm]
+def test_of_what_may_be_chance_less_is_taken_back(displaced_mm, one_mm, share, of_one):
+    """Of all strokes by their spread (8 numbers, of which 3 are the sheet's place), of one by how far it is."""
+    asides = [one_mm, -displaced_mm, displaced_mm, -displaced_mm]
     rows = [
         SimpleNamespace(
             stroke=f"s{k}",
@@ -181,11 +184,11 @@ def test_of_what_may_be_chance_less_is_taken_back(aside_mm, one_mm, share, of_on
         for k in range(4)
     ]
     compared = SimpleNamespace(
-        strokes=rows, common=Placed((0.0, 0.0), 0.0, 0.0, True), middle_mm=MIDDLE, spread_mm=aside_mm
+        strokes=rows, common=Placed((0.0, 0.0), 0.0, 0.0, True), middle_mm=MIDDLE, spread_mm=displaced_mm
     )
     passes = [SimpleNamespace(stroke=row.stroke, poses_mm=np.array([[0.0, 0.0, 0.0]])) for row in rows]
-    made, told = next_corrections(compared, SimpleNamespace(passes=passes), (), None)
-    assert not told
+    made, reported = next_corrections(compared, SimpleNamespace(passes=passes), (), None)
+    assert not reported
     for k, row in enumerate(rows):
         share_of = of_one if k == 0 else share
         assert made[row.stroke].shift_mm == pytest.approx((-share_of * asides[k], 0.0))

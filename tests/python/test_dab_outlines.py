@@ -1,9 +1,9 @@
-"""Dabs: how they are landed, and what is left out or refused, each by name."""
+"""Dabs: how they are landed, and what is left out or refused, and named."""
 
 import numpy as np
 import pytest
 import shapely
-from diagnostics import are_told, refused
+from diagnostics import are_reported, refused
 
 core = pytest.importorskip("brushsvg._core")
 if not hasattr(core, "fit_marks"):
@@ -81,10 +81,10 @@ LEFT_OUT = {
 
 
 @pytest.mark.parametrize("what", LEFT_OUT)
-def test_a_bad_dab_is_left_out_by_name(what):
+def test_a_bad_dab_is_left_out_and_named(what):
     make, expected = LEFT_OUT[what]
     made = calibrate_dabs(make(), BRUSH, "own")
-    assert are_told(made.remarks, expected), made.remarks
+    assert are_reported(made.remarks, expected), made.remarks
     assert [len(shape.seen) for shape in made.outlines.shapes] == [4, 3, 4, 4]
     for shape in made.outlines.shapes:
         true = shapely.Polygon(seen_from_patch(shape.depth_mm))
@@ -92,16 +92,16 @@ def test_a_bad_dab_is_left_out_by_name(what):
         assert found.area == pytest.approx(true.area, rel=0.02)
 
 
-def test_outlines_lie_where_dabs_were_seen_on_a_sheet_that_was_laid_askew():
+def test_outlines_are_where_dabs_were_seen_on_a_sheet_that_was_laid_askew():
     turn, about_mm, shift = 0.03, np.array([200.0, -50.0]), np.array([1.2, 0.7])
     turned = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
-    lying = [
+    placed = [
         replace(dab, rings_mm=((dab.rings_mm[0] - about_mm) @ turned + about_mm + shift,))
         for dab in changed(6, lambda ring: [ring + np.array([1.5, 0.0])])
     ]
-    found = calibrate_dabs(lying, BRUSH, "own").outlines.lying_mm()
-    assert set(found) == {dab.name for dab in lying} - {"dab-6"}
-    for dab in lying:
+    found = calibrate_dabs(placed, BRUSH, "own").outlines.predicted_mm()
+    assert set(found) == {dab.name for dab in placed} - {"dab-6"}
+    for dab in placed:
         if dab.name in found:
             seen, said = shapely.Polygon(dab.rings_mm[0]), shapely.Polygon(found[dab.name])
             assert seen.intersection(said).area > 0.95 * seen.union(said).area, dab.name
@@ -109,11 +109,11 @@ def test_outlines_lie_where_dabs_were_seen_on_a_sheet_that_was_laid_askew():
 
 def test_dabs_that_touch_are_left_out():
     made = calibrate_dabs(dabs(), BRUSH, "own", joined=("dab-2", "dab-9"))
-    assert are_told(made.remarks, "dabs-touch dab-2", "dabs-touch dab-9")
+    assert are_reported(made.remarks, "dabs-touch dab-2", "dabs-touch dab-9")
 
 
 def fixed_to_the_handle(headings=HEADINGS):
-    """The same skewed shape on paper whatever the heading."""
+    """The same skewed shape on paper for any heading."""
     out = dabs()
     for k, dab in enumerate(out):
         away = dab.rings_mm[0] - dab.rings_mm[0].mean(axis=0)
@@ -211,4 +211,4 @@ def test_a_program_a_page_and_a_file_of_dabs(tmp_path, capsys):
     assert not is_of_dabs(chart(BRUSH, (148.0, 210.0), "few"))
     assert (
         main(["chart", "-o", files[0], "--dabs", "--noise", "0.2"]) == 2
-    )  # of intervals, which dabs do not tell
+    )  # of intervals, which dabs do not show

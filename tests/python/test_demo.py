@@ -54,8 +54,8 @@ def test_demo_opens_the_picture_where_there_is_a_display(tmp_path, monkeypatch, 
 
 def test_demo_refuses_other_pictures_and_folders(tmp_path, capsys, opened):
     assert main(["demo", "-o", str(tmp_path / "a.jpg")]) == 2
-    status, _, ((_, told),) = in_json(capsys, "demo", "-o", tmp_path / "none" / "a.png")
-    assert (status, told.code) == (1, "file-unwritable")
+    status, _, ((_, reported),) = in_json(capsys, "demo", "-o", tmp_path / "none" / "a.png")
+    assert (status, reported.code) == (1, "file-unwritable")
 
 
 def test_the_word_is_that_of_the_examples():
@@ -105,9 +105,9 @@ def test_doctor_names_the_command_for_a_missing_extra(capsys, without):
 @pytest.mark.parametrize("version", [None, "0.9"])
 def test_doctor_fails_without_what_is_always_needed(capsys, without, version):
     without(shapely=version)
-    status, _, ((_, told),) = in_json(capsys, "doctor")
-    assert (status, told.code) == (1, "package-missing")
-    assert told.sentence.endswith(command_to_add("shapely"))
+    status, _, ((_, reported),) = in_json(capsys, "doctor")
+    assert (status, reported.code) == (1, "package-missing")
+    assert reported.sentence.endswith(command_to_add("shapely"))
 
 
 def test_the_extras_of_users_have_a_purpose():

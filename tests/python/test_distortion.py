@@ -1,4 +1,4 @@
-"""Machines that take the tool elsewhere than it was told: programs make up for it, check knows where it goes."""
+"""Machines that take the tool elsewhere than commanded: programs make up for it, check knows where it goes."""
 
 import re
 from dataclasses import replace
@@ -49,8 +49,8 @@ def text_of(work, cell):
     return "".join(writer.encode(LANGUAGES[cell.name], work.plan, work.brush, "two", (), cell))
 
 
-def told_places(text):
-    """(n, 3) where a G-code program tells the tool to go, read by nothing of the package; circles as their ends."""
+def commanded_places(text):
+    """(n, 3) where a G-code program sends the tool, read by nothing of the package; circles as their ends."""
     at, out = [np.nan] * 3, []
     for line in text.splitlines():
         if re.match(r"G[0123] ", line):
@@ -64,34 +64,34 @@ def told_places(text):
 @pytest.mark.parametrize("machine", [LEANS, TILTED])
 def test_the_machine_goes_where_the_plan_asks_it_to(desk, machine):
     work = preparation.prepare("two.svg")
-    told = told_places(text_of(work, cell_with(machine)))
-    z = told[:, 2] - machine.height_mm - told[:, :2] @ np.array(machine.tilt_mm_per_mm)
+    reported = commanded_places(text_of(work, cell_with(machine)))
+    z = reported[:, 2] - machine.height_mm - reported[:, :2] @ np.array(machine.tilt_mm_per_mm)
     depth = np.maximum(0.0, -z)
-    x = machine.scale[0] * told[:, 0] + machine.skew * told[:, 1] + machine.lean_mm_per_mm[0] * depth
-    y = machine.scale[1] * told[:, 1] + machine.lean_mm_per_mm[1] * depth
+    x = machine.scale[0] * reported[:, 0] + machine.skew * reported[:, 1] + machine.lean_mm_per_mm[0] * depth
+    y = machine.scale[1] * reported[:, 1] + machine.lean_mm_per_mm[1] * depth
     goes = np.column_stack([x, y, z])
     for a_pass in work.plan.passes:
         poses = np.asarray(a_pass.poses_mm)
         away = np.linalg.norm(goes[None] - poses[:, None], axis=2).min(axis=1)
         assert away.max() < 2e-3
-        beside = np.linalg.norm(told[None] - poses[:, None], axis=2).min(axis=1)
-        assert beside.max() > 0.5, "and it is told otherwise"
+        near_by = np.linalg.norm(reported[None] - poses[:, None], axis=2).min(axis=1)
+        assert near_by.max() > 0.5, "and the command differs"
     assert np.isclose(z, 10.0, atol=2e-3).sum() >= 4, "travel is at the safe height over the paper"
 
 
-def paper_mm(told, machine):
-    """(n,) how much higher the paper lies at places that are told than it was taught: the map by scipy."""
+def paper_mm(reported, machine):
+    """(n,) how much higher the paper is at commanded places than it was taught: the map by scipy."""
     xs, ys = (np.unique([row[k] for row in GRID]) for k in range(2))
     map_mm = RegularGridInterpolator((ys, xs), np.array([row[2] for row in GRID]).reshape(3, 3))
-    at = np.clip(told[:, :2], (xs[0], ys[0]), (xs[-1], ys[-1]))
-    return machine.height_mm + told[:, :2] @ np.array(machine.tilt_mm_per_mm) + map_mm(at[:, ::-1])
+    at = np.clip(reported[:, :2], (xs[0], ys[0]), (xs[-1], ys[-1]))
+    return machine.height_mm + reported[:, :2] @ np.array(machine.tilt_mm_per_mm) + map_mm(at[:, ::-1])
 
 
 def test_the_height_over_a_map_of_the_paper_holds_all_along(desk):
     work = preparation.prepare("two.svg")
     cell = cell_with(BUMPY)
-    told = told_places(text_of(work, cell))
-    between = np.vstack([a + np.linspace(0, 1, 9)[:, None] * (b - a) for a, b in pairwise(told)])
+    reported = commanded_places(text_of(work, cell))
+    between = np.vstack([a + np.linspace(0, 1, 9)[:, None] * (b - a) for a, b in pairwise(reported)])
     goes = between[:, 2] - paper_mm(between, BUMPY)
     depth = np.maximum(0.0, -goes)
     x = BUMPY.scale[0] * between[:, 0] + BUMPY.skew * between[:, 1] + BUMPY.lean_mm_per_mm[0] * depth
@@ -106,9 +106,9 @@ def test_the_height_over_a_map_of_the_paper_holds_all_along(desk):
     )
     away = cKDTree(plan).query(painted)[0]
     assert len(painted) > 300 and away.max() < 0.015
-    assert np.ptp(paper_mm(told, BUMPY)) > 0.8, "and the map is used"
-    sideways = np.hypot(*np.diff(told[:, :2], axis=0).T) > 5.0
-    over = told[:, 2] - paper_mm(told, BUMPY)
+    assert np.ptp(paper_mm(reported, BUMPY)) > 0.8, "and the map is used"
+    sideways = np.hypot(*np.diff(reported[:, :2], axis=0).T) > 5.0
+    over = reported[:, 2] - paper_mm(reported, BUMPY)
     travels = [k for k in np.flatnonzero(sideways) if min(over[k], over[k + 1]) > 0.5]
     assert travels and over[travels].min() > 10.0 - 2e-3, "travel is over the highest place"
 
@@ -136,10 +136,10 @@ def test_what_was_planned_comes_back(desk, name, machine):
     read = read_program(text_of(work, cell), LANGUAGES[name], cell)
     back = simulate_program.run(read, work.brush, cell, work.plan.sheet_mm)
     assert back.problems == []
-    for meant, found in zip(work.plan.passes, back.plan.passes, strict=True):
-        away = np.linalg.norm(found.poses_mm[None] - meant.poses_mm[:, None], axis=2).min(axis=1)
+    for expected, found in zip(work.plan.passes, back.plan.passes, strict=True):
+        away = np.linalg.norm(found.poses_mm[None] - expected.poses_mm[:, None], axis=2).min(axis=1)
         assert away.max() < 2.5e-3
-        assert found.speed_mm_s == pytest.approx(meant.speed_mm_s, rel=1e-3)
+        assert found.speed_mm_s == pytest.approx(expected.speed_mm_s, rel=1e-3)
     planned = _core.simulate(work.plan, work.brush)
     for marks in (planned, back.marks):
         _core.trace_outlines(marks, work.brush)
@@ -161,10 +161,10 @@ def test_check_allows_it_and_refuses_the_same_program_on_another_machine(desk, c
 
 
 @pytest.mark.parametrize(
-    ("machine", "are_told"),
+    ("machine", "are_reported"),
     [(Machine((0.3, 0.1), (1.01, 1.01)), True), (LEANS, False), (TILTED, False), (BUMPY, False)],
 )
-def test_circles_stay_circles_only_where_the_machine_leaves_them_round(machine, are_told):
+def test_circles_stay_circles_only_where_the_machine_leaves_them_round(machine, are_reported):
     angle = np.linspace(0.0, 2.0, 30)
     on = np.column_stack([60 + 20 * np.cos(angle), 40 + 20 * np.sin(angle), np.full(30, -3.0)])
     poses = np.vstack([[70, 40, 0], on, [50, 70, 0]])
@@ -173,16 +173,16 @@ def test_circles_stay_circles_only_where_the_machine_leaves_them_round(machine, 
         brush.name, "", (120.0, 90.0), [_core.Pass("c", poses, 20.0, arcs=[_core.Arc(1, 30, (60, 40), 1)])]
     )
     text = "".join(writer.encode(".ngc", plan, brush, "c", (), cell))
-    assert bool(re.search(r"(?m)^G[23] ", text)) == are_told
+    assert bool(re.search(r"(?m)^G[23] ", text)) == are_reported
     back = simulate_program.run(read_program(text, ".ngc", cell), brush, cell, plan.sheet_mm)
-    assert back.problems == [] and bool(back.plan.passes[0].arcs) == are_told
+    assert back.problems == [] and bool(back.plan.passes[0].arcs) == are_reported
     found = np.asarray(back.plan.passes[0].poses_mm)
     deep = found[found[:, 2] < -2.9]
     assert np.hypot(*(deep[:, :2] - [60, 40]).T) == pytest.approx(20.0, abs=2e-3)
     assert np.linalg.norm(found[None] - poses[[0, 1, 30, 31], None], axis=2).min(axis=1).max() < 2e-3
 
 
-def test_limits_are_asked_of_what_is_told(desk):
+def test_limits_are_checked_for_commanded_places(desk):
     work = preparation.prepare("two.svg")
     cell = cell_with(Machine(scale=(0.92, 1.0)))
     tight = replace(
@@ -244,10 +244,10 @@ def with_paint(machine, name="linuxcnc-3axis", safe_mm=5.0):
     )
 
 
-def over_the_paper(told, machine):
+def over_the_paper(reported, machine):
     if machine.map_mm:
-        return told[:, 2] - paper_mm(told, machine)
-    return told[:, 2] - machine.height_mm - told[:, :2] @ np.array(machine.tilt_mm_per_mm)
+        return reported[:, 2] - paper_mm(reported, machine)
+    return reported[:, 2] - machine.height_mm - reported[:, :2] @ np.array(machine.tilt_mm_per_mm)
 
 
 @pytest.mark.parametrize("machine", [HIGH, LOW, BUMPY])
@@ -255,21 +255,21 @@ def test_between_strokes_and_paint_nothing_goes_below_the_safe_height(desk, mach
     """Over paper that is 4 mm higher than it was taught, the tool came from the paint 1 mm above it."""
     work, cell = preparation.prepare("two.svg"), with_paint(machine)
     text = "".join(writer.encode(".ngc", work.plan, work.brush, "two", (), cell))
-    told = told_places(text)
+    reported = commanded_places(text)
     (rise,) = re.findall(r"(?m)^G0 Z(\S+)$", text.split("(paint:")[0])
-    sideways = np.hypot(*np.diff(told[:, :2], axis=0).T) > 1e-6
-    over = over_the_paper(told, machine)
+    sideways = np.hypot(*np.diff(reported[:, :2], axis=0).T) > 1e-6
+    over = over_the_paper(reported, machine)
     travels = [k for k in np.flatnonzero(sideways) if min(over[k], over[k + 1]) > 0.5]
     assert len(travels) == 3, "and one from nobody knows where"
     for k in travels:
-        assert min(over[k : k + 2]) > 5.0 - 2e-3 and min(told[k : k + 2, 2]) > 5.0 - 2e-3
+        assert min(over[k : k + 2]) > 5.0 - 2e-3 and min(reported[k : k + 2, 2]) > 5.0 - 2e-3
     corners = np.array([(x, y, float(rise)) for x in (-30, 150) for y in (-30, 100)])
     assert over_the_paper(corners, machine).min() > 5.0 - 2e-3
 
 
 @pytest.mark.parametrize("machine", [Machine(height_mm=0.4), Machine(height_mm=-0.4)])
 @pytest.mark.parametrize("name", ["grbl-servo", "linuxcnc-3axis", "ur5e"])
-def test_check_allows_visits_on_a_machine_whose_paper_lies_higher(desk, capsys, name, machine):
+def test_check_allows_visits_on_a_machine_whose_paper_is_higher(desk, capsys, name, machine):
     suffix, safe_mm = LANGUAGES[name], 4.5
     cell = replace(with_paint(machine, name, safe_mm), blending=find_cell(name).blending)
     (desk / "mine.toml").write_text(write_cell(cell))
@@ -283,16 +283,16 @@ def test_a_border_goes_round_what_is_painted_at_safe_height_over_the_paper(desk,
     (desk / "mine.toml").write_text(write_cell(with_paint(machine)))
     assert call(capsys, "setup", "border", "two.svg", "-o", "border.ngc", "--cell", "mine.toml")[0] == 0
     text = (desk / "border.ngc").read_text()
-    told = told_places(text)
-    assert over_the_paper(told, machine).min() > 5.0 - 2e-3 and told[:, 2].min() > 5.0 - 2e-3
-    x = machine.scale[0] * told[:, 0] + machine.skew * told[:, 1]
+    reported = commanded_places(text)
+    assert over_the_paper(reported, machine).min() > 5.0 - 2e-3 and reported[:, 2].min() > 5.0 - 2e-3
+    x = machine.scale[0] * reported[:, 0] + machine.skew * reported[:, 1]
     ((left, right),) = re.findall(r"\(border: (\S+) to (\S+) mm,", text)
     assert (x.min(), x.max()) == pytest.approx((float(left), float(right)), abs=2e-3)
     assert call(capsys, "check", "border.ngc", "two.svg", "--cell", "mine.toml")[0] == 0
 
 
 @pytest.mark.parametrize("machine", [HIGH, LOW, LEANS, BUMPY])
-def test_heights_tell_how_much_higher_the_paper_lies_than_is_known(desk, capsys, machine):
+def test_heights_show_how_much_higher_the_paper_is_than_is_known(desk, capsys, machine):
     """What the first stroke to paint says is what `convert --z-offset` takes, which adds it to height_mm."""
     (desk / "mine.toml").write_text(write_cell(with_paint(machine)))
     assert call(capsys, "setup", "height", "-o", "height.ngc", "--cell", "mine.toml")[0] == 0
@@ -300,8 +300,8 @@ def test_heights_tell_how_much_higher_the_paper_lies_than_is_known(desk, capsys,
     sections = re.findall(r"first to paint means --z-offset (-?[\d.]+)\)\n((?:.+\n)+)", text)
     assert len(sections) > 10
     for said, lines in sections:
-        told = told_places(lines)
-        over = over_the_paper(told, machine)
+        reported = commanded_places(lines)
+        over = over_the_paper(reported, machine)
         assert np.isclose(over, float(said), atol=2e-3).sum() == 2 and over.min() > float(said) - 2e-3
         assert over[[0, -1]].min() > 5.0 - 2e-3
     assert call(capsys, "check", "height.ngc", "--cell", "mine.toml")[0] == 0

@@ -13,7 +13,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-from shown_code import FOLLOWED, HOUSE, PAGES, blocks, name_of, why_not_run
+from shown_code import FOLLOWED, PAGES, REPOSITORY, blocks, name_of, why_not_run
 
 import brushsvg
 from brushsvg.calibration.numbers.measurements import read_measurements
@@ -108,10 +108,10 @@ def test_every_block_is_of_a_kind_that_is_held():
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """A folder of somebody who draws: word.svg, its painted page, letters/, measured.csv, a font."""
-    shutil.copy(HOUSE / "examples" / "robot.svg", tmp_path / "word.svg")
+    shutil.copy(REPOSITORY / "examples" / "robot.svg", tmp_path / "word.svg")
     main(["simulate-photo", str(tmp_path / "word.svg"), "-o", str(tmp_path / "word.jpg"), "--quiet"])
     (tmp_path / "letters").mkdir()
-    shutil.copy(HOUSE / "examples" / "robot.svg", tmp_path / "letters" / "one.svg")
+    shutil.copy(REPOSITORY / "examples" / "robot.svg", tmp_path / "letters" / "one.svg")
     rows = [f"lag,{d},{3 + 0.9 * d:.1f}\nwidth,{d},{0.8 * d:.1f}" for d in range(1, 9)]
     (tmp_path / "measured.csv").write_text("kind,depth_mm,value_mm\n" + "\n".join(rows) + "\n")
     glyphs = "".join(f"<glyph unicode='{letter}' d='M100 0L300 600'/>" for letter in "Robt")
@@ -143,7 +143,7 @@ def test_python_of_a_page_runs(page, folder, capsys):
 
 
 def test_the_program_of_the_page_for_cpp_is_the_example():
-    example = (HOUSE / "examples" / "01_first_word.cpp").read_text().split("\n", 1)[1].strip()
+    example = (REPOSITORY / "examples" / "01_first_word.cpp").read_text().split("\n", 1)[1].strip()
     assert [code.strip() for code in of_kind("cpp", "howto/cpp.md")] == [example]
 
 
@@ -241,7 +241,7 @@ def test_flags_that_a_page_lists_are_understood():
 
 
 def test_targets_of_make_are_there():
-    targets = re.search(r"^\.PHONY: (.*)$", (HOUSE / "Makefile").read_text(), re.M)[1].split()
+    targets = re.search(r"^\.PHONY: (.*)$", (REPOSITORY / "Makefile").read_text(), re.M)[1].split()
     typed = [line.split()[1] for code in of_kind("make") for line in code.splitlines()]
     assert len(typed) >= 4 and set(typed) <= set(targets)
 

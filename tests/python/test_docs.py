@@ -1,4 +1,4 @@
-"""Commands that README and docs tell one to type are commands that there are."""
+"""Commands that README and docs show one to type are commands that there are."""
 
 import re
 import shlex
@@ -36,7 +36,7 @@ def test_pages_have_commands():
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_what_pages_tell_one_to_type_is_understood(command):
+def test_commands_on_pages_are_understood(command):
     first = re.split(r" [|>] ", command)[0]
     parse(shlex.split(first, comments=True))
 

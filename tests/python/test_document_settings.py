@@ -3,7 +3,7 @@
 import gzip
 
 import pytest
-from diagnostics import agrees, in_json, is_told
+from diagnostics import agrees, in_json, is_reported
 
 from brushsvg import Settings, read_plan
 from brushsvg.cli import commands, main
@@ -22,11 +22,11 @@ def desk(tmp_path, monkeypatch):
 
 
 def refusal_of(capsys, *words):
-    """All that is told of the drawing."""
+    """All notices of the drawing."""
     capsys.readouterr()
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and {file for file, _ in told} == {next(each for each in words if ".svg" in each)}
-    return [notice for _, notice in told]
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and {file for file, _ in reported} == {next(each for each in words if ".svg" in each)}
+    return [notice for _, notice in reported]
 
 
 def on_root(*settings):
@@ -135,7 +135,7 @@ def test_terminals_set_both_ends_and_one_end_may_differ(desk, capsys):
         assert poses(inside) == {"a": both(one, other)["a"], "b": both(one, one)["b"]}
 
 
-def test_a_program_tells_how_its_strokes_end_and_is_checked_by_it(desk, capsys):
+def test_a_program_shows_how_its_strokes_end_and_is_checked_by_it(desk, capsys):
     (desk / "d.svg").write_text(BAR)
     assert main(["convert", "d.svg", "-o", "d.ngc", "--end", "round", "--start", "pointed"]) == 0
     text = (desk / "d.ngc").read_text()
@@ -145,7 +145,7 @@ def test_a_program_tells_how_its_strokes_end_and_is_checked_by_it(desk, capsys):
     assert main(["check", "d.ngc", "d.svg"]) == 1
 
 
-def test_a_program_tells_how_its_strokes_begin_and_is_checked_by_it(desk, capsys):
+def test_a_program_shows_how_its_strokes_begin_and_is_checked_by_it(desk, capsys):
     assert main(["convert", "d.svg", "-o", "d.ngc", "--start", "pointed"]) == 0
     text = (desk / "d.ngc").read_text()
     assert "(compensation: closed, tolerance 0.05 mm, start pointed)" in text
@@ -154,17 +154,17 @@ def test_a_program_tells_how_its_strokes_begin_and_is_checked_by_it(desk, capsys
     assert main(["check", "d.ngc", "d.svg"]) == 1
     (desk / "d.ngc").write_text(text.replace(", start pointed)", ", start soft)"))
     capsys.readouterr()
-    status, _, told = in_json(capsys, "check", "d.ngc", "d.svg")
-    assert status == 1 and [notice.code for _, notice in told] == ["header-damaged"]
+    status, _, reported = in_json(capsys, "check", "d.ngc", "d.svg")
+    assert status == 1 and [notice.code for _, notice in reported] == ["header-damaged"]
 
 
 @pytest.mark.parametrize("file", ["/etc/hostname", "mine.toml", "../mine.toml", "no-such-cell"])
 def test_the_document_names_no_files(desk, capsys, file):
     (desk / "mine.toml").write_text("")
     (desk / "d.svg").write_text(on_root(f'cell="{file}"'))
-    (told,) = refusal_of(capsys, "convert", "d.svg", "-o", "x.ngc")
+    (reported,) = refusal_of(capsys, "convert", "d.svg", "-o", "x.ngc")
     said = f"cell-unknown data-brushsvg-cell {file} {' '.join(cell_names())}"
-    assert agrees(told, said, "svg") and told.advice == "give --cell"
+    assert agrees(reported, said, "svg") and reported.advice == "give --cell"
 
 
 @pytest.mark.parametrize("file", ["/etc/hostname", "mine.json", "no-such-brush"])
@@ -179,12 +179,12 @@ def test_a_brush_of_the_document_that_is_not_known_is_refused_by_every_command(d
         ("setup", "border", "d.svg", "-o", "x.ngc"),
         ("chart", "-o", "x.json", "--drawing", "d.svg"),
     ):
-        (told,) = refusal_of(capsys, *words)
-        assert agrees(told, f"brush-unknown data-brushsvg-brush {file} rigid round-6", "svg"), words
-        assert told.advice == "give --brush"
+        (reported,) = refusal_of(capsys, *words)
+        assert agrees(reported, f"brush-unknown data-brushsvg-brush {file} rigid round-6", "svg"), words
+        assert reported.advice == "give --brush"
     assert not (desk / "x.json").exists()
-    status, _, told = in_json(capsys, "convert", "d.svg", "-o", "x.ngc", "--brush", "round-6")
-    assert status == 0 and is_told(told, f"brush-asked-for {file} round-6"), told
+    status, _, reported = in_json(capsys, "convert", "d.svg", "-o", "x.ngc", "--brush", "round-6")
+    assert status == 0 and is_reported(reported, f"brush-asked-for {file} round-6"), reported
     assert main(["preview", "d.svg", "--all-brushes"]) == 0
 
 
@@ -224,7 +224,7 @@ def test_the_document_says_how_wide_outlines_are_painted(desk, capsys):
     assert said == (desk / "typed.ngc").read_bytes() != (desk / "filled.ngc").read_bytes()
     assert main(["check", "said.ngc", "said.svg"]) == 0
     (desk / "no.svg").write_text(FAT.format('data-brushsvg-wide="refuse"'))
-    assert is_told(refusal_of(capsys, "convert", "no.svg", "-o", "x.ngc"), "width-out-of-reach 14", "bar")
+    assert is_reported(refusal_of(capsys, "convert", "no.svg", "-o", "x.ngc"), "width-out-of-reach 14", "bar")
 
 
 @pytest.mark.parametrize(
@@ -239,8 +239,8 @@ def test_the_document_says_how_wide_outlines_are_painted(desk, capsys):
 )
 def test_settings_of_the_document_that_make_no_sense_stop_convert(desk, capsys, setting, said):
     (desk / "d.svg").write_text(on_root(setting))
-    (told,) = refusal_of(capsys, "convert", "d.svg", "-o", "x.ngc")
-    assert agrees(told, f"setting-invalid {said}"), told
+    (reported,) = refusal_of(capsys, "convert", "d.svg", "-o", "x.ngc")
+    assert agrees(reported, f"setting-invalid {said}"), reported
     assert main(["convert", "d.svg", "-o", "x.ngc", "--lenient"]) == 0
 
 
@@ -257,14 +257,14 @@ def test_settings_of_the_document_that_make_no_sense_stop_convert(desk, capsys, 
 def test_a_chart_for_what_is_no_drawing_is_refused(desk, capsys, name, data, said):
     if data is not None:
         (desk / name).write_bytes(data)
-    status, _, ((file, told),) = in_json(capsys, "chart", "-o", "x.json", "--drawing", name)
-    assert (status, file) == (1, name) and agrees(told, said), told
+    status, _, ((file, reported),) = in_json(capsys, "chart", "-o", "x.json", "--drawing", name)
+    assert (status, file) == (1, name) and agrees(reported, said), reported
     assert not (desk / "x.json").exists()
 
 
 def test_settings_of_the_document_are_none_of_an_element(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace('id="a"', 'id="a" data-brushsvg-cell="ur5e"'))
-    assert is_told(
+    assert is_reported(
         refusal_of(capsys, "convert", "d.svg", "-o", "x.ngc"),
         "setting-invalid data-brushsvg-cell whole svg",
         "a",

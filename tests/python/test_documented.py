@@ -1,4 +1,4 @@
-"""Nothing public is undocumented: what the package offers, what it takes and gives, and the errors it raises."""
+"""Nothing public is undocumented: what the package offers, what it needs and gives, and the errors it raises."""
 
 import inspect
 import re
@@ -39,18 +39,18 @@ def test_every_method_says_what_it_is(name):
 
 
 @pytest.mark.parametrize("name", OF_LAWS)
-def test_a_law_tells_shapes_errors_and_each_of_its_arguments(name):
+def test_a_law_documents_shapes_errors_and_each_of_its_arguments(name):
     law = attrgetter(name)(brushsvg)
-    told = words_of(name)
-    assert "Raises Error" in told
-    assert re.search(r"\(\.\.\.|\(n", told), "no shape"
+    reported = words_of(name)
+    assert "Raises Error" in reported
+    assert re.search(r"\(\.\.\.|\(n", reported), "no shape"
     for argument in inspect.signature(law).parameters:
-        assert re.search(rf"\b{argument}\b", told), f"{argument} is not told of"
-    assert re.search(r"\((\d+)\)|section \d|Theorem \d|Lemma", told), "no source"
+        assert re.search(rf"\b{argument}\b", reported), f"{argument} is not described"
+    assert re.search(r"\((\d+)\)|section \d|Theorem \d|Lemma", reported), "no source"
 
 
 @pytest.mark.parametrize("name", ["Brush", "Profile", "Footprint", "FootprintTable"])
-def test_each_field_and_method_of_a_brush_is_told_of(name):
+def test_each_field_and_method_of_a_brush_is_described(name):
     """In its own words, or among those of its class."""
     kind = getattr(brushsvg, name)
     for field, body in vars(kind).items():

@@ -5,7 +5,7 @@ import re
 import ezdxf
 import numpy as np
 import pytest
-from diagnostics import agrees, are_told, refused
+from diagnostics import agrees, are_reported, refused
 
 import brushsvg
 from brushsvg.read import ReadOptions
@@ -42,7 +42,7 @@ def ids(design):
 def test_a_white_shape_below_all_is_background(shape):
     design = read(shape + LINE)
     assert ids(design) == ["line"]
-    assert are_told(design.notices, "background")
+    assert are_reported(design.notices, "background")
     assert len(read(shape + LINE, background="keep").elements) == 1 + shape.count("<rect") + shape.count(
         "<path"
     )
@@ -63,8 +63,8 @@ def test_other_shapes_are_no_background(shape):
     assert len(read(white).elements) == 1, "nothing else is there"
 
 
-def test_a_background_is_known_by_the_page_whatever_sheet_is_asked_for():
-    """The page lies at the sheet's upper left."""
+def test_a_background_is_known_by_the_page_for_any_requested_sheet():
+    """The page is at the sheet's upper left."""
     design = read('<rect width="100" height="60" fill="#fff" stroke="#000"/>' + LINE, sheet_mm=(130.0, 80.0))
     assert ids(design)[-1] == "line" and len(design.elements) == 2
     assert not any(element.fill_rule for element in design.elements)
@@ -94,7 +94,7 @@ def test_what_is_off_the_page_is_left_out():
     )
     design = read(body)
     assert ids(design) == ["line", "edge"]
-    assert are_told(design.notices, "off-page off")
+    assert are_reported(design.notices, "off-page off")
     alone = read(LINE.replace("M10", "M-200"))
     assert len(alone.elements) == 1 and not alone.notices, "all of it can still be moved with --fit"
 
@@ -103,11 +103,11 @@ def test_layers_of_notes_are_left_out():
     layer = '<g inkscape:groupmode="layer" inkscape:label="{}">' + LINE.replace('id="line"', "") + "</g>"
     design = read("".join(map(layer.format, ("1 ink", "%notes", "!2 pause"))), f"{PAGE} {INKSCAPE}")
     assert len(design.elements) == 2
-    assert are_told(design.notices, "layer-of-notes %notes")
+    assert are_reported(design.notices, "layer-of-notes %notes")
     assert "%" in design.layers["%notes"], "--layer says why it is not painted"
 
 
-def test_what_lies_on_another_is_painted_once(tmp_path):
+def test_what_is_on_another_is_painted_once(tmp_path):
     twice = (
         LINE
         + LINE.replace("line", "copy")
@@ -118,7 +118,7 @@ def test_what_lies_on_another_is_painted_once(tmp_path):
     )
     design = from_file(tmp_path, f"<svg {PAGE}>{twice}{others}</svg>".encode())
     assert ids(design) == ["line", "red", "wide"]
-    assert are_told(design.notices, "drawn-twice copy back")
+    assert are_reported(design.notices, "drawn-twice copy back")
 
 
 OLD_INKSCAPE = f'{INKSCAPE} width="744.09448" height="1052.3622" inkscape:version="0.91 r13725"'
@@ -158,7 +158,7 @@ def test_later_inkscape_counts_as_everyone():
 
 def test_a_size_in_em_follows_from_the_view_box():
     icon = read(LINE, 'xmlns="http://www.w3.org/2000/svg" width="1em" height="1em" viewBox="0 0 96 96"')
-    assert icon.sheet_mm == pytest.approx((25.4, 25.4)) and are_told(icon.notices, "size-assumed 25.4")
+    assert icon.sheet_mm == pytest.approx((25.4, 25.4)) and are_reported(icon.notices, "size-assumed 25.4")
     plain = read(LINE, 'xmlns="http://www.w3.org/2000/svg" width="6em" height="12ex"')
     assert plain.sheet_mm == pytest.approx((25.4, 25.4))
 
@@ -206,7 +206,7 @@ def test_lines_are_cut_by_clip_paths():
     whole = clip('<rect width="100" height="60"/>', CUT)
     assert spans(whole.elements[0]) == [(10, 70)] and not whole.notices
     gone = clip('<rect x="90" width="10" height="60"/>', CUT + LINE.replace("line", "other"))
-    assert ids(gone) == ["other"] and are_told(gone.notices, "clipped-away line")
+    assert ids(gone) == ["other"] and are_reported(gone.notices, "clipped-away line")
 
 
 def test_shapes_are_intersected_with_clip_paths():
@@ -269,7 +269,7 @@ def test_a_closed_line_of_varying_width_keeps_its_widths_where_it_begins_inside(
 def test_a_clip_path_that_is_not_read_is_reported(clips, more):
     design = clip(clips, CUT, more)
     assert spans(design.elements[0]) == [(10, 70)]
-    assert are_told(design.notices, "clipping-unread")
+    assert are_reported(design.notices, "clipping-unread")
 
 
 POWER = (
@@ -288,7 +288,7 @@ def test_a_powerstroke_with_a_cap_of_zero_width_tapers():
     round_ends = read(POWER.format(caps=""), f"{PAGE} {INKSCAPE}").elements[0].subpaths[0].widths
     assert round_ends[0, 1] == pytest.approx(2.4)
     peak = read(POWER.format(caps='start_linecap_type="peak"'), f"{PAGE} {INKSCAPE}")
-    assert are_told(peak.notices, "path-effect-unread peak")
+    assert are_reported(peak.notices, "path-effect-unread peak")
 
 
 def saved(document, tmp_path):
@@ -347,13 +347,13 @@ def test_strokes_of_a_pressure_pen_are_one_line_each(tmp_path, program):
     body = "".join(pen_stroke(*each, PIECES[program]) for each in zip(paths, widths, strict=True))
     design = from_file(tmp_path, f'<svg {PAGE}><g stroke="#000">{body}</g></svg>'.encode())
     assert len(design.elements) == 2
-    assert are_told(design.notices, "pressure-strokes 160 2")
-    for element, path, wanted in zip(design.elements, paths, widths, strict=True):
+    assert are_reported(design.notices, "pressure-strokes 160 2")
+    for element, path, target in zip(design.elements, paths, widths, strict=True):
         (line,) = element.subpaths
         assert line.cubics[:, 3] * [1, -1] + [0, 60] == pytest.approx(path[1:], abs=0.01)
         middles = np.cumsum(np.hypot(*np.diff(path, axis=0).T)) - np.hypot(*np.diff(path, axis=0).T) / 2
         found = np.interp(middles / np.hypot(*np.diff(path, axis=0).T).sum(), *line.widths.T)
-        assert found == pytest.approx(wanted, rel=0.05)
+        assert found == pytest.approx(target, rel=0.05)
 
 
 def test_lines_that_only_meet_are_no_pressure_stroke(tmp_path):

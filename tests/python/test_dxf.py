@@ -3,7 +3,7 @@ import sys
 
 import numpy as np
 import pytest
-from diagnostics import agrees, are_told, is_told, refused
+from diagnostics import agrees, are_reported, is_reported, refused
 from dxf_text import SHEET, along, apart, bulged, circle, drawing, encoded, only, read
 from scipy.interpolate import BSpline, CubicSpline
 
@@ -289,16 +289,16 @@ def test_a_drawing_too_large_for_its_unit_is_doubted():
     def line(unit, length, **more):
         return read(drawing(lambda m: m.add_line((0, 0), (0, length)), unit), **more).notices
 
-    assert are_told(line(6, 100), "unit-doubtful metres '100 m' --units")
-    assert are_told(line(1, 250), "unit-doubtful inches '6.35 m'")
+    assert are_reported(line(6, 100), "unit-doubtful metres '100 m' --units")
+    assert are_reported(line(1, 250), "unit-doubtful inches '6.35 m'")
     assert line(6, 4.9) == line(4, 9000) == ()
-    assert are_told(line(6, 100, units="mm"), "unit-overruled")
+    assert are_reported(line(6, 100, units="mm"), "unit-overruled")
 
 
-def test_units_asked_for_win_and_say_so():
+def test_requested_units_win_and_say_so():
     design = read(drawing(lambda m: m.add_line((0, 0), (2, 0)), units=1), units="mm")
     assert design.elements[0].subpaths[0].cubics[-1, 3].tolist() == [2, 0]
-    assert are_told(design.notices, "unit-overruled inches millimetres")
+    assert are_reported(design.notices, "unit-overruled inches millimetres")
     for units in (None, "in"):
         element = only(drawing(lambda m: m.add_line((0, 0), (2, 0)), units=1), units=units)
         assert element.subpaths[0].cubics[-1, 3].tolist() == [50.8, 0]
@@ -494,7 +494,7 @@ def test_what_is_hidden_is_left_out_and_counted():
     }
     assert len(design.notices) == len(expected)
     for where, said in expected.items():
-        assert is_told(design.notices, said, where), (said, design.notices)
+        assert is_reported(design.notices, said, where), (said, design.notices)
 
 
 def test_paper_space_alone_is_refused():
@@ -516,11 +516,11 @@ def test_what_is_not_read_is_named():
     hatch = msp.add_hatch()
     hatch.set_pattern_fill("ANSI31")
     hatch.paths.add_polyline_path(SQUARE)
-    told = read(document).notices
-    assert is_told(told, "line-without-ends '1 entity'", "RAY")
-    assert is_told(told, "dxf-entity-unread '1 entity'", "MESH")
-    assert is_told(told, "paint-unread pattern", f"HATCH-{hatch.dxf.handle}")
-    assert len(told) == 3
+    reported = read(document).notices
+    assert is_reported(reported, "line-without-ends '1 entity'", "RAY")
+    assert is_reported(reported, "dxf-entity-unread '1 entity'", "MESH")
+    assert is_reported(reported, "paint-unread pattern", f"HATCH-{hatch.dxf.handle}")
+    assert len(reported) == 3
 
 
 def test_a_hatch_keeps_its_holes():
@@ -546,7 +546,7 @@ def test_points_are_dabs_and_dimensions_are_unfolded():
     assert any((e.subpaths[0].cubics[..., 1] == 30).all() for e in rest)  # the dimension line
 
 
-def test_widths_in_a_squeezed_block_are_what_lies_across_the_line():
+def test_widths_in_a_squeezed_block_are_measured_across_the_line():
     document = drawing()
     block = document.blocks.new("b")
     block.add_lwpolyline([(0, 0), (40, 0), (40, 40)], dxfattribs={"const_width": 1})
@@ -594,7 +594,7 @@ def test_what_is_shown_otherwise_is_named_once(draw, header, said):
 
 def test_heights_are_left_out_once():
     design = read(drawing(lambda m: m.add_line((0, 0, 5), (9, 0, 25))))
-    assert are_told(design.notices, "dxf-not-flat 5 25")
+    assert are_reported(design.notices, "dxf-not-flat 5 25")
     assert read(drawing(lambda m: m.add_line((0, 0, 5), (9, 0, 5)))).notices == ()
 
 

@@ -241,8 +241,8 @@ def test_splines_of_great_cost_are_left_out(monkeypatch):
 
 
 def test_things_of_no_size():
-    lying = "0 CIRCLE 8 0 10 0 20 0 40 0"
-    assert agrees(refusal(text_dxf(lying)), "nothing-to-paint CIRCLE-1")
+    placed = "0 CIRCLE 8 0 10 0 20 0 40 0"
+    assert agrees(refusal(text_dxf(placed)), "nothing-to-paint CIRCLE-1")
     for draw in (lambda m: m.add_line((3, 4), (3, 4)), lambda m: m.add_lwpolyline([(3, 4)], close=True)):
         (element,) = read(drawing(draw)).elements
         assert element.subpaths[0].cubics.tolist() == [[[3, 4]] * 4]
@@ -340,7 +340,7 @@ def test_an_entity_that_lacks_what_it_needs_is_left_out_alone():
 @pytest.mark.parametrize("header", HEADERS)
 @pytest.mark.parametrize("markers", ["", "100 AcDbEntity"])
 @pytest.mark.parametrize("kind", ["IMAGE", "3DSOLID", "MESH", "WIPEOUT", "ACAD_TABLE", "LAYER", "WHATEVER"])
-def test_what_is_not_read_is_counted_whoever_wrote_it(header, markers, kind):
+def test_what_is_not_read_is_counted_for_any_author(header, markers, kind):
     entity = f"0 {kind} {markers} 8 0 10 0 20 0 30 0 40 3"
     design = read_dxf(text_dxf(LINE, entity, entity, header=HEADERS[header]), OPTIONS)
     assert len(design.elements) == 1
@@ -397,15 +397,15 @@ LOOK = "0 LINE 8 0 10 0 20 {y} 11 50 21 {y} "
         ("210 0 220 0 230 0", "extrusion vector"),
     ],
 )
-def test_what_was_repaired_is_told_where_it_is_painted(more, words):
+def test_what_was_repaired_is_reported_where_it_is_painted(more, words):
     """The audit takes away what it cannot understand: another width, a solid line in place of dashes."""
     lines = [LOOK.format(y=y) + more for y in range(5)]
     notices = read_dxf(text_dxf(LOOK.format(y=9), *lines), OPTIONS).notices
-    told = [notice for notice in summarized(notices) if notice.code == "dxf-repaired"]
-    assert [words in notice.sentence for notice in told] == [True], notices
-    assert told[0].where.startswith("LINE(#") and gives(told[0].where, "4")
+    reported = [notice for notice in summarized(notices) if notice.code == "dxf-repaired"]
+    assert [words in notice.sentence for notice in reported] == [True], notices
+    assert reported[0].where.startswith("LINE(#") and gives(reported[0].where, "4")
 
 
-def test_repairs_that_nobody_sees_are_not_told():
+def test_repairs_that_nobody_sees_are_not_reported():
     lines = [LOOK.format(y=y) + "330 FFFF" for y in range(3)]
     assert read_dxf(text_dxf(*lines), OPTIONS).notices == ()

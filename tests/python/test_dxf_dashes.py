@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from diagnostics import agrees, are_told, refused
+from diagnostics import agrees, are_reported, refused
 from dxf_text import circle, drawing, encoded, only, read
 
 from brushsvg.read import ReadOptions
@@ -53,7 +53,9 @@ def test_each_dash_is_a_stroke(name, dashes):
     (element,) = design.elements
     assert spans(element) == dashes
     assert element.stroke_width_mm == 0.5
-    assert are_told(design.notices, f"dashed {element.id} {len(dashes)}") and design.notices[0].layer == "0"
+    assert (
+        are_reported(design.notices, f"dashed {element.id} {len(dashes)}") and design.notices[0].layer == "0"
+    )
 
 
 def test_patterns_scale_with_the_drawing_the_entity_and_the_unit_but_not_with_blocks():
@@ -141,7 +143,7 @@ def test_lines_of_changing_width_stay_whole():
     rows = [(0, 0, 1, 3), (99, 0, 0, 0)]
     design = read(typed(lambda m: m.add_lwpolyline(rows, format="xyse", dxfattribs={"linetype": "DASHED"})))
     assert len(design.elements[0].subpaths) == 1
-    assert are_told(design.notices, "dashes-unread")
+    assert are_reported(design.notices, "dashes-unread")
 
 
 def test_too_many_dashes_are_refused(monkeypatch):

@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from diagnostics import agrees, are_told, is_told, refused
+from diagnostics import agrees, are_reported, is_reported, refused
 from dxf_text import drawing, encoded, only, read, save_font, text_dxf
 
 from brushsvg.read import ReadOptions
@@ -111,7 +111,7 @@ def test_text_in_blocks_and_from_below(fonts):
     )
     design = read(document)
     assert [boxes(element) for element in design.elements] == [[(86, 0, 98, 21)], [(54, 5, 60, 12)]]
-    assert are_told(design.notices, "text-outlined A 1 Boxes")
+    assert are_reported(design.notices, "text-outlined A 1 Boxes")
 
 
 def test_attributes_are_text_at_their_own_place(fonts):
@@ -137,7 +137,7 @@ def test_constant_attributes_are_text_and_definitions_elsewhere_are_named(fonts)
     design = read(document)
     (element,) = design.elements
     assert boxes(element) == [(40, 0, 46, 7)]
-    assert is_told(design.notices, "attribute-definition 1")
+    assert is_reported(design.notices, "attribute-definition 1")
 
 
 def test_codes_of_text(fonts):
@@ -155,7 +155,7 @@ def test_text_that_does_not_say_its_height_is_damaged(fonts, kind):
     design = read_dxf(
         text_dxf(line, f"0 {kind} 8 0 10 0 20 0 1 A"), ReadOptions(sheet_mm=(99, 99), units="mm")
     )
-    assert are_told(design.notices, "geometry-damaged height") and design.notices[0].damaged
+    assert are_reported(design.notices, "geometry-damaged height") and design.notices[0].damaged
 
 
 def test_letters_of_several_heights_in_one_word_stand_on_one_line(fonts):
@@ -175,11 +175,11 @@ def test_letters_of_several_heights_in_one_word_stand_on_one_line(fonts):
         (r"A {\H0;A}", {}, "geometry-damaged height 0.0"),
     ],
 )
-def test_what_of_mtext_is_not_read_is_named(fonts, words, attributes, said):
+def test_a_part_of_mtext_that_is_not_read_is_named(fonts, words, attributes, said):
     document = in_boxes()
     document.modelspace().add_line((0, 0), (5, 5))
     document.modelspace().add_mtext(words, {"style": "Boxes", "char_height": 7} | attributes)
-    assert is_told(read(document).notices, said)
+    assert is_reported(read(document).notices, said)
 
 
 def test_an_attribute_may_have_lines(fonts):
@@ -252,7 +252,7 @@ def test_mtext_without_a_width_in_a_style_that_names_a_family(fonts):
     ["AAAA AAAA", r"\H14;AA AA", r"\fBoxes|b1|i0;AA A A", r"A\S1/2; A A", r"{\W2;A A}A"],
 )
 def test_a_short_line_stands_below_the_middle_of_the_longest(long, fonts):
-    """In a text without a width, the longest line is as wide as the text: with a margin, shorter ones lie aside."""
+    """In a text without a width, the longest line is as wide as the text: with a margin, shorter ones are displaced."""
     document = in_boxes()
     content = rf"\pxqc;{{{long}}}\PA"
     document.modelspace().add_mtext(content, {"char_height": 7, "style": "Boxes", "insert": (10, 90)})
@@ -277,7 +277,7 @@ def test_a_short_line_stands_below_the_middle_of_the_longest(long, fonts):
         ("gone.ttf", "Gone", "Plain Sans", "Gone"),
     ],
 )
-def test_fonts_are_found_by_name_or_stood_in_for(fonts, font, family, name, why):
+def test_fonts_are_found_with_their_names_or_replaced(fonts, font, family, name, why):
     document = drawing()
     style = document.styles.add("Some", font=font)
     if family:
@@ -289,8 +289,8 @@ def test_fonts_are_found_by_name_or_stood_in_for(fonts, font, family, name, why)
 
 def test_a_style_that_is_not_in_the_drawing(fonts):
     document = drawing(lambda m: m.add_text("A", dxfattribs={"style": "Nowhere"}))
-    told = read(document).notices
-    assert are_told(told, "dxf-repaired Nowhere", f"text-outlined A 'Plain Sans' {LIKE_SHX}")
+    reported = read(document).notices
+    assert are_reported(reported, "dxf-repaired Nowhere", f"text-outlined A 'Plain Sans' {LIKE_SHX}")
 
 
 def test_letters_without_a_glyph_are_left_out_and_named(fonts):
@@ -309,12 +309,12 @@ def test_without_any_font_text_is_left_out(folder):
 
     design = read(drawing(draw))
     assert len(design.elements) == 1
-    assert are_told(design.notices, "text-unread TEXT explode 1", "text-unread MTEXT explode 1")
+    assert are_reported(design.notices, "text-unread TEXT explode 1", "text-unread MTEXT explode 1")
 
 
 def test_empty_text_is_named(fonts):
     design = read(drawing(lambda m: [m.add_text("  "), m.add_circle((0, 0), 5)]))
-    assert are_told(design.notices, "geometry-empty")
+    assert are_reported(design.notices, "geometry-empty")
     assert only(drawing(lambda m: [m.add_mtext(""), m.add_circle((0, 0), 5)])).id.startswith("CIRCLE")
 
 
@@ -363,9 +363,9 @@ def test_text_of_no_height_is_damaged(fonts, height):
 
 @pytest.mark.slow
 def test_text_leaves_nothing_at_home(tmp_path):
-    """Whatever fonts this machine has."""
+    """With any fonts of this machine."""
     (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: [m.add_text("Aé"), m.add_circle((0, 0), 5)])))
-    script = "preview brushsvg.read -o as --show strokes i; print(i.read_drawing('a.dxf'))"
+    script = "import brushsvg.read as i; print(i.read_drawing('a.dxf'))"
     runs = [
         subprocess.run(
             [sys.executable, "-c", script], cwd=tmp_path, env={"HOME": str(tmp_path)}, capture_output=True

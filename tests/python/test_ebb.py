@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import in_json, is_told, refused
+from diagnostics import in_json, is_reported, refused
 from judge.ebb import run_ebb
 from programs import RUNNABLE, call, is_refused_when_damaged, program
 from shown_code import DOCS, blocks
@@ -70,8 +70,8 @@ def test_every_pose_is_passed_within_half_a_step_of_both_motors(motors, turned_d
     assert np.abs(steps - np.rint(steps)).max() < 1e-6
     away_steps = 0.0
     for pose in np.vstack([np.array(path, float) for path in paths]):
-        wanted = (frame @ [*pose[:2], 0.0, 1.0])[:2] @ rows.T
-        off = np.abs(steps - wanted).max(axis=1)
+        target = (frame @ [*pose[:2], 0.0, 1.0])[:2] @ rows.T
+        off = np.abs(steps - target).max(axis=1)
         at = off <= 0.5 + 1e-6
         assert at.any(), pose
         assert np.abs(ends[at, 2] - pose[2]).min() < cell.servo.step_mm, (
@@ -185,7 +185,7 @@ def test_what_is_written_is_allowed(desk, capsys):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "reported"),
     [
         (r"(SM,\d+,-?\d+,-?\d+\n)(?=# feed)", "", "line-incomplete"),
         (r"# feed 1200.0 mm/min(?=\nS2,\d+,4,0,0\n)", "# feed 6000.0 mm/min", "speed-out-of-range"),
@@ -202,9 +202,9 @@ def test_what_is_written_is_allowed(desk, capsys):
         (r"\n# stroke 2", "\nSP,0\n# stroke 2", "line-unread"),
     ],
 )
-def test_check_refuses_what_was_damaged(desk, capsys, old, new, told):
+def test_check_refuses_what_was_damaged(desk, capsys, old, new, reported):
     call(capsys, "convert", "a.svg", "-o", "a.ebb", "--cell", "axidraw-ebb")
-    assert is_refused_when_damaged(capsys, Path("a.ebb"), old, new, told)
+    assert is_refused_when_damaged(capsys, Path("a.ebb"), old, new, reported)
 
 
 def test_the_sender_of_the_docs_sends_commands_alone_and_stops_at_an_error(desk, capsys, monkeypatch):
@@ -230,24 +230,24 @@ def test_the_sender_of_the_docs_sends_commands_alone_and_stops_at_an_error(desk,
     monkeypatch.setattr(sys, "argv", ["send.py", "a.ebb", "/dev/ttyACM0"])
     most = 0
     exec(sender, {})
-    wanted = [line for line in Path("a.ebb").read_text().splitlines() if not line.startswith("#")]
-    assert sent == wanted
+    target = [line for line in Path("a.ebb").read_text().splitlines() if not line.startswith("#")]
+    assert sent == target
     sent.clear()
     most = 5
     with pytest.raises(SystemExit, match="!8 Err"):
         exec(sender, {})
-    assert sent == wanted[:5]
+    assert sent == target[:5]
 
 
-def test_who_begins_beyond_the_workspace_is_told(desk, capsys):
+def test_who_begins_beyond_the_workspace_is_reported(desk, capsys):
     far = replace(CELL, name="far", paper=Paper((100.0, 0.0, 0.0)))
     Path("far.toml").write_text(write_cell(far))
     status, _, said = in_json(capsys, "convert", "a.svg", "-o", "a.ebb", "--cell", "far.toml")
-    assert status == 1 and is_told(said, "tool-off-sheet 70.00 motors")
+    assert status == 1 and is_reported(said, "tool-off-sheet 70.00 motors")
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "reported"),
     [
         ({"motors": None}, "key-missing motors"),
         ({"servo": None}, "key-missing servo"),
@@ -257,6 +257,6 @@ def test_who_begins_beyond_the_workspace_is_told(desk, capsys):
         ({"paper": Paper((0.0, 0.0, 3.0))}, "paper-tilted"),
     ],
 )
-def test_a_cell_that_a_board_cannot_be_is_refused(change, told):
-    with refused(told):
+def test_a_cell_that_a_board_cannot_be_is_refused(change, reported):
+    with refused(reported):
         parse_cell(write_cell(replace(CELL, **change)))

@@ -9,13 +9,13 @@ from brushsvg.show.evaluation.error_causes import _corner_deg
 from brushsvg.strokes.wide_shapes import within_reach
 
 
-def stroke(points, half, closed=False, wanted=None):
+def stroke(points, half, closed=False, target=None):
     p = np.asarray(points, float)
     a, b = p[:-1], p[1:]
     cubics = np.hstack([a, a + (b - a) / 3, a + 2 * (b - a) / 3, b])
     halves = np.broadcast_to(half, 2)
     made = _core.Stroke("s", cubics, closed, [(0.0, float(halves[0])), (1.0, float(halves[1]))])
-    made.wanted_mm = wanted or []
+    made.wanted_mm = target or []
     return made
 
 
@@ -28,16 +28,16 @@ def box(x0, y0, x1, y1):
     return [np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], float)]
 
 
-def found(wanted, how="closed", name="round-6", tolerance_mm=0.05):
+def found(target, how="closed", name="round-6", tolerance_mm=0.05):
     brush = find_brush(name)
-    painted, wanted, _ = within_reach([wanted], brush, "clamp")
+    painted, target, _ = within_reach([target], brush, "clamp")
     plan = compensate(painted, brush, (120, 120), how, tolerance_mm).plan
-    rows, _ = report.measure(plan, simulate(plan, brush), brush, wanted, tolerance_mm, compensation=how)
+    rows, _ = report.measure(plan, simulate(plan, brush), brush, target, tolerance_mm, compensation=how)
     return rows[0].worst
 
 
 @pytest.mark.parametrize(
-    ("wanted", "code", "says", "near"),
+    ("target", "code", "says", "near"),
     [
         (
             stroke([(30, 40), (30, 40)], 2.0),
@@ -45,7 +45,7 @@ def found(wanted, how="closed", name="round-6", tolerance_mm=0.05):
             "",
             (30, 40),
         ),
-        (stroke([(30, 40), (60, 40)], 8, wanted=box(22, 32, 68, 48)), "wider-than-brush", "16 mm", None),
+        (stroke([(30, 40), (60, 40)], 8, target=box(22, 32, 68, 48)), "wider-than-brush", "16 mm", None),
         (stroke([(20, 40), (70, 40)], 0.3), "thinner-than-measured", "", None),
         (stroke([(20, 40), (60, 40), (25, 50)], 1.5), "sharp-corner", "164", (60, 40)),
         (stroke(arc(4.0, 1.0, 60), 3.9, True), "tighter-than-lag", "", None),
@@ -60,15 +60,15 @@ def found(wanted, how="closed", name="round-6", tolerance_mm=0.05):
         (stroke([(20, 40), (50, 40)], (0.6, 4.0)), "stroke-end", "", None),
     ],
 )
-def test_the_reason_is_told(wanted, code, says, near):
-    worst = found(wanted)
+def test_the_reason_is_reported(target, code, says, near):
+    worst = found(target)
     assert worst.code == code and says in worst.reason
     if near:
         assert worst.place_mm == pytest.approx(near, abs=3.0)
 
 
 @pytest.mark.parametrize(("half", "is_missing"), [(2.0, True), (0.2, False)], ids=["wider", "thinner"])
-def test_a_brush_of_one_width_is_told_to_be_one(half, is_missing):
+def test_a_brush_of_one_width_is_reported(half, is_missing):
     """The middle of a line 4 mm wide was said to be 0.04 mm off, where the pen paints 1 mm."""
     bend = np.column_stack([np.linspace(20, 100, 60), 60 + 5 * np.sin(np.linspace(0, 6, 60))])
     worst = found(stroke(bend, half), name="rigid")
@@ -78,7 +78,7 @@ def test_a_brush_of_one_width_is_told_to_be_one(half, is_missing):
 
 
 def test_a_round_nib_is_not_pointed_behind():
-    square = stroke([(30, 40), (60, 40)], 0.5, wanted=box(28.8, 39.5, 60.4, 40.5))
+    square = stroke([(30, 40), (60, 40)], 0.5, target=box(28.8, 39.5, 60.4, 40.5))
     worst = found(square, name="rigid")
     assert worst.code == "stroke-start"
 
@@ -92,12 +92,12 @@ def test_a_coarse_tolerance_is_the_reason():
 
 
 def test_without_compensation_the_lag_is_the_reason():
-    wanted = stroke([(20, 40), (60, 40), (60, 80)], 1.5)
-    assert found(wanted, "none").code == "lag-not-compensated"
+    target = stroke([(20, 40), (60, 40), (60, 80)], 1.5)
+    assert found(target, "none").code == "lag-not-compensated"
 
 
 def test_a_closed_line_has_a_corner_at_its_seam_too():
-    """The worst place of a square lay where it begins, and bends were blamed."""
+    """The worst place of a square was where it begins, and bends were blamed."""
     square = flatten(stroke([(30, 30), (70, 30), (70, 70), (30, 70), (30, 30)], 1.5, True), 0.01)
     for s in (0.0, 1.0, 159.0, 160.0):
         assert _corner_deg(square, s, 3.0, True) == pytest.approx(90)

@@ -49,8 +49,8 @@ def lacks(packages) -> bool:
 def test_a_missing_extra_costs_one_sentence_with_the_command(desk, capsys, packages):
     if not lacks(packages):
         pytest.skip("it is installed")
-    status, _, told = in_json(capsys, *TYPED[packages][0].split())
-    ((_, why),) = told
+    status, _, reported = in_json(capsys, *TYPED[packages][0].split())
+    ((_, why),) = reported
     assert (status, why.code) == (1, "package-missing")
     assert why.sentence.endswith(command_to_add(*packages))
 
@@ -64,8 +64,8 @@ def test_an_extra_that_is_installed_works(desk, capsys, packages):
     if "fonttools" in packages and not os.path.exists(FONT):
         pytest.skip(f"there is no {FONT}")
     if out is None:  # nobody answers there, which only who has the extra can know
-        status, _, told = in_json(capsys, *words.split())
-        assert status == 1 and any(agrees(why, "cluster-unreachable") for _, why in told)
+        status, _, reported = in_json(capsys, *words.split())
+        assert status == 1 and any(agrees(why, "cluster-unreachable") for _, why in reported)
         return
     assert main(words.split()) == 0
     assert (desk / out).stat().st_size > 500

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnostics import in_json, is_told, refused
+from diagnostics import in_json, is_reported, refused
 from programs import RUNNABLE, call
 from test_robot_scripts import SQUARE, on, sound
 from test_urscript import text_for
@@ -33,14 +33,14 @@ def job(tmp_path, capsys):
     """A program in three files."""
     (tmp_path / "waves.json").write_text(_core.write_plan(waves(30, 90)))
     words = str(tmp_path / "waves.json"), "-o", str(tmp_path / "waves.ls"), "--cell", "lrmate200id"
-    status, _, told = call(capsys, "convert", *words)
-    assert status == 0, told
+    status, _, reported = call(capsys, "convert", *words)
+    assert status == 0, reported
     return tmp_path
 
 
 def check(job, capsys) -> str:
-    status, out, told = call(capsys, "check", str(job / "waves.ls"), str(job / "waves.json"))
-    return out if status == 0 else " ".join(told)
+    status, out, reported = call(capsys, "check", str(job / "waves.ls"), str(job / "waves.json"))
+    return out if status == 0 else " ".join(reported)
 
 
 def test_a_long_job_is_a_program_that_calls_others(job, capsys):
@@ -75,8 +75,8 @@ def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
     (job / "waves.ls").write_bytes(whole)
     part = job / f"{names[1]}.ls"
     part.write_bytes(part.read_bytes().replace(b"20mm/sec", b"90mm/sec", 5))
-    told = in_json(capsys, "check", job / "waves.ls", job / "waves.json")[2]
-    assert is_told(told, "speed-out-of-range 90.0")
+    reported = in_json(capsys, "check", job / "waves.ls", job / "waves.json")[2]
+    assert is_reported(reported, "speed-out-of-range 90.0")
 
 
 @pytest.fixture
@@ -104,11 +104,11 @@ def test_a_frame_is_set_before_it_is_chosen(small):
         return text.replace(chosen, "").replace(first, chosen + first, 1)
 
     status, said = small(before)
-    assert status == 1 and is_told(said, "line-incomplete")
+    assert status == 1 and is_reported(said, "line-incomplete")
 
 
 def test_a_speed_in_another_unit_is_read_as_that(small):
-    """20 cm/min are 3.3 mm/s: slower than told, and nothing forbids that; 200 cm/min are 33 mm/s."""
+    """20 cm/min are 3.3 mm/s: slower than requested, and nothing forbids that; 200 cm/min are 33 mm/s."""
     for speed, status in (("20cm/min", 0), ("200cm/min", 1)):
         assert small(lambda text, new=speed: text.replace(" P[5] 20mm/sec", f" P[5] {new}"))[0] == status
     cell = find_cell("lrmate200id")
@@ -120,8 +120,8 @@ def test_a_speed_in_another_unit_is_read_as_that(small):
 def test_a_stroke_of_too_many_poses_is_refused(tmp_path, capsys):
     (tmp_path / "a.json").write_text(_core.write_plan(waves(1, 997)))
     words = "convert", str(tmp_path / "a.json"), "-o", str(tmp_path / "a.ls"), "--cell", "lrmate200id"
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and is_told(told, "poses-too-many 1001 1000")
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and is_reported(reported, "poses-too-many 1001 1000")
     assert not (tmp_path / "a.ls").exists()
 
 
@@ -138,7 +138,7 @@ def test_remarks_are_as_long_as_the_pendant_shows_them_and_read_as_they_were():
     assert f"({said})" in [act.text for act in acts]
 
 
-def test_programs_are_told_apart_by_name():
+def test_programs_are_distinguished_with_their_names():
     text = text_for(find_cell("lrmate200id"))
     assert list(programs(text)) == [""] and programs(text)[""] == text
 

@@ -191,7 +191,7 @@ def test_reading_is_refused_in_a_sentence(tmp_path, monkeypatch):
         with refused(f"file-unreadable {why}") as refusal:
             read_bytes(path)
         assert refusal.value.file == str(path)
-        assert f"in {path}" in "".join(traceback.format_exception(refusal.value)), "whoever meets a traceback"
+        assert f"in {path}" in "".join(traceback.format_exception(refusal.value)), "shown in a traceback"
 
 
 def test_a_number_is_no_path_and_closes_nothing(tmp_path):

@@ -51,13 +51,13 @@ def of(d: str, rest: str = 'fill="red" fill-rule="nonzero" stroke="none"'):
     return strokes(read(f'<path id="p" d="{d}" {rest}/>'))[0]
 
 
-def meant_by(made):
-    """What discs of passes paint, and what they are meant to paint beyond, in the corners of square ends."""
+def intended_by(made):
+    """What discs of passes paint, and what their targets hold beyond, in the corners of square ends."""
     return shapely.union_all([painted(made), *(region(each.wanted_mm) for each in made if each.wanted_mm)])
 
 
 def share_left(shape, made) -> float:
-    return shape.difference(meant_by(made)).area / shape.area
+    return shape.difference(intended_by(made)).area / shape.area
 
 
 @pytest.mark.slow
@@ -65,20 +65,20 @@ def share_left(shape, made) -> float:
 def test_passes_fill_a_shape_and_stay_in_it(brush, d):
     made = of(d)
     shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm]))
-    passes, wanted, _ = within_reach(made, brush, "passes")
+    passes, target, _ = within_reach(made, brush, "passes")
     paint = paint_of(passes_of(made, brush), brush)
     assert shape.difference(paint).area < 0.015 * shape.area
     assert paint.difference(shape.buffer(0.3)).area < 0.5
-    assert meant_by(passes).difference(shape.buffer(0.03 * HALF_MM + 0.02)).area < 0.01
+    assert intended_by(passes).difference(shape.buffer(0.03 * HALF_MM + 0.02)).area < 0.01
     assert max(half for each in passes for _, half in each.half_width) <= HALF_MM + 1e-9
-    assert [each.id for each in passes] == [each.id for each in wanted]
+    assert [each.id for each in passes] == [each.id for each in target]
     assert len({each.id for each in passes}) == len(passes)
     # each its own, up to the tips of corners that it ends in: `refined` would draw it to the whole shape
     for each in (each for each in passes if each.wanted_mm):
         beyond = HALF_MM * (1 / np.sin(np.radians(58 / 2)) - 1)
         assert region(each.wanted_mm).difference(painted([each]).buffer(beyond)).area < 0.01
-    meant = region(_core.unite([ring for each in wanted for ring in _core.wanted_outline(each, 0.01)]))
-    assert meant.symmetric_difference(shape).area < 0.006 * shape.area
+    expected = region(_core.unite([ring for each in target for ring in _core.wanted_outline(each, 0.01)]))
+    assert expected.symmetric_difference(shape).area < 0.006 * shape.area
     assert paint.intersection(shape).area / paint.union(shape).area > 0.97
 
 
@@ -107,10 +107,10 @@ def test_a_disc_hardly_wider_than_the_brush_is_a_dot_and_what_is_left_round_it(b
     assert shapely.hausdorff_distance(paint.boundary, disc.boundary) < 0.2
 
 
-def test_the_first_pass_is_asked_for_its_own_mark_and_not_for_the_whole_shape(brush):
-    passes, wanted, _ = within_reach(of(SQUARE), brush, "passes")
-    own = meant_by(passes[:1]).area
-    assert _core.area(wanted[0].wanted_mm) == pytest.approx(own, rel=0.03)
+def test_the_target_of_the_first_pass_is_its_own_mark_and_not_the_whole_shape(brush):
+    passes, target, _ = within_reach(of(SQUARE), brush, "passes")
+    own = intended_by(passes[:1]).area
+    assert _core.area(target[0].wanted_mm) == pytest.approx(own, rel=0.03)
     assert own < 0.7 * 45 * 45
 
 
@@ -196,7 +196,7 @@ def test_marks_do_not_bulge_where_a_shape_becomes_as_narrow_as_the_brush(brush, 
 @pytest.mark.slow
 @sample("name", ["star", "arrow", "comb", "ell", "round short bar"], keep=2)
 def test_no_other_way_to_fill_a_shape_plainly_paints_more_of_it(brush, name):
-    """Compared by the marks' outlines with shapely; discs would tell of the star's five square ends as the best."""
+    """Compared by the marks' outlines with shapely; discs would report the star's five square ends as the best."""
     made = of(SHAPES[name])
     wide = [k for k, each in enumerate(made) if max(half for _, half in each.half_width) > HALF_MM]
     (filling,) = fillings(made, wide, *brush.half_width_range_mm())
@@ -221,8 +221,8 @@ def like(stroke, line):
 @pytest.mark.slow
 @sample("d", [SHAPES["bar"], SQUARE, SHAPES["ell"], SHAPES["triangle"], PENTAGON, DIAMOND], keep=2)
 def test_marks_of_passes_have_the_shape_s_straight_edges_up_to_its_corners(brush, d):
-    """Measured on the simulated marks by shapely: within 0.2 mm of each edge, from 2 mm beside corners on, from 5 mm
-    beside one that points inwards, where the brush turns."""
+    """Measured on the simulated marks by shapely: within 0.2 mm of each edge, from 2 mm from corners on, from 5 mm
+    next to one that points inwards, where the brush turns."""
     made = of(d)
     shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm])).simplify(0.01)
     paint = paint_of(passes_of(made, brush), brush)
@@ -242,10 +242,10 @@ def test_a_short_fat_stroke_is_a_ring_without_a_tip(brush):
 
 def test_a_stroke_with_its_sides_keeps_its_direction(brush):
     (stroke,) = of("M10 40Q25 10 50 18T90 15Q70 36 48 28T10 40Z")
-    passes, wanted, _ = within_reach([stroke], brush, "passes")
+    passes, target, _ = within_reach([stroke], brush, "passes")
     assert [each.id for each in passes] == ["p"]
     assert passes[0].middle_mm.tolist() == stroke.middle_mm.tolist()
-    assert wanted[0].half_width == stroke.half_width
+    assert target[0].half_width == stroke.half_width
     every = passes_of([stroke], brush)
     assert len(every) > 2  # with its sides
     assert every[0].middle_mm.tolist() == stroke.middle_mm.tolist()
@@ -274,9 +274,9 @@ def test_a_line_of_changing_width_is_as_wide_as_its_knots_say():
     """Between the ends of a straight line, too, which was flattened to two rows: a third of the mark was lost."""
     knots = [(0.0, 0.1), (0.4, 4.2), (1.0, 4.2)]
     stroke = _core.Stroke(middle_mm=np.array([[0, 0, 10 / 3, 0, 20 / 3, 0, 10, 0]]), half_width=knots)
-    wanted = _core.area(_core.wanted_outline(stroke, 0.005))
-    assert wanted == pytest.approx(painted([stroke]).area, rel=2e-3)
-    assert wanted == pytest.approx(105.8, abs=0.3)
+    target = _core.area(_core.wanted_outline(stroke, 0.005))
+    assert target == pytest.approx(painted([stroke]).area, rel=2e-3)
+    assert target == pytest.approx(105.8, abs=0.3)
 
 
 def test_what_is_no_lettering_is_left_to_the_middle_lines():
@@ -296,13 +296,13 @@ def test_shapes_that_touch_are_filled_each_in_its_own_colour(brush, names):
         f'<path id="{name}" fill="{colour}" stroke="none" d="M{x} 10h40v30h-40z"/>'
         for name, colour, x in zip(names, ("#ff0000", "#0000ff"), (10, 40), strict=True)
     )
-    passes, wanted, _ = within_reach(strokes(read(body))[0], brush, "passes")
+    passes, target, _ = within_reach(strokes(read(body))[0], brush, "passes")
     for name, colour, x in zip(names, ("#ff0000", "#0000ff"), (10, 40), strict=True):
         own = [each for each in passes if each.origin.element == name]
         assert {each.colour for each in own} == {colour}
         assert [each.origin.lane for each in own] == list(range(1, len(own) + 1))
         assert share_left(shapely.box(x, 10, x + 40, 40), own) < 0.02
-    assert [each.id for each in wanted] == [each.id for each in passes]
+    assert [each.id for each in target] == [each.id for each in passes]
 
 
 @pytest.mark.slow
@@ -318,7 +318,7 @@ def test_a_pen_fills_a_shape_in_passes_of_its_one_width(name):
     inked = region(_core.unite([ring for each in marks.passes for ring in each.outline_mm]))
     assert inked.difference(shape.buffer(0.03 * 1.2 + 0.02)).area < 0.05
     assert shape.difference(inked).area / shape.area < 0.03
-    assert within_reach(made, pen, "auto") == (made, made, [])  # unless asked it draws middle lines
+    assert within_reach(made, pen, "auto") == (made, made, [])  # by default it draws middle lines
 
 
 def straight(name, start, end, half):
@@ -327,7 +327,7 @@ def straight(name, start, end, half):
 
 
 def test_slits_between_the_parts_of_a_shape_s_strokes_are_no_edges(brush):
-    """Rings led round them, by 2 mm beside an inner corner of this star."""
+    """Rings along them, by 2 mm from an inner corner of this star."""
     made = of(SHAPES["star"])
     (filling,) = fillings(made, list(range(len(made))), *brush.half_width_range_mm())
     parts = _core.unite([ring for stroke in made for ring in stroke.wanted_mm])

@@ -23,9 +23,9 @@ def test_the_first_crossing_ahead_is_that_of_shapely():
         ways = np.column_stack([np.cos(angles), np.sin(angles)])
         for place, way, found in zip(places, ways, _core.first_crossings(rings, places, ways), strict=True):
             met = get_coordinates(LineString([place, place + 200 * way]).intersection(outlines))
-            wanted = min((Point(place).distance(Point(at)) for at in met), default=np.inf)
-            crossed += np.isfinite(wanted)
-            np.testing.assert_allclose(found, wanted, atol=1e-9)
+            target = min((Point(place).distance(Point(at)) for at in met), default=np.inf)
+            crossed += np.isfinite(target)
+            np.testing.assert_allclose(found, target, atol=1e-9)
     assert crossed > 150
 
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from diagnostics import in_json, is_told
+from diagnostics import in_json, is_reported
 from programs import SERVOS
 from sampling import sample
 
@@ -21,7 +21,7 @@ from brushsvg.model.library import find_brush
 pytestmark = pytest.mark.arm
 
 SHEET_MM = (200.0, 100.0)
-# xarm7 is told what xarm6 is, and its angles take half a minute to prepare in a new home
+# xarm7 has the language of xarm6, and its angles take half a minute to prepare in a new home
 OTHERS = (*SERVOS, "fr3", "hpgl-plotter", "marlin-servo", "xarm7")
 WAITING = [name for name in cell_names() if name not in OTHERS]
 
@@ -30,8 +30,8 @@ WAITING = [name for name in cell_names() if name not in OTHERS]
 def test_check_accepts_the_first_run_of_every_cell(name, tmp_path, capsys):
     program = tmp_path / f"first{POSTS[find_cell(name).language].extensions[0]}"
     assert in_json(capsys, "setup", "first-run", name, "-o", program)[0] == 0
-    status, _, told = in_json(capsys, "check", program)
-    assert status == 0, told
+    status, _, reported = in_json(capsys, "check", program)
+    assert status == 0, reported
 
 
 @sample("name", WAITING, keep=5)
@@ -49,13 +49,13 @@ def test_it_does_what_a_careful_person_does_in_this_order(name):
     assert asks == [0, 1, 2, 2, 2, 2, 1, *[0] * (len(strokes) - 1), 1]
     assert sections[-1].moves[-1].points_mm[-1, 2] == safe_mm
     for before, move in zip(all_moves(sections), all_moves(sections)[1:], strict=False):
-        if min(before.points_mm[-1, 2], move.points_mm[:, 2].min()) < 1.5:  # the paper may lie 1 mm higher
+        if min(before.points_mm[-1, 2], move.points_mm[:, 2].min()) < 1.5:  # the paper may be 1 mm higher
             assert move.speed_mm_s <= max(cell.speeds.press_mm_s, 15.0)
 
 
 @pytest.mark.parametrize("name", WAITING)
 def test_it_rises_to_its_own_height_and_is_never_lowered_fast(name):
-    """It rose to the safe height, and went on to the height of its air run on a slant, from wherever the tool was."""
+    """It rose to the safe height, and went on to the height of its air run on a slant, from any place."""
     cell = find_cell(name)
     made = first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1)
     moves = all_moves(made.sections())
@@ -87,13 +87,15 @@ def test_it_rises_to_its_own_height_and_is_never_lowered_fast(name):
 )
 def test_a_machine_that_cannot_wait_has_no_first_run(name, program, tmp_path, capsys):
     """A servo's brush would fall, a trajectory would go on."""
-    status, _, told = in_json(capsys, "setup", "first-run", name, "-o", tmp_path / program)
-    assert status == 1 and is_told(told, "cannot-wait") and not (tmp_path / program).exists()
+    status, _, reported = in_json(capsys, "setup", "first-run", name, "-o", tmp_path / program)
+    assert status == 1 and is_reported(reported, "cannot-wait") and not (tmp_path / program).exists()
 
 
 def test_a_pen_that_has_one_height_tries_none(tmp_path, capsys):
-    status, _, told = in_json(capsys, "setup", "first-run", "marlin-servo", "-o", tmp_path / "first.gcode")
-    assert status == 1 and is_told(told, "pen-depth") and not (tmp_path / "first.gcode").exists()
+    status, _, reported = in_json(
+        capsys, "setup", "first-run", "marlin-servo", "-o", tmp_path / "first.gcode"
+    )
+    assert status == 1 and is_reported(reported, "pen-depth") and not (tmp_path / "first.gcode").exists()
 
 
 def all_moves(sections):
@@ -106,11 +108,11 @@ def test_a_first_run_that_was_changed_is_refused(tmp_path, capsys):
     text = program.read_text()
     assert "Y6.0000 Z0.0000" in text
     program.write_text(text.replace("Y6.0000 Z0.0000", "Y6.0000 Z-3.0000", 1))
-    status, _, told = in_json(capsys, "check", program)
-    assert status == 1 and is_told(told, "too-low -3.00")
+    status, _, reported = in_json(capsys, "check", program)
+    assert status == 1 and is_reported(reported, "too-low -3.00")
 
 
 def test_a_sheet_that_is_too_small_is_refused(tmp_path, capsys):
     command = ("setup", "first-run", "linuxcnc-3axis", "-o", tmp_path / "first.ngc", "--sheet", "60x60")
-    status, _, told = in_json(capsys, *command)
-    assert status == 1 and is_told(told, "strokes-out-of-range")
+    status, _, reported = in_json(capsys, *command)
+    assert status == 1 and is_reported(reported, "strokes-out-of-range")

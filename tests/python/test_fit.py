@@ -65,7 +65,7 @@ def test_least_absolute_residuals_is_the_linear_programme(seed):
 
 def test_a_shape_is_held_and_said():
     depth = np.array([1.0, 2, 3, 4, 5, 6, 8, 10])
-    value = np.array([0.5, 1.2, 1.8, 2.6, 2.8, 2.9, 2.7, 2.5])  # narrower again: the ruler lay askew
+    value = np.array([0.5, 1.2, 1.8, 2.6, 2.8, 2.9, 2.7, 2.5])  # narrower again: the ruler was askew
     shape = _core.LawShape(RANGE, 3, through_zero=True, rising=True)
     fit = _core.fit_law(depth, value, shape)
     assert fit.held and not _core.fit_law(depth, value, _core.LawShape(RANGE, 3, through_zero=True)).held
@@ -114,7 +114,7 @@ def test_a_floor_is_found_at_least_as_well_as_by_scipy(seed):
     assert found <= squares * (1 + 1e-9)
     assert fit.law(0.1) == 0
     if found < squares * (1 - 1e-6):
-        return  # scipy stopped in a hollow beside it
+        return  # scipy stopped in a hollow next to it
     np.testing.assert_allclose([fit.law(d) for d in depth], floored(depth, *best), atol=0.01)
     if (
         np.abs(np.polyval(fit.law.coefficients[::-1], depth)).min() > 1e-3
@@ -159,8 +159,8 @@ def test_as_many_values_as_coefficients_leave_nothing_to_judge_by():
 
 
 def best_over_all_subsets(depth, value, degree):
-    """Least squares of max(0, polynomial): whatever may lie on the floor is left out in turn, by numpy; then scipy
-    looks on from there."""
+    """Least squares of max(0, polynomial): each value that may be on the floor is left out in turn, by numpy; then
+    scipy looks on from there."""
     powers = np.vander(depth, degree + 1, increasing=True)
 
     def cost(c):
@@ -190,7 +190,7 @@ def test_the_floor_is_the_best_of_all(seed):
 
 @pytest.mark.parametrize("norm", [_core.Norm.squares, _core.Norm.absolute])
 def test_many_depths_above_a_floor_are_fitted_too(norm):
-    """There are more ways to lie below it than are tried: the likely ones are."""
+    """There are more ways to be below it than are tried: the likely ones are."""
     depth = np.linspace(0.1, 10, 120)
     truth = np.polynomial.Polynomial([-2.35, 2.75, -0.42, 0.024])
     value = np.maximum(0, truth(depth)) + np.random.default_rng(1).normal(0, 0.1, depth.size)
@@ -200,7 +200,7 @@ def test_many_depths_above_a_floor_are_fitted_too(norm):
 
 @pytest.mark.thorough
 @pytest.mark.slow
-def test_a_mark_that_lies_over_itself_all_over_is_refused_by_counted_work():
+def test_a_mark_that_covers_itself_everywhere_is_refused_by_counted_work():
     rng = np.random.default_rng(1)
     poses = np.column_stack([rng.uniform(0, 60, (300, 2)), -rng.uniform(0.5, 5, 300)])
     plan = brushsvg.Plan("round-6", "", (60, 60), [brushsvg.Pass("jumps", poses)])

@@ -27,13 +27,6 @@ def marks(count):
     ]
 
 
-def tracks(count):
-    x = np.linspace(0, 400, 20001)
-    poses = np.column_stack([x, 20 * np.sin(x / 15), np.full_like(x, -5.0)])
-    pose = np.arange(1, 20001)
-    return [_core.Track(poses, pose, poses[1:, :2] - [8.0, 0.0]) for _ in range(count)]
-
-
 def law():
     depth = np.linspace(1, 9, 20000)
     shape = _core.LawShape((0, 10), 3, floor=0.0, norm=_core.Norm.absolute)
@@ -53,11 +46,6 @@ def fit_of_marks():
     return call
 
 
-def fit_of_tracks():
-    given = tracks(40)
-    return lambda: _core.fit_tracks(given, [5.0, 0.1], (0.0, 10.0), displaced=_core.Displaced.both)
-
-
 def union():
     turn = np.linspace(0, 2 * np.pi, 400_000, endpoint=False)
     radius = 80 + 0.01 * np.random.default_rng(1).uniform(-1, 1, turn.size)
@@ -66,7 +54,7 @@ def union():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("made", [law, fit_of_marks, fit_of_tracks, union])
+@pytest.mark.parametrize("made", [law, fit_of_marks, union])
 def test_ctrl_c_is_heard(made):
     call = made()
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnostics import agrees, gives, in_json, is_told, refused
+from diagnostics import agrees, gives, in_json, is_reported, refused
 from programs import RUNNABLE, call
 
 from brushsvg.machine.cells.cell import Workspace
@@ -64,8 +64,8 @@ def drawn(text):
 
 
 def test_inches_circles_and_relative_places():
-    wanted = {6: [50.8, 25.4], 8: [63.5, 38.1], 13: [63.5, 50.8]}
-    assert drawn(INCHES) == wanted
+    target = {6: [50.8, 25.4], 8: [63.5, 38.1], 13: [63.5, 50.8]}
+    assert drawn(INCHES) == target
     (circle,) = [way for way in ways(INCHES) if way.turn]
     assert circle.turn == -1 and circle.centre_mm == pytest.approx((50.8, 38.1))
     assert np.linalg.norm(circle.points_mm[:, :2] - circle.centre_mm, axis=1) == pytest.approx(12.7)
@@ -96,7 +96,7 @@ def test_check_does_not_take_a_tone_for_a_servo(desk, capsys):
     status, _, notices = in_json(
         capsys, "check", "tone.gcode", "--brush", "round-6", "--cell", "marlin-servo"
     )
-    assert status == 1 and is_told(notices, "servo-unknown M300")
+    assert status == 1 and is_reported(notices, "servo-unknown M300")
 
 
 def test_a_servo_stays_down_on_rapid_ways_after_m4():
@@ -111,7 +111,7 @@ def test_a_paint_pot_is_a_dip():
     text = "G21\nG90\nG0 Z10\n" + "".join(pot + line.format(y=20 + 10 * k) for k in range(2))
     design = read_gcode(text.encode(), ReadOptions())
     assert len(design.elements) == 2
-    assert is_told(design.notices, "dips-left-out 2")
+    assert is_reported(design.notices, "dips-left-out 2")
 
 
 def test_a_servos_pen_is_down_between_m3_and_m5():
@@ -121,7 +121,7 @@ def test_a_servos_pen_is_down_between_m3_and_m5():
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "reported"),
     [
         ("G91", "G18", "line-unread 7 G18"),
         ("X2.5", "X#5", "line-unread 13 X#5"),
@@ -140,8 +140,8 @@ def test_a_servos_pen_is_down_between_m3_and_m5():
         ("I0 J0.5", "R99999999999999999999", "line-unread 8"),
     ],
 )
-def test_what_is_not_known_is_refused(old, new, told):
-    with refused(told):
+def test_what_is_not_known_is_refused(old, new, reported):
+    with refused(reported):
         ways(INCHES.replace(old, new, 1))
 
 
@@ -163,7 +163,7 @@ def test_a_line_begins_at_the_first_place_that_is_known(text, lines):
     assert {name: [cubics[0, 0].tolist(), cubics[-1, 3].tolist()] for name, cubics in found.items()} == lines
 
 
-def test_where_nothing_tells_when_the_pen_is_down_it_is_refused():
+def test_where_nothing_shows_when_the_pen_is_down_it_is_refused():
     with refused("pen-unknown"):
         read_pen(ways("G21\nG0 X1 Y1\nG1 X5 Y5 F100\n"))
 
@@ -173,9 +173,9 @@ def test_check_predicts_what_a_brush_paints(desk, capsys):
     assert status == 0 and (desk / "p.png").exists()
     assert RUNNABLE not in out
     status, out, _ = call(capsys, "check", "servo.nc", "--cell", "grbl-servo", "--sheet", "120x100")
-    assert status == 0 and gives(out.splitlines()[0], "2")
+    assert status == 0 and gives(out.splitlines()[1], "2")
     status, _, said = in_json(capsys, "check", "servo.nc")
-    assert status == 1 and is_told(said, "servo-unknown 7 M3")
+    assert status == 1 and is_reported(said, "servo-unknown 7 M3")
 
 
 ANGLES = """G21 G90
@@ -201,7 +201,7 @@ M5
 
 
 @pytest.mark.parametrize(
-    ("program", "typed", "told"),
+    ("program", "typed", "reported"),
     [
         (ANGLES, "", "servo-unknown 3 M280 linuxcnc-3axis"),
         (ANGLES, "--cell grbl-servo", "servo-unknown 3 M280 grbl-servo"),
@@ -212,15 +212,15 @@ M5
         (SPINDLE.replace("Z-1", "Z0"), "", "nothing-painted 0"),
     ],
 )
-def test_what_check_advises_works_when_it_is_typed(desk, capsys, program, typed, told):
+def test_what_check_advises_works_when_it_is_typed(desk, capsys, program, typed, reported):
     """Of M280, M3 and grbl-servo were advised; of a servo, --paper-z."""
     (desk / "f.gcode").write_text(program)
     status, _, ((_, said),) = in_json(capsys, "check", "f.gcode", *typed.split())
-    assert status == 1 and agrees(said, told), said
+    assert status == 1 and agrees(said, reported), said
     advised = re.search(r"--(cell|paper-z) [\w.-]+", said.advice)[0].split()
     status, out, _ = call(capsys, "check", "f.gcode", *advised)
     strokes = "1" if "Z5" in program else "2"
-    assert status == 0 and gives(out.splitlines()[0], strokes)
+    assert status == 0 and gives(out.splitlines()[1], strokes)
 
 
 def test_values_that_no_table_has_ask_for_a_table(desk, capsys):
@@ -236,7 +236,7 @@ def test_values_that_no_table_has_ask_for_a_table(desk, capsys):
     (desk / "mine.toml").write_text(mine)
     assert call(capsys, "check", "f.gcode", "--cell", "mine.toml")[0] == 0
     status, _, said = in_json(capsys, "check", "f.gcode", "--cell", "mine.toml", "--paper-z", "1")
-    assert status == 1 and is_told(said, "flag-without-effect --paper-z")
+    assert status == 1 and is_reported(said, "flag-without-effect --paper-z")
 
 
 def test_without_a_height_nothing_is_advised_for_one(desk, capsys):
@@ -247,7 +247,7 @@ def test_without_a_height_nothing_is_advised_for_one(desk, capsys):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "reported"),
     [
         ("F40", "F400", "speed-out-of-range 169.3"),
         ("Z-0.1", "Z-0.5", "depth-out-of-range 12.700"),
@@ -257,16 +257,16 @@ def test_without_a_height_nothing_is_advised_for_one(desk, capsys):
         ("G0 Z0.2\nM2", "M2", "ends-on-paper 13 -2.54"),
     ],
 )
-def test_check_refuses_what_is_dangerous(desk, capsys, old, new, told):
+def test_check_refuses_what_is_dangerous(desk, capsys, old, new, reported):
     (desk / "bad.gcode").write_text(INCHES.replace(old, new))
     status, _, said = in_json(capsys, "check", "bad.gcode", "--sheet", "90x80")
-    assert status == 1 and is_told(said, told)
+    assert status == 1 and is_reported(said, reported)
 
 
-def test_a_unit_that_is_not_named_is_told(desk, capsys):
+def test_a_unit_that_is_not_named_is_reported(desk, capsys):
     (desk / "f.gcode").write_text("G0 Z5\nG0 X30 Y30\nG1 Z-1 F300\nG1 X60 F600\nG0 Z5\n")
     status, _, said = in_json(capsys, "check", "f.gcode")
-    assert status == 0 and is_told(said, "unit-assumed 1")
+    assert status == 0 and is_reported(said, "unit-assumed 1")
     (desk / "f.gcode").write_text("G21\n" + (desk / "f.gcode").read_text())
     assert in_json(capsys, "check", "f.gcode")[2] == []
 
@@ -277,7 +277,7 @@ def test_convert_takes_its_lines_and_check_agrees(desk, capsys, name):
     status, out, _ = call(capsys, "check", "out.ngc", name, "--width", "3")
     assert status == 0 and RUNNABLE in out
     status, _, said = in_json(capsys, "convert", "out.ngc", "-o", "again.ngc")
-    assert status == 1 and is_told(said, "program-ours")
+    assert status == 1 and is_reported(said, "program-ours")
 
 
 @pytest.mark.parametrize(
@@ -286,11 +286,11 @@ def test_convert_takes_its_lines_and_check_agrees(desk, capsys, name):
 )
 def test_check_refuses_flags_that_would_change_nothing(desk, capsys, flags):
     (desk / "f.ngc").write_text(INCHES)
-    status, _, told = in_json(capsys, "check", "f.ngc", *flags.split())
-    assert status == 1 and is_told(told, f"flag-without-effect {flags.split()[0]}")
+    status, _, reported = in_json(capsys, "check", "f.ngc", *flags.split())
+    assert status == 1 and is_reported(reported, f"flag-without-effect {flags.split()[0]}")
 
 
-def test_a_way_that_leaves_the_workspace_is_told_with_its_line(desk, capsys):
+def test_a_way_that_leaves_the_workspace_is_reported_with_its_line(desk, capsys):
     cell = write_cell(
         replace(
             find_cell("linuxcnc-3axis"),
@@ -303,9 +303,9 @@ def test_a_way_that_leaves_the_workspace_is_told_with_its_line(desk, capsys):
     (desk / "mine.toml").write_text(cell)
     (desk / "far.gcode").write_text(INCHES.replace("G0 X1 Y2\n", "G0 X1 Y3\nG0 X1 Y2\n"))
     assert call(capsys, "check", "inches.gcode", "--cell", "mine.toml")[0] == 0
-    status, _, told = in_json(capsys, "check", "far.gcode", "--cell", "mine.toml")
+    status, _, reported = in_json(capsys, "check", "far.gcode", "--cell", "mine.toml")
     assert status == 1
-    assert is_told(told, "out-of-box 76.2 -20 70", "line 11"), told
+    assert is_reported(reported, "out-of-box 76.2 -20 70", "line 11"), reported
 
 
 FULL = "G90\nG0 Z5\nG0 X60 Y60\nG1 Z-1 F300\n{}\nG0 Z5\nM2\n"
@@ -317,7 +317,7 @@ def test_a_full_circle_is_drawn(desk, capsys, line):
     (circle,) = [way for way in ways(FULL.format(line)) if way.turn]
     assert np.ptp(circle.points_mm[:, :2], axis=0) == pytest.approx([20, 20], abs=0.02)
     assert call(capsys, "convert", "circle.gcode", "-o", "marks.json", "--width", "3")[0] == 0
-    status, out, _ = call(capsys, "check", "circle.gcode")
+    status, out, _ = call(capsys, "check", "circle.gcode", "--json")
     assert status == 0 and re.search(r"circle|line 4", out)
 
 
@@ -332,12 +332,12 @@ def test_a_full_circle_is_drawn(desk, capsys, line):
         ("S0\n", False),
     ],
 )
-def test_a_servo_that_is_down_behind_the_last_line_is_told(desk, capsys, end, is_down):
+def test_a_servo_that_is_down_behind_the_last_line_is_reported(desk, capsys, end, is_down):
     """Its last word is no move; the end of a program lets go of what M3 holds, as M5 does."""
     assert SERVO.endswith("M5\n")
     (desk / "end.nc").write_text(SERVO.removesuffix("M5\n") + end)
     status, _, said = in_json(capsys, "check", "end.nc", "--cell", "grbl-servo", "--sheet", "120x100")
-    assert status == is_down and is_told(said, "ends-on-paper 12 z") == is_down, said
+    assert status == is_down and is_reported(said, "ends-on-paper 12 z") == is_down, said
 
 
 DOTS = {
@@ -363,11 +363,11 @@ def test_a_pen_that_goes_down_and_up_again_draws_a_dot(desk, capsys, pen):
     assert [np.unique(place, axis=0).tolist() for place in places] == [[[60.0, 60.0]], [[70.0, 60.0]]]
     cell = ("--cell", "grbl-servo") if pen == "servo" else ()
     status, out, _ = call(capsys, "check", "dots.gcode", *cell)
-    assert status == 0 and gives(out.splitlines()[0], "2")
+    assert status == 0 and gives(out.splitlines()[1], "2")
 
 
 @pytest.mark.parametrize(
-    ("program", "told"),
+    ("program", "reported"),
     [
         ("G0 Z5\nG0 X50 Y50\nG1 Z-1\nG1 X60\nG0 Z5\n", "speed-out-of-range 4 0"),
         ("G0 Z5\nG0 X50 Y50\nG1 Z-1 F300\nG1 X60 F0\nG0 Z5\n", "speed-out-of-range 4 0"),
@@ -378,11 +378,11 @@ def test_a_pen_that_goes_down_and_up_again_draws_a_dot(desk, capsys, pen):
         ("M3 S500\nG1 X50 Y10 F600\nM5\n", "line-incomplete 2"),
     ],
 )
-def test_check_says_what_is_missing(desk, capsys, program, told):
+def test_check_says_what_is_missing(desk, capsys, program, reported):
     (desk / "bad.gcode").write_text(program)
     cell = ("--cell", "grbl-servo") if "M3" in program else ()
     status, _, said = in_json(capsys, "check", "bad.gcode", *cell)
-    assert status == 1 and is_told(said, told), said
+    assert status == 1 and is_reported(said, reported), said
 
 
 def test_a_program_of_ours_without_its_header_is_known_by_its_strokes(desk, capsys):
@@ -391,5 +391,5 @@ def test_a_program_of_ours_without_its_header_is_known_by_its_strokes(desk, caps
     first = next(k for k, line in enumerate(lines) if line.startswith("(stroke 1 of "))
     (desk / "headless.ngc").write_text("\n".join(["G21 G90", "G0 Z10", *lines[first:]]))
     status, _, said = in_json(capsys, "convert", "headless.ngc", "-o", "again.ngc")
-    assert status == 1 and is_told(said, "program-ours")
+    assert status == 1 and is_reported(said, "program-ours")
     assert call(capsys, "check", "headless.ngc")[0] == 1

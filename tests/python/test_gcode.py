@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import in_json, is_told, refused
+from diagnostics import in_json, is_reported, refused
 from programs import program
 
 from brushsvg import _core, find_brush, read_plan, save_brush, write_cell, write_program
@@ -89,7 +89,7 @@ def test_the_slowest_stroke_still_moves():
 def test_every_language_has_a_program_to_look_at():
     for post in (
         each for name, each in POSTS.items() if name != "robodk"
-    ):  # whatever a user's own post writes
+    ):  # anything a user's own post writes
         assert list(GOLDEN.parent.glob(f"*{post.extensions[0]}")), f"tests/golden has no {post.extensions[0]}"
 
 
@@ -162,8 +162,8 @@ HALF_TURNS = [(40 + 4 * np.cos(a), 30 + 4 * np.sin(a), -2.0) for a in np.linspac
         ("klipper-3axis", 0.6, 0.0, False),
     ],
 )
-def test_circles_are_told_where_the_firmware_keeps_near_them(name, segment_mm, off_mm, is_circle):
-    """FluidNC refuses radii 0.005 mm apart; lines of 0.6 mm lie 0.011 mm beside a circle of 4 mm."""
+def test_circles_are_written_where_the_firmware_keeps_near_them(name, segment_mm, off_mm, is_circle):
+    """FluidNC refuses radii 0.005 mm apart; lines of 0.6 mm are 0.011 mm from a circle of 4 mm."""
     cell = replace(find_cell(name), arc_segment_mm=segment_mm)
     poses = np.array(HALF_TURNS)
     poses[-1, 0] -= off_mm
@@ -272,8 +272,8 @@ def test_check_allows_what_cpp_writes_and_finds_what_was_changed(tmp_path, capsy
     call = ("check", tmp_path / "it.ngc", "--cell", tmp_path / "bench.toml", "--brush", tmp_path / "own.json")
     assert in_json(capsys, *call)[::2] == (0, [])
     (tmp_path / "it.ngc").write_text(cpp_golden("flat_bench.ngc").replace("F300.0", "F900.0", 1))
-    status, _, told = in_json(capsys, *call)
-    assert status == 1 and is_told(told, "program-changed 15.0 5.0")
+    status, _, reported = in_json(capsys, *call)
+    assert status == 1 and is_reported(reported, "program-changed 15.0 5.0")
 
 
 def test_a_stroke_is_read_as_fast_as_its_fastest_move():

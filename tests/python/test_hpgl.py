@@ -1,4 +1,4 @@
-"""HP-GL for pens: what is drawn lies within half a unit of the plan, and what a pen cannot draw is refused."""
+"""HP-GL for pens: what is drawn is within half a unit of the plan, and what a pen cannot draw is refused."""
 
 import re
 from dataclasses import replace
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import in_json, is_told, refused
+from diagnostics import in_json, is_reported, refused
 from judge.hpgl import UNIT_MM, run_hpgl
 from programs import RUNNABLE, call, is_refused_when_damaged, program
 
@@ -70,13 +70,13 @@ def test_golden():
 
 
 @pytest.mark.parametrize("turned_deg", [0.0, 37.0, 90.0])
-def test_what_is_drawn_lies_within_half_a_unit_of_the_plan(turned_deg):
+def test_what_is_drawn_is_within_half_a_unit_of_the_plan(turned_deg):
     rng = np.random.default_rng(5)
     cell = replace(CELL, paper=Paper((120.0, 20.0, 0.0), (0.0, 0.0, turned_deg)))
     lines = [MIDDLE + np.cumsum(rng.uniform(-1, 1, (30, 2)), axis=0) for _ in range(4)]
     found = run(text_for(drawn(*lines), cell), cell)
     frame = robot_from_paper(cell)
-    wanted = [line @ frame[:2, :2].T + frame[:2, 3] for line in lines]
+    target = [line @ frame[:2, :2].T + frame[:2, 3] for line in lines]
     strokes = []
     for leg in found.legs:
         if leg.kind == "jump" and leg.end[2] == DOWN:
@@ -84,7 +84,7 @@ def test_what_is_drawn_lies_within_half_a_unit_of_the_plan(turned_deg):
         elif leg.kind == "feed":
             strokes[-1].append(leg.end[:2])
     assert [len(stroke) for stroke in strokes] == [30] * 4
-    away = np.abs(np.array(strokes) - np.array(wanted)).max()
+    away = np.abs(np.array(strokes) - np.array(target)).max()
     assert UNIT_MM / 4 < away <= UNIT_MM / 2 + 1e-9
 
 
@@ -111,25 +111,25 @@ def test_a_depth_that_the_pen_has_not_is_refused(poses):
         text_for(plan)
 
 
-def test_who_paints_with_a_brush_that_presses_is_told_of_the_pen_and_it_helps(tmp_path, capsys):
+def test_the_pen_is_reported_for_a_brush_that_presses_and_it_helps(tmp_path, capsys):
     (tmp_path / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">'
         '<path id="a" fill="none" stroke="#000" stroke-width="3" d="M20 30Q50 0 80 30"/></svg>'
     )
     words = ("convert", tmp_path / "a.svg", "-o", tmp_path / "a.hpgl", "--cell", "hpgl-plotter")
-    status, _, told = in_json(capsys, *words)
-    assert status == 1 and is_told(told, "pen-depth --brush rigid")
-    status, _, told = in_json(capsys, *words, "--brush", "rigid")
+    status, _, reported = in_json(capsys, *words)
+    assert status == 1 and is_reported(reported, "pen-depth --brush rigid")
+    status, _, reported = in_json(capsys, *words, "--brush", "rigid")
     assert status == 0
 
 
-def test_a_height_of_the_paper_cannot_be_told(tmp_path, capsys):
+def test_a_height_of_the_paper_cannot_be_set(tmp_path, capsys):
     with refused("pen-depth"):
         text_for(TWO, job=Job(0.1))
-    status, _, told = in_json(
+    status, _, reported = in_json(
         capsys, "setup", "height", "--cell", "hpgl-plotter", "--brush", "rigid", "-o", tmp_path / "h.hpgl"
     )
-    assert status == 1 and is_told(told, "pen-depth")
+    assert status == 1 and is_reported(reported, "pen-depth")
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -173,25 +173,25 @@ def test_a_plotter_takes_its_pens_by_the_colours_of_the_cell(tmp_path, capsys, m
     status, _, said = call(capsys, "convert", *words)
     assert status == 0 and said[-1].count(", ") == 2, "how many strokes, how long, how often another pen"
     text = Path("pens.hpgl").read_text()
-    taken, wanted = [], []
+    taken, target = [], []
     for line in text.splitlines():
         if found := re.fullmatch(r"SP(\d);", line):
             taken.append(int(found[1]))
         if found := re.fullmatch(r'CO "paint: pen (\w{6})";', line):
-            wanted.append(1 + own.pen.colours.index(f"#{found[1]}"))
-    assert taken == [*wanted, 0] and len(set(wanted)) == len(colours)
+            target.append(1 + own.pen.colours.index(f"#{found[1]}"))
+    assert taken == [*target, 0] and len(set(target)) == len(colours)
     check = ("check", "pens.hpgl", "pens.svg", "--cell", "own.toml")
     assert RUNNABLE in call(capsys, *check)[1]
-    Path("pens.hpgl").write_text(text.replace(f"SP{wanted[0]};", f"SP{wanted[1]};", 1))
+    Path("pens.hpgl").write_text(text.replace(f"SP{target[0]};", f"SP{target[1]};", 1))
     status, _, said = in_json(capsys, *check)
-    assert status == 1 and is_told(said, "program-changed")
+    assert status == 1 and is_reported(said, "program-changed")
     Path("pens.hpgl").write_text(re.sub('"paint: pen (......)"', '"paint: pen fedcba"', text, count=1))
     status, _, said = in_json(capsys, *check)
-    assert status == 1 and is_told(said, "colour-not-served #fedcba")
+    assert status == 1 and is_reported(said, "colour-not-served #fedcba")
     one = replace(own, pen=replace(own.pen, colours=own.pen.colours[:1]))
     Path("own.toml").write_text(write_cell(one))
     status, _, said = in_json(capsys, "convert", "--force", *words)
-    assert status == 1 and is_told(said, "colour-not-served")
+    assert status == 1 and is_reported(said, "colour-not-served")
 
 
 def test_an_air_run_is_drawn_with_the_pen_up(tmp_path, capsys, monkeypatch):
@@ -223,7 +223,7 @@ def test_a_stroke_that_begins_where_the_one_before_ended_is_set_down_there(tmp_p
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "reported"),
     [
         (r"PA2000,800;\n", "PA2000,8000;\n", "tool-off-sheet"),
         (r"VS2;", "VS30;", "speed-out-of-range"),
@@ -241,12 +241,12 @@ def test_a_stroke_that_begins_where_the_one_before_ended_is_set_down_there(tmp_p
         (r"SP1;", "SP;", "line-incomplete"),
     ],
 )
-def test_check_refuses_what_was_damaged(tmp_path, capsys, old, new, told):
+def test_check_refuses_what_was_damaged(tmp_path, capsys, old, new, reported):
     text = "".join(writer.encode(".hpgl", TWO, pen(25.0), "two", (), CELL))
     (tmp_path / "pen.json").write_text(_core.write_brush(pen(25.0)))
     (tmp_path / "two.hpgl").write_text(text)
     words = ("--cell", "hpgl-plotter", "--brush", tmp_path / "pen.json")
-    assert is_refused_when_damaged(capsys, tmp_path / "two.hpgl", old, new, told, *words)
+    assert is_refused_when_damaged(capsys, tmp_path / "two.hpgl", old, new, reported, *words)
 
 
 def test_a_pen_is_put_away_by_an_sp_alone(tmp_path, capsys):
@@ -258,7 +258,7 @@ def test_a_pen_is_put_away_by_an_sp_alone(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "reported"),
     [
         ({"pen": None}, "key-missing pen"),
         ({"language": "linuxcnc"}, "out-of-range 'pen' linuxcnc"),
@@ -270,8 +270,8 @@ def test_a_pen_is_put_away_by_an_sp_alone(tmp_path, capsys):
         ({"machine": Machine(lean_mm_per_mm=(0.1, 0.0))}, "cell-machine lean_mm_per_mm"),
     ],
 )
-def test_a_cell_that_a_pen_cannot_be_is_refused(change, told):
-    with refused(told):
+def test_a_cell_that_a_pen_cannot_be_is_refused(change, reported):
+    with refused(reported):
         parse_cell(write_cell(replace(CELL, **change)))
 
 
@@ -288,4 +288,4 @@ def test_a_tolerance_finer_than_the_units_is_refused(tmp_path, capsys):
         "rigid",
     )
     status, _, said = in_json(capsys, *words, "--tolerance", "0.04")
-    assert status == 1 and is_told(said, "decimals-too-few 0.025 0.0125 0.01")
+    assert status == 1 and is_reported(said, "decimals-too-few 0.025 0.0125 0.01")

@@ -74,7 +74,7 @@ def test_strokes_alike_are_one_entry_and_unlike_ones_are_not():
     assert len({ink for word, *_, ink in words_of(alike) if word.isdigit()}) == 6
 
 
-def test_numbers_do_not_lie_on_each_other():
+def test_numbers_do_not_overlap():
     crowd = "".join(f'<path d="M{30 + k % 15} {20 + k // 15}h.5" stroke-width=".3"/>' for k in range(150))
     boxes = [(x, y, 11.0 * len(word)) for word, x, y, _ in words_of(crowd) if word.isdigit()]
     assert 15 < len(boxes) < 150
@@ -104,7 +104,7 @@ def test_strokes_that_a_brush_adds_to_a_filled_shape_are_said_to_come():
     assert ";" not in lines
 
 
-def test_lists_stay_on_the_picture_and_entries_lie_on_no_other():
+def test_lists_stay_on_the_picture_and_entries_are_on_no_other():
     """A narrow picture with long names, in the PNG's own font: names of blocks in a DXF are as long."""
     names = [f"INSERT-93.1.{k}/LWPOLYLINE-8{k}" for k in range(9)]
     lines = "".join(

@@ -88,8 +88,8 @@ def touched(robot, cell):
 def test_the_robot_goes_through_the_plans_poses(cell, circles):
     rows = touched(run(text_for(cell)), cell)
     arc = [ARC[0], ARC[4], ARC[8]] if circles else ARC
-    wanted = [*STROKES["n/1"], *STROKES["dot"], STROKES["turn"][0], *arc, *STROKES["turn"][10:]]
-    assert np.array([row[1] for row in rows]) == pytest.approx(np.array(wanted), abs=2e-3)
+    target = [*STROKES["n/1"], *STROKES["dot"], STROKES["turn"][0], *arc, *STROKES["turn"][10:]]
+    assert np.array([row[1] for row in rows]) == pytest.approx(np.array(target), abs=2e-3)
     assert [row[0] for row in rows].count("movc") == circles
     assert max(row[2] for row in rows) <= 20.0 + 1e-9
 

@@ -37,8 +37,8 @@ def test_an_air_run_is_checked_alone_and_with_its_drawing(desk, capsys, name):
     status, out, err = call(capsys, "check", program, "two.svg", "--fit", "90x50")
     assert (status, err) == (0, [])
     assert out.endswith(f"{RUNNABLE}\n")
-    status, _, told = in_json(capsys, "check", program, "two.svg")
-    assert (status, "border-elsewhere" in {each.code for _, each in told}) == (1, True), (
+    status, _, reported = in_json(capsys, "check", program, "two.svg")
+    assert (status, "border-elsewhere" in {each.code for _, each in reported}) == (1, True), (
         "it was fitted into less"
     )
 
@@ -105,7 +105,7 @@ CHANGED = {
 
 
 @pytest.mark.parametrize("kind", CHANGED)
-def test_whatever_was_changed_is_told(desk, capsys, kind):
+def test_any_change_is_reported(desk, capsys, kind):
     job, suffix = kind
     cell = ("--cell", "grbl-servo") if suffix == ".nc" else ()
     drawing = ("two.svg",) if job == "border" else ()
@@ -114,16 +114,16 @@ def test_whatever_was_changed_is_told(desk, capsys, kind):
     assert call(capsys, "check", f"job{suffix}")[0] == 0
     for edit, said in CHANGED[kind]:
         (desk / f"job{suffix}").write_text(edit(text))
-        status, _, told = in_json(capsys, "check", f"job{suffix}")
-        assert (status, any(agrees(each, said) for _, each in told)) == (1, True), (said, told)
+        status, _, reported = in_json(capsys, "check", f"job{suffix}")
+        assert (status, any(agrees(each, said) for _, each in reported)) == (1, True), (said, reported)
 
 
 def test_what_has_no_picture_and_no_drawing_says_so(desk, capsys):
     assert call(capsys, "setup", "height", "-o", "height.ngc")[0] == 0
-    status, _, ((_, told),) = in_json(capsys, "check", "height.ngc", "two.svg")
-    assert (status, told.code) == (1, "nothing-to-compare")
-    status, _, ((_, told),) = in_json(capsys, "check", "height.ngc", "--picture", "x.png")
-    assert (status, told.code) == (1, "nothing-to-show")
+    status, _, ((_, reported),) = in_json(capsys, "check", "height.ngc", "two.svg")
+    assert (status, reported.code) == (1, "nothing-to-compare")
+    status, _, ((_, reported),) = in_json(capsys, "check", "height.ngc", "--picture", "x.png")
+    assert (status, reported.code) == (1, "nothing-to-show")
     status, out, _ = call(capsys, "check", "height.ngc", "--json")
     assert status == 0 and json.loads(out)["heights_mm"] == [1, -1, 0.1]
 
@@ -131,8 +131,8 @@ def test_what_has_no_picture_and_no_drawing_says_so(desk, capsys):
 def test_an_air_run_beyond_the_workspace_is_refused(desk, capsys):
     """Round a job that could never be run itself."""
     (desk / "two.svg").write_text(DRAWING.replace("C40 10 60 10 90 40", "L190 40"))
-    status, _, told = in_json(capsys, "setup", "border", "two.svg", "-o", "border.ngc")
-    assert status == 1 and agrees(told[-1][1], "tool-off-sheet right")
+    status, _, reported = in_json(capsys, "setup", "border", "two.svg", "-o", "border.ngc")
+    assert status == 1 and agrees(reported[-1][1], "tool-off-sheet right")
     assert not (desk / "border.ngc").exists()
 
 

@@ -78,7 +78,7 @@ def test_widths_run_on_through_the_joint():
     assert np.interp([0, 30, 35, 40], at * 40, half) == pytest.approx([1, 2, 2, 3])
 
 
-def test_lines_are_joined_only_when_asked_and_check_knows(tmp_path, capsys):
+def test_lines_are_joined_only_when_requested_and_check_knows(tmp_path, capsys):
     paths = f'<path id="a" d="M10 30H40" {LINE}/><path id="b" d="M40 30L70 40" {LINE}/>'
     drawing, program = tmp_path / "two.svg", tmp_path / "two.ngc"
     drawing.write_text(

@@ -1,4 +1,4 @@
-"""Where thick limbs meet: shapes that lines with a width made are painted by these lines again, straight beside what
+"""Where thick limbs meet: shapes that lines with a width made are painted by these lines again, straight next to what
 joins them, and as wide where they end in another as before."""
 
 import numpy as np
@@ -9,7 +9,7 @@ from brushsvg import _core
 from brushsvg.strokes.skeleton import outline_strokes
 from brushsvg.strokes.swept_areas import region
 
-SEEN_MM = 0.15  # what of a shape lies deeper in it and stays bare, or is painted farther out, one sees
+SEEN_MM = 0.15  # where a shape stays bare deeper in, or paint is farther outside, one sees it
 
 EDGE_MM = 0.15
 
@@ -77,17 +77,17 @@ def test_thick_limbs_leave_no_wedge_bare_and_stick_out_nowhere(name):
     shape, strokes = found(name)
     painted = region(_core.unite([ring for each in strokes for ring in _core.wanted_outline(each, 0.01)]))
     bare = shapely.difference(shape.buffer(-SEEN_MM), painted).area
-    beside = shapely.difference(painted, shape.buffer(SEEN_MM)).area
-    assert bare < (2.5 if name == "a" else 1.0) and beside < 0.05, (bare, beside)
+    near_by = shapely.difference(painted, shape.buffer(SEEN_MM)).area
+    assert bare < (2.5 if name == "a" else 1.0) and near_by < 0.05, (bare, near_by)
 
 
 @pytest.mark.parametrize("name", ["a", "thin a", "d", "q"])
-def test_a_stem_beside_a_bowl_keeps_its_straight_edge(name):
+def test_a_stem_next_to_a_bowl_keeps_its_straight_edge(name):
     _, strokes = found(name)
     painted = region(_core.unite([ring for each in strokes for ring in _core.wanted_outline(each, 0.01)]))
     (x, top), (_, bottom) = SHAPES[name][1][0][[0, -1]]
-    beside = shapely.box(x, bottom + 2, x + 10, top - 2)
-    edge = shapely.get_coordinates(shapely.intersection(painted, beside).boundary)
+    near_by = shapely.box(x, bottom + 2, x + 10, top - 2)
+    edge = shapely.get_coordinates(shapely.intersection(painted, near_by).boundary)
     edge = edge[(edge[:, 0] > x + 1) & (edge[:, 1] > bottom + 2.01) & (edge[:, 1] < top - 2.01)]
     assert np.abs(edge[:, 0] - (x + 3.9)).max() < EDGE_MM, np.ptp(edge[:, 0])
 
@@ -106,7 +106,7 @@ def test_the_arm_of_a_k_runs_on_into_its_stem_as_wide_as_it_is():
 
 
 @pytest.mark.parametrize("name", LIMBS)
-def test_limbs_that_meet_beside_a_stem_leave_no_wedges_there(name):
+def test_limbs_that_meet_next_to_a_stem_leave_no_wedges_there(name):
     shape, strokes = found(name)
     painted = region(_core.unite([ring for each in strokes for ring in _core.wanted_outline(each, 0.01)]))
     bare = shapely.difference(shape.buffer(-SEEN_MM), painted)
@@ -114,7 +114,7 @@ def test_limbs_that_meet_beside_a_stem_leave_no_wedges_there(name):
     assert shapely.difference(painted, shape.buffer(SEEN_MM)).area < 0.05
 
 
-def test_a_serif_beside_the_leg_of_an_m_keeps_its_height_and_its_width():
+def test_a_serif_next_to_the_leg_of_an_m_keeps_its_height_and_its_width():
     leg = np.array([(-11.7, 6.0), (-8.6, 6.0), (1.3, 28.0), (1.3, 30.0), (-0.9, 30.0)])
     boxes = [((0, 0), (8.7, 30)), ((0, 27.2), (13.0, 30))]
     corners = [np.array([a, (b[0], a[1]), b, (a[0], b[1])], float) for a, b in boxes]

@@ -54,7 +54,7 @@ def test_fit_fills_the_size_in_the_middle_of_the_sheet():
     assert y1 - y0 == pytest.approx(30)
 
 
-def test_fit_scales_widths_but_not_those_asked_for():
+def test_fit_scales_widths_but_not_requested_ones():
     drawn = arrange(read('<path d="M0 0H10"/>'), Layout(fit_mm=(22, 90)))
     assert drawn.elements[0].stroke_width_mm == pytest.approx(2)
     kept = arrange(read('<path d="M0 0H10"/>'), Layout(fit_mm=(22, 90), width_mm=2.0))
@@ -77,7 +77,7 @@ def test_what_cannot_be_fitted():
         box(Layout(fit_mm=(10, 10), width_mm=2.0), '<path d="M5 5z"/>')
 
 
-def test_with_a_width_nothing_is_told_of_those_of_the_drawing():
+def test_with_a_width_nothing_is_reported_about_those_of_the_drawing():
     design = read('<path id="a" transform="scale(1 2)" d="M10 10H50"/><text id="t">A</text>')
     assert [each.code for each in design.notices] == ["stretched-unevenly", "text-unread"]
     arranged = arrange(design, Layout(width_mm=3.0))

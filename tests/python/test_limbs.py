@@ -1,4 +1,4 @@
-"""Limbs that are thin beside what they leave are painted, and corners grow none."""
+"""Limbs that are thin next to what they leave are painted, and corners grow none."""
 
 import warnings
 
@@ -87,13 +87,13 @@ def test_the_end_of_a_stem_is_painted_where_its_ear_leaves_it_near_the_top(d, en
 
 
 def test_a_stem_inside_of_a_crossing_is_painted():
-    """A thick stem between a bar and its foot lay in the crossing of both, where no line ran."""
+    """A thick stem between a bar and its foot was in the crossing of both, where no line ran."""
     made = found("M20 5H28V33H33V37H28V42H32V45H16V42H20V37H8V33H20Z")
     assert reached(made, 20.5, 36, 27.5, 42) > 0.9
 
 
 @pytest.mark.parametrize(("top", "slant_deg"), [(5, 0), (8, 16)])
-def test_the_stem_of_an_a_runs_from_its_top_to_its_foot_beside_the_bowl(top, slant_deg):
+def test_the_stem_of_an_a_runs_from_its_top_to_its_foot_next_to_the_bowl(top, slant_deg):
     """Bowl and stem meet in necks; the first became a ring through both of them, with the foot left over; at the second
     the stem began where the bowl leaves it."""
     outer = (

@@ -25,7 +25,7 @@ CALLS = {
     "a ring": lambda: brushsvg.area([LONG]),
     "a ring that is one row": lambda: brushsvg.area([all_rows(2)]),
     "a thousand rings": lambda: brushsvg.area([np.zeros((10**5, 2))] * 1000),
-    "rings beside rings": lambda: brushsvg.overlap([SQUARE], [SQUARE, LONG]),
+    "rings next to rings": lambda: brushsvg.overlap([SQUARE], [SQUARE, LONG]),
     "points": lambda: _core.convex_hull(LONG),
     "poses": lambda: brushsvg.Pass("a", LONG),
     "poses that are one": lambda: brushsvg.Pass("a", all_rows(3)),
@@ -106,7 +106,7 @@ def test_rows_may_come_in_any_form(ring):
     assert np.array_equal(poses[:, :2], SQUARE)
 
 
-def test_laws_answer_in_the_shape_they_are_asked():
+def test_laws_answer_in_the_shape_of_their_arguments():
     lag = brushsvg.find_brush("round-6").lag
     assert isinstance(lag(3), float) and lag([1, 2]).shape == (2,)
     assert lag(np.full((2, 3), 3.0)).tolist() == [[lag(3)] * 3] * 2

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import in_json, is_told
+from diagnostics import in_json, is_reported
 from judge.ebb import run_ebb
 from programs import LANGUAGES, RUNNABLE, call
 from test_fanuc import waves
@@ -29,7 +29,7 @@ NO_LIMIT = 10**9
 
 
 def files_of(path: Path) -> list[Path]:
-    """A job's files in the order in which they run, the one that was asked for first."""
+    """A job's files in the order in which they run, the one that was requested first."""
     others = [other for other in path.parent.glob(f"*{path.suffix}") if other != path]
     return [path, *sorted(others, key=lambda other: int(re.search(r"\d+$", other.stem)[0][-3:]))]
 
@@ -55,10 +55,10 @@ def job(request, tmp_path, capsys, monkeypatch):
         with monkeypatch.context() as patch:
             if path.parent.name == "whole":
                 patch.setitem(cell.MOST_LINES, find_cell(name).language, NO_LIMIT)
-            status, _, told = call(
+            status, _, reported = call(
                 capsys, "convert", str(tmp_path / "waves.json"), "-o", str(path), "--cell", name
             )
-            assert status == 0, told
+            assert status == 0, reported
     assert files_of(paths[0]) == paths[:1]
     return name, paths[1], text_of(paths[:1])
 
@@ -77,8 +77,8 @@ def test_a_long_job_is_several_programs_that_do_what_one_would(job, capsys):
             f"{NEXT} {count}" for count in (2, 3)
         ]
     for plan in ([], [str(first.parents[1] / "waves.json")]):
-        status, out, told = call(capsys, "check", str(first), *plan)
-        assert status == 0 and RUNNABLE in out, told
+        status, out, reported = call(capsys, "check", str(first), *plan)
+        assert status == 0 and RUNNABLE in out, reported
 
 
 def test_python_has_the_same_texts_by_the_same_names(job):
@@ -100,10 +100,10 @@ def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
     before = [path.read_bytes() for path in files]
 
     def refused_with(*codes: str) -> bool:
-        status, _, told = in_json(capsys, "check", first, first.parents[1] / "waves.json")
+        status, _, reported = in_json(capsys, "check", first, first.parents[1] / "waves.json")
         for path, data in zip(files, before, strict=True):
             path.write_bytes(data)
-        return status == 1 and any(is_told(told, code) for code in codes)
+        return status == 1 and any(is_reported(reported, code) for code in codes)
 
     assert not refused_with("")
     files[1].unlink()
@@ -123,10 +123,10 @@ def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
         files[1].write_bytes(before[1].replace(b"go on with part 3", b"go on with part 2"))
         assert refused_with("line-unread")
         for part in files[1:]:
-            status, _, told = in_json(capsys, "check", part)
-            assert status == 1 and is_told(told, "program-cut-short")
-        status, _, told = in_json(capsys, "check", files[1])
-        assert is_told(told, f"program-cut-short {first.name}")
+            status, _, reported = in_json(capsys, "check", part)
+            assert status == 1 and is_reported(reported, "program-cut-short")
+        status, _, reported = in_json(capsys, "check", files[1])
+        assert is_reported(reported, f"program-cut-short {first.name}")
     else:
         calls = [f"{path.stem}()\r\n".encode() for path in files[1:]]
         first.write_bytes(before[0].replace(calls[0] + calls[1], calls[1] + calls[0]))
@@ -138,8 +138,8 @@ def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
 def test_a_stroke_of_more_lines_is_one_program_and_a_warning(tmp_path, capsys):
     (tmp_path / "a.json").write_text(_core.write_plan(waves(3, 1200)))
     words = "convert", tmp_path / "a.json", "-o", tmp_path / "a.script", "--cell", "ur5e"
-    status, _, told = in_json(capsys, *words)
-    assert status == 0 and is_told(told, "poses-too-many 1204 1000")
+    status, _, reported = in_json(capsys, *words)
+    assert status == 0 and is_reported(reported, "poses-too-many 1204 1000")
     assert len(files_of(tmp_path / "a.script")) == 3
     assert RUNNABLE in call(capsys, "check", str(tmp_path / "a.script"), str(tmp_path / "a.json"))[1]
 
@@ -151,9 +151,9 @@ def test_parts_of_an_earlier_job_are_named(tmp_path, capsys, name, parts):
     output = tmp_path / f"a{LANGUAGES[name]}"
     for strokes in (3, 1):
         (tmp_path / "a.json").write_text(_core.write_plan(waves(strokes, 1200 if name == "ur5e" else 700)))
-        status, _, told = in_json(capsys, "convert", tmp_path / "a.json", "-o", output, "--cell", name)
+        status, _, reported = in_json(capsys, "convert", tmp_path / "a.json", "-o", output, "--cell", name)
         assert status == 0
-        named = [each for _, each in told if each.code == "programs-of-before"]
+        named = [each for _, each in reported if each.code == "programs-of-before"]
         assert len(named) == (strokes == 1) and all(
             re.search(parts.replace(" ", ", "), each.sentence) for each in named
         )
@@ -185,8 +185,8 @@ def test_a_page_of_a_thousand_strokes(name, tmp_path, capsys, monkeypatch):
                 patch.setattr(ebb, "LEAST_MS", 1)
                 for language in cell.MOST_LINES:
                     patch.setitem(cell.MOST_LINES, language, NO_LIMIT)
-            status, _, told = call(capsys, "convert", words[0], "-o", str(path), *words[1:])
-            assert status == 0, told
+            status, _, reported = call(capsys, "convert", words[0], "-o", str(path), *words[1:])
+            assert status == 0, reported
         texts.append(text_of(files_of(path)))
         if folder == "parts":
             lines = [each.read_bytes().count(b"\n") for each in files_of(path)]

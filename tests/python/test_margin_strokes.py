@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from diagnostics import in_json, is_told
+from diagnostics import in_json, is_reported
 from shapely.geometry import Polygon, box
 
 import brushsvg
@@ -128,8 +128,8 @@ def test_where_there_is_no_room_none_is_added_and_a_notice_says_so(desk, capsys,
     text = (desk / "mine.toml").read_text()
     (desk / "mine.toml").write_text(text.replace("[workspace]", f"[workspace]\n{cell}"))
     words = "convert word.svg -o job.ngc --brush mine.json --cell mine.toml --page page.svg".split()
-    status, out, told = in_json(capsys, *words)
-    assert status == 0 and is_told(told, "margin-strokes-left-out", "margin"), told
+    status, out, reported = in_json(capsys, *words)
+    assert status == 0 and is_reported(reported, "margin-strokes-left-out", "margin"), reported
     assert "margin strokes" not in out
     check = brushsvg.check("job.ngc", "word.svg", brush="mine.json", cell="mine.toml")
     assert not check.problems and len(check.plan.passes) == 2

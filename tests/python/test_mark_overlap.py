@@ -49,10 +49,10 @@ def test_pixels_agree_with_rings():
     trace_outlines(marks, brush)
     for some in (slice(0, 1), slice(0, 12)):
         painted = _core.unite([ring for trace in marks.passes[some] for ring in trace.outline_mm])
-        wanted = _core.unite([ring for s in strokes[some] for ring in _core.wanted_outline(s, 0.01)])
+        target = _core.unite([ring for s in strokes[some] for ring in _core.wanted_outline(s, 0.01)])
         found = _core.common_area(marks.passes[some], strokes[some], brush)
-        assert found.overlap == pytest.approx(_core.overlap(painted, wanted), abs=1e-3)
-        assert found.together_mm2 == pytest.approx(_core.area(_core.unite([*painted, *wanted])), rel=1e-3)
+        assert found.overlap == pytest.approx(_core.overlap(painted, target), abs=1e-3)
+        assert found.together_mm2 == pytest.approx(_core.area(_core.unite([*painted, *target])), rel=1e-3)
 
 
 def test_groups_are_judged_as_each_alone():
@@ -66,9 +66,9 @@ def test_groups_are_judged_as_each_alone():
     ]
     assert found == alone
     assert len({area.overlap for area in found}) == 4
-    with pytest.raises(Error) as told:
+    with pytest.raises(Error) as reported:
         _core.common_areas(marks, strokes, [[0], [1, 5]], brush)
-    assert told.value.code == "out-of-range"
+    assert reported.value.code == "out-of-range"
 
 
 def test_misses_are_those_of_each_pass():
@@ -80,6 +80,6 @@ def test_misses_are_those_of_each_pass():
     pairs = zip(passes, strokes, strict=True)
     assert found == [_core.tracking_error_of(one, stroke, brush, 0.2) for one, stroke in pairs]
     assert [miss.within_tolerance for miss in found] == [True, False, True]
-    with pytest.raises(Error) as told:
+    with pytest.raises(Error) as reported:
         _core.tracking_errors_of(passes, strokes[:2], brush)
-    assert told.value.code == "sizes-differ"
+    assert reported.value.code == "sizes-differ"

@@ -16,12 +16,12 @@ from brushsvg.machine.cells.cell import not_undone, why_no_backlash
 from brushsvg.machine.cells.cell_file import cell_names, find_cell
 
 
-def test_overlaps_count_marks_where_they_lie_and_without_their_displacement():
+def test_overlaps_count_marks_where_they_are_and_without_their_displacement():
     brush = brush_of(_core.MarkLaws([4.0], [0.0, 0.5], [0.0, 0.5]), "b", (0.0, 6.0))
     ways = [np.array([[20, 20 + y, 0], [30, 20 + y, -4], [60, 25 + y, -4.0]]) for y in (0.0, 40.0)]
     marks = _core.simulate(_core.Plan("b", "", (1.0, 1.0), [_core.Pass("", way) for way in ways]), brush)
     _core.trace_outlines(marks, brush)
-    # the sheet lies elsewhere, and the second mark is 1.5 mm off on it
+    # the sheet is elsewhere, and the second mark is 1.5 mm off on it
     moved = [np.array([3.0, -2.0]), np.array([3.0, -0.5])]
     painted = [
         _core.PaintedMark(str(k), way, [np.array(ring) + by for ring in one.outline_mm])
@@ -37,12 +37,12 @@ def test_overlaps_count_marks_where_they_lie_and_without_their_displacement():
             for d, way in zip(([0.0, 0.0], [0.0, 1.5]), ways, strict=True)
         ],
     )
-    lying, without = overlaps(SimpleNamespace(brush=brush, fit=fit, painted=Painted(painted, 4.0, 2)))
+    placed, without = overlaps(SimpleNamespace(brush=brush, fit=fit, painted=Painted(painted, 4.0, 2)))
     assert without == pytest.approx(1.0, abs=1e-3)
     rings = marks.passes[1].outline_mm
     second = _core.overlap([np.add(ring, [0.0, 1.5]) for ring in rings], rings)
     assert second < 0.7
-    assert lying == pytest.approx((1.0 + second) / 2, abs=1e-3)
+    assert placed == pytest.approx((1.0 + second) / 2, abs=1e-3)
 
 
 def test_a_law_keeps_its_own_rows_of_the_covariance_where_a_power_of_another_is_nothing():
@@ -51,8 +51,8 @@ def test_a_law_keeps_its_own_rows_of_the_covariance_where_a_power_of_another_is_
     laws = _core.MarkLaws([3.0, 1.0], [0.0, 0.4], [0.0, 0.5, -0.01], 1.9, 1.0, False, ratio)
     variances = np.array([1, 2, 3, 4, 5, *[6] * len(ratio), 7, 8, 9, 10, 11]) * 1e-4
     brush = brush_of(laws, "b", (0.0, 8.0), np.diag(variances))
-    wanted = _core.deviations_of_95() * np.sqrt([0.0, 4e-4, 5e-4])
-    assert brush.half_width.half_interval_95 == pytest.approx(wanted)
+    target = _core.deviations_of_95() * np.sqrt([0.0, 4e-4, 5e-4])
+    assert brush.half_width.half_interval_95 == pytest.approx(target)
     assert len(brush.tip_to_widest.coefficients) == len(brush.tip_to_widest.half_interval_95) == 6
 
 

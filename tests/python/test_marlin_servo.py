@@ -77,8 +77,8 @@ def test_what_is_drawn_is_the_plan_and_check_takes_it(seed):
         elif leg.kind == "feed" and leg.end[2] == DOWN:
             strokes[-1].append(leg.end[:2])
             assert leg.speed_mm_s <= plan.passes[0].speed_mm_s
-    wanted = [line @ turn.T + (12.0, 20.0) for line in lines]
-    assert np.abs(np.array(strokes) - np.array(wanted)).max() <= 0.5e-3 + 1e-9
+    target = [line @ turn.T + (12.0, 20.0) for line in lines]
+    assert np.abs(np.array(strokes) - np.array(target)).max() <= 0.5e-3 + 1e-9
     ran = simulate_program.run(read_program(text, ".gcode", cell), find_brush("rigid"), cell, SHEET)
     assert ran.problems == []
     assert against_plan.with_plan(ran, in_loads(plan, find_brush("rigid"), cell), cell)[1] == []
@@ -99,7 +99,7 @@ def test_it_stops_for_a_pen_of_another_colour(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "reported"),
     [
         (r"M400\nM280 P0 S40", "M280 P0 S40", "mode-missing"),
         (r"M400\n", "M00\n", "program-changed"),
@@ -114,16 +114,16 @@ def test_it_stops_for_a_pen_of_another_colour(tmp_path, capsys):
         (r"\nM400\n; end.*\n", "\n", "program-cut-short"),
     ],
 )
-def test_check_refuses_what_was_damaged(tmp_path, capsys, old, new, told):
+def test_check_refuses_what_was_damaged(tmp_path, capsys, old, new, reported):
     text = "".join(writer.encode(".gcode", TWO, find_brush("rigid"), "two", (), CELL))
     (tmp_path / "plan.json").write_text(_core.write_plan(TWO))
     (tmp_path / "two.gcode").write_text(text)
     words = (tmp_path / "plan.json", "--cell", "marlin-servo")
-    assert is_refused_when_damaged(capsys, tmp_path / "two.gcode", old, new, told, *words)
+    assert is_refused_when_damaged(capsys, tmp_path / "two.gcode", old, new, reported, *words)
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "reported"),
     [
         ({"pen": None}, "key-missing pen"),
         ({"pen": Pen(-0.2)}, "servo-table"),
@@ -134,6 +134,6 @@ def test_check_refuses_what_was_damaged(tmp_path, capsys, old, new, told):
         ({"stations": (Station("ink", (120.0, 10.0), depth_mm=1.0),)}, "cell-station"),
     ],
 )
-def test_a_cell_that_such_a_pen_cannot_be_is_refused(change, told):
-    with refused(told):
+def test_a_cell_that_such_a_pen_cannot_be_is_refused(change, reported):
+    with refused(reported):
         parse_cell(write_cell(replace(CELL, **change)))

@@ -130,7 +130,7 @@ def changed(content, path, value):
     return out
 
 
-def told(path):
+def reported(path):
     return "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in path).lstrip(".")
 
 
@@ -164,7 +164,7 @@ def calibrated(tmp_path, capsys, monkeypatch):
     ("name", "path"),
     [(name, path) for name, content in MEASURED.items() for path in places(content)]
     + [("painted", path) for path in places(painted())],
-    ids=lambda each: told(each) if isinstance(each, tuple) else each,
+    ids=lambda each: reported(each) if isinstance(each, tuple) else each,
     keep=45,
 )
 def test_a_number_of_a_measurement_is_bounded_by_what_it_means(name, path, calibrated):
@@ -190,9 +190,9 @@ def test_a_number_of_a_measurement_is_bounded_by_what_it_means(name, path, calib
         (("marks", 0, "outline_mm", 0, 0, 1), GONE),
         (("expected", "turn_deg"), -1),
     ],
-    ids=lambda each: told(each) if isinstance(each, tuple) else "gone" if each is GONE else None,
+    ids=lambda each: reported(each) if isinstance(each, tuple) else "gone" if each is GONE else None,
 )
-def test_what_lies_just_beyond_is_refused_before_marks_are_fitted(path, value, calibrated):
+def test_what_is_just_beyond_is_refused_before_marks_are_fitted(path, value, calibrated):
     assert calibrated(json.dumps(changed(painted(), path, value)))
 
 
@@ -209,9 +209,9 @@ def test_what_lies_just_beyond_is_refused_before_marks_are_fitted(path, value, c
         *(("sums", ("straight", 1, "path_mm"), value) for value in (0, -1, GONE)),
         *(("sums", ("straight", 1, "distance_mm"), value) for value in (-1000, GONE)),
     ],
-    ids=lambda each: told(each) if isinstance(each, tuple) else "gone" if each is GONE else str(each),
+    ids=lambda each: reported(each) if isinstance(each, tuple) else "gone" if each is GONE else str(each),
 )
-def test_what_lies_just_beyond_is_refused(name, path, value, calibrated):
+def test_what_is_just_beyond_is_refused(name, path, value, calibrated):
     assert calibrated(json.dumps(changed(MEASURED[name], path, value)))
 
 
@@ -246,7 +246,7 @@ CHART = json.loads(write_chart(chart(ROUND, (148.0, 210.0), "few")))
         if not {2, 3} & set(path[:-1])
     ]
     + [("plan", "sheet_mm", 0), ("plan", "passes", 0, "poses_mm", 0, 2), ("plan", "passes", 0, "speed_mm_s")],
-    ids=told,
+    ids=reported,
     keep=15,
 )
 def test_a_number_of_a_chart_is_bounded_by_what_it_means(path):
@@ -258,8 +258,8 @@ def test_a_number_of_a_chart_is_bounded_by_what_it_means(path):
         try:
             read_chart(json.dumps(changed(CHART, path, value)).encode())
         except Error as refusal:
-            told_where = refusal.where.split("[")[0].split(".")[0]
-            assert told_where in (str(path[0]), "sheet_mm"), (words, refusal.where)
+            reported_where = refusal.where.split("[")[0].split(".")[0]
+            assert reported_where in (str(path[0]), "sheet_mm"), (words, refusal.where)
             assert 10 < len(str(refusal)) < 200
         else:
             if not (path[0] == "plan" and path[-1] == 2 and value == -1):

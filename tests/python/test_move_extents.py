@@ -71,7 +71,7 @@ def test_the_least_and_greatest_are_those_of_all_places_on_the_way(frame, start,
 
 
 @given(FRAME, POINT, POINT, circles(), POINT, st.tuples(*[st.floats(0.5, 300)] * 3))
-def test_whoever_goes_through_a_box_is_found_there(frame, start, end, circle, corner, size):
+def test_a_way_through_a_box_is_found_there(frame, start, end, circle, corner, size):
     low, high = np.array(corner), np.add(corner, size)
     some, places, step_mm = both(frame, start, end, circle)
     place = place_inside(some, low, high)
@@ -79,12 +79,12 @@ def test_whoever_goes_through_a_box_is_found_there(frame, start, end, circle, co
         assert place is not None
     if place is not None:
         assert (place > low - 1e-9).all() and (place < high + 1e-9).all()
-        assert np.linalg.norm(places - place, axis=1).min() <= step_mm, "it lies on the way"
+        assert np.linalg.norm(places - place, axis=1).min() <= step_mm, "it is on the way"
 
 
 @given(FRAME, circles(rise=st.floats(-100, 100)), POINT, st.tuples(*[st.floats(0.5, 300)] * 3))
 def test_a_circle_that_climbs_is_never_judged_too_kindly(frame, circle, corner, size):
-    """Only programs that were changed have one; all that circle and climb span is asked instead."""
+    """Only programs that were changed have one; all that circle and climb span is checked instead."""
     some, places = ways_in(frame, ways([], [circle[:3]])), moved(frame, sampled(circle))
     low, high = bounds(some)
     assert (low <= places + 1e-9).all() and (high >= places - 1e-9).all()
@@ -96,7 +96,7 @@ def test_a_circle_that_climbs_is_never_judged_too_kindly(frame, circle, corner, 
 
 
 def test_a_circle_that_ends_where_it_starts_goes_all_the_way_round():
-    """As machines run it, and as no places of its ends tell."""
+    """As machines run it, and as no places of its ends show."""
     some = ways([], [((10, 0, -2), (10, 0, -2), (7, 0, 1))])
     low, high = bounds(some)
     assert np.vstack([low, high]) == pytest.approx(np.array([(4, -3, -2), (10, 3, -2)], dtype=float))
@@ -139,7 +139,7 @@ def test_a_circle_that_climbs_through_a_box_on_its_way_is_found():
     assert place_inside(half, (-1, -11, 3), (1, -9, 5)) is None
 
 
-def test_the_nearest_place_of_a_climbing_circle_lies_on_its_way():
+def test_the_nearest_place_of_a_climbing_circle_is_on_its_way():
     climbing = ways([], [((2, 0, -3), (2, 0, 5), (0, 0, 1))])  # round the z axis: nearest where it passes z 0
     assert from_origin(climbing) == pytest.approx((2.0, math.hypot(2, 5)))
 

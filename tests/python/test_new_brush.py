@@ -197,20 +197,18 @@ def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "w.csv").write_text("depth_mm,width_mm\n3,2.5\n8,7\n")
     assert main("brush new -o mine.json --lag 5 --width-at 3=2.5 --width-at 8=7 --depth-max 10".split()) == 0
-    told = capsys.readouterr().out
-    assert gives(told, "lag", "tip_gap", "tip_to_widest", "8 mm", "8.9 mm", "10 mm")
+    reported = capsys.readouterr().out
+    assert gives(reported, "lag", "tip_gap", "tip_to_widest", "8 mm", "8.9 mm", "10 mm")
     assert main("brush new -o flat.json --lag 5 --width-at 3=2.5 --width-at 8=7".split()) == 0
-    assert not gives(capsys.readouterr().out, "tip_to_widest", "8 mm"), (
-        "nothing lies beyond what was measured"
-    )
+    assert not gives(capsys.readouterr().out, "tip_to_widest", "8 mm"), "nothing is beyond what was measured"
     words = "brush new -o deep.json --lag-at 2=5 --lag-at 6=11 --width-at 3=2.5 --width-at 8=7".split()
     assert main(words) == 0
-    told = capsys.readouterr().out
-    assert gives(told, "tip_gap", "tip_to_widest", "6 mm", "14.0 mm", "8 mm")
+    reported = capsys.readouterr().out
+    assert gives(reported, "tip_gap", "tip_to_widest", "6 mm", "14.0 mm", "8 mm")
     assert find_brush("deep.json").lag.coefficients == pytest.approx((2.0, 1.5))
     words = "brush new -o sub/mine.json --lag 5 --widths w.csv --depth-max 10".split()
-    status, _, ((_, told),) = in_json(capsys, *words)
-    assert status == 1 and agrees(told, "file-unwritable")
+    status, _, ((_, reported),) = in_json(capsys, *words)
+    assert status == 1 and agrees(reported, "file-unwritable")
     assert main("brush new -o ./table.json --lag 5 --widths w.csv --depth-max 10 --speed 12".split()) == 0
     mine, table = (json.loads((tmp_path / f"{name}.json").read_text()) for name in ("mine", "table"))
     assert mine.pop("name") == "mine" and table.pop("name") == "table"
@@ -278,16 +276,16 @@ def test_wrong_usage(typed, said, tmp_path, monkeypatch, capsys):
 )
 def test_what_makes_no_brush_is_refused(typed, file, said, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    status, _, ((about, told),) = in_json(capsys, *typed.split())
-    assert (status, about) == (1, file) and agrees(told, said), told
+    status, _, ((about, reported),) = in_json(capsys, *typed.split())
+    assert (status, about) == (1, file) and agrees(reported, said), reported
     assert not list(tmp_path.iterdir())
 
 
 def test_a_brush_is_not_written_over(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.json").write_text("somebody's")
-    status, _, ((_, told),) = in_json(capsys, *"brush new -o mine.json --lag 5 --width-at 3=2".split())
-    assert (status, told.code) == (1, "file-exists")
+    status, _, ((_, reported),) = in_json(capsys, *"brush new -o mine.json --lag 5 --width-at 3=2".split())
+    assert (status, reported.code) == (1, "file-exists")
     assert (tmp_path / "mine.json").read_text() == "somebody's"
 
 
@@ -314,22 +312,22 @@ def answered(monkeypatch, capsys, words, answers):
     return main([*map(str, words)]), capsys.readouterr().out, shown.getvalue()
 
 
-def test_a_terminal_is_asked_at_three_depths_and_shows_the_flags_that_do_the_same(
+def test_a_terminal_prompts_for_three_depths_and_shows_the_flags_that_do_the_same(
     tmp_path, monkeypatch, capsys
 ):
-    asked, typed = tmp_path / "asked.json", tmp_path / "typed.json"
+    requested, typed = tmp_path / "asked.json", tmp_path / "typed.json"
     answers = "2 1.5 4 nonsense 5 3,5 6 8 5 7.5".split()
-    status, out, shown = answered(monkeypatch, capsys, ["brush", "new", "-o", asked], answers)
-    assert status == 0 and out.startswith(str(asked))
+    status, out, shown = answered(monkeypatch, capsys, ["brush", "new", "-o", requested], answers)
+    assert status == 0 and out.startswith(str(requested))
     flags = shown[shown.index("--lag-at 2=") :].splitlines()[0].split()
     lags = {2: 4.45, 5: 7.05, 8: 9.0}  # the turn and 0.3 of the width
     widths = {2: 1.5, 5: 3.5, 8: 5}
     assert flags == [
         word for d in lags for word in ("--lag-at", f"{d}={lags[d]:g}", "--width-at", f"{d}={widths[d]:g}")
     ]
-    status, _, told = in_json(capsys, "brush", "new", "-o", typed, *flags)
-    assert (status, told) == (0, [])
-    one, other = (json.loads(at.read_text()) | {"name": ""} for at in (asked, typed))
+    status, _, reported = in_json(capsys, "brush", "new", "-o", typed, *flags)
+    assert (status, reported) == (0, [])
+    one, other = (json.loads(at.read_text()) | {"name": ""} for at in (requested, typed))
     assert one == other
 
 
@@ -339,7 +337,7 @@ def test_answers_that_end_write_nothing(tmp_path, monkeypatch, capsys):
     assert status == 1 and not out.exists()
 
 
-def test_programs_that_read_messages_are_not_asked(tmp_path, monkeypatch, capsys):
+def test_programs_that_read_messages_are_not_prompted(tmp_path, monkeypatch, capsys):
     words = ["--messages", "json", "brush", "new", "-o", tmp_path / "mine.json"]
     assert answered(monkeypatch, capsys, words, "2 1.5 4 5 3.5 6 8 5 7.5".split())[0] == 2
 
@@ -347,9 +345,9 @@ def test_programs_that_read_messages_are_not_asked(tmp_path, monkeypatch, capsys
 def test_without_a_terminal_it_explains_how_to_measure(tmp_path, capsys):
     out = tmp_path / "mine.json"
     assert main(["brush", "new", "-o", str(out)]) == 2
-    told = capsys.readouterr()
-    assert told.out == "" and not out.exists()
-    assert gives(told.err, "90", "--lag-at", "--width-at", "--like")
+    reported = capsys.readouterr()
+    assert reported.out == "" and not out.exists()
+    assert gives(reported.err, "90", "--lag-at", "--width-at", "--like")
 
 
 @pytest.mark.parametrize(
@@ -364,9 +362,9 @@ def test_without_a_terminal_it_explains_how_to_measure(tmp_path, capsys):
     ],
 )
 def test_fewer_than_three_depths_are_warned_about(tmp_path, capsys, words, depths):
-    status, _, told = in_json(capsys, "brush", "new", "-o", tmp_path / "mine.json", *words.split())
+    status, _, reported = in_json(capsys, "brush", "new", "-o", tmp_path / "mine.json", *words.split())
     assert status == 0
-    notices = [notice for _, notice in told if notice.code == "few-depths"]
+    notices = [notice for _, notice in reported if notice.code == "few-depths"]
     assert len(notices) == (depths is not None)
     assert not depths or agrees(notices[0], f"few-depths {depths}")
 

@@ -12,7 +12,7 @@ MOST_CELLS = 16  # to be read in ten minutes
 
 
 @pytest.fixture
-def told(tmp_path):
+def reported(tmp_path):
     """What the cells of a notebook print, and the kinds of pictures they show."""
     nbclient, nbformat = pytest.importorskip("nbclient"), pytest.importorskip("nbformat")
 
@@ -37,8 +37,8 @@ def test_notebooks_are_small_and_hold_no_output():
 
 
 @pytest.mark.slow
-def test_a_first_word(told):
-    text, shown = told(NOTEBOOKS[0])
+def test_a_first_word(reported):
+    text, shown = reported(NOTEBOOKS[0])
     compensated, plain = (float(each) for each in re.findall(r"overlap [a-z ]*(\d\.\d+)", text))
     assert compensated > 0.93 > 0.7 > plain
     assert "G21" in text and "image/svg+xml" in shown
@@ -46,8 +46,8 @@ def test_a_first_word(told):
 
 @pytest.mark.thorough
 @pytest.mark.slow
-def test_a_brush_from_a_table_and_from_marks(told):
-    text, shown = told(NOTEBOOKS[1])
+def test_a_brush_from_a_table_and_from_marks(reported):
+    text, shown = reported(NOTEBOOKS[1])
     off = {name: float(mm) for name, mm in re.findall(r"^(.+): lag off by (.+) mm at most", text, re.M)}
     assert set(off) == {"table", "section 4", "marks"}
     assert off["section 4"] < 0.4 and off["marks"] < 0.3
@@ -56,8 +56,8 @@ def test_a_brush_from_a_table_and_from_marks(told):
 
 
 @pytest.mark.slow
-def test_models_are_compared(told):
-    text, shown = told(NOTEBOOKS[2])
+def test_models_are_compared(reported):
+    text, shown = reported(NOTEBOOKS[2])
     own, angles, ruler = (float(each) for each in re.findall(r"overlap (\d\.\d+)", text))
     assert own > 0.95 and own > angles and own > ruler
     assert "image/png" in shown

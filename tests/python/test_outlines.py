@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from diagnostics import agrees, are_told, refused
+from diagnostics import agrees, are_reported, refused
 from svg_text import read
 
 from brushsvg import _core
@@ -34,7 +34,7 @@ def marks(made) -> list:
     return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, 0.01)])
 
 
-def wanted(made) -> list:
+def target(made) -> list:
     return _core.unite([ring for stroke in made for ring in stroke.wanted_mm])
 
 
@@ -65,7 +65,7 @@ def test_a_leg_stays_straight_to_a_cut_and_runs_into_a_corner_that_is_sharper(sl
     ],
 )
 def test_an_arm_whose_sides_bend_is_as_wide_at_its_cut(d, half_mm):
-    """As of C and r: the axis points past the middle of the cut, and ran on into its corner, 2.0 and 1.8 mm."""
+    """As in C and r: the axis points past the middle of the cut, and ran on into its corner, 2.0 and 1.8 mm."""
     (letter,) = painted(path(d))
     halves = letter.half_width[0][1], letter.half_width[-1][1]
     at = {x > 30: half for (x, _), half in zip(ends(letter), halves, strict=True)}
@@ -111,10 +111,10 @@ def test_a_corner_in_which_two_strokes_end_belongs_to_both():
             assert _core.area(_core.intersect(stroke.wanted_mm, [corner])) == pytest.approx(0.04, abs=1e-4)
     tee = painted(path("M10 10H50V16H33V45H27V16H10Z"))
     parts = sum(_core.area(stroke.wanted_mm) for stroke in tee)
-    assert parts < _core.area(wanted(tee)) + 6 * 6 + 1
+    assert parts < _core.area(target(tee)) + 6 * 6 + 1
 
 
-def test_a_last_step_aside_is_left_out():
+def test_a_last_step_sideways_is_left_out():
     """As the axis of an s ends: what squares ends looks for the cut along the last direction."""
     bar = np.array([(0.0, -3.0), (40.0, -3.0), (40.6, 3.0), (0.0, 3.0)])
     along = np.column_stack([np.linspace(5, 37, 33), np.zeros(33), np.full(33, 3.0)])
@@ -145,7 +145,7 @@ def test_a_pointed_end_keeps_its_point():
 
 @pytest.mark.parametrize("inner_mm", [12, 14, 16])
 @pytest.mark.parametrize("blunt_mm", [5, 6, 7, 8])
-def test_the_legs_of_an_apex_are_straight_and_begin_beside_each_other(blunt_mm, inner_mm):
+def test_the_legs_of_an_apex_are_straight_and_begin_next_to_each_other(blunt_mm, inner_mm):
     """Both began at one place and bent towards it, or one went on into the apex."""
     left, right = 25 - blunt_mm / 2, 25 + blunt_mm / 2
     legs = painted(path(f"M10 45L{left} 5H{right}L40 45H34L25 {inner_mm}L16 45Z"))
@@ -161,14 +161,14 @@ def test_the_legs_of_an_apex_are_straight_and_begin_beside_each_other(blunt_mm, 
 @pytest.mark.parametrize(
     ("d", "least"),
     [
-        ("M10 6H16.5V34L28.7 6H35.3L18.5 40Q14.3 48.5 10 40Z", 0.977),  # 0.970 beside each other
+        ("M10 6H16.5V34L28.7 6H35.3L18.5 40Q14.3 48.5 10 40Z", 0.977),  # 0.970 next to each other
         ("M10 6H15.5V30.2L23 6H28.5L21.3 40Q15.7 46.1 10 40Z", 0.968),  # 0.948 towards one place
     ],
 )
 def test_lines_that_meet_in_a_round_corner_cover_it_either_way(d, least):
     """Below the ends of the lines, which discs leave blunt."""
     made = painted(path(d))
-    shape = _core.intersect(wanted(made), [np.array([(0.0, 0.0), (60.0, 0.0), (60.0, 38.0), (0.0, 38.0)])])
+    shape = _core.intersect(target(made), [np.array([(0.0, 0.0), (60.0, 0.0), (60.0, 38.0), (0.0, 38.0)])])
     assert _core.area(_core.intersect(marks(made), shape)) > least * _core.area(shape)
 
 
@@ -213,7 +213,7 @@ def test_letters_are_made_of_the_strokes_one_would_write(name, d, count):
     assert [stroke.id for stroke in made] == (
         ["p"] if count == 1 else [f"p/{k}" for k in range(1, count + 1)]
     )
-    shape = wanted(made)
+    shape = target(made)
     assert _core.overlap(marks(made), shape) > 0.91
     assert made[0].closed == (name == "O")
     (outline,) = read(f'<g fill="red" stroke="none">{path(d)}</g>').elements
@@ -247,7 +247,7 @@ def test_a_thick_line_that_bends_where_a_thin_one_crosses_it_is_one_stroke(half_
     thin = shapely.box(30 - bar_half_mm, 7, 30 + bar_half_mm, 43)
     made = painted(path(polygon(thick.union(thin))))
     assert len(made) == 2, "the thick line and the thin one"
-    assert _core.overlap(marks(made), wanted(made)) > 0.93  # below 0.9 as two arms
+    assert _core.overlap(marks(made), target(made)) > 0.93  # below 0.9 as two arms
 
 
 def test_bars_come_before_what_hangs_on_them_and_words_from_left_to_right():
@@ -269,12 +269,12 @@ def test_a_stem_runs_up_to_its_serif_where_the_bowl_leaves_it_right_below():
     assert ends(stem) == [[8, 11], [18, 44]]
     assert ends(bowl)[0][0] < 22 < 33 < ends(bowl)[1][0], "the arm is a stroke of its own, from the stem"
     assert (
-        _core.overlap(marks([stem, bowl]), wanted([stem, bowl])) > 0.94
+        _core.overlap(marks([stem, bowl]), target([stem, bowl])) > 0.94
     )  # 0.855 with the stem bent into the bowl
 
 
 @pytest.mark.parametrize(("top", "valley"), [(6, 24), (7, 24)])
-def test_a_stem_that_sticks_out_beside_its_arch_is_a_stroke_of_its_own(top, valley):
+def test_a_stem_that_sticks_out_next_to_its_arch_is_a_stroke_of_its_own(top, valley):
     """The humps of a script's n and m: too blunt for a branch of their own, they were lost where the short stem was
     taken for the flick of its arch, which turned at the corner below them."""
     stem = f"M10 44V{top + 18}C10 {top + 10} 13 {top} 17 {top}C20 {top} 22 {top + 4} {valley} 12"
@@ -283,7 +283,7 @@ def test_a_stem_that_sticks_out_beside_its_arch_is_a_stroke_of_its_own(top, vall
     stem_line, arch_line = sorted((_core.flatten(each, 0.01) for each in made), key=lambda line: line[-1, 0])
     assert stem_line[0, 1] > stem_line[-1, 1], "one writes it down"
     assert stem_line[0, 1] > arch_line[0, 1] + 5, "it begins in the hump"
-    letter = wanted(made)
+    letter = target(made)
     assert _core.area(_core.intersect(marks(made), letter)) > 0.93 * _core.area(letter)
 
 
@@ -292,17 +292,17 @@ def test_a_blob_with_holes_that_is_but_one_crossing_is_painted():
     made = painted(
         path(disc(10, 15, 40) + disc(22.5, 0.5, 23.5) + disc(26.5, 0.5, 27.5), 'fill-rule="evenodd"')
     )
-    assert _core.area(wanted(made)) == pytest.approx(np.pi * (15**2 - 2 * 0.5**2), rel=0.01)
+    assert _core.area(target(made)) == pytest.approx(np.pi * (15**2 - 2 * 0.5**2), rel=0.01)
 
 
-def test_what_lies_inside_of_a_crossing_that_nothing_runs_through_is_wanted_by_a_line_that_ends_there():
+def test_the_inside_of_a_crossing_that_nothing_runs_through_is_the_target_of_a_line_that_ends_there():
     from brushsvg.strokes.skeleton import outline_strokes
 
     square = [[4.3, 11.6], [7.1, 15.8], [2.2, 19.0], [-0.5, 14.8]]
     slanted = [[14.7, 1.2], [2.6, 13.5], [-1.6, 9.3], [10.4, -3.0]]
     stub = [[-1.2, 0.3], [4.5, 0.9], [4.2, 3.6], [-1.5, 3.0]]
     shape = _core.fill([np.array(bar) for bar in (square, stub, slanted)])
-    assert _core.area(wanted(outline_strokes(shape))) == pytest.approx(_core.area(shape), rel=0.02)
+    assert _core.area(target(outline_strokes(shape))) == pytest.approx(_core.area(shape), rel=0.02)
 
 
 def test_slivers_are_no_strokes():
@@ -313,7 +313,7 @@ def test_slivers_are_no_strokes():
         painted(path(sliver))
 
 
-def test_loops_that_are_slivers_leave_a_ring_wherever_it_begins():
+def test_loops_that_are_slivers_leave_a_ring_from_any_beginning():
     from brushsvg.geometry.rings import signed_area, without_slivers
 
     bar = [[0, 0], [10, 0], [10, 4], [0, 4]]
@@ -373,7 +373,7 @@ def test_strokes_of_random_shapes_make_up_the_shape_and_stay_in_it():
             bars.append(corners @ turned + random.uniform(0, 20, 2))
         shape = _core.fill(bars)
         made = outline_strokes(shape)
-        assert _core.area(wanted(made)) == pytest.approx(_core.area(shape), rel=0.03)
+        assert _core.area(target(made)) == pytest.approx(_core.area(shape), rel=0.03)
         assert _core.area(_core.unite([*marks(made), *shape])) < 1.1 * _core.area(shape)
         assert _core.overlap(marks(made), shape) > 0.7
 
@@ -449,7 +449,7 @@ def test_fill_and_stroke_is_the_shape_grown_by_half_the_stroke():
     assert {round(half, 2) for _, half in shape.half_width} == {3}
 
 
-def test_a_fill_that_does_not_show_beside_its_stroke_leaves_a_line():
+def test_a_fill_that_does_not_show_next_to_its_stroke_leaves_a_line():
     (line,) = painted(path("M10 10L30 11L50 10", 'stroke="red" stroke-width="4"'))
     assert line.wanted_mm == ()
     assert ends(line) == [[10, 10], [50, 10]]
@@ -469,15 +469,15 @@ def test_nothing_left_is_refused():
     with refused("nothing-to-paint 'no area'"):
         painted(path("M10 10H50Z"))
     _, notices = strokes(read(f'<g fill="red" stroke="none">{path(BAR)}<path id="thin" d="M0 0H5Z"/></g>'))
-    assert are_told(notices, "outline-empty thin")
+    assert are_reported(notices, "outline-empty thin")
 
 
 def test_open_paths_are_closed_and_rules_of_filling_are_kept():
     (bar,) = painted(path("M10 20H60V26H10"))
     assert _core.area(bar.wanted_mm) == pytest.approx(300)
     square = "M10 5H50V45H10ZM20 15H40V35H20Z"
-    assert _core.area(wanted(painted(path(square)))) == pytest.approx(1600)
-    assert _core.area(wanted(painted(path(square, 'fill-rule="evenodd"')))) == pytest.approx(1200)
+    assert _core.area(target(painted(path(square)))) == pytest.approx(1600)
+    assert _core.area(target(painted(path(square, 'fill-rule="evenodd"')))) == pytest.approx(1200)
 
 
 def test_the_same_shape_gives_the_same_strokes():
@@ -522,7 +522,7 @@ def test_hostile_outlines(name, rule):
     from brushsvg.strokes.skeleton import filled
 
     shape = filled(design.elements[0])
-    assert _core.area(wanted(made)) == pytest.approx(_core.area(shape), rel=0.02, abs=1e-3)
+    assert _core.area(target(made)) == pytest.approx(_core.area(shape), rel=0.02, abs=1e-3)
     if name not in ("an eight", "a loop that folds over itself", "nested holes", "a hole that touches"):
         assert _core.area(_core.unite([*marks(made), *shape])) < 1.1 * _core.area(shape) + 1e-3, (
             "no paint outside"
@@ -549,7 +549,7 @@ def zigzag(count: int) -> np.ndarray:
     return np.column_stack([100 * k / count, 30 * (k % 2)])
 
 
-def test_outlines_that_lie_too_densely_are_left_out_with_a_warning():
+def test_outlines_that_are_too_dense_are_left_out_with_a_warning():
     with refused("nothing-to-paint 4.5e+07 3e+07"):
         painted(path(nested(3000), 'fill-rule="evenodd"'))
 
@@ -575,7 +575,7 @@ def test_edges_side_by_side_are_counted_in_bands():
     teeth = zigzag(20_000)
     tilted = np.column_stack([teeth[:, 0], teeth[:, 1] + teeth[:, 0] / 10])
     assert pairs(tilted) < 1e5, "side by side, none above another"
-    # all reach up to a line beyond which but one edge lies: passed over one by one
+    # all reach up to a line beyond which but one edge is: passed over one by one
     assert pairs([*teeth, [100, 40], [0, 40]]) == pytest.approx(0.04 * 20_000**2 / 2, rel=0.02)
     angle = np.linspace(0, 2 * np.pi, 20_000, endpoint=False)
     assert pairs(np.column_stack([np.cos(angle), np.sin(angle)])) < 20_000 * 300

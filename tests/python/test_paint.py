@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import agrees, are_told, gives, in_json, is_told, refused
+from diagnostics import agrees, are_reported, gives, in_json, is_reported, refused
 from judge.gcode import run_gcode
 from programs import RUNNABLE, call, forbidden, whole
 
@@ -40,7 +40,7 @@ STRIPE = [(20, 0, 0), (25, 0, -3), (60, 0, -3), (58, 0, 0)]
 BRUSH = SimpleNamespace(name="b", max_speed_mm_s=25.0)
 
 
-ASKED, REFUSED = (_core.Settings(reload=asked) for asked in (True, False))
+REQUESTED, REFUSED = (_core.Settings(reload=requested) for requested in (True, False))
 
 
 def cell_with(reload, *stations):
@@ -116,11 +116,11 @@ def test_a_colour_that_nobody_serves_is_refused():
 def test_a_visit_goes_down_into_the_paint_and_drips_off():
     section = visit(BLACK, BRUSH, find_cell())
     assert section.title == "paint: black"
-    told = [
+    reported = [
         ("wait", step.seconds) if isinstance(step, Wait) else (step.meaning, *step.points_mm[-1])
         for step in section.steps
     ]
-    assert told == [
+    assert reported == [
         ("travel", -20, 10, 10),
         ("approach", -20, 10, 5),
         ("dip", -20, 10, -9),
@@ -166,8 +166,8 @@ def test_paint_is_stirred_first_and_then_only_dipped_into_and_the_brush_washed_h
         words = str(tmp_path / "plan.json"), "--cell", str(tmp_path / "cell.toml")
         assert call(capsys, "convert", words[0], "-o", program, *words[1:], "--force")[0] == 0
         for given in (words, words[1:]):
-            status, out, told = call(capsys, "check", program, *given)
-            assert status == 0 and RUNNABLE in out, told
+            status, out, reported = call(capsys, "check", program, *given)
+            assert status == 0 and RUNNABLE in out, reported
         text = (tmp_path / "plan.ngc").read_text()
         ran = run_gcode(text, "linuxcnc", (0.0, 0.0, 20.0), None, 50.0)
         assert not ran.refused and not ran.acts
@@ -197,7 +197,7 @@ def test_paint_is_stirred_first_and_then_only_dipped_into_and_the_brush_washed_h
         parse_cell(write_cell(replace(cell, reload=Reload("stroke", rinse=True))))
     near = replace(stirred[0], place_mm=(-3.0, 10.0))
     broken = forbidden(plan_of((9, "#000000", "")), BRUSH, cell_with(Reload("stroke"), near))
-    assert is_told(broken, "station-on-sheet", "black")
+    assert is_reported(broken, "station-on-sheet", "black")
 
 
 def test_a_person_dips_at_safe_height():
@@ -212,7 +212,7 @@ def test_a_station_out_of_the_box_is_refused():
         cell, workspace=replace(cell.workspace, box_mm=((-15.0, -50.0, -30.0), (500.0, 200.0, 60.0)))
     )
     broken = forbidden(SimpleNamespace(passes=[], sheet_mm=(1, 1)), BRUSH, boxed)
-    assert is_told(broken, "out-of-box 'x -20.0 mm' '[-15, 500] mm' linuxcnc-3axis", "black")
+    assert is_reported(broken, "out-of-box 'x -20.0 mm' '[-15, 500] mm' linuxcnc-3axis", "black")
 
 
 @pytest.mark.parametrize(("stir_mm", "can_be_used"), [(1.0, True), (4.0, False)])
@@ -226,12 +226,12 @@ def test_cell_check_refuses_what_convert_would_refuse_of_a_station(capsys, tmp_p
     path = tmp_path / "boxed.toml"
     path.write_text(write_cell(boxed))
     status, _, notices = in_json(capsys, "cell", "check", path)
-    assert is_told(notices, "out-of-box 'x -24.0 mm' '[-22, 500] mm' boxed", "black") is not can_be_used
+    assert is_reported(notices, "out-of-box 'x -24.0 mm' '[-22, 500] mm' boxed", "black") is not can_be_used
     assert (status == 0) is can_be_used
 
 
 def test_a_stroke_may_ask_for_paint_or_go_without():
-    plan = plan_of((9, "#000000", ""), (9, "#000000", "", ASKED), (999, "#000000", "", REFUSED))
+    plan = plan_of((9, "#000000", ""), (9, "#000000", "", REQUESTED), (999, "#000000", "", REFUSED))
     assert names(visits(whole(plan), cell_with(Reload("length", 100.0)))) == [["black"], ["black"], []]
     loads = in_loads(plan, find_brush("round-6"), cell_with(Reload("length", 100.0))).loads
     assert [(a_pass.stroke, a_pass.load) for a_pass in loads] == [(each.stroke, 0) for each in plan.passes]
@@ -271,8 +271,8 @@ def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
         passes = [_core.Pass("rub", poses + np.array([30, 30, 0]), 20.0, "", "#000000")]
         plan = in_loads(_core.Plan(brush.name, "", (400.0, 100.0), passes), brush, cell)
         assert [(a_pass.stroke, a_pass.load) for a_pass in plan.loads] == [("rub", 0)]
-        (told,) = too_long(plan, brush, cell)
-        assert agrees(told, f"load-too-long {painted_mm(plan.loads[0]):.0f}", "rub")
+        (reported,) = too_long(plan, brush, cell)
+        assert agrees(reported, f"load-too-long {painted_mm(plan.loads[0]):.0f}", "rub")
         passes[0].settings = REFUSED
         assert too_long(whole(_core.Plan(brush.name, "", (400.0, 100.0), passes)), brush, cell) == []
     for every in (40.0, 90.0):  # a line is cut between its two poses
@@ -406,9 +406,9 @@ def test_paint_that_lasts_too_short_to_come_back_is_refused():
         in_loads(plan_of((40, "#000000", "")), brush, cell)
 
 
-def test_a_brush_that_says_nothing_of_its_paint_is_told():
+def test_a_brush_that_says_nothing_of_its_paint_is_reported():
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 200.0, narrower_percent=5.0))
-    assert are_told(without_paint(brush, cell), "paint-unknown round-6 narrower_percent")
+    assert are_reported(without_paint(brush, cell), "paint-unknown round-6 narrower_percent")
     assert not without_paint(brush, cell_with(Reload("length", 200.0)))
     brush.paint = _core.Paint(0.4)
     assert not without_paint(brush, cell)
@@ -449,22 +449,22 @@ def test_loads_that_were_written_as_a_plan_are_not_cut_again():
             _core.read_plan(text.replace('"load": 2', f'"load": {written}'))
 
 
-def test_what_every_load_does_is_told_once_of_its_stroke():
+def test_what_every_load_does_is_reported_once_of_its_stroke():
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 120.0, 6.0))
     plan = long_plan(brush)
     for a_pass in plan.passes:
         a_pass.speed_mm_s = 99.0
-    told = walked(in_loads(plan, brush, cell), brush, cell).problems
-    assert [where for where, _ in told] == ["short", "long", "last"]
+    reported = walked(in_loads(plan, brush, cell), brush, cell).problems
+    assert [where for where, _ in reported] == ["short", "long", "last"]
 
 
-def test_all_that_is_told_of_a_job_counts_loads(tmp_path, monkeypatch, capsys):
+def test_all_reports_of_a_job_count_loads(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     brush = find_brush("round-6")
     (tmp_path / "long.json").write_text(_core.write_plan(long_plan(brush)))
     cell = replace(cell_with(Reload("length", 120.0, 6.0), ANY), name="paint")
     (tmp_path / "paint.toml").write_text(write_cell(cell))
-    told = {}
+    reported = {}
     for words in (
         "convert long.json -o x.ngc",
         "preview long.json -o x.html",
@@ -472,24 +472,24 @@ def test_all_that_is_told_of_a_job_counts_loads(tmp_path, monkeypatch, capsys):
     ):
         status, _, (line,) = call(capsys, *words.split(), "--cell", "paint.toml")
         assert status == 0
-        told[words.split()[3]] = line.partition(": written; ")[2]
-    assert told["x.ngc"] == told["x.html"] and gives(told["x.ngc"], "5")
-    assert gives(told["last.ngc"], "2")
+        reported[words.split()[3]] = line.partition(": written; ")[2]
+    assert reported["x.ngc"] == reported["x.html"] and gives(reported["x.ngc"], "5")
+    assert gives(reported["last.ngc"], "2")
     header = (tmp_path / "x.ngc").read_text()
     time = re.search(r"\(time: about (.*)\)", header)[1]
-    assert "round-6, 5 strokes" in header and gives(told["x.ngc"], time)
+    assert "round-6, 5 strokes" in header and gives(reported["x.ngc"], time)
 
 
 def test_the_way_to_the_paint_is_looked_at_before_anything_is_written():
-    """Both ends may be where the tool may go, and not all that lies between."""
+    """Both ends may be where the tool may go, and not the way between."""
     brush = find_brush("round-6")
     cell = cell_with(Reload("stroke"), ANY)
     wall = ((-12.0, -50.0, -50.0), (-8.0, 150.0, 50.0))
     cell = replace(cell, workspace=replace(cell.workspace, keep_out_mm=(wall,)))
     cell = replace(cell, stations=(replace(ANY, wipe_mm=()),))
     plan = long_plan(brush)
-    told = look(in_loads(plan, brush, cell), brush, _core.simulate(plan, brush), cell, 0.05).problems
-    assert {each.code for each in told} == {"in-kept-out-box"}
+    reported = look(in_loads(plan, brush, cell), brush, _core.simulate(plan, brush), cell, 0.05).problems
+    assert {each.code for each in reported} == {"in-kept-out-box"}
 
 
 def test_the_program_fetches_paint_in_the_middle_of_a_stroke():
@@ -514,5 +514,5 @@ def test_a_station_on_the_sheet_or_far_from_it_is_refused():
         ((-90.0, 10.0), "tool-off-sheet 60.00 left"),
     ):
         cell = cell_with(Reload("stroke"), Station("ink", place, depth_mm=5.0))
-        told = [each for each in forbidden(plan_of((9, "", "")), BRUSH, cell) if each.where == "ink"]
-        assert are_told(told, said)
+        reported = [each for each in forbidden(plan_of((9, "", "")), BRUSH, cell) if each.where == "ink"]
+        assert are_reported(reported, said)

@@ -1,4 +1,4 @@
-"""Paint that lies where nobody wants it, of strokes that have no middle line of their own."""
+"""Stray paint of strokes that have no middle line of their own."""
 
 import re
 
@@ -21,29 +21,31 @@ def brush():
     return find_brush("round-6")
 
 
-@pytest.mark.parametrize(("aside_mm", "is_told"), [(0.0, False), (0.8, False), (1.5, True), (2.5, True)])
-def test_paint_is_told_by_how_far_it_lies_outside(brush, aside_mm, is_told):
-    """A straight mark that was shifted sideways lies outside by the shift. Kaushan's B, as good as it can be painted,
-    had a tracking error of 4.9 mm told of it; Lobster's A had nothing told of a thorn of 2.3 mm."""
-    run = _core.compensate([bar("a", 30.0 + aside_mm)], brush, (100.0, 60.0)).plan.passes[0]
-    told = outside([bar("a", 30.0)], [run], brush)
-    assert bool(told) == is_told
-    if told:
-        away = re.search(r"([0-9.]+) mm", told[0].sentence)[1]
-        assert (told[0].where, told[0].code) == ("a", "paint-outside")
-        assert float(away) == pytest.approx(aside_mm, abs=0.11)
+@pytest.mark.parametrize(
+    ("displaced_mm", "is_reported"), [(0.0, False), (0.8, False), (1.5, True), (2.5, True)]
+)
+def test_paint_is_reported_by_how_far_it_is_outside(brush, displaced_mm, is_reported):
+    """A straight mark that was shifted sideways is outside by the shift. Kaushan's B, as good as it can be painted,
+    was reported with a tracking error of 4.9 mm; Lobster's A had no notice of a thorn of 2.3 mm."""
+    run = _core.compensate([bar("a", 30.0 + displaced_mm)], brush, (100.0, 60.0)).plan.passes[0]
+    reported = outside([bar("a", 30.0)], [run], brush)
+    assert bool(reported) == is_reported
+    if reported:
+        away = re.search(r"([0-9.]+) mm", reported[0].sentence)[1]
+        assert (reported[0].where, reported[0].code) == ("a", "paint-outside")
+        assert float(away) == pytest.approx(displaced_mm, abs=0.11)
 
 
-def test_paint_on_a_neighbour_lies_where_it_is_wanted(brush):
+def test_paint_on_a_neighbour_is_in_the_target(brush):
     run = _core.compensate([bar("a", 32.5)], brush, (100.0, 60.0)).plan.passes[0]
     assert outside([bar("a", 30.0), bar("b", 33.0)], [run, None], brush) == []
     assert len(outside([bar("a", 30.0), bar("b", 43.0)], [run, None], brush)) == 1
 
 
-def test_a_tracking_error_is_told_where_the_brush_is_known_better(brush):
-    """The lag of round-6 is known to 0.58 mm as standard deviation: 0.1 mm beside the line are lost in it."""
-    for aside_mm, is_told in ((0.1, False), (0.4, True)):
-        run = _core.compensate([bar("a", 30.0 + aside_mm)], brush, (100.0, 60.0)).plan.passes[0]
+def test_a_tracking_error_is_reported_where_the_brush_is_known_better(brush):
+    """The lag of round-6 is known to 0.58 mm as standard deviation: 0.1 mm from the line are lost in it."""
+    for displaced_mm, is_reported in ((0.1, False), (0.4, True)):
+        run = _core.compensate([bar("a", 30.0 + displaced_mm)], brush, (100.0, 60.0)).plan.passes[0]
         error = _core.tracking_error_of(run, bar("a", 30.0), brush, 0.05)
-        assert error.largest_mm == pytest.approx(aside_mm, abs=0.045) and not error.within_tolerance
-        assert bool(off_middle_line([bar("a", 30.0)], [error], brush, 0.05)) == is_told
+        assert error.largest_mm == pytest.approx(displaced_mm, abs=0.045) and not error.within_tolerance
+        assert bool(off_middle_line([bar("a", 30.0)], [error], brush, 0.05)) == is_reported

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 import shapely
-from diagnostics import is_told
+from diagnostics import is_reported
 from sampling import sample
 
 from brushsvg import _core
@@ -84,7 +84,7 @@ def test_a_job_of_one_load_comes_out_as_wide_as_drawn(tmp_path, compensation):
     assert not now.notices
 
 
-def test_beside_the_middle_marks_are_as_wide_as_drawn(tmp_path):
+def test_next_to_the_middle_marks_are_as_wide_as_drawn(tmp_path):
     """Half way along each stroke, by a cut through the mark; the last ones were half as wide else."""
     # ways round caps reach the middle of lines so short
     work = prepared(tmp_path, 0.22, start="pointed", end="round")
@@ -124,21 +124,21 @@ def test_where_the_depths_end_it_is_said_once(tmp_path):
     work = prepared(tmp_path, 0.4)
     deepest = max(-np.asarray(one.poses_mm)[:, 2].min() for one in work.plan.passes)
     assert 9.9 < deepest <= 10
-    assert is_told(work.notices, "paint-runs-out round-6 '10 mm'")
+    assert is_reported(work.notices, "paint-runs-out round-6 '10 mm'")
     assert len(work.notices) == 1
     share = marks_of(work.plan, brush_of(0.4), False, cell=ONE_LOAD).passes[-1].width_share[-1]
     assert share < 0.3, "far beyond what depth could make up for"
     heights = replace(find_cell().heights, lowest_mm=-7.0)
     shallow = prepared(tmp_path, 0.4, replace(ONE_LOAD, heights=heights))
     assert max(-np.asarray(one.poses_mm)[:, 2].min() for one in shallow.plan.passes) <= 7.0
-    assert is_told(shallow.notices, "paint-runs-out round-6 '7 mm'")
+    assert is_reported(shallow.notices, "paint-runs-out round-6 '7 mm'")
 
 
 @pytest.mark.parametrize(("order", "first"), [("nearest", 1), ("drawn", 31)])
-def test_another_order_and_a_job_that_is_resumed_are_told(tmp_path, order, first):
+def test_another_order_and_a_job_that_is_resumed_are_reported(tmp_path, order, first):
     work = prepared(tmp_path, 0.2)
-    told = tried(work, ".ngc", Job(first_stroke=first), order).remarks()
-    assert is_told(told, "paint-out-of-turn" + (" 31" if first > 1 else ""))
+    reported = tried(work, ".ngc", Job(first_stroke=first), order).remarks()
+    assert is_reported(reported, "paint-out-of-turn" + (" 31" if first > 1 else ""))
     assert not tried(work, ".ngc").remarks()
     often = prepared(tmp_path, 0.2, cell_with(Reload("stroke")))
     assert not tried(often, ".ngc", Job(first_stroke=first), order).remarks()

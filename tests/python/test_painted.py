@@ -210,8 +210,8 @@ def test_the_file_itself(keys, where, said):
         (lambda p: p - [100, 100], "marks-displaced 141"),
     ],
 )
-def test_a_sheet_that_lies_otherwise_is_told_how(moved, said):
-    """Each of them was once asked for the ids of its strokes."""
+def test_a_sheet_in_another_place_is_reported_with_it(moved, said):
+    """Each of them was once queried for the ids of its strokes."""
     shift = {"far": [0.0, 90.0, 0.0], "right": [40.0, 130.0, 0.0]}
     more = [(name, (np.array(strokes()[0][1]) + by).tolist()) for name, by in shift.items()]
     every = [*strokes(), *more]

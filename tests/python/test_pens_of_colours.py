@@ -4,7 +4,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from diagnostics import gives, in_json, is_told
+from diagnostics import gives, in_json, is_reported
 from programs import LANGUAGES, RUNNABLE, SERVOS, call
 
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
@@ -37,7 +37,7 @@ def test_a_program_stops_for_each_other_pen_and_check_asks_for_it(desk, capsys, 
     end = next(k for k, line in enumerate(lines) if "stroke 4 of 4" in line)
     (desk / program).write_text("\n".join(lines[:at] + lines[end:]), newline="")
     status, _, said = in_json(capsys, "check", program, "pens.svg")
-    assert status == 1 and is_told(said, "other-station nothing 'pen 000000'")
+    assert status == 1 and is_reported(said, "other-station nothing 'pen 000000'")
 
 
 def test_who_resumes_behind_a_change_has_changed_the_pen(desk, capsys):
@@ -52,7 +52,7 @@ def test_who_resumes_behind_a_change_has_changed_the_pen(desk, capsys):
 def test_where_nobody_is_waited_for_it_is_said(desk, capsys):
     for program, name in (("pens.nc", "grbl-servo"), ("pens.csv", "fr3"), ("pens.ebb", "axidraw-ebb")):
         status, _, said = in_json(capsys, "convert", "pens.svg", "-o", program, "--cell", name)
-        assert status == 0 and is_told(said, "colours-as-one")
+        assert status == 0 and is_reported(said, "colours-as-one")
         assert call(capsys, "check", program, "pens.svg")[0] == 0
     one = replace(find_cell("linuxcnc-3axis"), name="one", pause_per_colour=False)
     (desk / "one.toml").write_text(write_cell(one))
@@ -66,9 +66,9 @@ def test_speed_is_that_of_all_strokes_within_what_brush_and_cell_allow(desk, cap
     assert set(map(float, feeds)) == {720.0, 1500.0, 480.0}, "painting, approach and press"
     assert call(capsys, "check", "pens.ngc", "pens.svg", "--speed", "12")[0] == 0
     status, _, said = in_json(capsys, "check", "pens.ngc", "pens.svg")
-    assert status == 1 and is_told(said, "stroke-too-fast 12.0 5.0")
+    assert status == 1 and is_reported(said, "stroke-too-fast 12.0 5.0")
     said = in_json(capsys, "convert", "pens.svg", "-o", "x.ngc", "--speed", "26")[2]
-    assert is_told(said, "speed-out-of-range 26 0.001 25 round-6")
+    assert is_reported(said, "speed-out-of-range 26 0.001 25 round-6")
     said = in_json(capsys, "convert", "pens.svg", "-o", "x.lua", "--cell", "cr5", "--speed", "0.5")[2]
-    assert is_told(said, "speed-out-of-range 0.5 1 25")
+    assert is_reported(said, "speed-out-of-range 0.5 1 25")
     assert not (desk / "x.ngc").exists()

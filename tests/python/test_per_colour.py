@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from diagnostics import in_json, is_told
+from diagnostics import in_json, is_reported
 
 import brushsvg
 
@@ -30,10 +30,10 @@ def names(text):
 
 
 def test_each_colour_has_a_program(desk, capsys):
-    status, _, told = in_json(
+    status, _, reported = in_json(
         capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour", "--picture", "all.png"
     )
-    assert status == 0 and not told
+    assert status == 0 and not reported
     files = sorted(path.name for path in desk.glob("out*"))
     assert files == [f"out-{k}-{ink[1:]}.ngc" for k, ink in enumerate(INKS, 1)]
     assert [names((desk / file).read_text()) for file in files] == [*INKS.values()]
@@ -64,8 +64,8 @@ def test_a_plan_is_parted_as_its_drawing_is(desk, capsys):
 
 
 def test_a_colour_that_is_not_there_is_refused(desk, capsys):
-    status, _, told = in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--colour", "#00ff00")
-    assert status == 1 and is_told(told, "nothing-to-paint #00ff00 #ffd700 #d32f2f #1a237e", "colour")
+    status, _, reported = in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--colour", "#00ff00")
+    assert status == 1 and is_reported(reported, "nothing-to-paint #00ff00 #ffd700 #d32f2f #1a237e", "colour")
     assert (
         in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour", "--from-stroke", "2")[0] == 2
     )
@@ -76,10 +76,10 @@ def test_programs_of_colours_that_are_gone_are_named(desk, capsys):
     assert in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour")[0] == 0
     text = (desk / "word.svg").read_text().replace("#ffd700", "#d32f2f")
     (desk / "word.svg").write_text(text)
-    status, _, told = in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour")
-    assert status == 0 and is_told(
-        told, "programs-of-before out-1-ffd700.ngc out-2-d32f2f.ngc out-3-1a237e.ngc"
-    ), told
+    status, _, reported = in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour")
+    assert status == 0 and is_reported(
+        reported, "programs-of-before out-1-ffd700.ngc out-2-d32f2f.ngc out-3-1a237e.ngc"
+    ), reported
 
 
 def test_a_page_has_the_same_sheet_in_each_program(desk, capsys):
@@ -93,8 +93,8 @@ def test_a_page_has_the_same_sheet_in_each_program(desk, capsys):
 
 def test_none_is_written_where_one_is_there_already(desk, capsys):
     (desk / "out-2-d32f2f.ngc").write_text("mine")
-    status, _, told = in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour")
-    assert status == 1 and is_told(told, "file-exists")
+    status, _, reported = in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour")
+    assert status == 1 and is_reported(reported, "file-exists")
     assert [path.read_text() for path in desk.glob("out*")] == ["mine"]
 
 
@@ -110,9 +110,9 @@ def test_a_shape_has_the_colour_of_its_fill_and_an_outline_its_own(tmp_path, mon
     """All of fine and broad was painted in the colour of the outline."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "word.svg").write_text(DRAWING.format(SHAPES))
-    status, _, told = in_json(capsys, "convert", "word.svg", "-o", "out.json")
-    assert status == 0 and len(told) == 1
-    assert is_told(told, "outline-too-fine #1a237e 0.3 0.84 #d32f2f", "fine")
+    status, _, reported = in_json(capsys, "convert", "word.svg", "-o", "out.json")
+    assert status == 0 and len(reported) == 1
+    assert is_reported(reported, "outline-too-fine #1a237e 0.3 0.84 #d32f2f", "fine")
     found = {each.stroke: each.colour for each in brushsvg.read_plan("out.json").passes}
     inks = {"fine": "#d32f2f", "broad": "#d32f2f", "broad-stroke": "#1a237e", "one": "#d32f2f"}
     assert found == inks | {"line": "#1a237e"}, "nothing of the last one's fill can be seen"
@@ -127,7 +127,7 @@ def test_a_frame_around_a_white_page_is_painted(tmp_path, monkeypatch, capsys):
     page += '<path id="l" d="M20 20H50" stroke="red"/>'
     (tmp_path / "word.svg").write_text(DRAWING.format(page))
     design = brushsvg.read_drawing("word.svg")
-    assert is_told(design.notices, "background page")
+    assert is_reported(design.notices, "background page")
     assert [(each.id, each.colour, each.fill_rule) for each in design.elements] == [
         ("page-stroke", "#1a237e", ""),
         ("l", "#ff0000", ""),

@@ -32,16 +32,16 @@ def test_the_way_is_that_of_small_steps_with_few_poses():
     passes = [
         np.column_stack([rng.uniform(0, 60, (6, 2)), [0.0, -2.0, -4.0, -3.0, -1.0, 0.0]]) for _ in range(3)
     ]
-    told = [core.Pass(stroke=f"s{k}", poses_mm=poses, speed_mm_s=20.0) for k, poses in enumerate(passes)]
-    run = with_play(told, (0.8, 0.5))
-    for one, wanted in zip(run, ways_in_small_steps(passes, (0.8, 0.5)), strict=True):
+    reported = [core.Pass(stroke=f"s{k}", poses_mm=poses, speed_mm_s=20.0) for k, poses in enumerate(passes)]
+    run = with_play(reported, (0.8, 0.5))
+    for one, target in zip(run, ways_in_small_steps(passes, (0.8, 0.5)), strict=True):
         poses = np.array(one.poses_mm)
-        assert LineString(poses[:, :2]).hausdorff_distance(LineString(wanted[:, :2])) < 0.2
-        assert np.allclose(poses[-1], wanted[-1], atol=1e-9)
+        assert LineString(poses[:, :2]).hausdorff_distance(LineString(target[:, :2])) < 0.2
+        assert np.allclose(poses[-1], target[-1], atol=1e-9)
         depth = np.interp(
-            LineString(wanted[:, :2]).length / 2,
-            np.concatenate([[0], np.cumsum(np.hypot(*np.diff(wanted[:, :2], axis=0).T))]),
-            wanted[:, 2],
+            LineString(target[:, :2]).length / 2,
+            np.concatenate([[0], np.cumsum(np.hypot(*np.diff(target[:, :2], axis=0).T))]),
+            target[:, 2],
         )
         come = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(poses[:, :2], axis=0).T))])
         assert np.interp(come[-1] / 2, come, poses[:, 2]) == pytest.approx(depth, abs=0.1)
@@ -50,20 +50,20 @@ def test_the_way_is_that_of_small_steps_with_few_poses():
 
 @pytest.mark.parametrize("height", [-0.4, 0.4])
 def test_a_tool_leans_from_where_it_touches_the_paper(height):
-    """Pressed on the spot and drawn to the right, over paper that lies lower or higher than it was taught."""
-    told = core.Pass(
+    """Pressed on the spot and drawn to the right, over paper that is lower or higher than it was taught."""
+    reported = core.Pass(
         stroke="s",
         poses_mm=np.array([[10.0, 20, 0], [10, 20, -2], [30, 20, -2], [30, 20, 0]]),
         speed_mm_s=20.0,
     )
-    (one,) = as_run([told], Machine(lean_mm_per_mm=(0.2, -0.1), height_mm=height))
+    (one,) = as_run([reported], Machine(lean_mm_per_mm=(0.2, -0.1), height_mm=height))
     run, deep = np.array(one.poses_mm), 2 + height
-    wanted = [
+    target = [
         [10, 20, 0],
         [10 + 0.2 * deep, 20 - 0.1 * deep, -deep],
         [30 + 0.2 * deep, 20 - 0.1 * deep, -deep],
         [30, 20, 0],
     ]
-    for place in wanted:
+    for place in target:
         assert np.abs(run - place).max(axis=1).min() < 1e-9, place
-    assert np.allclose(run[[0, -1]], [wanted[0], wanted[-1]])
+    assert np.allclose(run[[0, -1]], [target[0], target[-1]])

@@ -50,7 +50,7 @@ def test_paint_is_drawn_where_the_brush_has_it():
     assert [each.get_position()[0] for each in axes.texts].count(600) == 1, "where hairs run dry"
 
 
-def test_every_curve_is_named_once_and_no_name_lies_on_a_law():
+def test_every_curve_is_named_once_and_no_name_is_on_a_law():
     """In one legend below the laws, of which each has its line, its band and what was measured of it."""
     brush = find_brush("round-6")
     figure = new_figure((11, 7.2))
@@ -67,7 +67,7 @@ def test_every_curve_is_named_once_and_no_name_lies_on_a_law():
 
 def test_without_matplotlib_the_command_to_run_is_said(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    status, _, ((_, told),) = in_json(capsys, "brush", "plot", "round-6", "-o", tmp_path / "out.svg")
-    assert (status, told.code) == (1, "package-missing")
-    assert told.sentence.endswith(f" {sys.executable} -m pip install matplotlib")
+    status, _, ((_, reported),) = in_json(capsys, "brush", "plot", "round-6", "-o", tmp_path / "out.svg")
+    assert (status, reported.code) == (1, "package-missing")
+    assert reported.sentence.endswith(f" {sys.executable} -m pip install matplotlib")
     assert not list(tmp_path.iterdir())

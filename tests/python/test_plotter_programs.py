@@ -1,4 +1,4 @@
-"""G-code as owners of plotters write it: many styles, four drawings each, read as the lines that were meant."""
+"""G-code as owners of plotters write it: many styles, four drawings each, read as the lines that were intended."""
 
 import math
 import random
@@ -6,7 +6,7 @@ import random
 import numpy as np
 import pytest
 import shapely
-from diagnostics import agrees, in_json, is_told, refused
+from diagnostics import agrees, in_json, is_reported, refused
 
 from brushsvg.read import ReadOptions
 from brushsvg.read.gcode import read_gcode
@@ -65,7 +65,7 @@ def inverted(lines, travel="G0"):
 
 
 def parked(lines, up, down):
-    """It begins and ends at z 0, wherever the pen is up."""
+    """It begins and ends at z 0, where the pen is up."""
     yield from ("G21", "G90", "G1 X0 Y0 Z0 F3000")
     for line in lines:
         yield from (f"G1 Z{up:g}", at(line[0]), f"G1 Z{down:g} F800")
@@ -145,17 +145,17 @@ def mark_of(lines):
 
 
 @pytest.mark.parametrize(("style", "seed"), CORPUS)
-def test_programs_are_read_as_they_were_meant(style, seed):
+def test_programs_are_read_as_they_were_intended(style, seed):
     chance = random.Random(f"{style} {seed}")
     lines = drawing(chance)
     text = "\n".join(STYLES[style](lines, chance))
     design = read_gcode(text.encode(), ReadOptions(sheet_mm=(200, 150)))
     found = [np.vstack([s.cubics[:1, 0], s.cubics[:, 3]]) for e in design.elements for s in e.subpaths]
-    ours, meant = mark_of(found), mark_of(lines)
-    overlap = ours.intersection(meant).area / ours.union(meant).area
+    ours, expected = mark_of(found), mark_of(lines)
+    overlap = ours.intersection(expected).area / ours.union(expected).area
     assert overlap >= 0.97, design.notices
     assert len(found) == len(lines)
-    assert is_told(design.notices, "pen-reading")
+    assert is_reported(design.notices, "pen-reading")
     dips = [notice for notice in design.notices if notice.code == "dips-left-out"]
     assert bool(dips) == style.startswith("dips") and all(
         agrees(each, f"dips-left-out {len(lines)}") for each in dips
@@ -225,7 +225,7 @@ def test_to_begin_and_end_at_z_0_turns_no_z():
     """Single lines, all by G1: nothing else shows which of both heights draws, and z 0 is usually paper."""
     hatch = [np.array([(40, y), (80, y)]) for y in (40, 50, 60)]
     design = read_gcode("\n".join(parked(hatch, 5, 0)).encode(), ReadOptions(sheet_mm=(200, 150)))
-    assert is_told(design.notices, "pen-reading 0 5")
+    assert is_reported(design.notices, "pen-reading 0 5")
     inner = [each for each in design.elements if each.subpaths[0].cubics[0, 0, 0] == 40]
     assert [np.ptp(each.subpaths[0].cubics.reshape(-1, 2), axis=0).tolist() for each in inner] == [
         [40, 0]
@@ -245,29 +245,31 @@ def test_check_refuses_a_z_that_falls_to_lift(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     lines = [np.array([(40, 40), (80, 40)]), np.array([(40, 60), (80, 60)])]
     (tmp_path / "falls.gcode").write_text("\n".join(by_z(lines, -4, 0.5)))
-    status, _, told = in_json(capsys, "check", "falls.gcode")
-    assert status == 1 and is_told(told, "z-inverted 0.5 -4")
-    status, _, told = in_json(capsys, "convert", "falls.gcode", "-o", "out.ngc", "--width", "3")
-    assert status == 0 and is_told(told, "pen-reading 0.5 -4")
+    status, _, reported = in_json(capsys, "check", "falls.gcode")
+    assert status == 1 and is_reported(reported, "z-inverted 0.5 -4")
+    status, _, reported = in_json(capsys, "convert", "falls.gcode", "-o", "out.ngc", "--width", "3")
+    assert status == 0 and is_reported(reported, "pen-reading 0.5 -4")
 
 
 def test_check_takes_the_height_of_the_paper(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "touches.gcode").write_bytes(SKETCH)
-    status, _, told = in_json(capsys, "check", "touches.gcode")
-    assert status == 1 and is_told(told, "nothing-painted")
-    status, _, told = in_json(capsys, "check", "touches.gcode", "--paper-z", "2")
-    assert status == 0, told
+    status, _, reported = in_json(capsys, "check", "touches.gcode")
+    assert status == 1 and is_reported(reported, "nothing-painted")
+    status, _, reported = in_json(capsys, "check", "touches.gcode", "--paper-z", "2")
+    assert status == 0, reported
 
 
 def test_the_flags_reach_the_reader(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "sketch.gcode").write_bytes(SKETCH)
     words = "--width 3 --paper-z 0 --pen z --skip-region 30,30,100,50 --skip-comment nothing".split()
-    assert is_told(in_json(capsys, "convert", "sketch.gcode", "-o", "out.ngc")[2], "gcode-no-width 1 --width")
-    status, _, told = in_json(capsys, "convert", "sketch.gcode", "-o", "out.ngc", *words)
-    assert not is_told(told, "gcode-no-width"), "they have one"
-    assert status == 0 and is_told(told, "strokes-skipped 1 2"), told
+    assert is_reported(
+        in_json(capsys, "convert", "sketch.gcode", "-o", "out.ngc")[2], "gcode-no-width 1 --width"
+    )
+    status, _, reported = in_json(capsys, "convert", "sketch.gcode", "-o", "out.ngc", *words)
+    assert not is_reported(reported, "gcode-no-width"), "they have one"
+    assert status == 0 and is_reported(reported, "strokes-skipped 1 2"), reported
 
 
 def test_words_that_are_about_the_drawing_make_no_dips():
@@ -285,5 +287,5 @@ def test_words_that_are_about_the_drawing_make_no_dips():
         words += [said.get(k, ""), f"G0 X{x} Y{y}", "G1 Z0 F500", f"G1 X{u} Y{v}", "G0 Z5"]
     text = "\n".join([*words, "M2"])
     design = read_gcode(text.encode())
-    assert len(design.elements) == 4 and is_told(design.notices, "dips-left-out 1 19")
+    assert len(design.elements) == 4 and is_reported(design.notices, "dips-left-out 1 19")
     assert len(read_gcode(text.encode(), ReadOptions(skip_comments=("none",))).elements) == 5

@@ -108,7 +108,7 @@ def test_a_name_in_the_zip_cannot_lead_elsewhere(profile, tmp_path, zipped):
     "script", sorted(path.name for path in SOURCE.glob("*.py") if "import etree" in path.read_text())
 )
 @pytest.mark.parametrize("module", ["lxml", "cssselect"])
-def test_what_inkscapes_python_lacks_is_told_with_its_package(tmp_path, script, module):
+def test_what_inkscapes_python_lacks_is_reported_with_its_package(tmp_path, script, module):
     """As in a system whose Inkscape was installed without what it recommends."""
     (tmp_path / "drawing.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg"/>')
     lacks = f"raise ModuleNotFoundError('No module', name='{module}')\n"

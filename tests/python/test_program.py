@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import are_told, refused
+from diagnostics import are_reported, refused
 from programs import forbidden, program, whole
 
 from brushsvg.machine.cells.cell_file import find_cell
@@ -76,7 +76,7 @@ def test_duration_counts_every_way_at_its_speed_from_rest_to_rest():
     assert duration_s(unchecked_program(whole(plan_of(line)), BRUSH, cell)) == pytest.approx(slowed)
 
 
-def test_a_job_may_begin_later_and_the_paper_lie_higher():
+def test_a_job_may_begin_later_and_the_paper_be_higher():
     plan = plan_of(STROKE, STROKE, STROKE)
     made = program(plan, BRUSH, find_cell(), (), Job(z_offset_mm=0.25, first_stroke=2))
     assert [section.title for section in made.sections()] == ["stroke 2 of 3: s2", "stroke 3 of 3: s3"]
@@ -100,7 +100,7 @@ def test_a_job_may_begin_later_and_the_paper_lie_higher():
 )
 def test_limits_are_named_with_stroke_and_number(poses, said):
     plan = plan_of(STROKE, poses)
-    assert are_told(forbidden(plan, BRUSH, find_cell()), f"{said} s2")
+    assert are_reported(forbidden(plan, BRUSH, find_cell()), f"{said} s2")
     with refused(said, "s2"):
         program(plan, BRUSH, find_cell())
 
@@ -108,9 +108,9 @@ def test_limits_are_named_with_stroke_and_number(poses, said):
 def test_speed_limits_and_nothing_to_paint():
     speed = "speed-out-of-range s1 51 '[0.000001, {}] mm/s' '{}'".format
     too_fast = forbidden(plan_of(STROKE, speed=51.0), brush_of(80.0), find_cell())
-    assert are_told(too_fast, speed("50.0", "cell linuxcnc-3axis"))
+    assert are_reported(too_fast, speed("50.0", "cell linuxcnc-3axis"))
     too_fast = forbidden(plan_of(STROKE, speed=51.0), BRUSH, find_cell())
-    assert are_told(too_fast, speed("25.0", "brush hog"))
+    assert are_reported(too_fast, speed("25.0", "brush hog"))
     with refused("speed-out-of-range 25.1 hog"):
         program(plan_of(STROKE, speed=25.1), BRUSH, find_cell())
     assert len(forbidden(plan_of(STROKE, speed=float("nan")), BRUSH, find_cell())) == 1

@@ -42,7 +42,7 @@ def test_a_function_is_not_hidden_by_the_module_of_its_name(first):
     python("-c", f"import brushsvg; {first}; assert callable(brushsvg.strokes)")
 
 
-def test_whatever_reads_a_file_is_given_its_path():
+def test_each_reader_of_a_file_is_given_its_path():
     for name in (name for name in brushsvg.__all__ if name.startswith("read_")):
         assert next(iter(inspect.signature(getattr(brushsvg, name)).parameters)) == "path", name
 
@@ -72,10 +72,10 @@ def test_what_is_written_is_read_back_and_refusals_name_the_file(tmp_path, monke
 def test_what_is_set_up_has_the_extras_that_its_commands_need():
     root = Path(__file__).parents[2]
     extras = tomllib.loads((root / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-    asked = re.findall(
+    requested = re.findall(
         r'lacking\("[^"]*", (.*)\)', "".join(map(Path.read_text, root.glob("python/brushsvg/**/*.py")))
     )
-    named = {name for each in asked for name in re.findall('"(.*?)"', each)}
+    named = {name for each in requested for name in re.findall('"(.*?)"', each)}
     of_commands = (
         "text",
         "plot",
@@ -106,12 +106,12 @@ def test_the_demo_leaves_everything(tmp_path):
     rows = [
         re.split("  +", line) for line in table.splitlines() if re.match("none|constant|closed|refined", line)
     ]
-    told = re.findall(
+    reported = re.findall(
         r"^\| `(?:none|constant|closed|refined)`.*?\| \**([\d.]+)\** \| \**([\d.]+) / ([\d.]+)\** \|$",
         README,
         re.M,
     )
-    shown, printed = (np.array(figures, float) for figures in ([row[1:] for row in rows], told))
+    shown, printed = (np.array(figures, float) for figures in ([row[1:] for row in rows], reported))
     # processors differ: where an optimizer stops (refined) by some thousandths, all others by one of the last digit
     assert np.allclose(shown, printed, rtol=0, atol=0.005), "README.md has other figures"
     assert np.allclose(shown[:-1], printed[:-1], rtol=0, atol=0.0011), "README.md has other figures"

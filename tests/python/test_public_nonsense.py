@@ -1,4 +1,4 @@
-"""Whatever the public names are given ends in a result or in Error: no crash, no hang, no other traceback."""
+"""Any input of the public names ends in a result or in Error: no crash, no hang, no other traceback."""
 
 import subprocess
 import sys

@@ -45,17 +45,17 @@ def test_what_is_in_reach_and_what_was_drawn_stays(brush):
 def test_a_line_that_is_too_wide_by_less_than_one_sees_is_painted(brush, width, is_painted):
     """A brush typed in with 4.8 mm painted 4.791 mm, and refused a job for one dot of 4.8 mm."""
     line = of("M10 20H60", f'fill="none" stroke="red" stroke-width="{width}"')
-    (made,), wanted, notices = within_reach(line, brush)
-    assert wanted == line and not notices
+    (made,), target, notices = within_reach(line, brush)
+    assert target == line and not notices
     assert max(half for _, half in made.half_width) == pytest.approx(4.2 if is_painted else width / 2)
     if is_painted:
         _core.compensate([made], brush, (100, 50))
 
 
-def test_the_nearest_width_is_painted_and_the_outline_stays_wanted(brush):
+def test_the_nearest_width_is_painted_and_the_outline_stays_the_target(brush):
     made = of(WEDGE)
-    (narrower,), wanted, (notice,) = within_reach(made, brush, "clamp")
-    assert wanted == made
+    (narrower,), target, (notice,) = within_reach(made, brush, "clamp")
+    assert target == made
     halves = np.array(narrower.half_width)
     assert halves[:, 1].max() == pytest.approx(4.2)
     assert np.interp(0.2, *halves.T) == pytest.approx(np.interp(0.2, *np.array(made[0].half_width).T))
@@ -90,27 +90,27 @@ def test_passes_cover_the_shape_and_stay_in_it(brush):
 def test_a_line_thinner_than_the_brush_is_painted_at_its_least_width():
     """The whole job was refused for it."""
     liner = find_brush("liner-1")  # 1 to 2 mm wide
-    for width, is_told in ((0.9, False), (0.4, True)):
+    for width, is_reported in ((0.9, False), (0.4, True)):
         made = of("M10 20H60", f'fill="none" stroke="red" stroke-width="{width}"')
-        (painted_line,), wanted, notices = within_reach(made, liner)
-        assert wanted == made
+        (painted_line,), target, notices = within_reach(made, liner)
+        assert target == made
         assert [half for _, half in painted_line.half_width] == [0.5]
         assert [
             agrees(notice, f"width-out-of-reach {width} '[1, 2] mm' nearest", "p") for notice in notices
-        ] == ([True] * is_told)
+        ] == ([True] * is_reported)
         with refused(f"width-out-of-reach {width} '[1, 2] mm'", "p"):
             within_reach(made, liner, "refuse")
     rigid = find_brush("rigid")
-    assert within_reach(made, rigid, "passes")[0] == made  # its one width is not asked
+    assert within_reach(made, rigid, "passes")[0] == made  # its one width is not checked
 
 
 def test_a_sliver_that_is_less_than_half_of_the_smallest_mark_is_left_out():
     liner = find_brush("liner-1")  # its smallest mark is 0.79 mm2
     sliver, dot = "M60 10h0.6v0.6h-0.6z", "M60 10h0.7v0.7h-0.7z"
     made = of(f"M10 20H50V21.5H10Z{sliver}")
-    passes, wanted, (notice,) = within_reach(made, liner)
-    assert len(made) == 2 and len(passes) == len(wanted) == 1
-    assert agrees(notice, "width-out-of-reach 0.36 0.79 liner-1", next(s.id for s in made if s != wanted[0]))
+    passes, target, (notice,) = within_reach(made, liner)
+    assert len(made) == 2 and len(passes) == len(target) == 1
+    assert agrees(notice, "width-out-of-reach 0.36 0.79 liner-1", next(s.id for s in made if s != target[0]))
     assert len(within_reach(of(f"M10 20H50V21.5H10Z{dot}"), liner)[0]) == 2
     assert len(within_reach(made, find_brush("round-6"))[0]) == 2  # it paints down to no width
     with refused("nothing-to-paint 0.36", "p"):
@@ -125,7 +125,7 @@ def test_refusal_names_stroke_width_and_range(brush):
     assert caught.value.value == pytest.approx(16, abs=0.1)
 
 
-def test_a_pen_of_one_width_is_not_asked(brush):
+def test_a_pen_of_one_width_is_not_checked(brush):
     made = of(WIDE)
     assert within_reach(made, find_brush("rigid"), "refuse") == (made, made, [])
 
@@ -151,8 +151,8 @@ def test_a_shape_wider_than_the_brush_is_painted_whole_unless_its_width_is_to_be
     made = of(d)
     shape = made[0].wanted_mm
     assert _core.overlap(mark_of(passes_of(made, brush), brush), shape) > 0.975
-    (narrower,), (meant,), (notice,) = within_reach(made, brush, "clamp")
-    assert meant is made[0]
+    (narrower,), (expected,), (notice,) = within_reach(made, brush, "clamp")
+    assert expected is made[0]
     assert max(half for _, half in narrower.half_width) == pytest.approx(4.2)
     assert notice.code == "width-out-of-reach"
 
@@ -166,10 +166,10 @@ def test_the_stems_of_a_drawing_are_of_one_weight(brush):
 
 
 def test_a_width_that_is_hardly_out_of_reach_is_no_warning(brush):
-    """8.45 mm in place of 8.4 was told of nine strokes of a word."""
-    for wide_mm, is_told in ((8.45, False), (8.55, False), (8.7, True)):
+    """8.45 mm in place of 8.4 was reported for nine strokes of a word."""
+    for wide_mm, is_reported in ((8.45, False), (8.55, False), (8.7, True)):
         painted, _, notices = within_reach(of(f"M10 10H90V{10 + wide_mm}H10Z"), brush)
-        assert bool(notices) == is_told
+        assert bool(notices) == is_reported
         assert max(half for _, half in painted[0].half_width) <= 4.2
     with refused("width-out-of-reach"):
         within_reach(of("M10 10H90V18.45H10Z"), brush, "refuse")
@@ -181,5 +181,7 @@ def test_an_arm_that_is_hardly_too_wide_does_not_lead_to_passes(brush):
     bare = 'fill="red" stroke="none"'
     both = strokes(read(f'<path id="arm" d="{arm}" {bare}/><path id="bar" d="{bar}" {bare}/>'))[0]
     _, _, notices = within_reach(both, brush)
-    told = [each.told for each in notices]
-    assert any("would overlap" in each for each in told) or not any("as others" in each for each in told)
+    reported = [each.text for each in notices]
+    assert any("would overlap" in each for each in reported) or not any(
+        "as others" in each for each in reported
+    )

@@ -42,7 +42,7 @@ def test_never_worse_on_small_drawings():
 
 
 def with_teeth(stroke):
-    """Wanted within a zigzag along its edge, as pieces that other strokes were cut from are ragged: every mark turns
+    """Target within a zigzag along its edge, as pieces that other strokes were cut from are ragged: every mark turns
     less."""
     rim = np.array(shapely.Polygon(_core.wanted_outline(stroke, 0.01)[0]).exterior.segmentize(0.4).coords)[
         :-1
@@ -61,10 +61,10 @@ def looks(stroke, method: str) -> tuple[float, float, int]:
     plan = _core.compensate([stroke], BRUSH, SHEET, method, start="auto", end="auto").plan
     marks = _core.simulate(plan, BRUSH)
     _core.trace_outlines(marks, BRUSH)
-    wanted = _core.wanted_outline(stroke, 0.01)
+    target = _core.wanted_outline(stroke, 0.01)
     overlap = _core.common_area(marks.passes, [stroke], BRUSH).overlap
     mark = marks.outline_mm
-    return overlap, _core.excess_turning(mark, wanted), _core.thorns(mark, wanted)
+    return overlap, _core.excess_turning(mark, target), _core.thorns(mark, target)
 
 
 @pytest.mark.slow

@@ -1,10 +1,10 @@
-"""`--compensation refined` on shapes wider than the brush, what is told of where it goes, and a machine's limits."""
+"""`--compensation refined` on shapes wider than the brush, its notices, and a machine's limits."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnostics import is_told
+from diagnostics import is_reported
 from programs import problems
 
 from brushsvg import _core, cli, compensate, find_brush, find_cell
@@ -44,14 +44,14 @@ def test_a_stroke_too_wide_for_the_brush_stays_straight(tmp_path):
         inside = (widest[:, 1] > 22) & (widest[:, 1] < 68)
         assert widest[inside, 0] == pytest.approx(np.full(inside.sum(), middle_mm), abs=0.15)
         assert overlap(refined, number) > overlap(closed, number) + least[number]  # ends are refined as ever
-    assert not is_told(refined.notices, "off-middle-line")
+    assert not is_reported(refined.notices, "off-middle-line")
 
 
-def bar(half, wanted=True):
+def bar(half, target=True):
     """A bar of a constant half width, as its outline gives it."""
     p = np.linspace((30, 50), (90, 50), 4).reshape(1, 8)
     stroke = _core.Stroke("bar", p, half_width=[(0, half), (1, half)])
-    if wanted:
+    if target:
         x0, x1, y0, y1 = 30 - half, 90 + half, 50 - half, 50 + half
         stroke.wanted_mm = [np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])]
     return stroke
@@ -64,24 +64,24 @@ def test_outlines_within_reach_and_a_little_beyond_are_refined_towards():
     assert not towards_reach(bar(greatest), bar(1.2 * greatest), BRUSH).wanted_mm
 
 
-@pytest.mark.parametrize(("away_mm", "is_told"), [(0.8, [True, False]), (2.5, [True, True])])
-def test_a_refined_mark_beside_its_stroke_is_told_of(away_mm, is_told):
+@pytest.mark.parametrize(("away_mm", "is_reported"), [(0.8, [True, False]), (2.5, [True, True])])
+def test_a_refined_mark_next_to_its_stroke_is_reported(away_mm, is_reported):
     """Two strokes 4 mm wide: the miss of one in closed form counts from the tolerance on, that of a refined one from
-    where its paint lies half its half width outside."""
-    stroke = bar(2.0, wanted=False)
+    where its paint is half its half width outside."""
+    stroke = bar(2.0, target=False)
     a_pass = compensate([stroke], BRUSH, (120, 90)).plan.passes[0]
     a_pass.poses_mm = a_pass.poses_mm + np.array([0, away_mm, 0])
     miss = _core.tracking_error_of(a_pass, stroke, BRUSH)
     in_closed_form = off_middle_line([stroke], [miss], BRUSH, 0.05)
-    assert [bool(in_closed_form), bool(outside([stroke], [a_pass], BRUSH))] == is_told
+    assert [bool(in_closed_form), bool(outside([stroke], [a_pass], BRUSH))] == is_reported
 
 
-def test_a_refined_plan_tells_of_strokes_left_in_closed_form(tmp_path):
-    """Nothing is refined on a thread, and its misses were told with --compensation closed only."""
+def test_a_refined_plan_reports_strokes_left_in_closed_form(tmp_path):
+    """Nothing is refined on a thread, and its misses were reported with --compensation closed only."""
     text = """<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60"><path id="z"
         d="M20 20 H70 L22 24" fill="none" stroke="#000" stroke-width="0.4"/></svg>"""
     closed, refined = works(tmp_path, text, corners="turn")
-    assert is_told(closed.notices, "off-middle-line", "z")
+    assert is_reported(closed.notices, "off-middle-line", "z")
     assert [notice for notice in refined.notices if notice not in said_of_nothing(refined)] == list(
         closed.notices
     )

@@ -19,6 +19,8 @@ from brushsvg import (
     trace_outlines,
 )
 from brushsvg.show.marks_svg import TOOLPATH
+from brushsvg.show.overlap_png import overlap_png
+from brushsvg.show.overlap_svg import overlap_svg
 from brushsvg.show.panels_png import Panel, panels_png
 
 SHEET = (60.0, 30.0)
@@ -56,7 +58,7 @@ def test_png_shows_colours_at_their_places_and_order(painted):
     assert image.shape[:2] == (600, 1200)
     assert pixel(image, 16, 6) == RED
     assert pixel(image, 33, 24) == BLUE
-    assert pixel(image, 40, 24) == RED, "the later stroke lies on top"
+    assert pixel(image, 40, 24) == RED, "the later stroke is on top"
     assert pixel(image, 16, 24) == "#ffffff"
     edge = image[(image != 255).any(axis=2) & (image != decode_colour(RED)).any(axis=2)]
     assert len(np.unique(edge, axis=0)) > 20, "edges are anti-aliased"
@@ -136,11 +138,11 @@ def test_panels_are_complete_at_one_scale(shape, landscape):
     assert (image.shape[1] > image.shape[0]) == landscape
     grey = (np.abs(image.astype(int) - 180).max(axis=2) < 8).sum()
     ink = ((image[..., 0] > 90) & (image[..., 2] < 80)).sum()
-    assert ink == pytest.approx(2 * grey, rel=0.1), "one panel wanted, two painted over it"
+    assert ink == pytest.approx(2 * grey, rel=0.1), "one panel of the target, two painted over it"
 
 
 def test_a_page_of_many_strokes_is_painted_by_several_processors_as_each_alone():
-    """In which order tells nothing, where they cross; where none does, the picture is all of theirs."""
+    """The order does not matter where they cross; where none does, the picture is all of theirs."""
     brush, rng = find_brush("round-6"), np.random.default_rng(2)
     sheet, count = (400.0, 300.0), 96
     apart = [((10 + 30 * (k % 12), 15 + 34 * (k // 12)), rng.uniform(-9, 9, 2)) for k in range(count)]
@@ -165,3 +167,29 @@ def test_a_page_of_many_strokes_is_painted_by_several_processors_as_each_alone()
     assert np.abs(picture(marks, marks.passes) - alone).max() < 1e-5  # sums of a row in single precision
     marks = marks_of(crossing)
     assert (picture(marks, marks.passes) == picture(marks, marks.passes[::-1])).all()
+
+
+PLACES = {1: (16.0, 4.4), 2: (59.5, 29.5)}
+
+
+def test_numbers_of_places_stay_inside_and_off_the_paint(painted):
+    """The second place is in a corner of the sheet."""
+    marks, brush, _ = painted
+    scale = 20.0
+    paint = coverage(marks, brush, (0, 0, *SHEET), scale)
+    at_px = {number: (x * scale, (SHEET[1] - y) * scale) for number, (x, y) in PLACES.items()}
+    plain, numbered = (decode(overlap_png(paint, paint, places=places)) for places in ({}, at_px))
+    assert plain.shape == numbered.shape
+    changed = (plain != numbered).any(axis=2)[: len(paint)]
+    far = np.ones_like(changed)
+    for x, y in at_px.values():
+        cv2.circle(far.view(np.uint8), (round(x), round(y)), 16, 0, -1)
+    assert changed[far].sum() > 100 and not (changed & far & (paint > 0.05)).any()
+    tree = ET.fromstring(overlap_svg(marks.outline_mm, marks.outline_mm, SHEET, places=PLACES))
+    rings = [(float(each.get("cx")), float(each.get("cy"))) for each in tree.iter(f"{SVG}circle")]
+    assert rings == [(x, SHEET[1] - y) for x, y in PLACES.values()]
+    texts = [each for each in tree.iter(f"{SVG}text") if each.text in ("1", "2")]
+    assert len(texts) == 2
+    for text in texts:
+        x, y, size = (float(text.get(key)) for key in ("x", "y", "font-size"))
+        assert 0 <= x <= SHEET[0] - 0.65 * size and size <= y + 0.2 * size and y <= SHEET[1]

@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 import pytest
-from diagnostics import in_json, is_told
+from diagnostics import in_json, is_reported
 
 from brushsvg.cli.steps import replacing
 from brushsvg.machine.cells.cell import MOST_POINTS
@@ -31,8 +31,8 @@ def desk(tmp_path, monkeypatch):
 def is_kept(capsys, path, *words):
     """That the command is refused for this file, and leaves it as it was; and replaces it with --force."""
     before = Path(path).read_bytes()
-    status, _, told = in_json(capsys, *words)
-    kept = status == 1 and is_told(told, "file-exists") and told[-1][0] == path
+    status, _, reported = in_json(capsys, *words)
+    kept = status == 1 and is_reported(reported, "file-exists") and reported[-1][0] == path
     kept &= Path(path).read_bytes() == before
     return kept and in_json(capsys, *words, "--force")[0] == 0
 
@@ -102,15 +102,15 @@ def test_where_nothing_can_be_remembered_files_are_somebodys(desk, capsys, monke
 
 
 def test_who_is_refused_for_a_home_that_cannot_be_written_reads_where(desk, capsys, monkeypatch):
-    """Root may write anywhere, so that is asked of a stand-in."""
+    """Root may write anywhere, so a stand-in is used."""
     place = desk / "state" / "brushsvg" / "written.txt"
     place.mkdir(parents=True)
     monkeypatch.setattr(
         replacing.os, "access", lambda path, mode: not str(path).startswith(str(desk / "state"))
     )
     assert in_json(capsys, *CONVERT)[0] == 0
-    status, _, told = in_json(capsys, *CONVERT)
-    assert status == 1 and is_told(told, f"file-exists {place}"), told
+    status, _, reported = in_json(capsys, *CONVERT)
+    assert status == 1 and is_reported(reported, f"file-exists {place}"), reported
 
 
 def test_a_device_is_written_through(desk, capsys):

@@ -1,5 +1,7 @@
 """Figures of the report against shapes whose answer is known."""
 
+import csv
+import dataclasses
 import json
 import re
 
@@ -10,7 +12,21 @@ from diagnostics import gives
 from brushsvg import Stroke, compensate, find_brush, simulate
 from brushsvg.errors import Notice
 from brushsvg.show.evaluation import report
-from brushsvg.show.evaluation.report import Figures, Group, Report, Worst, groups, measure, to_json, to_text
+from brushsvg.show.evaluation.places import Place
+from brushsvg.show.evaluation.report import (
+    Figures,
+    Group,
+    Report,
+    Worst,
+    as_text,
+    groups,
+    measure,
+    to_csv,
+    to_json,
+    to_text,
+    worst_places,
+)
+from brushsvg.show.evaluation.uncertainty import Confidence, PlanConfidence
 
 
 def straight(stroke_id, start, end, half_width, knots=None):
@@ -71,33 +87,37 @@ def test_json_is_complete_and_without_nan():
         (ROW,),
         ROW,
         75.04,
-        (Notice("s/1", "odd", code="strange", advice="mend"),),
+        (Notice("s/1", "odd", code="strange", advice="fix"),),
     )
     read = json.loads(to_json(made), parse_constant=lambda name: pytest.fail(name))
     assert read["format"] == "brushsvg/report"
     assert read["strokes"][0]["overlap"] == 0.951235
     assert read["total"]["poses"] == 42
-    told = {
+    reported = {
         "where": "s/1",
-        "sentence": "odd; mend",
+        "sentence": "odd; fix",
         "code": "strange",
-        "advice": "mend",
+        "advice": "fix",
         "damaged": False,
         "refused": False,
     }
-    assert read["warnings"] == [told]
+    assert read["warnings"] == [reported]
 
 
 def test_text_names_every_stroke_and_says_what_is_not_known():
-    text = to_text(Report("", "round-6", "", None, (UNKNOWN,), UNKNOWN, 75.4))
-    assert gives(text.splitlines()[0], "1", "round-6")
-    assert "nan" not in text.lower()
-    assert "None" not in text
-    assert "1 min 15 s" in text
-    both = to_text(Report("T", "round-6", "closed", 0.05, (ROW, ROW), ROW, 5, (Notice("", "odd"),)))
-    assert gives(both.splitlines()[0], "T: 2", "round-6", "closed", "0.05 mm")
-    assert both.count("s/1 ") == 3
-    assert both.endswith(": 1\n  odd\n")
+    made = Report("", "round-6", "", None, (UNKNOWN,), UNKNOWN, 75.4)
+    for details in (False, True):
+        text = to_text(made, details)
+        assert "nan" not in text.lower()
+        assert "None" not in text
+        assert "1 min 15 s" in text
+    assert any(gives(line, "1", "round-6") for line in text.splitlines())
+    both = Report("T", "round-6", "closed", 0.05, (ROW, ROW), ROW, 5, (Notice("", "odd"),))
+    long = to_text(both, details=True)
+    assert any(gives(line, "T: 2", "round-6", "closed", "0.05 mm") for line in long.splitlines())
+    assert long.startswith(to_text(both)) and "s/1 " not in to_text(both)
+    assert long.count("s/1 ") == 3
+    assert long.endswith(": 1\n  odd\n")
 
 
 def test_strokes_that_touch_are_judged_together():
@@ -114,7 +134,7 @@ def test_strokes_that_touch_are_judged_together():
     rows, total = measure(plan, marks, brush, strokes)
     assert max(rows[0].overlap, rows[2].overlap) - 0.03 < letter.overlap
     assert groups(marks, brush, None) == ()
-    text = to_text(Report("T", "round-6", "closed", 0.05, rows, total, 5, groups=(letter,)))
+    text = to_text(Report("T", "round-6", "closed", 0.05, rows, total, 5, groups=(letter,)), details=True)
     assert f"down + across    {letter.overlap:.3f}" in text
 
 
@@ -131,11 +151,11 @@ def test_a_stroke_painted_twice_is_no_worse_as_a_letter():
 WORST = Worst((12.34, 5.67), True, 0.5, "too short", "shorter-than-footprint")
 
 
-def test_the_worst_place_is_told():
+def test_the_worst_place_is_reported():
     row = Figures("s", 0.9, 0.01, 0.04, 0.125, 0, 60.0, 81.5, 42, WORST)
     made = Report("T", "round-6", "closed", 0.05, (row,), ROW, 5, advice="Size: fine.")
-    assert re.search(r"42  x 12\.3, y 5\.7: .*; too short\n", to_text(made))
-    assert to_text(made).endswith("\n\nSize: fine.\n")
+    assert re.search(r"42  x 12\.3, y 5\.7: .*; too short\n", to_text(made, details=True))
+    assert to_text(made, details=True).endswith("\n\nSize: fine.\n")
     read = json.loads(to_json(made))
     assert read["strokes"][0]["worst"] == {
         "place_mm": [12.34, 5.67],
@@ -151,3 +171,83 @@ def test_the_worst_place_is_told():
 def test_groups_in_json():
     made = Report("T", "b", "closed", 0.05, (ROW,), ROW, 5, groups=(Group(("a", "b"), 0.9512345678),))
     assert json.loads(to_json(made))["groups"] == [{"strokes": ["a", "b"], "overlap": 0.951235}]
+
+
+PLACE = Place(1, "s", (12.34, 5.67), 0.5, 0.0, 0.3, "REASON", "shape-corner", "REMEDY", "SIZE")
+
+
+def test_the_text_is_at_most_ten_lines():
+    notices = tuple(Notice(f"s{k}", f"SENTENCE {k}", code=f"c{k}") for k in range(20))
+    places = tuple(dataclasses.replace(PLACE, number=k) for k in range(1, 6))
+    rows = (ROW,) * 30
+    full = Report(
+        "T", "b", "closed", 0.05, rows, ROW, 5, notices, notices[:3], advice="Size: fine.", places=places
+    )
+    lines = to_text(full, picture="p.png").splitlines()
+    assert len(lines) == 10
+    assert gives(lines[1], "T", "95 %", "0.951", "5 s")
+    assert [line[:2] for line in lines[2:7]] == ["1.", "2.", "3.", "4.", "5."]
+    assert gives(lines[2], "1", "s", "12.3", "5.7", "SIZE", "REASON", "REMEDY")
+    assert gives(lines[7], "3", "s0") and gives(lines[8], "20", "s0") and gives(lines[9], "p.png")
+    assert len(to_text(full, details=True).splitlines()) > 60
+
+
+def test_places_are_in_the_json_with_the_verdict():
+    made = Report("T", "b", "closed", 0.05, (ROW,), ROW, 5, places=(PLACE,))
+    read = json.loads(to_json(made))
+    assert read["verdict"] == made.verdict == to_text(made).splitlines()[0]
+    assert read["places"] == [
+        {
+            "number": 1,
+            "stroke": "s",
+            "place_mm": [12.34, 5.67],
+            "missing_mm2": 0.5,
+            "outside_mm2": 0.0,
+            "tracking_error_mm": 0.3,
+            "reason": "REASON",
+            "code": "shape-corner",
+            "remedy": "REMEDY",
+        }
+    ]
+
+
+def test_csv_has_a_row_for_each_stroke_and_empty_cells_for_what_is_not_known():
+    row = Figures('a "b", c', 0.9, 0.01, 0.04, 0.125, 0, 60.0, 81.5, 42, WORST)
+    interval = Confidence(0.4, None, 0.2)
+    known = PlanConfidence("covariance", "words", (interval, interval), interval)
+    made = Report("T", "b", "closed", 0.05, (row, UNKNOWN), ROW, 5, confidence=known)
+    first, second = csv.DictReader(to_csv(made).splitlines())
+    assert (first["stroke"], first["overlap"], first["poses"]) == ('a "b", c', "0.9", "42")
+    assert (first["worst_x_mm"], first["worst_y_mm"], first["worst_code"]) == ("12.34", "5.67", WORST.code)
+    assert (first["middle_mm_95"], first["ends_mm_95"]) == ("0.4", "")
+    assert (second["overlap"], second["worst_x_mm"], second["painted_mm"]) == ("", "", "12.0")
+    bare = as_text(".csv", Report("T", "b", "closed", 0.05, (ROW,), ROW, 5))
+    assert len(bare.splitlines()) == 2 and "_95" not in bare
+
+
+def test_the_worst_place_is_where_the_lag_is_not_compensated():
+    brush = find_brush("round-6")
+    straight_on = straight("a", (10, 20), (70, 20), 1.5)
+    bend = Stroke(
+        "bend", np.array([[10, 40, 40, 40, 60, 50, 60, 70]], float), half_width=[(0, 1.5), (1, 1.5)]
+    )
+    plan = compensate([straight_on, bend], brush, (90, 90), "none").plan
+    marks = simulate(plan, brush)
+    places = worst_places(plan, marks, brush, [straight_on, bend], compensation="none")
+    assert places[0].stroke == "bend" and [place.number for place in places] == [*range(1, len(places) + 1)]
+    assert places[0].code == "lag-not-compensated" and places[0].remedy
+    assert places[0].missing_mm2 + places[0].outside_mm2 > 10
+    good = compensate([straight_on, bend], brush, (90, 90)).plan
+    places = worst_places(good, simulate(good, brush), brush, [straight_on, bend])
+    assert {place.code for place in places} <= {"stroke-start", "stroke-end"}, "plain ends are pointed"
+
+
+def test_paint_of_another_stroke_is_no_difference():
+    brush = find_brush("round-6")
+    strokes = [straight("down", (40, 60), (40, 20), 2.0), straight("across", (25, 41), (60, 41), 2.0)]
+    plan = compensate(strokes, brush, (90, 80)).plan
+    marks = simulate(plan, brush)
+    both = worst_places(plan, marks, brush, strokes)
+    one = worst_places(plan, marks, brush, [strokes[0], None], drawn=strokes[:1])
+    assert max(place.outside_mm2 for place in both) < 1 < 40 < one[0].outside_mm2
+    assert {place.stroke for place in one} == {"down"}

@@ -14,13 +14,13 @@ class Endless:
     """A list of a length that fits nowhere; who asks for one of its entries has begun to copy it."""
 
     def __init__(self, length):
-        self.length, self.asked = length, 0
+        self.length, self.requested = length, 0
 
     def __len__(self):
         return self.length
 
     def __getitem__(self, index):
-        self.asked += 1
+        self.requested += 1
         raise IndexError
 
 
@@ -40,7 +40,7 @@ def test_a_list_longer_than_any_is_refused_before_it_is_copied(call):
     some = Endless(10_000_001)
     with pytest.raises(Error) as refused:
         call(some)
-    assert (refused.value.code, refused.value.value, some.asked) == ("list-too-long", 10_000_001, 0)
+    assert (refused.value.code, refused.value.value, some.requested) == ("list-too-long", 10_000_001, 0)
     assert tuple(refused.value.range) == (0, 10_000_000)
     with pytest.raises(Error):
         call(range(10**9))
@@ -63,7 +63,7 @@ def test_rings_that_run_clockwise_are_refused_not_lost():
     assert coverage([turned], (0, 0, 4, 4), 1.0).min() == 1
 
 
-def test_places_lie_within_rings_as_shapely_has_it():
+def test_places_are_within_rings_as_shapely_has_it():
     random = np.random.default_rng(5)
     around = np.linspace(0, 2 * np.pi, 90, endpoint=False)
     outer = (5 + np.sin(7 * around))[:, None] * np.column_stack([np.cos(around), np.sin(around)])

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import gives, in_json, is_told, refused
+from diagnostics import gives, in_json, is_reported, refused
 from programs import call
 from test_urscript import ARC, STROKES, text_for
 
@@ -36,8 +36,8 @@ def test_the_post_is_called_for_each_move(capsys):
         *("tool 0.000 0.000 150.000 down 1", "acceleration 500"),
     ]
     places = np.array([list(map(float, line.split()[1:4])) for line in lines if line.startswith("line")])
-    wanted = np.array([*STROKES["n/1"], *STROKES["dot"], STROKES["turn"][0], ARC[0], *STROKES["turn"][10:]])
-    assert np.linalg.norm(places[None] - wanted[:, None], axis=2).min(axis=1).max() < 1e-3
+    target = np.array([*STROKES["n/1"], *STROKES["dot"], STROKES["turn"][0], ARC[0], *STROKES["turn"][10:]])
+    assert np.linalg.norm(places[None] - target[:, None], axis=2).min(axis=1).max() < 1e-3
     assert all(line.endswith("down -1") for line in lines if line.startswith(("line", "circle")))
     (circle,) = (line for line in lines if line.startswith("circle"))
     assert list(map(float, circle.split(" to ")[1].split()[:3])) == pytest.approx(ARC[8], abs=1e-3)
@@ -62,7 +62,7 @@ def test_a_circle_right_after_the_press_is_painted_at_the_speed_of_painting():
     assert speeds[-1] == "speed 17" and speeds[-2] != "speed 17"
 
 
-def test_a_tilted_brush_is_told_pose_by_pose():
+def test_a_tilted_brush_is_written_pose_by_pose():
     """The brush leans by 20 degrees towards x from its second pose on, the tip where the plan has it."""
     leans = np.array([[0.0, 0, 1], [np.sin(np.pi / 9), 0, np.cos(np.pi / 9)]])[[0, 1, 1]]
     poses = [[20, 20, 0], [40, 20, -2], [60, 20, -2]]
@@ -113,15 +113,15 @@ def test_it_is_written_and_not_checked(tmp_path, capsys):
         '<path id="p" d="M20 25 L48 27" fill="none" stroke="#000" stroke-width="2"/></svg>'
     )
     out = str(tmp_path / "a.robodk")
-    status, _, told = call(
+    status, _, reported = call(
         capsys, "convert", str(tmp_path / "a.svg"), "-o", out, "--cell", str(tmp_path / "mine.toml")
     )
-    assert status == 0, told
+    assert status == 0, reported
     assert Path(out).read_text().startswith("start brushsvg\n; title: ")
-    status, _, told = call(capsys, "check", out, "--cell", str(tmp_path / "mine.toml"))
-    assert status == 1 and gives(told[-1], "a.robodk")
+    status, _, reported = call(capsys, "check", out, "--cell", str(tmp_path / "mine.toml"))
+    assert status == 1 and gives(reported[-1], "a.robodk")
     (tmp_path / "mine.toml").write_text(write_cell(cell_with(tmp_path / "none.py")))
-    status, _, told = in_json(
+    status, _, reported = in_json(
         capsys, "convert", tmp_path / "a.svg", "-o", out, "--cell", tmp_path / "mine.toml"
     )
-    assert status == 1 and is_told(told, "file-unreadable")
+    assert status == 1 and is_reported(reported, "file-unreadable")

@@ -43,7 +43,7 @@ NAMES = {
     "lrmate200id": "fanuc",
     "m0609": "doosan",
 }
-CIRCLES = {"irb120", "kr6-r900", "cr5", "lrmate200id", "m0609"}  # what tells them
+CIRCLES = {"irb120", "kr6-r900", "cr5", "lrmate200id", "m0609"}  # what defines them
 SQUARE = Paper((-150.0, -450.0, 20.0))
 TURNED = Paper((-150.0, -450.0, 20.0), (0.0, 0.0, 25.0))
 LEANING = Paper((-150.0, -450.0, 20.0), (2.0, -3.0, 25.0))
@@ -93,14 +93,14 @@ def touched(ran: Run, cell) -> list[tuple[Leg, np.ndarray]]:
 def test_the_arm_goes_through_the_plans_poses(name, paper):
     cell = on(name, paper)
     rows = touched(sound(text_for(cell), cell), cell)
-    tells_circles = name in CIRCLES
-    arc = [ARC[0], ARC[8]] if tells_circles else ARC
-    wanted = [*STROKES["n/1"], *STROKES["dot"], STROKES["turn"][0], *arc, *STROKES["turn"][10:]]
-    away_mm = np.linalg.norm(np.array([end for _, end in rows]) - np.array(wanted), axis=1)
+    writes_circles = name in CIRCLES
+    arc = [ARC[0], ARC[8]] if writes_circles else ARC
+    target = [*STROKES["n/1"], *STROKES["dot"], STROKES["turn"][0], *arc, *STROKES["turn"][10:]]
+    away_mm = np.linalg.norm(np.array([end for _, end in rows]) - np.array(target), axis=1)
     assert away_mm.max() < 1e-3
     assert max(leg.speed_mm_s for leg, _ in rows) == 20.0
     circles = [leg for leg, _ in rows if leg.kind == "arc"]
-    assert len(circles) == tells_circles
+    assert len(circles) == writes_circles
     for leg in circles:
         assert leg.centre == pytest.approx((20.0, 30.0), abs=2e-3) and leg.turn == -1
 
@@ -137,14 +137,14 @@ def gentle(cell, speed_mm_s=12.7) -> str:
     return "".join(text_of(POSTS[cell.language], made))
 
 
-def test_dobot_is_told_whole_blends_and_whole_speeds():
-    """The manual names no others. Where the cell says that finer ones are taken, they are told."""
+def test_dobot_gets_whole_blends_and_whole_speeds():
+    """The manual names no others. Where the cell says that finer ones are taken, they are written."""
     cell = replace(on("cr5", SQUARE), blending=Blending(0.05, 2.0))
-    told = "MovL(on_paper(18.000, 10.000, -2.000), {speed = 12, r = 1})\n"
-    told += "MovL(on_paper(22.000, 10.100, -2.000), {speed = 12, r = 1})\n"
-    assert told in gentle(cell)
+    reported = "MovL(on_paper(18.000, 10.000, -2.000), {speed = 12, r = 1})\n"
+    reported += "MovL(on_paper(22.000, 10.100, -2.000), {speed = 12, r = 1})\n"
+    assert reported in gentle(cell)
     fine = gentle(replace(cell, blending=Blending(0.05, 2.0, 0.5)))
-    assert told.replace("r = 1", "r = 1.500") in fine
+    assert reported.replace("r = 1", "r = 1.500") in fine
     speeds = [
         step.speed_mm_s for section in read_program(fine, ".lua", cell).sections for step in section.steps
     ]
@@ -152,7 +152,7 @@ def test_dobot_is_told_whole_blends_and_whole_speeds():
     assert [leg.speed_mm_s for leg in sound(fine, cell).legs] == speeds
 
 
-def test_what_dobot_cannot_be_told_is_refused():
+def test_what_dobot_cannot_express_is_refused():
     text = write_cell(find_cell("cr5"))
     with refused("out-of-range [1, 5000]"):
         parse_cell(text.replace("press_mm_s = 10.0", "press_mm_s = 0.9"))
@@ -300,7 +300,7 @@ def test_what_the_reader_takes_for_the_same(name, old, new):
 
 
 @pytest.mark.parametrize("title", ["coding: rot13", "coding=coding:utf-7 +AAo-x = 1"])
-def test_no_title_tells_python_how_letters_are_read(title):
+def test_no_title_sets_the_encoding_of_python(title):
     """Python obeys such remarks in the first two lines of a file."""
     cell = find_cell("xarm6")
     text = text_for(cell, header=(f"title: {title}", f"brush: {title}, 3 strokes"))
@@ -401,7 +401,7 @@ def test_every_call_is_one_of_the_vendors_sdk(broken):
         assert not broken and len(calls) > 30
 
 
-def test_a_slower_robot_than_rapid_can_tell_is_refused():
+def test_a_robot_slower_than_rapid_can_express_is_refused():
     text = write_cell(find_cell("irb120")).replace("acceleration_mm_s2 = 500.0", "acceleration_mm_s2 = 99.0")
     with refused("out-of-range [100, 50000]"):
         parse_cell(text)

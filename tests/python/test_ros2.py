@@ -53,8 +53,8 @@ def test_the_brush_goes_through_the_plans_poses(paper):
     ran = run(text, cell)
     assert not ran.refused and not ran.acts and max(leg.tilt_rad for leg in ran.legs) < 1e-6
     ends = places.moved(np.linalg.inv(robot_from_paper(cell)), np.array([leg.end for leg in ran.legs]))
-    wanted = np.array([*STROKES["n/1"], *STROKES["dot"], STROKES["turn"][0], *ARC, *STROKES["turn"][10:]])
-    away_mm = np.linalg.norm(ends[None] - wanted[:, None], axis=2).min(axis=1)
+    target = np.array([*STROKES["n/1"], *STROKES["dot"], STROKES["turn"][0], *ARC, *STROKES["turn"][10:]])
+    away_mm = np.linalg.norm(ends[None] - target[:, None], axis=2).min(axis=1)
     assert away_mm.max() < 1e-3
     on_paper = np.minimum(ends[1:, 2], ends[:-1, 2]) < 0
     speeds = np.array([leg.speed_mm_s for leg in ran.legs[1:]])
@@ -104,9 +104,9 @@ def test_json_has_the_rows_of_the_table():
     post, whole = POSTS["ros2"], made(cell)
     csv, traj = ("".join(text_of(post, whole, suffix)) for suffix in (".csv", ".traj"))
     rows = json.loads(traj)["rows"]
-    told = [row for row in rows if len(row) == 10 and row[0] != "time_s"]
-    assert [row[:8] for row in told] == message(csv)[0]
-    assert {row[9] for row in told} == {"pose", "way"}
+    reported = [row for row in rows if len(row) == 10 and row[0] != "time_s"]
+    assert [row[:8] for row in reported] == message(csv)[0]
+    assert {row[9] for row in reported} == {"pose", "way"}
     read = [read_program(text, ".csv", cell) for text in (csv, traj)]
     assert [act[1:] for act in read[0].acts] == [act[1:] for act in read[1].acts]
 
@@ -123,16 +123,16 @@ def test_rosbags_reads_the_message(name):
     data = b"".join(text_of(POSTS["ros2"], made(cell), ".cdr"))
     store = get_typestore(Stores.ROS2_HUMBLE)
     kind = "trajectory_msgs/msg/MultiDOFJointTrajectory"
-    told = store.deserialize_cdr(data, kind)
-    assert (told.header.frame_id, list(told.joint_names)) == (frame, [link]) == ("fr3_link0", [name])
-    assert len(told.points) == len(rows) > 60
-    for point, row in zip(told.points, rows, strict=True):
+    reported = store.deserialize_cdr(data, kind)
+    assert (reported.header.frame_id, list(reported.joint_names)) == (frame, [link]) == ("fr3_link0", [name])
+    assert len(reported.points) == len(rows) > 60
+    for point, row in zip(reported.points, rows, strict=True):
         (one,) = point.transforms
         at, turn, time = one.translation, one.rotation, point.time_from_start
         assert time.sec + 1e-9 * time.nanosec == pytest.approx(row[0], abs=1e-7)
         assert (at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w) == pytest.approx(row[1:])
         assert len(point.velocities) == len(point.accelerations) == 0
-    assert bytes(store.serialize_cdr(told, kind)) == data
+    assert bytes(store.serialize_cdr(reported, kind)) == data
 
 
 def test_a_job_as_table_and_as_json_may_be_run(tmp_path, capsys):
@@ -141,8 +141,8 @@ def test_a_job_as_table_and_as_json_may_be_run(tmp_path, capsys):
     for suffix in (".csv", ".traj", ".cdr"):
         out = str(tmp_path / f"a{suffix}")
         assert call(capsys, "convert", str(tmp_path / "a.json"), "-o", out, "--cell", "fr3")[0] == 0
-        status, said, told = call(capsys, "check", out, str(tmp_path / "a.json"))
-        assert (RUNNABLE in said) if suffix != ".cdr" else (status == 1 and gives(told[-1], ".csv"))
+        status, said, reported = call(capsys, "check", out, str(tmp_path / "a.json"))
+        assert (RUNNABLE in said) if suffix != ".cdr" else (status == 1 and gives(reported[-1], ".csv"))
     text = (tmp_path / "a.traj").read_text()
     (tmp_path / "a.traj").write_text(text.replace('0.02,"pose"', '0.02,"way"', 1))
     assert call(capsys, "check", str(tmp_path / "a.traj"))[0] == 1
@@ -204,5 +204,5 @@ def test_check_accepts_lifts_that_are_hardly_longer_than_what_is_rounded(tmp_pat
         passes.append(_core.Pass(f"s{k}", np.array(way), 20.0))
     Path("p.json").write_text(write_plan(_core.Plan("round-6", "", (100, 60), passes)))
     assert call(capsys, "convert", "p.json", "-o", "p.csv", "--cell", "mine.toml")[0] == 0
-    status, _, told = call(capsys, "check", "p.csv", "p.json", "--cell", "mine.toml")
-    assert status == 0, told
+    status, _, reported = call(capsys, "check", "p.csv", "p.json", "--cell", "mine.toml")
+    assert status == 0, reported

@@ -89,10 +89,10 @@ ROUGH = {
 def test_a_rough_letter_has_the_strokes_of_the_clean_one(letter, kind):
     """An R with noise of 0.2 mm became 11 strokes for 6, with an overlap of 0.87."""
     clean = LETTERS[letter]
-    meant = outline_strokes(clean)
+    expected = outline_strokes(clean)
     found = outline_strokes(ROUGH[kind](clean))
-    assert len(found) == len(meant)
-    assert overlap(found, clean) > 0.97 * overlap(meant, clean)
+    assert len(found) == len(expected)
+    assert overlap(found, clean) > 0.97 * overlap(expected, clean)
 
 
 def test_strokes_of_noise_of_0_3_mm_are_as_many():

@@ -36,11 +36,11 @@ def mark(some: list, start: str = "auto", end: str = "auto"):
 
 def strays_mm(painted, width_mm: float) -> float:
     """How far the edges of the mark and of the drawn capsule are apart at most."""
-    wanted = MIDDLE.buffer(width_mm / 2, quad_segs=64)
-    points = [shapely.points(shapely.get_coordinates(each)) for each in (painted, wanted)]
+    target = MIDDLE.buffer(width_mm / 2, quad_segs=64)
+    points = [shapely.points(shapely.get_coordinates(each)) for each in (painted, target)]
     return float(
         max(
-            shapely.distance(wanted.boundary, points[0]).max(),
+            shapely.distance(target.boundary, points[0]).max(),
             shapely.distance(painted.boundary, points[1]).max(),
         )
     )

@@ -1,4 +1,4 @@
-"""What of a pass is left in a program's text, and that nobody who reads one back decides otherwise than its writer."""
+"""Rounding of a pass in a program's text: readers of one decide as its writer does."""
 
 import random
 from dataclasses import replace
@@ -52,7 +52,7 @@ def found_by_check(poses, arcs, cell):
 
 # a chord of 0.7 mm on a circle of 14 mm between lines, as a turn that fills a corner ends
 ONE_CHORD = [DOWN, (30, 20, -2), (45, 22, -2), *arc((50, 40), 14, -70, -67.2, 2), (60, 40, -2), UP]
-# on a circle of 400 m: at any number of decimals that one writes, its places lie on one line
+# on a circle of 400 m: at any number of decimals that one writes, its places are on one line
 FLAT = [DOWN, (30, 20, -2), *arc((40, 4e5 + 20), 4e5, -89.9993, -89.9985, 3), (60, 40, -2), UP]
 # smaller than what is written: rounded, it may run round the other way
 SMALL = [DOWN, (30, 20, -2), *arc((50, 40), 14, -70.001, -70.0, 4), (60, 40, -2), UP]
@@ -64,7 +64,7 @@ SMALL = [DOWN, (30, 20, -2), *arc((50, 40), 14, -70.001, -70.0, 4), (60, 40, -2)
     ("poses", "ends", "centre_mm"),
     [(ONE_CHORD, (3, 4), (50, 40)), (FLAT, (2, 4), (40, 4e5 + 20)), (SMALL, (2, 5), (50, 40))],
 )
-def test_a_circle_that_cannot_be_told_is_run_along_its_chords(name, decimals, poses, ends, centre_mm):
+def test_a_circle_that_cannot_be_written_is_run_along_its_chords(name, decimals, poses, ends, centre_mm):
     circle = _core.Arc(*ends, centre_mm, 1)
     text, said = found_by_check(poses, [circle], cell_of(name, decimals))
     assert said is None
@@ -72,7 +72,7 @@ def test_a_circle_that_cannot_be_told_is_run_along_its_chords(name, decimals, po
         assert "movec" not in text
 
 
-def test_a_circle_that_can_be_told_is_one():
+def test_a_circle_that_can_be_written_is_one():
     poses = [DOWN, (30, 20, -2), *arc((50, 40), 14, -70, -40, 4), (60, 40, -2), UP]
     text, said = found_by_check(poses, [_core.Arc(2, 5, (50, 40), 1)], cell_of("ur5e", 4))
     assert said is None and text.count("movec") == 1
@@ -91,7 +91,7 @@ def test_what_goes_up_almost_straight_is_as_fast_as_what_is_written(name, rotati
 
 @pytest.mark.parametrize("sideways_mm", [0.0, 1e-5, 3e-4])
 @pytest.mark.parametrize("x", [40.0, 40.0004])
-def test_a_servo_stays_where_less_than_half_a_unit_is_gone_beside_its_lift(x, sideways_mm):
+def test_a_servo_stays_where_less_than_half_a_unit_is_gone_next_to_its_lift(x, sideways_mm):
     """3e-4 mm from 40.0004 to 40.0007 are a unit when rounded: nobody writes it, and nobody took it for a lift."""
     poses = [DOWN, (20, 20, -2), (x, 25, -2), (x + sideways_mm, 25, -1), (60, 50, -1), UP]
     assert found_by_check(poses, [], cell_of("grbl-servo", 3))[1] is None
@@ -131,11 +131,11 @@ def test_what_a_servo_paints_to_and_fro_is_known_again(tmp_path, capsys, table, 
     for _ in range(12):
         both = [_core.Pass(name, np.array(to_and_fro(chance)), chance.choice([5.0, 20.0])) for name in "ab"]
         Path(source).write_text(_core.write_plan(_core.Plan(BRUSH.name, "", SHEET_MM, both)))
-        status, _, told = in_json(capsys, "convert", source, "-o", program, "--cell", toml)
-        assert status == 0, told
+        status, _, reported = in_json(capsys, "convert", source, "-o", program, "--cell", toml)
+        assert status == 0, reported
         for words in ((program, source), (program,)):
-            status, _, told = in_json(capsys, "check", *words, "--cell", toml)
-            assert status == 0, ([each.poses_mm for each in both], told)
+            status, _, reported = in_json(capsys, "check", *words, "--cell", toml)
+            assert status == 0, ([each.poses_mm for each in both], reported)
 
 
 def test_a_landing_between_two_coarse_values_is_known_again():
@@ -169,7 +169,7 @@ def test_places_are_those_of_the_text_in_the_frame_that_it_has():
 STEEP = [(49.4, 50, 0), (57.4, 50, -3.4833148), (57.310625, 50, -1.5511636), (57.35, 50, 0)]
 
 
-def test_what_is_steep_and_slow_on_paper_that_lies_level_is_not_straight_down():
+def test_what_is_steep_and_slow_on_paper_that_is_level_is_not_straight_down():
     assert found_by_check(STEEP, [], find_cell("grbl-servo"))[1] is None
 
 
@@ -212,7 +212,7 @@ def test_no_move_is_shorter_than_what_anything_shows(name, decimals):
     assert np.linalg.norm(written.poses_mm[[0, -1]] - np.array(poses)[[0, -1]], axis=1).max() < 1e-6
 
 
-def test_no_circle_begins_or_ends_beside_one_by_less_than_a_move():
+def test_no_circle_begins_or_ends_next_to_one_by_less_than_a_move():
     first, last = arc((50, 40), 14, -70, -40, 4), arc((50, 40), 14, -39.998, -10, 4)
     poses = [DOWN, (30, 20, -2), *first, *last, (60, 40, -2), UP]
     arcs = [_core.Arc(2, 5, (50, 40), 1), _core.Arc(6, 9, (50, 40), 1)]
@@ -220,8 +220,8 @@ def test_no_circle_begins_or_ends_beside_one_by_less_than_a_move():
     text, said = found_by_check(poses, arcs, cell)
     assert said is None and text.count("movec") == 1
     written = as_written(_core.Pass("one", np.array(poses), 20.0, arcs=arcs), cell, robot_from_paper(cell))
-    (told,) = written.arcs
-    run = np.delete(written.poses_mm[:, :2], slice(told.first + 1, told.last), axis=0)
+    (reported,) = written.arcs
+    run = np.delete(written.poses_mm[:, :2], slice(reported.first + 1, reported.last), axis=0)
     radii_mm = np.linalg.norm((run[3:-3] + run[4:-2]) / 2 - (50, 40), axis=1)
     assert len(radii_mm) > 3 and np.abs(radii_mm - 14).max() < 0.0101  # the other one's chords
 
@@ -232,8 +232,8 @@ def test_no_circle_begins_or_ends_beside_one_by_less_than_a_move():
     "name",
     ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3", "irb120", "kr6-r900", "cr5", "lrmate200id", "m0609"],
 )
-def test_a_whole_circle_is_told_in_halves(name, degrees, turn):
-    """Rounded, its end could lie on either side of its beginning: then it would be run all round, or not at all."""
+def test_a_whole_circle_is_written_in_halves(name, degrees, turn):
+    """Rounded, its end could be on either side of its beginning: then it would be run all round, or not at all."""
     cell = cell_of(name, 3, paper=Paper((0.3, -400.1, 20.0), (0, 0, 97.57)))
     on = arc((50, 40), 14, -70, -70 + turn * degrees, 24)
     poses = [DOWN, (*on[0][:2], -1.0), *on, (60, 40, -2), UP]
@@ -249,11 +249,12 @@ def test_a_whole_circle_is_told_in_halves(name, degrees, turn):
 @pytest.mark.parametrize("degrees", [361.0, 371.4, 540.0, 800.0])
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3"])
 def test_a_circle_that_goes_on_beyond_its_beginning_loses_no_turn(name, degrees, turn):
-    """A small closed triangle was turned by 371.4 degrees: told in one line, it ran 11.4 degrees, or the other way."""
+    """A small closed triangle was turned by 371.4 degrees: written in one line, it ran 11.4 degrees, or the other
+    way."""
     on = arc((50, 40), 9.47, 72.19, 72.19 + turn * degrees, 67)
     poses = [DOWN, (*on[0][:2], -1.0), *on, (60, 40, -2), UP]
-    told, cell = _core.Arc(2, 68, (50, 40), turn), cell_of(name, 4)
-    text, said = found_by_check(poses, [told], cell)
+    reported, cell = _core.Arc(2, 68, (50, 40), turn), cell_of(name, 4)
+    text, said = found_by_check(poses, [reported], cell)
     assert said is None
     read = simulate_program.run(read_program(text, LANGUAGES[name], cell), BRUSH, cell, SHEET_MM)
     x, y = np.transpose([pose[:2] for pose in read.plan.passes[0].poses_mm if pose[2] < -1.99])
@@ -263,8 +264,8 @@ def test_a_circle_that_goes_on_beyond_its_beginning_loses_no_turn(name, degrees,
 
 @pytest.mark.parametrize("at", [100, 180, 190, 250])
 @pytest.mark.parametrize("name", ["ur5e", "jaka-zu3"])
-def test_a_circle_whose_named_pose_lies_half_way_round_or_farther_is_read(name, at):
-    """Of its poses the middle one is named, wherever on the circle that lies."""
+def test_a_circle_whose_named_pose_is_half_way_round_or_farther_is_read(name, at):
+    """Of its poses the middle one is named, where on the circle that is."""
     angles = [0, at / 3, at / 2, at, (at + 300) / 2, 290, 300]
     on = [point for angle in angles for point in arc((50, 40), 14, angle, angle, 1)]
     poses = [DOWN, (30, 20, -2), *on, (60, 40, -2), UP]
@@ -299,17 +300,17 @@ def drawing(chance: random.Random) -> str:
 
 @pytest.mark.slow
 @sample("seed", range(24), keep=6)
-def test_check_allows_whatever_convert_writes(seed, tmp_path, capsys):
+def test_check_allows_all_that_convert_writes(seed, tmp_path, capsys):
     chance = random.Random(seed)
     name = chance.choice(["linuxcnc-3axis", "grbl-3axis", "ur5e"])
     cell, source, program = tmp_path / "c.toml", tmp_path / "a.svg", tmp_path / f"a{LANGUAGES[name]}"
     cell.write_text(write_cell(cell_of(name, chance.randrange(3, 7))), encoding="utf-8")
     source.write_text(drawing(chance), encoding="ascii")
     words = ("--wide", "passes", "--cell", str(cell))
-    status, _, told = call(capsys, "convert", str(source), "-o", str(program), *words)
-    assert status == 0, told
-    status, _, told = call(capsys, "check", str(program), str(source), *words)
-    assert status == 0, told
+    status, _, reported = call(capsys, "convert", str(source), "-o", str(program), *words)
+    assert status == 0, reported
+    status, _, reported = call(capsys, "check", str(program), str(source), *words)
+    assert status == 0, reported
 
 
 @pytest.mark.parametrize(("cell", "radius_mm"), [("grbl-servo", 7.5048828125), ("irb120", 7.505615234375)])
@@ -320,7 +321,7 @@ def test_check_allows_marks_that_touch_the_edge_of_the_sheet(cell, radius_mm, tm
     source.write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" width="16mm" height="16mm" viewBox="0 0 16 16">{ring}</svg>'
     )
-    status, _, told = call(capsys, "convert", str(source), "-o", str(program), "--cell", cell)
-    assert status == 0, told
-    status, _, told = call(capsys, "check", str(program), "--cell", cell)
-    assert status == 0, told
+    status, _, reported = call(capsys, "convert", str(source), "-o", str(program), "--cell", cell)
+    assert status == 0, reported
+    status, _, reported = call(capsys, "check", str(program), "--cell", cell)
+    assert status == 0, reported

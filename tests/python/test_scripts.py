@@ -1,4 +1,4 @@
-"""Scripts beside the package use what is there: nobody runs all of them, and names move."""
+"""Scripts next to the package use what is there: nobody runs all of them, and names move."""
 
 import ast
 import importlib

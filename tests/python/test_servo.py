@@ -67,7 +67,7 @@ def test_the_lift_alone_takes_its_time():
 
 
 @pytest.mark.parametrize(("values", "step_mm"), [(80, 0.5), (150, 0.25), (1000, 0.1)])
-def test_no_lift_is_faster_than_told_by_the_values_as_they_are_written(values, step_mm):
+def test_no_lift_is_faster_than_programmed_by_the_written_values(values, step_mm):
     """A lift after a line begins where the line's last part was held, half a step away, and values are whole: waits
     were those of the plan's heights, up to a half too short."""
     cell = replace(CELL, servo=Servo(((-10.0, 0.0), (0.0, 0.6 * values), (5.0, float(values))), step_mm, 0.0))
@@ -164,7 +164,7 @@ def test_values_follow_the_table():
 
 
 def test_the_output_is_never_switched_off():
-    """In laser mode grbl's output is off wherever the motion mode is not G1, at M5 and at M2."""
+    """In laser mode grbl's output is off where the motion mode is not G1, at M5 and at M2."""
     text = text_of(*TWO, cell="grbl-servo")
     code = [line for line in text.splitlines() if line and not line.startswith("(")]
     assert code.index("G1 F3000.0") < code.index("M3 S800")
@@ -173,7 +173,7 @@ def test_the_output_is_never_switched_off():
 
 
 def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
-    """Where the line before it was held, rounded heights do not tell to the value: a lift that begins four values
+    """Where the line before it was held, rounded heights do not show to the value: a lift that begins four values
     later waits a tenth of a millimetre less, and was taken for one that was changed."""
     like = _Alike(CELL)
 
@@ -226,8 +226,8 @@ def test_check_accepts_a_straight_line_by_a_brush_of_one_lag(tmp_path, monkeypat
     assert call(capsys, "brush", "new", "-o", "mine.json", *words)[0] == 0
     program = "line.ebb" if cell.endswith("ebb") else "line.gcode"
     assert call(capsys, "convert", "line.svg", "-o", program, "--brush", "mine.json", "--cell", cell)[0] == 0
-    status, _, told = call(capsys, "check", program, "line.svg", "--brush", "mine.json", "--cell", cell)
-    assert status == 0, told
+    status, _, reported = call(capsys, "check", program, "line.svg", "--brush", "mine.json", "--cell", cell)
+    assert status == 0, reported
 
 
 def test_check_accepts_a_pose_at_the_value_of_the_one_before(tmp_path, monkeypatch, capsys):
@@ -245,8 +245,8 @@ def test_check_accepts_a_pose_at_the_value_of_the_one_before(tmp_path, monkeypat
     plan = _core.Plan("round-6", "", (100, 60), [_core.Pass("a", np.array(poses), 6.42)])
     Path("p.json").write_text(write_plan(plan))
     assert call(capsys, "convert", "p.json", "-o", "p.nc", "--cell", "mine.toml")[0] == 0
-    status, _, told = call(capsys, "check", "p.nc", "p.json", "--cell", "mine.toml")
-    assert status == 0, told
+    status, _, reported = call(capsys, "check", "p.nc", "p.json", "--cell", "mine.toml")
+    assert status == 0, reported
 
 
 @pytest.mark.parametrize("width_mm", [0.0503, 0.0707, 0.1103])
@@ -266,7 +266,7 @@ def test_a_lift_before_any_feed_has_a_speed():
 
 
 def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():
-    """The machine's feed is that of the way beside the lift: at 20 mm/s a slope of 1.2 made 31 of it."""
+    """The machine's feed is that of the way without the lift: at 20 mm/s a slope of 1.2 made 31 of it."""
     poses = np.array([(10, 10, 0), (13, 10, -3.6), (20, 10, -3.6), (23, 10, 0)])
     plan = SimpleNamespace(
         sheet_mm=(100.0, 60.0),

@@ -1,4 +1,4 @@
-"""Whether a sheet of marks has the size of its plan, by how far off its marks lie."""
+"""Whether a sheet of marks has the size of its plan, by how far off its marks are."""
 
 import re
 
@@ -45,7 +45,7 @@ def test_another_scale_is_refused(by, said):
         assert abs(share - (true - 1)) < 3 * error < 0.01
 
 
-def test_the_number_is_told():
+def test_the_number_is_reported():
     scatter = np.random.default_rng(0).normal(0, 0.05, A5.shape)
     with refused("marks-scaled smaller") as caught:
         refuse_scale(sheet_scale(A5, -0.03 * A5 + scatter))
@@ -62,7 +62,7 @@ def test_displacements_alone_are_no_scale(count):
     assert wrong <= 1
 
 
-def test_what_cannot_tell_says_nothing():
+def test_an_undetermined_scale_says_nothing():
     shift = off(A5, 3, 0.5, (0.9, 0.9))
     assert sheet_scale(A5[:7], shift[:7]) is None, "too few to know the scatter"
     row = np.column_stack([np.linspace(0, 200, 12), np.full(12, 40.0)])

@@ -6,12 +6,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from diagnostics import are_told, refused
+from diagnostics import are_reported, refused
 from programs import LANGUAGES, RUNNABLE, call
 from sampling import sample
 from scipy.spatial import cKDTree
 from test_corrected_cell import MIDDLE, TRUE, found
-from test_distortion import DRAWING, GRID, cell_with, text_of, told_places
+from test_distortion import DRAWING, GRID, cell_with, commanded_places, text_of
 
 from brushsvg import _core
 from brushsvg.comparison.attribution.corrected_cell import corrected_machine
@@ -21,7 +21,7 @@ from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Machine
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.realised.arc_chords import with_chords
-from brushsvg.machine.realised.distortion import told_mm, true_mm
+from brushsvg.machine.realised.distortion import commanded_mm, true_mm
 from brushsvg.machine.realised.smooth_field import beyond_field
 from brushsvg.model.library import find_brush
 from brushsvg.verify import simulate_program
@@ -45,10 +45,10 @@ def desk(tmp_path, monkeypatch):
     return tmp_path
 
 
-def goes(told, machine):
-    """(n, 3) where it goes that is told: the formula once more, in other words, without a map."""
+def goes(reported, machine):
+    """(n, 3) where it goes for a command: the formula once more, in other words, without a map."""
     out = []
-    for x, y, z in told:
+    for x, y, z in reported:
         (mx, my), (rx, ry) = machine.field_middle_mm, machine.field_reach_mm
         u, v = (min(max(w, -1.0), 1.0) for w in ((x - mx) / rx, (y - my) / ry))
         (a, b, c), (d, e, f) = machine.field_mm
@@ -61,18 +61,18 @@ def goes(told, machine):
 
 @pytest.mark.parametrize("machine", [BENT, NARROW, BOTH])
 def test_there_and_back(machine):
-    wanted = np.random.default_rng(1).uniform((-20, -20, -6), (140, 110, 2), (500, 3))
-    told = told_mm(wanted, machine)
-    assert goes(told, machine) == pytest.approx(wanted, abs=1e-7)
-    assert true_mm(told, machine) == pytest.approx(wanted, abs=1e-7)
-    assert np.abs(told - wanted)[:, :2].max() > 0.5
+    target = np.random.default_rng(1).uniform((-20, -20, -6), (140, 110, 2), (500, 3))
+    reported = commanded_mm(target, machine)
+    assert goes(reported, machine) == pytest.approx(target, abs=1e-7)
+    assert true_mm(reported, machine) == pytest.approx(target, abs=1e-7)
+    assert np.abs(reported - target)[:, :2].max() > 0.5
 
 
 @pytest.mark.parametrize("machine", [BENT, NARROW, BOTH])
 def test_lines_on_the_paper_are_lines_all_along(desk, machine):
     work = preparation.prepare("two.svg")
-    told = told_places(text_of(work, cell_with(machine)))
-    between = np.vstack([a + np.linspace(0, 1, 9)[:, None] * (b - a) for a, b in pairwise(told)])
+    reported = commanded_places(text_of(work, cell_with(machine)))
+    between = np.vstack([a + np.linspace(0, 1, 9)[:, None] * (b - a) for a, b in pairwise(reported)])
     painted = goes(between, machine)
     painted = painted[painted[:, 2] < -0.2]
     plan = np.vstack(
@@ -84,8 +84,8 @@ def test_lines_on_the_paper_are_lines_all_along(desk, machine):
     )
     away = cKDTree(plan).query(painted)[0]
     assert len(painted) > 300 and away.max() < 0.015
-    beside = cKDTree(plan).query(between[between[:, 2] < -0.5])[0]
-    assert beside.max() > 0.3, "and it is told otherwise"
+    near_by = cKDTree(plan).query(between[between[:, 2] < -0.5])[0]
+    assert near_by.max() > 0.3, "and the command differs"
 
 
 @sample(
@@ -122,7 +122,7 @@ def test_the_mark_comes_back(desk):
     assert _core.overlap(planned.outline_mm, back.marks.outline_mm) > 0.997
 
 
-def test_circles_are_told_as_lines():
+def test_circles_are_written_as_lines():
     angle = np.linspace(0.0, 2.0, 30)
     on = np.column_stack([60 + 20 * np.cos(angle), 40 + 20 * np.sin(angle), np.full(30, -3.0)])
     arcs = [_core.Arc(1, 30, (60, 40), 1)]
@@ -134,21 +134,21 @@ def test_circles_are_told_as_lines():
     )
     text = "".join(writer.encode(".ngc", plan, find_brush("round-6"), "c", (), cell_with(BENT)))
     assert not re.search(r"(?m)^G[23] ", text)
-    told = told_places(text)
-    between = np.vstack([a + np.linspace(0, 1, 9)[:, None] * (b - a) for a, b in pairwise(told)])
+    reported = commanded_places(text)
+    between = np.vstack([a + np.linspace(0, 1, 9)[:, None] * (b - a) for a, b in pairwise(reported)])
     painted = goes(between, BENT)
     deep = painted[painted[:, 2] < -2.99]
     assert np.hypot(*(deep[:, :2] - [60, 40]).T) == pytest.approx(20.0, abs=0.015)
 
 
-def test_strokes_beyond_where_it_was_measured_are_told(desk, capsys):
+def test_strokes_beyond_where_it_was_measured_are_reported(desk, capsys):
     work = preparation.prepare("two.svg")
     assert beyond_field(work.plan.passes, cell_with(BENT)) == []
     assert beyond_field(work.plan.passes, cell_with(None)) == []
     farthest = max(np.asarray(one.poses_mm)[:, 0].max() for one in work.plan.passes) - 90.0
     nearest = 30.0 - min(np.asarray(one.poses_mm)[:, 0].min() for one in work.plan.passes)
     said = f"beyond-field {max(farthest, nearest):.1f} 30.0 90.0 -5.0 75.0"
-    assert are_told(beyond_field(work.plan.passes, cell_with(NARROW)), said)
+    assert are_reported(beyond_field(work.plan.passes, cell_with(NARROW)), said)
     (desk / "mine.toml").write_text(
         write_cell(replace(find_cell("linuxcnc-3axis"), name="mine", machine=NARROW))
     )
@@ -190,12 +190,12 @@ def test_the_table_is_written_as_it_is_read():
 
 
 def test_a_corrected_cell_undoes_the_field_as_well():
-    """What is amiss beyond the cell comes on top of where the cell took the tool."""
+    """Faults beyond the cell come on top of where the cell took the tool."""
     now = corrected_machine(found(replace(TRUE, lean_mm_per_mm=(0.0, 0.0))), MIDDLE, BENT)
-    told = np.random.default_rng(2).uniform((0, 0, 0), (120, 70, 0), (50, 3))
-    once = goes(told, BENT)[:, :2]
+    reported = np.random.default_rng(2).uniform((0, 0, 0), (120, 70, 0), (50, 3))
+    once = goes(reported, BENT)[:, :2]
     twice = np.column_stack([TRUE.scale[0] * once[:, 0] + TRUE.skew * once[:, 1], TRUE.scale[1] * once[:, 1]])
-    assert goes(told, now)[:, :2] == pytest.approx(twice, abs=1e-3)
+    assert goes(reported, now)[:, :2] == pytest.approx(twice, abs=1e-3)
 
 
 def test_corrections_of_cells_without_a_field_are_still_theirs():

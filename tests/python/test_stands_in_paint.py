@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from diagnostics import in_json, is_told, refused
+from diagnostics import in_json, is_reported, refused
 
 import brushsvg
 from brushsvg.machine.cells.cell_file import find_cell
@@ -70,11 +70,11 @@ def test_a_servo_goes_to_the_paper_in_small_steps(desk, cell, number):
     waits = [float(each[1]) for each in re.findall(step, ramp[0] + last[0])]
     total = f"{sum(waits):.3f}" if cell == "grbl-servo" else f"{sum(waits):.0f}"
     slam = text[: ramp.start()] + f"{last[1]}{total}\n" + text[last.end() :]
-    assert is_told(problems(path, slam, cell), "speed-out-of-range servo")
+    assert is_reported(problems(path, slam, cell), "speed-out-of-range servo")
     # each step as small, but all of them at once: only the last one waits
     rush = re.sub(step, lambda each: f"{each[1]}{'0.001' if cell == 'grbl-servo' else 1}\n", ramp[0])
     rush = text[: ramp.start()] + rush + f"{last[1]}{total}\n" + text[last.end() :]
-    assert is_told(problems(path, rush, cell), "speed-out-of-range servo")
+    assert is_reported(problems(path, rush, cell), "speed-out-of-range servo")
 
 
 STOPS = [
@@ -94,7 +94,7 @@ def test_a_stop_within_a_stroke_is_refused(desk, cell, old, new):
     found = [*re.finditer(old, text)]
     amid = found[len(found) // 2]
     stopped = text[: amid.start()] + amid.expand(new) + text[amid.end() :]
-    assert is_told(problems(path, stopped, cell), "program-changed")
+    assert is_reported(problems(path, stopped, cell), "program-changed")
 
 
 def later(text, from_row, more_s):
@@ -114,18 +114,18 @@ def test_a_part_of_a_stroke_that_takes_longer_is_a_stop(desk, capsys):
     slices = [*re.finditer(r"SM,(\d+)(?=,-?[1-9]\d?,-?[1-9]\d?\n)", text)]
     amid = slices[len(slices) // 2]
     slow = text[: amid.start()] + f"SM,{int(amid[1]) + 50}" + text[amid.end() :]
-    assert is_told(problems(path, slow, "axidraw-ebb"), "stands-in-paint 0.050")
+    assert is_reported(problems(path, slow, "axidraw-ebb"), "stands-in-paint 0.050")
     hardly = text[: amid.start()] + f"SM,{int(amid[1]) + 15}" + text[amid.end() :]
-    assert is_told(problems(path, hardly, "axidraw-ebb"), "stands-in-paint 0.015")
-    status, _, told = in_json(capsys, "check", path, "a.svg", "--cell", "axidraw-ebb")
-    assert status == 1 and is_told(told, "stands-in-paint")
+    assert is_reported(problems(path, hardly, "axidraw-ebb"), "stands-in-paint 0.015")
+    status, _, reported = in_json(capsys, "check", path, "a.svg", "--cell", "axidraw-ebb")
+    assert status == 1 and is_reported(reported, "stands-in-paint")
     path, text = written("fr3")
     paints = [k for k, line in enumerate(re.findall(r"^\d.*", text, re.MULTILINE)) if line.endswith(",pose")]
     slow = later(text, paints[len(paints) // 2], 0.05)
-    assert is_told(problems(path, slow, "fr3"), "stands-in-paint")
+    assert is_reported(problems(path, slow, "fr3"), "stands-in-paint")
 
 
 def test_a_stroke_that_is_slower_as_a_whole_is_none(desk):
     path, text = written("axidraw-ebb")
     slow = re.sub(r"SM,(\d+)(?=,-?\d+,-?\d+\n)", lambda each: f"SM,{int(each[1]) * 5 // 4}", text)
-    assert not is_told(problems(path, slow, "axidraw-ebb"), "stands-in-paint")
+    assert not is_reported(problems(path, slow, "axidraw-ebb"), "stands-in-paint")

@@ -52,7 +52,7 @@ def test_nothing_that_one_sees_is_missing_or_sticks_out(tmp_path, d):
 
 
 def test_the_arms_of_a_k_stay_on_its_stem(tmp_path):
-    """Each stroke lay within its own limb, and a gap of 0.24 mm was left between them, without a word."""
+    """Each stroke was within its own limb, and a gap of 0.24 mm was left between them, without a word."""
     shape, mark, _ = painted(
         tmp_path, "M20 20H26.1V32.7L31.5 20H37.4L31.8 33.5L37.8 50H31.7L27.1 36.6L26.1 38.3V50H20Z"
     )
@@ -68,7 +68,7 @@ def test_corners_are_bare_where_strokes_shall_turn_and_end_plainly(tmp_path):
 
 
 def test_a_counter_stays_open(tmp_path):
-    """As of a fat 4: a stroke ran down the counter."""
+    """As in a fat 4: a stroke ran down the counter."""
     shape, mark, _ = painted(tmp_path, "M20 5H32V35H38V43H32V52H22V43H6V36ZM22 18L14 35H22Z")
     assert mark.difference(shape.buffer(0.15)).area < 1.0
     counter = shapely.Polygon([(22, 60 - 18), (14, 60 - 35), (22, 60 - 35)])

@@ -23,7 +23,7 @@ def test_names_are_the_elements():
     assert notices == []
 
 
-def test_a_name_given_twice_stays_with_the_first_and_the_second_is_told():
+def test_a_name_given_twice_stays_with_the_first_and_the_second_is_reported():
     names, notices = named(("p", 1), ("p", 1), ("p-2", 1), ("p", 2))
     assert names == ["p", "p-3", "p-2", "p-4/1", "p-4/2"]
     assert [notice.where for notice in notices] == ["p", "p"]
@@ -36,7 +36,7 @@ def test_names_that_only_collide_once_numbered():
     assert named(("p", 2), ("p", 1))[0] == ["p/1", "p/2", "p-2"]
 
 
-def test_thousands_of_equal_names_are_told_apart():
+def test_thousands_of_equal_names_are_separated():
     names, notices = named(*[("p", 1)] * 5000)
     assert len(set(names)) == 5000
     assert len(notices) == 4999
@@ -72,7 +72,7 @@ def test_from_svg_to_strokes_in_drawing_order():
     assert notices == []
 
 
-def test_repeats_are_told_apart_from_names_that_look_like_them():
+def test_repeats_are_separated_from_names_that_look_like_them():
     made = (Element("a", (LINE,), 1.0, settings={"passes": 2}), Element("a#2", (LINE,), 1.0))
     names = [stroke.id for stroke in strokes(Design((10.0, 10.0), made))[0]]
     assert len(set(names)) == 3, names
@@ -97,7 +97,7 @@ ARC = 20 * np.column_stack([np.cos(np.linspace(0, np.pi, 60)), np.sin(np.linspac
 
 
 def off(stroke, points):
-    """How far points [mm] lie from the middle line."""
+    """How far points [mm] are from the middle line."""
     line = flatten(stroke, 1e-4)[:, :2]
     a, d = line[:-1], np.diff(line, axis=0)
     t = np.clip(((points[:, None] - a) * d).sum(-1) / (d**2).sum(-1), 0, 1)
@@ -124,9 +124,7 @@ def test_a_smooth_stroke_passes_every_point_within_the_tolerance(tolerance_mm, c
     assert off(stroke, points).max() <= tolerance_mm
     lines = len(Stroke.from_points(points, 3.0).middle_mm)
     assert lines == len(points) - 1
-    few = (
-        12 if tolerance_mm > 0.007 else lines
-    )  # 0.007: what lies between the points and a circle through them
+    few = 12 if tolerance_mm > 0.007 else lines  # 0.007: what is between the points and a circle through them
     assert len(stroke.middle_mm) <= few
 
 

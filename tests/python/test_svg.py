@@ -280,7 +280,7 @@ def test_damaged_shapes_transforms_and_widths_are_named(shape, said):
 
 
 def corners(body):
-    """Joints of a shape without those inside its arcs, which lie between two cubics of equal direction."""
+    """Joints of a shape without those inside its arcs, which are between two cubics of equal direction."""
     cubics = only(body).subpaths[0].cubics
     into, out = cubics[:-1, 3] - cubics[:-1, 2], cubics[1:, 1] - cubics[1:, 0]
     alike = np.abs(into - out).max(axis=1) < 1e-9
@@ -364,7 +364,7 @@ def test_y_points_up_from_the_lower_left_corner():
 
 @pytest.mark.parametrize(
     ("page", "sheet", "corner"),
-    [  # corner: where user point (10, 10) lies on paper
+    [  # corner: where user point (10, 10) is on paper
         ('width="100mm" height="50mm" viewBox="0 0 100 50"', (100, 50), (10, 40)),
         ('width="4in" height="2in"', (101.6, 50.8), (10 * 25.4 / 96, 50.8 - 10 * 25.4 / 96)),
         ('width="10cm" height="5cm" viewBox="10 10 1000 500"', (100, 50), (0, 50)),
@@ -431,7 +431,7 @@ def test_a_given_sheet_replaces_the_size_and_keeps_scale_and_upper_left_corner()
 
 
 @pytest.mark.parametrize(
-    ("page", "told"),
+    ("page", "reported"),
     [
         ("", "size-unknown"),
         ('width="10mm"', "size-unknown"),
@@ -444,8 +444,8 @@ def test_a_given_sheet_replaces_the_size_and_keeps_scale_and_upper_left_corner()
         ('width="5 furlongs" height="5"', "not-a-length width '5 furlongs'"),
     ],
 )
-def test_pages_that_are_refused(page, told):
-    with refused(told):
+def test_pages_that_are_refused(page, reported):
+    with refused(reported):
         read('<line x2="1" stroke="red"/>', page)
 
 
@@ -475,7 +475,7 @@ def test_stroke_widths(body, width):
     assert only(body).stroke_width_mm == pytest.approx(width, rel=1e-12)
 
 
-def test_a_width_under_an_uneven_transform_is_the_mean_and_is_told():
+def test_a_width_under_an_uneven_transform_is_the_mean_and_is_reported():
     design = read('<path id="p" d="M0 0H5" transform="scale(4 1)"/>')
     assert design.elements[0].stroke_width_mm == pytest.approx(2)
     assert [notice.where for notice in design.notices] == ["p"]
@@ -532,7 +532,7 @@ def test_colours_are_inherited_and_current():
         "<title>x</title><desc>x</desc><metadata><a>x</a></metadata>",
     ],
 )
-def test_what_is_not_meant_to_be_seen_is_left_out_without_a_word(hidden):
+def test_what_is_not_intended_to_be_seen_is_left_out_without_a_word(hidden):
     assert only(hidden + '<path id="seen" d="M0 0H5"/>').id == "seen"
 
 
@@ -561,7 +561,7 @@ GRADIENT = '<linearGradient id="g"><stop/><stop stop-color="red"/></linearGradie
 
 
 @pytest.mark.parametrize(
-    ("body", "where", "told"),
+    ("body", "where", "reported"),
     [
         ('<text id="t">x</text>', "t", "text-unread"),
         ('<image id="i"/>', "i", "element-unread image"),
@@ -617,10 +617,10 @@ GRADIENT = '<linearGradient id="g"><stop/><stop stop-color="red"/></linearGradie
         ),
     ],
 )
-def test_what_is_not_read_is_named(body, where, told):
+def test_what_is_not_read_is_named(body, where, reported):
     design = read(FIRST + body)
     (named,) = (notice for notice in design.notices if notice.where == where)
-    assert agrees(named, told)
+    assert agrees(named, reported)
     assert not any(notice.damaged for notice in design.notices)
 
 
@@ -674,7 +674,7 @@ def test_damage_is_the_first_reason_given():
 
 
 @pytest.mark.parametrize(
-    ("data", "told"),
+    ("data", "reported"),
     [
         (b"", "file-empty"),
         (b" \n", "file-empty"),
@@ -695,8 +695,8 @@ def test_damage_is_the_first_reason_given():
         (b'<svg xmlns="http://example.org/"/>', "not-svg <svg>"),
     ],
 )
-def test_what_is_not_svg_is_refused(data, told):
-    with refused(told):
+def test_what_is_not_svg_is_refused(data, reported):
+    with refused(reported):
         read_svg(data)
 
 
@@ -718,7 +718,7 @@ LAUGHS = "".join(f'<!ENTITY e{k} "{f"&e{k - 1};" * 10}">' for k in range(1, 12))
 
 
 @pytest.mark.parametrize(
-    ("subset", "content", "told"),
+    ("subset", "content", "reported"),
     [
         ('<!ENTITY e0 "ha">' + LAUGHS, "&e11;", "xml-entity 1 e1"),
         (f'<!ENTITY e "{"x" * 100_000}">', "&e;" * 5000, "xml-entity 10000000"),
@@ -727,10 +727,10 @@ LAUGHS = "".join(f'<!ENTITY e{k} "{f"&e{k - 1};" * 10}">' for k in range(1, 12))
         (f'<!ATTLIST g a CDATA "{"x" * 100_000}">', "<g/>" * 5000, "xml-entity"),
     ],
 )
-def test_bombs_and_foreign_files_are_refused_before_they_grow(subset, content, told):
+def test_bombs_and_foreign_files_are_refused_before_they_grow(subset, content, reported):
     data = f"<!DOCTYPE svg [{subset}]><svg>{content}</svg>".encode()
     tracemalloc.start()
-    with refused(told):
+    with refused(reported):
         read_svg(data)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
@@ -778,12 +778,12 @@ def test_long_nonsense_takes_no_longer_than_its_length(body):
 )
 def test_declarations_are_what_css_says_they_are(text):
     parsed = tinycss2.parse_blocks_contents(text, skip_comments=True, skip_whitespace=True)
-    wanted = [
+    target = [
         (each.name if each.name.startswith("--") else each.lower_name, value, each.important)
         for each in parsed
         if each.type == "declaration" and (value := tinycss2.serialize(each.value).strip())
     ]
-    assert list(declarations(text)) == wanted
+    assert list(declarations(text)) == target
 
 
 def test_files(tmp_path):

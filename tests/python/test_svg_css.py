@@ -1,7 +1,7 @@
 """Which declaration wins, and what style sheets may cost."""
 
 import pytest
-from diagnostics import agrees, are_told, is_told, refused
+from diagnostics import agrees, are_reported, is_reported, refused
 from svg_text import read
 
 from brushsvg import Error
@@ -104,7 +104,7 @@ def test_lengths_are_computed(value, px):
 )
 def test_what_comes_to_no_one_length_is_damage_as_before(value):
     design = read(f"<style>path{{stroke-width:{value}}}</style>{P}")
-    assert are_told(design.notices, "stroke-width-invalid") and design.notices[0].damaged
+    assert are_reported(design.notices, "stroke-width-invalid") and design.notices[0].damaged
 
 
 def test_attribute_rule_style_and_importance():
@@ -143,14 +143,14 @@ def test_lengths_without_a_unit_are_none_in_css():
     starts = [element.subpaths[0].cubics[0, 0].tolist() for element in design.elements]
     assert starts == [[15, 50], [17, 50]]
     assert [notice.where for notice in design.notices] == ["c", "c"]
-    assert are_told(design.notices, "css-invalid r '8' unit", "css-invalid cx '9.5e0' unit")
+    assert are_reported(design.notices, "css-invalid r '8' unit", "css-invalid cx '9.5e0' unit")
 
 
-def test_own_properties_are_inherited_only_when_asked():
+def test_own_properties_are_inherited_only_when_requested():
     body = (
         '<g style="opacity:.5"><path id="p" style="opacity:inherit" d="M0 0H5"/><path id="q" d="M0 0H5"/></g>'
     )
-    assert are_told(read(body).notices, "css-unread opacity", "css-unread opacity p")
+    assert are_reported(read(body).notices, "css-unread opacity", "css-unread opacity p")
 
 
 @pytest.mark.parametrize(
@@ -168,14 +168,14 @@ def test_own_properties_are_inherited_only_when_asked():
         ("@namespace url(urn:x);path{stroke-width:2}", "css-unread @namespace"),
     ],
 )
-def test_what_of_a_style_sheet_is_not_read(css, said):
-    assert is_told(read(f"<style>{css}</style>{P}").notices, said)
+def test_a_part_of_a_style_sheet_is_not_read(css, said):
+    assert is_reported(read(f"<style>{css}</style>{P}").notices, said)
 
 
 def test_a_variable_that_leads_to_itself_is_no_value():
     design = read(f"<style>:root{{--a:var(--b)x;--b:var(--a)}} path{{stroke-width:var(--a)}}</style>{P}")
     assert design.elements[0].stroke_width_mm == 1
-    assert are_told(design.notices, "css-invalid stroke-width var(--a) --b") and design.notices[0].damaged
+    assert are_reported(design.notices, "css-invalid stroke-width var(--a) --b") and design.notices[0].damaged
     unknown = read(f"<style>path{{stroke:blue;stroke:var(--c)}}</style>{P}")
     assert unknown.elements[0].colour == "#ff0000", "what is inherited, not the weaker declaration"
     (notice,) = unknown.notices
@@ -231,14 +231,14 @@ def test_deep_and_wide_documents_with_rules():
     ],
 )
 def test_in_a_copy_selectors_see_what_is_copied_and_no_more(selector, reaches):
-    """SVG 2, 5.6.3; Inkscape asks where it is copied from, which is told where it makes another style."""
+    """SVG 2, 5.6.3; Inkscape uses the place of the original, which is reported where it makes another style."""
     copied = '<defs><i/><g id="g"><path id="p" d="M0 0H5"/></g></defs>'
     design = read(
         f'<style>{selector}{{stroke-width:7}}</style>{copied}<g class="here"><use id="u" href="#g"/></g>'
     )
     (element,) = design.elements
     assert element.stroke_width_mm == (7 if reaches else 1)
-    assert is_told(design.notices, "css-of-copies", "p") == (
+    assert is_reported(design.notices, "css-of-copies", "p") == (
         selector in ("svg path", ":root path", ":scope path")
     )
     assert {notice.code for notice in design.notices} <= {"css-of-copies"}
@@ -280,8 +280,8 @@ def test_select():
 def test_css_nested_too_deeply(body):
     try:
         assert read(P + body).elements
-    except Error as told:
-        assert agrees(told, "css-too-complex")
+    except Error as reported:
+        assert agrees(reported, "css-too-complex")
 
 
 def test_style_sheets_without_end_are_refused(monkeypatch):

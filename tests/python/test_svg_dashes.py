@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from diagnostics import agrees, are_told, refused
+from diagnostics import agrees, are_reported, refused
 from scipy.integrate import quad
 from svg_text import lines, read
 
@@ -38,7 +38,7 @@ def test_dashes_of_a_straight_line():
     design = read('<path id="p" d="M0 0H20" stroke-dasharray="4 2" stroke-dashoffset="1"/>')
     spans = [(start[0], end[0]) for _, start, end in lines(design)]
     assert spans == [(0, 3), (5, 9), (11, 15), (17, 20)]
-    assert are_told(design.notices, "dashed p 4")
+    assert are_reported(design.notices, "dashed p 4")
 
 
 @pytest.mark.parametrize(
@@ -95,7 +95,7 @@ def test_dashes_of_a_stroke_that_does_not_scale_do_not_either(more):
     assert np.allclose(spans, [(0, 5), (10, 15)])
 
 
-def test_a_list_of_dashes_that_is_none_is_told():
+def test_a_list_of_dashes_that_is_none_is_reported():
     for text in ("20 10,", "1,,2", ",3"):
         (notice,) = read(f'<path d="M0 0H20" stroke-dasharray="{text}"/>').notices
         assert agrees(notice, "dashes-unread stroke-dasharray")
@@ -110,7 +110,7 @@ def test_dashes_go_round_corners_and_a_closed_line_has_no_seam():
     assert seam[0].cubics[0, 0].tolist() != [0, 50], "the last dash and the first are one"
 
 
-def test_each_dash_lies_on_the_line():
+def test_each_dash_is_on_the_line():
     cubics = np.array([[[0, 0], [10, 30], [30, -30], [40, 0]]], float)
     pieces = dashed(SubPath(cubics), [2.0, 1.0], 0.5, 1000)
     t = np.linspace(0, 1, 4001)[:, None]

@@ -57,7 +57,7 @@ def test_a_name_before_a_stroke_of_a_name_holds_all_of_them():
     assert [element.id for element in arrange(read(body), Layout(layers=("Icon",))).elements] == ["a", "b"]
 
 
-def test_a_layer_goes_by_its_end_capitals_and_underscores_aside_unless_two_are_meant():
+def test_a_layer_is_found_by_its_end_in_any_case_unless_two_match():
     body = f'<g id="Page"><g id="Ink_one"><g id="Fine">{A}</g></g><g id="Two">{B}</g></g>'
     for name in ("Page/Ink_one", "Ink_one", "ink one", "page/ink one"):
         assert [element.id for element in arrange(read(body), Layout(layers=(name,))).elements] == ["a"]

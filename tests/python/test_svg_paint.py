@@ -1,7 +1,7 @@
-"""What a stroke and a fill are painted with, alone and together, and what of it is told."""
+"""What a stroke and a fill are painted with, alone and together, and the notices about it."""
 
 import pytest
-from diagnostics import are_told, refused
+from diagnostics import are_reported, refused
 from svg_text import read
 
 from brushsvg.read.svg import element, paint_servers
@@ -37,10 +37,12 @@ def notices_of(design):
 @pytest.mark.parametrize("server", SERVERS.values(), ids=SERVERS)
 def test_a_paint_that_is_not_read_is_named_for_fill_and_stroke(server):
     of = "paint-unread p {} #s #000000".format
-    assert are_told(notices_of(painted("url(#s)", "none", before=server)), of("fill"))
-    assert are_told(notices_of(painted("url(#s)", "red", before=server)), of("fill")), "under a stroke, too"
-    assert are_told(notices_of(painted("red", "url(#s)", before=server)), of("stroke"))
-    assert are_told(notices_of(painted("url(#s)", "url(#s)", before=server)), of("fill"), of("stroke"))
+    assert are_reported(notices_of(painted("url(#s)", "none", before=server)), of("fill"))
+    assert are_reported(notices_of(painted("url(#s)", "red", before=server)), of("fill")), (
+        "under a stroke, too"
+    )
+    assert are_reported(notices_of(painted("red", "url(#s)", before=server)), of("stroke"))
+    assert are_reported(notices_of(painted("url(#s)", "url(#s)", before=server)), of("fill"), of("stroke"))
 
 
 @pytest.mark.parametrize("server", NOTHING.values(), ids=NOTHING)
@@ -51,7 +53,7 @@ def test_a_paint_of_nothing_paints_nothing(server):
         "#0000ff",
         [],
     )
-    assert are_told(notices_of(painted("url(#s)", "none", before=server)), "neither-stroke-nor-fill p")
+    assert are_reported(notices_of(painted("url(#s)", "none", before=server)), "neither-stroke-nor-fill p")
 
 
 @pytest.mark.parametrize(
@@ -69,14 +71,14 @@ def test_a_gradient_of_one_colour_is_that_colour(gradient):
 
 
 @pytest.mark.parametrize("colour", ["#ff000033", "#f003", "rgba(255,0,0,.2)", "hsl(0 100% 50% / 20%)"])
-def test_a_colour_seen_through_is_named_wherever_it_paints(colour):
+def test_a_colour_seen_through_is_named_where_it_paints(colour):
     of = "opacity-unread p {} 0.2 1".format
-    assert are_told(notices_of(painted(colour, "none")), of("fill"))
-    assert are_told(notices_of(painted(colour, "blue")), of("fill"))
-    assert are_told(notices_of(painted("blue", colour)), of("stroke"))
-    assert are_told(notices_of(painted("none", "currentColor", f'color="{colour}"')), of("stroke"))
+    assert are_reported(notices_of(painted(colour, "none")), of("fill"))
+    assert are_reported(notices_of(painted(colour, "blue")), of("fill"))
+    assert are_reported(notices_of(painted("blue", colour)), of("stroke"))
+    assert are_reported(notices_of(painted("none", "currentColor", f'color="{colour}"')), of("stroke"))
     gradient = f'<linearGradient id="s"><stop stop-color="{colour}"/></linearGradient>'
-    assert are_told(notices_of(painted("url(#s)", "none", before=gradient)), of("fill"))
+    assert are_reported(notices_of(painted("url(#s)", "none", before=gradient)), of("fill"))
     assert painted(colour, "none").elements[1].colour == "#ff0000"
 
 
@@ -88,10 +90,12 @@ def test_a_colour_of_glass_paints_nothing(colour):
 
 
 def test_opacities_are_named_for_what_is_painted():
-    assert are_told(notices_of(painted("red", "blue", 'fill-opacity=".5"')), "opacity-unread fill-opacity 1")
+    assert are_reported(
+        notices_of(painted("red", "blue", 'fill-opacity=".5"')), "opacity-unread fill-opacity 1"
+    )
     assert notices_of(painted("none", "blue", 'fill-opacity=".5"')) == []
     assert notices_of(painted("red", "blue", 'fill-opacity="2" opacity="101%" stroke-opacity="1.0"')) == []
-    assert are_told(notices_of(painted("red", "blue", 'opacity="x"')), "css-invalid opacity x")
+    assert are_reported(notices_of(painted("red", "blue", 'opacity="x"')), "css-invalid opacity x")
     assert painted("red", "blue", 'fill-opacity="-1" stroke-opacity="100%"').elements[1].fill_rule == ""
     with refused("nothing-to-paint transparent"):
         read(BOTH.format("red", "blue", 'opacity="1e-9"'))
@@ -104,31 +108,33 @@ def test_a_visibility_that_is_none_counts_as_not_given():
 
 def test_a_paint_is_looked_up_once(monkeypatch):
     """3,000 shapes with a gradient of 3,000 stops took twenty seconds."""
-    asked = []
-    monkeypatch.setattr(paint_servers.Paints, "_stop", lambda _self, stop: asked.append(stop) or "#00ff00")
+    requested = []
+    monkeypatch.setattr(
+        paint_servers.Paints, "_stop", lambda _self, stop: requested.append(stop) or "#00ff00"
+    )
     gradient = '<linearGradient id="s">' + "<stop/>" * 50 + "</linearGradient>"
     assert len(read(gradient + BOTH.format("url(#s)", "none", "") * 50).elements) == 50
-    assert len(asked) == 50
+    assert len(requested) == 50
 
 
 def test_a_box_is_measured_once(monkeypatch):
-    asked = []
+    requested = []
     bounds = element.Painted.bounds
-    monkeypatch.setattr(element.Painted, "bounds", lambda *words: asked.append(1) or bounds(*words))
+    monkeypatch.setattr(element.Painted, "bounds", lambda *words: requested.append(1) or bounds(*words))
     move = "translate(1%, 1%)" * 50
     read(f'<path d="M0 0H5V5" style="transform-box:fill-box;transform:{move};transform-origin:center"/>')
-    assert len(asked) == 1
+    assert len(requested) == 1
 
 
-def test_white_is_told():
-    """What it hides is painted, too: paint is not cut off by what lies on top."""
+def test_white_is_reported():
+    """What it hides is painted, too: paint is not cut off by what is on top."""
     for fill, stroke in (
         ("white", "blue"),
         ("white", "none"),
         ("blue", "#fff"),
         ("rgb(250 250 248)", "none"),
     ):
-        assert are_told(notices_of(painted(fill, stroke)), "white-paint p data-brushsvg-skip")
+        assert are_reported(notices_of(painted(fill, stroke)), "white-paint p data-brushsvg-skip")
     assert not notices_of(painted("#e8e8e8", "none"))
 
 

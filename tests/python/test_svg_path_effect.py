@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from diagnostics import are_told, is_told
+from diagnostics import are_reported, is_reported
 from svg_text import read
 
 EFFECT = (
@@ -66,12 +66,12 @@ def test_catmull_rom_passes_through_its_points():
     ],
 )
 def test_what_is_not_read_is_named(choices, said):
-    assert is_told(powered(**choices).notices, said, "p")
+    assert is_reported(powered(**choices).notices, said, "p")
 
 
 def test_an_effect_that_leaves_an_outline_is_named():
     design = powered(effect="taper_stroke")
-    assert are_told(design.notices, "path-effect-unread p taper_stroke outline")
+    assert are_reported(design.notices, "path-effect-unread p taper_stroke outline")
     assert not design.elements[0].is_stroked
 
 
@@ -84,15 +84,15 @@ def test_a_hidden_effect_or_one_that_makes_lines_leaves_d():
 
 @pytest.mark.parametrize("other", ["spiro", "bspline", "mirror_symmetry", "powerstroke", "skeletal"])
 @pytest.mark.parametrize("order", ["#e;#f", "#f; #e"])
-def test_beside_another_effect_the_outline_counts(other, order):
-    """It is what Inkscape shows: the line under a Spiro was drawn 5 mm from where it lies."""
+def test_next_to_another_effect_the_outline_counts(other, order):
+    """It is what Inkscape shows: the line under a Spiro was drawn 5 mm from where it is."""
     effects = EFFECT.format(effect="powerstroke", visible="true", kind="Linear", points="0,1", scale=1)
     effects += f'<inkscape:path-effect effect="{other}" id="f"/>'
     design = read(f"<defs>{effects}</defs>{PATH.replace('#e', order).format('')}")
     (element,) = design.elements
     assert element.fill_rule and element.subpaths[0].widths is None
     assert element.subpaths[0].cubics[0, 0].tolist() == [0, 50]
-    assert are_told(design.notices, "path-effect-unread p PowerStroke outline")
+    assert are_reported(design.notices, "path-effect-unread p PowerStroke outline")
     hidden = effects.replace('id="f"', 'id="f" is_visible="false"')
     assert not read(f"<defs>{hidden}</defs>{PATH.replace('#e', order).format('')}").notices
 
@@ -101,7 +101,7 @@ def test_in_a_group_with_effects_the_outline_counts():
     effects = EFFECT.format(effect="powerstroke", visible="true", kind="Linear", points="0,1", scale=1)
     design = read(f'<defs>{effects}</defs><g inkscape:path-effect="#x"><g>{PATH.format("")}</g></g>')
     assert design.elements[0].fill_rule
-    assert are_told(design.notices, "path-effect-unread p PowerStroke group outline")
+    assert are_reported(design.notices, "path-effect-unread p PowerStroke group outline")
 
 
 def test_many_points_on_a_long_line():

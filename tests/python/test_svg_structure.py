@@ -1,7 +1,7 @@
 """use, symbol, nested svg, switch, layers, and what a drawing says to brushsvg."""
 
 import pytest
-from diagnostics import agrees, are_told, refused
+from diagnostics import agrees, are_reported, refused
 from svg_text import HEAD, lines, read
 
 from brushsvg.read import ReadOptions
@@ -58,7 +58,7 @@ def test_use_of_use_and_of_a_group_that_is_drawn_itself():
     ]
 
 
-def test_symbols_fit_their_view_box_into_the_size_asked_for():
+def test_symbols_fit_their_view_box_into_the_size_requested():
     symbol = '<symbol id="s" viewBox="0 0 4 4"><path d="M0 0L4 4"/></symbol>'
     design = read(f'{symbol}<use id="u" href="#s" x="10" width="8" height="20"/>')
     assert lines(design) == [("u", (10, 6), (18, 14))]
@@ -82,12 +82,12 @@ def test_nested_svg_has_its_own_viewport():
     ]
 
 
-def test_what_a_viewport_hides_is_left_out_or_told():
+def test_what_a_viewport_hides_is_left_out_or_reported():
     body = '<svg width="10" height="10"><path id="out" d="M20 1H30"/><path id="over" d="M5 5H15"/>{}</svg>'
     design = read(body.format('<path id="in" d="M1 1Q5 -1 9 1"/>'))
     assert [element.id for element in design.elements] == ["over", "in"]
     assert lines(design)[0] == ("over", (5, 5), (10, 5))
-    assert are_told(design.notices, "clipped-away out")
+    assert are_reported(design.notices, "clipped-away out")
     shown = read(body.replace("<svg", '<svg overflow="visible"').format(""))
     assert len(shown.elements) == 2 and not shown.notices
 
@@ -214,7 +214,7 @@ def test_transform_origin_in_all_its_words(origin, point):
 @pytest.mark.parametrize(
     "origin", ["top 20px", "20px left", "left left", "1 2 3 4", "10% 20% 30%", "x", "5,6"]
 )
-def test_a_transform_origin_that_is_none_is_told(origin):
+def test_a_transform_origin_that_is_none_is_reported(origin):
     design = read(f'<path id="p" d="M10 4H20" transform="scale(2)" transform-origin="{origin}"/>')
     assert lines(design)[0][1] == (20, 8)
     assert [notice.damaged for notice in design.notices] == [True]
@@ -255,7 +255,7 @@ def test_translate_rotate_and_scale_as_properties():
         assert [notice.damaged for notice in read(f'<path d="M0 0H5" style="{style}"/>').notices] == [True]
 
 
-def test_a_transform_of_the_drawing_itself_is_told():
+def test_a_transform_of_the_drawing_itself_is_reported():
     text = HEAD.replace("<svg", '<svg transform="rotate(20)"') + '<path d="M10 0H20"/></svg>'
     design = read_svg(text.encode())
     assert lines(design)[0][1] == (10, 0)
@@ -268,11 +268,11 @@ def test_a_transform_of_the_drawing_itself_is_told():
     "mix-blend-mode:darken offset-path:none animation:a mask-image:none -webkit-filter:blur(5px)"
     " content-visibility:hidden all:unset".split(),
 )
-def test_what_css_alone_says_is_told(name):
+def test_what_css_alone_says_is_reported(name):
     of, value = name.split(":")
-    told = read(f'<g id="g" style="{name}"><path d="M0 0H5"/></g>').notices
+    reported = read(f'<g id="g" style="{name}"><path d="M0 0H5"/></g>').notices
     said = f"css-unread g {of.removeprefix('-webkit-')}"
-    assert are_told(told, *([] if value == "none" else [said]))
+    assert are_reported(reported, *([] if value == "none" else [said]))
 
 
 def test_empty_attributes_count_as_not_given():
@@ -282,7 +282,7 @@ def test_empty_attributes_count_as_not_given():
     assert not design.notices and len(design.elements) == 3
     assert (design.elements[0].colour, design.elements[0].stroke_width_mm) == ("#ff0000", 1)
     flat = read('<path d="M0 0H1"/><rect id="r" width="5" height=""/>')
-    assert are_told(flat.notices, "geometry-empty r")
+    assert are_reported(flat.notices, "geometry-empty r")
     head = (
         '<svg xmlns="http://www.w3.org/2000/svg" width="" height="" viewBox="0 0 9 9" preserveAspectRatio="">'
     )
@@ -306,7 +306,7 @@ def test_what_d_says_in_css_is_a_path_or_counts_as_not_given():
 
 def test_an_empty_href_wins_over_the_old_one():
     design = read('<path id="a" d="M0 0H5"/><use id="u" href="" xlink:href="#a"/>')
-    assert are_told(design.notices, "use-of-nothing u href")
+    assert are_reported(design.notices, "use-of-nothing u href")
 
 
 def test_nameless_elements_are_counted_and_notices_use_the_same_name():
@@ -356,9 +356,9 @@ def test_illustrator_is_known_by_its_comment():
     from brushsvg.read.svg import read_svg
 
     design = read_svg(head + b'<path d="M0 0H5" stroke="red"/></svg>')
-    told = design.notices[0]
-    assert told.code == "other-pixels" and "25.4 x 25.4 mm" in told.sentence
-    assert 'width="25.4mm" height="25.4mm"' in told.advice
+    reported = design.notices[0]
+    assert reported.code == "other-pixels" and "25.4 x 25.4 mm" in reported.sentence
+    assert 'width="25.4mm" height="25.4mm"' in reported.advice
 
 
 def test_settings_are_inherited_and_carried():
@@ -410,7 +410,7 @@ def test_settings_that_make_no_sense_stop_convert(setting, said):
     assert not design.elements[0].settings
 
 
-def test_the_advice_for_illustrator_is_of_the_drawing_whatever_the_sheet():
+def test_the_advice_for_illustrator_is_of_the_drawing_for_any_sheet():
     text = (
         '<!-- Generator: Adobe Illustrator 27.0 --><svg xmlns="http://www.w3.org/2000/svg" width="283.5px" '
         'height="198.4px" viewBox="0 0 283.5 198.4"><path fill="none" stroke="#000" d="M50 60h100"/></svg>'
@@ -421,7 +421,7 @@ def test_the_advice_for_illustrator_is_of_the_drawing_whatever_the_sheet():
 
 
 @pytest.mark.parametrize(
-    ("attributes", "sheet_mm", "told"),
+    ("attributes", "sheet_mm", "reported"),
     [
         ('style="width:50mm;height:4cm"', (50.0, 40.0), []),
         ('width="100mm" height="100mm" style="width:50mm;height:100mm"', (100.0, 100.0), ["100 50"]),
@@ -429,8 +429,8 @@ def test_the_advice_for_illustrator_is_of_the_drawing_whatever_the_sheet():
         ('width="80mm" style="height:40mm"', (80.0, 40.0), []),
     ],
 )
-def test_a_page_whose_size_stands_in_its_style(attributes, sheet_mm, told):
+def test_a_page_whose_size_stands_in_its_style(attributes, sheet_mm, reported):
     text = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100" {attributes}>{LINE}</svg>'
     design = read_svg(text.encode())
     assert design.sheet_mm == pytest.approx(sheet_mm)
-    assert are_told(design.notices, *(f"size-assumed {each}" for each in told)), design.notices
+    assert are_reported(design.notices, *(f"size-assumed {each}" for each in reported)), design.notices

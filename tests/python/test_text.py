@@ -8,7 +8,7 @@ import xml.etree.ElementTree as ET
 
 import pytest
 import svgpathtools
-from diagnostics import agrees, are_told, refused
+from diagnostics import agrees, are_reported, refused
 from fontTools.feaLib.builder import addOpenTypeFeaturesFromString
 from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.recordingPen import DecomposingRecordingPen
@@ -134,8 +134,8 @@ def test_every_command_against_svgpathtools():
     lengths = [part.length() for part in (ours, theirs)]
     assert lengths[0] == pytest.approx(lengths[1] * flip, abs=1e-3)
     for segment in theirs:
-        wanted = [complex(z.real, -z.imag) * flip + shift for z in (segment.point(0.3), segment.point(0.8))]
-        for z in wanted:
+        target = [complex(z.real, -z.imag) * flip + shift for z in (segment.point(0.3), segment.point(0.8))]
+        for z in target:
             assert min(abs(near.point(near.radialrange(z)[0][1]) - z) for near in ours) < 2e-4
 
 
@@ -147,8 +147,8 @@ def test_a_tilted_arc_is_mirrored_with_its_letter():
     )
     for t in (0.2, 0.5, 0.9):
         z = arc.point(t)
-        wanted = complex(z.real, -z.imag) * 0.01 + ours[0].start
-        assert min(abs(part.point(part.radialrange(wanted)[0][1]) - wanted) for part in ours) < 3e-4
+        target = complex(z.real, -z.imag) * 0.01 + ours[0].start
+        assert min(abs(part.point(part.radialrange(target)[0][1]) - target) for part in ours) < 3e-4
 
 
 def test_a_new_line_begins_below_where_the_first_did():
@@ -298,12 +298,12 @@ def test_other_encodings(encoding):
 
 @pytest.mark.parametrize("value", [0, -1, float("nan"), float("inf"), 1000.5])
 def test_numbers_out_of_range(value):
-    told = f"out-of-range {value:g}"
-    assert agrees(refusal("I", svg_font(), size_mm=value), f"{told} size '(0, 1000] mm'")
-    assert agrees(refusal("I", svg_font(), width_mm=value), f"{told} width")
-    assert agrees(refusal("I", svg_font(), line_spacing=value), f"{told} '(0, 100]'")
+    reported = f"out-of-range {value:g}"
+    assert agrees(refusal("I", svg_font(), size_mm=value), f"{reported} size '(0, 1000] mm'")
+    assert agrees(refusal("I", svg_font(), width_mm=value), f"{reported} width")
+    assert agrees(refusal("I", svg_font(), line_spacing=value), f"{reported} '(0, 100]'")
     if value != 1000.5:
-        assert agrees(refusal("I", svg_font(), sheet_mm=(10, value)), f"{told} sheet")
+        assert agrees(refusal("I", svg_font(), sheet_mm=(10, value)), f"{reported} sheet")
 
 
 def test_a_given_sheet_has_the_ink_in_its_middle_or_is_refused():
@@ -311,10 +311,10 @@ def test_a_given_sheet_has_the_ink_in_its_middle_or_is_refused():
         "M 48.0000,26.5000 L 52.0000,26.5000 M 50.0000,26.5000 L 50.0000,33.5000"
     ]
     assert drawn("T", sheet_mm=(5, 8)) == ["M 0.5000,0.5000 L 4.5000,0.5000 M 2.5000,0.5000 L 2.5000,7.5000"]
-    told = refusal("T", svg_font(), size_mm=10, sheet_mm=(4.9, 60))
-    assert agrees(told, "text-does-not-fit '5.00 x 8.00 mm' '4.9 x 60 mm'")
-    told = refusal("T", svg_font(), size_mm=10, sheet_mm=(60, 7.9))
-    assert agrees(told, "text-does-not-fit '60 x 7.9 mm'")
+    reported = refusal("T", svg_font(), size_mm=10, sheet_mm=(4.9, 60))
+    assert agrees(reported, "text-does-not-fit '5.00 x 8.00 mm' '4.9 x 60 mm'")
+    reported = refusal("T", svg_font(), size_mm=10, sheet_mm=(60, 7.9))
+    assert agrees(reported, "text-does-not-fit '60 x 7.9 mm'")
 
 
 def test_too_much():
@@ -397,13 +397,13 @@ def filled(text, font, **options):
     return [(path.get("id"), path.get("d")) for path in paths(document)], notices
 
 
-def test_a_width_for_outlines_is_told_to_have_no_effect(ttf):
+def test_a_width_for_outlines_is_reported_to_have_no_effect(ttf):
     document, notices = text_svg("A", ttf, size_mm=10, width_mm=3)
     assert agrees(notices[-1], "width-without-effect 3")
     assert text_svg("A", ttf, size_mm=10) == (document, notices[:-1])
 
 
-def test_an_outline_is_filled_and_lies_exactly(ttf):
+def test_an_outline_is_filled_at_its_exact_place(ttf):
     document, _ = text_svg("A", ttf, size_mm=10, width_mm=3)
     root = ET.fromstring(document.encode())
     assert root.get("viewBox") == "0 0 46 47"
@@ -489,9 +489,9 @@ def test_without_the_extra_outlines_are_refused_and_lines_are_not(ttf, monkeypat
     monkeypatch.delitem(sys.modules, "brushsvg.read.text.outline_font", raising=False)
     monkeypatch.delattr("brushsvg.read.text.outline_font", raising=False)
     monkeypatch.setitem(sys.modules, "uharfbuzz", None)
-    told = refusal("A", ttf)
-    assert told.code == "package-missing"
-    assert sys.executable in told.sentence and told.sentence.endswith("install fonttools uharfbuzz")
+    reported = refusal("A", ttf)
+    assert reported.code == "package-missing"
+    assert sys.executable in reported.sentence and reported.sentence.endswith("install fonttools uharfbuzz")
     assert len(drawn("TI")) == 2
 
 
@@ -504,8 +504,8 @@ def test_damaged_fonts_give_a_sentence_or_a_drawing(ttf):
         for at in range(4, len(font), 7):
             refusals.add(outcome(font[:at] + bytes([font[at] ^ 0xFF]) + font[at + 1 :]))
     assert None in refusals
-    told = [each for each in refusals if each and each.code == "font-damaged"]
-    assert {"WOFF" in each.sentence for each in told} == {False, True}
+    reported = [each for each in refusals if each and each.code == "font-damaged"]
+    assert {"WOFF" in each.sentence for each in reported} == {False, True}
 
 
 @pytest.mark.parametrize(
@@ -569,12 +569,12 @@ def test_composites_that_hold_each_other_end():
         writer[tag] = data
     writer.close()
     glyph_set = TTFont(hostile).getGlyphSet()
-    with pytest.raises(RecursionError):  # the font is as bad as it was meant to be
+    with pytest.raises(RecursionError):  # the font is as bad as it was intended to be
         glyph_set["A"].draw(DecomposingRecordingPen(glyph_set))
     assert agrees(refusal("A", hostile.getvalue()), "nothing-to-paint")
 
 
-def told_of(font, text="AV"):
+def reported_of(font, text="AV"):
     """Return the notices about a text, and how many glyphs were drawn."""
     document, notices = text_svg(text, font)
     return notices, len(paths(document))
@@ -587,33 +587,33 @@ def saved(font) -> bytes:
 
 
 def test_letters_without_an_outline_are_named():
-    """As of fonts that hold pictures; what is blank by its nature is not named."""
+    """As for fonts that hold pictures; what is blank by its nature is not named."""
     font = TTFont(io.BytesIO(outline_font()))
     font["glyf"]["V"] = TTGlyphPen(None).glyph()
-    told, count = told_of(saved(font), "A V\u00adA")
-    assert count == 2 and are_told(told, "glyph-missing U+0056")
+    reported, count = reported_of(saved(font), "A V\u00adA")
+    assert count == 2 and are_reported(reported, "glyph-missing U+0056")
     blank = svg_font(GLYPHS + '<glyph unicode="x" horiz-adv-x="300"/>')
-    told, count = told_of(blank, "I x")
-    assert count == 1 and are_told(told, "glyph-missing U+0078")
+    reported, count = reported_of(blank, "I x")
+    assert count == 1 and are_reported(reported, "glyph-missing U+0078")
     assert agrees(refusal("x", blank), "nothing-to-paint U+0078")
     font["glyf"]["space"], font["glyf"]["f_i"] = font["glyf"]["V"], font["glyf"]["V"]
-    told, _ = told_of(saved(font), "A\u00a0fi")
-    assert are_told(told, "glyph-missing 'U+0066 f, U+0069 i'")
+    reported, _ = reported_of(saved(font), "A\u00a0fi")
+    assert are_reported(reported, "glyph-missing 'U+0066 f, U+0069 i'")
 
 
-def test_it_is_told_which_font_of_several_is_taken():
+def test_the_chosen_font_of_several_is_reported():
     font = TTFont(io.BytesIO(outline_font()))
     builder = FontBuilder(font=font)
     builder.setupFvar([("wght", 100, 350, 900, "Weight"), ("wdth", 50, 100, 200, "Width")], [])
     builder.setupGvar({name: [] for name in font.getGlyphOrder()})
-    told, count = told_of(saved(font))
-    assert count == 2 and are_told(told, "font-of-choices 'wght 350, wdth 100' wght=350")
+    reported, count = reported_of(saved(font))
+    assert count == 2 and are_reported(reported, "font-of-choices 'wght 350, wdth 100' wght=350")
     both = TTCollection()
     both.fonts = [TTFont(io.BytesIO(outline_font())), TTFont(io.BytesIO(outline_font(features="")))]
-    told, count = told_of(saved(both), "fi")
-    assert count == 1 and are_told(told, "font-of-choices 2 second.ttf")
+    reported, count = reported_of(saved(both), "fi")
+    assert count == 1 and are_reported(reported, "font-of-choices 2 second.ttf")
     builder = FontBuilder(font=TTFont(io.BytesIO(outline_font())))
     builder.setupCOLR({"A": [("V", 0)]})
     builder.setupCPAL([[(1, 0, 0, 1)]])
-    told, count = told_of(saved(builder.font))
-    assert count == 2 and are_told(told, "font-of-colours")
+    reported, count = reported_of(saved(builder.font))
+    assert count == 2 and are_reported(reported, "font-of-colours")

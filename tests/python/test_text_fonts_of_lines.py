@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from diagnostics import are_told
+from diagnostics import are_reported
 from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 
@@ -49,9 +49,11 @@ def font(tmp_path):
 
 def lines_of(font, letter):
     """Points (n, 2) of each line of a letter, in units of the font from its lower left corner."""
-    document, told = text_svg(letter, font, size_mm=100, width_mm=2)
+    document, reported = text_svg(letter, font, size_mm=100, width_mm=2)
     design = read_svg(document.encode())
-    assert are_told(told, "font-of-lines") and all(not element.fill_rule for element in design.elements)
+    assert are_reported(reported, "font-of-lines") and all(
+        not element.fill_rule for element in design.elements
+    )
     lines = [np.vstack([s.cubics[:1, 0], s.cubics[:, 3]]) for e in design.elements for s in e.subpaths]
     corner = np.vstack(lines).min(axis=0)
     return [np.round((line - corner) * 10).astype(int).tolist() for line in lines]

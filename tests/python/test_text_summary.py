@@ -9,40 +9,40 @@ def notice(where, sentence, code="", **more):
     return Notice(where, sentence, code=code or sentence.split()[0], **more)
 
 
-def summarized(told):
-    return [tuple(each) for each in summarized_notices(notice(*each) for each in told)]
+def summarized(reported):
+    return [tuple(each) for each in summarized_notices(notice(*each) for each in reported)]
 
 
 def test_few_of_a_kind_stay_as_they_are():
-    told = [(f"p{k}", f"width {k} mm is odd") for k in range(MOST_ALIKE)] + [("q", "it is dashed")]
-    assert summarized(told) == told
+    reported = [(f"p{k}", f"width {k} mm is odd") for k in range(MOST_ALIKE)] + [("q", "it is dashed")]
+    assert summarized(reported) == reported
 
 
 def test_many_of_a_kind_are_counted_where_the_first_of_them_stood():
-    told = [("a", "one thing")]
-    told += [(f"p{k}", f"'p{k}' is 1.{k}e-0{k} mm off, x -{k}, range [0, {k}]", "off") for k in range(5)]
-    told[3:3] = [("b", "another thing")]
-    one, (counted, first), other = summarized(told)
+    reported = [("a", "one thing")]
+    reported += [(f"p{k}", f"'p{k}' is 1.{k}e-0{k} mm off, x -{k}, range [0, {k}]", "off") for k in range(5)]
+    reported[3:3] = [("b", "another thing")]
+    one, (counted, first), other = summarized(reported)
     assert (one, other) == (("a", "one thing"), ("b", "another thing"))
     assert gives(counted, "p0", "4") and first == "'p0' is 1.0e-00 mm off, x -0, range [0, 0]"
     assert summarized([]) == []
 
 
 def test_four_with_the_same_sentence_are_named():
-    told = [(law, "measured to 4 mm") for law in ("lag", "tip_gap", "tip_to_widest", "half_width")]
-    assert summarized(told) == [("lag, tip_gap, tip_to_widest and half_width", "measured to 4 mm")]
+    reported = [(law, "measured to 4 mm") for law in ("lag", "tip_gap", "tip_to_widest", "half_width")]
+    assert summarized(reported) == [("lag, tip_gap, tip_to_widest and half_width", "measured to 4 mm")]
     for others, count in (
-        ([*told[1:], ("fifth", "measured to 4 mm")], "4"),
+        ([*reported[1:], ("fifth", "measured to 4 mm")], "4"),
         (
-            [*told[1:3], ("half_width", "measured to 5 mm")],
+            [*reported[1:3], ("half_width", "measured to 5 mm")],
             "3",
         ),
     ):
-        ((where, sentence),) = summarized([told[0], *others])
+        ((where, sentence),) = summarized([reported[0], *others])
         assert gives(where, "lag", count) and sentence == "measured to 4 mm"
 
 
-def test_a_kind_is_a_code_whatever_is_said():
+def test_a_kind_is_a_code_for_any_sentence():
     reworded = [notice(f"p{k}", "wide" if k % 2 else "too broad", "width") for k in range(5)]
     (one,) = summarized_notices(reworded)
     assert gives(one.where, "p0", "4") and one.code == "width"
@@ -56,6 +56,6 @@ def test_a_kind_is_a_code_whatever_is_said():
 
 
 def test_many_that_concern_no_element_are_counted_in_the_sentence():
-    told = [("", f"marker {k} cannot be seen", "marker") for k in range(5)]
-    ((where, sentence),) = summarized(told)
+    reported = [("", f"marker {k} cannot be seen", "marker") for k in range(5)]
+    ((where, sentence),) = summarized(reported)
     assert where == "" and gives(sentence, "marker 0 cannot be seen", "4")

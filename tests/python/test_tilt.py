@@ -1,4 +1,4 @@
-"""How a brush is tilted: read, written, kept, and refused wherever it would be lost."""
+"""How a brush is tilted: read, written, kept, and refused where it would be lost."""
 
 import copy
 import json
@@ -6,7 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
-from diagnostics import agrees, are_told, in_json, refused
+from diagnostics import agrees, are_reported, in_json, refused
 
 import brushsvg
 from brushsvg import _core
@@ -40,7 +40,7 @@ def plan(tool_axes=TILTED):
     return _core.Plan("round-6", "", (100, 100), [_core.Pass("upright", POSES), tilted])
 
 
-def told(change):
+def reported(change):
     """The text of a plan.json with something of its second pass changed."""
     document = json.loads(_core.write_plan(plan()))
     change(document, document["passes"][1])
@@ -69,7 +69,7 @@ def test_a_file_of_version_2_need_not_tilt():
     def upright(document, one):
         del one["tool_axes"]
 
-    back = _core.read_plan(told(upright))
+    back = _core.read_plan(reported(upright))
     assert json.loads(_core.write_plan(back))["version"] == 1
 
 
@@ -101,14 +101,14 @@ def test_what_is_no_tilt_is_refused(change, expected, where):
     if where.startswith("tool_axes"):
         where = f"passes[1].{where}"
     with refused(expected, where):
-        _core.read_plan(told(change))
+        _core.read_plan(reported(change))
 
 
 def test_three_decimals_are_enough():
     for tilt in np.linspace(0, 29, 30):
         for towards in np.linspace(0, 360, 37):
             rounded = np.round(axes(tilt, towards_deg=towards)[0], 3)
-            _core.read_plan(told(axis(1, *rounded)))
+            _core.read_plan(reported(axis(1, *rounded)))
 
 
 def test_what_cannot_be_read_is_not_written():
@@ -216,7 +216,7 @@ def test_predict_shows_the_mark_and_says_that_no_program_paints_it(suffix, tmp_p
         status, _, heard = in_json(capsys, "preview", given, "-o", made)
         assert status == 0
         is_tilted = tool_axes[:, 0].any()
-        assert are_told([each for _, each in heard], *(["tilt-unsupported 20"] if is_tilted else []))
+        assert are_reported([each for _, each in heard], *(["tilt-unsupported 20"] if is_tilted else []))
         pictures.append(made.read_bytes())
     assert pictures[0] != pictures[1]
 

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import agrees, in_json, is_told, refused
+from diagnostics import agrees, in_json, is_reported, refused
 from sampling import sample
 from scipy.spatial.transform import Rotation, Slerp
 from urscript_stub import run
@@ -74,11 +74,11 @@ def text_for(of, cell):
     return "".join(text_of(POSTS[cell.language], made))
 
 
-# What a robot is told ---------------------------------------------------------------------------------------
+# Commands of a robot ---------------------------------------------------------------------------------------
 
 
-def told_ur(text, cell):
-    """(tips (n, 3) [mm], rotations) of each move in the robot's frame, and the line that led to it."""
+def commanded_ur(text, cell):
+    """(tips (n, 3) [mm], rotations) of each move in the robot's frame, and the line that moved to it."""
     rows = [(pose, name) for name, *rest in run(text).events for pose in rest[0] if name.startswith("move")]
     tips = 1e3 * np.array([pose[:3] for pose, _ in rows])
     return tips, Rotation.from_rotvec([pose[3:] for pose, _ in rows])
@@ -88,12 +88,12 @@ N = r"(-?[\d.]+)"
 
 
 def in_paper(tips, turned, cell):
-    """The same in the robot's frame of what is told in that of the paper."""
+    """The same in the robot's frame of commands in that of the paper."""
     frame = robot_from_paper(cell)
     return tips @ frame[:3, :3].T + frame[:3, 3], Rotation.from_matrix(frame[:3, :3]) * turned
 
 
-def told_rapid(text, cell):
+def commanded_rapid(text, cell):
     """As RAPID has it: quaternions begin with the part that is no axis."""
     upright = re.search(rf"RETURN \[\[x, y, z\], \[{N}, {N}, {N}, {N}\]", text).groups()
     moves = re.findall(rf"MoveL (?:on_paper|tilted)\({N}, {N}, {N}(?:, {N}, {N}, {N}, {N})?\)", text)
@@ -102,7 +102,7 @@ def told_rapid(text, cell):
     return in_paper(tips, Rotation.from_quat(turned[:, [1, 2, 3, 0]]), cell)
 
 
-def told_ros2(text, cell):
+def commanded_ros2(text, cell):
     """The flange, that holds the tip: rows that are poses of the plan."""
     rows = np.array(
         [line.split(",")[:8] for line in text.splitlines() if line.endswith(",pose")], dtype=float
@@ -112,14 +112,14 @@ def told_ros2(text, cell):
     return 1e3 * rows[:, 1:4] + flange.apply(cell.tool.tcp_mm), flange * bent
 
 
-def told_krl(text, cell):
+def commanded_krl(text, cell):
     """A about z, B about the new y, C about the newest x."""
     rows = re.findall(rf"LIN [{{]X {N}, Y {N}, Z {N}, A {N}, B {N}, C {N}[}}]", text)
     rows = np.array(rows, dtype=float)
     return in_paper(rows[:, :3], Rotation.from_euler("ZYX", rows[:, 3:], degrees=True), cell)
 
 
-def told_dobot(text, cell):
+def commanded_dobot(text, cell):
     """About the fixed axes x, y, z."""
     upright = re.search(rf"pose = [{{]x, y, z, {N}, {N}, {N}[}}]", text).groups()
     moves = re.findall(rf"MovL\((?:on_paper|tilted)\({N}, {N}, {N}(?:, {N}, {N}, {N})?\)", text)
@@ -127,7 +127,7 @@ def told_dobot(text, cell):
     return in_paper(rows[:, :3], Rotation.from_euler("xyz", rows[:, 3:], degrees=True), cell)
 
 
-def told_xarm(text, cell):
+def commanded_xarm(text, cell):
     """Roll, pitch and yaw: about the fixed axes x, y, z of the robot."""
     upright = re.search(rf"UPRIGHT = \({N}, {N}, {N}\)", text).groups()
     moves = re.findall(rf"(?m)^(?:go|lean)\({N}, {N}, {N}(?:, {N}, {N}, {N})?, {N}, (?:None|{N})\)$", text)
@@ -135,7 +135,7 @@ def told_xarm(text, cell):
     return rows[:, :3], Rotation.from_euler("xyz", rows[:, 3:], degrees=True)
 
 
-def told_doosan(text, cell):
+def commanded_doosan(text, cell):
     """A about z, B about the new y, C about the newest z."""
     upright = re.search(rf"return posx\(x, y, z, {N}, {N}, {N}\)", text).groups()
     moves = re.findall(rf"movel\((?:on_paper|tilted)\({N}, {N}, {N}(?:, {N}, {N}, {N})?\)", text)
@@ -143,12 +143,12 @@ def told_doosan(text, cell):
     return in_paper(rows[:, :3], Rotation.from_euler("ZYZ", rows[:, 3:], degrees=True), cell)
 
 
-def told_jaka(text, cell):
+def commanded_jaka(text, cell):
     rows = np.array(re.findall(rf"to = \[{N}, {N}, {N}, {N}, {N}, {N}\]", text), dtype=float)
     return rows[:, :3], Rotation.from_euler("xyz", rows[:, 3:], degrees=True)
 
 
-def told_fanuc(text, cell):
+def commanded_fanuc(text, cell):
     """W, P and R of each point: about the fixed axes x, y, z; in the order in which the program goes there."""
     points = re.findall(
         rf"P\[(\d+)\][^X]*X = {N}  mm,\s*Y = {N}  mm,\s*Z = {N}  mm,\s*W = {N} deg,\s*P = {N} deg,\s*R = {N} deg",
@@ -159,16 +159,16 @@ def told_fanuc(text, cell):
     return in_paper(rows[:, :3], Rotation.from_euler("xyz", rows[:, 3:], degrees=True), cell)
 
 
-TOLD = {
-    "ur5e": told_ur,
-    "irb120": told_rapid,
-    "fr3": told_ros2,
-    "kr6-r900": told_krl,
-    "cr5": told_dobot,
-    "xarm6": told_xarm,
-    "jaka-zu3": told_jaka,
-    "m0609": told_doosan,
-    "lrmate200id": told_fanuc,
+COMMANDED = {
+    "ur5e": commanded_ur,
+    "irb120": commanded_rapid,
+    "fr3": commanded_ros2,
+    "kr6-r900": commanded_krl,
+    "cr5": commanded_dobot,
+    "xarm6": commanded_xarm,
+    "jaka-zu3": commanded_jaka,
+    "m0609": commanded_doosan,
+    "lrmate200id": commanded_fanuc,
 }
 
 
@@ -183,10 +183,10 @@ def strokes(tips, cell):
 @pytest.mark.parametrize("name", TILTING)
 def test_the_tip_is_where_the_plan_has_it_and_the_brush_held_as_it_says(name):
     cell = anyhow(name)
-    tips, turned = TOLD[name](text_for(plan(TILTED), cell), cell)
+    tips, turned = COMMANDED[name](text_for(plan(TILTED), cell), cell)
     (on,), paper = strokes(tips, cell)
-    wanted = in_steps(plan(TILTED).passes[0])
-    poses, leans = np.asarray(wanted.poses_mm), np.asarray(wanted.tool_axes)
+    target = in_steps(plan(TILTED).passes[0])
+    poses, leans = np.asarray(target.poses_mm), np.asarray(target.tool_axes)
     # approach and landing before, lift behind
     poses = np.vstack(
         [poses[0] + (0, 0, cell.heights.clearance_mm), poses, poses[-1] + (0, 0, cell.heights.clearance_mm)]
@@ -214,11 +214,11 @@ def test_rapidchecker_knows_the_grammar_of_a_tilt(tmp_path, broken):
 
 
 @pytest.mark.skipif(not find_spec("xarm"), reason="the vendor's SDK is not installed")
-def test_an_xarm_is_told_what_stands_in_the_lines():
+def test_an_xarm_receives_the_lines_as_written():
     """The program run, every call bound to the signature of the vendor's SDK."""
     from xarm.wrapper import XArmAPI
 
-    told = []
+    reported = []
 
     class Arm:
         def __init__(self, address):
@@ -227,7 +227,7 @@ def test_an_xarm_is_told_what_stands_in_the_lines():
         def __getattr__(self, name):
             def call(*given, **named):
                 bound = inspect.signature(getattr(XArmAPI, name)).bind(self, *given, **named).arguments
-                told.append((name, bound))
+                reported.append((name, bound))
                 return (0, [0.0, 0.0, 300.0, 180.0, 0.0, 0.0]) if name == "get_position" else 0
 
             return call
@@ -236,9 +236,9 @@ def test_an_xarm_is_told_what_stands_in_the_lines():
     text = text_for(plan(TILTED), cell)
     modules = {"sys": SimpleNamespace(argv=["p.py", "here"]), "xarm.wrapper": SimpleNamespace(XArmAPI=Arm)}
     exec(text, {"__builtins__": {"__import__": lambda name, *_: modules[name]}})
-    moves = [given for name, given in told if name == "set_position" and "x" in given]
+    moves = [given for name, given in reported if name == "set_position" and "x" in given]
     rows = [[move[key] for key in ("x", "y", "z", "roll", "pitch", "yaw")] for move in moves]
-    tips, turned = TOLD["xarm6"](text, cell)
+    tips, turned = COMMANDED["xarm6"](text, cell)
     assert np.array(rows)[:, :3] == pytest.approx(tips)
     again = Rotation.from_euler("xyz", np.array(rows)[:, 3:], degrees=True)
     assert (again.inv() * turned).magnitude().max() < 1e-9
@@ -289,12 +289,12 @@ def test_a_robot_that_turns_evenly_between_poses_does_what_is_predicted(seed):
         tip = (steps.poses_mm[k] + steps.poses_mm[k + 1]) / 2
         lean = middle[:2] / middle[2]
         place = on(tip[None], lean[None])[0]
-        # beside the straight way of the axis on the paper, and off the lean that belongs to that place
+        # next to the straight way of the axis on the paper, and off the lean that belongs to that place
         way = places[row + 1] - places[row]
         share = (place - places[row]) @ way / (way @ way)
         assert np.linalg.norm(place - places[row] - share * way) < 0.006
-        wanted = leans[row] + share * (leans[row + 1] - leans[row])
-        assert np.degrees(np.linalg.norm(lean - wanted)) < 0.03
+        target = leans[row] + share * (leans[row + 1] - leans[row])
+        assert np.degrees(np.linalg.norm(lean - target)) < 0.03
 
 
 def test_rotations_are_scipys():
@@ -363,7 +363,7 @@ def test_check_allows_what_is_written(name, of_cell, tmp_path, capsys):
 
 @sample("seed", range(2 * len(TILTING)), keep=5)
 def test_check_allows_random_tilts(seed, tmp_path, capsys):
-    """Strokes, tilts, papers, tools and what a machine does besides, all at random; what turns too fast is left out."""
+    """Strokes, tilts, papers, tools and machine errors, all at random; what turns too fast is left out."""
     random, name = np.random.default_rng(seed), TILTING[seed % len(TILTING)]
     cell = anyhow(name) if seed < len(TILTING) else replace(brushsvg.find_cell(name), arm=None)
     tool = replace(cell.tool, spin_deg=float(random.uniform(-180, 180)), turn_deg_s=300.0)
@@ -387,7 +387,7 @@ def test_check_allows_random_tilts(seed, tmp_path, capsys):
     if status == 0:
         assert in_json(capsys, "check", made, given, *words)[0] == 0
         assert in_json(capsys, "check", made, *words)[0] == 0
-    assert status == 0 or is_told(said, "tool-turns-too-fast")
+    assert status == 0 or is_reported(said, "tool-turns-too-fast")
 
 
 def test_on_paper_that_leans_has_a_map_and_gives_way(tmp_path, capsys):
@@ -420,14 +420,14 @@ def test_of_another_tilt_or_none_is_refused(tmp_path, capsys):
         given.write_text(_core.write_plan(plan(other)))
         status, _, said = in_json(capsys, "check", made, given, *words)
         assert status == 1
-        assert is_told(said, "held-otherwise") or is_told(said, "path-elsewhere")
+        assert is_reported(said, "held-otherwise") or is_reported(said, "path-elsewhere")
     given.write_text(
         _core.write_plan(plan(axes(0, 8.3, 8.3, 20, 20, towards_deg=np.array([0, 40, 40, 130, 130]))))
     )
     assert in_json(capsys, "check", made, given, *words)[0] == 0  # no mark shows it
 
 
-# where a language tells a place with how the tool is turned there, the numbers of that, and scipy's word for them
+# where a language gives a place with the turn of the tool there, the numbers of that, and scipy's word for them
 IN_DEGREES = (
     lambda xyz: Rotation.from_euler("xyz", xyz, degrees=True),
     lambda turned: turned.as_euler("xyz", degrees=True),
@@ -492,11 +492,11 @@ def test_damaged_directions_are_refused(name, tmp_path, capsys):
         if np.degrees((before.inv() * of(turn)).magnitude()) < 0.6:
             continue
         numbers = iter([*values[:3], *turn])
-        told = re.sub(N, lambda _, left=numbers: f"{next(left):.9f}", spot[0])
-        made.write_text(text[: spot.start()] + told + text[spot.end() :])
+        reported = re.sub(N, lambda _, left=numbers: f"{next(left):.9f}", spot[0])
+        made.write_text(text[: spot.start()] + reported + text[spot.end() :])
         # turned about the brush it paints the same, and is yet none of our programs
         if in_json(capsys, "check", made, *([] if kind == 1 else [given]), *words)[0] == 0:
-            allowed.append((number, spot[0], told))
+            allowed.append((number, spot[0], reported))
     assert not allowed
     made.write_text(text)
     assert in_json(capsys, "check", made, given, *words)[0] == 0
@@ -513,12 +513,13 @@ def test_a_header_that_does_not_say_that_the_brush_is_tilted_is_refused(name, tm
     made.write_text(text)
     status, _, said = in_json(capsys, "check", made, given, *words)
     assert status == 1
-    assert is_told(said, "program-changed" if name == "ur5e" else "tool-turned")
+    assert is_reported(said, "program-changed" if name == "ur5e" else "tool-turned")
 
 
 @pytest.mark.parametrize("about", ["x", "y", "z"])
 def test_damaged_rows_between_poses_are_refused(about, tmp_path, capsys):
-    """Of a trajectory: a row on the way that is turned by 3 degrees about the brush or aside, its tip in place."""
+    """Of a trajectory: a row on the way that is turned by 3 degrees about the brush or to the side, its tip in "
+    "place."""
     given, made, words = written(tmp_path, "fr3", plan(TILTED))
     in_json(capsys, "convert", given, "-o", made, *words)
     text = made.read_text()
@@ -529,11 +530,11 @@ def test_damaged_rows_between_poses_are_refused(about, tmp_path, capsys):
     turned = before * Rotation.from_euler(about, 3, degrees=True)
     tip = np.array([float(each) for each in way[1].split(",")[1:4]]) + before.apply(cell.tool.tcp_mm) / 1e3
     place = tip - turned.apply(cell.tool.tcp_mm) / 1e3  # about its tip
-    told = ",".join(f"{value:.9f}" for value in [*place, *turned.as_quat()])
-    made.write_text(text[: way.start()] + way[1].split(",")[0] + "," + told + way[3] + text[way.end() :])
+    reported = ",".join(f"{value:.9f}" for value in [*place, *turned.as_quat()])
+    made.write_text(text[: way.start()] + way[1].split(",")[0] + "," + reported + way[3] + text[way.end() :])
     status, _, said = in_json(capsys, "check", made, given, *words)
     assert status == 1
-    assert is_told(said, "line-unread")
+    assert is_reported(said, "line-unread")
 
 
 def test_a_serialized_trajectory_turns_as_the_table_does(tmp_path):
@@ -543,8 +544,8 @@ def test_a_serialized_trajectory_turns_as_the_table_does(tmp_path):
     rows = [line.split(",") for line in "".join(table).splitlines() if line[0].isdigit()]
     data = b"".join(message)
     points = np.frombuffer(data[-len(rows) * ros2.POINT.itemsize :], dtype=ros2.POINT)
-    told = np.array([[float(each) for each in row[1:8]] for row in rows])
-    assert np.hstack([points["place_m"], points["turn_xyzw"]]) == pytest.approx(told, abs=1e-9)
+    reported = np.array([[float(each) for each in row[1:8]] for row in rows])
+    assert np.hstack([points["place_m"], points["turn_xyzw"]]) == pytest.approx(reported, abs=1e-9)
     assert len(np.unique(points["turn_xyzw"], axis=0)) > 10
 
 
@@ -559,7 +560,7 @@ def test_other_places_upright_where_they_lean_and_lines_lost_are_refused(tmp_pat
         upright = re.sub(r"tilted\((\S+, \S+, [^,]+), [^)]*\)", r"on_paper(\1)", lines[k])
         damaged.append([*lines[:k], upright, *lines[k + 1 :]])
         place = [1e3 * float(each) for each in re.search(r"tilted\((\S+), (\S+), (\S+),", lines[k]).groups()]
-        if np.linalg.norm(np.subtract(POSES[:-1], place), axis=1).min() < 1e-6:  # others lie on the way
+        if np.linalg.norm(np.subtract(POSES[:-1], place), axis=1).min() < 1e-6:  # others are on the way
             damaged.append([*lines[:k], *lines[k + 1 :]])
             own += 1
         damaged += [[*lines[:k], lines[k], lines[k - 1], *lines[k + 1 :]]]
@@ -711,7 +712,7 @@ def test_a_joint_that_turns_too_fast_by_the_tilt_alone_is_refused():
     assert any(each.code == "joint-too-fast" for each in arm_problems(tilted, slow))
 
 
-# Told beforehand --------------------------------------------------------------------------------------------
+# Warned beforehand --------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("words", [(), ("--cell", "ur5e")])
@@ -721,7 +722,7 @@ def test_predict_warns_of_paint_off_the_sheet(words, tmp_path, capsys):
     given.write_text(_core.write_plan(plan(axes(*[20] * 5), poses=poses)))
     status, _, said = in_json(capsys, "preview", given, "-o", tmp_path / "b.svg", *words)
     assert status == 0
-    assert is_told(said, "mark-off-sheet right", "s0")
+    assert is_reported(said, "mark-off-sheet right", "s0")
 
 
 def test_a_cell_says_how_far_and_how_fast(tmp_path, capsys):
@@ -736,7 +737,7 @@ def test_a_cell_says_how_far_and_how_fast(tmp_path, capsys):
         capsys, "convert", given, "-o", tmp_path / "a.script", "--cell", tmp_path / "cell.toml"
     )
     assert status == 1
-    assert is_told(said, "out-of-range 31 30")
+    assert is_reported(said, "out-of-range 31 30")
 
 
 def test_a_tool_held_otherwise_by_more_than_a_brush_shows_is_not_the_same():

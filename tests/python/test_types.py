@@ -1,4 +1,4 @@
-"""What editors and type checkers are told is what is there, and it is enough to find a mistake."""
+"""The types for editors and type checkers are the real ones, and it is enough to find a mistake."""
 
 import ast
 import importlib.util
@@ -86,17 +86,17 @@ def test_examples_have_no_error_of_types_and_planted_ones_are_found(tmp_path):
     programs = [tmp_path / f"planted{number}.py" for number in range(len(PLANTED))]
     for path, (right, wrong, _) in zip(programs, PLANTED, strict=True):
         path.write_text(PROGRAM.replace(right, wrong))
-    told = mypy(*programs, cache=tmp_path).stdout
+    reported = mypy(*programs, cache=tmp_path).stdout
     for path, (_, wrong, said) in zip(programs, PLANTED, strict=True):
-        lines = [line for line in told.splitlines() if f"{path.name}:" in line]
+        lines = [line for line in reported.splitlines() if f"{path.name}:" in line]
         assert any(line.endswith(f"[{said}]") for line in lines), (wrong, lines)
 
 
-def test_type_checkers_are_told_that_there_are_types():
+def test_type_checkers_see_that_there_are_types():
     assert (STUBS.parent / "py.typed").is_file()
     source = Path(brushsvg.__file__).read_text()
-    told = source.split("if TYPE_CHECKING:")[1].split("__version__: str")[0]
+    reported = source.split("if TYPE_CHECKING:")[1].split("__version__: str")[0]
     names = {node.id for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Name)}
     assert "TYPE_CHECKING" in names
     for name in brushsvg.__all__:
-        assert name == "__version__" or re.search(rf"\b{name}\b", told), f"{name} has no type"
+        assert name == "__version__" or re.search(rf"\b{name}\b", reported), f"{name} has no type"

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import agrees, is_told
+from diagnostics import agrees, is_reported
 
 import brushsvg
 from brushsvg import _core, find_brush
@@ -86,13 +86,13 @@ def test_corners_that_a_squared_end_runs_into_are_not_named(tmp_path):
     """Discs leave them, and a corner of 45 degrees counts as a limb."""
     work = prepared(tmp_path, "M8 10H19L51 42H40Z")
     assert work.unreached == ()
-    assert not is_told(work.notices, "unreached")
+    assert not is_reported(work.notices, "unreached")
 
 
 def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path):
     work = prepared(tmp_path, WIDE, wide="clamp")
     assert sum(piece.share for piece in work.unreached) > 0.3
-    assert is_told(work.notices, "unreached", "p")
+    assert is_reported(work.notices, "unreached", "p")
     assert all(piece.is_rim for piece in work.unreached)  # its stroke runs amid it
     rim = prepared(tmp_path, "M20 5H31V45H20Z", wide="clamp")
     assert agrees(*notices(rim.unreached), "unreached", "p")
@@ -103,7 +103,7 @@ def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path)
 
 
 def test_what_the_mark_leaves_of_a_blunt_beginning_is_named_with_its_place_and_share(tmp_path):
-    """A seventh of a short stem stays blank beside its pointed beginning, and nothing said so."""
+    """A seventh of a short stem stays blank next to its pointed beginning, and nothing said so."""
     import shapely
 
     from brushsvg.strokes.swept_areas import region
@@ -141,12 +141,12 @@ def test_the_report_gives_it_as_the_reason(tmp_path):
     drawn, _ = bar_less(tmp_path)
     stem = _core.Stroke("p", np.array([[25, 51, 25, 40, 25, 30, 25, 19]], float), False, [(0.0, 4.215)])
     stem.wanted_mm = _core.unite([ring for stroke in drawn for ring in stroke.wanted_mm])
-    painted, wanted, _ = within_reach([stem], brush)
+    painted, target, _ = within_reach([stem], brush)
     plan = _core.compensate(painted, brush, (60, 60), "closed", 0.05, None).plan
     marks = _core.simulate(plan, brush)
 
     def worst(unreached):
-        return report.measure(plan, marks, brush, wanted, unreached=unreached)[0][0].worst
+        return report.measure(plan, marks, brush, target, unreached=unreached)[0][0].worst
 
     assert worst(()).is_missing
     assert worst(()).code != "wider-than-brush"

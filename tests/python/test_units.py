@@ -25,7 +25,7 @@ def test_lengths_in_mm(text, mm):
     assert length_mm(text) == pytest.approx(mm, abs=1e-12)
 
 
-def test_a_bare_number_counts_in_the_unit_asked_for():
+def test_a_bare_number_counts_in_the_requested_unit():
     assert length_mm("2", "in") == 50.8
 
 

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import in_json, is_told, refused
+from diagnostics import in_json, is_reported, refused
 from programs import program
 from urscript_stub import matrix, run
 
@@ -94,7 +94,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "vincent.svg"
 def test_the_robot_goes_through_the_plans_poses(paper):
     cell = replace(CELL, paper=paper)
     rows = touched(run(text_for(cell)), cell)
-    wanted = [
+    target = [
         *STROKES["n/1"],
         *STROKES["dot"],
         STROKES["turn"][0],
@@ -103,7 +103,7 @@ def test_the_robot_goes_through_the_plans_poses(paper):
         ARC[8],
         *STROKES["turn"][10:],
     ]
-    assert np.array([row[1] for row in rows]) == pytest.approx(np.array(wanted), abs=1e-3)
+    assert np.array([row[1] for row in rows]) == pytest.approx(np.array(target), abs=1e-3)
     assert [row[0] for row in rows].count("movec") == 2
     assert max(row[2] for row in rows) <= 20.0 + 1e-9
 
@@ -125,8 +125,8 @@ def test_the_marks_are_the_plans():
             via = name == "movec" and not via  # on its way, and then its end
             here += on_a_circle(here[-1], point, rows[k + 1][1]) if via else [point]
     rings = []
-    told = [_core.Pass("s", np.array(each), 20.0) for each in passes]
-    for plan in (work.plan, _core.Plan("round-6", "", (400.0, 400.0), told)):
+    reported = [_core.Pass("s", np.array(each), 20.0) for each in passes]
+    for plan in (work.plan, _core.Plan("round-6", "", (400.0, 400.0), reported)):
         marks = _core.simulate(plan, brush, 0.005)
         _core.trace_outlines(marks, brush)
         rings.append(marks.outline_mm)
@@ -244,7 +244,7 @@ def test_while_a_hand_is_at_the_brush_nothing_watches():
 
 
 @pytest.mark.parametrize(
-    ("name", "contact", "told"),
+    ("name", "contact", "reported"),
     [
         ("ur5e", Contact(sensitivity=3), "cell-contact force_n"),
         ("ur5e", Contact(10.0, 3), "cell-contact sensitivity"),
@@ -252,8 +252,8 @@ def test_while_a_hand_is_at_the_brush_nothing_watches():
         ("kr6-r900", Contact(force_n=10.0), "cell-contact krl"),
     ],
 )
-def test_a_contact_that_a_language_has_no_word_for_is_refused(name, contact, told):
-    with refused(told):
+def test_a_contact_that_a_language_has_no_word_for_is_refused(name, contact, reported):
+    with refused(reported):
         parse_cell(write_cell(replace(find_cell(name), contact=contact)))
 
 
@@ -280,7 +280,7 @@ def test_check_refuses_a_program_that_feels_less(name, contact, old, new, tmp_pa
     assert old in text
     program.write_text(text.replace(old, new))
     status, _, said = in_json(capsys, *check)
-    assert status == 1 and is_told(said, "program-changed")
+    assert status == 1 and is_reported(said, "program-changed")
     # nor may it stand in for the program of a cell without
     program.write_text(text)
     assert in_json(capsys, "check", program, "--cell", name)[0] == 1

@@ -23,7 +23,7 @@ def test_a_sheet_that_none_can_be_is_refused(sheet_mm):
 
 
 def test_cubics_of_a_stroke_hang_together():
-    """What lay between them was painted straight across."""
+    """What was between them was painted straight across."""
     middle = line([(20, 20), (40, 20), (60, 20)])
     middle[1] += [0, 3] * 4
     with refused("geometry-out-of-range 1 0 3", "one"):

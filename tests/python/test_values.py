@@ -15,6 +15,7 @@ import brushsvg
 from brushsvg import _core, laws
 from brushsvg.errors import Notice
 from brushsvg.read.design import Design, Element, SubPath
+from brushsvg.reporting.report_text import Report
 
 NAN = float("nan")
 BRUSH = brushsvg.find_brush("round-6")
@@ -55,11 +56,6 @@ def mark_fit(noise_mm=0.1):
     ways = [PASS.poses_mm, PASS.poses_mm * (1, -1, 1)]
     painted = [_core.PaintedMark(str(k), way, [SQUARE + way[1, :2]]) for k, way in enumerate(ways)]
     return _core.fit_marks(painted, LAWS, options)
-
-
-def track_fit(shift=0.0):
-    poses, seen = [[0, 0, 0], [15, 0, -3], [30, 5, -3.0]], [[8, 0], [15, 1], [23, 3.0 + shift]]
-    return _core.fit_tracks([_core.Track(poses, [1, 1.5, 2], seen)], [5.0], (0, 10))
 
 
 def law_fit(more=0.0):
@@ -257,14 +253,6 @@ VALUES_OF = {
         _core.LawShape(**SHAPE, norm=_core.Norm.absolute),
     ],
     _core.LawFit: lambda _: [law_fit(), law_fit(0.3)],
-    _core.Track: lambda _: [
-        _core.Track(POSES, [1, 2], SQUARE[:2]),
-        _core.Track(POSES[:3], [1, 2], SQUARE[:2]),
-        _core.Track(POSES, [1, 1.5], SQUARE[:2]),
-        _core.Track(POSES, [1, 2], SQUARE[1:3]),
-        _core.Track(POSES, [1, 2], SQUARE[:2], 0.0),
-    ],
-    _core.TrackFit: lambda _: [track_fit(), track_fit(0.2)],
     _core.PaintedMark: lambda _: [
         _core.PaintedMark("a", POSES, [SQUARE]),
         _core.PaintedMark("b", POSES, [SQUARE]),
@@ -321,8 +309,9 @@ VALUES_OF = {
     ],
     "Check": lambda folder: [checked(folder, 30), checked(folder, 31)],
     "PaintedJob": lambda _: [
-        brushsvg.PaintedJob(*painted, CELL, False, (), "", "") for painted in PAINTED_JOBS
+        brushsvg.PaintedJob(*painted, CELL, False, (), Report("good", ()), "") for painted in PAINTED_JOBS
     ],
+    "Project": lambda _: [brushsvg.Project("a.toml", {"brush": each}) for each in ("rigid", "round-6")],
     "Batch": lambda _: [brushsvg.Batch((), 0, ()), brushsvg.Batch((), 1, ("a.csv",))],
     "BrushCalibration": lambda folder: [calibrated(folder), calibrated(folder, 0.1)],
     "Calibration": lambda folder: [calibrated(folder).fit, calibrated(folder, 0.1).fit],
@@ -355,7 +344,7 @@ def can_be_hashed(value):
 
 
 def fields_of(value):
-    """Public fields by name, as plain as numpy compares them; nothing of it asks the value whether it is equal."""
+    """Public fields in a table, as plain as numpy compares them; nothing of it asks the value whether it is equal."""
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, list | tuple):
@@ -391,9 +380,9 @@ def reached(value, way):
 def test_no_value_type_is_forgotten():
     classes = {each for _, each in inspect.getmembers(_core, inspect.isclass)}
     public = {getattr(brushsvg, name) for name in brushsvg.__all__} | {getattr(laws, n) for n in laws.__all__}
-    enums = {_core.Norm, _core.Lines, _core.Displaced}
-    wanted = classes - enums | {each for each in public if inspect.isclass(each)} - {brushsvg.Error}
-    assert {each.__name__ for each in wanted} <= set(NAMES)
+    enums = {_core.Norm, _core.Lines}
+    target = classes - enums | {each for each in public if inspect.isclass(each)} - {brushsvg.Error}
+    assert {each.__name__ for each in target} <= set(NAMES)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -461,14 +450,14 @@ def test_what_was_never_made_has_nothing_to_show(kind):
 
 
 def test_repr_says_sizes_and_units():
-    told = [
+    reported = [
         (BRUSH, "round-6", "0 to 10 mm", "3.1 to 13.7 mm", "8.4 mm"),
         (PLAN, "round-6", "2 passes", "6 poses", "100 x 60 mm"),
         (PASS, "'a'", "4 poses", "34.14 mm", "2 mm", "9 mm/s"),
         (STROKE, "'s/2'", "1 cubic", "32.68 mm", "2 to 4 mm"),
         (_core.Profile([3.1, 0, -0.5], calibrated_mm=(1, 10)), "3.1 - 0.5 d^2 mm", "1 to 10 mm"),
     ]
-    for value, *parts in told:
+    for value, *parts in reported:
         assert all(part in repr(value) for part in parts), repr(value)
 
 

@@ -44,7 +44,7 @@ def test_a_stroke_that_makes_its_letter_restless_is_worse_and_its_neighbour_is_n
     closed = compensate(bars, brush, (100, 90), start="auto", end="auto").plan.passes
     calm = list(closed)
     waving = Pass("bar", waved(closed[1].poses_mm), closed[1].speed_mm_s)
-    # what was meant is wider than the closed form paints, so that a wave covers more of it
+    # what was intended is wider than the closed form paints, so that a wave covers more of it
     wider = [bars[0], bars[1].replaced(half_width=[(0, 3.4), (1, 3.4)])]
     group = [[0, 1]]
     overlaps, marks = [], []

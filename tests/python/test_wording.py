@@ -1,6 +1,6 @@
 """What people read, held word for word against tests/golden/wording.txt; all other tests ask for codes and numbers.
 
-Whoever words something anew writes that file again, by `make wording`, and reads what changed in it.
+After a change of words, write that file again with `make wording`, and read its changes.
 """
 
 import argparse
@@ -17,6 +17,7 @@ import pytest
 from brushsvg.cli import main
 from brushsvg.cli.arguments.parser import command_parser
 from brushsvg.errors import Notice
+from brushsvg.show.evaluation.places import Place
 from brushsvg.show.evaluation.report import Figures, Group, Report, Worst, comparison_text, to_text
 
 WORDING = Path(__file__).parents[1] / "golden" / "wording.txt"
@@ -76,11 +77,13 @@ def reports() -> Iterator[tuple[str, str]]:
     row = Figures("line", 0.95, 0.01, 0.04, 0.12, 1, 60.0, 81.5, 42, excess_turning=0.1)
     worst = Worst((12.34, 5.67), True, 0.5, "REASON", "shorter-than-footprint")
     odd = Figures("dab", None, None, None, None, None, None, 12.0, 7, worst)
-    told = (Notice("line", "SENTENCE", advice="ADVICE"),)
-    made = Report("T", "round-6", "closed", 0.05, (row, odd), row, 75.0, told, told)
-    yield "a report", to_text(made)
+    reported = (Notice("line", "SENTENCE", advice="ADVICE"),)
+    place = Place(1, "dab", (12.34, 5.67), 0.5, 0.0, 0.3, "REASON", "shape-corner", "REMEDY", "SIZE")
+    made = Report("T", "round-6", "closed", 0.05, (row, odd), row, 75.0, reported, reported, places=(place,))
+    yield "a report", to_text(made, picture="picture.png")
+    yield "a report with details", to_text(made, details=True)
     made = Report("", "round-6", "", None, (row,), row, 5.0, groups=(Group(("line", "dab"), 0.9),))
-    yield "a report of strokes that touch", to_text(made)
+    yield "a report of strokes that touch", to_text(made, details=True)
     yield "compensations compared", comparison_text([("none", row), ("closed", row)])
 
 
@@ -107,8 +110,8 @@ def wording() -> str:
 
 @pytest.mark.wording
 def test_wording_is_as_it_was_read():
-    told, read = (text.split(TITLE) for text in (wording(), WORDING.read_text(encoding="utf-8")))
-    assert told == read, "if it is meant: make wording, and read what git says of the file"
+    reported, read = (text.split(TITLE) for text in (wording(), WORDING.read_text(encoding="utf-8")))
+    assert reported == read, "if it is intended: make wording, and read what git says of the file"
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnostics import agrees, are_told, in_json, is_told, refused
+from diagnostics import agrees, are_reported, in_json, is_reported, refused
 from programs import call, forbidden
 
 from brushsvg import _core
@@ -57,21 +57,21 @@ def desk(tmp_path, monkeypatch):
 @pytest.mark.parametrize(("limits", "said"), [(RING, AWAY), (POST, KEPT)])
 @pytest.mark.parametrize(("name", "of_stroke", "way"), [("bar", "bar", ""), ("pair", "right", " way")])
 def test_no_way_goes_through_the_robot_itself(desk, capsys, name, of_stroke, way, limits, said):
-    """Both ends were asked, and not the way; between strokes nothing was."""
+    """Both ends were checked, and not the way; between strokes nothing was."""
     (desk / "mine.toml").write_text(write_cell(robot(**limits)))
     drawing, cell = f"{name}.svg", ("--cell", "mine.toml")
     for command in (["convert"], ["setup", "border"]):
         program = f"{command[-1]}.script"
-        status, _, told = in_json(capsys, *command, drawing, "-o", program, *cell)
-        file, last = told[-1]
+        status, _, reported = in_json(capsys, *command, drawing, "-o", program, *cell)
+        file, last = reported[-1]
         expected = (f"{said}{way}", of_stroke) if command == ["convert"] else (said,)
-        assert (status, file) == (1, drawing) and agrees(last, *expected), told
+        assert (status, file) == (1, drawing) and agrees(last, *expected), reported
         if limits == RING:
             assert 0 <= float(re.search(r"goes ([\d.]+) mm away", last.sentence)[1]) <= 40
         assert not (desk / program).exists()
         assert call(capsys, *command, drawing, "-o", program, "--cell", "free.toml")[0] == 0
-        status, _, told = in_json(capsys, "check", program, *cell)
-        assert status == 1 and is_told(told, *expected), told
+        status, _, reported = in_json(capsys, "check", program, *cell)
+        assert status == 1 and is_reported(reported, *expected), reported
 
 
 LEFT = {
@@ -80,7 +80,7 @@ LEFT = {
 
 
 @pytest.mark.parametrize(("limits", "x_mm"), [(RING, 20), (POST, 20), (LEFT, 20), ({}, -20)])
-def test_of_a_job_that_is_resumed_only_what_is_left_is_asked(desk, capsys, limits, x_mm):
+def test_of_a_resumed_job_only_the_rest_is_checked(desk, capsys, limits, x_mm):
     """The first stroke, the way from it and its paint may break any limit: the machine does not go there again."""
     (desk / "mine.toml").write_text(write_cell(robot(**limits)))
     (desk / "pair.svg").write_text(PAIR.replace("M20 100", f"M{x_mm} 100"))
@@ -91,8 +91,8 @@ def test_of_a_job_that_is_resumed_only_what_is_left_is_asked(desk, capsys, limit
     (desk / "pair.svg").write_text(PAIR.replace("h40", "h60"))
     status, _, err = call(capsys, *words, "--from-stroke", "2")
     assert status == 1 and all("right: " in line for line in err)
-    status, _, told = in_json(capsys, *words, "--from-stroke", "3")
-    assert status == 1 and is_told(told, "stroke-unknown 3 '[1, 2]'"), told
+    status, _, reported = in_json(capsys, *words, "--from-stroke", "3")
+    assert status == 1 and is_reported(reported, "stroke-unknown 3 '[1, 2]'"), reported
 
 
 def test_strokes_that_find_the_paper_and_the_ways_between_them_keep_out_of_boxes(desk, capsys):
@@ -100,11 +100,11 @@ def test_strokes_that_find_the_paper_and_the_ways_between_them_keep_out_of_boxes
     clip = robot(keep_out_mm=(((-300.0, 90.0, 30.0), (-200.0, 92.0, 45.0)),))
     (desk / "mine.toml").write_text(write_cell(clip))
     height = ("setup", "height", "-o", "job.script", "--sheet", "600x200")
-    status, _, ((_, told), *_) = in_json(capsys, *height, "--cell", "mine.toml")
-    assert status == 1 and agrees(told, "in-kept-out-box way 'y 91.0, z 40.0 mm'"), told
+    status, _, ((_, reported), *_) = in_json(capsys, *height, "--cell", "mine.toml")
+    assert status == 1 and agrees(reported, "in-kept-out-box way 'y 91.0, z 40.0 mm'"), reported
     assert call(capsys, *height, "--cell", "free.toml")[0] == 0
-    status, _, told = in_json(capsys, "check", "job.script", "--cell", "mine.toml")
-    assert status == 1 and is_told(told, "in-kept-out-box way"), told
+    status, _, reported = in_json(capsys, "check", "job.script", "--cell", "mine.toml")
+    assert status == 1 and is_reported(reported, "in-kept-out-box way"), reported
 
 
 @pytest.mark.parametrize("language", ["linuxcnc-3axis", "ur5e"])
@@ -147,8 +147,10 @@ def test_visits_to_the_paint_and_the_ways_from_them_keep_out_of_boxes(desk, caps
         (("convert", "s.svg", "-o", program), "s.svg"),
         (("check", program, "s.svg"), program),
     ):
-        status, _, told = in_json(capsys, *words, "--cell", "mine.toml")
-        assert status == 1 and is_told([each for each in told if each[0] == file], said, who), told
+        status, _, reported = in_json(capsys, *words, "--cell", "mine.toml")
+        assert status == 1 and is_reported([each for each in reported if each[0] == file], said, who), (
+            reported
+        )
         assert call(capsys, "convert", "s.svg", "-o", program, "--cell", "free.toml")[0] == 0
 
 
@@ -167,20 +169,20 @@ def test_a_circle_that_bulges_beyond_a_limit_is_refused(turn, x):
     )
     arc = _core.Arc(0, 1, (50.0, 5.0), turn)
     assert forbidden(plan_of(ROUND), BRUSH, boxed) == []
-    (told,) = forbidden(plan_of(ROUND, [arc]), BRUSH, boxed)
-    assert agrees(told, f"out-of-box 'x {x} mm' '[40, 60] mm'", "a")
+    (reported,) = forbidden(plan_of(ROUND, [arc]), BRUSH, boxed)
+    assert agrees(reported, f"out-of-box 'x {x} mm' '[40, 60] mm'", "a")
 
 
 def test_a_circle_that_bulges_beyond_the_margin_is_refused(desk, capsys):
-    """All of its poses lie within."""
+    """All of its poses are within."""
     poses = np.array([(40, -25, -2), (60, -25, -2)], dtype=float)
     below = _core.Arc(0, 1, (50.0, -25.0), 1)
     assert forbidden(plan_of(poses), BRUSH, find_cell()) == []
-    assert are_told(forbidden(plan_of(poses, [below]), BRUSH, find_cell()), "tool-off-sheet 5.00 lower")
+    assert are_reported(forbidden(plan_of(poses, [below]), BRUSH, find_cell()), "tool-off-sheet 5.00 lower")
 
 
 def test_a_rise_on_paper_that_leans_ends_below_the_box():
-    """The highest place over the sheet is asked for before anything; nothing is painted there."""
+    """The highest place over the sheet is checked before anything; nothing is painted there."""
     cell = find_cell()
     leans = replace(
         cell,
@@ -190,8 +192,8 @@ def test_a_rise_on_paper_that_leans_ends_below_the_box():
         ),
     )
     low = plan_of(np.array([(50, 20, 0), (80, 20, -2)], dtype=float))
-    (told,) = forbidden(low, BRUSH, leans)
-    assert agrees(told, "out-of-box first 'z 49.8 mm' '[-99, 40]'", "")
+    (reported,) = forbidden(low, BRUSH, leans)
+    assert agrees(reported, "out-of-box first 'z 49.8 mm' '[-99, 40]'", "")
 
 
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "jaka-zu3"])
@@ -200,7 +202,7 @@ def test_a_rise_on_paper_that_leans_ends_below_the_box():
 )
 def test_a_rise_before_the_first_move_keeps_out_of_what_is_forbidden(desk, capsys, name, limit, said):
     """Over the stroke all is allowed up to the safe height; on paper that leans, the tool first rises over its highest
-    place, and the box's height alone was asked."""
+    place, and the box's height alone was checked."""
     cell = find_cell(name)
     suffix = ".ngc" if name == "linuxcnc-3axis" else ".jks"
     lamp = ((-80.0, -160.0, -366.0), (20.0, -100.0, -300.0)), ((900.0, 900.0, 0.0), (901.0, 901.0, 1.0))
@@ -218,13 +220,13 @@ def test_a_rise_before_the_first_move_keeps_out_of_what_is_forbidden(desk, capsy
     (desk / "s.svg").write_text(BAR.replace("M40 100 H560", "M250 170 H290").replace('"bar"', '"s"'))
     for command in (["convert"], ["setup", "border"]):
         program = f"{command[-1]}{suffix}"
-        status, _, told = in_json(capsys, *command, "s.svg", "-o", program, "--cell", "mine.toml")
-        assert status == 1 and is_told(told, f"{said} rise mine", ""), told
+        status, _, reported = in_json(capsys, *command, "s.svg", "-o", program, "--cell", "mine.toml")
+        assert status == 1 and is_reported(reported, f"{said} rise mine", ""), reported
         assert not (desk / program).exists()
         assert call(capsys, *command, "s.svg", "-o", program, "--cell", "free.toml")[0] == 0
         assert call(capsys, "check", program, "--cell", "free.toml")[0] == 0
-        status, _, told = in_json(capsys, "check", program, "--cell", "mine.toml")
-        assert status == 1 and is_told(told, f"{said} rise mine"), told
+        status, _, reported = in_json(capsys, "check", program, "--cell", "mine.toml")
+        assert status == 1 and is_reported(reported, f"{said} rise mine"), reported
 
 
 def test_what_keeps_a_limit_to_the_last_digit_keeps_it_when_it_was_rounded(desk, capsys):
@@ -264,7 +266,7 @@ def test_a_way_between_two_places_says_only_what_they_do_not():
     assert astray_between((-900, 0, 0), (500, 0, 0), np.eye(4), cell) == [], "it begins too far away"
 
 
-def test_a_number_tells_that_it_is_outside():
+def test_a_number_shows_that_it_is_outside():
     cell = robot(reach_mm=(150.0, 850.0))
     (said,) = astray(ways([[(850.0004, 0, 0)]]), np.eye(4), cell)
     assert agrees(said, "out-of-reach 850.0004")
@@ -290,17 +292,17 @@ def test_jobs_before_the_first_stroke_ask_their_whole_way():
 
 
 def test_a_wipe_beyond_the_sheet_is_not_reached_over_it():
-    """Vessel and wipe lie beside it, and the tip, full of paint, went across at the height of the rim."""
+    """Vessel and wipe are next to it, and the tip, full of paint, went across at the height of the rim."""
     ink = Station("ink", (-20.0, 40.0), depth_mm=5.0, wipe_mm=((-10.0, 40.0, 5.0), (-10.0, 80.0, 5.0)))
     cell = replace(find_cell(), stations=(ink,), reload=Reload("stroke"))
     assert forbidden(plan_of(ROUND), BRUSH, cell) == []
     across = replace(ink, wipe_mm=((50.0, -10.0, 5.0), (80.0, -10.0, 5.0)))
     found = forbidden(plan_of(ROUND), BRUSH, replace(cell, stations=(across,)))
-    assert are_told(found, "station-on-sheet ink '600 x 200 mm'")
+    assert are_reported(found, "station-on-sheet ink '600 x 200 mm'")
 
 
 @pytest.mark.parametrize("at_once", [1, 7, 10_000])
-def test_ways_are_asked_whichever_are_asked_together(monkeypatch, at_once):
+def test_ways_are_checked_in_any_groups(monkeypatch, at_once):
     """Strokes on both sides of the robot, each way from one side to the other through it."""
     monkeypatch.setattr(limits, "MOVES_AT_ONCE", at_once)
     sides = [30.0, 40.0, 500.0, 540.0, 50.0, 520.0]
@@ -308,8 +310,8 @@ def test_ways_are_asked_whichever_are_asked_together(monkeypatch, at_once):
         _core.Pass(f"s{k}", np.array([(x, 100, 0), (x + 20, 100, -2)], dtype=float), 20.0)
         for k, x in enumerate(sides)
     ]
-    told = forbidden(_core.Plan(BRUSH.name, "", SHEET, passes), BRUSH, robot(**RING))
-    assert are_told(told, "out-of-reach s2 way", "out-of-reach s4 way", "out-of-reach s5 way")
+    reported = forbidden(_core.Plan(BRUSH.name, "", SHEET, passes), BRUSH, robot(**RING))
+    assert are_reported(reported, "out-of-reach s2 way", "out-of-reach s4 way", "out-of-reach s5 way")
 
 
 EDGES = (
@@ -343,8 +345,8 @@ def test_a_stroke_that_chooses_how_it_begins_chooses_what_the_cell_can_run(tmp_p
     assert call(capsys, "convert", str(tmp_path / "a.svg"), "-o", program, *words)[0] == 0
     assert call(capsys, "check", program, str(tmp_path / "a.svg"), *words)[0] == 0
     (tmp_path / "a.svg").write_text(EDGES.format(own="round"), encoding="utf-8")
-    status, _, told = call(capsys, "convert", str(tmp_path / "a.svg"), "-o", program, *words)
-    assert status == 1 and "own" in told[-1], "a round start that was requested is refused"
+    status, _, reported = call(capsys, "convert", str(tmp_path / "a.svg"), "-o", program, *words)
+    assert status == 1 and "own" in reported[-1], "a round start that was requested is refused"
 
 
 BARS = (

@@ -1,4 +1,4 @@
-"""In which order the lines of a letter are painted, told by where their centres lie."""
+"""In which order the lines of a letter are painted, by the places of their centres."""
 
 import numpy as np
 import pytest
@@ -67,7 +67,7 @@ def test_lines_are_painted_in_the_order_of_writing(d, places):
     found = lines_of(d)
     off = np.array([[np.hypot(*(line - (x, 50 - y)).T).min() for line in found] for x, y in places])
     order = off.argmin(axis=1)
-    assert (off.min(axis=1) < 3).all(), "each place lies on a line"
+    assert (off.min(axis=1) < 3).all(), "each place is on a line"
     assert order.tolist() == sorted(order.tolist())
     assert len(set(order.tolist())) == len(places)
 
@@ -116,8 +116,8 @@ def test_the_stem_of_a_bold_4_is_no_flick_of_its_slant():
 
 
 def test_a_roof_is_one_letter_with_what_stands_below_it_and_lines_of_text_follow_each_other():
-    roof, left, right, beside = (0, 30, 20, 40), (0, 5, 8, 31), (12, 5, 20, 31), (25, 5, 40, 40)
-    assert [set(each) for each in group_areas(np.array([right, beside, left, roof]), "latin")] == [
+    roof, left, right, near_by = (0, 30, 20, 40), (0, 5, 8, 31), (12, 5, 20, 31), (25, 5, 40, 40)
+    assert [set(each) for each in group_areas(np.array([right, near_by, left, roof]), "latin")] == [
         {0, 2, 3},
         {1},
     ]

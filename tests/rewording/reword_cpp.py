@@ -21,7 +21,7 @@ BUILT = (
 )
 DATA = ("python/brushsvg/data",)
 TEXT = re.compile(r'(?<![\w\'\\])"((?:[^"\\\n]|\\.)*)"')
-# a line of a program, which is a format; what tells us of JSON that another library read
+# a line of a program, which is a format; what identifies JSON that another library read
 KEPT = re.compile(r"comment\(|#\s*include|doc = ")
 
 

@@ -35,14 +35,6 @@ def blas_kernels() -> list[str]:
     return sorted(set(found))
 
 
-def highway_targets() -> int:
-    if not loaded("libhwy.so.1"):
-        return 0
-    supported = ctypes.CDLL("libhwy.so.1")._ZN3hwy16SupportedTargetsEv
-    supported.restype = ctypes.c_int64
-    return supported()
-
-
 def painted() -> str:
     brush = brushsvg.find_brush("round-6")
     bend = np.array([[10, 10, 30, 55, 50, -20, 70, 30]], float)
@@ -65,7 +57,6 @@ print(
             "numpy_results": digest(np.exp(x), np.sin(x), x**1.7, np.add.reduce(x)),
             "blas": blas_kernels(),
             "blas_results": digest(square @ square, scipy.linalg.inv(square)),
-            "highway": highway_targets(),
         }
     )
 )

@@ -1,7 +1,7 @@
 """Build the wheels for x86-64 Linux: build.py --python PROGRAM [--python PROGRAM ...] [--out FOLDER]
 
-Needs the packages of `make system`. zig compiles everything against the C library of manylinux_2_28. Ceres and Highway
-come from Debian's source packages (libraries.sh). Times, paths and order of files do not depend on the machine.
+Needs the packages of `make system`. zig compiles everything against the C library of manylinux_2_28. Ceres comes from
+Debian's source package (libraries.sh). Times, paths and order of files do not depend on the machine.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ WORK = TREE / "build" / "wheel"
 
 def main() -> None:
     """Build a wheel for each Python, then print its name, size and hash."""
-    asked = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    asked.add_argument("--python", action="append", help="an interpreter with headers; default: this one")
-    asked.add_argument("--out", type=Path, default=TREE / "dist")
-    args = asked.parse_args()
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--python", action="append", help="an interpreter with headers; default: this one")
+    parser.add_argument("--out", type=Path, default=TREE / "dist")
+    args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     for python in args.python or [sys.executable]:
         wheel = build(python, args.out.resolve())
@@ -99,7 +99,6 @@ def _definitions() -> list[str]:
         *("-isystem", prefix / "include", "-DEIGEN_MPL2_ONLY", "-DMAX_LOG_LEVEL=-3"),
         # Boost 1.74 needs std::unary_function, and values of an enum that it does not name
         *("-D_LIBCPP_ENABLE_CXX17_REMOVED_UNARY_BINARY_FUNCTION", "-Wno-enum-constexpr-conversion"),
-        "-mevex512",  # zig switches it off, and Highway does not switch it on where it uses 512 bits
         *(f"-ffile-prefix-map={folder}=." for folder in (WORK, TREE)),
     ]
     return [
@@ -108,12 +107,10 @@ def _definitions() -> list[str]:
         f"CMAKE_CXX_COMPILER={TOOLS / 'zig-c++'}",
         "CMAKE_CXX_FLAGS=" + " ".join(map(str, flags)),
         f"Ceres_DIR={prefix}/lib/cmake/Ceres",
-        f"hwy_DIR={prefix}/lib/cmake/hwy",
         f"nlohmann_json_DIR={prefix}/lib/cmake/nlohmann_json",
         f"Boost_INCLUDE_DIR={prefix}/include",
         "Boost_NO_BOOST_CMAKE=ON",
         "Eigen3_DIR=/usr/share/eigen3/cmake",
-        "BRUSHSVG_HIGHWAY=ON",
     ]
 
 
@@ -129,7 +126,7 @@ def _python_headers(python: Path) -> None:
 
 
 def _clean_copy(to: Path) -> Path:
-    """The revision that is checked out and its changes, without what else lies in the tree."""
+    """The revision that is checked out and its changes, without what else is in the tree."""
     shutil.rmtree(to, ignore_errors=True)
     for name in _output(
         "git", "-C", TREE, "ls-files", "-z", "--cached", "--others", "--exclude-standard"

@@ -56,7 +56,7 @@ class Component:
 
 
 def components(work: Path, tools: Path) -> list[Component]:
-    """All libraries in the wheel, by name. work: the folder of libraries.sh; tools: the venv of the compiler."""
+    """A table of all libraries in the wheel. work: the folder of libraries.sh; tools: the venv of the compiler."""
     (zig,) = tools.glob("lib/python*/site-packages/ziglang")
     (pybind,) = tools.glob("lib/python*/site-packages/pybind11-*.dist-info")
     clang = subprocess.run(
@@ -65,7 +65,6 @@ def components(work: Path, tools: Path) -> list[Component]:
     llvm = re.search(r"version (\S+)", clang)[1]
     found = [
         _debian_source("ceres-solver", "2.1.0+really2.1.0+dfsg-1", "BSD-3-Clause", work),
-        _debian_source("highway", "1.0.3-3+deb12u1", "Apache-2.0", work),
         _debian_headers("libeigen3-dev", "Eigen", "MPL-2.0", _copyright("libeigen3-dev")),
         _debian_headers(_boost_package(), "Boost", "BSL-1.0", _boost_licence()),
         _debian_headers("nlohmann-json3-dev", "nlohmann json", "MIT", _copyright("nlohmann-json3-dev")),
@@ -106,8 +105,8 @@ def _debian_source(name: str, version: str, licence: str, work: Path) -> Compone
 
 
 def _debian_headers(package: str, name: str, licence: str, text: str) -> Component:
-    asked = ["dpkg-query", "-W", "-f", "${Version}", package]
-    version = subprocess.run(asked, check=True, capture_output=True, text=True).stdout
+    command = ["dpkg-query", "-W", "-f", "${Version}", package]
+    version = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     return Component(
         name, version, licence, f"Debian's package {package}", f"pkg:deb/debian/{package}@{version}", text
     )
@@ -119,8 +118,8 @@ def _copyright(package: str) -> str:
 
 def _boost_package() -> str:
     """Its name has the version: libboost1.74-dev on Debian 12, libboost1.83-dev on 13."""
-    asked = ["dpkg-query", "-S", "/usr/include/boost/version.hpp"]
-    return subprocess.run(asked, check=True, capture_output=True, text=True).stdout.partition(":")[0]
+    command = ["dpkg-query", "-S", "/usr/include/boost/version.hpp"]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.partition(":")[0]
 
 
 def _boost_licence() -> str:

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fetches Debian's source archives of Ceres and Highway into FOLDER, from the system's own package sources, and checks them.
+# Fetches Debian's source archive of Ceres into FOLDER, from the system's own package sources, and checks it.
 #   fetch_sources.sh FOLDER
 set -euo pipefail
 tools=$(cd "$(dirname "$0")" && pwd)
@@ -19,5 +19,5 @@ apt() {
     -o Dir::Cache="$lists" -o APT::Sandbox::User="$(id -un)" "$@"
 }
 apt update
-apt source --download-only ceres-solver=2.1.0+really2.1.0+dfsg-1 highway=1.0.3-3+deb12u1
+apt source --download-only ceres-solver=2.1.0+really2.1.0+dfsg-1
 sha256sum --quiet -c "$tools/sources.sha256"

@@ -16,7 +16,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Beyond 90 degrees the bristles are loose and the patch rests for s = -2 r cos(alpha0), then lies at 180 degrees -
+// Beyond 90 degrees the bristles are loose and the patch rests for s = -2 r cos(alpha0), then is at 180 degrees -
 // alpha0: neither (7), nor (11) and (12), nor what follows of them holds. Angles are read to a degree or two, though,
 // and those of a turn by 90 degrees straddle it: (19) is off by 0.0005 lags at 95 degrees, by 0.004 at 100, by 0.1 at
 // 120.
@@ -78,7 +78,7 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
     }
     out.lag_mm = -slope(f, s, lines);  // (20)
     // an angle that has hardly moved has a logarithm lost in rounding, and a lag of any size
-    require_within(out.lag_mm, {0.0, kLongestMm}, "the lag that the angles tell", "alpha");
+    require_within(out.lag_mm, {0.0, kLongestMm}, "the lag from the angles", "alpha");
     out.lag_rmse_mm = rmse(s + out.lag_mm * f);
     if (series.beta.empty()) return out;
 
@@ -88,14 +88,14 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
     for (Eigen::Index i = 0; i < m; ++i) {
         const double a1 = series.alpha[used[i]], beta = series.beta[used[i]];
         if (!(beta > 0.0 && beta < M_PI))
-            throw Error("out-of-range", "the direction of the tip's displacement must lie between 0 and 180 degrees",
+            throw Error("out-of-range", "the direction of the tip's displacement must be between 0 and 180 degrees",
                         "beta", beta * 180.0 / M_PI);
         integral[i] = out.lag_mm * (std::cos(a1) - std::cos(series.alpha0) +
                                     (std::sin(series.alpha0) - std::sin(a1)) / std::tan(beta));
     }
     const double mu = slope(integral, s, lines);  // (22)
     out.tip_gap_mm = (mu - 1.0) * out.lag_mm;     // (23)
-    require_within(out.tip_gap_mm, {-kLongestMm, kLongestMm}, "the tip gap that the angles tell", "beta");
+    require_within(out.tip_gap_mm, {-kLongestMm, kLongestMm}, "the tip gap from the angles", "beta");
     out.tip_gap_rmse_mm = rmse(s - mu * integral);
     return out;
 }

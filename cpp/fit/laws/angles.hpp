@@ -6,8 +6,8 @@
 // Angles in rad, lengths in mm.
 namespace brushsvg::fit {
 
-/// One drag: after s [mm] the heading lies at `alpha` from the direction of motion, and the tip has moved in the
-/// direction `beta` (article (11), (12)). At s = 0 the heading lies at alpha0. beta may be empty.
+/// One drag: after s [mm] the heading is at `alpha` from the direction of motion, and the tip has moved in the
+/// direction `beta` (article (11), (12)). At s = 0 the heading is at alpha0. beta may be empty.
 struct AngleSeries {
     double alpha0 = 0.0;
     std::vector<double> s_mm, alpha, beta;

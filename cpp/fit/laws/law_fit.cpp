@@ -21,10 +21,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // What an absolute residual counts as at least when it is a weight's denominator: far below what a ruler or a camera
-// tells apart, far above rounding.
+// resolves, far above rounding.
 constexpr double kLeastResidualMm = 1e-9;
 constexpr int kMostReweightings = 500;
-// Ways to lie below a floor that are tried: all of a cubic at some 20 depths, in some 10 ms; with more depths it is let
+// Ways to be below a floor that are tried: all of a cubic at some 20 depths, in some 10 ms; with more depths it is let
 // through its floor less often. Absolute residuals take some thirty times as long each.
 constexpr std::size_t kMostWays = 4000, kMostWaysAbsolute = 500;
 constexpr double kHeld = 1e6;  // weight that holds a law to its floor to some 1e-10 mm without spoiling the digits
@@ -175,10 +175,10 @@ double size(const VectorXd& residual, Norm norm) {
     return norm == Norm::squares ? residual.squaredNorm() : residual.lpNorm<1>();
 }
 
-/// Where a polynomial lies at one depth: above its floor, below, or on it.
+/// Where a polynomial is at one depth: above its floor, below, or on it.
 enum class Side : char { above, below, on };
 
-/// Every way in which a polynomial with so many roots less its floor can lie at depths in ascending order; `on` only
+/// Every way in which a polynomial with so many roots less its floor can be at depths in ascending order; `on` only
 /// where `may_stop` says so. At most `most` and one.
 class Ways {
  public:
@@ -188,7 +188,7 @@ class Ways {
     std::vector<std::vector<Side>> found;
 
  private:
-    /// `side`: on which it lies between this depth and the one before.
+    /// `side`: on which it is between this depth and the one before.
     void extend(std::vector<Side> way, Side side, int roots) {
         if (found.size() > most_) return;
         if (roots < 1 || way.size() == may_stop_.size()) {
@@ -214,8 +214,8 @@ class Ways {
     std::size_t most_;
 };
 
-/// The law with a floor that lies best. Where its polynomial lies below the floor a value pulls at nothing, so one
-/// hollow is as deep as the next only by chance, and a solver ends in that where it began: all ways to lie above and
+/// The law with a floor that fits best. Where its polynomial is below the floor a value has no effect, so one
+/// hollow is as deep as the next only by chance, and a solver ends in that where it began: all ways to be above and
 /// below are tried. A value below the floor pulls the law down to the floor and no further: there it may stop.
 VectorXd solve_floored(const Problem& problem) {
     const LawShape& shape = problem.shape;
@@ -232,14 +232,14 @@ VectorXd solve_floored(const Problem& problem) {
     const std::size_t most = shape.norm == Norm::squares ? kMostWays : kMostWaysAbsolute;
     std::vector<std::vector<Side>> ways;
     for (int roots = shape.degree; roots >= 0; --roots) {
-        if (roots > 0 && depths.size() > most) continue;  // a root may lie between any two of them
+        if (roots > 0 && depths.size() > most) continue;  // a root may be between any two of them
         ways = Ways(may_stop, roots, most).found;
         if (ways.size() <= most) break;
     }
     VectorXd best, kept(a.rows()), wanted = problem.value;
     double least = std::numeric_limits<double>::infinity();
     for (const std::vector<Side>& way : ways) {
-        double floored = 0.0;  // what the values on and below the floor cost, whatever the polynomial
+        double floored = 0.0;  // what the values on and below the floor cost, for any polynomial
         for (Index i = 0; i < a.rows(); ++i) {
             const Side side = way[place[std::size_t(i)]];
             kept[i] = side == Side::on ? kHeld : side == Side::below ? 0.0 : 1.0;
@@ -247,7 +247,7 @@ VectorXd solve_floored(const Problem& problem) {
             const double off = problem.worth[i] * std::abs(problem.value[i] - shape.floor);
             if (side != Side::above) floored += shape.norm == Norm::squares ? off * off : off;
         }
-        // The best law lies one of these ways and costs at least that: with all but a few ways it is already too much.
+        // The best law is one of these ways and costs at least that: with all but a few ways it is already too much.
         if (floored > least) continue;
         const auto solve_kept = [&](const VectorXd& weight) -> VectorXd {
             const VectorXd both = weight.cwiseProduct(kept).cwiseProduct(problem.worth);
@@ -371,7 +371,7 @@ LawFit fit_law(const std::vector<double>& depth_mm, const std::vector<double>& v
         if (polynomial[i] < shape.floor) slope.row(i).setZero();
     slope = worth.asDiagonal() * slope;
     Eigen::ColPivHouseholderQR<MatrixXd> qr(slope);
-    if (qr.rank() < slope.cols()) return out;  // all but a few values lie on the floor
+    if (qr.rank() < slope.cols()) return out;  // all but a few values are on the floor
     const MatrixXd inverse = (slope.transpose() * slope).ldlt().solve(MatrixXd::Identity(slope.cols(), slope.cols()));
     const MatrixXd covariance = variance(worth.cwiseProduct(residual), problem.terms(), freedom, shape.norm) * inverse;
     const double t = deviations_of_95(out.law.degrees_of_freedom);

@@ -20,7 +20,7 @@ struct LawShape {
     bool rising = false;                                      ///< never falls with depth
     double floor = -std::numeric_limits<double>::infinity();  ///< law = max(floor, polynomial)
     Norm norm = Norm::squares;
-    double smoothing = 0.0;  ///< weight of bends between the law's control points, beside the data's 1; 0: none
+    double smoothing = 0.0;  ///< weight of bends between the law's control points, relative to the data's 1; 0: none
 };
 
 struct LawFit {
@@ -33,7 +33,7 @@ struct LawFit {
     bool held = false;  ///< the data alone would break `positive` or `rising`: the shape is kept by constraint
 };
 
-/// Least squares, or least absolute residuals, over polynomials of the shape asked for.
+/// Least squares, or least absolute residuals, over polynomials of the requested shape.
 ///
 /// `scatter`: how much each value scatters, up to a common factor; empty if all scatter alike. Values are weighted by
 /// 1 / scatter. rmse_mm and r_squared count all values alike.

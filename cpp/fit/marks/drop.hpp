@@ -107,7 +107,7 @@ inline NearestEdge nearest_edge(const Drop& drop, double x, double y) {
     return out;
 }
 
-/// The flank on the side of a point behind the tip, on and on: its place, the point's foot, lies beyond the tip.
+/// The flank on the side of a point behind the tip, on and on: its place, the point's foot, is beyond the tip.
 inline NearestEdge flank_beyond_tip(const Drop& drop, double x, double y) {
     const double side = y < 0.0 ? -1.0 : 1.0, up = std::abs(y), length = std::hypot(drop.widest, drop.half);
     const double t = (x * drop.widest + up * drop.half) / (length * length);
@@ -121,7 +121,7 @@ inline NearestEdge flank_beyond_tip(const Drop& drop, double x, double y) {
             side * t};
 }
 
-/// The place of a drop's edge that lies farthest in direction (nx, ny), a unit vector in the drop's frame.
+/// The place of a drop's edge that is farthest in direction (nx, ny), a unit vector in the drop's frame.
 inline NearestEdge farthest_edge(const Drop& drop, double nx, double ny) {
     const double up = std::abs(ny), side = ny < 0.0 ? -1.0 : 1.0;
     NearestEdge out{0, 0, 0, nx, ny, 0, 0, 0};

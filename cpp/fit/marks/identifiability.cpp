@@ -40,8 +40,8 @@ std::vector<std::string> doubts(const MarkProblem& fit) {
     const VectorXd& shared = fit.shared;
     const Layout& at = model.layout();
     const double noise_mm = fit.weighing.noise_mm * std::sqrt(fit.weighing.repeats);  // of one independent sample
-    const Index n = at.shift();  // where the sheet lies cannot be told from displacements, and need not be
-    MatrixXd still = MatrixXd::Zero(n, n), moving = still;  // marks that stay, marks that may lie anywhere
+    const Index n = at.shift();  // the place of the sheet cannot be determined from displacements, and need not be
+    MatrixXd still = MatrixXd::Zero(n, n), moving = still;  // marks that stay, marks that may be anywhere
     for (Index i = 0; i < model.marks(); ++i) {
         RowMajor by(model.points(i), at.size()), own(model.points(i), 2);
         VectorXd distance;
@@ -84,11 +84,11 @@ std::vector<std::string> doubts(const MarkProblem& fit) {
         const bool two = shares[1].first > 0.15;
         if (along(still, open.direction) < 0.5 * kOpen)
             say(who +
-                " and the displacement of each mark cannot be told apart by these strokes: add curved ones, corners "
+                " and the displacement of each mark cannot be separated by these strokes: add curved ones, corners "
                 "or reversals");
         else if (two)
             say(who + " and " + shares[1].second +
-                " cannot be told apart by these strokes: paint at more depths, with corners and reversals at each");
+                " cannot be separated by these strokes: paint at more depths, with corners and reversals at each");
         else if (who == "lag" && at.lag > 1)
             say("how the lag changes with depth is left open: paint curved strokes at more depths");
         else

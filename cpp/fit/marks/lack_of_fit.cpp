@@ -18,7 +18,7 @@ constexpr int kMoreOfPower = 4;                         // numbers more of it, t
 constexpr int kSizes = kLaws + 1;                       // of departures: one of each law, and that of this power
 constexpr double kFreedom = 3.0;  // how far a law departs is found from as many further numbers of it
 // log of how much less likely departing must be for laws to keep their few numbers: marks of a brush that departs where
-// they tell little, by how deep its tip is pressed, speak no more against it than chance does
+// they determine little, by how deep its tip is pressed, speak no more against it than chance does
 constexpr double kHeld = -1.25;
 // from which log of how much likelier on laws depart clearly, so that the half width may rise with another power, too:
 // where little speaks for departing (brushes of the family reach 0.2), that leaves their intervals wider for nothing
@@ -88,7 +88,7 @@ Departures departures_of(const MarkModel& model, const Layout& from, const MarkL
         const auto [known, all] = terms[std::size_t(law)];
         for (int k = known; k < all; ++k, ++row) {
             out.size_of.push_back(law);
-            const double falls = std::pow(double(known) / k, kSmooth);  // as of smooth laws
+            const double falls = std::pow(double(known) / k, kSmooth);  // as for smooth laws
             out.deviations(row, row) = falls * whole[std::size_t(law)];
             if (law == kHalf && rises) out.deviations(row, all_rows) = whole[kHalf] * share_of_log(k);
         }

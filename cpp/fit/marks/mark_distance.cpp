@@ -24,7 +24,7 @@ struct Spent {
     ~Spent() { looks += on.looks(); }
 };
 
-/// The predicted edge beside one point of a painted one.
+/// The predicted edge next to one point of a painted one.
 struct Beside {
     NearestEdge edge;
     std::size_t row;
@@ -70,7 +70,7 @@ Beside way_out(const Footprints& footprints, const Eigen::Vector2d& x, const Eig
         }
     }
     Beside found = left_at(footprints, x, out, far, row);
-    // a painted normal errs as its edge does; square to the edge that it led to the way is shorter
+    // a painted normal errs as its edge does; square to the edge that it reached the way is shorter
     for (int round = 0; round < kStraighter && far < kNearMm && found.aslant < kSquare; ++round) {
         const Eigen::Vector2d square = found.normal;
         far = footprints.way_out(x, square, row);

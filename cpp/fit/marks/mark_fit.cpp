@@ -20,7 +20,7 @@ namespace {
 constexpr double kDeepestMm = 1000.0;  // deeper is damage, and its powers overflow
 // Of one fit: each is met some hundred times, in a microsecond or so. A sheet of 49 strokes has 22,000 and 8,500.
 constexpr double kMostPlaces = 2e5, kMostPoints = 2e5;
-constexpr double kPlaceMm = 0.15;      // no two places of a prediction lie farther apart along the way
+constexpr double kPlaceMm = 0.15;      // no two places of a prediction are farther apart along the way
 constexpr double kMostCertain = 1e12;  // of a law's coefficient: 1 over its standard deviation
 constexpr double kLeastWideMm = 0.3;   // a pen's line, of which a picture's edges may err by as much
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -154,7 +154,7 @@ struct Solved {
 };
 
 /// How sure the distances are is found on the way, wild ones lose their say, and laws depart from their numbers. As the
-/// noise is taken for more as long as they do not, that is asked until it says no more.
+/// noise is taken for more as long as they do not, that is repeated until it changes no more.
 Solved solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
              const MarkOptions& options) {
     start(at, from, marks, options);
@@ -183,9 +183,9 @@ Solved solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::ve
     return out;
 }
 
-/// Strokes that land on a slope from height 0 begin the farther on the lower the paper lies, and where they did if it
-/// lies higher: of a height found just below 0 the marks tell less than its own derivatives say. There it is the mean
-/// of both sides' covariances, by how likely the paper lies above: of two halves of normal distributions that meet at 0
+/// Strokes that land on a slope from height 0 begin the farther on the lower the paper is, and where they did if it
+/// is higher: a height found just below 0 is determined less than its own derivatives say. There it is the mean
+/// of both sides' covariances, by how likely the paper is above: of two halves of normal distributions that meet at 0
 /// the wider one weighs as much more.
 MatrixXd covariance_at_touch(MarkProblem fit) {
     constexpr double kAboveMm = 1e-3, kUnlikely = 1e-3;
@@ -207,9 +207,9 @@ MatrixXd covariance_at_touch(MarkProblem fit) {
 
 /// Mean square of what the shared unknowns may be off. Laws that depart were expected to do so by any order of
 /// magnitude, the least included; that chooses the height of the paper at which they look most like their few numbers,
-/// where the marks tell it hardly from others. It is kept, but what it may be off is that of usual departures: their
-/// covariance, and how far it is off the likeliest of them. As far as laws may keep to their numbers after all, it is
-/// that of such laws.
+/// where the marks hardly distinguish it from others. It is kept, but what it may be off is that of usual departures:
+/// their covariance, and how far it is off the likeliest of them. As far as laws may keep to their numbers after all,
+/// it is that of such laws.
 MatrixXd mean_square(const MarkProblem& fit, const MarkOptions& options, double likelier) {
     if (!fit.is_departing()) return covariance_at_touch(fit);
     const auto square_of = [](const MarkProblem& at) -> MatrixXd {
@@ -241,7 +241,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     out.laws = fit.model.laws(fit.shared);
     const MatrixXd to = fit.model.to_coefficients();
     VectorXd wider = VectorXd::Constant(to.rows(), std::sqrt(unsurer(solved.departing)));
-    // a field is told by where marks lie, whatever form the laws have
+    // a field is determined by the places of marks, for any form of the laws
     if (fit.model.layout().machine_numbers > 0) wider.tail(kMachine - MachineAt::field).setOnes();
     const MatrixXd whole =
         wider.asDiagonal() * to * mean_square(fit, options, solved.departing) * to.transpose() * wider.asDiagonal();

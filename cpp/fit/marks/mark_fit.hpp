@@ -37,17 +37,17 @@ struct MarkLaws {
     std::vector<double> widest_by_depth, front_by_depth;
 };
 
-/// How a machine takes the tool elsewhere than it was told. Told (x, y) from MarkFit::centre_mm and a depth d it goes
-/// to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d, and is tilt_x x + tilt_y y deeper; on each axis it
-/// stays behind by half its backlash. A smooth field takes it elsewhere still by a u^2 + b u v + c v^2 [mm], three
-/// numbers for x and three for y, where u and v are how far it was told to go from field_middle_mm, over
+/// How a machine takes the tool elsewhere than commanded. Commanded (x, y) from MarkFit::centre_mm and a depth d it
+/// goes to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d, and is tilt_x x + tilt_y y deeper; on each
+/// axis it stays behind by half its backlash. A smooth field takes it elsewhere still by a u^2 + b u v + c v^2 [mm],
+/// three numbers for x and three for y, where u and v are the commanded distances from field_middle_mm, over
 /// field_reach_mm.
 struct Machine {
     std::array<double, 2> lean_mm_per_mm{0.0, 0.0}, scale{1.0, 1.0};
     double skew = 0.0;
     std::array<double, 2> tilt_mm_per_mm{0.0, 0.0}, backlash_mm{0.0, 0.0};
     std::array<std::array<double, 3>, 2> field_mm{};
-    /// The middle of all that was told and half its sides: beyond, nothing is known of the field.
+    /// The middle of all commanded places and half its sides: beyond, nothing is known of the field.
     std::array<double, 2> field_middle_mm{0.0, 0.0}, field_reach_mm{1.0, 1.0};
 };
 
@@ -67,9 +67,9 @@ struct MarkOptions {
     bool departing = true;
     Prior widest_per_half{1.8, 0.5};  ///< the shape that the project assumes of round brushes, and round-6's spread
     Prior front_per_half{1.0, 0.3};
-    std::optional<LawPrior> laws;  ///< beside the priors of the shape; none: nothing is known of them
+    std::optional<LawPrior> laws;  ///< in addition to the priors of the shape; none: nothing is known of them
     bool round_tail = false;
-    Prior height_mm{0.0, 0.3};     ///< the paper lies higher than taught by so much: touching by eye is as good
+    Prior height_mm{0.0, 0.3};     ///< the paper is higher than taught by so much: touching by eye is as good
     double placement_mm = 2.0;     ///< sigma of the sheet's shift in x and in y: laid against a stop by hand
     double turn_rad = 0.02;        ///< sigma of the sheet's turn: 1 mm on 50 mm
     double displacement_mm = 1.0;  ///< sigma of each mark's own displacement in x and in y
@@ -89,14 +89,14 @@ struct MarkResidual {
     std::array<double, 2> displacement_mm{0.0, 0.0};
     Poses way_mm;  ///< as the machine ran it; height and displacement left out
     double rms_mm = 0.0;
-    bool outlier = false;  ///< more than half of it was left aside
+    bool outlier = false;  ///< more than half of it was left out
 };
 
 struct MarkFit {
     MarkLaws laws;
     /// Over lag, tip_gap and half_width (their constant, 0, left out), widest_per_half, front_per_half, height, shift x
     /// and y, turn: in this order, in the laws' own coefficients; those of widest_by_depth and front_by_depth in place
-    /// of the ratios where these change with depth. Where any of the machine was asked for, lean x and y,
+    /// of the ratios where these change with depth. Where any number of the machine was requested, lean x and y,
     /// scale x and y, skew, tilt x and y, backlash x and y and the field's six follow.
     std::vector<std::vector<double>> covariance;
     double height_mm = 0.0, turn_rad = 0.0;
@@ -106,10 +106,10 @@ struct MarkFit {
     std::vector<MarkResidual> marks;
     double noise_mm = 0.0;             ///< robust standard deviation of the distances
     double samples = 0.0;              ///< points compared
-    double effective_samples = 0.0;    ///< as many independent ones tell as much
-    double left_aside = 0.0;           ///< share of the points that lie so far off that they have no say
-    double slim = 0.0;                 ///< share of those that have none beside ends narrower than the noise
-    std::vector<std::string> remarks;  ///< what these marks cannot tell apart, and what to paint instead
+    double effective_samples = 0.0;    ///< so many independent ones would determine as much
+    double left_aside = 0.0;           ///< share of the points so far off that they have no say
+    double slim = 0.0;                 ///< share of those that have none at ends narrower than the noise
+    std::vector<std::string> remarks;  ///< what these marks cannot separate, and what to paint instead
     int iterations = 0;
     bool converged = false;
 };
@@ -121,7 +121,7 @@ struct MarkFit {
 /// Backlash counts marks as painted one after the other.
 ///
 /// Covariance: sandwich of the loss times (J^T J)^-1, J with the priors; the samples along an outline depend on each
-/// other and count as fewer, by the integral of their autocorrelation. Points beside ends narrower than three times the
+/// other and count as fewer, by the integral of their autocorrelation. Points at ends narrower than three times the
 /// noise have no say. Throws Error: no mark, numbers that are not finite or no millimetres, a start that paints no
 /// mark, marks that no brush paints (no_brush.hpp).
 MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<MarkLaws>& start,

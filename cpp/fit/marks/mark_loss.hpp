@@ -13,7 +13,7 @@ struct Cost {
     double rho, psi, slope;
 };
 
-enum class Loss { cauchy, tukey };  // from afar whatever is wild pulls, less the farther it is; in the end not at all
+enum class Loss { cauchy, tukey };  // from afar wild points pull, less the farther it is; in the end not at all
 
 inline Cost cost(Loss loss, double z) {
     if (loss == Loss::tukey) {
@@ -28,11 +28,11 @@ inline Cost cost(Loss loss, double z) {
 /// How sure distances are and what wild ones cost. Neighbours along an outline err together.
 struct Weighing {
     double noise_mm = 0.5;              ///< while nothing is known: a brush's hairs
-    double repeats = 1.0;               ///< what squares are divided by: so many neighbours tell as much as one
+    double repeats = 1.0;               ///< what squares are divided by: so many neighbours count as one
     std::vector<double> together{1.0};  ///< autocovariance of psi along an outline: at 0, 1, 2 ... points
     double slope = 1.0;                 ///< mean slope of psi
     Loss loss = Loss::cauchy;
-    bool is_asked = false;  ///< what edges would tell that err so, not what these do
+    bool is_asked = false;  ///< for edges with these errors, not for the given ones
 };
 
 }  // namespace brushsvg::fit

@@ -18,7 +18,7 @@ constexpr double kAboveMm = 5.0;       // and the deepest: whence the brush come
 constexpr double kLeastRingMm2 = 0.2;  // specks
 constexpr double kLeastReachMm = 5.0;  // of a field: over less, what is smooth is the same everywhere
 // Looks at instants in a whole fit, for each place and point there is. Marks of a brush take two to ten thousand;
-// those that no brush paints, where huge footprints lie on each other, took millions, and minutes.
+// those that no brush paints, where huge footprints overlap, took millions, and minutes.
 constexpr double kMostLooks = 2e7, kMostLooksEach = 3e4;
 // And of one mark: about as many as a sheet of fifty strokes takes. 9 m of jumps to and fro, painted as a brush would,
 // took ten times as many, and a minute.
@@ -70,7 +70,7 @@ Eigen::Vector2d came_from(const Poses& poses, const PaintedMark* before) {
     return out;
 }
 
-/// With more poses where an axis turns: it stands still there for its backlash, and then goes on as far as it is told.
+/// With more poses where an axis turns: it stands still there for its backlash, and then goes on as far as commanded.
 Poses close_at_turns(const Poses& poses, Eigen::Vector2d came) {
     constexpr std::array<double, 7> kBehindMm{0.05, 0.1, 0.2, 0.3, 0.45, 0.7, 1.0};
     std::vector<double> xyz(poses.data(), poses.data() + 3);
@@ -129,7 +129,7 @@ std::vector<double> close_places(const Poses& poses, double coarse) {
     return out;
 }
 
-/// As far as the TCP was told to go.
+/// As far as the TCP was commanded to go.
 FieldBox box_of(const std::vector<PaintedMark>& marks) {
     Eigen::Vector2d low(INFINITY, INFINITY), high = -low;
     for (const PaintedMark& mark : marks) {
@@ -232,7 +232,7 @@ void MarkModel::refuse_endless() const {
     for (std::size_t i = 0; i < painted_.size(); ++i)
         if (double(looks_[i]) > kMostLooksOfOne)
             throw Error("fit-failed",
-                        "the stroke is so long and lies so often over itself that its mark cannot be fitted: leave it "
+                        "the stroke is so long and crosses itself so often that its mark cannot be fitted: leave it "
                         "out",
                         painted_[i].stroke);
 }

@@ -52,7 +52,7 @@ class MarkModel {
     double deepest(Index mark) const { return -painted_[std::size_t(mark)].poses_mm.col(2).minCoeff(); }
     std::array<double, 2> centre_mm() const { return {centre_.x(), centre_.y()}; }
 
-    /// The shared unknowns of laws, wherever they lie; at their least values or above; and back.
+    /// The shared unknowns of laws, at any place; at their least values or above; and back.
     VectorXd unbounded(const MarkLaws& laws) const;
     VectorXd unknowns(const MarkLaws& laws) const { return unbounded(laws).cwiseMax(least()); }
     MarkLaws laws(const VectorXd& shared) const;
@@ -65,7 +65,7 @@ class MarkModel {
     VectorXd least() const;
     /// What the machine is at these unknowns.
     Machine machine(const VectorXd& shared) const;
-    /// A mark's poses as they were told, as the machine ran them.
+    /// A mark's poses as commanded, as the machine ran them.
     Poses run(Index mark, const VectorXd& shared) const;
 
     /// From now on there are no derivatives by the machine's numbers, or there are.
@@ -85,13 +85,13 @@ class MarkModel {
     void go_on_counting(const MarkModel& other) { looks_ = other.looks_; }
 
     /// Distance [mm] of every point of a mark from the predicted edge; derivatives by the shared unknowns and by the
-    /// mark's displacement where asked for. Outside it is that from the nearest footprint and what it sweeps to its
+    /// mark's displacement on request. Outside it is that from the nearest footprint and what it sweeps to its
     /// neighbours. Inside it is negative: how far it is out of all footprints, square to the edge that the painted
-    /// edge's normal leads to, and not how deep it lies in one of them, of which slim footprints would make little.
+    /// edge's normal points to, and not how deep it is in one of them, of which slim footprints would make little.
     /// False where there is no prediction.
     bool distances(Index mark, const double* shared, const double* displacement, VectorXd& distance_mm,
                    RowMajor* by_shared, RowMajor* by_displacement) const;
-    /// How far it is [mm] from the predicted edge beside every point of a mark across to the other one; 0 beyond a tip.
+    /// How far it is [mm] from the predicted edge at every point of a mark across to the other one; 0 beyond a tip.
     VectorXd widths(Index mark, const double* shared, const double* displacement) const;
     /// The points of a mark in the frame of the plan.
     Ring placed(Index mark, const double* shared, const double* displacement) const;

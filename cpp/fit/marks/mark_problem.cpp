@@ -28,7 +28,7 @@ class MarkCost : public ceres::CostFunction {
         set_num_residuals(int(at.model.points(mark)));
         *mutable_parameter_block_sizes() = {at.model.layout().size(), 2};
     }
-    /// Always with derivatives: they are asked for next where the step is taken, as most are.
+    /// Always with derivatives: they are needed next where the step is taken, as most are.
     void evaluate() {
         const Index n = num_residuals(), size = at_.model.layout().size();
         const Weighing& weighing = at_.weighing;

@@ -17,10 +17,10 @@ class MarkProblem {
     void begin(const MarkLaws& laws);
     /// The footprint's shape stays as it is, and the machine, too, where that is held.
     void hold_shape(bool hold, bool hold_machine);
-    /// Marks of which a part lies far off may have been matched with the wrong edge, the near one of a stroke that is
-    /// displaced by its width: they are moved to where that part lies near, if that costs less.
+    /// Marks of which a part is far off may have been matched with the wrong edge, the near one of a stroke that is
+    /// displaced by its width: they are moved to where that part is near, if that costs less.
     void find_displaced();
-    /// Points beside which what is predicted is hardly wider than its edges err have no say from now on. At a pointed
+    /// Points at which the prediction is hardly wider than its edges err have no say from now on. At a pointed
     /// end noise never leaves the paint narrower than nothing: it draws the end out, and the paper seems nearer.
     void leave_slim_aside();
     /// Half the loss of each mark; infinite where there is no prediction.

@@ -11,7 +11,7 @@ namespace brushsvg::fit {
 namespace {
 
 constexpr std::size_t kFollowed = 4;
-// On the way to where the marks lie, points lie so many times as far apart, and instants.
+// On the way to the places of the marks, points are so many times as far apart, and instants.
 constexpr double kSparse = 3.0, kCoarse = 2.5;
 constexpr double kTolerance = 1e-3;  // the noise is not known yet
 
@@ -90,9 +90,9 @@ void try_lags(MarkProblem& at, const std::vector<MarkLaws>& starts, bool is_held
     at.hold_shape(false, false);
 }
 
-/// To where the marks lie, from lags that were tried with the machine free, or held, whichever comes nearer: held, a
-/// lag may win that does as a lean does, free, a lean that does as a lag does, and no small step leads back from
-/// either.
+/// Moves to the places of the marks, from lags that were tried with the machine free, or held, whichever comes nearer:
+/// held, a lag may win that does as a lean does, free, a lean that does as a lag does, and no small step leads back
+/// from either.
 void try_both(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
     const std::vector<MarkLaws> lags = nearest_starts(at, marks, options);
     double best = INFINITY;

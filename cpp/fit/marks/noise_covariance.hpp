@@ -9,7 +9,7 @@ namespace brushsvg::fit {
 /// to what the fit makes of it) along its k-th diagonal, in the mean: that is added again.
 Weighing weighed(const MarkProblem& at);
 
-/// The marks' loss beside the solution, over the shared unknowns and then both displacements of every mark.
+/// The marks' loss next to the solution, over the shared unknowns and then both displacements of every mark.
 struct MarksLoss {
     VectorXd gradient;
     MatrixXd slope;  ///< second derivatives

@@ -8,7 +8,7 @@
 #include "brushsvg/plan.hpp"
 #include "brushsvg/ring.hpp"
 
-// Where a machine takes the tool that was told to go elsewhere. Inside fit_marks.
+// The way of a machine for a commanded one. Inside fit_marks.
 namespace brushsvg::fit {
 
 constexpr int kMachine = 15;  // numbers of a machine, in the order of MachineAt
@@ -18,7 +18,7 @@ struct MachineAt {
     static constexpr int lean = 0, scale = 2, skew = 4, tilt = 5, backlash = 7, field = 9;
 };
 
-/// Where a field over the sheet is known: as far as the TCP was told to go, a box.
+/// Where a field over the sheet is known: the box of all commanded places.
 struct FieldBox {
     Eigen::Vector2d middle{0.0, 0.0}, reach{1.0, 1.0};  ///< reach: half its sides [mm]
     /// u^2, u v, v^2 of a place, u and v from -1 to 1 over the box.
@@ -34,10 +34,10 @@ struct MachineHere {
     std::array<double, kMachine> by;
     Eigen::Vector2d centre, came;
     const FieldBox& box;
-    bool is_bent;  ///< a field is asked for: without one its derivatives cost a third of all
+    bool is_bent;  ///< a field is requested: without one its derivatives cost a third of all
 };
 
-/// By how much each axis is behind what was told, at each pose: an axis that turns stands still for its whole backlash.
+/// By how much each axis is behind its command, at each pose: an axis that turns stands still for its whole backlash.
 /// One less than nothing goes as far ahead.
 template <class T>
 std::vector<Vec2<T>> behind_by(const Poses& poses, const MachineHere& machine, const std::array<T, kMachine>& by) {
@@ -61,7 +61,7 @@ std::vector<Vec2<T>> behind_by(const Poses& poses, const MachineHere& machine, c
     return out;
 }
 
-/// The TCP's way as such a machine runs what was told, on any scalar.
+/// The TCP's way as such a machine runs the command, on any scalar.
 template <class T>
 struct RunWay {
     const Poses& poses;

@@ -110,7 +110,7 @@ std::size_t count_up_to(const std::vector<double>& rising, std::size_t i, double
 
 bool Footprints::follow(const PassRun& pass, const std::vector<double>& at, double coarse) {
     apart_ = coarse * kApartMm;
-    if (!pass.machine) return follow_on(ToldWay<double>{pass.poses, pass.arcs, pass.height_mm}, pass, at);
+    if (!pass.machine) return follow_on(CommandedWay<double>{pass.poses, pass.arcs, pass.height_mm}, pass, at);
     return follow_on(run(pass), pass, at);
 }
 
@@ -143,7 +143,8 @@ void Footprints::derive(const PassRun& pass, const Eigen::MatrixXd& lag_by, bool
     if (by_.size() < rows_.size()) by_.resize(rows_.size());
     looks_ += kLooksPerStep * rows.size();
     if (!pass.machine)
-        derive_on<Jet>(ToldWay<Jet>{pass.poses, pass.arcs, Jet(pass.height_mm, kMostTerms)}, pass.laws, lag_by, rows);
+        derive_on<Jet>(CommandedWay<Jet>{pass.poses, pass.arcs, Jet(pass.height_mm, kMostTerms)}, pass.laws, lag_by,
+                       rows);
     else if (!by_machine)
         derive_on<Jet>(run_by<Jet>(pass, 0), pass.laws, lag_by, rows);
     else if (pass.machine->is_bent)
@@ -157,13 +158,12 @@ void Footprints::derive_on(const Way& way, const MarkLaws& laws, const Eigen::Ma
                            const std::vector<std::size_t>& rows) {
     std::vector<double> at;
     for (const std::size_t row : rows) at.push_back(rows_[row].place);
-    trace<T>(law_of(law_by<T>(laws.lag, lag_by), 0.0, reach_), way, at, nullptr,
-             [&](std::size_t k, const Trace<T>& row) {
-                 InstantBy& by = by_[rows[k]];
-                 by.contact = by_of(row.state.contact);
-                 by.heading = by_of(row.state.heading);
-                 put_by(row.depth, by.depth);
-             });
+    trace<T>(law_of(law_by<T>(laws.lag, lag_by), 0.0, reach_), way, at, [&](std::size_t k, const Trace<T>& row) {
+        InstantBy& by = by_[rows[k]];
+        by.contact = by_of(row.state.contact);
+        by.heading = by_of(row.state.heading);
+        put_by(row.depth, by.depth);
+    });
     for (const std::size_t row : rows) by_[row].heading = by_[rows_[row].heading_of].heading;
 }
 
@@ -186,7 +186,7 @@ template <class Way>
 void Footprints::walk(const Way& way, const std::vector<double>& at, const MarkLaws& laws) {
     const LagLaw<double> law = law_of(laws.lag, 0.0, reach_);
     rows_.clear();
-    trace<double>(law, way, at, nullptr, [&](std::size_t k, const Trace<double>& row) {
+    trace<double>(law, way, at, [&](std::size_t k, const Trace<double>& row) {
         if (!row.down) return;
         Instant& now = rows_.emplace_back();
         const double d = std::max(0.0, row.depth);
@@ -336,7 +336,7 @@ Eigen::Vector2d Footprints::passing(std::size_t row, const NearestEdge& edge) co
 }
 
 double Footprints::way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out, std::size_t& last) const {
-    // Where footprints lie this near one after the other they count as side by side: more than instants are apart.
+    // Where footprints are this near one after the other they count as side by side: more than instants are apart.
     const double gap = 2.0 * apart_;
     struct Part {
         Span span;

@@ -8,7 +8,7 @@
 #include "mark_fit.hpp"
 #include "run_way.hpp"
 
-// The footprints of one pass at close instants, and what of their union is near. Inside fit_marks.
+// The footprints of one pass at close instants, and the near part of their union. Inside fit_marks.
 namespace brushsvg::fit {
 
 constexpr int kMostTerms = 7;          // numbers of a law
@@ -22,7 +22,7 @@ constexpr int kWays = kMostTerms + 1 + kMachine;  // the lag's unknowns, the hei
 using ByLag = Eigen::Matrix<double, 2, kWays>;
 
 /// A pass on its way, which begins and ends in the air, as these laws are painted by this machine; without one it is
-/// run as it was told.
+/// run as commanded.
 struct PassRun {
     const Poses& poses;
     const std::vector<Arc>& arcs;
@@ -55,7 +55,7 @@ struct Instant {
     Eigen::Vector2d on_paper(const NearestEdge& edge) const {  ///< its normal
         return edge.nx * heading + edge.ny * Eigen::Vector2d(-heading.y(), heading.x());
     }
-    /// The place of the edge that lies farthest in a direction on the paper.
+    /// The place of the edge that is farthest in a direction on the paper.
     NearestEdge farthest(const Eigen::Vector2d& n) const {
         return farthest_edge(drop, n.dot(heading), heading.x() * n.y() - heading.y() * n.x());
     }
@@ -77,11 +77,12 @@ struct SweptEdge {
 class Footprints {
  public:
     /// Follows a pass; `at`: poses, fractional in between, and more are put in where the footprint turns quickly.
-    /// coarse: so many times as far apart as they should be may instants lie. False where these laws paint nothing, and
-    /// where it takes more instants than any brush does.
+    /// coarse: so many times as far apart as they should be may instants be. False where these laws paint nothing, and
+    /// where it needs more instants than any brush does.
     bool follow(const PassRun& pass, const std::vector<double>& at, double coarse);
-    /// Derivatives at these instants, as by() then tells them, of the pass that was followed last; lag_by: of the lag's
-    /// coefficients by its unknowns. They cost ten times what an instant itself does, and points need a third of them.
+    /// Derivatives at these instants, as by() then returns them, of the pass that was followed last; lag_by: of the
+    /// lag's coefficients by its unknowns. They cost ten times what an instant itself does, and points need a third of
+    /// them.
     void derive(const PassRun& pass, const Eigen::MatrixXd& lag_by, bool by_machine, std::vector<std::size_t> rows);
     const Instant& operator[](std::size_t i) const { return rows_[i]; }
     const InstantBy& by(std::size_t i) const { return by_[i]; }
@@ -95,7 +96,7 @@ class Footprints {
     NearestEdge nearest(const Eigen::Vector2d& x, std::size_t& row) const;
     /// How far it is from x, inside a footprint, out of all of them in direction `out`; which one is left last.
     double way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out, std::size_t& last) const;
-    /// Edge of what footprint `row` and its neighbours sweep, beside a place of the footprint's own edge: instants are
+    /// Edge of what footprint `row` and its neighbours sweep, next to a place of the footprint's own edge: instants are
     /// so far apart that footprints alone would leave scallops of 0.02 mm, and gaps where they are shorter than that.
     SweptEdge swept(const Eigen::Vector2d& x, std::size_t row, const NearestEdge& own) const;
     /// Direction in which a place of a footprint's edge passes by; none where it rests, turns back, begins or ends.
@@ -110,9 +111,9 @@ class Footprints {
     void derive_on(const Way& way, const MarkLaws& laws, const Eigen::MatrixXd& lag_by,
                    const std::vector<std::size_t>& rows);
     void enclose();
-    /// From an instant on to neighbours as long as they come nearer to x, or x lies deeper in them.
+    /// From an instant on to neighbours as long as they come nearer to x, or x is deeper in them.
     std::size_t downhill(const Eigen::Vector2d& x, std::size_t row) const;
-    /// Those places, and more between instants whose footprints lie too far apart; as many where there are none.
+    /// Those places, and more between instants whose footprints are too far apart; as many where there are none.
     std::vector<double> closer(const std::vector<double>& at) const;
 
     std::vector<Instant> rows_;

@@ -38,17 +38,13 @@ LagLaw<T> law_of(const std::vector<T>& coefficients, double lo, double hi) {
     return {{piece}, plain.rigid};
 }
 
-/// Walks a pass, and tells what the patch does at some of its places.
+/// Walks a pass, and reports what the patch does at some of its places.
 template <class T, class Out>
 class TraceAt {
  public:
     /// at: poses, fractional in between, ascending.
     TraceAt(const LagLaw<T>& law, const std::vector<double>& at, Out& out) : law_(law), at_(at), out_(out) {}
 
-    void begin(const LagState<T>& state, const Vec2<T>& tcp, const T& depth) {
-        state_ = state;
-        for (; !is_done() && at_[k_] <= 0.0; ++k_) out_(k_, Trace<T>{true, depth, tcp, state_});
-    }
     bool is_done() const { return k_ >= at_.size(); }
     void above(Eigen::Index i, const AboveStretch<T>& way, const T& end, bool) {
         const T lower = way.depth_to - way.depth_from;
@@ -88,16 +84,15 @@ class TraceAt {
 
 /// Calls out(k, Trace) for every k of `at`: poses, fractional in between, ascending.
 ///
-/// way: a ToldWay, or what tells the same. begun: the state at the first pose; without it the brush is set down there,
-/// if it is not in the air.
+/// way: a CommandedWay, or a type with the same members. At the first pose the brush is set down, if it is not in the
+/// air.
 ///
 /// Derivatives pass through events: where bristles tighten and where they touch by the moment's own derivative; where
 /// they loosen the patch stands still, so that the moment does not matter.
 template <class T, class Way, class Out>
-void trace(const LagLaw<T>& law, const Way& way, const std::vector<double>& at, const LagState<T>* begun, Out&& out) {
+void trace(const LagLaw<T>& law, const Way& way, const std::vector<double>& at, Out&& out) {
     TraceAt<T, Out> to(law, at, out);
-    if (begun) to.begin(*begun, way.tcp(0), way.depth(0));
-    walk_pass<T>(way, begun != nullptr, to);
+    walk_pass<T>(way, to);
 }
 
 }  // namespace brushsvg::fit

@@ -4,7 +4,7 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// What holds at the bristle's sliding end besides w'(1) = 0.
+/// The condition at the bristle's sliding end, in addition to w'(1) = 0.
 enum class SlidingEnd {
     third_derivative,  ///< w'''(1) = 0, as the article's Lemma 1 has it
     shear_free         ///< (EI w'')'(1) = 0, no shear force

@@ -19,7 +19,7 @@ Coverage coverage(const Marks& marks, const Brush& brush, const Window& window, 
 /// The same for filled rings (non-zero winding).
 Coverage coverage(const Rings& rings, const Window& window, double px_per_mm);
 
-/// The same for the union of convex counter-clockwise rings, which may lie over each other.
+/// The same for the union of convex counter-clockwise rings, which may overlap.
 Coverage coverage_of_pieces(const Rings& convex, const Window& window, double px_per_mm);
 
 /// Rings of everything one pass paints; the whole drawing's are their union.

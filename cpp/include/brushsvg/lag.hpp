@@ -91,7 +91,7 @@ T lag_exponent(const LawPiece<T>& law, const T& depth0, const T& depth1, const T
 
 /// Heading after the decay E = exp(-integral ds/r) of a drag in direction `along` (article (7), in vector form):
 ///     tan(psi1/2) = E tan(psi0/2),  psi = angle from the direction of motion to the heading.
-/// The result has unit length whatever the rounding of the heading given.
+/// The result has unit length for any rounding of the given heading.
 template <class T>
 Vec2<T> drag_heading(const Vec2<T>& heading, const Vec2<T>& along, const T& decay);
 
@@ -139,7 +139,7 @@ LagState<T> within_phase(const LawPiece<T>& law, const Move<T>& move, const LagS
                          const T& t);
 
 /// Carries the state over one move, phase by phase. `phase(law, move, start, begin, end)` is called for every
-/// event-free stretch with the state at its beginning; `start.taut` tells which rule holds in it.
+/// event-free stretch with the state at its beginning; `start.taut` shows which rule holds in it.
 ///
 /// Taut: the lever drags the patch, which never slips sideways (article (4), (7)), until moving on would push it
 /// backwards: g = cos(psi) - dr/ds < 0. Loose: the patch rests and the heading points from it to the TCP (article 2.2),

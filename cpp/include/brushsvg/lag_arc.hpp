@@ -21,7 +21,7 @@ struct ArcMove {
     Vec2<T> from, along;  ///< start and direction there
     T radius, turn, length, depth_from;
     T depth_by = T(0.0);  ///< as in Move
-    double side;          ///< 1 when the centre lies to the left, else -1
+    double side;          ///< 1 when the centre is to the left, else -1
 
     ArcMove(const Vec2<T>& start, const Vec2<T>& direction, const T& radius_mm, const T& turn_rad, const T& depth)
         : from(start), along(direction), radius(radius_mm), turn(turn_rad), depth_from(depth) {
@@ -124,7 +124,7 @@ T loosening(const T& r, const ArcMove<T>& arc, const LagState<T>& state, const T
     return angle > T(0.0) ? T(begin + 2.0 * angle / w * r / arc.length) : begin;
 }
 
-/// t where a loose brush pulls tight, above 1 when it does not: the resting contact lies at D from the arc's centre, q
+/// t where a loose brush pulls tight, above 1 when it does not: the resting contact is at D from the arc's centre, q
 /// at R, and beta is the angle from the one to the other, so
 ///     |q - p|^2 = R^2 + D^2 - 2 R D cos(beta) = r^2
 /// is reached at sin^2(beta/2) = sin^2(beta0/2) + (r^2 - |q0 - p|^2) / (4 R D). `pushed`: loose only now, from taut.

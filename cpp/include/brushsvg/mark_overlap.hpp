@@ -14,7 +14,7 @@ struct MarkOverlap {
     Coverage wanted, painted;
 };
 
-/// Areas [mm^2] of paint and wanted mark.
+/// Areas [mm^2] of paint and target mark.
 struct CommonArea {
     double common_mm2;
     double together_mm2;
@@ -40,7 +40,7 @@ std::vector<CommonArea> common_areas(const std::vector<PassMarks>& painted, cons
 /// What strokes should become, as shares of pixels.
 Coverage wanted_coverage(const std::vector<Stroke>& wanted, const Window& window, double px_per_mm);
 
-/// Numbers of strokes whose wanted marks touch, directly or through others: the parts of letters, in order. Those that
+/// Numbers of strokes whose target marks touch, directly or through others: the parts of letters, in order. Those that
 /// stand alone are not named.
 std::vector<std::vector<std::size_t>> touching(const std::vector<Stroke>& wanted);
 

@@ -20,7 +20,7 @@ struct AxisNode {
 struct AxisBranch {
     int from, to;
     AxisLine line;
-    Rings part;  ///< what of the shape lies nearest to it, what was dropped along it included
+    Rings part;  ///< the part of the shape nearest to it, what was dropped along it included
 };
 
 struct MedialAxis {
@@ -34,9 +34,9 @@ struct MedialAxis {
 /// rings: as `fill` returns them.
 MedialAxis medial_axis(const Rings& rings, double least_share);
 
-/// The same, with limbs kept that are thin beside what they leave: a branch stays when what lies beyond some place on
-/// it adds `least_share` squares of the radius there to the disc there, and at least `least_limb` squares of the radius
-/// where the branch leaves.
+/// The same, with limbs kept that are thin relative to what they leave: a branch stays when the part beyond some place
+/// on it adds `least_share` squares of the radius there to the disc there, and at least `least_limb` squares of the
+/// radius where the branch leaves.
 MedialAxis medial_axis(const Rings& rings, double least_share, double least_limb);
 
 }  // namespace brushsvg

@@ -8,12 +8,12 @@
 namespace [[gnu::visibility("default")]] brushsvg {
 
 /// What the mark of a shape costs [mm^2], less is better: area without paint, paint outside, both again where they are
-/// deep enough to be seen, how much the mark's outline turns beyond the shape's, and how many strokes it takes. Larger
+/// deep enough to be seen, how much the mark's outline turns beyond the shape's, and how many strokes it needs. Larger
 /// numbers ask more of a mark: `missing` and `spill` are the measure of all others.
 struct ObjectiveWeights {
     double missing = 1.0;  ///< per mm^2 of the shape without paint
     double spill = 1.0;    ///< per mm^2 of paint outside
-    /// How deep [mm] an area without paint, or paint outside, is seen. Less: every edge counts, since a mark lies on
+    /// How deep [mm] an area without paint, or paint outside, is seen. Less: every edge counts, since a mark is on
     /// its shape's edge to about 0.1 mm. More: thorns of half a millimetre are free.
     double seen_mm = 0.15;
     double notch = 3.0;   ///< more per mm^2 without paint deeper than that. More: strokes into each corner

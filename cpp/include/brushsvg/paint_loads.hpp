@@ -14,7 +14,7 @@ struct PaintLoadOptions {
 };
 
 /// The pass in parts between which the brush is lifted to fetch paint; one part where the paint lasts. Each part ends
-/// by holding the patch where it is and begins where an earlier patch lay, with its heading: from there on the mark is
+/// by holding the patch where it is and begins where an earlier patch was, with its heading: from there on the mark is
 /// that of the whole pass, so no gap shows. A cut is made where the brush is taut and pressed, on no arc; where that is
 /// nowhere in time, the part is longer than the paint lasts. Named as the stroke, then stroke+2, stroke+3, ...,
 /// and numbered as loads; one part is the pass as it was.

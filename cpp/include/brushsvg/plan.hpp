@@ -17,7 +17,7 @@ using Poses = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// No table is larger: a coordinate beyond it is damage, and squares of it still add up.
 inline constexpr double kLargestMm = 1e6;
 
-/// Poses `first` to `last` lie on a circle about a centre, at constant depth, and are passed in this direction.
+/// Poses `first` to `last` are on a circle about a centre, at constant depth, and are passed in this direction.
 struct Arc {
     std::int64_t first = 0, last = 0;  ///< indexes of poses
     Eigen::Vector2d centre_mm{0.0, 0.0};
@@ -32,7 +32,7 @@ inline constexpr std::array<double, 2> kArcRadiusMm{0.1, kLargestMm};
 /// The arc between two poses runs through both, so nothing jumps; much more would hide a wrong centre.
 inline constexpr double kOnCircleMm = 3e-3;
 
-/// How far from upright a brush may be tilted: what its laws say of one that lies on its side has never been measured,
+/// How far from upright a brush may be tilted: what its laws say of a brush on its side has never been measured,
 /// and at 30 degrees a section of it is 15 % longer already.
 inline constexpr double kMostTiltDeg = 30.0;
 
@@ -76,7 +76,7 @@ double turn_between(const Arc& arc, const Eigen::Vector2d& from_mm, const Eigen:
 /// said, each by less than half a turn.
 void check_arc(const Pass& pass, std::size_t k, const std::string& where);
 
-/// Throws Error, with this `where`, when a pass has tool axes and not one for each pose, or arcs beside them, or when
+/// Throws Error, with this `where`, when a pass has tool axes and not one for each pose, or arcs with them, or when
 /// one is not of length 1 or is tilted by more than 30 degrees.
 void check_tool_axes(const Pass& pass, const std::string& where);
 

@@ -15,7 +15,7 @@ Rings intersect(const Rings& a, const Rings& b);
 enum class FillRule { nonzero, evenodd };
 
 /// The shape that closed outlines fill, as rings that do not cross: outlines may cross themselves and each other, turn
-/// either way and lie on each other. Coordinates are kept to 1e-5 mm.
+/// either way and overlap. Coordinates are kept to 1e-5 mm.
 Rings fill(const Rings& outlines, FillRule rule);
 
 /// Area [mm^2], clockwise rings, which are holes, taken off: negative where they outweigh.
@@ -25,7 +25,7 @@ double area(const Rings& rings);
 double overlap(const Rings& a, const Rings& b);
 
 /// Convex pieces whose union is that of the hulls of every two neighbours in a chain of convex counter-clockwise rings:
-/// the hulls without the corners that lie in the pieces next to them. One ring is its own piece.
+/// the hulls without the corners in the pieces next to them. One ring is its own piece.
 Rings pieces_between(const Rings& chain);
 
 /// Convex hull of points, counter-clockwise.

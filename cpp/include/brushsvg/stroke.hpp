@@ -29,7 +29,7 @@ struct Stroke {
     std::string layer;
     std::string colour;
     Settings settings;
-    bool start_covered = false, end_covered = false;  ///< where it meets others, whose paint lies over that end
+    bool start_covered = false, end_covered = false;  ///< where it meets others, whose paint covers that end
 };
 
 /// A place on the middle line: cubic number and its parameter in [0, 1].
@@ -44,7 +44,7 @@ Eigen::Vector2d point_at(const Cubics& middle_mm, const Place& place);
 Eigen::Vector2d tangent_at(const Cubics& middle_mm, const Place& place);
 /// Arc length [mm] of one cubic between two parameters.
 double arc_length(const Cubics& middle_mm, Eigen::Index cubic, double t0, double t1);
-/// Parameter at an arc length [mm] from the beginning of one cubic; 0 or 1 for what lies before or behind it.
+/// Parameter at an arc length [mm] from the beginning of one cubic; 0 or 1 for lengths before or behind it.
 double parameter_at(const Cubics& middle_mm, Eigen::Index cubic, double length_mm);
 /// Half width [mm] at a fraction of the middle line's arc length.
 double half_width_at(const Stroke& stroke, double fraction);

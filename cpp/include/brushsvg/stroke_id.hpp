@@ -5,13 +5,13 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// Where in a drawing a stroke comes from. What belongs together is told by these fields; the name is made of them for
+/// Where in a drawing a stroke comes from. These fields show what belongs together; the name is made of them for
 /// people and never taken apart again: an element may be called "icon/1".
 struct StrokeId {
     std::string element;  ///< the element's id, as no other element is called; in a plan that was read the whole name
     int part = 0;         ///< which of the element's sub-paths, from 1; 0: it has only one
     int repeat = 1;       ///< which of the times that it is painted (the setting passes)
-    int lane = 1;         ///< which of the passes that fill a shape wider than the brush, or lie between sharp corners
+    int lane = 1;         ///< which of the passes that fill a shape wider than the brush, or are between sharp corners
     int load = 1;         ///< which of the loads of paint that a long stroke takes
 
     StrokeId() = default;

@@ -18,11 +18,11 @@ struct WorstPlace {
 /// How well a pass paints its stroke.
 struct StrokeScore {
     double overlap;
-    /// Mean absolute difference of both marks' widths across the middle line. Places where the wanted mark is not as
-    /// wide as the line says (its ends, where it crosses or touches itself) tell nothing of the brush's width and are
+    /// Mean absolute difference of both marks' widths across the middle line. Places where the target mark is not as
+    /// wide as the line says (its ends, where it crosses or touches itself) do not show the brush's width and are
     /// left out; nothing left: none.
     std::optional<double> width_error_mm;
-    double excess_turning;  ///< of the mark's outline beyond the wanted one's [full turns], see excess_turning()
+    double excess_turning;  ///< of the mark's outline beyond the target's [full turns], see excess_turning()
     WorstPlace worst;       ///< in a square half as wide as the stroke, at least 0.5 mm
 };
 

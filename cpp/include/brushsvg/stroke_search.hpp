@@ -27,17 +27,17 @@ struct AddedStroke {
 
 /// How a shape is painted better.
 struct SearchedShape {
-    /// What each given stroke is best painted as: itself, led otherwise, in parts between its corners, or not at all.
+    /// What each given stroke is best painted as: itself, another path, in parts between its corners, or not at all.
     std::vector<std::vector<Stroke>> strokes;
     std::vector<bool> changed;  ///< which of them differ from what was given
     std::vector<AddedStroke> added;
 };
 
 /// Looks for the strokes by which the mark of each shape costs least, from the given ones on. A stroke that sticks out
-/// of its shape is led otherwise: narrower, cut short at an end, or in parts that meet at its corners; one that fills
+/// of its shape gets another path: narrower, cut short at an end, or in parts that meet at its corners; one that fills
 /// with others, whose ends those cover, also the other way round, or not at all. Then strokes are added, into the
 /// largest bare area first: from a stroke next to it straight out, along the edge of the shape, from a corner inwards,
-/// or across. The same for any number of threads. are_free: whether strokes may be led otherwise, and not only added.
+/// or across. The same for any number of threads. are_free: whether strokes may get another path, and not only added.
 std::vector<SearchedShape> search_strokes(const std::vector<PaintedShape>& shapes, const Brush& brush,
                                           const ObjectiveWeights& weights = {}, bool are_free = true);
 

@@ -19,9 +19,9 @@ struct TurnRound {
     Eigen::Vector2d ends_heading{1.0, 0.0};  ///< where nothing before it and no line after it says so
 };
 
-/// One move of the brush on the paper: it turns round on the spot, or the widest section is led along a line, or both.
-/// Where a line follows another move, P rests, and the mark goes on where the widest section is as far from P as its
-/// lever: between `from_mm` and `latest_mm`.
+/// One move of the brush on the paper: it turns round on the spot, or the widest section is moved along a line, or
+/// both. Where a line follows another move, P rests, and the mark goes on where the widest section is as far from P as
+/// its lever: between `from_mm` and `latest_mm`.
 struct BrushMove {
     std::optional<TurnRound> turn;
     std::optional<Stroke> line;
@@ -42,7 +42,7 @@ struct StartStyle {
     std::optional<BrushMoves> (*moves)(const Stroke& ended, const Brush& brush, Caps caps);
 };
 struct EndStyle {
-    Terminal name;  ///< automatic: round, and not taken where a round end is asked for
+    Terminal name;  ///< automatic: round, and not taken where a round end is requested
     std::optional<EndedStroke> (*ended)(const Stroke& stroke, const Brush& brush, Caps caps);
 };
 extern const std::array<StartStyle, 5> kStartStyles;  ///< the plainest first
@@ -53,7 +53,7 @@ extern const std::array<EndStyle, 4> kEndStyles;
 /// stroke longer than a dot, a ring, a rigid brush, and where a footprint of no depth reaches the drawn edge.
 std::optional<BrushMoves> turned_dot(const Stroke& stroke, const Brush& brush, Caps caps = Caps::round);
 
-/// A dot with corners, as of the i of a sans: turned round, then a narrow mark goes round its corners.
+/// A dot with corners, as in the i of a sans: turned round, then a narrow mark goes round its corners.
 std::optional<BrushMoves> dot_with_corners(const Stroke& stroke, const Brush& brush, Caps caps = Caps::round);
 
 /// Narrows to a point at the drawn end, as a pointed start widens: as the footprint is behind, mirrored. None where the

@@ -13,7 +13,7 @@
 namespace brushsvg {
 namespace {
 
-/// The surroundings of an end, and how far marks are from what is wanted there.
+/// The surroundings of an end, and how far marks are from the target there.
 class EndView {
  public:
     EndView(const Stroke& wanted, const Brush& brush, Side side, double step_tolerance)
@@ -83,13 +83,13 @@ Requests requested(Side side, Terminal asked) {
     if (asked == T::pointed) return {{T::pointed}, {T::round}};
     if (asked == T::round) return {{T::round}, {T::pointed}};
     if (asked == T::butt) return {{T::butt}, {T::round}, {T::pointed}};
-    // no end is drawn into a point unless that is asked for: it would be a thorn where the drawn end is blunt
+    // no end is drawn into a point unless that is requested: it would be a thorn where the drawn end is blunt
     std::vector<T> all{T::round, T::butt, T::automatic};
     if (side == Side::start) all.push_back(T::pointed);
     return {all};
 }
 
-/// Try the styles that are asked for and keep those that are better than the ones before them, the best first.
+/// Try the requested styles and keep those that are better than the ones before them, the best first.
 /// `worth`: what each must win. `moves_with`: the moves with a style; none where there is no room.
 template <class Styles, class MovesWith>
 std::vector<std::pair<typename Styles::value_type, BrushMoves>> best_styles(const Styles& styles,
@@ -102,7 +102,7 @@ std::vector<std::pair<typename Styles::value_type, BrushMoves>> best_styles(cons
         for (const auto& style : styles) {
             if (std::find(names.begin(), names.end(), style.name) == names.end()) continue;
             const std::optional<BrushMoves> moves = moves_with(style);
-            // the plainest style has room everywhere: where it is asked for, nothing else is tried
+            // the plainest style has room everywhere: where it is requested, nothing else is tried
             const bool is_plainest = names.size() == 1 && names.front() == styles.front().name;
             const std::optional<double> score = !moves ? std::nullopt : is_plainest ? 0.0 : view.score(*moves);
             if (!score || (least && !(*score + worth < *least))) continue;

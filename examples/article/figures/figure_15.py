@@ -38,5 +38,5 @@ for stroke, way, mark in zip(strokes, done.plan.passes, marks.passes, strict=Tru
 for axes, title in ((left, "(a)"), (right, "(b)")):
     axes.set(aspect="equal", title=title, xlabel="mm", ylim=(-3, 85))
 left.set_ylabel("mm")
-wanted = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.wanted_outline(stroke, 0.02)])
-rows = [("overlap of paint and drawing", None, brushsvg.overlap(marks.outline_mm, wanted))]
+target = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.wanted_outline(stroke, 0.02)])
+rows = [("overlap of paint and drawing", None, brushsvg.overlap(marks.outline_mm, target))]

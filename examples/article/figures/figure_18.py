@@ -29,15 +29,15 @@ figure = Figure(figsize=(8, 6), layout="constrained")
 above, below = figure.subplots(2, 1, height_ratios=(1.2, 1))
 distances: list[np.ndarray] = []
 for colour in ("#3f8fd9", "#e07a2f", "#2f8f4e", "#8a4fbf"):
-    for way, wanted in zip(plan.passes, reference, strict=True):
+    for way, expected in zip(plan.passes, reference, strict=True):
         bent = brushsvg.brush_like("bent", brush)
         bent.lag = brushsvg.laws.Profile(np.multiply(brush.lag.coefficients, rng.normal(1, 0.1)).tolist())
         alone = brushsvg.Plan(plan.brush, "", plan.sheet_mm, [way])
         painted = brushsvg.simulate(alone, bent).passes[0].contact_mm
         above.plot(*painted.T, color=colour, lw=0.8)
-        distances.append(np.hypot(*(painted[:, None] - wanted.contact_mm).T).min(axis=0))
-for wanted in reference:
-    above.plot(*wanted.contact_mm[::12].T, "k+", ms=3, mew=0.5)
+        distances.append(np.hypot(*(painted[:, None] - expected.contact_mm).T).min(axis=0))
+for expected in reference:
+    above.plot(*expected.contact_mm[::12].T, "k+", ms=3, mew=0.5)
 above.set(aspect="equal", title="(a)", xlabel="mm", ylabel="mm")
 off = np.concatenate(distances)
 below.hist(off, bins=np.arange(0, off.max() + 0.1, 0.1), color="#2b3a67", log=True)

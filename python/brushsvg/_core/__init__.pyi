@@ -16,7 +16,6 @@ __all__: list[str] = [
     "Brush",
     "CommonArea",
     "Compensated",
-    "Displaced",
     "Footprint",
     "FootprintTable",
     "LawFit",
@@ -41,8 +40,6 @@ __all__: list[str] = [
     "Settings",
     "Stroke",
     "StrokeId",
-    "Track",
-    "TrackFit",
     "TrackingError",
     "Verdict",
     "WorstPlace",
@@ -65,7 +62,6 @@ __all__: list[str] = [
     "fit_curve",
     "fit_law",
     "fit_marks",
-    "fit_tracks",
     "flatten",
     "follow_lags",
     "footprint_at",
@@ -155,7 +151,7 @@ class Profile:
     @property
     def depth_range_mm(self) -> tuple[float, float] | None:
         """
-        Depths [mm] at which it can be asked, of a law of a Brush: its depth_range_mm. None: any.
+        Depths [mm] at which it is defined, of a law of a Brush: its depth_range_mm. None: any.
         """
     @property
     def extra(self) -> str: ...
@@ -796,7 +792,7 @@ class AxisBranch:
 
 class CommonArea:
     """
-    Areas [mm^2] of paint and wanted mark.
+    Areas [mm^2] of paint and target mark.
     """
     def __copy__(self) -> CommonArea: ...
     def __deepcopy__(self, memo: dict) -> CommonArea: ...
@@ -939,7 +935,7 @@ class Norm:
 
 class LawShape:
     """
-    What is asked of a fitted law; positive and rising hold on range_mm.
+    Constraints on a fitted law; positive and rising hold on range_mm.
     """
     def __copy__(self) -> LawShape: ...
     def __deepcopy__(self, memo: dict) -> LawShape: ...
@@ -1027,92 +1023,6 @@ class Lines:
     def name(self) -> str: ...
     @property
     def value(self) -> int: ...
-
-class Track:
-    """
-    A stroke along which the patch was seen: lag from it by fit_tracks.
-
-    poses_mm (n, 3): the TCP's way; pose (m,): where on it, fractional between poses; seen_mm (m, 2): where the patch was.
-    heading_rad: at the first pose, the brush being dragged already; nan: it is set down there.
-    """
-    def __copy__(self) -> Track: ...
-    def __deepcopy__(self, memo: dict) -> Track: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __getstate__(self) -> tuple: ...
-    def __hash__(self) -> int: ...
-    def __init__(
-        self,
-        poses_mm: numpy.typing.ArrayLike,
-        pose: collections.abc.Sequence[float],
-        seen_mm: numpy.typing.ArrayLike,
-        heading_rad: float = ...,
-    ) -> None: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, arg0: tuple) -> None: ...
-
-class Displaced:
-    """
-    Members:
-
-      no
-
-      along
-
-      both
-    """
-
-    __members__: typing.ClassVar[dict[str, Displaced]]
-    along: typing.ClassVar[Displaced]
-    both: typing.ClassVar[Displaced]
-    no: typing.ClassVar[Displaced]
-    @typing.overload
-    def __eq__(self, other: Displaced) -> bool: ...
-    @typing.overload
-    def __eq__(self, other: typing.Any) -> bool: ...
-    def __getstate__(self) -> int: ...
-    def __hash__(self) -> int: ...
-    def __index__(self) -> int: ...
-    def __init__(self, value: int) -> None: ...
-    def __int__(self) -> int: ...
-    @typing.overload
-    def __ne__(self, other: Displaced) -> bool: ...
-    @typing.overload
-    def __ne__(self, other: typing.Any) -> bool: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, state: int) -> None: ...
-    def __str__(self) -> str: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def value(self) -> int: ...
-
-class TrackFit:
-    """
-    A lag fitted to tracks, how sure it is, and what it leaves.
-    """
-    def __copy__(self) -> TrackFit: ...
-    def __deepcopy__(self, memo: dict) -> TrackFit: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __getstate__(self) -> tuple: ...
-    def __hash__(self) -> int: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, arg0: tuple) -> None: ...
-    @property
-    def converged(self) -> bool: ...
-    @property
-    def covariance(self) -> tuple[tuple[float, ...], ...]: ...
-    @property
-    def degrees_of_freedom(self) -> int: ...
-    @property
-    def displacement_mm(self) -> numpy.typing.NDArray[numpy.float64]: ...
-    @property
-    def heading_rad(self) -> tuple[float, ...]: ...
-    @property
-    def iterations(self) -> int: ...
-    @property
-    def lag(self) -> Profile: ...
-    @property
-    def residual_mm(self) -> tuple[float, ...]: ...
 
 class PaintedMark:
     """
@@ -1536,7 +1446,7 @@ def coverage_of_pieces(
     px_per_mm: float,
 ) -> numpy.typing.NDArray[numpy.float32]:
     """
-    The same for the union of convex counter-clockwise rings, which may lie over each other.
+    The same for the union of convex counter-clockwise rings, which may overlap.
     """
 
 def deviations_of_95(degrees_of_freedom: float | None = None) -> float:
@@ -1549,7 +1459,7 @@ def excess_turning(
     wanted: collections.abc.Sequence[numpy.typing.ArrayLike],
 ) -> float:
     """
-    How much more the outlines of a mark turn than those wanted, in full turns; each as a polygon within 0.1 mm.
+    How much more the outlines of a mark turn than those of the target, in full turns; each as a polygon within 0.1 mm.
     """
 
 def fill(
@@ -1598,23 +1508,6 @@ def fit_marks(
     marks that no brush paints along these ways.
     """
 
-def fit_tracks(
-    tracks: collections.abc.Sequence[Track],
-    start: collections.abc.Sequence[float],
-    range_mm: collections.abc.Sequence[float],
-    *,
-    lever_mm: collections.abc.Sequence[float] = [],
-    free_heading: bool = False,
-    displaced: Displaced = ...,
-    most_iterations: int = 50,
-) -> TrackFit:
-    """
-    Lag r(d) from strokes with a known way of the TCP and places where the patch was seen, by least squares.
-
-    start: coefficients to begin from, as many as the law shall have. lever_mm: coefficients of e(d) where the middle of the
-    mark was seen instead of the centre of friction. free_heading, displaced: each stroke's own unknowns.
-    """
-
 def flatten(
     stroke: Stroke, tolerance_mm: float = 0.005
 ) -> numpy.typing.NDArray[numpy.float64]:
@@ -1629,13 +1522,12 @@ def follow_lags(
     depth_range_mm: collections.abc.Sequence[float],
 ) -> list:
     """
-    What patches of K other lags do on the ways of these passes, at the rows of their marks.
+    Follow the TCP of each pass with K other lags, at the rows of its marks.
 
     marks: PassMarks of each pass, simulated with one upright brush. lags: Profiles that are positive on depth_range_mm. For
     each pass: contacts [mm] and headings as unit vectors, (n, 2, K) each. In the air the contact is the TCP.
 
-    Exact at each row, by the closed form; vector instructions carry several lags at once where the library was built with
-    Highway.
+    Exact at each row, by the closed form.
     """
 
 def footprint_at(
@@ -1810,12 +1702,12 @@ def thorns(
     wanted: collections.abc.Sequence[numpy.typing.ArrayLike],
 ) -> int:
     """
-    How many corners of a mark's outlines beyond 20 degrees stick out of what was wanted by more than 0.3 mm; each outline as a polygon within 0.05 mm, wanted given as for unite.
+    How many corners of a mark's outlines beyond 20 degrees stick out of the target by more than 0.3 mm; each outline as a polygon within 0.05 mm, target given as for unite.
     """
 
 def touching(wanted: collections.abc.Sequence[Stroke]) -> list[list[int]]:
     """
-    Numbers of strokes whose wanted marks touch, a list per letter; those that stand alone are not named.
+    Numbers of strokes whose target marks touch, a list per letter; those that stand alone are not named.
     """
 
 def trace_outlines(
@@ -1890,7 +1782,7 @@ def wanted_outline(
     stroke: Stroke, tolerance_mm: float = 0.005
 ) -> list[numpy.typing.NDArray[numpy.float64]]:
     """
-    Rings of the wanted mark: the path with its width, round caps and round joins.
+    Rings of the target mark: the path with its width, round caps and round joins.
     """
 
 def wanted_pieces(

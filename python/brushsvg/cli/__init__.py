@@ -1,4 +1,4 @@
-"""The command: runs what was typed; whatever happens becomes lines on stderr and an exit status.
+"""Run the typed command and turn its result into lines on stderr and an exit status.
 
 Nothing is imported before main runs, so that from its first moment on Ctrl-C leaves no traceback.
 """
@@ -53,7 +53,7 @@ class _Interrupts:
 
 
 def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
-    """Whatever letters a terminal knows, and whether or not anybody takes what is printed."""
+    """Run the command with any terminal encoding, and with a reader that may stop reading."""
     from ..errors import Notice
     from .console import let_go, say_notice
 
@@ -69,7 +69,7 @@ def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
         if sys.stdout is not None:
             let_go(sys.stdout)
         if isinstance(problem, BrokenPipeError):
-            return 0  # whoever reads has seen enough
+            return 0  # the reader closed the pipe
         reason = (problem.strerror or str(problem)).lower()
         say_notice(problem.filename or "standard output", Notice("", reason, code="file-unwritable"))
         return 1
@@ -80,17 +80,20 @@ def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
 
     from ..errors import unexpected
     from .arguments.parser import parse
-    from .console import RefusedError, say_notice, tell_in_json
+    from .console import RefusedError, say_notice, use_json_messages
 
     file = ""
     try:
-        tell_in_json(False)
+        use_json_messages(False)
         args = parse(argv)
-        tell_in_json(args.messages == "json")
+        use_json_messages(args.messages == "json")
         file = getattr(args, "input", "")
         from . import commands
+        from .steps.project_settings import use_project
 
-        getattr(commands, args.run)(args)
+        run = getattr(commands, args.run)
+        use_project(args, argv)
+        run(args)
     except SystemExit as leaving:
         return leaving.code
     except RefusedError as refused:

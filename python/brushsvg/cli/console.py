@@ -43,7 +43,7 @@ def _write_line(text: str) -> None:
     try:
         sys.stderr.write(f"{text}\n")
         sys.stderr.flush()
-    except OSError:  # nobody reads: what was asked for is done or refused all the same
+    except OSError:  # nobody reads: the command still ends as usual
         let_go(sys.stderr)
 
 
@@ -53,8 +53,8 @@ def let_go(stream) -> None:
         os.dup2(nowhere.fileno(), stream.fileno())
 
 
-def tell(text: str) -> None:
-    """What was asked for, on stdout."""
+def print_text(text: str) -> None:
+    """Print the result of a command on stdout."""
     if sys.stdout is None:
         raise RefusedError("standard output", [Notice("", "it is closed", code="file-unwritable")])
     clear_stage()
@@ -68,17 +68,17 @@ def warn(file: str, warnings: Iterable[Notice]) -> None:
 
 
 def say_notice(file: str, notice: Notice) -> None:
-    """One line of text, or of JSON for programs that asked for it."""
+    """Print one line of text, or of JSON with --messages json."""
     if not _in_json:
-        say(file, notice.where, notice.told)
+        say(file, notice.where, notice.text)
     elif sys.stderr is not None:
         _write_line(json.dumps({"file": file, **notice.as_json()}))
 
 
-def tell_in_json(is_asked: bool) -> None:
-    """How warnings and refusals are told from now on."""
+def use_json_messages(is_on: bool) -> None:
+    """Set whether warnings and refusals are printed as JSON from now on."""
     global _in_json
-    _in_json = is_asked
+    _in_json = is_on
 
 
 _in_json = False

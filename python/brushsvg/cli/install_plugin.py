@@ -23,7 +23,7 @@ SOURCE = Path(__file__).parents[3] / "plugins" / "inkscape"
 
 
 def install_inkscape(zipped: str | None = None, source: Path = SOURCE) -> Path:
-    """Copy the extension, in place of what was there, and note where this brushsvg is; the folder it lies in now.
+    """Replace the extension, note where this brushsvg is, and return the extension's folder.
 
     Error when there is nothing to copy, or the folder cannot be written.
     """
@@ -72,7 +72,7 @@ def remove_inkscape() -> Path:
 
 
 def own_program() -> str:
-    """The executable file brushsvg that runs, or that lies beside the Python that runs; empty where there is none."""
+    """Return the running brushsvg executable, or the one next to the running Python, or an empty text."""
     scripts = sysconfig.get_path("scripts")
     for found in (shutil.which(sys.argv[0]), shutil.which("brushsvg", path=scripts)):
         if found and Path(found).stem == "brushsvg":

@@ -1,1 +1,1 @@
-"""A job that was painted, in a photograph, held against what was wanted and what was predicted."""
+"""Compare a painted job, in a photograph, with its target and its prediction."""

@@ -1,4 +1,4 @@
-"""What a painted job teaches for the next one: by how much each stroke is led elsewhere."""
+"""Corrections that a painted job teaches for the next one: by how much each stroke is moved."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from ..machine.realised.retimed import on_way
 from .offset_width import wider
 
 FORMAT = "brushsvg/comparison"
-BESIDE = "beside_machine"  # of the file: what is left of each stroke once the cell is corrected
-LEAST_MARKS = 3  # fewer do not tell a sheet's place from their own
+RESIDUAL = "beside_machine"  # of the file: what is left of each stroke once the cell is corrected
+LEAST_MARKS = 3  # fewer do not separate a sheet's place from their own
 MARK = "corrections"  # key of a corrected plan: the corrections and the plan before
 KEYS = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm", "way_mm")
 MOST_WIDER_MM = 1.0  # of each edge: a mark that is off by more is another brush's
-MOST_MM, MOST_DEG = 3.0, 3.0  # a mark that lies farther off does so for a reason that is to be found
+MOST_MM, MOST_DEG = 3.0, 3.0  # a mark that is farther off has a cause to be found
 SAME_MM = 0.1  # where the same stroke begins, and where its way leads, in depth as well: less is within a correction
 PLACES = 9  # of a way, equal lengths apart
 OTHER_LAG_MM = (
@@ -36,7 +36,7 @@ OTHER_LAG_MM = (
 @dataclass(frozen=True)
 class Correction:
     """A stroke, whose way begins at start_mm of the sheet, is turned counter-clockwise by turn_deg about middle_mm and
-    shifted by shift_mm, its edges led wider_mm farther out: what is left once the brush of brush_sha256 and the machine
+    shifted by shift_mm, its edges moved out by wider_mm: what is left once the brush of brush_sha256 and the machine
     of machine_sha256 ("" where that is not known) are known. replanned: the sheet was painted by a plan for another
     brush, so that strokes began elsewhere. way_mm: places of the TCP as it was planned, see `way_of`, () where that is
     not known."""
@@ -53,18 +53,18 @@ class Correction:
     way_mm: tuple[tuple[float, ...], ...] = ()
 
     def moved(self, points_mm: np.ndarray) -> np.ndarray:
-        """(n, 2) places on the sheet, led elsewhere."""
+        """Return (n, 2) places on the sheet, corrected."""
         turned = (points_mm - self.middle_mm) @ rotation(math.radians(self.turn_deg))
         return turned + self.middle_mm + self.shift_mm
 
 
 @dataclass(frozen=True)
 class SheetBefore:
-    """What `compare` wrote of a sheet. aside_mm: by stroke how far it lay aside there, without those of which the file
-    does not say it."""
+    """The contents of a file that `compare` wrote of a sheet. displacement_mm: by stroke its displacement there,
+    without those that the file does not have."""
 
     corrections: tuple[Correction, ...] = ()
-    aside_mm: dict[str, float] = field(default_factory=dict)
+    displacement_mm: dict[str, float] = field(default_factory=dict)
 
 
 def way_of(a_pass) -> tuple[tuple[float, ...], ...]:
@@ -80,7 +80,9 @@ def machine_sha256(machine: Machine | None) -> str:
     return hashlib.sha256(json.dumps(known).encode()).hexdigest()
 
 
-def beside_machine(corrections: tuple[Correction, ...], machine: Machine | None) -> tuple[Correction, ...]:
+def select_for_machine(
+    corrections: tuple[Correction, ...], machine: Machine | None
+) -> tuple[Correction, ...]:
     """Return the corrections that belong to this machine.
 
     Error if they belong to other cells: they would correct again what a corrected cell already undoes.
@@ -98,17 +100,17 @@ def beside_machine(corrections: tuple[Correction, ...], machine: Machine | None)
 
 
 def corrected(plan, corrections: tuple[Correction, ...], brush):
-    """The plan, made for this brush, with its strokes led elsewhere, which it says. Corrections that it has already are
-    replaced. Error for corrections of another job, or beside another brush: what a brush has learnt from a sheet,
+    """The plan, made for this brush, with its strokes moved, and a note of that. Corrections that it has already are
+    replaced. Error for corrections of another job, or of another brush: what a brush has learnt from a sheet,
     corrections of that sheet would undo again."""
     if not corrections:
         return plan
     plan, _ = uncorrected(plan)
     _core.refuse_tilted(plan.passes, "strokes are corrected for a brush held upright")
-    beside = corrections[0].brush_sha256
-    if beside and brush.sha256 and beside != brush.sha256:
+    of_brush_sha256 = corrections[0].brush_sha256
+    if of_brush_sha256 and brush.sha256 and of_brush_sha256 != brush.sha256:
         raise Error(
-            f"the corrections say what is left of a sheet beside another brush (sha256 {beside[:12]}), not beside "
+            f"the corrections are residuals of another brush (sha256 {of_brush_sha256[:12]}), not of "
             f"{brush.name} ({brush.sha256[:12]}), which may know part of it: compare the photograph again with this "
             "brush, and with the plan.json that was painted",
             "brush_sha256",
@@ -118,7 +120,7 @@ def corrected(plan, corrections: tuple[Correction, ...], brush):
     passes = []
     for a_pass in plan.passes:
         correction = left.pop(a_pass.stroke, None)
-        passes.append(_led(a_pass, correction, brush) if correction else a_pass)
+        passes.append(_corrected(a_pass, correction, brush) if correction else a_pass)
     if left:
         raise _of_another_job(next(iter(left)), "there is no such stroke")
     said = {
@@ -159,7 +161,7 @@ def uncorrected(plan) -> tuple[_core.Plan, tuple[Correction, ...]]:
     return before, _strokes(said, f"{MARK}.", {})
 
 
-def _led(a_pass, correction: Correction, brush):
+def _corrected(a_pass, correction: Correction, brush):
     poses = np.array(a_pass.poses_mm, dtype=float)
     away_mm = math.dist(poses[0, :2], correction.start_mm)
     # a plan for a brush that trails by nothing, or three times as far, begins up to two lags elsewhere
@@ -180,13 +182,18 @@ def _led(a_pass, correction: Correction, brush):
 
 
 def _refuse_other_way(a_pass, known_mm: np.ndarray) -> None:
-    """Where the brush is led elsewhere, deeper or less deep than when the sheet was painted."""
+    """Warn where the brush is moved, or deeper or less deep than when the sheet was painted."""
     off = np.array(way_of(a_pass)) - known_mm
-    aside_mm, deeper_mm = np.hypot(*off.T[:2]).max(), np.abs(off[:, 2]).max()
-    if max(aside_mm, deeper_mm) > SAME_MM:
-        how = f"{aside_mm:.2f} mm aside" if aside_mm > deeper_mm else f"{deeper_mm:.2f} mm higher or lower"
+    displacement_mm, deeper_mm = np.hypot(*off.T[:2]).max(), np.abs(off[:, 2]).max()
+    if max(displacement_mm, deeper_mm) > SAME_MM:
+        how = (
+            f"{displacement_mm:.2f} mm to the side"
+            if displacement_mm > deeper_mm
+            else f"{deeper_mm:.2f} mm higher or lower"
+        )
         raise _of_another_job(
-            a_pass.stroke, f"the brush is led up to {how} of where it was, as by another width or tolerance"
+            a_pass.stroke,
+            f"the brush is up to {how} of where it was, for example by another width or tolerance",
         )
 
 
@@ -206,15 +213,15 @@ def read_sheet_before(path: str | os.PathLike[str]) -> SheetBefore:
         sha256, planned = (_sha256(content, key) for key in ("brush_sha256", "plan_brush_sha256"))
         of_brush = {"brush_sha256": sha256, "replanned": bool(planned) and planned != sha256}
         found = _strokes(content, "", of_brush)
-        if content.get(BESIDE) is not None:
-            (corrected,) = json_fields.objects([content[BESIDE]], BESIDE)
-            found += _strokes(corrected, f"{BESIDE}.", of_brush)
+        if content.get(RESIDUAL) is not None:
+            (corrected,) = json_fields.objects([content[RESIDUAL]], RESIDUAL)
+            found += _strokes(corrected, f"{RESIDUAL}.", of_brush)
         if not found:
             raise Error(_why_none(content["strokes"]), "strokes", code="corrections-missing")
     except Error as refusal:
         refusal.file = os.fspath(path)
         raise
-    return SheetBefore(found, _aside_mm(content["strokes"]))
+    return SheetBefore(found, _displacement_mm(content["strokes"]))
 
 
 def _why_none(rows: list[dict]) -> str:
@@ -222,11 +229,11 @@ def _why_none(rows: list[dict]) -> str:
     if 0 < seen < LEAST_MARKS:
         return (
             f"it corrects no stroke: {seen} of its marks {'was' if seen == 1 else 'were'} found, and at least "
-            f"{LEAST_MARKS} are needed to tell a stroke's own place from the sheet's"
+            f"{LEAST_MARKS} are needed to separate a stroke's own place from the sheet's"
         )
     if seen:
         return f"it corrects no stroke: of {seen} marks none is seen well enough, and near enough to its prediction"
-    return "it corrects no stroke: the photograph did not show where marks lie"
+    return "it corrects no stroke: the photograph did not show the places of marks"
 
 
 def _strokes(content: dict, at: str, of_brush: dict) -> tuple[Correction, ...]:
@@ -250,7 +257,7 @@ def _sha256(content: dict, key: str, at: str = "") -> str:
     return said
 
 
-def _aside_mm(rows: list[dict]) -> dict[str, float]:
+def _displacement_mm(rows: list[dict]) -> dict[str, float]:
     said = [(row.get("stroke"), row.get("aside_mm")) for row in rows]
     return {
         name: float(mm)

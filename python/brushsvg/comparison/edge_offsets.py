@@ -1,4 +1,4 @@
-"""How far the edges of paint lie from where a model has them, along the model's outlines."""
+"""Measure the offset of the edges of paint from a model, along the model's outlines."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .placing import Canvas
 
 EVERY_MM = 0.8
 # A place where the outline turns by more has no side to be measured on: beyond a corner the nearest edge is not the one
-# that lies across, and what a number does to it is no straight line. Such places made numbers surer than they are.
+# straight across, and what a number does to it is no straight line. Such places made numbers surer than they are.
 SHARP_DEG, SHARP_MM = 40.0, (0.3, 0.9)  # between the directions so far before and behind
 ALONG_MM = 0.05  # between samples of a profile across an edge
 APART_MM = 0.6  # from other marks: nearer, their blurred edges show
@@ -78,7 +78,7 @@ def _sampled(ring: np.ndarray):
 
 
 def offsets_of(outline: Outline, rings_of: list[list[np.ndarray]]) -> np.ndarray:
-    """(n,) how far outside of each place the outlines of other rings of the same stroke lie."""
+    """Return (n,) how far outside of each place the outlines of other rings of the same stroke are."""
     out = np.zeros(len(outline.at))
     for k, rings in enumerate(rings_of):
         here = outline.stroke == k
@@ -93,12 +93,12 @@ def offsets_of(outline: Outline, rings_of: list[list[np.ndarray]]) -> np.ndarray
 def seen(
     outline: Outline,
     rings_of: list[list[np.ndarray]],
-    beside: list[list[np.ndarray]],
+    neighbours: list[list[np.ndarray]],
     paint: np.ndarray,
     canvas: Canvas,
     reach_mm: float,
 ) -> np.ndarray:
-    """beside: rings of strokes that have no outline here.
+    """neighbours: rings of strokes that have no outline here.
 
     (n,) how far outside of each place the paint ends, by its profile across; nan where it does not within reach, where
     the outline turns sharply, or where that may be another stroke's paint."""
@@ -121,7 +121,7 @@ def seen(
     ]
     found[(np.mean(inside, axis=0) < WHOLE) | outline.sharp] = np.nan
     edge = outline.at + np.nan_to_num(found)[:, None] * outline.normal
-    shapes = [area(rings) if rings else Polygon() for rings in (*rings_of, *beside)]
+    shapes = [area(rings) if rings else Polygon() for rings in (*rings_of, *neighbours)]
     for k in range(len(rings_of)):
         here = np.flatnonzero((outline.stroke == k) & ~np.isnan(found))
         others = unary_union([shape for other, shape in enumerate(shapes) if other != k])

@@ -1,4 +1,4 @@
-"""Where along its way the paint of a stroke begins and ends, against what was wanted."""
+"""Find where along its way the paint of a stroke begins and ends, relative to the target."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ import shapely
 
 from ..geometry.cubics import flattened
 from .edge_offsets import area
-from .photographs import BESIDE_MM, Comparison, Wanted
+from .photographs import BLUR_MM, Comparison, TargetStroke
 
 REACH_MM = 6.0  # beyond the end of a middle line, or within it
 ALONG_MM = 0.05
-WIDE_MM = 0.4  # a strip about the middle line: hairs that stand out beside it are no end
+WIDE_MM = 0.4  # a strip about the middle line: hairs that stand out next to it are no end
 FLAT_MM = 0.02
-DIRECTION_MM = 1.5  # of the middle line, that tells where it runs at its end
+DIRECTION_MM = 1.5  # of the middle line, that gives its direction at its end
 LEVEL = 0.5
 
 
 @dataclass(frozen=True)
 class Ends:
-    """By how many mm later on its way than wanted the paint of a stroke begins and ends; below 0: earlier. None where
-    it runs into other paint, or none is found."""
+    """By how many mm later on its way than the target the paint of a stroke begins and ends; below 0: earlier. None
+    where it runs into other paint, or none is found."""
 
     began_mm: float | None
     ended_mm: float | None
@@ -31,9 +31,9 @@ class Ends:
 UNSEEN = Ends(None, None)
 
 
-def ends_of(found: Comparison, strokes: list[Wanted], drawn) -> dict[str, Ends]:
+def ends_of(found: Comparison, strokes: list[TargetStroke], drawn) -> dict[str, Ends]:
     """By stroke; of rings and dabs, which have no ends, nothing is said. drawn: strokes with their middle lines, none
-    of a plan without its drawing. The sheet lies as its marks have it."""
+    of a plan without its drawing. The sheet is at the place of its marks."""
     lines_mm = {
         each.id: flattened(each.middle_mm.reshape(-1, 4, 2), FLAT_MM) for each in drawn if not each.closed
     }
@@ -42,10 +42,10 @@ def ends_of(found: Comparison, strokes: list[Wanted], drawn) -> dict[str, Ends]:
     made = {}
     for stroke in strokes:
         name = stroke.stroke
-        if name not in shapes or name not in lines_mm or not stroke.wanted:
+        if name not in shapes or name not in lines_mm or not stroke.target:
             continue
         others = shapely.unary_union([shape for other, shape in shapes.items() if other != name])
-        target = area(stroke.wanted)
+        target = area(stroke.target)
         away = (_beyond(found, _ray(way), target, others) for way in (lines_mm[name][::-1], lines_mm[name]))
         before, behind = away if name in seen else (None, None)
         made[name] = Ends(None if before is None else -before, behind)
@@ -65,22 +65,22 @@ def _beyond(found: Comparison, ray: tuple[np.ndarray, np.ndarray], target, other
     end, ahead = ray
     if not ahead.any():  # a dab has no way
         return None
-    aside = np.array([-ahead[1], ahead[0]])
+    across = np.array([-ahead[1], ahead[0]])
     t = np.arange(-REACH_MM, REACH_MM, ALONG_MM)
     strip = np.linspace(-WIDE_MM, WIDE_MM, 5)
-    places = end + t[:, None, None] * ahead + strip[:, None] * aside
+    places = end + t[:, None, None] * ahead + strip[:, None] * across
     inside = shapely.contains_xy(target, places[..., 0], places[..., 1]).mean(axis=1)
     flat = places.reshape(-1, 2)
     painted = (
         _paint(found, found.common.moved(flat, found.middle_mm)).reshape(inside.shape[0], -1).mean(axis=1)
     )
-    meant, is_painted = _last(inside, t), _last(painted, t)
-    if meant is None or is_painted is None:
+    drawn_end, is_painted = _last(inside, t), _last(painted, t)
+    if drawn_end is None or is_painted is None:
         return None
-    until = end + max(meant, is_painted) * ahead
-    if shapely.distance(shapely.Point(until), others) < BESIDE_MM:
+    until = end + max(drawn_end, is_painted) * ahead
+    if shapely.distance(shapely.Point(until), others) < BLUR_MM:
         return None
-    return is_painted - meant
+    return is_painted - drawn_end
 
 
 def _last(share: np.ndarray, t: np.ndarray) -> float | None:

@@ -9,13 +9,13 @@ import numpy as np
 
 from ..photo.edges import EDGE_MM, SEEN, outlines_of
 from .job_page import JobPage
-from .photographs import Comparison, Wanted
+from .photographs import Comparison, TargetStroke
 from .placing import Canvas
 
 PART = 0.15  # of a mark: a piece of paint that holds so much of it is, or has part in, its paint
-WITHIN = 0.5  # of a piece of paint that lies in a mark: it is of that one
+WITHIN = 0.5  # of a piece of paint that is in a mark: then it is of that one
 DRY = 0.3  # share of a mark without paint, beyond which its edges are not the brush's
-PAINT_A_CHART = "paint a chart, whose strokes lie alone: brushsvg chart, then calibrate --chart"
+PAINT_A_CHART = "paint a chart, whose strokes do not touch: brushsvg chart, then calibrate --chart"
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class JobMarks:
     dry: list[int]
 
 
-def job_marks(found: Comparison, page: JobPage, strokes: list[Wanted]) -> JobMarks:
+def job_marks(found: Comparison, page: JobPage, strokes: list[TargetStroke]) -> JobMarks:
     """strokes: those that were compared."""
     painting = [number for number, stroke in enumerate(strokes) if stroke.predicted]
     rows = dict(zip(painting, found.strokes, strict=True))

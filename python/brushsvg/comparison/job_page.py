@@ -29,7 +29,7 @@ LEAST_LABEL_MM = 25.0
 
 @dataclass(frozen=True)
 class JobPage:
-    """printed: the page, in its own frame; frame_mm: how far its lower left corner lies left of the sheet's and below
+    """printed: the page, in its own frame; frame_mm: how far its lower left corner is left of the sheet's and below
     it; ticks: rings (4, 2), in the page's frame."""
 
     printed: Chart
@@ -42,14 +42,14 @@ class JobPage:
 
 
 def job_page(plan, title: str = "") -> JobPage:
-    """Markers that name the plan, of the chart's dictionary: another job's page is told from this one. Error for a
+    """Markers that name the plan, of the chart's dictionary: another job's page is not taken for this one. Error for a
     tilted brush: what is learnt from photographs of a job holds for one that is upright."""
     _core.refuse_tilted(plan.passes, "jobs are compared with photographs of a brush held upright")
     sheet = plan.sheet_mm
     side = min(max(min(sheet) / 14, MARKERS[0]), MARKERS[1])
     frame = math.ceil(EDGE_MM + (1 + 2 * QUIET) * side)
     page = (sheet[0] + 2 * frame, sheet[1] + 2 * frame)
-    passes = sorted(plan.passes, key=lambda each: each.stroke)  # whatever their order is
+    passes = sorted(plan.passes, key=lambda each: each.stroke)  # in any order of painting
     mark = chart_id(_core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, passes))
     base = GROUP * (int(mark, 16) % GROUPS)
     markers = tuple(

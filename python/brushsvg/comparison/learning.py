@@ -8,11 +8,11 @@ import numpy as np
 
 from .. import _core
 from ..calibration.chart.photograph import EDGE_PX
-from ..calibration.prior.from_prior import Updated, marks_beside_a_prior, update_brush
+from ..calibration.prior.from_prior import Updated, marks_with_prior, update_brush
 from ..errors import Error, Notice
 from .job_marks import DRY, PAINT_A_CHART, JobMarks, job_marks
 from .job_page import job_page
-from .photographs import Comparison, Wanted, compare_photos
+from .photographs import Comparison, TargetStroke, compare_photos
 
 ROUNDS = 2  # marks that are not where the prior has them may be found where the updated brush has them
 
@@ -33,7 +33,7 @@ def learn(
 ) -> Learnt:
     """plan: as it was painted, corrections and all; brush: as it is known without this job; photos: names and what
     their files hold, of one sheet; name: of the new brush; machine, displacement_mm: as for update_brush. Error where
-    the photographs are not of this job, or show no stroke that lies alone."""
+    the photographs are not of this job, or show no stroke without contact to others."""
     page, predicted, best = job_page(plan), brush, None
     for _ in range(ROUNDS):
         strokes = _strokes(plan, predicted)
@@ -42,7 +42,7 @@ def learn(
         if best and len(marks.rings) <= len(best[1].rings):
             break
         if not marks.rings:
-            raise _nothing_told(marks, photos[0][0])
+            raise _uninformative(marks, photos[0][0])
         edge_mm = EDGE_PX / found.view.px_per_mm
         updated = update_brush(_painted(plan, marks), brush, name, edge_mm, machine, displacement_mm)
         best, predicted = (updated, marks, found), updated.brush
@@ -52,15 +52,17 @@ def learn(
     return Learnt(updated, (*_left_out(found, marks, strokes),))
 
 
-def _strokes(plan, brush: _core.Brush) -> list[Wanted]:
+def _strokes(plan, brush: _core.Brush) -> list[TargetStroke]:
     marks = _core.simulate(plan, brush)
     _core.trace_outlines(marks, brush)
-    return [Wanted(each.stroke, None, [np.array(ring) for ring in each.outline_mm]) for each in marks.passes]
+    return [
+        TargetStroke(each.stroke, None, [np.array(ring) for ring in each.outline_mm]) for each in marks.passes
+    ]
 
 
 def _painted(plan, marks: JobMarks):
     passes = plan.passes
-    return marks_beside_a_prior(
+    return marks_with_prior(
         [
             _core.PaintedMark(passes[k].stroke, np.array(passes[k].poses_mm), rings, passes[k].arcs)
             for k, rings in marks.rings.items()
@@ -68,16 +70,16 @@ def _painted(plan, marks: JobMarks):
     )
 
 
-def _nothing_told(marks: JobMarks, name: str) -> Error:
+def _uninformative(marks: JobMarks, name: str) -> Error:
     touching, dry = len(marks.touching), len(marks.dry)
     sentence = (
-        f"no stroke of this job lies alone with its paint whole: of {touching + dry} {touching} share their paint with "
+        f"no stroke of this job is alone and fully painted: of {touching + dry} {touching} share their paint with "
         f"others, and {dry} are not found or lack paint on more than {100 * DRY:g} %: nothing is learnt from it"
     )
     return Error(sentence, file=name, code="marks-touch", advice=PAINT_A_CHART)
 
 
-def _left_out(found: Comparison, marks: JobMarks, strokes: list[Wanted]):
+def _left_out(found: Comparison, marks: JobMarks, strokes: list[TargetStroke]):
     """Of each stroke that is left out, why."""
     touching = "its paint is one with that of other strokes: it is left out"
     dry = f"its mark is not found, or more than {100 * DRY:g} % of it has no paint: it is left out"

@@ -1,4 +1,4 @@
-"""A pass that paints its edges farther out or in, as far as the brush's laws were measured."""
+"""Move the edges of a pass out or in, as far as the brush's laws were measured."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ DEPTHS = 400  # that the law of width is inverted between
 
 
 def wider(a_pass, by_mm: float, brush):
-    """The pass whose edges lie by_mm farther out (below 0: in), where it is as wide as it is on average, and elsewhere
-    by the same share: deeper, and the tool ahead by as much as the brush trails more, so that it drags along the same
-    line.
+    """Return the pass with its edges moved out by by_mm (below 0: in), where it is as wide as it is on average, and
+    elsewhere by the same share: deeper, and the tool ahead by as much as the brush trails more, so that it drags along
+    the same line.
     Error where the brush cannot."""
     refuse_width(a_pass, by_mm, brush)
     a_pass = with_chords(a_pass)
@@ -45,14 +45,14 @@ def refuse_width(a_pass, by_mm: float, brush) -> None:
     low, high = 2 * float(brush.half_width(least)), 2 * float(brush.half_width(deepest))
     widest_mm = 2 * float(brush.half_width(-np.array(a_pass.poses_mm)[:, 2]).max())
     share = 1 + by_mm / half_mm
-    told_mm = share * (widest_mm if by_mm > 0 else 2 * half_mm)
-    if low <= told_mm <= high or half_mm <= 0:
+    target_mm = share * (widest_mm if by_mm > 0 else 2 * half_mm)
+    if low <= target_mm <= high or half_mm <= 0:
         return
     raise Error(
-        f"with its width corrected by {2 * by_mm:+.2f} mm it would be {told_mm:.2f} mm wide, outside the range "
+        f"with its width corrected by {2 * by_mm:+.2f} mm it would be {target_mm:.2f} mm wide, outside the range "
         f"[{low:.2f}, {high:.2f}] mm in which brush {brush.name} was measured: its width is not corrected",
         a_pass.stroke,
-        told_mm,
+        target_mm,
         (low, high),
         code="width-correction-refused",
     )

@@ -12,7 +12,7 @@ import numpy as np
 from ..calibration.chart.page import bar_rings, label_box
 from ..errors import Error, Notice
 from ..geometry.rings import centroid
-from ..photo.edges import Room, paint_seen
+from ..photo.edges import StrokeBox, paint_seen
 from ..photo.flatten import Flat, flatten
 from ..photo.markers import Printed, View, find_view
 from ..photo.photo import read_photo, refuse_twice
@@ -22,41 +22,41 @@ from .job_page import JobPage, box_ring
 from .placing import NOWHERE, Canvas, Placed, grown, place
 
 AROUND_MM = 6.0  # round a predicted mark, where its paint is looked for
-BESIDE_MM = 0.6  # beyond another mark its blurred edge still shows
-BLOT_MM = 1.5  # beyond a mark, as it lies, what is no edge any more
+BLUR_MM = 0.6  # beyond another mark its blurred edge still shows
+BLOT_MM = 1.5  # beyond a mark, at its place, what is no edge any more
 FINEST_PX_PER_MM = 12.0
-LEAST_OVERLAP = 0.3  # of paint with its prediction, where it lies: less is another job, or chance
+LEAST_OVERLAP = 0.3  # of paint with its prediction, at its place: less is another job, or chance
 PRINT_MM = 0.5  # round what is printed
 COVERED, MOSTLY = (
     0.3,
     0.7,
-)  # share of a mark, where it lies, that is painted at least; without paint, it is missing
+)  # share of a mark, at its place, that is painted at least; without paint, it is missing
 LEVEL = 0.5  # of the usual paint: an edge
 DRIER = 0.1  # share of a mark without paint, beyond that of most: its middle is the painted part's
-THING_MM2 = 100.0  # of one piece beside all marks: a hand, a tool or a large blot
+THING_MM2 = 100.0  # of one piece outside of all marks: a hand, a tool or a large blot
 PALEST = 0.15  # of the usual paint, that of a stroke
 ALIKE = 0.9  # overlap of the paint of two photographs of one sheet, at least
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """One stroke: rings on the sheet of what was wanted (None where only a plan is known), and predicted. is_drawn: a
-    stroke of the drawing; others, in the margin, count in no figure of the sheet."""
+class TargetStroke:
+    """One stroke: rings on the sheet of the target (None where only a plan is known), and of the prediction. is_drawn:
+    a stroke of the drawing; others, in the margin, count in no figure of the sheet."""
 
     stroke: str
-    wanted: list[np.ndarray] | None
+    target: list[np.ndarray] | None
     predicted: list[np.ndarray]
     is_drawn: bool = True
 
 
 @dataclass(frozen=True)
 class Compared:
-    """A stroke as it was painted. overlap_wanted (None without a drawing), overlap_predicted: intersection over union;
-    placed: against the prediction, whose middle lies at middle_mm; missing: share of the mark, where it lies, without
-    paint; like: overlap of the mark, where it lies and as wide, with its paint."""
+    """A stroke as it was painted. overlap_target (None without a drawing), overlap_predicted: intersection over union;
+    placed: relative to the prediction, whose middle is at middle_mm; missing: share of the mark, at its place, without
+    paint; like: overlap of the mark, at its place and width, with its paint."""
 
     stroke: str
-    overlap_wanted: float | None
+    overlap_target: float | None
     overlap_predicted: float
     placed: Placed
     middle_mm: tuple[float, float]
@@ -66,18 +66,18 @@ class Compared:
 
 @dataclass(frozen=True)
 class Comparison:
-    """common: how the sheet lies, by the places of all marks, about middle_mm; spread_mm: rms of what is left of their
-    displacements, None of fewer than three marks; elsewhere_mm2: paint that lies beside all marks. overlaps: of all
-    paint with what was wanted (or, without a drawing, predicted) as it lies, once the sheet's place is put right, and
+    """common: the pose of the sheet, by the places of all marks, about middle_mm; spread_mm: rms of what is left of
+    their displacements, None of fewer than three marks; elsewhere_mm2: paint outside of all marks. overlaps: of all
+    paint with the target (or, without a drawing, the prediction) as painted, once the sheet's place is put right, and
     once each stroke's is. paint: share of it on the page, painted: on the sheet, by the pixels of canvas.
-    has_things: on the sheet lies what is no mark."""
+    has_things: something on the sheet is no mark."""
 
     strokes: tuple[Compared, ...]
     common: Placed
     middle_mm: np.ndarray
     spread_mm: float | None
     elsewhere_mm2: float
-    overlap_wanted: float | None
+    overlap_target: float | None
     overlap_predicted: float
     overlaps: tuple[float, float, float]
     painted: np.ndarray
@@ -89,7 +89,7 @@ class Comparison:
     paint: np.ndarray | None = None
 
 
-def compare_photos(page: JobPage, strokes: list[Wanted], photos: list[tuple[str, bytes]]) -> Comparison:
+def compare_photos(page: JobPage, strokes: list[TargetStroke], photos: list[tuple[str, bytes]]) -> Comparison:
     """photos: names and what their files hold, of one painted sheet; their paint is averaged. Error in one sentence,
     with the file, where a photograph cannot be read, is given twice or shows another job."""
     refuse_twice(photos)
@@ -109,20 +109,22 @@ def compare_photos(page: JobPage, strokes: list[Wanted], photos: list[tuple[str,
     return replace(compare_paint(strokes, mean, canvas, photos[0][0]), view=view, flat=flat, paint=paint)
 
 
-def of_drawing(found: Comparison, strokes: list[Wanted]) -> tuple[Comparison, list[Wanted]]:
+def of_drawing(found: Comparison, strokes: list[TargetStroke]) -> tuple[Comparison, list[TargetStroke]]:
     """Leave out strokes that are not of the drawing."""
     drawn = [stroke for stroke in strokes if stroke.is_drawn]
     names = {stroke.stroke for stroke in drawn}
     return replace(found, strokes=tuple(row for row in found.strokes if row.stroke in names)), drawn
 
 
-def compare_sheets(page: JobPage, strokes: list[Wanted], photos: list[tuple[str, bytes]]) -> list[Comparison]:
+def compare_sheets(
+    page: JobPage, strokes: list[TargetStroke], photos: list[tuple[str, bytes]]
+) -> list[Comparison]:
     """Each photograph of another sheet. Error as for compare_photos."""
     refuse_twice(photos)
     return [compare_photos(page, strokes, [photo]) for photo in photos]
 
 
-def compare_paint(strokes: list[Wanted], painted: np.ndarray, canvas: Canvas, name: str) -> Comparison:
+def compare_paint(strokes: list[TargetStroke], painted: np.ndarray, canvas: Canvas, name: str) -> Comparison:
     """painted: share of the usual paint of each pixel of the canvas, however it was seen; name: of the picture. Without
     view, flat and paint. Error for what cannot be the paint of this job."""
     if all(not stroke.predicted for stroke in strokes):
@@ -155,18 +157,18 @@ def _of_a_job(refusal: Error, name: str) -> Error:
 
 
 def _read(
-    page: JobPage, strokes: list[Wanted], data: bytes, fine: float | None
+    page: JobPage, strokes: list[TargetStroke], data: bytes, fine: float | None
 ) -> tuple[Flat, View, np.ndarray]:
     printed = page.printed
     corners = {marker.id: np.array(marker.corners_mm) for marker in printed.markers}
     pixels = read_photo(data)
     view = find_view(pixels, Printed(page.size_mm, corners, printed.dictionary, printed.id))
-    rooms = []
+    stroke_boxes = []
     for stroke in strokes:
         if stroke.predicted:
             points = np.vstack(stroke.predicted) + page.frame_mm
-            rooms.append(Room(stroke.stroke, (*points.min(axis=0), *points.max(axis=0))))
-    refuse_cropped(pixels, view, rooms)
+            stroke_boxes.append(StrokeBox(stroke.stroke, (*points.min(axis=0), *points.max(axis=0))))
+    refuse_cropped(pixels, view, stroke_boxes)
     refuse_unsure(pixels, view, corners)
     flat = flatten(pixels, view, page.size_mm, fine or min(view.px_per_mm, FINEST_PX_PER_MM))
     dark = [each.mean(axis=0) + (each - each.mean(axis=0)) * 1.4 for each in corners.values()]
@@ -176,11 +178,11 @@ def _read(
     print_ = np.zeros(flat.pixels.shape[:2], np.uint8)
     for ring in dark:
         cv2.fillPoly(print_, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
-    return flat, view, paint_seen(flat, print_, rooms)
+    return flat, view, paint_seen(flat, print_, stroke_boxes)
 
 
 def _on_sheet(paint, flat: Flat, page: JobPage, canvas: Canvas) -> np.ndarray:
-    """Paint of the sheet's own pixels, 1 where the usual paint lies."""
+    """Return the paint of the sheet's own pixels, 1 for the usual paint."""
     left, up = page.frame_mm, page.size_mm[1] - page.frame_mm
     matrix = np.array(
         [[1.0, 0.0, left * flat.px_per_mm], [0.0, 1.0, (flat.sheet_mm[1] - up) * flat.px_per_mm]]
@@ -192,7 +194,7 @@ def _on_sheet(paint, flat: Flat, page: JobPage, canvas: Canvas) -> np.ndarray:
     return np.clip(sheet / usual, 0, 1.2)
 
 
-def _common(painted, strokes: list[Wanted], canvas: Canvas) -> tuple[Placed, np.ndarray]:
+def _common(painted, strokes: list[TargetStroke], canvas: Canvas) -> tuple[Placed, np.ndarray]:
     rings = [ring for stroke in strokes for ring in stroke.predicted]
     middle = centroid(rings)
     coarse = min(canvas.px_per_mm, 5.0)
@@ -205,11 +207,11 @@ def _common(painted, strokes: list[Wanted], canvas: Canvas) -> tuple[Placed, np.
 
 @dataclass(frozen=True)
 class _Seen:
-    """A stroke that paints: its figures, and lies, which puts rings of it where its mark lies."""
+    """A stroke that paints: its figures, and locate, which puts its rings where its mark is."""
 
-    stroke: Wanted
+    stroke: TargetStroke
     row: Compared
-    lies: Callable[[list[np.ndarray]], list[np.ndarray]]
+    locate: Callable[[list[np.ndarray]], list[np.ndarray]]
 
 
 def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
@@ -237,26 +239,26 @@ def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
     predicted = _overlap(_any([*chain(*(stroke.predicted for stroke in strokes))], canvas), is_painted)
     _refuse_other_job(max(predicted, _overlap(_any([*chain(*moved)], canvas), is_painted)), name)
     sheet, spread_mm = _sheet([seen.row for seen in found], common, middle)
-    has_wanted = all(stroke.wanted is not None for stroke in strokes)
-    whole = [*chain(*(stroke.wanted if has_wanted else stroke.predicted for stroke in strokes))]
-    each = [seen.lies(seen.stroke.wanted if has_wanted else seen.stroke.predicted) for seen in found]
-    as_it_lies, placed, each_placed = (
+    has_target = all(stroke.target is not None for stroke in strokes)
+    whole = [*chain(*(stroke.target if has_target else stroke.predicted for stroke in strokes))]
+    each = [seen.locate(seen.stroke.target if has_target else seen.stroke.predicted) for seen in found]
+    as_painted, placed, each_placed = (
         _overlap(_any(rings, canvas), is_painted)
         for rings in (whole, [sheet.moved(ring, middle) for ring in whole], [*chain(*each)])
     )
-    marks = _any([*chain(*(seen.lies(seen.stroke.predicted) for seen in found))], canvas)
-    beside = is_painted & (_away(marks, canvas.px_per_mm) > BLOT_MM)
-    things = _things(beside, canvas)
-    near = _away(things, canvas.px_per_mm) < BLOT_MM + BESIDE_MM
+    marks = _any([*chain(*(seen.locate(seen.stroke.predicted) for seen in found))], canvas)
+    astray = is_painted & (_away(marks, canvas.px_per_mm) > BLOT_MM)
+    things = _things(astray, canvas)
+    near = _away(things, canvas.px_per_mm) < BLOT_MM + BLUR_MM
     return Comparison(
         tuple(_uncovered(seen, near, canvas) for seen in every),
         sheet,
         middle,
         spread_mm,
-        float(beside.sum()) / canvas.px_per_mm**2,
-        as_it_lies if has_wanted else None,
+        float(astray.sum()) / canvas.px_per_mm**2,
+        as_painted if has_target else None,
         predicted,
-        (as_it_lies, placed, each_placed),
+        (as_painted, placed, each_placed),
         painted,
         canvas,
         (*_missing(found), *_covered(things, canvas)),
@@ -285,15 +287,15 @@ def _covered(things: np.ndarray, canvas: Canvas) -> list[Notice]:
     if not things.any():
         return []
     sentence = (
-        f"{things.sum() / canvas.px_per_mm**2:.0f} mm^2 of what lies on the sheet is no mark, as a hand, a tool or "
-        "a blot: strokes beneath or beside it are not told, nor whose fault anything is"
+        f"{things.sum() / canvas.px_per_mm**2:.0f} mm^2 on the sheet are no mark, but a hand, a tool or a blot: "
+        "strokes beneath or next to it are not reported, nor are causes of errors"
     )
     return [Notice("sheet", sentence, code="photo-covered")]
 
 
 def without(found: Comparison, done: dict[str, Placed]) -> Comparison:
-    """The same with marks where they would lie if what is done to each were not. Of a mark of which that is not known,
-    nothing is."""
+    """Return the comparison with marks at the places that they would have without the known displacements. Those of an
+    unknown displacement are dropped."""
     rows = tuple(_undone(row, done.get(row.stroke, NOWHERE)) for row in found.strokes)
     sheet, spread_mm = _sheet(list(rows), found.common, found.middle_mm)
     return replace(found, strokes=rows, common=sheet, spread_mm=spread_mm)
@@ -308,23 +310,23 @@ def _undone(row: Compared, done: Placed) -> Compared:
     return replace(row, placed=left)
 
 
-def _things(beside: np.ndarray, canvas: Canvas) -> np.ndarray:
-    """Pieces of what lies beside all marks that are too large for paint that strayed."""
-    _, labels, stats, _ = cv2.connectedComponentsWithStats(np.uint8(beside), connectivity=8)
+def _things(astray: np.ndarray, canvas: Canvas) -> np.ndarray:
+    """Return pieces of paint outside of all marks that are too large for stray paint."""
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(np.uint8(astray), connectivity=8)
     large = stats[:, cv2.CC_STAT_AREA] > THING_MM2 * canvas.px_per_mm**2
     large[0] = False
     return large[labels]
 
 
 def _uncovered(seen: _Seen, near: np.ndarray, canvas: Canvas) -> Compared:
-    """A stroke whose mark lies near a thing is not found."""
-    covered = near.any() and (_any(seen.lies(seen.stroke.predicted), canvas) & near).any()
+    """Drop a stroke whose mark is near a thing: it is not found."""
+    covered = near.any() and (_any(seen.locate(seen.stroke.predicted), canvas) & near).any()
     return replace(seen.row, placed=NOWHERE) if covered else seen.row
 
 
 def _sheet(rows: list[Compared], common: Placed, middle: np.ndarray) -> tuple[Placed, float | None]:
-    """The shift and turn that bring all predicted middles nearest to where the marks lie (Kabsch), and what is left.
-    Marks that are much drier than the best ones lie where their paint was, and are left out where enough others are."""
+    """Return the shift and turn that bring all predicted middles nearest to the marks (Kabsch), and the residuals.
+    Marks that are much drier than the best ones are displaced, and are left out where enough others are."""
     known = [row for row in rows if row.placed.found]
     if len(known) < LEAST_MARKS:
         return common, None
@@ -353,10 +355,10 @@ def _overlap(one: np.ndarray, other: np.ndarray) -> float:
 
 
 def _stroke(
-    stroke: Wanted, rings, others, painted, is_painted, common: Placed, middle, canvas: Canvas
+    stroke: TargetStroke, rings, others, painted, is_painted, common: Placed, middle, canvas: Canvas
 ) -> _Seen:
-    """rings: its mark with the sheet's place put right, others: those of all other strokes. is_painted gets what of its
-    paint is paler than that of others."""
+    """rings: its mark with the sheet's place put right, others: those of all other strokes. is_painted gets the part
+    whose paint is paler than that of others."""
     points = np.vstack(rings)
     low = np.maximum(points.min(axis=0) - AROUND_MM, canvas.window_mm[:2])
     high = np.minimum(points.max(axis=0) + AROUND_MM, canvas.window_mm[2:])
@@ -372,35 +374,35 @@ def _stroke(
     nearer = (_away(mine, fine) <= their_away) | mine
     strength = float(np.median(part[mine & (part > PALEST)])) if (mine & (part > PALEST)).any() else 1.0
     attributed = np.where(nearer, part / strength, 0.0)
-    free = (their_away > BESIDE_MM) & nearer
+    free = (their_away > BLUR_MM) & nearer
     found = place(attributed, free, rings, small)
     if not found.found:  # a dab has no direction
         found = place(attributed, free, rings, small, turns=False)
     inner = centroid(rings)
 
-    def lies(each, at):
+    def locate(each, at):
         return [at.moved(common.moved(ring, middle), inner) for ring in each]
 
     is_mine = attributed > LEVEL
-    at_last = small.filled(lies(stroke.predicted, found)) > 0.5
+    at_last = small.filled(locate(stroke.predicted, found)) > 0.5
     if not found.found or (at_last & is_mine).sum() < COVERED * at_last.sum():
         found, at_last = NOWHERE, mine
     is_painted[r0:r1, c0:c1] |= is_mine & (_away(at_last, fine) < BLOT_MM)
     start = centroid(stroke.predicted)
-    shift = lies([start[None]], found)[0][0] - start
+    shift = locate([start[None]], found)[0][0] - start
     whole = Placed(
         (float(shift[0]), float(shift[1])), common.turn_rad + found.turn_rad, found.wider_mm, found.found
     )
     row = Compared(
         stroke.stroke,
-        _overlap(small.filled(stroke.wanted) > 0.5, is_mine) if stroke.wanted else None,
+        _overlap(small.filled(stroke.target) > 0.5, is_mine) if stroke.target else None,
         _overlap(small.filled(stroke.predicted) > 0.5, is_mine),
         whole,
         (float(start[0]), float(start[1])),
         float((at_last & ~(part / strength > LEVEL)).sum()) / float(max(at_last.sum(), 1)),
-        _overlap(small.filled(lies(grown(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine),
+        _overlap(small.filled(locate(grown(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine),
     )
-    return _Seen(stroke, row, lambda each: lies(each, found))
+    return _Seen(stroke, row, lambda each: locate(each, found))
 
 
 def _away(mask: np.ndarray, px_per_mm: float) -> np.ndarray:

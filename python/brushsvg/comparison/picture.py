@@ -1,24 +1,35 @@
-"""What was painted, as it is, over what was wanted, under a line where it was predicted; the worst strokes named."""
+"""Draw the photographed paint over the drawing, with the predicted outlines and the worst places."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import cv2
 import numpy as np
 
+from ..reporting.label_space import LabelSpace
+from ..reporting.worst_areas import WorstArea
 from .attribution.faults import Faults
 from .job_page import JobPage
-from .photographs import Comparison, Wanted
+from .photographs import LEVEL, Comparison, TargetStroke
 
 LONG_SIDE_PX = 2400
-WANTED, PREDICTED, TEXT = (190, 190, 190), (40, 40, 220), (30, 30, 30)  # blue, green, red
-NAMED = 5
+TARGET, PREDICTED, TEXT = (190, 190, 190), (40, 40, 220), (30, 30, 30)  # blue, green, red
+FONT, LETTER_PX, THICK = cv2.FONT_HERSHEY_SIMPLEX, 22, 2  # height of its letters at size 1
+NUMBER, RING_PX = 1.3, 18  # size of the numbers, radius of the rings around places
 MARGIN_PX = 90
 ROW_PX = 40
 
 
 def comparison_png(
-    page: JobPage, strokes: list[Wanted], found: Comparison, title: str, faults: Faults | None
+    page: JobPage,
+    strokes: list[TargetStroke],
+    found: Comparison,
+    title: str,
+    places: Sequence[tuple[str, WorstArea]],
+    faults: Faults | None,
 ) -> bytes:
+    """PNG. places: of the report, numbered from 1; faults: None without bars of what each would gain."""
     left, bottom, right, top = _extent(strokes, found)
     fine = min(LONG_SIDE_PX / max(right - left, top - bottom), 2 * found.flat.px_per_mm)
     corner = found.flat.to_px(np.array([[left, top]]) + page.frame_mm)[0]
@@ -38,23 +49,26 @@ def comparison_png(
 
     grey = image.copy()
     for stroke in strokes:
-        cv2.fillPoly(grey, lines(stroke.wanted or ()), WANTED, cv2.LINE_AA, 4)
+        cv2.fillPoly(grey, lines(stroke.target or ()), TARGET, cv2.LINE_AA, 4)
     image = cv2.min(image, grey)
     for stroke in strokes:
         cv2.polylines(image, lines(stroke.predicted), True, PREDICTED, 2, cv2.LINE_AA, 4)
-    worst = sorted(found.strokes, key=lambda one: one.overlap_predicted)[:NAMED]
-    places = {stroke.stroke: np.vstack(stroke.predicted) for stroke in strokes if stroke.predicted}
-    for one in worst:
-        at = places[one.stroke]
-        x, y = (np.array([at[:, 0].min(), at[:, 1].max()]) - [left, top]) * [1, -1] * fine
-        words = f"{one.stroke} {one.overlap_predicted:.2f}"
-        _write(image, words, (int(x), max(24, int(y) - 8)), PREDICTED)
+    marks = np.zeros(image.shape[:2], np.uint8)
+    for stroke in strokes:
+        cv2.fillPoly(marks, lines([*stroke.predicted, *(stroke.target or ())]), 1, cv2.LINE_8, 4)
+    marks |= cv2.warpAffine(
+        (found.painted > LEVEL).astype(np.uint8),
+        _to_canvas(found.canvas, left, top, fine),
+        size,
+        flags=cv2.INTER_NEAREST | cv2.WARP_INVERSE_MAP,
+    )
+    _number(image, marks > 0, [(np.array(area.at_mm) - [left, top]) * [1, -1] * fine for _, area in places])
     out = np.full((image.shape[0] + MARGIN_PX, max(image.shape[1], 900), 3), 255, np.uint8)
     out[MARGIN_PX:, : image.shape[1]] = image
     _write(out, title[:60], (16, 34), TEXT)
     _write(
         out,
-        "paint as photographed; grey: wanted; red line: predicted, the worst named",
+        "paint as photographed; grey: drawn; red line: predicted; numbers: the worst places",
         (16, 72),
         (30, 30, 30),
         0.75,
@@ -64,11 +78,33 @@ def comparison_png(
     return cv2.imencode(".png", out)[1].tobytes()
 
 
+def _to_canvas(canvas, left: float, top: float, fine: float) -> np.ndarray:
+    """From pixels of the picture to those of the canvas."""
+    step = canvas.px_per_mm / fine
+    x, y = (left - canvas.window_mm[0]) * canvas.px_per_mm, (canvas.window_mm[3] - top) * canvas.px_per_mm
+    return np.array([[step, 0, x], [0, step, y]])
+
+
+def _number(image, marks: np.ndarray, places: list[np.ndarray]) -> None:
+    """A ring around each place, and its number next to it, off paint and drawing."""
+    space = LabelSpace(marks, anchors=places, radius=RING_PX)
+    height = LETTER_PX * NUMBER
+    for number, at in enumerate(places, 1):
+        (width, _), _ = cv2.getTextSize(str(number), FONT, NUMBER, THICK)
+        label = space.place(at, [(width, height)])
+        for colour, thick in (((255, 255, 255), 3 * THICK), (TEXT, THICK)):
+            cv2.circle(image, tuple(np.round(at).astype(int).tolist()), RING_PX, colour, thick, cv2.LINE_AA)
+            if label.leader:
+                ends = [tuple(map(round, end)) for end in label.leader]
+                cv2.line(image, *ends, colour, thick, cv2.LINE_AA)
+        _write(image, str(number), (round(label.left), round(label.top + height)), TEXT, NUMBER)
+
+
 def _shares(faults: Faults, width: int) -> np.ndarray:
-    """What mending each cause alone would gain, as bars with their intervals."""
+    """What fixing each cause alone would gain, as bars with their intervals."""
     shares = sorted(faults.shares, key=lambda one: -one.gain)
     out = np.full((80 + ROW_PX * len(shares), width, 3), 255, np.uint8)
-    _write(out, "mending it alone would gain in overlap (line: 95 %)", (16, 50), TEXT, 0.75)
+    _write(out, "overlap gained by fixing this cause alone (line: 95 %)", (16, 50), TEXT, 0.75)
     left = min(760, round(0.55 * width))
     most = max(0.02, *(share.high for share in shares))
     per_px = (width - left - 40) / most
@@ -76,13 +112,13 @@ def _shares(faults: Faults, width: int) -> np.ndarray:
         y = 80 + ROW_PX * row
         _write(out, f"{share.gain + 0.0:+.3f}  {share.cause}", (16, y + 26), TEXT, 0.75)
         ends = [left + round(max(value, 0.0) * per_px) for value in (share.gain, share.low, share.high)]
-        cv2.rectangle(out, (left, y + 4), (ends[0], y + 28), WANTED if row else PREDICTED, -1)
+        cv2.rectangle(out, (left, y + 4), (ends[0], y + 28), TARGET if row else PREDICTED, -1)
         cv2.line(out, (ends[1], y + 16), (ends[2], y + 16), TEXT, 2, cv2.LINE_AA)
     return out
 
 
-def _extent(strokes: list[Wanted], found: Comparison):
-    points = np.vstack([ring for stroke in strokes for ring in (*stroke.predicted, *(stroke.wanted or ()))])
+def _extent(strokes: list[TargetStroke], found: Comparison):
+    points = np.vstack([ring for stroke in strokes for ring in (*stroke.predicted, *(stroke.target or ()))])
     low = np.maximum(points.min(axis=0) - 8, found.canvas.window_mm[:2])
     high = np.minimum(points.max(axis=0) + 8, found.canvas.window_mm[2:])
     return *low, *high

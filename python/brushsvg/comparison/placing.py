@@ -1,4 +1,4 @@
-"""Where a mark lies in a picture of paint: shifted, turned and wider than predicted, by least squares of its pixels."""
+"""Locate a mark in a picture of paint: shifted, turned and wider than predicted, by least squares of its pixels."""
 
 from __future__ import annotations
 
@@ -25,8 +25,9 @@ MOST_MM = 8.0  # a step goes no farther: beyond, nothing was found
 
 @dataclass(frozen=True)
 class Placed:
-    """Where a mark lies against its prediction: shift_mm of its middle, turn_rad about it, counter-clockwise, wider_mm:
-    how much farther out each edge lies. found: whether least squares came to rest within reach."""
+    """The place of a mark relative to its prediction: shift_mm of its middle, turn_rad about it, counter-clockwise,
+    wider_mm: by how much each edge is farther from the middle line. found: whether least squares came to rest within
+    reach."""
 
     shift_mm: tuple[float, float]
     turn_rad: float
@@ -34,7 +35,7 @@ class Placed:
     found: bool
 
     def moved(self, points_mm: np.ndarray, middle_mm: np.ndarray) -> np.ndarray:
-        """(n, 2) points of the prediction, where they lie in truth."""
+        """Return (n, 2) points of the prediction, at their true places."""
         return (points_mm - middle_mm) @ rotation(self.turn_rad) + middle_mm + self.shift_mm
 
 
@@ -69,7 +70,7 @@ class Canvas:
 
 
 def grown(rings: list[np.ndarray], by_mm: float) -> list[np.ndarray]:
-    """Rings whose edges lie so much farther out; none where nothing is left."""
+    """Return rings with their edges moved out by so much; none where nothing is left."""
     if abs(by_mm) < 1e-6:
         return rings
     outer = [Polygon(ring).buffer(0) for ring in rings if signed_area(ring) > 0]

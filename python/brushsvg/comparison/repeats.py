@@ -13,26 +13,29 @@ from ..errors import Error
 from ..files import read_bytes
 from ..geometry.polylines import evenly
 from ..geometry.rotation import rotation
+from ..reporting.report_text import Report, plural, table, verdict
 from .corrections import LEAST_MARKS
 from .next_corrections import UNSEEN
 from .photographs import Comparison
 
 FORMAT = "brushsvg/repeatability"
 SAME_MM = (
-    0.2  # copies of a stroke have the same way but for its place, and for how its poses were thinned out
+    0.2  # copies of a stroke have the same way but for its place, and for the simplification of its poses
 )
 ALONG = 65  # places at which ways are compared
 LEAST_FREEDOM = 4  # values to spare for a spread: fewer say next to nothing
 ALIKE_MM = 1e-9  # no two sheets repeat so well
 BIN_SHARE = 0.25  # width of a column of the histogram over the spread
 BAR = 40
+GOOD_MM = 0.1  # of a displacement: it costs 0.06 of the overlap of a line of 3 mm
+MOST_WORST = 5
 
 
 @dataclass(frozen=True)
 class Spread:
     """A stroke, or copies of one: how many were seen, their mean displacement beyond the sheet's place, and how far
-    they lie from it: rms in x and y together over the square root of two, and the farthest; wider_mm: rms of how much
-    farther out edges lie than on average."""
+    they are from it: rms in x and y together over the square root of two, and the farthest; wider_mm: rms of how much
+    wider they are than on average."""
 
     stroke: str
     count: int
@@ -44,7 +47,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class Approach:
-    """By how much strokes that begin in the positive direction of an axis lie farther along it than those that begin
+    """By how much strokes that begin in the positive direction of an axis are farther along it than those that begin
     in the negative one, with half its 95 % interval; None where there are too few of either. plus_mm, minus_mm: mean
     place along the axis of each stroke, by that direction."""
 
@@ -57,9 +60,9 @@ class Approach:
 
 @dataclass(frozen=True)
 class Repeats:
-    """displacement_mm: standard deviation in x and in y of where the same stroke lies, with its 95 % interval; away_mm:
-    (n,) of each one, how far from its mean; over_sheets: else over copies on one, which their places
-    move, too; once: strokes that were seen once or not at all, of which nothing is told."""
+    """displacement_mm: standard deviation in x and in y of the place of the same stroke, with its 95 % interval;
+    away_mm: (n,) of each one, how far from its mean; over_sheets: else over copies on one, which their places
+    move, too; once: strokes that were seen once or not at all, which have no figures."""
 
     rows: tuple[Spread, ...]
     displacement_mm: float
@@ -108,12 +111,12 @@ def repeats(plan, sheets: list[Comparison]) -> Repeats:
     if freedom < LEAST_FREEDOM:
         what = "on these sheets" if over_sheets else "on this sheet, where copies of a stroke are looked for"
         sentence = (
-            f"too few strokes are seen more than once {what}: {seen} marks of {used} strokes tell no spread"
+            f"too few strokes are seen more than once {what}: {seen} marks of {used} strokes show no spread"
         )
         raise Error(sentence, code="too-few-repeats")
     sigma = math.sqrt(squares / freedom)
     if sigma < ALIKE_MM:
-        sentence = "marks lie alike to the last digit: photographs of two sheets are needed, not of one twice"
+        sentence = "marks are alike to the last digit: photographs of two sheets are needed, not of one twice"
         raise Error(sentence, code="too-few-repeats")
     low, high = (sigma * math.sqrt(freedom / _chi_square(freedom, side)) for side in (1.96, -1.96))
     approaches = tuple(_approach(plan, places, axis) for axis in (0, 1))
@@ -125,7 +128,9 @@ def repeats(plan, sheets: list[Comparison]) -> Repeats:
 def _places(found: Comparison) -> dict[str, tuple[float, float, float]]:
     """By stroke x and y beyond the sheet's place, in the sheet's own directions, and how much wider it is."""
     if found.spread_mm is None:
-        sentence = f"fewer than {LEAST_MARKS} of its marks are found, which do not tell how the sheet lies"
+        sentence = (
+            f"fewer than {LEAST_MARKS} of its marks are found, which do not determine the pose of the sheet"
+        )
         raise Error(sentence, code="marks-missing")
     sheet, out = found.common, {}
     for row in found.strokes:
@@ -183,68 +188,79 @@ def _chi_square(freedom: int, deviate: float) -> float:
 
 
 def histogram(found: Repeats) -> list[tuple[float, int]]:
-    """(upper edge in mm, how many displacements lie below it and above the one before)."""
+    """Return (upper edge in mm, how many displacements are below it and above the one before)."""
     edges, counts = bins_of(found)
     return list(zip(edges[1:].tolist(), counts.tolist(), strict=True))
 
 
 def bins_of(found: Repeats) -> tuple[np.ndarray, np.ndarray]:
-    """Edges (n + 1,) of bins in mm, from 0, and how many displacements (n,) lie in each."""
+    """Return edges (n + 1,) of bins in mm, from 0, and how many displacements (n,) are in each."""
     step = max(0.01, round(BIN_SHARE * float(np.quantile(found.away_mm, 0.9)), 2))
     edges = np.arange(math.ceil(float(found.away_mm.max()) / step) + 1) * step
     return edges, np.histogram(found.away_mm, np.concatenate([[0.0], edges[1:] + 1e-9]))[0]
 
 
-def as_text(title: str, found: Repeats) -> str:
-    width = max(6, *(len(row.stroke) for row in found.rows))
+def report(title: str, found: Repeats) -> Report:
+    """What `brushsvg compare --sheets` prints. Good: a stroke repeats to 0.1 mm, and every stroke was seen twice."""
+    count = len(found.once)
+    but = [
+        f"strokes repeat only to {found.displacement_mm:.2f} mm" if found.displacement_mm >= GOOD_MM else "",
+        f"{plural(count, 'stroke')} {'was' if count == 1 else 'were'} not seen twice" if count else "",
+    ]
     over = (
         f"{found.sheets} sheets" if found.over_sheets else "copies on one sheet, which their place moves, too"
     )
+    worst = sorted(found.rows, key=lambda row: -row.spread_mm)[:MOST_WORST]
     lines = [
-        f"{title}: {len(found.rows)} strokes on {over}",
-        "",
-        f"{'stroke'.ljust(width)}  seen  mean x  mean y  spread  farthest  wider",
+        f"{title}: {plural(len(found.rows), 'stroke')} on {over}: the same stroke is displaced by "
+        f"{found.displacement_mm:.3f} mm in x and in y (standard deviation, 95 % interval {found.low_mm:.3f} to "
+        f"{found.high_mm:.3f})",
+        *(
+            f"{row.stroke} spreads by {row.spread_mm:.3f} mm, {row.farthest_mm:.2f} mm at most"
+            for row in worst
+        ),
+        *(_approach_words(one) for one in found.approaches),
     ]
+    if count:
+        why = f"not found, or more than {100 * UNSEEN:g} % of the mark without paint"
+        lines.append(f"{plural(count, 'stroke')} not seen twice ({why}): {', '.join(found.once)}.")
+    return Report(verdict([], but), tuple(lines), tuple(_details(found)))
+
+
+def _details(found: Repeats) -> list[str]:
+    head = ("stroke", "seen", "mean x", "mean y", "spread", "farthest", "wider")
+    rows = []
     for row in found.rows:
         x, y = row.mean_mm
-        lines.append(
-            f"{row.stroke.ljust(width)}  {row.count:4d}  {x:+6.2f}  {y:+6.2f}  {row.spread_mm:6.3f}  "
-            f"{row.farthest_mm:8.2f}  {row.wider_mm:5.3f}"
+        figures = (
+            f"{x:+.2f}",
+            f"{y:+.2f}",
+            f"{row.spread_mm:.3f}",
+            f"{row.farthest_mm:.2f}",
+            f"{row.wider_mm:.3f}",
         )
-    if found.once:
-        count = f"{len(found.once)} stroke{'s' * (len(found.once) != 1)}"
-        lines += [
-            "",
-            f"Not told, since not seen twice (not found, or more than {100 * UNSEEN:g} % of the mark without paint): "
-            f"{count}: {', '.join(found.once)}.",
-        ]
-    lines += [
-        "",
-        f"The same stroke lies {found.displacement_mm:.3f} mm aside in x and in y (standard deviation, 95 % interval "
-        f"{found.low_mm:.3f} to {found.high_mm:.3f}).",
-        *(_approach_words(one) for one in found.approaches),
-        "",
-        "How far from its mean each lies, mm:",
-    ]
+        rows.append((row.stroke, str(row.count), *figures))
+    lines = table(head, rows)
+    lines += ["", "Distance of each from its mean, mm:"]
     bins = histogram(found)
     most, before = max(count for _, count in bins), 0.0
     for edge, count in bins:
         lines.append(f"  {before:5.2f} to {edge:5.2f}  {count:4d}  {'#' * round(BAR * count / most)}")
         before = edge
-    lines += [
+    return [
+        *lines,
         "",
         "Mean, spread, farthest: displacement beyond the sheet's place, mm; spread in x and in y; wider: how far edges",
-        "lie from their mean (standard deviation, mm).",
+        "are from their mean (standard deviation, mm).",
     ]
-    return "\n".join(lines) + "\n"
 
 
 def _approach_words(one: Approach) -> str:
     if one.value_mm is None:
-        return f"Too few strokes are approached from either side in {one.axis} to tell a hysteresis."
+        return f"Too few strokes are approached from either side in {one.axis} to show a hysteresis."
     certain = "" if abs(one.value_mm) > one.half_mm else ", which may be chance"
     return (
-        f"Strokes that are approached towards +{one.axis} lie {one.value_mm:+.3f} +- {one.half_mm:.3f} mm farther that "
+        f"Strokes that are approached towards +{one.axis} are {one.value_mm:+.3f} +- {one.half_mm:.3f} mm farther that "
         f"way than those approached towards -{one.axis}{certain}."
     )
 

@@ -1,1 +1,1 @@
-"""Curves, arcs, polylines and rings, whatever they are of."""
+"""Curves, arcs, polylines and rings."""

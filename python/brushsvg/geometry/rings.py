@@ -23,7 +23,7 @@ def centroid(rings: list[np.ndarray]) -> np.ndarray:
 
 
 def is_within(places: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
-    """Which places (n, 2) lie in an odd number of rings."""
+    """Return which places (n, 2) are in an odd number of rings."""
     x, y = places.T
     is_odd = np.zeros(len(places), bool)
     for ring in rings:

@@ -13,7 +13,7 @@ from .. import _core
 from ..calibration.chart.dabs import dabs_of, is_of_dabs
 from ..calibration.chart.file import read_chart
 from ..calibration.chart.photograph import Read, edge_mm, expected, marks_of, read_chart_photos, remarks
-from ..calibration.chart.photograph import told as reading_in_words
+from ..calibration.chart.photograph import describe_reading as reading_in_words
 from ..calibration.dabs import dab_report
 from ..calibration.dabs.from_dabs import calibrate_dabs
 from ..calibration.from_file import fit_measurements
@@ -35,12 +35,13 @@ from ..errors import Error, Notice, need, need_number, need_one_of, need_truth
 from ..files import read_bytes
 from ..machine.cells.cell import Cell
 from ..model.plot import brush_picture
+from ..reporting.report_text import Report
 from .calibration_options import AIMS, LEAST_DPI, MOST_DPI, CalibrationOptions, contradiction, is_photograph
 from .choices import brush_of, cell_of, concerning
 from .json_files import read_plan
 from .machine_parts import undoable_parts
 
-Report = Callable[[str, Iterable[Notice]], object]  # called with a file and the warnings about it
+Warn = Callable[[str, Iterable[Notice]], object]  # called with a file and the warnings about it
 
 
 Fit = TypeVar("Fit")
@@ -105,16 +106,22 @@ class BrushCalibration(Generic[Fit]):
 
     brush: a Brush [mm], which save_brush writes. kind: "numbers", "marks", "overlap", "dabs", "lag" or "job". fit: the
     details of that kind of fit; of numbers its laws and remarks, of marks the predicted marks and the machine's faults.
-    text: the report that the command prints. reading: how well photographs were read, in words. notices: warnings.
+    report: its verdict, lines and details, as the command prints them; report.text(details=True) has all tables, and
+    the coefficients last. reading: how well photographs were read, in words. notices: warnings.
     """
 
     brush: _core.Brush
     kind: str
     fit: Fit = field(repr=False, compare=False)
-    text: str = field(repr=False)
+    report: Report = field(repr=False)
     reading: str = ""
     notices: tuple[Notice, ...] = ()
     _read: Read | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def text(self) -> str:
+        """The report in at most ten lines, the verdict first."""
+        return self.report.text()
 
     def plot(self, suffix: str = ".png") -> bytes:
         """Return a picture of the laws with their data and residuals. suffix: ".png" or ".svg"."""
@@ -229,7 +236,7 @@ def checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
 
 
 def calibrated(
-    source: str | Mapping | Sequence[str], name: str, options: CalibrationOptions, stage, warn: Report
+    source: str | Mapping | Sequence[str], name: str, options: CalibrationOptions, stage, warn: Warn
 ) -> BrushCalibration:
     """Return a brush with its report; see calibrate. warn: called with a file and the warnings about it."""
     if why := contradiction(source, options):
@@ -256,7 +263,7 @@ def calibrated(
     return _from_strokes(photos, read, name, options, stage, warn)
 
 
-def read_photographs(photos: Sequence[str], options: CalibrationOptions, stage, warn: Report) -> Read:
+def read_photographs(photos: Sequence[str], options: CalibrationOptions, stage, warn: Warn) -> Read:
     """Return what photographs of one painted chart show; warns of missing strokes."""
     with concerning(options.chart):
         chart = read_chart(read_bytes(options.chart))
@@ -304,7 +311,7 @@ def _from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibr
         by_edges = made = _fit_strokes(read, name, options, stage)
         if options.aim == "overlap":
             made = by_overlap(by_edges, stage)
-    warn(photos[0], mark_report.strays_told(by_edges) + doubts(by_edges.painted, by_edges.expected))
+    warn(photos[0], mark_report.list_strays(by_edges) + doubts(by_edges.painted, by_edges.expected))
     kind = "overlap" if options.aim == "overlap" else "marks"
     text = _REPORTS[kind].report(made, of_photo=True)
     return BrushCalibration(made.brush, kind, made, text, reading_in_words(read), _read=read)
@@ -350,7 +357,7 @@ def _lag_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCa
     with concerning(photos[0]):
         made = _fit_strokes(read, name, options, stage)
         found = lag_by_outlines(made, own, name)
-    warn(photos[0], mark_report.strays_told(made))
+    warn(photos[0], mark_report.list_strays(made))
     text = lag_by_outlines_report.report(found)
     return BrushCalibration(found.brush, "lag", found, text, reading_in_words(read), _read=read)
 

@@ -1,4 +1,4 @@
-"""Work that is given up within a second when its caller asks for it, wherever it is."""
+"""Give up work within a second when its caller cancels it, at any step."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ LOOKS_S = 0.05
 PATIENCE_S = 0.8  # for what holds the interpreter, such as the encoder of a picture
 
 
-class Asked(Protocol):
+class Cancelled(Protocol):
     """What a threading.Event has."""
 
     def is_set(self) -> bool: ...
 
 
-Cancel = Callable[[], object] | Asked
+Cancel = Callable[[], object] | Cancelled
 
 
 class _GivenUp(BaseException):
-    """What the work's thread is told: no `except Exception` on its way takes it for an error."""
+    """Raised in the work's thread: no `except Exception` on its way takes it for an error."""
 
 
 def run(work: Callable, progress: Callable[[str], object] | None = None, cancel=None):
-    """What work(stage) returns, stage being told in words what is done. progress: is told the same; cancel: None, a
+    """Return what work(stage) returns; stage receives words about progress. progress: the same; cancel: None, a
     callable or something with is_set(): once it says yes, CancelledError is raised.
 
     Work that may be given up runs in a thread of its own, so that an exception can be put into it at any line of

@@ -28,6 +28,7 @@ from ..read import settings_in
 from ..read.gcode import is_ours
 from ..show.evaluation.report import Report
 from ..verify import against_plan, against_regenerated, pace, setup_programs, simulate_program
+from ..verify.foreign_program import foreign_program
 from ..verify.readback import read_program, text_of_file
 from ..verify.readback.header import made as made_of
 from ..verify.readback.ros2 import as_table
@@ -35,6 +36,7 @@ from ..verify.time_as_run import time_as_run_s
 from . import cancelling, outputs, prediction
 from .cancelling import Cancel
 from .choices import (
+    CHOICES,
     LAYOUT_FLAGS,
     MADE_FLAGS,
     NAMED_OTHERWISE,
@@ -43,13 +45,15 @@ from .choices import (
     brush_of,
     cell_of,
     concerning,
+    drop_from_project,
     name_of,
     options_of,
+    overruled_names,
     suffix_of,
     without_effect,
+    without_overruled,
 )
 from .conversion import chosen_of, of_arm
-from .foreign_program import foreign_program
 from .json_files import read_plan
 from .options import DEFAULT_BRUSH, Options
 from .preparation import preparation
@@ -59,7 +63,7 @@ from .work import Work, nearest_first, whole_strokes
 if TYPE_CHECKING:
     from .preparation.preparation import Source
 
-Told = Callable[[str, Iterable[Notice]], object]
+Warn = Callable[[str, Iterable[Notice]], object]
 STRAY_MM = 0.02  # what a plan's rounding makes of where its paint ends
 SAID = ("compensation", "tolerance", "lag", "terminals", "start", "end", "margin_strokes")  # by the program
 
@@ -70,7 +74,7 @@ class Check:
 
     job: "painting", or what is done before the first stroke: "border", "first-run", "height". problems: what forbids to
     run it, empty where nothing does. time_s: how long the machine takes, None for a program of others. is_foreign:
-    somebody else wrote it, for a pen; is_compared: with a drawing or plan. notices: what else is told, of the drawing
+    somebody else wrote it, for a pen; is_compared: with a drawing or plan. notices: further warnings, about the drawing
     or the machine. work, marks, figures: what it paints, None where that is nothing. border_mm: left, bottom, right,
     top of an air run; heights_mm: from, to, and of a height program the step.
     """
@@ -104,7 +108,7 @@ def check(
     """A program read back and simulated, as `brushsvg check` does: whether it keeps the limits of its brush and its
     machine, and whether it paints what it should.
 
-    program: its path. drawing: what it should paint, as `convert` takes it; None: only its limits are asked.
+    program: its path. drawing: what it should paint, as `convert` takes it; None: only its limits are checked.
     choices: as those of `convert`, by default what the program says; how strokes were compensated it says itself.
     progress, cancel: as for `convert`.
 
@@ -114,6 +118,7 @@ def check(
     """
     need(program, (str, os.PathLike), "a path, which program is")
     chosen = chosen_of(drawing, choices)
+    chosen = drop_from_project(chosen, SAID)
     for name in SAID:
         if getattr(chosen, name) is not None:
             sentence = f"a program says itself how it was made: {name} would change nothing"
@@ -133,17 +138,18 @@ def checked(
     path: str,
     chosen: Choices,
     stage: Callable[[str], object] = lambda text: None,
-    told: Told = lambda file, notices: None,
+    warn: Warn = lambda file, notices: None,
 ) -> Check:
-    """The same, its notices told with the file that they are of as soon as they are known."""
+    """Check a program, and report notices with the file that they are of as soon as they are known."""
     suffix = suffix_of(path)
     with concerning(path):
         data = read_bytes(path)
         text = text_of_file(b"" if suffix == ".cdr" else data)
         if suffix in GCODE and not is_ours(text):
-            return _foreign(path, text, chosen, told)
+            return _foreign(path, text, chosen, warn)
         text = _whole_text(path, suffix, text)
         made = made_of(text)
+        chosen = _as_program_says(chosen, made)
         for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
             if getattr(chosen, kind) is None and name not in names:
                 raise Error(
@@ -155,11 +161,11 @@ def checked(
         cell = preflight.as_exact_as(cell_of(chosen.cell or made.cell), tolerance_mm)
         brush = brush_of(chosen.brush) or find_brush(made.brush)
         read = read_program(text, suffix, cell)
-    told(cell.name, of_arm(cell))
+    warn(cell.name, of_arm(cell))
     program = _Program(path, text, made, read, cell, brush)
     if made.border_mm or made.heights_mm or made.first_mm:
-        return _setup(program, chosen, stage, told)
-    return _painting(program, chosen, stage, told)
+        return _setup(program, chosen, stage, warn)
+    return _painting(program, chosen, stage, warn)
 
 
 @dataclass(frozen=True)
@@ -178,7 +184,7 @@ class _Program:
 
 
 def _whole_text(path: str, suffix: str, text: str) -> str:
-    """With what it calls from files beside it."""
+    """Read a program with the files that it calls, next to it."""
     if suffix == ".robodk":
         raise Error(
             "what a post of RoboDK's kind writes is in a language of its own, which is not read back",
@@ -204,9 +210,22 @@ def _whole_text(path: str, suffix: str, text: str) -> str:
     return "".join([text, *called.values()])
 
 
-def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:
+def _as_program_says(chosen: Choices, made) -> Choices:
+    """Drop what a project file chose and the program's header says itself."""
+    if not chosen.from_project:
+        return chosen
+    said = {} if chosen.input is None else settings_in(chosen.input)
+    chosen = without_overruled(chosen, {name: said[name] for name in said if name not in ("brush", "cell")})
+    named = {"brush": made.brush, "cell": made.cell}
+    dropped = {"z_offset"} | overruled_names(chosen, named, unknown=False)
+    if made.sheet_mm and chosen.input is None:
+        dropped.add("sheet")
+    return drop_from_project(chosen, dropped)
+
+
+def _painting(program: _Program, chosen: Choices, stage, warn: Warn) -> Check:
     made, read, cell, brush = program.made, program.read, program.cell, program.brush
-    work = _as_made(program, chosen, stage, told) if chosen.input is not None else None
+    work = _as_made(program, chosen, stage, warn) if chosen.input is not None else None
     z_offset_mm = program.z_offset_mm(chosen)
     with concerning(program.path):
         sheet_mm = work.plan.sheet_mm if work else chosen.sheet or made.sheet_mm
@@ -216,7 +235,7 @@ def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:
                 code="sheet-unknown",
             )
         ran = simulate_program.run(read, brush, cell, sheet_mm, z_offset_mm)
-    told(program.path, _of_offset(z_offset_mm))
+    warn(program.path, _of_offset(z_offset_mm))
     with concerning(program.path):
         problems = ran.problems + simulate_program.misnumbered(read, made.first_stroke, made.strokes)
         strokes, drawn, speeds = None, None, None
@@ -240,7 +259,9 @@ def _painting(program: _Program, chosen: Choices, stage, told: Told) -> Check:
         seconds, as_run_s = duration_s(again) if again else 0.0, time_as_run_s(read, cell)
         if as_run_s > 1.1 * seconds + 1.0:  # feeds were lowered
             seconds = as_run_s
-        figures = outputs.reported(shown, ran.marks, cell, drawn=drawn, seconds=seconds, as_run=ran.as_run)
+        figures = outputs.reported(
+            shown, ran.marks, cell, forbidden=problems, drawn=drawn, seconds=seconds, as_run=ran.as_run
+        )
     return Check(
         "painting",
         tuple(problems),
@@ -266,7 +287,7 @@ def _of_offset(z_offset_mm: float) -> list[Notice]:
 
 def _unlike_drawing(unlike: list[Notice]) -> list[Notice]:
     """The same, with one notice for all strokes that are painted in another way: neither the program nor its plan.json
-    says how it was planned, so they may be what was asked for."""
+    says how it was planned, so they may be as requested."""
     otherwise = [
         each for each in unlike if each.code in ("path-elsewhere", "held-otherwise", "stroke-too-fast")
     ]
@@ -286,12 +307,12 @@ def _written_again(
 ) -> tuple[object, list[Notice]]:
     """What we would write of the plan that was read, and where the program differs from it."""
     made, cell, brush = program.made, program.cell, program.brush
-    told = against_regenerated.Told(*_told_by(made, work))
-    again = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, told, speeds)
+    header_notes = against_regenerated.HeaderNotes(*_header_notes(made, work))
+    again = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, header_notes, speeds)
     if not again:
         return again, []
     least_s = None
-    if speeds is None:  # feeds may have been lowered since its time was told
+    if speeds is None:  # feeds may have been lowered after its time was written
         usual_mm_s = min(Options.speed_mm_s, again.touching_mm_s)
         fastest = [max(a_pass.speed_mm_s, usual_mm_s) for a_pass in ran.plan.passes]
         at_most = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, None, fastest)
@@ -301,9 +322,9 @@ def _written_again(
     return again, said
 
 
-def _told_by(made, work: Work | None) -> tuple[str, tuple[str, ...]]:
-    """Title and notes that a program's header should have: its drawing's, or its own where nobody knows better, as of a
-    program that was made of a plan."""
+def _header_notes(made, work: Work | None) -> tuple[str, tuple[str, ...]]:
+    """Title and notes that a program's header should have: its drawing's, or its own where nobody knows better, as for
+    a program that was made of a plan."""
     if (
         work is None
         or work.strokes is None
@@ -315,11 +336,12 @@ def _told_by(made, work: Work | None) -> tuple[str, tuple[str, ...]]:
     return work.title or "untitled", (*outputs.notes(work), *order)
 
 
-def _foreign(path: str, text: str, chosen: Choices, told: Told) -> Check:
+def _foreign(path: str, text: str, chosen: Choices, warn: Warn) -> Check:
     """A program that somebody else wrote for a pen: what a brush paints with it, and which limits it breaks."""
     if chosen.input is not None:
         sentence = "brushsvg did not write it: it paints no drawing that is known; check it alone"
         raise Error(sentence, code="nothing-to-compare")
+    chosen = drop_from_project(chosen, {*CHOICES} - {"brush", "cell", "sheet", "paper_z"})
     for flag in (*LAYOUT_FLAGS, *MADE_FLAGS, "speed", "z-offset", "corrections"):
         given = getattr(chosen, NAMED_OTHERWISE.get(flag, flag))
         if flag not in ("sheet", "paper-z") and given:
@@ -327,13 +349,13 @@ def _foreign(path: str, text: str, chosen: Choices, told: Told) -> Check:
             raise Error(sentence, code="flag-without-effect")
     cell, brush = cell_of(chosen.cell), brush_of(chosen.brush) or find_brush(DEFAULT_BRUSH)
     found = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z)
-    told(path, found.warnings)
+    warn(path, found.warnings)
     shown = Work("", brush, found.plan, None, (), Options(cell=cell), ())
-    figures = outputs.reported(shown, found.marks, cell)
+    figures = outputs.reported(shown, found.marks, cell, forbidden=found.problems)
     return Check("painting", found.problems, is_foreign=True, work=shown, marks=found.marks, figures=figures)
 
 
-def _setup(program: _Program, chosen: Choices, stage, told: Told) -> Check:
+def _setup(program: _Program, chosen: Choices, stage, warn: Warn) -> Check:
     """A program before the first stroke: it paints no drawing, and says in its header all that it does."""
     made, read, text = program.made, program.read, program.text
     cell, brush = program.cell, program.brush
@@ -344,7 +366,7 @@ def _setup(program: _Program, chosen: Choices, stage, told: Told) -> Check:
             )
         if made.sheet_mm is None:
             raise Error("its header does not say how large the sheet is", code="sheet-unknown")
-    work = _as_made(program, chosen, stage, told) if chosen.input is not None else None
+    work = _as_made(program, chosen, stage, warn) if chosen.input is not None else None
     with concerning(program.path):
         if made.border_mm:
             sheet_mm, z_offset_mm = work.plan.sheet_mm if work else made.sheet_mm, program.z_offset_mm(chosen)
@@ -385,14 +407,14 @@ def _is_corrected_plan(source) -> bool:
     return isinstance(source, _core.Plan) and is_corrected(source)
 
 
-def _as_made(program: _Program, chosen: Choices, stage, told: Told) -> Work:
-    """The drawing or plan that a program should paint, prepared as its header says; what of it is left out, or painted
-    otherwise, is told again: this is the last look."""
+def _as_made(program: _Program, chosen: Choices, stage, warn: Warn) -> Work:
+    """Return the drawing or plan that a program should paint, prepared as its header says; notices on parts that are
+    left out or painted otherwise are repeated: this is the last look."""
     made, source = program.made, chosen.input
     if made.is_corrected and chosen.corrections is None and not _is_corrected_plan(source):
         with concerning(program.path):
             raise Error(
-                "its strokes were led elsewhere by corrections, which are not known here",
+                "its strokes were moved by corrections, which are not known here",
                 code="corrections-missing",
                 advice="give --corrections FILE",
             )
@@ -410,9 +432,9 @@ def _as_made(program: _Program, chosen: Choices, stage, told: Told) -> Work:
             wide=wide,
             margin_strokes="on" if made.has_margin else "off",
         )
-    told(name_of(source), without_effect(chosen))
+    warn(name_of(source), without_effect(chosen))
     options = options_of(chosen, program.cell, program.brush)
     with concerning(name_of(source)):
         work = preparation.prepare(source, options, stage)
-    told(name_of(source), work.notices)
+    warn(name_of(source), work.notices)
     return nearest_first(work) if made.nearest_first else work

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, fields, replace
 from typing import TypedDict
 
@@ -17,6 +17,8 @@ from ..machine.posts import GCODE
 from ..model.library import brush_names, find_brush
 from ..read import BACKGROUNDS, PENS, SCRIPTS, SIZE_MM, UNITS, ReadOptions, settings_in
 from ..read.layout import Layout
+from ..suggestions import did_you_mean
+from .json_files import read_plan
 from .options import Options
 
 GCODE_FLAGS = ("pen", "paper-z", "skip-region", "skip-comment")
@@ -81,7 +83,8 @@ ONE_OF = {
 class Choices:
     """What a drawing or plan is read and painted with; None where nobody says it. Lengths in mm, the speed in mm/s.
 
-    input: a path, or whatever else a drawing may be; brush, cell: by name or path, or themselves.
+    input: a path or another kind of drawing; brush, cell: a name, a path or a value. from_project: names
+    of those that a project file makes; the drawing, a plan and a program count more, see `without_overruled`.
     """
 
     input: object = None
@@ -117,6 +120,7 @@ class Choices:
     z_offset: float | None = None
     corrections: str | os.PathLike[str] | None = None
     margin_strokes: str | None = None
+    from_project: tuple[str, ...] = ()
 
 
 class Given(TypedDict, total=False):
@@ -158,6 +162,10 @@ class Given(TypedDict, total=False):
 
 def checked(chosen: Choices) -> Choices:
     """The choices themselves. Error for what no flag would take."""
+    need(chosen.from_project, (tuple, list), "a list of choices, which from_project is")
+    for name in chosen.from_project:
+        need_one_of(name, CHOICES, "a name of from_project")
+    chosen = without_overruled(chosen)
     for name, choices in ONE_OF.items():
         if getattr(chosen, name) is not None:
             need_one_of(getattr(chosen, name), choices, name)
@@ -255,18 +263,89 @@ def settled(chosen: Choices, drawing, alone: bool = False) -> Choices:
     """What nobody chose is as the drawing says. It can only name what comes along: it reads no other file. alone:
     nothing else of the drawing is read."""
     said = settings_in(drawing, alone)
-    if chosen.terminals is not None:
+    chosen = without_overruled(chosen, said)
+    if chosen.terminals is not None and "terminals" not in chosen.from_project:
         said = {name: value for name, value in said.items() if name not in ("start", "end")}
     for kind, names in (("brush", brush_names()), ("cell", cell_names())):
         if getattr(chosen, kind) is None and said.get(kind, names[0]) not in names:
             raise Error(
-                f"data-brushsvg-{kind} asks for {kind} {said[kind]!r}, which does not come along; known are "
-                f"{', '.join(names)}",
+                f"data-brushsvg-{kind} asks for {kind} {said[kind]!r}, which does not come along"
+                f"{did_you_mean(said[kind], names)} Known are {', '.join(names)}",
                 where="svg",
                 code=f"{kind}-unknown",
                 advice=f"give --{kind}",
             )
     return replace(chosen, **{name: value for name, value in said.items() if getattr(chosen, name) is None})
+
+
+def without_overruled(chosen: Choices, said: Mapping[str, object] | None = None) -> Choices:
+    """Drop what a project file chose where something more specific says otherwise, or where it has no effect.
+
+    More specific are the choices of this call, the settings `said` in the drawing, and the brush that a plan names. A
+    project file serves many drawings: a choice that does not suit one of them is no mistake.
+    """
+    if not chosen.from_project:
+        return chosen
+    said = said or {}
+    mine = {name for name in CHOICES if getattr(chosen, name) is not None} - {*chosen.from_project}
+    dropped = {*said} - {"brush", "cell"} | _idle(chosen)
+    if "terminals" in mine:
+        dropped |= {"start", "end"}
+    for one, other in (("fit", "scale"), ("scale", "fit")):
+        if other in mine:
+            dropped.add(one)
+    compensation = chosen.compensation
+    if "compensation" not in mine:
+        compensation = said.get("compensation", compensation)
+    if compensation != "constant":
+        dropped.add("lag")
+    named = said if suffix_of(chosen.input) != ".json" else {"brush": _brush_of_plan(chosen)}
+    return drop_from_project(chosen, dropped | overruled_names(chosen, named))
+
+
+def drop_from_project(chosen: Choices, names: Iterable[str]) -> Choices:
+    """Return the choices without those of these names that a project file made."""
+    dropped = {*names} & {*chosen.from_project}
+    kept = tuple(name for name in chosen.from_project if name not in dropped)
+    return replace(chosen, from_project=kept, **dict.fromkeys(dropped))
+
+
+def overruled_names(chosen: Choices, named: Mapping[str, object], unknown: bool = True) -> set[str]:
+    """Return "brush" and "cell" where a drawing, plan or program names another one than the project file.
+
+    unknown: a name that does not come along overrules the project file, too.
+    """
+    found = set()
+    for kind, names, read in (("brush", brush_names(), brush_of), ("cell", cell_names(), cell_of)):
+        name = named.get(kind)
+        if name is None or kind not in chosen.from_project or not (unknown or name in names):
+            continue
+        if read(getattr(chosen, kind)).name != name:
+            found.add(kind)
+    return found
+
+
+def _brush_of_plan(chosen: Choices) -> str | None:
+    """The shipped brush that a plan names, if a project file names one too."""
+    plan = chosen.input
+    if "brush" in chosen.from_project and isinstance(plan, str | os.PathLike):
+        with suppress(Error):  # preparation reports what is wrong with the plan
+            plan = read_plan(plan)
+    name = getattr(plan, "brush", None)
+    return name if name in brush_names() else None
+
+
+def _idle(chosen: Choices) -> set[str]:
+    """Return names of choices that have no effect on this kind of drawing."""
+    suffix, flags = suffix_of(chosen.input), ()
+    if suffix == ".json":
+        flags = (*LAYOUT_FLAGS, *MADE_FLAGS)
+    elif suffix in GCODE:
+        flags = ("layer", "select", "units")
+    elif chosen.input is not None:
+        is_svg, is_dxf = suffix in (".svg", ".svgz"), suffix == ".dxf"
+        flags = (*GCODE_FLAGS, *["units"] * is_svg, *["select"] * is_dxf)
+    return {NAMED_OTHERWISE.get(flag, flag) for flag in flags}
 
 
 def without_effect(chosen: Choices) -> list[Notice]:
@@ -360,4 +439,4 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options
     )
 
 
-CHOICES = tuple(field.name for field in fields(Choices))
+CHOICES = tuple(field.name for field in fields(Choices) if field.name != "from_project")

@@ -1,4 +1,4 @@
-"""Photographs of a painted sheet held against what was wanted and predicted: what `brushsvg compare` does, from
+"""Compare photographs of a painted sheet with its targets and predictions: what `brushsvg compare` does, from
 Python."""
 
 from __future__ import annotations
@@ -14,32 +14,33 @@ from .. import _core
 from ..calibration.prior.from_prior import has_learned
 from ..comparison import report
 from ..comparison.attribution.corrected_cell import certain_of, corrected_machine, key_of, sure
-from ..comparison.attribution.faults import Faults, whose_fault
+from ..comparison.attribution.faults import Faults, attribute_errors
 from ..comparison.attribution.model import BRUSH
-from ..comparison.attribution.residual import beside_machine as left_beside
+from ..comparison.attribution.residual import subtract_faults
 from ..comparison.corrections import (
     Correction,
     SheetBefore,
-    beside_machine,
     corrected,
     is_corrected,
     machine_sha256,
+    select_for_machine,
     uncorrected,
 )
 from ..comparison.ends import Ends, ends_of
 from ..comparison.job_marks import job_marks
 from ..comparison.job_page import JobPage, job_page
 from ..comparison.next_corrections import farther, next_corrections
-from ..comparison.photographs import Compared, Comparison, Wanted, compare_photos, of_drawing
+from ..comparison.photographs import Compared, Comparison, TargetStroke, compare_photos, of_drawing
 from ..comparison.picture import comparison_png
 from ..errors import Error, Notice, need
 from ..files import read_bytes
 from ..machine.cells.cell import Cell, Machine, axes_along_paper, not_undone
 from ..machine.cells.cell_file import own_name, parse_cell, write_cell
-from ..show.evaluation.report import wanted_rings
+from ..reporting.report_text import Report
+from ..show.evaluation.report import target_rings
 from . import cancelling, prediction
 from .cancelling import Cancel
-from .checking import Told
+from .checking import Warn
 from .choices import (
     Choices,
     Given,
@@ -67,15 +68,15 @@ LEAST_PRINT_SCALE, SAME_SCALE = 0.015, 0.006  # shares: print scales begin at 2 
 
 @dataclass(frozen=True)
 class Sheet:
-    """What was told to the machine, and the page that it painted on: plan, with the corrections of before, as far as
-    they are of its cell; strokes: rings on the sheet of what was wanted and predicted; otherwise: makes the sheet of
+    """What was commanded to the machine, and the page that it painted on: plan, with the corrections of before, as far
+    as they are of its cell; strokes: rings on the sheet of targets and predictions; otherwise: makes the sheet of
     the other page that this drawing may have been painted on, without strokes in its margin."""
 
     work: Work
     plan: _core.Plan
     before: SheetBefore
     page: JobPage
-    strokes: tuple[Wanted, ...]
+    strokes: tuple[TargetStroke, ...]
     otherwise: Callable[[], Sheet] | None = None
 
     @property
@@ -87,11 +88,12 @@ class Sheet:
 class PaintedJob:
     """What photographs of a painted sheet show.
 
-    overlap: of all paint with what was wanted, or predicted where there is no drawing, as it lies. strokes: each with
-    its overlaps and where it lies; ends: by stroke, how much later than wanted it begins and ends. faults: whose it is,
-    None where nothing can be told. corrections: by stroke, where it should be led next time. cell: with a [machine]
-    that undoes what is certain, besides what it undid; is_corrected: whether anything is. notices: what is to be warned
-    of. text, json: what the command prints and what `convert` takes as corrections.
+    overlap: of all paint with the target, or with the prediction where there is no drawing, as painted. strokes: each
+    with its overlaps and its place; ends: by stroke, how much later than the target it begins and ends. faults: the
+    causes, None where there are too few data. corrections: by stroke, where to move it next time. cell: with a
+    [machine] that also corrects what is certain; is_corrected: whether anything is. notices: the warnings. report: its
+    verdict, lines and details, as the command prints them; report.text(details=True) has all tables.
+    json: what `convert` takes as corrections.
     """
 
     title: str
@@ -103,14 +105,20 @@ class PaintedJob:
     cell: Cell = field(repr=False)
     is_corrected: bool
     notices: tuple[Notice, ...] = field(repr=False)
-    text: str = field(repr=False)
+    report: Report = field(repr=False)
     json: str = field(repr=False)
-    _shown: tuple[JobPage, list[Wanted], Comparison, str] | None = field(
+    _shown: tuple[JobPage, list[TargetStroke], Comparison, str, list] | None = field(
         default=None, repr=False, compare=False
     )
 
+    @property
+    def text(self) -> str:
+        """The report in at most ten lines, the verdict first."""
+        return self.report.text()
+
     def picture(self) -> bytes:
-        """A PNG: the paint as photographed over what was wanted, in grey, under a red line where it was predicted."""
+        """A PNG: the paint as photographed over the target, in grey, under a red line where it was predicted, with
+        the numbers of the report's worst places."""
         if self._shown is None:
             raise Error("it was not made of photographs", code="nothing-to-show")
         return comparison_png(*self._shown, self.faults)
@@ -124,7 +132,7 @@ def compare(
     cancel: Cancel | None = None,
     **choices: Unpack[Given],
 ) -> PaintedJob:
-    """Photographs of one painted sheet held against what was wanted and predicted, as `brushsvg compare` does.
+    """Compare photographs of one painted sheet with targets and predictions, as `brushsvg compare` does.
 
     drawing: what was painted, as `convert` takes it, with the choices that it was converted with; corrections: those
     that it was painted with. photos: the path of one, or a list of them, which are averaged. progress, cancel: as for
@@ -143,28 +151,28 @@ def compare(
     chosen, notices = chosen_of(drawing, choices), []
 
     def work(stage) -> PaintedJob:
-        def told(_, found):
+        def warn(_, found):
             notices.extend(found)
 
-        return compared(painted_sheet(chosen, stage, told), [*map(os.fspath, paths)], stage, told)
+        return compared(painted_sheet(chosen, stage, warn), [*map(os.fspath, paths)], stage, warn)
 
     return replace(cancelling.run(work, progress, cancel), notices=tuple(notices))
 
 
-def painted_sheet(chosen: Choices, stage: Callable[[str], object], told: Told) -> Sheet:
-    """What stands on the page that was painted on; notices are told with the file that they are of."""
+def painted_sheet(chosen: Choices, stage: Callable[[str], object], warn: Warn) -> Sheet:
+    """Return the contents of the painted page; notices are reported with the file that they are of."""
     before = sheet_before_of(chosen.corrections)
-    return _sheet(replace(chosen, corrections=None), before, stage, told)
+    return _sheet(replace(chosen, corrections=None), before, stage, warn)
 
 
-def _sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], told: Told) -> Sheet:
+def _sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], warn: Warn) -> Sheet:
     name = name_of(given.input)
     with concerning(name):
         chosen = settled(given, given.input)
-        told(name, without_effect(chosen))
+        warn(name, without_effect(chosen))
         chosen = on_a_page(chosen)
         work = preparation.prepare(chosen.input, options_of(chosen), stage)
-        told(name, work.notices)
+        warn(name, work.notices)
         painted, corrections_before = None, before
         if is_corrected(work.plan):  # a plan.json, which says itself what it was painted with
             _refuse_corrections_of_two(before)
@@ -172,11 +180,11 @@ def _sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], 
             planned, known = uncorrected(painted)
             work, before = replace(work, plan=planned), SheetBefore(known)
         marks = prediction.predict(work, True, stage)
-        before = replace(before, corrections=beside_machine(before.corrections, _undone(work)))
+        before = replace(before, corrections=select_for_machine(before.corrections, _undone(work)))
         plan = painted or corrected(work.plan, before.corrections, work.brush)
-        wanted = {} if work.strokes is None else {one.id: wanted_rings([one]) for one in work.strokes}
+        target = {} if work.strokes is None else {one.id: target_rings([one]) for one in work.strokes}
         strokes = (
-            Wanted(mark.stroke, wanted.get(mark.stroke), [*mark.outline_mm], not is_margin(a_pass))
+            TargetStroke(mark.stroke, target.get(mark.stroke), [*mark.outline_mm], not is_margin(a_pass))
             for mark, a_pass in zip(marks.passes, work.plan.passes, strict=True)
         )
         otherwise = None
@@ -213,36 +221,37 @@ def photographs(paths: Iterable[str], stage: Callable[[str], object]) -> list[tu
     return [(path, read_bytes(path)) for path in paths]
 
 
-def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], told: Told) -> PaintedJob:
-    """paths: photographs of one sheet; notices are told with the first of them."""
+def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], warn: Warn) -> PaintedJob:
+    """paths: photographs of one sheet; notices are reported with the first of them."""
     with concerning(paths[0]):
         photos = photographs(paths, stage)
         sheet, found = on_its_page(sheet, lambda one: compare_photos(one.page, [*one.strokes], photos))
     work, brush, strokes = sheet.work, sheet.work.brush, list(sheet.strokes)
-    stage("looking for what is amiss")
+    stage("estimating faults")
     every = found, sheet.page, strokes
     found, strokes = of_drawing(found, strokes)
     learned = has_learned(brush, [hashlib.sha256(data).hexdigest() for _, data in photos])
-    faults = whose_fault(sheet.plan, brush, strokes, found, learned)
+    faults = attribute_errors(sheet.plan, brush, strokes, found, learned)
     before = sheet.before.corrections
     corrections, too_far = next_corrections(found, work.plan, before, brush)
-    beyond = farther(found, sheet.before.aside_mm)
-    told(paths[0], [*found.notices, *too_far, *beyond])
-    cell, machine, beside = work.options.cell, None, None
+    beyond = farther(found, sheet.before.displacement_mm)
+    warn(paths[0], [*found.notices, *too_far, *beyond])
+    cell, machine, residual = work.options.cell, None, None
     if cell and faults:
         along = axes_along_paper(cell)
         machine, left_out = _undoable(faults, found.middle_mm, cell, along)
-        told(paths[0], _not_undone(faults, cell, left_out))
+        warn(paths[0], _not_undone(faults, cell, left_out))
         if machine:
             certain = sure(faults, cell.machine, along, left_out)
-            rest = left_beside(found, certain, sheet.plan, brush, strokes)
-            beside = machine_sha256(machine), next_corrections(rest, work.plan, before, brush)[0]
+            rest = subtract_faults(found, certain, sheet.plan, brush, strokes)
+            residual = machine_sha256(machine), next_corrections(rest, work.plan, before, brush)[0]
     ends = ends_of(found, strokes, work.strokes or ())
     made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_undone(work)))
     any_alone = faults is None or faults.first != BRUSH or bool(job_marks(*every).rings)
+    places = report.places_of(found, strokes)
     return PaintedJob(
         sheet.title,
-        found.overlap_predicted if found.overlap_wanted is None else found.overlap_wanted,
+        found.overlap_predicted if found.overlap_target is None else found.overlap_target,
         found.strokes,
         ends,
         faults,
@@ -250,9 +259,9 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], tol
         replace(cell, name=own_name(cell.name), machine=machine) if machine else cell,
         machine is not None,
         (),
-        report.as_text(sheet.title, found, faults, ends, machine, any_alone),
-        report.as_json(sheet.title, found, corrections, faults, ends, made_with, beside),
-        (sheet.page, strokes, found, sheet.title),
+        report.report(sheet.title, found, faults, ends, places, machine, any_alone),
+        report.as_json(sheet.title, found, corrections, faults, ends, made_with, residual),
+        (sheet.page, strokes, found, sheet.title, places),
     )
 
 

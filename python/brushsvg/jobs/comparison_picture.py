@@ -22,16 +22,16 @@ def comparison_png(
     """Draw three panels of one drawing. Each argument has the keys of TITLES: ways of compensation."""
     work = works["closed"]
     strokes = work.strokes or []
-    wanted = report.wanted_rings(strokes)
+    target = report.target_rings(strokes)
     middle = [_core.flatten(stroke, 0.01)[:, :2] for stroke in strokes]
-    width_mm, height_mm = np.ptp(np.vstack(wanted), axis=0)
+    width_mm, height_mm = np.ptp(np.vstack(target), axis=0)
     drawn = ("middle lines and their widths,", f"{width_mm:.0f} x {height_mm:.0f} mm")
     count = (str(len(strokes)), "strokes")
-    panels = [Panel("What was drawn", count, drawn, wanted, [], middle, MIDDLE_LINE)]
+    panels = [Panel("What was drawn", count, drawn, target, [], middle, MIDDLE_LINE)]
     for how, title in TITLES.items():
         total = totals[how]
         score = (f"{total.overlap:.2f}", "overlap with the drawing")
         off = f"{total.centre_mean_mm:.2f} mm mean, {total.centre_largest_mm:.2f} mm at most"
         paths = [with_chords(a_pass).poses_mm[:, :2] for a_pass in works[how].plan.passes]
-        panels.append(Panel(title, score, ("centre-line error", off), wanted, marks[how].outline_mm, paths))
+        panels.append(Panel(title, score, ("centre-line error", off), target, marks[how].outline_mm, paths))
     return panels_png(panels, work.title, f"with brush {work.brush.name}. {one_line(work.brush)}")

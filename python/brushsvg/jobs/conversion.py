@@ -47,9 +47,9 @@ ORDERS = ("drawn", "nearest")
 MOST_LOWERED_MM = 2.0  # by --z-offset, without a word: the strokes of `brushsvg setup height` try 1 mm
 FORMATS = {
     "picture": (".png", ".svg"),
-    "report": (".txt", ".json"),
+    "report": (".txt", ".json", ".csv"),
     "page": (".pdf", ".svg"),
-}  # of what is written beside a program
+}  # of what is written next to a program
 
 
 @dataclass(frozen=True)
@@ -57,9 +57,9 @@ class Conversion:
     """A drawing that became a plan, and what a machine runs.
 
     plan: TCP poses [mm] of each stroke; notices: warnings, none of which forbids to run it; time_s: how long a machine
-    takes, None where it cannot paint a plan that was asked for alone; texts: by extension (".ngc", ".json"); the
+    takes, None where it cannot paint a plan that was requested alone; texts: by extension (".ngc", ".json"); the
     others of a program in several files by what they add to its name ("-part2.script") or by their own; figures: how
-    near the paint comes, a report with strokes and total, None where nobody asked; files: the paths that were written.
+    near the paint comes, a report with strokes and total, None unless requested; files: the paths that were written.
     """
 
     title: str
@@ -95,15 +95,15 @@ def convert(
     """A drawing to a plan and a program, as `brushsvg convert` makes them, byte for byte. Nothing is written but to
     the paths given: all of them or none.
 
-    drawing: a path, whatever else read_drawing takes, a Design, or a Plan.
+    drawing: a path, any other input of read_drawing, a Design, or a Plan.
     out: a program in the cell's language, or a plan (.json); picture: what will be painted (.png .svg); report: the
-    figures (.txt .json); page: to print and paint on (.pdf .svg).
+    figures (.txt .json .csv); page: to print and paint on (.pdf .svg).
     formats: extensions of the texts to return, by default that of out, else the first of the cell's language.
     figures: whether to measure overlap and errors, too. from_stroke: resumes a job there. order: "drawn", "nearest".
     lenient: paint what is sound of damaged geometry.
     progress: called with words on what is done. cancel: a callable or something with is_set(), as a threading.Event:
-    asked 20 times a second in the caller's thread; once it says yes, concurrent.futures.CancelledError is raised within
-    a second, and nothing is written.
+    polled 20 times a second in the caller's thread; once it says yes, concurrent.futures.CancelledError is raised
+    within a second, and nothing is written.
 
     choices, by default what the drawing says: brush, cell: a name, path, Brush or Cell; sheet, fit (w, h),
     origin (x, y), width, lag, tolerance, z_offset: mm; paint_speed: mm/s; scale: a factor; units: "mm", "in";
@@ -117,8 +117,8 @@ def convert(
     reasons it gives the first, its notes the others, its notices what was to be warned of.
     """
     chosen = chosen_of(drawing, choices)
-    beside = {"picture": picture, "report": report, "page": page}
-    paths = {name: os.fspath(path) for name, path in beside.items() if _is_path(path, name)}
+    extras = {"picture": picture, "report": report, "page": page}
+    paths = {name: os.fspath(path) for name, path in extras.items() if _is_path(path, name)}
     out = os.fspath(out) if _is_path(out, "out") else None
     for name, path in paths.items():
         if suffix_of(path) not in FORMATS[name]:
@@ -194,7 +194,7 @@ def _converted(
                 text = pieces.decode() if isinstance(pieces, bytes) else "".join(pieces)
                 texts[name + suffix] = text
                 if out is not None and suffix == suffix_of(out):
-                    files[writer.beside(out, name)] = text
+                    files[writer.path_next_to(out, name)] = text
         if "picture" in paths:
             stage("drawing")
             files[paths["picture"]] = outputs.picture(suffix_of(paths["picture"]), one.work, one.marks)
@@ -221,7 +221,7 @@ def _refuse(problems: list[Notice], notices: tuple[Notice, ...]) -> None:
         first, *others = problems
         error = Error(first.sentence, first.where, code=first.code, advice=first.advice)
         for other in others:
-            error.add_note(": ".join(filter(None, (other.where, other.told))))
+            error.add_note(": ".join(filter(None, (other.where, other.text))))
         error.notices = notices
         raise error
 
@@ -229,7 +229,7 @@ def _refuse(problems: list[Notice], notices: tuple[Notice, ...]) -> None:
 @dataclass(frozen=True)
 class Tried:
     """Work that was simulated and held against all limits of a machine. suffix: of the program, or ".json" for a plan;
-    work: with its strokes in the order asked for; cell: as it is for that output; notes: for the header; problems: what
+    work: with its strokes in the requested order; cell: as it is for that output; notes: for the header; problems: what
     forbids to write it, one for each kind."""
 
     suffix: str
@@ -253,7 +253,7 @@ class Tried:
         return writer.in_parts(self.suffix, made)
 
     def remarks(self) -> list[Notice]:
-        """What is told of a job that may be run."""
+        """Return the notices of a job that may be run."""
         first = self.walk.job.first_stroke
         pens = with_one_pen(self.loads, self.cell, first) if self.is_program else []
         brush, cell = self.work.brush, self.cell

@@ -23,7 +23,7 @@ from .options import Options
 from .preparation.margin_strokes import KIND, is_margin, without_margin_strokes
 from .work import Work
 
-SHOWN_MM = 0.02  # how exactly a page shows what was wanted: less cannot be seen
+SHOWN_MM = 0.02  # how exactly a page shows the target: less cannot be seen
 
 
 def notes(work: Work) -> tuple[str, ...]:
@@ -90,32 +90,45 @@ def page(suffix: str, work: Work) -> bytes:
     return chart_page(made.printed, made.ticks).encode()
 
 
-def overlap_picture(suffix: str, work: Work, marks: _core.Marks, long_side_px: int | None = None) -> bytes:
+def overlap_picture(
+    suffix: str,
+    work: Work,
+    marks: _core.Marks,
+    long_side_px: int | None = None,
+    places: Iterable[report.Place] = (),
+) -> bytes:
     """Where paint is missing and where there is too much of it, as the bytes of a .png or an .svg; the latter needs
-    outlines. long_side_px: of a small .png without legend. Error for a plan, which does not say what was wanted."""
+    outlines. long_side_px: of a small .png without legend; places: of the report, which are numbered. Error for a plan,
+    which has no target."""
     if work.strokes is None:
-        raise Error("a plan does not say what was wanted: give the drawing", code="plan-without-target")
+        raise Error("a plan does not hold its target: give the drawing", code="plan-without-target")
     if suffix == ".svg":
-        wanted = report.wanted_rings(work.strokes)
-        return overlap_svg(wanted, marks.outline_mm, work.plan.sheet_mm, work.title).encode()
+        target = report.target_rings(work.strokes)
+        at_mm = {place.number: place.place_mm for place in places}
+        return overlap_svg(target, marks.outline_mm, work.plan.sheet_mm, work.title, at_mm).encode()
     from ..show.overlap_png import overlap_png
     from ..show.png_canvas import PNG_LONG_SIDE_PX
 
     px_per_mm = min(20.0, (long_side_px or PNG_LONG_SIDE_PX) / max(work.plan.sheet_mm))
     window = (0.0, 0.0, *work.plan.sheet_mm)
-    wanted = _core.wanted_coverage(work.strokes, window, px_per_mm)
+    target = _core.wanted_coverage(work.strokes, window, px_per_mm)
     painted = _core.coverage(marks, work.brush, window, px_per_mm)
-    return overlap_png(wanted, painted, legend=long_side_px is None)
+    height_mm = work.plan.sheet_mm[1]
+    at_px = {
+        place.number: (place.place_mm[0] * px_per_mm, (height_mm - place.place_mm[1]) * px_per_mm)
+        for place in places
+    }
+    return overlap_png(target, painted, long_side_px is None, at_px)
 
 
 def played(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed: float = 1.0) -> bytes:
     """An HTML page that plays tool and paint over time, speed times as fast at first. marks: of the work's plan in
     loads, with outlines."""
     _core.refuse_tilted(work.plan.passes, "the tool is shown upright")
-    runs = replace(cell, machine=None)  # the tool is shown where it goes, not where it is told to go
+    runs = replace(cell, machine=None)  # the tool is shown where it goes, not where it is commanded
     moves = timeline(whole_program(loads, work.brush, runs), marks)
-    wanted = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
-    return animation(moves, loads, work.brush, marks, wanted, cell.stations, work.title, speed)
+    target = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
+    return animation(moves, loads, work.brush, marks, target, cell.stations, work.title, speed)
 
 
 def reported(
@@ -130,7 +143,7 @@ def reported(
     as_run: _core.Plan | None = None,
 ) -> report.Report:
     """The figures of a work. warnings: None for those of the work; forbidden:
-    those of them for which no program would be written; drawn: see report.measure; seconds: how long it takes, where
+    those of them for which no program would be written; drawn: see report.measure; seconds: the duration, where
     that is known better than from the plan; advice: on the size; as_run: what the marks are of, where a machine cuts
     corners of the work's plan."""
     known = warnings if warnings is not None else work.notices
@@ -139,7 +152,7 @@ def reported(
     work, marks, as_run = without_margin_strokes(work, marks, as_run)
     leans = any(map(is_tilted, work.plan.passes))
     is_drawing = work.strokes is not None
-    rows, total = report.measure(
+    looked_at = (
         work.plan,
         marks,
         work.brush,
@@ -149,6 +162,7 @@ def reported(
         work.options.compensation,
         work.unreached,
     )
+    rows, total = report.measure(*looked_at)
     return report.Report(
         title=work.title,
         brush=work.plan.brush,
@@ -164,4 +178,12 @@ def reported(
         is_tilted=leans,
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,
+        assumed=assumed(work.brush),
+        places=report.worst_places(*looked_at) if is_drawing else (),
     )
+
+
+def assumed(brush: _core.Brush) -> tuple[str, ...]:
+    """Return the names of the laws that were never measured."""
+    names = {"lag": "lag", "half_width": "width"}
+    return tuple(name for law, name in names.items() if getattr(brush, law).assumed)

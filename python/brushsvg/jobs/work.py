@@ -1,4 +1,4 @@
-"""A file understood: what of it is painted, how, and what is to be told of it."""
+"""A file understood: the part of it that is painted, how, and the warnings about it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Known:
 
 @dataclass(frozen=True)
 class Work:
-    """A file understood: strokes is None where IN was a plan, which does not say what was wanted.
+    """A file understood: strokes is None where IN was a plan, which does not hold its target.
 
     plan: with corrections. tracking_errors: one per pass of the plan without them, () for a plan read from a file;
     refused: strokes that were left out.
@@ -39,11 +39,11 @@ class Work:
     options: Options
     notices: tuple[Notice, ...]
     refused: tuple[Notice, ...] = ()
-    left_out: tuple = ()  # the strokes that were refused, as they were wanted
+    left_out: tuple = ()  # the targets of strokes that were refused
     drawn: tuple = ()  # all strokes, before they were brought within the brush's reach
     unreached: tuple = ()  # pieces of filled shapes that no stroke reaches
     missed: tuple = ()  # pieces that strokes reach and the mark does not
-    astray: tuple = ()  # names of strokes whose paint lies visibly elsewhere
+    astray: tuple = ()  # names of strokes whose paint is visibly elsewhere
     known: Known | None = None  # of the plan, or of what it was before something of it changed
 
     def marks(self) -> _core.Marks | None:

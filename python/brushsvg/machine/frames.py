@@ -44,9 +44,9 @@ def rotation_deg(turned: np.ndarray) -> np.ndarray:
 
 def zyz_deg(turned: np.ndarray) -> np.ndarray:
     """(3,) angles [degrees] about z, then the new y, then the newest z of a rotation (3, 3)."""
-    aside = np.hypot(turned[0, 2], turned[1, 2])
-    b = np.arctan2(aside, turned[2, 2])
-    if aside > 1e-9:
+    sideways = np.hypot(turned[0, 2], turned[1, 2])
+    b = np.arctan2(sideways, turned[2, 2])
+    if sideways > 1e-9:
         a, c = np.arctan2(turned[1, 2], turned[0, 2]), np.arctan2(turned[2, 1], -turned[2, 0])
     else:  # both turn about one axis
         a, c = 0.0, np.arctan2(turned[1, 0], turned[1, 1])
@@ -56,23 +56,23 @@ def zyz_deg(turned: np.ndarray) -> np.ndarray:
 def frame_of_points(points_mm, flatness_mm: float) -> np.ndarray:
     """From the origin, a point along x, a point on the side of positive y, perhaps one more to try the plane.
 
-    Error for points too close together or on one line, and when the last lies more than flatness_mm off the
+    Error for points too close together or on one line, and when the last is more than flatness_mm off the
     plane of the others.
     """
     points = np.asarray(points_mm, dtype=float)
-    origin, along_x, beside = points[:3]
-    x, y = along_x - origin, beside - origin
+    origin, along_x, on_left = points[:3]
+    x, y = along_x - origin, on_left - origin
     for name, side in (("second", x), ("third", y)):
         if np.linalg.norm(side) < LEAST_TAUGHT_MM:
             raise Error(
-                f"the {name} point lies {np.linalg.norm(side):.1f} mm from the first, less than {LEAST_TAUGHT_MM:g} mm",
+                f"the {name} point is {np.linalg.norm(side):.1f} mm from the first, less than {LEAST_TAUGHT_MM:g} mm",
                 code="paper-taught",
             )
     x /= np.linalg.norm(x)
     across = y - x * (x @ y)
     if np.linalg.norm(across) < LEAST_TAUGHT_MM:
         raise Error(
-            f"the third point lies {np.linalg.norm(across):.1f} mm beside the line of the other two, "
+            f"the third point is {np.linalg.norm(across):.1f} mm off the line of the other two, "
             f"less than {LEAST_TAUGHT_MM:g} mm",
             code="paper-taught",
         )
@@ -85,7 +85,7 @@ def frame_of_points(points_mm, flatness_mm: float) -> np.ndarray:
         off_mm = abs(frame[:3, 2] @ (point - origin))
         if off_mm > flatness_mm:
             raise Error(
-                f"the fourth point lies {off_mm:.2f} mm off the plane of the other three, outside the range "
+                f"the fourth point is {off_mm:.2f} mm off the plane of the other three, outside the range "
                 f"[0, {flatness_mm:g}] mm of flatness_mm: the paper is not flat, or a point was taught wrongly",
                 code="paper-not-flat",
             )

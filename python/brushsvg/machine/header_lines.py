@@ -1,4 +1,4 @@
-"""What the header of a program says: how it was made, for whom, how long it takes."""
+"""Write the header of a program: how it was made, for whom, its duration."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def border_header(
 def height_header(brush: str, sheet_mm, heights_mm, made: Program) -> tuple[str, ...]:
     """The header of strokes from the highest to the lowest height [mm], a step apart."""
     return (
-        "title: how high the paper lies",
+        "title: height of the paper",
         f"brush: {brush}, {sum(1 for _ in made.sections())} strokes",
         _sheet_line(sheet_mm),
         "heights: {:.10g} to {:.10g} mm, {:.10g} mm apart".format(*heights_mm),

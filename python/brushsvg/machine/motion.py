@@ -12,7 +12,7 @@ import numpy as np
 from ..geometry import polylines
 from .cells.cell import LEAST_SPEED_MM_S, Cell, servo_stands
 from .frames import moved
-from .realised.distortion import told_high_mm
+from .realised.distortion import commanded_high_mm
 
 SAFE_MEANINGS = ("travel", "retract")  # at or above safe height: as fast as the machine likes
 
@@ -27,7 +27,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class Move:
-    """Straight lines through points_mm (n, 3), at one speed; or, with arc, the circle that they lie on.
+    """Straight lines through points_mm (n, 3), at one speed; or, with arc, the circle through them.
 
     meaning: travel (at safe height), approach (down to the clearance), land (down to the first pose), paint (along the
     poses), lift (up to the clearance), retract (up to safe height), dip (into the paint and out), wipe, look (slowly,
@@ -47,7 +47,7 @@ class Move:
 
 @dataclass(frozen=True)
 class Wait:
-    """Stand still for so long; seconds None: until a person, who is told the message, lets the program go on."""
+    """Stand still for so long; seconds None: until a person, who is shown the message, lets the program go on."""
 
     seconds: float | None
     message: str = ""
@@ -104,7 +104,7 @@ def rise_over(cell: Cell, sheet_mm, frame: np.ndarray) -> float:
     margin = cell.workspace.margin_mm
     x, y = (-margin, sheet_mm[0] + margin), (-margin, sheet_mm[1] + margin)
     corners = np.array([(a, b) for a in x for b in y])
-    heights = told_high_mm(corners, cell.heights.safe_mm, cell.machine)
+    heights = commanded_high_mm(corners, cell.heights.safe_mm, cell.machine)
     return float(moved(frame, np.column_stack([corners, heights]))[:, 2].max())
 
 
@@ -132,22 +132,22 @@ def _turned(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
     return replace(step, points_mm=moved(frame, step.points_mm), arc=arc, axes=axes)
 
 
-def at_told_speeds(section: Section, cell: Cell) -> Section:
-    """The same where a language tells whole speeds alone: no move is faster, but none slower than the least of them."""
+def set_programmed_speeds(section: Section, cell: Cell) -> Section:
+    """Round speeds down for a language of whole speeds, but no lower than its least one."""
     unit = LEAST_SPEED_MM_S.get(cell.language)
     if unit is None:
         return section
 
-    def told(step: Move | Wait) -> Move | Wait:
+    def with_speed(step: Move | Wait) -> Move | Wait:
         if isinstance(step, Wait):
             return step
         return replace(step, speed_mm_s=unit * max(math.floor(step.speed_mm_s / unit + 1e-6), 1))
 
-    return Section(section.title, tuple(map(told, section.steps)))
+    return Section(section.title, tuple(map(with_speed, section.steps)))
 
 
 def via(points_mm: np.ndarray) -> np.ndarray:
-    """Of the points of a circle that follow its first one, the one that tells how it goes."""
+    """Of the points of a circle after its first one, the one that determines it."""
     return points_mm[(len(points_mm) - 1) // 2]
 
 

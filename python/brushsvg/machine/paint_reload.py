@@ -26,7 +26,7 @@ from .tool_axes import axes_of, unit
 class PlanInLoads:
     """A plan as a machine runs it: each stroke in one or more passes, between which paint can be fetched.
 
-    No plan, and told apart by its names: what is counted here are loads, not strokes, and none is cut again. Of a part
+    Not a plan, which its names show: what is counted here are loads, not strokes, and none is cut again. Of a part
     load says which of its stroke it is, in a plan.json, too: as a rule plans are kept as they were planned, and cut for
     the machine.
     """
@@ -55,9 +55,9 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
     """Every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
 
     Whole are all strokes of cells that do not count the length, and those whose setting reload is false. What is a part
-    already stays as it is. What begins or ends below the paper is set down and lifted there. Where the machine is told
-    no circles, arcs have poses enough for lines; where its axes have backlash, arcs end where one turns back; where the
-    cell has a map of the paper or a field, lines have enough for that.
+    Whole are strokes already cut: a part stays as it is. What begins or ends below the paper is set down and lifted
+    there. For a machine without circles, arcs have poses enough for lines; where its axes have backlash, arcs end where
+    one turns back; where the cell has a map of the paper or a field, lines have enough for that.
     Where the brush turns, there are poses enough for a robot that turns evenly between them. Error for a part that does
     not follow the one before it, and for a tilted brush where the cell cannot tilt it.
     """
@@ -76,7 +76,7 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
         for a_pass in plan.passes:
             whole = painted_mm(a_pass) <= every_mm or a_pass.settings.reload is False or a_pass.load > 0
             loads += [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
-    if not _is_told_circles(cell):
+    if not _writes_circles(cell):
         loads = map(with_chords, loads)
     elif cell.machine and any(cell.machine.backlash_mm):
         axes = robot_from_paper(cell)[:2, 0]
@@ -125,8 +125,8 @@ def without_paint(brush: _core.Brush, cell: Cell) -> list[Notice]:
     return [Notice("", sentence, code="paint-unknown", advice='measure it: "paint" of a brush file')]
 
 
-def _is_told_circles(cell: Cell) -> bool:
-    """On paper that leans a robot's circles would lie in no plane that it knows, and a machine that is told other
+def _writes_circles(cell: Cell) -> bool:
+    """On paper that leans a robot's circles would be in no plane that it knows, and a machine that is commanded other
     places than the true ones may need ellipses."""
     post = POSTS.get(cell.language)
     if not is_similar(cell.machine):
@@ -215,9 +215,9 @@ def dips_mm(passes, loads: PlanInLoads, cell: Cell) -> list[list[float]]:
     """
     if not cell.reload:
         return dips_without_cell(passes)
-    asked, found, k = visits(loads, cell), [], 0
+    requested, found, k = visits(loads, cell), [], 0
     for a_pass in passes:
-        dips = [0.0] if asked[k] else []
+        dips = [0.0] if requested[k] else []
         k += 1
         while not a_pass.load and k < len(loads.loads) and is_later_part(loads.loads[k]):
             dips.append(_begins_at_mm(a_pass, loads.loads[k], dips[-1] if dips else 0.0))
@@ -229,7 +229,7 @@ def dips_mm(passes, loads: PlanInLoads, cell: Cell) -> list[list[float]]:
 def fetched_mm(plan: _core.Plan, brush: _core.Brush, cell: Cell | None) -> list[list[float]]:
     """The same of a plan's passes, with a cell or without."""
     if cell:
-        with suppress(Error):  # a colour that no station serves is told where a program is made
+        with suppress(Error):  # a colour that no station serves is reported where a program is made
             return dips_mm(plan.passes, in_loads(plan, brush, cell), cell)
     return dips_without_cell(plan.passes)
 
@@ -241,7 +241,7 @@ def dips_without_cell(passes) -> list[list[float]]:
 
 def _begins_at_mm(stroke, part, after_mm: float) -> float:
     """The way along a stroke at which one of its parts begins, its landing counted: by the moves that both share, and
-    that lie farther along the stroke than the part before began. Where there is none, by its first pose."""
+    that are farther along the stroke than the part before began. Where there is none, by its first pose."""
     line, poses = (chords(np.asarray(each.poses_mm), each.arcs)[:, :2] for each in (stroke, part))
     along, way = lengths(line), lengths(poses)
     start, step = line[:-1], np.diff(line, axis=0)
@@ -261,7 +261,7 @@ def _begins_at_mm(stroke, part, after_mm: float) -> float:
 
 
 SHARED_MM = (
-    0.02  # arcs of both are cut into chords at other places, which lie up to 0.01 mm off their circles
+    0.02  # arcs of both are cut into chords at other places, which are up to 0.01 mm off their circles
 )
 
 
@@ -276,7 +276,7 @@ def has_pens(cell: Cell) -> bool:
 
 
 def pen(colour: str) -> Station:
-    """Where a person, or the plotter, takes another pen or brush: wherever the tool is, at the safe height."""
+    """Wait for a person, or the plotter, to change the pen or brush: at the safe height, from any place."""
     return Station(f"pen {colour.lower().lstrip('#')}", (), by_hand=True)
 
 
@@ -320,7 +320,7 @@ def pens_changed(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> int:
 
 
 def with_one_pen(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> list[Notice]:
-    """A notice where strokes of several colours are painted in one go that nobody asked for."""
+    """Return a notice if strokes of several colours are painted in one run without an explicit option."""
     if not cell.pause_per_colour or may_pause(cell) or not pens_changed(loads, cell, first_stroke):
         return []
     sentence = f"strokes of several colours are painted with one pen: {why_no_waiting(cell)}"
@@ -336,9 +336,9 @@ def painted_mm(a_pass: _core.Pass) -> float:
 def _is_due(a_pass, last, used_mm: float, reload, lasts_mm: float) -> bool:
     if is_later_part(a_pass):
         return True
-    asked = a_pass.settings.reload
-    if asked is not None:
-        return asked
+    requested = a_pass.settings.reload
+    if requested is not None:
+        return requested
     if reload.when == "stroke":
         return True
     if reload.when == "layer":

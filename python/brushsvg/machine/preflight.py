@@ -32,14 +32,14 @@ def look(
     of_drawing: bool = True,
 ) -> Walked:
     """The job with everything that forbids to run it on the robot. marks: of the plan or of its loads; of a job that
-    is resumed only what is left is asked. walk: what within_limits found of it, where that is known. of_drawing: see
+    is resumed only the rest is checked. walk: what within_limits found of it, where that is known. of_drawing: see
     off_sheet."""
     walk = walk or within_limits(loads, brush, marks, cell, job, of_drawing)
     left = loads.left(job.first_stroke) if job.first_stroke > 1 else loads
     if job.first_stroke > 1 and not left.loads:
         return walk
     found = walk.problems or out_of_arm(walk.made, left.sheet_mm)
-    is_known = walk.made.cell is cell and not job.z_offset_mm  # asked of the paper where the cell has it
+    is_known = walk.made.cell is cell and not job.z_offset_mm  # checked for the paper where the cell has it
     written = walk.written if is_known else written_of(loads, cell, WHOLE_JOB)
     return replace(
         walk, problems=found or shifted_by_blends(loads, brush, cell, tolerance_mm, job.first_stroke, written)
@@ -97,8 +97,8 @@ def off_sheet(
     marks: _core.Marks, brush: _core.Brush, sheet_mm, of_drawing: bool = True, rounded_mm: float = 0.0
 ) -> list[Notice]:
     """A notice of the stroke for each side of the sheet [mm] that a stroke's paint crosses. of_drawing: whether it was
-    made of one, which flags lay out anew; they have no effect on a plan. rounded_mm: by how much rounding alone takes
-    the tool elsewhere than was planned: it may move an edge so much farther."""
+    made of one, which flags arrange anew; they have no effect on a plan. rounded_mm: the shift of the tool from its
+    plan by rounding alone: it may move an edge so much more."""
     found = []
     advice = (
         "move the drawing or make room with --origin X,Y, --sheet WxH or --fit WxH"
@@ -146,28 +146,30 @@ def shifted_by_blends(
     """A notice of the stroke where cutting corners as the cell does moves the mark by more than the tolerance, from one
     stroke on. written: what a program has of each load, by its number.
 
-    The path as it is run is simulated, and where the brush is taut its widest section compared with what was meant.
+    The path as it is run is simulated, and where the brush is taut its widest section compared with the plan.
     """
     if not cell.blending.tolerance_mm:
         return []
     # marks are straight between rows: as close as the tolerance asks, or it is their chords that are compared
     rows_mm = min(tolerance_mm / 10, ROWS_MM)
     found = []
-    told = [
-        _as_told(a_pass, written(number), cell)
+    as_written = [
+        _as_commanded(a_pass, written(number), cell)
         for number, a_pass in enumerate(loads.loads, 1)
         if number >= first_stroke
     ]
-    for first, last in _groups(told):
-        runs = as_run(told[first:last], lambda poses, arcs: blend_radii(poses, cell.blending, arcs))
-        pairs = zip(told[first:last], runs, strict=True)
+    for first, last in _groups(as_written):
+        runs = as_run(as_written[first:last], lambda poses, arcs: blend_radii(poses, cell.blending, arcs))
+        pairs = zip(as_written[first:last], runs, strict=True)
         cut = [(a_pass, *run) for a_pass, run in pairs if len(run[1]) > len(a_pass.poses_mm)]
         both = [a_pass for a_pass, _, _ in cut] + [run for _, run, _ in cut]
         traces = _core.simulate(
             _core.Plan(sheet_mm=loads.sheet_mm, passes=both), brush, rows_mm, for_outlines=False
         ).passes
-        for (a_pass, _, at), meant, run in zip(cut, traces[: len(cut)], traces[len(cut) :], strict=True):
-            shift_mm = _largest_shift_mm(meant, run, at, brush)
+        for (a_pass, _, at), planned_trace, run in zip(
+            cut, traces[: len(cut)], traces[len(cut) :], strict=True
+        ):
+            shift_mm = _largest_shift_mm(planned_trace, run, at, brush)
             if shift_mm > tolerance_mm:
                 sentence = (
                     f"cutting corners by up to {cell.blending.tolerance_mm:g} mm, as cell {cell.name} does, moves the "
@@ -180,11 +182,13 @@ def shifted_by_blends(
 ROWS_MM = 0.02  # rows of a mark are as close as that: a coarse tolerance is no reason to look less closely
 
 
-def _as_told(a_pass, written: Written, cell: Cell):
+def _as_commanded(a_pass, written: Written, cell: Cell):
     """With the poses and circles that a program has, not rounded."""
     axes = np.zeros((0, 3)) if written.axes is None else written.axes
-    told = _core.Pass(a_pass.stroke, written.told_mm, a_pass.speed_mm_s, arcs=written.arcs, tool_axes=axes)
-    return true_pass(told, cell)
+    commanded = _core.Pass(
+        a_pass.stroke, written.commanded_mm, a_pass.speed_mm_s, arcs=written.arcs, tool_axes=axes
+    )
+    return true_pass(commanded, cell)
 
 
 def _groups(passes) -> Iterator[tuple[int, int]]:
@@ -229,15 +233,18 @@ def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[t
     return runs
 
 
-def _largest_shift_mm(meant, run, at: np.ndarray, brush) -> float:
-    """Between the widest sections of two traces of one stroke; at: the meant pose of each pose that was run."""
-    ran, planned = _under_way(run), _under_way(meant)
+def _largest_shift_mm(planned_trace, run, at: np.ndarray, brush) -> float:
+    """Return the distance between the widest sections of two traces of one stroke; at: the planned pose of each pose
+    that was run."""
+    ran, planned = _under_way(run), _under_way(planned_trace)
     taut = np.asarray(run.taut, dtype=bool)[ran]
     if not taut.any():
         return 0.0
     pose = np.interp(np.asarray(run.pose)[ran][taut], np.arange(len(at)), at)
-    widest = _core.widest_points(meant, brush)[planned]
-    there = np.column_stack([np.interp(pose, np.asarray(meant.pose)[planned], axis) for axis in widest.T])
+    widest = _core.widest_points(planned_trace, brush)[planned]
+    there = np.column_stack(
+        [np.interp(pose, np.asarray(planned_trace.pose)[planned], axis) for axis in widest.T]
+    )
     return float(np.linalg.norm(_core.widest_points(run, brush)[ran][taut] - there, axis=1).max())
 
 

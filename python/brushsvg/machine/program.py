@@ -14,12 +14,12 @@ from .arm.joints import is_installed
 from .arm.place import unreachable
 from .cells.cell import MOST_LINES, MOST_POINTS, Cell, Station, briefly, robot_from_paper, value_mm
 from .frames import moved
-from .motion import Arc, Move, Program, Section, Wait, at_told_speeds, rise_over
+from .motion import Arc, Move, Program, Section, Wait, rise_over, set_programmed_speeds
 from .paint_reload import PlanInLoads, visits
 from .posts import POSTS
-from .posts.text import told_apart
+from .posts.text import make_unique
 from .realised.corner_blending import SHARP_RAD, blends, on_the_spot
-from .realised.distortion import told_high_mm, told_mm, true_mm
+from .realised.distortion import commanded_high_mm, commanded_mm, true_mm
 from .realised.rounding import Written, as_written
 from .realised.tilt import slow_enough
 from .tool_axes import axes_of, tilts_deg
@@ -42,16 +42,16 @@ class Job:
 
 
 WHOLE_JOB = Job()
-AROUND = 4  # points of a stroke beside its poses
+AROUND = 4  # points of a stroke around its poses
 POSES_KEPT = 300_000  # of a plan whose moves are made once and kept, in some 10 MB
-POSES_AT_ONCE = 100_000  # what is held twice, whatever the size of a plan; and what one call to numpy handles
+POSES_AT_ONCE = 100_000  # held twice, for a plan of any size; and what one call to numpy handles
 
 
 @dataclass(frozen=True)
 class Walked:
     """A job that was gone through before it is run. job: with its visits; made: all that the machine does, without a
     header; written: what a program has of a load, by its number; problems: a notice of the stroke or station for
-    whatever forbids to run it, empty when the robot may."""
+    anything that forbids to run it, empty when the robot may."""
 
     loads: PlanInLoads
     job: Job
@@ -70,7 +70,7 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     """Moves for every load of the job, in order, with the visits to the paint, and each limit that is broken anywhere
     on its way, or on that of a visit to any station.
 
-    brush: asked for nothing but its name and how fast it may go.
+    brush: only its name and its greatest speed are read.
     """
     problems = []
     try:
@@ -85,11 +85,11 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         return Walked(loads, job, made, written, [Notice("", sentence, code="stroke-unknown")])
     left = loads.left(first).loads
     if cell.pen and job.z_offset_mm:
-        sentence = f"the pen of cell {cell.name} is up or down: no height of the paper can be told"
+        sentence = f"the pen of cell {cell.name} is up or down: no height of the paper can be set"
         problems.append(Notice("", sentence, code="pen-depth"))
-    told_mm = value_mm(cell) if cell.servo else 10.0**-cell.decimals
+    commanded_mm = value_mm(cell) if cell.servo else 10.0**-cell.decimals
     problems += broken_limits(
-        [_as_run(a_pass, made) for a_pass in left], loads.sheet_mm, brush, cell, told_mm
+        [_as_run(a_pass, made) for a_pass in left], loads.sheet_mm, brush, cell, commanded_mm
     )
     problems += [
         Notice(
@@ -104,7 +104,7 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     if all(np.isfinite(a_pass.poses_mm).all() for a_pass in left):
         problems += astray_in(made, loads.sheet_mm)
         problems += stations_astray(brush, cell, made.robot_from_frame, loads.sheet_mm)
-    if problems and cell.reload:  # told of strokes as they were drawn, of one in parts once
+    if problems and cell.reload:  # reported of strokes as they were drawn, once for one in parts
         drawn = dict(zip((a_pass.stroke for a_pass in loads.loads), loads.strokes(), strict=True))
         problems = [replace(each, where=drawn.get(each.where, each.where)) for each in problems]
     return Walked(loads, job, made, written, list(dict.fromkeys(problems)))
@@ -126,11 +126,11 @@ def beyond_part(loads: PlanInLoads, cell: Cell) -> list[Notice]:
 
 
 def _as_run(a_pass, made: Program):
-    """The pass as limits are asked of it: a servo's with the places at which it stands."""
+    """Return the pass for which limits are checked: a servo's with the places at which it stands."""
     if made.cell.servo is None or not np.isfinite(a_pass.poses_mm).all():
         return a_pass
     written = as_written(a_pass, made.cell, made.robot_from_frame)
-    poses = true_mm(written.told_mm, made.cell.machine)
+    poses = true_mm(written.commanded_mm, made.cell.machine)
     return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s)  # no servo tilts a brush
 
 
@@ -157,7 +157,7 @@ def astray_in(made: Program, sheet_mm) -> list[Notice]:
 
 
 def _home(made: Program) -> tuple[Section, ...]:
-    """Where motors that are told steps alone begin, and end: over the robot's origin."""
+    """Return where motors that count steps begin, and end: over the robot's origin."""
     if made.cell.motors is None:
         return ()
     place = moved(np.linalg.inv(made.robot_from_frame), np.array([[0.0, 0.0, made.cell.heights.safe_mm]]))
@@ -166,7 +166,7 @@ def _home(made: Program) -> tuple[Section, ...]:
 
 
 def out_of_arm(made: Program, sheet_mm) -> list[Notice]:
-    """A notice, with the place where the paper would have to lie, for what the cell's arm cannot do of a program; none
+    """A notice, with the place that the paper would need, for what the cell's arm cannot do of a program; none
     where the cell has no arm, or nothing is installed that knows its joints."""
     if made.cell.arm is None or not is_installed():
         return []
@@ -196,7 +196,7 @@ def unchecked_program(
     job: Job = WHOLE_JOB,
     written: Callable[[int], Written] | None = None,
 ) -> Program:
-    """The same for who only asks how long it takes or wants to see it: limits are not looked at. Its sections are made
+    """Return the program for its duration or its picture: limits are not checked. Its sections are made
     once where they are few: they are walked for limits, time, length and text."""
     frame, count = robot_from_paper(cell, job.z_offset_mm), len(loads.loads)
     left = list(enumerate(loads.loads, 1))[max(job.first_stroke - 1, 0) :]
@@ -205,9 +205,9 @@ def unchecked_program(
     def sections() -> Iterator[Section]:
         for number, a_pass in left:
             stations = job.visits[number - 1] if job.visits else ()
-            yield from (at_told_speeds(visit(station, brush, cell), cell) for station in stations)
+            yield from (set_programmed_speeds(visit(station, brush, cell), cell) for station in stations)
             moves = _moves(a_pass, written(number), brush, cell)
-            yield at_told_speeds(Section(f"stroke {number} of {count}: {a_pass.stroke}", moves), cell)
+            yield set_programmed_speeds(Section(f"stroke {number} of {count}: {a_pass.stroke}", moves), cell)
 
     made = cache(lambda: tuple(sections()))
     rises_mm = (rise_over(cell, loads.sheet_mm, of) for of in (np.eye(4), frame))
@@ -221,10 +221,12 @@ def over(point, height_mm: float) -> np.ndarray:
     return np.array([[point[0], point[1], height_mm]], dtype=float)
 
 
-def safely_over(told_mm, cell: Cell) -> np.ndarray:
-    """(1, 3) the place at safe height above one that the machine is told."""
-    (height_mm,) = told_high_mm(np.array([told_mm[:2]], dtype=float), cell.heights.safe_mm, cell.machine)
-    return over(told_mm, height_mm)
+def safely_over(commanded_mm, cell: Cell) -> np.ndarray:
+    """Return (1, 3) the place at safe height above a commanded one."""
+    (height_mm,) = commanded_high_mm(
+        np.array([commanded_mm[:2]], dtype=float), cell.heights.safe_mm, cell.machine
+    )
+    return over(commanded_mm, height_mm)
 
 
 def approach_mm_s(brush, cell: Cell) -> float:
@@ -235,7 +237,7 @@ def approach_mm_s(brush, cell: Cell) -> float:
 def names_of_stations(cell: Cell) -> dict[Station, str]:
     """What a program calls each, short visits by a name of their own: no two alike."""
     stations = list(dict.fromkeys(each for one in cell.stations for each in (one, briefly(one))))
-    names = told_apart([station.name for station in stations])
+    names = make_unique([station.name for station in stations])
     return dict(zip(stations, names, strict=True))
 
 
@@ -290,14 +292,14 @@ def _circles(station: Station) -> np.ndarray:
 
 
 def _moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:
-    poses = written.told_mm
+    poses = written.commanded_mm
     if len(poses) == 0:
         return ()
     heights, speeds = cell.heights, cell.speeds
     start, end = true_mm(poses[[0, -1]], cell.machine)
 
     def above(place, height_mm: float) -> np.ndarray:
-        return told_mm(over(place, height_mm), cell.machine)
+        return commanded_mm(over(place, height_mm), cell.machine)
 
     axes = written.axes
     first, last = (None, None) if axes is None else (axes[:1], axes[-1:])

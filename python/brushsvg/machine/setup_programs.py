@@ -1,4 +1,4 @@
-"""Programs before the first stroke: where will it be painted, and how high does the paper lie."""
+"""Make programs before the first stroke: where it will be painted, and how high the paper is."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy as np
 
 from ..errors import Error
 from .cells.cell import LEAST_SPEED_MM_S, Cell, robot_from_paper, why_no_waiting
-from .motion import Move, Program, Section, Wait, at_told_speeds, rise_over
+from .motion import Move, Program, Section, Wait, rise_over, set_programmed_speeds
 from .move_extents import ways
 from .program import approach_mm_s, astray_in, out_of_arm, over, safely_over
-from .realised.distortion import in_lines_mm, told_mm
+from .realised.distortion import commanded_mm, in_lines_mm
 from .workspace_limits import astray, touching_mm_s
 
 CORNER_WAIT_S = 0.5  # long enough to look where the tip stands
@@ -111,11 +111,11 @@ def _highest_air(cell: Cell, sheet_mm) -> float:
     corners = ((0.0, 0.0), (width, 0.0), (width, height), (0.0, height))
     frame, safe_mm = robot_from_paper(cell), cell.heights.safe_mm
     for more_mm in (HIGH_MM, HIGH_MM / 2):
-        told = [
-            told_mm(over(corner, safe_mm), cell.machine)[0] + np.array([0.0, 0.0, more_mm])
+        corner_poses = [
+            commanded_mm(over(corner, safe_mm), cell.machine)[0] + np.array([0.0, 0.0, more_mm])
             for corner in corners
         ]
-        if not astray(ways([np.array(told)]), frame, cell, sheet_mm):
+        if not astray(ways([np.array(corner_poses)]), frame, cell, sheet_mm):
             return safe_mm + more_mm
     return safe_mm
 
@@ -131,9 +131,9 @@ def _inner_corners(sheet_mm) -> tuple[tuple[float, float], ...]:
 
 
 def _touch(place, clearance_mm: float, brush, cell: Cell) -> tuple[Move | Wait, ...]:
-    """Down to where the tip should just touch, twice asked: a person stops it who sees the brush bend."""
+    """Go down to where the tip should just touch, with two stops: a person who sees the brush bend ends it."""
     press_mm_s = min(cell.speeds.press_mm_s, touching_mm_s(brush, cell))
-    touching, down = (told_mm(over(place, z), cell.machine) for z in (0.0, clearance_mm))
+    touching, down = (commanded_mm(over(place, z), cell.machine) for z in (0.0, clearance_mm))
     return (
         Move("travel", safely_over(down[0], cell), cell.speeds.travel_mm_s),
         Move("approach", down, approach_mm_s(brush, cell)),
@@ -152,13 +152,13 @@ def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> 
     """
     left, bottom, right, top = around_mm
     corners = ((left, bottom), (right, bottom), (right, top), (left, top), (left, bottom))
-    told = np.vstack([told_mm(over(corner, 0.0), cell.machine) for corner in corners])
-    path = np.vstack([safely_over(corner, cell) for corner in told])
+    corner_poses = np.vstack([commanded_mm(over(corner, 0.0), cell.machine) for corner in corners])
+    path = np.vstack([safely_over(corner, cell) for corner in corner_poses])
 
     def sections() -> Iterator[Section]:
         start = Move("travel", path[:1], cell.speeds.travel_mm_s)
         slow_mm_s = approach_mm_s(brush, cell)
-        waits = () if cell.pen else (Wait(CORNER_WAIT_S),)  # a pen plotter is told no time
+        waits = () if cell.pen else (Wait(CORNER_WAIT_S),)  # a pen plotter has no waits
         steps = [step for corner in path[1:] for step in (*waits, Move("look", corner[None], slow_mm_s))]
         yield Section("border of the job, at safe height", (start, *steps))
 
@@ -167,7 +167,7 @@ def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> 
 
 def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, step_mm: float) -> Program:
     """Short strokes side by side, each step_mm deeper than the one before, from highest_mm over the paper to
-    lowest_mm, as the cell believes it to lie: the first that leaves paint tells the paper's true height.
+    lowest_mm, by the cell's height: the first that leaves paint shows the paper's true height.
 
     Error when they do not fit on the sheet or go deeper than brush or cell allow.
     """
@@ -211,7 +211,7 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
 
 
 def slow_below_mm(highest_mm: float, cell: Cell) -> float:
-    """From there down all is slow, since the paper may lie as high as highest_mm [mm]."""
+    """From there down all is slow, since the paper may be as high as highest_mm [mm]."""
     return max(cell.heights.clearance_mm, highest_mm + 0.5)
 
 
@@ -220,21 +220,21 @@ def _stroke_at(ends, height_mm: float, clearance_mm: float, brush, cell: Cell) -
     speed_mm_s = min(touching_mm_s(brush, cell), SPEED_MM_S)
     press_mm_s = min(cell.speeds.press_mm_s, speed_mm_s)
     way = in_lines_mm(np.vstack([over(end, height_mm) for end in ends]), cell.machine)
-    told = told_mm(way, cell.machine)
-    down, up = (told_mm(over(end, clearance_mm), cell.machine) for end in ends)
+    commanded = commanded_mm(way, cell.machine)
+    down, up = (commanded_mm(over(end, clearance_mm), cell.machine) for end in ends)
     return (
         Move("travel", safely_over(down[0], cell), cell.speeds.travel_mm_s),
         Move("approach", down, approach_mm_s(brush, cell)),
-        Move("land", told[:1], press_mm_s),
-        Move("paint", told[1:], speed_mm_s),
+        Move("land", commanded[:1], press_mm_s),
+        Move("paint", commanded[1:], speed_mm_s),
         Move("lift", up, press_mm_s),
         Move("retract", safely_over(up[0], cell), cell.speeds.travel_mm_s),
     )
 
 
 def over_sheet(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
-    """To and fro over a whole sheet, at the safe height and touching it: what any drawing on it may ask of an arm. It
-    is asked and never run; limits are not looked at."""
+    """Return moves to and fro over a whole sheet, at the safe height and touching it: all that a drawing on it may need
+    of an arm. They are checked and never run; limits are not checked."""
     width, height = sheet_mm
     lanes = np.linspace(0.0, height, max(2, math.ceil(height / LANE_APART_MM) + 1))
     ends = [((0.0, y), (width, y))[:: 1 if k % 2 == 0 else -1] for k, y in enumerate(lanes)]
@@ -285,10 +285,10 @@ def _unless_astray(
     high = replace(cell, heights=replace(cell.heights, safe_mm=cell.heights.safe_mm + rise_more_mm))
     rises_mm = (rise_over(high, sheet_mm, of) for of in (np.eye(4), frame))
 
-    def told() -> Iterator[Section]:
-        return (at_told_speeds(section, cell) for section in sections())
+    def timed() -> Iterator[Section]:
+        return (set_programmed_speeds(section, cell) for section in sections())
 
-    made = Program((), cell, frame, told, *rises_mm, touching_mm_s(brush, cell))
+    made = Program((), cell, frame, timed, *rises_mm, touching_mm_s(brush, cell))
     for notice in astray_in(made, sheet_mm) or out_of_arm(made, sheet_mm):
         raise Error(notice.sentence, code=notice.code, advice=notice.advice)
     return made

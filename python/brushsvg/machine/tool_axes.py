@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-# An axis that leans by less is upright: no robot is told less, and plans are rounded to 1e-7.
+# An axis that leans by less is upright: no program has less, and plans are rounded to 1e-7.
 UPRIGHT = 1e-6
 
 

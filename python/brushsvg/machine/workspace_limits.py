@@ -14,7 +14,7 @@ from .move_extents import Ways, bounds, from_origin, place_inside, ways, ways_in
 from .realised.tilt import broken_limits as tilted_too_far
 
 ROUNDING_MM = 1e-6
-SLOWEST_MM_S = 1e-6  # slower, times cannot be told
+SLOWEST_MM_S = 1e-6  # slower, durations cannot be given
 
 
 def touching_mm_s(brush, cell: Cell) -> float:
@@ -23,9 +23,9 @@ def touching_mm_s(brush, cell: Cell) -> float:
 
 
 def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) -> list[Notice]:
-    """A notice of the stroke or station for each limit that passes break wherever the paper lies.
+    """A notice of the stroke or station for each limit that passes break for any place of the paper.
 
-    brush: asked for nothing but its name and how fast it may go. least_mm: pressed by less, rounding may leave nothing.
+    brush: only its name and its greatest speed are read. least_mm: pressed by less, rounding may leave nothing.
     """
     problems = [] if passes else [Notice("", "there is nothing to paint", code="nothing-to-paint")]
     least_mm_s, limit = LEAST_SPEED_MM_S.get(cell.language, SLOWEST_MM_S), touching_mm_s(brush, cell)
@@ -44,7 +44,7 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
             elif (depth_mm := -poses[:, 2].min()) < least_mm:
                 sentence = (
                     f"the brush is pressed by {depth_mm:.3g} mm, less than the {least_mm:.3g} mm that a program of "
-                    f"cell {cell.name} tells apart: nothing would be painted"
+                    f"cell {cell.name} can express: nothing would be painted"
                 )
                 found.append(Notice("", sentence, code="never-pressed"))
             if cell.pen:
@@ -65,7 +65,7 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
         (x, y), r = station.place_mm, station.stir_mm
         stirs = [(x - r, y, 0.0), (x + r, y, 0.0), (x, y - r, 0.0), (x, y + r, 0.0)]
         if any(place_inside(ways([[point]]), *on_sheet) is not None for point in (*path, *stirs)):
-            sentence = f"its place lies on the sheet of {width:g} x {height:g} mm"
+            sentence = f"its place is on the sheet of {width:g} x {height:g} mm"
             problems.append(Notice(station.name, sentence, code="station-on-sheet"))
         elif place_inside(ways([path]), *on_sheet) is not None:
             sentence = f"its wipe goes over the sheet of {width:g} x {height:g} mm"
@@ -82,7 +82,7 @@ def walked_astray(sections: Iterable[Section], frame: np.ndarray, cell: Cell, sh
     problems: list[Notice] = []
     here = None
     for some in _groups(section for section in sections if section.moves):
-        # most keep every limit: all together are asked first, ways between them included
+        # most keep every limit: all together are checked first, ways between them included
         moves = [move for section in some for move in section.moves]
         if astray(_ways_of(moves, here), frame, cell, sheet_mm):
             problems += _one_by_one(some, here, frame, cell, sheet_mm)
@@ -158,7 +158,7 @@ def rise_astray(
     """The same for the way straight up or down between places (n, 3) and the height to which the tool rises before its
     first move. frame: (4, 4) that of both, in the robot's.
 
-    Where it stands then nobody knows: asked are the places where a program begins and where it leaves the tool.
+    Where it stands then nobody knows: checked are the places where a program begins and where it leaves the tool.
     """
     places = [place for place in np.asarray(places, dtype=float).reshape(-1, 3) if np.isfinite(place).all()]
     found: list[Notice] = []
@@ -215,20 +215,20 @@ def _box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: float) -
         if least[axis] < low - slack_mm or greatest[axis] > high + slack_mm:
             worst = least[axis] if low - least[axis] > greatest[axis] - high else greatest[axis]
             sentence = (
-                f"the tool goes to {name} {_told(worst, low, high)} mm, outside the range "
-                f"[{low:g}, {high:g}] mm of the box of cell {cell.name}"
+                f"the tool goes to {name} {_in_digits(worst, low, high)} mm, outside the range "
+                f"[{low:g}, {high:g}] mm of workspace.box_mm of cell {cell.name}"
             )
             yield Notice("", sentence, code="out-of-box", about=name)
-    if cell.servo:  # its paper lies level, and a height beyond the table would silently become its end
+    if cell.servo:  # its paper is level, and a height beyond the table would silently become its end
         heights = [row[0] for row in cell.servo.table]
         low, high = min(heights), max(heights)
         for height in (least[2], greatest[2]):
             if not low - slack_mm <= height <= high + slack_mm:
                 sentence = (
-                    f"height {_told(height, low, high)} mm is outside the range [{low:g}, {high:g}] mm of the servo "
-                    f"of cell {cell.name}"
+                    f"height {_in_digits(height, low, high)} mm is outside the range [{low:g}, {high:g}] mm of the "
+                    f"servo of cell {cell.name}"
                 )
-                if height > high:  # where the paper lies higher than the table leaves room for
+                if height > high:  # where the paper is higher than the table allows
                     sentence += ": measure a higher row of its table, or lower safe_mm"
                 yield Notice("", sentence, code="servo-out-of-range")
 
@@ -240,7 +240,7 @@ def _reach(nearest: float, farthest: float, cell: Cell, cut_mm: float, slack_mm:
     if nearest < least - max(-cut_mm, 0.0) or farthest > greatest + slack_mm:
         worst = nearest if least - nearest > farthest - greatest else farthest
         sentence = (
-            f"the tool goes {_told(worst, least, greatest)} mm away from the robot's origin, outside the range "
+            f"the tool goes {_in_digits(worst, least, greatest)} mm away from the robot's origin, outside the range "
             f"[{least:g}, {greatest:g}] mm of the reach of cell {cell.name}"
         )
         yield Notice("", sentence, code="out-of-reach")
@@ -252,16 +252,16 @@ def _kept_out(some: Ways, cell: Cell, cut_mm: float) -> Iterator[Notice]:
         grown = np.maximum(cut_mm, (low - high) / 4)  # however thin a box, slack leaves half of it
         if (place := place_inside(some, low - grown, high + grown)) is None:
             continue
-        told = ", ".join(f"{axis} {value:.1f}" for axis, value in zip("xyz", place, strict=True))
+        where = ", ".join(f"{axis} {value:.1f}" for axis, value in zip("xyz", place, strict=True))
         box = ", ".join(
             f"{axis} {a:g} to {b:g}" for axis, a, b in zip("xyz", low.tolist(), high.tolist(), strict=True)
         )
-        sentence = f"the tool goes through {told} mm, in box {number} that cell {cell.name} keeps it out of: {box} mm"
+        sentence = f"the tool goes through {where} mm, in box {number} that cell {cell.name} keeps it out of: {box} mm"
         yield Notice("", sentence, code="in-kept-out-box", about=str(number))
 
 
-def _told(value: float, low: float, high: float) -> str:
-    """A length outside of a range, with as many decimals as tell it from its ends."""
+def _in_digits(value: float, low: float, high: float) -> str:
+    """A length outside of a range, with as many decimals as show it outside."""
     for decimals in range(1, 7):
         if not low <= float(f"{value:.{decimals}f}") <= high:
             break

@@ -98,7 +98,7 @@ def in_parts(suffix: str, pieces: bytes | Iterator[str]) -> dict[str, bytes | st
 def in_files(path: str | os.PathLike[str], pieces: bytes | Iterator[str]) -> dict:
     """The same by the paths of those files."""
     parts = in_parts(Path(path).suffix.lower(), pieces)
-    return {beside(path, name): text for name, text in parts.items()}
+    return {path_next_to(path, name): text for name, text in parts.items()}
 
 
 def parted_post(suffix: str) -> Post | None:
@@ -106,7 +106,7 @@ def parted_post(suffix: str) -> Post | None:
     return next((post for post in POSTS.values() if post.parted and suffix in post.extensions), None)
 
 
-def beside(path: str | os.PathLike[str], name: str) -> str:
+def path_next_to(path: str | os.PathLike[str], name: str) -> str:
     """The path of another program of the same job. name: "" for the one at the path."""
     if not name:
         return os.fspath(path)
@@ -121,7 +121,7 @@ def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str
     """
     post, texts, found = parted_post(Path(path).suffix.lower()), [text], {}
     for one in texts if post else []:
-        for file in (beside(path, name) for name in post.called(one)):
+        for file in (path_next_to(path, name) for name in post.called(one)):
             if file not in found:
                 found[file] = read(file)
                 texts.append(found[file])
@@ -129,7 +129,7 @@ def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str
 
 
 def painting_cell(suffix: str, cell: Cell) -> Cell:
-    """The cell whose limits an output is asked for: a plan.json has whole strokes, and goes for no paint."""
+    """Return the cell whose limits apply to an output: a plan.json has whole strokes, and fetches no paint."""
     return replace(cell, reload=None) if suffix == ".json" else cell
 
 
@@ -141,7 +141,7 @@ def text_of(post: Post, made: Program, suffix: str = "") -> Iterator[str]:
 
 
 def whole_program(loads: PlanInLoads, brush: _core.Brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
-    """All that the machine does, paint included, for who only looks: limits are not asked."""
+    """Return all that the machine does, paint included, for a picture: limits are not checked."""
     job = replace(job, visits=visits(loads, cell, job.first_stroke))
     return unchecked_program(loads, brush, cell, job)
 

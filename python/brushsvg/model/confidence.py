@@ -14,14 +14,14 @@ LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
 
 
 def places(brush) -> dict[str, slice]:
-    """Where each law's coefficients lie among the rows of the covariance."""
+    """Return the rows of the covariance that hold each law's coefficients."""
     ends = np.cumsum([0, *(len(getattr(brush, law).coefficients) for law in LAWS)]).tolist()
     return {law: slice(*pair) for law, pair in zip(LAWS, itertools.pairwise(ends), strict=True)}
 
 
 def half_interval_mm(covariance: np.ndarray, depths: np.ndarray, freedom: float | None) -> np.ndarray:
     """t sqrt(x^T C x), x the powers of depth, C (n, n) the covariance of a law's coefficients, found from so many
-    values to spare, t what 95 % of Student's t lie within; None: nobody knows from how many, t as for a normal value.
+    values to spare, t the 95 % quantile of Student's t; None: nobody knows from how many, t as for a normal value.
     """
     powers = np.vander(depths, len(covariance), increasing=True)
     squared = np.einsum("ij,jk,ik->i", powers, covariance, powers)

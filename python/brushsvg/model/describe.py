@@ -67,8 +67,8 @@ def _law(name: str, meaning: str, law) -> list[str]:
 
 
 def _known(known: list[str], source: str) -> list[str]:
-    told = ". ".join(part for part in (", ".join(known), source) if part)
-    return textwrap.wrap(told, 100, initial_indent=" " * 6, subsequent_indent=" " * 6)
+    caption = ". ".join(part for part in (", ".join(known), source) if part)
+    return textwrap.wrap(caption, 100, initial_indent=" " * 6, subsequent_indent=" " * 6)
 
 
 PAINT = "how much narrower the mark is, by the way s in mm painted since the last dip"

@@ -97,18 +97,18 @@ def _object(text: str) -> dict:
 
 def _unknown(path: str, where: str, key: str, known: tuple[str, ...]) -> Notice:
     near = nearest_name(key, known)
-    meant = f"; did you mean {where}{near}?" if near else ""
+    hint = f"; did you mean {where}{near}?" if near else ""
     return Notice(
         path,
-        f"this key is not known and has no effect{meant}",
+        f"this key is not known and has no effect{hint}",
         code="key-unknown",
         about=near,
     )
 
 
 def mistyped_keys(brush: _core.Brush) -> list[Notice]:
-    """Those of them that may be another key, mistyped: who paints is told; notes that somebody keeps in a file are
-    none."""
+    """Return the keys that may be another key, mistyped: they are reported to a person who paints; notes that somebody
+    keeps in a file are not."""
     found = [notice for notice in unknown_keys(brush) if notice.about]
     return [
         Notice(f"brush {brush.name}", f"{notice.where}: {notice.sentence}", code=notice.code)

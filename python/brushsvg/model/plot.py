@@ -9,10 +9,14 @@ import numpy as np
 
 from .. import _core
 from ..errors import lacking
+from ..reporting.label_space import LabelSpace
 from .confidence import law_band, paint_interval_per_m
 from .describe import LAWS
 
 INK, QUIET, BAND = "#2b3a67", "#767a82", "#3f8fd9"
+NOTE = "note"  # mark of a text that `encoded` places
+AROUND_PX = 4  # around a note
+DRAWN = 215  # brightness of a pixel with something in it: grids and bands are brighter
 SHADES = ("#b9c3de", "#2b3a67")  # of footprints, shallow to deep
 
 
@@ -39,11 +43,11 @@ def brush_picture_on(figure, brush, data: dict | None = None) -> None:
     _footprints(figure.add_subplot(grid[0, 2] if brush.paint else grid[:, 2]), brush)
     if brush.paint:
         _paint(figure.add_subplot(grid[1, 2]), brush.paint)
-    figure.suptitle(_plain(brush.name))
+    figure.suptitle(shortened(brush.name, 60))
 
 
 def _legend(figure) -> None:
-    """One for all laws, below them: inside it would lie on some law."""
+    """Draw one legend for all laws, below them: inside it would cover a law."""
     named = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
@@ -99,7 +103,7 @@ def _paint(axes, paint) -> None:
     axes.plot(ways, share, color=INK, linestyle=":" if paint.assumed else "-")
     if paint.lasts_mm:
         axes.axvline(paint.lasts_mm, color=QUIET, linewidth=1)
-        axes.text(paint.lasts_mm, 2, "hairs run dry", fontsize=8, rotation=90, ha="right", color=QUIET)
+        note(axes, (paint.lasts_mm, 50.0), "hairs run dry", fontsize=8, color=QUIET)
     axes.set_title(f"paint{' (assumed)' if paint.assumed else ''}\nwidth left since the last dip", fontsize=9)
     axes.set_xlabel("way painted, mm", fontsize=8)
     axes.set_ylabel("%", fontsize=8)
@@ -140,13 +144,51 @@ def new_figure(size_in: tuple[float, float]):
     return Figure(figsize=size_in, layout="constrained", facecolor="white")
 
 
+def note(axes, at, text: str, **style) -> None:
+    """Text for a place of the data; `encoded` finds where it covers nothing."""
+    axes.text(*at, text, gid=NOTE, ha="left", va="bottom", **style)
+
+
 def encoded(figure, suffix: str) -> bytes:
+    if notes := figure.findobj(lambda artist: artist.get_gid() == NOTE):
+        _place(figure, notes)
     out = io.BytesIO()
     without = {"Date": None} if suffix == ".svg" else {"Software": None}
     figure.savefig(out, format=suffix[1:], dpi=140, metadata=without)
     return out.getvalue()
 
 
-def _plain(text: str) -> str:
-    """A name is no formula: matplotlib reads $...$."""
-    return text.replace("$", r"\$")
+def _place(figure, notes: list) -> None:
+    """Move notes to where they cover nothing that is drawn, within their axes."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.lines import Line2D
+
+    canvas = FigureCanvasAgg(figure)
+    for each in notes:
+        each.set_visible(False)
+    canvas.draw()
+    figure.set_layout_engine("none")  # what is placed now must not move again
+    marks = np.asarray(canvas.buffer_rgba())[..., :3].min(axis=2) < DRAWN
+    height, width = marks.shape
+    spaces: dict = {}
+    for each in notes:
+        each.set_visible(True)
+        extent, frame = each.get_window_extent(canvas.get_renderer()), each.axes.bbox
+        x, y = each.axes.transData.transform(each.get_position())
+        bounds = (frame.x0 + 2, height - frame.y1 + 2, frame.x1 - 2, height - frame.y0 - 2)
+        space = spaces.setdefault(each.axes, LabelSpace(marks, bounds=bounds))
+        label = space.place((x, height - y), [(extent.width + 2 * AROUND_PX, extent.height + 2 * AROUND_PX)])
+        left, bottom = label.left + AROUND_PX, label.top + label.height - AROUND_PX
+        each.set_transform(figure.transFigure)
+        each.set_position((left / width, 1 - bottom / height))
+        if label.leader:
+            xs, ys = np.array(label.leader).T
+            line = Line2D(
+                xs / width, 1 - ys / height, linewidth=0.6, color=QUIET, transform=figure.transFigure
+            )
+            figure.add_artist(line)
+
+
+def shortened(text: str, most: int = 40) -> str:
+    """A name that fits a picture, and is no formula: matplotlib reads $...$."""
+    return (text if len(text) <= most else text[: most - 3] + "...").replace("$", r"\$")

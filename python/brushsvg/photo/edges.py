@@ -16,16 +16,16 @@ from .photo import LIGHT, grey_light, refuse_grainy
 BROADEST_MM = 31  # paint is narrower: what is darker over less than this is not the light
 PAPER = 0.92  # of the light round about: darker is paint
 SMOOTH_MM = 8.0  # over which the light changes; shorter, and it would follow the stain round wet paint
-STRAY_MM = 6.0  # a mark lies no farther from its box
+STRAY_MM = 6.0  # greatest distance of a mark from its box
 FAINTEST = 0.12  # share of the light that paint takes away at least
 CERTAIN = 6.0  # times the paper's noise
 SEEN = 0.3  # of the usual paint: more is a mark, the edge is found for each by itself
 SPLIT, SPLIT_MM2 = 0.15, 3.0  # share and area of a part in another stroke's box from which it is another mark
 MOST_JOINED = 2  # strokes that one piece of paint covers: more, and it is a shadow or a thing on the page
 MOST_TOUCHING = 0.25  # share of the strokes: more, and it is not one painting of this chart
-TURNED = 0.1  # of the paint: so much more lies in the room of strokes were the page turned
-IN_ROOM = 0.7  # of the paint at least: the rest strays
-MOST_LEAN = 1.5  # mm aside for each mm of depth, as of a cell
+TURNED = 0.1  # of the paint: so much more would be in the boxes of strokes if the page were turned
+IN_STROKE_BOX = 0.7  # of the paint at least: the rest strays
+MOST_LEAN = 1.5  # mm of displacement for each mm of depth, as for a cell
 MOST_MISSING = 0.5  # share of the strokes
 LEAST_MM2 = 0.5
 BLOT = 0.03  # of a mark's area: smaller parts are splashes
@@ -36,14 +36,14 @@ ALONG_RIM = (
 LEAST_LENGTH = 0.3  # of its box, that a mark is long at least: less is a splash where a stroke is missing
 CLEAR_MM = 0.5  # within a mark's edge, from where on blur takes nothing away
 MOST_BLURRED = 1.3  # times as much paint a narrow mark may have as it shows
-EDGE_MM = 0.8  # beside a mark, where its edge is looked for
+EDGE_MM = 0.8  # next to a mark, where its edge is searched
 STEP_MM, OVER_MM = 0.1, 0.2  # points of an outline, and over how much of it each is a mean: pixels make steps
 
 
 @dataclass(frozen=True)
-class Room:
+class StrokeBox:
     """Where the mark of a stroke is expected: left, bottom, right, top in mm on the sheet. depth_mm: how deep it is
-    pressed, which takes it aside where the tool leans; 0 where that is not to be looked for."""
+    pressed, which displaces it where the tool leans; 0: no such displacement is estimated."""
 
     stroke: str
     box_mm: tuple[float, float, float, float]
@@ -63,15 +63,17 @@ class Marks:
     paint: np.ndarray
 
 
-def find_marks(flat: Flat, rooms: list[Room], printed_mm: list[np.ndarray], labels_mm: list) -> Marks:
+def find_marks(
+    flat: Flat, stroke_boxes: list[StrokeBox], printed_mm: list[np.ndarray], labels_mm: list
+) -> Marks:
     """printed_mm: rings round markers and all that is as dark as paint; labels_mm: boxes of pale text, which a mark may
     cover. Error where there is no paint."""
     print_ = printed_pixels(flat, printed_mm)
     try:
-        paint = paint_seen(flat, print_, rooms, labels_mm)
-        return told_apart(paint, flat, rooms, labels_mm)
+        paint = paint_seen(flat, print_, stroke_boxes, labels_mm)
+        return assign_marks(paint, flat, stroke_boxes, labels_mm)
     except Error:
-        refuse_grainy(grey_light(flat.pixels), "the strokes cannot be told")
+        refuse_grainy(grey_light(flat.pixels), "the strokes cannot be distinguished")
         raise
 
 
@@ -83,9 +85,9 @@ def printed_pixels(flat: Flat, printed_mm) -> np.ndarray:
     return print_
 
 
-def paint_seen(flat: Flat, print_: np.ndarray, rooms: list[Room], labels_mm=()) -> np.ndarray:
-    """Along the colour that tells paint from paper best, from the light that paper next to it would throw back; paint
-    is darker than paper, or lighter."""
+def paint_seen(flat: Flat, print_: np.ndarray, stroke_boxes: list[StrokeBox], labels_mm=()) -> np.ndarray:
+    """Return the paint along the colour that separates it best from paper, from the light that paper next to it would
+    throw back; paint is darker than paper, or lighter."""
     light = cv2.LUT(flat.pixels, LIGHT)
     printed = print_.copy()
     for box in labels_mm:
@@ -96,8 +98,8 @@ def paint_seen(flat: Flat, print_: np.ndarray, rooms: list[Room], labels_mm=()) 
     if is_lighter:
         taken = -taken
     inside = np.zeros_like(print_)
-    for room in rooms:
-        c0, r0, c1, r1 = _window(flat, room.box_mm, 0.0)
+    for stroke_box in stroke_boxes:
+        c0, r0, c1, r1 = _window(flat, stroke_box.box_mm, 0.0)
         inside[r0:r1, c0:c1] = 1
     sample = taken[::3, ::3][(inside[::3, ::3] == 1) & (print_[::3, ::3] == 0)]
     weights = _contrast(sample)
@@ -186,7 +188,7 @@ def _window(flat: Flat, box_mm, beyond_mm: float) -> tuple[int, int, int, int]:
     )
 
 
-def _nearest_room(flat: Flat, rooms: list[Room]) -> np.ndarray:
+def _nearest_box(flat: Flat, stroke_boxes: list[StrokeBox]) -> np.ndarray:
     """Number from 1 on of the box that is nearest to each pixel, of several round it the one whose edge is farthest;
     0 beyond STRAY_MM of all."""
     rows, columns = flat.pixels.shape[:2]
@@ -194,8 +196,8 @@ def _nearest_room(flat: Flat, rooms: list[Room]) -> np.ndarray:
     x = (np.arange(0, columns, step) + 0.5) / flat.px_per_mm
     y = flat.sheet_mm[1] - (np.arange(0, rows, step) + 0.5) / flat.px_per_mm
     nearest, owner = np.full((len(y), len(x)), STRAY_MM), np.zeros((len(y), len(x)), np.uint16)
-    for number, room in enumerate(rooms, 1):
-        left, bottom, right, top = room.box_mm
+    for number, stroke_box in enumerate(stroke_boxes, 1):
+        left, bottom, right, top = stroke_box.box_mm
         across = np.maximum(left - x, x - right)[None]
         up = np.maximum(bottom - y, y - top)[:, None]
         away = np.hypot(np.maximum(across, 0.0), np.maximum(up, 0.0)) + np.minimum(
@@ -206,33 +208,34 @@ def _nearest_room(flat: Flat, rooms: list[Room]) -> np.ndarray:
     return np.repeat(np.repeat(owner, step, axis=0), step, axis=1)[:rows, :columns]
 
 
-def told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list) -> Marks:
-    """Marks by the box that most of each lies in; where marks lie in the boxes of others, as of a tool that leans, by
-    boxes that lean as they do. paint: as paint_seen gives it, or a mean over several pictures."""
+def assign_marks(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], labels_mm: list) -> Marks:
+    """Return the marks, each by the box that holds most of it; where marks are in the boxes of others, as with a
+    leaning tool, by boxes that lean as they do. paint: as paint_seen gives it, or a mean over several pictures."""
     try:
-        found = _told_apart(paint, flat, rooms, labels_mm)
+        found = _assign_marks_once(paint, flat, stroke_boxes, labels_mm)
     except Error as refusal:
         if refusal.code != "photo-paint-elsewhere":
             raise
-        leaning = _leaning(paint, flat, rooms)
+        leaning = _leaning(paint, flat, stroke_boxes)
         if leaning is None:
             raise
         try:
-            return _told_apart(paint, flat, leaning, labels_mm)
+            return _assign_marks_once(paint, flat, leaning, labels_mm)
         except Error:
             raise refusal from None
-    if (found.joined or found.missing) and (leaning := _leaning(paint, flat, rooms)) is not None:
+    if (found.joined or found.missing) and (leaning := _leaning(paint, flat, stroke_boxes)) is not None:
         with contextlib.suppress(Error):
-            again = _told_apart(paint, flat, leaning, labels_mm)
+            again = _assign_marks_once(paint, flat, leaning, labels_mm)
             if len(again.joined) + len(again.missing) < len(found.joined) + len(found.missing):
                 return again
     return found
 
 
-def _leaning(paint: np.ndarray, flat: Flat, rooms: list[Room]) -> list[Room] | None:
-    """Rooms moved in proportion to depth, to where the middles of most parts of paint lie in those of their rooms.
+def _leaning(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> list[StrokeBox] | None:
+    """Return the boxes moved in proportion to depth, to where the middles of most parts of paint are in those of their
+    boxes.
     None where no depth is known, and where the same shift of all does better: the sheet was not at its place."""
-    depths = np.array([room.depth_mm for room in rooms])
+    depths = np.array([stroke_box.depth_mm for stroke_box in stroke_boxes])
     if not depths.any():
         return None
     _, _, stats, _ = cv2.connectedComponentsWithStats(np.uint8(paint > SEEN), connectivity=8)
@@ -240,15 +243,15 @@ def _leaning(paint: np.ndarray, flat: Flat, rooms: list[Room]) -> list[Room] | N
     parts = stats[1:][stats[1:, cv2.CC_STAT_AREA] > SPLIT_MM2 * fine**2] / fine
     size = parts[:, 2:4]
     middle = np.column_stack([0, flat.sheet_mm[1]]) + (parts[:, :2] + 0.5 * size) * (1, -1)
-    boxes = np.array([room.box_mm for room in rooms])
+    boxes = np.array([stroke_box.box_mm for stroke_box in stroke_boxes])
     unlike = size[:, None] - (boxes[:, 2:] - boxes[:, :2])
-    aside = middle[:, None] - 0.5 * (boxes[:, :2] + boxes[:, 2:])
+    offsets = middle[:, None] - 0.5 * (boxes[:, :2] + boxes[:, 2:])
 
     def nearest(by: np.ndarray) -> tuple[float, np.ndarray]:
         """How far parts stay off at least where rooms move by up to MOST_LEAN times `by` (rooms,), and by how much."""
 
         def off(times) -> float:
-            away = np.linalg.norm(np.dstack([aside - np.outer(by, times), 0.5 * unlike]), axis=2)
+            away = np.linalg.norm(np.dstack([offsets - np.outer(by, times), 0.5 * unlike]), axis=2)
             return float(np.minimum(away.min(axis=1), STRAY_MM).sum())
 
         times, reach = np.zeros(2), MOST_LEAN
@@ -263,16 +266,21 @@ def _leaning(paint: np.ndarray, flat: Flat, rooms: list[Room]) -> list[Room] | N
     if is_shifted:
         return None
     moved = boxes + np.outer(depths, np.tile(lean, 2))
-    return [replace(room, box_mm=tuple(box)) for room, box in zip(rooms, moved.tolist(), strict=True)]
+    return [
+        replace(stroke_box, box_mm=tuple(box))
+        for stroke_box, box in zip(stroke_boxes, moved.tolist(), strict=True)
+    ]
 
 
-def _told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: list) -> Marks:
+def _assign_marks_once(
+    paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], labels_mm: list
+) -> Marks:
     fine = flat.px_per_mm
     count, part, stats, _ = cv2.connectedComponentsWithStats(np.uint8(paint > SEEN), connectivity=8)
-    owner = _nearest_room(flat, rooms)
+    owner = _nearest_box(flat, stroke_boxes)
     where = np.flatnonzero(part)
-    both = part.ravel()[where].astype(np.int64) * (len(rooms) + 1) + owner.ravel()[where]
-    shares = np.bincount(both, minlength=count * (len(rooms) + 1)).reshape(count, -1)
+    both = part.ravel()[where].astype(np.int64) * (len(stroke_boxes) + 1) + owner.ravel()[where]
+    shares = np.bincount(both, minlength=count * (len(stroke_boxes) + 1)).reshape(count, -1)
     areas = stats[:, cv2.CC_STAT_AREA].astype(float)
     text = np.zeros(part.shape, bool)
     for box in labels_mm:
@@ -284,30 +292,31 @@ def _told_apart(paint: np.ndarray, flat: Flat, rooms: list[Room], labels_mm: lis
     kept &= ~_along_rim(part, count, _rim_px(flat))
     home = shares[:, 1:].argmax(axis=1) + 1
     home[shares[:, 1:].max(axis=1) == 0] = 0
-    second = np.sort(shares[:, 1:], axis=1)[:, -2] if len(rooms) > 1 else np.zeros(count)
+    second = np.sort(shares[:, 1:], axis=1)[:, -2] if len(stroke_boxes) > 1 else np.zeros(count)
     reaching = kept & _reaches(second, areas, fine)
     cut = reaching & _reaches(_largest_foreign(shares, areas, home, kept), areas, fine)
-    _refuse_covered(shares, areas, reaching, rooms, fine)
-    _refuse_elsewhere(kept[part], flat, rooms)
-    _refuse_aside(shares, reaching, rooms)
+    _refuse_covered(shares, areas, reaching, stroke_boxes, fine)
+    _refuse_elsewhere(kept[part], flat, stroke_boxes)
+    _refuse_displaced(shares, reaching, stroke_boxes)
     usual = float(np.median(paint[paint > SEEN])) if (paint > SEEN).any() else 1.0
     outlines, missing, joined = {}, [], []
-    for number, room in enumerate(rooms, 1):
+    for number, stroke_box in enumerate(stroke_boxes, 1):
         own = kept & np.where(cut, shares[:, number] > LEAST_MM2 * fine**2, home == number)
         rings = _outlines(paint, part, owner, own, cut, number, stats, fine, flat.sheet_mm[1], usual)
-        if rings and _long(rings) > LEAST_LENGTH * _long([np.reshape(room.box_mm, (2, 2))]):
-            outlines[room.stroke] = rings
+        if rings and _long(rings) > LEAST_LENGTH * _long([np.reshape(stroke_box.box_mm, (2, 2))]):
+            outlines[stroke_box.stroke] = rings
         else:
-            missing.append(room.stroke)
+            missing.append(stroke_box.stroke)
         for each in np.flatnonzero(own & cut):
             other = [k for k in np.argsort(shares[each, 1:])[::-1][:2] + 1 if k != number]
-            pair = tuple(sorted((room.stroke, rooms[other[0] - 1].stroke)))
+            pair = tuple(sorted((stroke_box.stroke, stroke_boxes[other[0] - 1].stroke)))
             if pair not in joined:
                 joined.append(pair)
-    if len(missing) > MOST_MISSING * len(rooms):
+    if len(missing) > MOST_MISSING * len(stroke_boxes):
         raise Error(
-            f"no paint is found of {len(missing)} of the {len(rooms)} strokes, the range is "
-            f"[0, {int(MOST_MISSING * len(rooms))}]: is this chart painted, at its place and the right way round?",
+            f"no paint is found of {len(missing)} of the {len(stroke_boxes)} strokes, the range is "
+            f"[0, {int(MOST_MISSING * len(stroke_boxes))}]: is this chart painted, at its place and the right way "
+            "round?",
             value=len(missing),
             code="mark-missing",
         )
@@ -326,8 +335,8 @@ def _reaches(other, areas, fine: float) -> np.ndarray:
 
 
 def _largest_foreign(shares, areas, home, kept) -> np.ndarray:
-    """How much of each part lies in the room of a stroke that has no larger mark besides: what reaches into the room of
-    one that has is displaced."""
+    """Return the share of each part in the box of a stroke that has no larger mark: a part that reaches into the box of
+    a stroke with a larger mark is displaced."""
     own = np.zeros(shares.shape[1])
     np.maximum.at(own, home[kept], areas[kept])
     foreign = shares * (np.arange(shares.shape[1]) != home[:, None])
@@ -336,27 +345,30 @@ def _largest_foreign(shares, areas, home, kept) -> np.ndarray:
     return foreign.max(axis=1)
 
 
-def _refuse_aside(shares, reaching: np.ndarray, rooms: list[Room]) -> None:
-    """reaching: which parts lie in the room of more strokes than one."""
+def _refuse_displaced(shares, reaching: np.ndarray, stroke_boxes: list[StrokeBox]) -> None:
+    """reaching: which parts are in the boxes of more strokes than one."""
     touching = np.unique(np.argsort(shares[reaching, 1:], axis=1)[:, -2:])
-    if len(touching) > MOST_TOUCHING * len(rooms):
+    if len(touching) > MOST_TOUCHING * len(stroke_boxes):
         raise Error(
-            f"the marks of {len(touching)} of {len(rooms)} strokes touch each other, or reach where the next one "
-            f"should be, the range is [0, {int(MOST_TOUCHING * len(rooms))}]: was this chart painted on this page, "
-            "once, and did the page lie at its stop? Or the page was not printed at 100 % (measure its bar), or the "
-            "brush is wider than the chart has room for",
+            f"the marks of {len(touching)} of {len(stroke_boxes)} strokes touch each other, or reach where the next "
+            f"one should be, the range is [0, {int(MOST_TOUCHING * len(stroke_boxes))}]: was this chart painted on "
+            "this page, once, and was the page at its stop? Or the page was not printed at 100 % (measure its bar), or "
+            "the brush is wider than the chart has room for",
             value=len(touching),
             code="photo-paint-elsewhere",
         )
 
 
-def _refuse_covered(shares, areas, several, rooms: list[Room], fine: float) -> None:
-    """several: which parts lie in the room of more strokes than one."""
-    widest = max((room.box_mm[2] - room.box_mm[0]) * (room.box_mm[3] - room.box_mm[1]) for room in rooms)
+def _refuse_covered(shares, areas, several, stroke_boxes: list[StrokeBox], fine: float) -> None:
+    """several: which parts are in the boxes of more strokes than one."""
+    widest = max(
+        (stroke_box.box_mm[2] - stroke_box.box_mm[0]) * (stroke_box.box_mm[3] - stroke_box.box_mm[1])
+        for stroke_box in stroke_boxes
+    )
     for each in np.flatnonzero(several):
         large = np.flatnonzero(shares[each, 1:] > np.maximum(0.5 * SPLIT * areas[each], SPLIT_MM2 * fine**2))
         if len(large) > MOST_JOINED and areas[each] > widest * fine**2:
-            names = ", ".join(rooms[k].stroke for k in large)
+            names = ", ".join(stroke_boxes[k].stroke for k in large)
             raise Error(
                 f"something dark of {areas[each] / fine**2 / 100:.0f} cm^2 covers the room of {len(large)} strokes "
                 f"({names}): a shadow with a hard edge, a thing on the page, or paint that was smeared; take it away, "
@@ -366,26 +378,26 @@ def _refuse_covered(shares, areas, several, rooms: list[Room], fine: float) -> N
             )
 
 
-def _refuse_elsewhere(painted: np.ndarray, flat: Flat, rooms: list[Room]) -> None:
-    """painted (rows, columns): what counts as paint. Where it lies beside the strokes' room."""
-    room = np.zeros(painted.shape, bool)
-    for each in rooms:
+def _refuse_elsewhere(painted: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> None:
+    """Refuse paint outside of the strokes' boxes. painted (rows, columns): what counts as paint."""
+    stroke_box = np.zeros(painted.shape, bool)
+    for each in stroke_boxes:
         c0, r0, c1, r1 = _window(flat, each.box_mm, 0.5)
-        room[r0:r1, c0:c1] = True
+        stroke_box[r0:r1, c0:c1] = True
     total = max(int(painted.sum()), 1)
-    here, turned = ((painted & there).sum() / total for there in (room, room[::-1, ::-1]))
+    here, turned = ((painted & there).sum() / total for there in (stroke_box, stroke_box[::-1, ::-1]))
     if turned > here + TURNED:
         raise Error(
-            f"{100 * turned:.0f} % of the paint lies where the strokes would be were the page turned by 180 degrees, "
-            f"{100 * here:.0f} % where they should be: lay the page the other way round for the machine",
+            f"{100 * turned:.0f} % of the paint is where the strokes would be if the page were turned by 180 degrees, "
+            f"{100 * here:.0f} % where they should be: turn the page round for the machine",
             value=turned,
             code="photo-paint-elsewhere",
         )
-    if here < IN_ROOM:
+    if here < IN_STROKE_BOX:
         raise Error(
-            f"only {100 * here:.0f} % of the paint lies where strokes of this chart should be, it takes "
-            f"{100 * IN_ROOM:.0f} %: was this chart painted on this page, once, did the page lie at its stop, and was "
-            "it printed at 100 % (measure its bar)?",
+            f"only {100 * here:.0f} % of the paint is where strokes of this chart should be, at least "
+            f"{100 * IN_STROKE_BOX:.0f} % must be: was this chart painted on this page, once, was the page at its "
+            "stop, and was it printed at 100 % (measure its bar)?",
             value=here,
             code="photo-paint-elsewhere",
         )
@@ -408,7 +420,8 @@ def _outlines(paint, part, owner, own, cut, number: int, stats, fine: float, hei
 
 def outlines_of(amount, mine, foreign, usual: float, fine: float, left_top_mm) -> list[np.ndarray]:
     """Rings round one mark, half way between paper and its paint. amount (rows, columns): of paint; mine, foreign:
-    where it certainly lies, and that of others; usual: paint of a mark; left_top_mm: of the part of the sheet."""
+    where it certainly is, and where that of others is; usual: paint of a mark; left_top_mm: of the part of the
+    sheet."""
     level = 0.5 * _amount_of(amount, mine, usual, fine)
     reach = max(1, round(EDGE_MM * fine))
     ellipse = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
@@ -421,8 +434,8 @@ def outlines_of(amount, mine, foreign, usual: float, fine: float, left_top_mm) -
 
 
 def _amount_of(amount: np.ndarray, mine: np.ndarray, usual: float, fine: float) -> float:
-    """How much paint a mark has where blur takes none of it; a narrow one, without such a place, what is usual as far
-    as that can be: half way of less lies outside of its edge."""
+    """Return how much paint a mark has where blur removes none of it; for a narrow one, without such a place, the usual
+    amount as far as that is possible: half of less is outside of its edge."""
     broad = cv2.erode(np.uint8(mine), None, iterations=max(1, round(CLEAR_MM * fine))) == 1
     if broad.sum() > 0.1 * mine.sum():
         return float(np.median(amount[broad]))

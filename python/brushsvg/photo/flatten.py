@@ -1,4 +1,4 @@
-"""A photograph as if the sheet lay flat under a scanner: in mm of the sheet, as fine as the photograph is."""
+"""A photograph as if the sheet were flat under a scanner: in mm of the sheet, as fine as the photograph is."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def flatten(
     fine = px_per_mm or min(view.px_per_mm, MOST_PX_PER_MM)
     columns, rows = (round(side * fine) for side in sheet_mm)
     across, down = (math.ceil(count / COARSE) + 2 for count in (columns, rows))
-    # nodes lie where resizing takes the middles of coarse pixels to
+    # nodes are where resizing puts the middles of coarse pixels
     x = ((np.arange(across) - 0.5) * COARSE) / fine
     y = sheet_mm[1] - ((np.arange(down) - 0.5) * COARSE) / fine
     nodes = view.to_px(np.column_stack([np.tile(x, down), np.repeat(y, across)])).astype(np.float32)

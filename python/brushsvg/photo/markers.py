@@ -15,16 +15,16 @@ from .photo import blur_px, grey_light, refuse_dark_paper, refuse_grainy, white_
 FEWEST = 3  # markers: two leave the tilt of the sheet open to the noise of their corners
 SEEN_AT_PX = 2400  # longer side of the picture that markers are looked for in; their corners are found in the whole one
 ALONG = np.linspace(0.08, 0.92, 31)  # of an edge of a marker, where it is looked across
-ACROSS = 0.8  # modules to both sides: beyond one module lie other black ones
+ACROSS = 0.8  # modules to both sides: beyond one module there are other black ones
 CORNER_PX = 0.15  # standard deviation of a corner
 # Standard deviations of a lens's k1 and k2, at half the picture's diagonal: they hold what few markers leave open.
-# Without k2 the middle of a page lies 0.05 mm off, with it 0.013.
+# Without k2 the middle of a page is 0.05 mm off, with it 0.013.
 BENT = np.array([0.1, 0.03])
 LEAST_PX_PER_MM = 4.0
 MOST_BLUR_MM = 0.3  # standard deviation: half way is then still half way, but narrow strokes grow pale
-# Residual [mm] at most, with all eight markers and with fewer, beside so many pixels of the corners' own. Paper that
-# bulges by a millimetre leaves 0.15 on A4 with eight and moves marks by as much; on A5 with six it leaves 0.10 and
-# moves them by 0.4. Half of it is remarked on.
+# Residual [mm] at most, with all eight markers and with fewer, in addition to so many pixels for the corners
+# themselves. Paper that bulges by a millimetre leaves 0.15 on A4 with eight and moves marks by as much; on A5 with six
+# it leaves 0.10 and moves them by 0.4. Half of it is remarked on.
 MOST_MM, MOST_MM_OF_FEW, MANY, MOST_PX = 0.12, 0.06, 8, 0.2
 # Times the limit that a covered marker is displaced at least, and that the others fit better than it
 COVERED = 2.0
@@ -92,7 +92,7 @@ class View:
 
 def find_view(pixels: np.ndarray, printed: Printed) -> View:
     """Error in one sentence where markers are missing, doubled, of another chart or mirrored, where the picture is too
-    small or blurred, or where the corners do not lie as on flat paper."""
+    small or blurred, or where the corners are not where flat paper has them."""
     light = grey_light(pixels)
     found = _of_this_chart(pixels, light, printed)
     modules = _modules(printed.dictionary)
@@ -106,17 +106,17 @@ def find_view(pixels: np.ndarray, printed: Printed) -> View:
         blur_mm = float(np.median(blurs)) / view.px_per_mm
         view = replace(view, blur_mm=blur_mm, white=white_share(_of_sheet(light, view, printed)))
         _refuse_unmeasurable(view, printed)
-    except Error as refusal:  # markers along one edge of the page tell its view badly
+    except Error as refusal:  # markers along one edge of the page give its view poorly
         _refuse_cropped(found, printed, light.shape)
         if refusal.code == "photo-not-flat":
-            refuse_grainy(light, f"the markers lie {view.residual_mm:.2f} mm (rms) off")
+            refuse_grainy(light, f"the markers are {view.residual_mm:.2f} mm (rms) off")
             _refuse_cut(corners, printed, pixels.shape, view)
         raise
     return view
 
 
 def _of_sheet(light: np.ndarray, view: View, printed: Printed) -> np.ndarray:
-    """The light of the sheet, (n, 1): round it lies a table, or what a picture was filled up with that was turned."""
+    """Return the light of the sheet, (n, 1): around it is a table, or the fill of a picture that was turned."""
     share = np.linspace(0.02, 0.98, 200)
     x, y = np.meshgrid(share * printed.sheet_mm[0], share * printed.sheet_mm[1])
     column, row = view.to_px(np.column_stack([x.ravel(), y.ravel()])).round().T
@@ -183,14 +183,15 @@ def _of_this_chart(pixels: np.ndarray, light: np.ndarray, printed: Printed) -> d
     _refuse_blind(light, len(found))
     _refuse_cropped(found, printed, light.shape)
     raise Error(
-        f"only {len(found)} of the {len(printed.corners_mm)} markers can be seen ({_listed(found)}), it takes {FEWEST} "
-        "or more: photograph the whole page, with nothing over its markers",
+        f"found {len(found)} of {len(printed.corners_mm)} markers ({_listed(found)}), at least {FEWEST} are needed: "
+        "photograph the whole page, with nothing over its markers",
         code="photo-markers-missing",
     )
 
 
 def _refuse_cropped(found: dict[int, np.ndarray], printed: Printed, shape) -> None:
-    """Where half of the other markers or more lie beyond the picture, as the corners of these few have it."""
+    """Refuse a page of which half of the other markers or more are beyond the picture, judged by the corners of these
+    few."""
     others = [c.mean(axis=0) for number, c in printed.corners_mm.items() if number not in found]
     if not others:
         return
@@ -203,7 +204,7 @@ def _refuse_cropped(found: dict[int, np.ndarray], printed: Printed, shape) -> No
     if beyond.mean() >= 0.5:
         raise Error(
             f"the page is cropped: only {len(found)} of its {len(printed.corners_mm)} markers ({_listed(found)}) are "
-            "in the picture, others lie beyond its edge: photograph the whole page",
+            "in the picture, others are beyond its edge: photograph the whole page",
             value=len(found),
             code="photo-cropped",
         )
@@ -278,7 +279,7 @@ def _edge_points(light, a, b, module_px: float) -> tuple[np.ndarray, float, np.n
     """Points (n, 2) of the edge from a to b, white on its left as the picture is drawn, its blur [px], and by how much
     each place (n,) is lighter outside of the edge than inside.
 
-    Across an edge from black to white, the light that is there beside all white says where the edge lies, however much
+    Across an edge from black to white, the sum of light against all white gives the place of the edge, however much
     it is blurred: area under the profile = white times the way behind the edge.
     """
     along = (b - a) / np.hypot(*(b - a))
@@ -305,7 +306,7 @@ def _edge_points(light, a, b, module_px: float) -> tuple[np.ndarray, float, np.n
 
 
 def _line(points: np.ndarray) -> tuple[np.ndarray, float]:
-    """(normal, distance from the origin), without the points that lie off."""
+    """Return (normal, distance from the origin), without outliers."""
     kept = points
     for _ in range(3):
         middle = kept.mean(axis=0)
@@ -320,8 +321,8 @@ def _meet(one, other) -> np.ndarray:
     return np.linalg.solve(normals, [one[1], other[1]])
 
 
-def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape, aside_px=(0.0, 0.0)) -> View:
-    """Least squares of all corners that are not NaN. aside_px: where the lens's middle lies from the picture's."""
+def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape, shift_px=(0.0, 0.0)) -> View:
+    """Fit by least squares all corners that are not NaN. shift_px: of the lens's middle from the picture's."""
     ids = tuple(number for number in sorted(corners) if np.isfinite(corners[number]).all())
     marker = np.repeat(sorted(corners), 4)
     mm = np.vstack([printed.corners_mm[i] for i in sorted(corners)])
@@ -329,13 +330,13 @@ def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape, aside_px=(0
     marker, mm, px = (each[np.isfinite(px).all(axis=1)] for each in (marker, mm, px))
     middle = np.array([(shape[1] - 1) / 2, (shape[0] - 1) / 2])
     radius = float(np.hypot(*middle))
-    middle = middle + aside_px
+    middle = middle + shift_px
     centre, size = np.array(printed.sheet_mm) / 2, max(printed.sheet_mm) / 2
     to_unit = np.array([[1 / size, 0, -centre[0] / size], [0, 1 / size, -centre[1] / size], [0, 0, 1]])
     start, _ = cv2.findHomography((mm - centre) / size, (px - middle) / radius)
     if start is None:
         raise Error(
-            "the markers lie on one line in the picture: photograph the page from above",
+            "the markers are on one line in the picture: photograph the page from above",
             code="photo-markers-missing",
         )
     unknowns = np.concatenate([start.ravel()[:8] / start[2, 2], np.zeros(len(BENT))])
@@ -426,8 +427,8 @@ def _px_per_mm(view: View, sheet_mm) -> float:
 def _refuse_unmeasurable(view: View, printed: Printed) -> None:
     if view.px_per_mm < LEAST_PX_PER_MM:
         raise Error(
-            f"the picture shows {view.px_per_mm:.1f} pixels per mm, it takes {LEAST_PX_PER_MM:g}: let the page fill "
-            "the picture, and take it as large as the camera gives it",
+            f"the picture shows {view.px_per_mm:.1f} pixels per mm, at least {LEAST_PX_PER_MM:g} are needed: let the "
+            "page fill the picture, and take it as large as the camera gives it",
             value=view.px_per_mm,
             code="photo-too-coarse",
         )
@@ -441,7 +442,7 @@ def _refuse_unmeasurable(view: View, printed: Printed) -> None:
     limit = view.most_residual_mm
     if view.residual_mm > limit and view.white > TOO_WHITE:
         raise Error(
-            f"the markers lie {view.residual_mm:.2f} mm (rms) off, more than {limit:.2f}, and {100 * view.white:.0f} % "
+            f"the markers are {view.residual_mm:.2f} mm (rms) off, more than {limit:.2f}, and {100 * view.white:.0f} % "
             "of the brightest parts are as white as can be: the picture is overexposed; take it with less light",
             value=view.white,
             code="photo-overexposed",
@@ -449,7 +450,7 @@ def _refuse_unmeasurable(view: View, printed: Printed) -> None:
     if view.residual_mm > limit:
         number, own = view.worst
         raise Error(
-            f"the markers lie {view.residual_mm:.2f} mm (rms) from where flat paper would have them, more than "
+            f"the markers are {view.residual_mm:.2f} mm (rms) from where flat paper would have them, more than "
             f"{limit:.2f}; marker {number} most, {own:.2f} mm: press the page flat, and take it from straight above",
             value=view.residual_mm,
             code="photo-not-flat",

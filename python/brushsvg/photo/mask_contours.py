@@ -7,7 +7,7 @@ import numpy as np
 
 from ..geometry.rings import signed_area
 
-FINER = 4  # the picture is enlarged so often, so that an edge lies between pixels where their brightness says
+FINER = 4  # the picture is enlarged so often that an edge is placed between pixels by their brightness
 
 
 def mask_outlines(
@@ -16,7 +16,7 @@ def mask_outlines(
     """Rings [(n, 2) mm] around what is above a level, y up; outer ones counter-clockwise, holes clockwise.
 
     paint (rows, columns): how much paint a pixel shows, row 0 at the top; left_top_mm: where the picture's upper left
-    corner lies, the corner of a pixel and not its centre. Parts and holes smaller than least_mm2 are left out.
+    corner is, the corner of a pixel and not its centre. Parts and holes smaller than least_mm2 are left out.
     """
     _rows, _columns = paint.shape
     border = cv2.copyMakeBorder(np.float32(paint), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0.0)

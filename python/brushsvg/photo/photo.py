@@ -26,7 +26,7 @@ STEPS_OF_50 = (
     105  # of the eight coarsest steps of a JPEG's brightness, at quality 50, summed: finer ones end at 255
 )
 WHITE = 0.98  # of the light: beyond, a camera's numbers end
-# of the light, that the paper throws back at least: on paper of 0.03 marks were found 0.4 mm beside where they were
+# of the light, that the paper throws back at least: on paper of 0.03 marks were found 0.4 mm from where they were
 # painted, on paper of 0.036 within 0.01 mm
 DARKEST = 0.035
 # of the light, standard deviation: charts with so much grain are still read, and what else goes wrong may be due to it
@@ -47,9 +47,7 @@ def refuse_twice(photos: list[tuple[str, bytes]]) -> None:
     known: dict[bytes, str] = {}
     for name, data in photos:
         if data in known:
-            sentence = (
-                f"this is the very photograph that {known[data]} is, and tells nothing more: give it once"
-            )
+            sentence = f"this is the same photograph as {known[data]}: pass each photograph once"
             raise Error(sentence, file=name, code="photo-twice")
         known[data] = name
 
@@ -88,8 +86,8 @@ def refuse_dark_paper(light: float) -> None:
     """Error for paper that throws back so little light that noise is as much as paint is."""
     if light < DARKEST:
         raise Error(
-            f"the paper on the picture shows {100 * light:.1f} % of the light that can be told, it takes "
-            f"{100 * DARKEST:g}: paint on lighter paper, or take the picture with more light",
+            f"the paper in the picture shows {100 * light:.1f} % of the full light, at least {100 * DARKEST:g} % are "
+            "needed: paint on lighter paper, or photograph it with more light",
             value=light,
             code="photo-too-dark",
         )
@@ -99,8 +97,8 @@ _one_at_a_time = threading.Lock()
 
 
 def _decoded(data: bytes) -> tuple[np.ndarray | None, str]:
-    """Pixels, and what the libraries below OpenCV say meanwhile: they tell of damage nowhere else but on the process's
-    standard error, and go on with grey."""
+    """Return the pixels and the output of the libraries below OpenCV: they report damage only on the standard error of
+    the process, and continue with grey."""
     with _one_at_a_time, tempfile.TemporaryFile() as heard:
         try:
             kept = os.dup(2)
@@ -151,8 +149,8 @@ def jpeg_quality(data: bytes) -> float | None:
 
 
 def white_share(light: np.ndarray) -> float:
-    """Of the brightest fifth of a picture, how much is as white as can be told: a camera that saw more tells it as
-    less."""
+    """Return the share of the brightest fifth of a picture that is fully white: a camera that saw more light clips
+    it."""
     levels = np.sort(light[::7, ::7].ravel())
     return float(np.mean(levels[-max(1, len(levels) // 5) :] >= WHITE))
 

@@ -1,7 +1,7 @@
-"""A flatbed's scan of a sheet without markers: where the sheet lies in it, from the strokes on it alone.
+"""Find a sheet without markers in a flatbed's scan from its strokes alone.
 
-The scanner's resolution gives the scale, and shows nothing aslant: what is left is a turn and a shift. They are first
-those at which most paint lies along the strokes' ways, then those that bring each mark's box to the middle of its room.
+The scanner's resolution gives the scale, and there is no perspective: what is left is a turn and a shift. They are
+first those at which most paint is along the strokes' ways, then those that bring each mark to the middle of its box.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 
 from ..errors import Error
-from .edges import LEAST_LENGTH, SEEN, STRAY_MM, Room, paint_seen
+from .edges import LEAST_LENGTH, SEEN, STRAY_MM, StrokeBox, paint_seen
 from .flatten import Flat
 from .markers import FEWEST, LEAST_PX_PER_MM, View, detected
 
@@ -24,13 +24,11 @@ ENOUGH_PX_PER_MM = (
 COARSE_PX_PER_MM = 3.0  # in which marks are looked for
 WAYS_MM, NEAR_MM = 3.0, 2.0  # how broad ways are drawn, and over how much both pictures are blurred
 AROUND_MM = 10  # to which ways are broadened and blurred around them
-ASKEW_DEG, STEP_DEG = 8, 1  # a sheet lies on the glass aslant by so much at most; tried in steps
-# times as well that a mirrored scan lies along mirrored ways: charts match 1.7 times, other pictures 1.01 either way
+ASKEW_DEG, STEP_DEG = 8, 1  # greatest turn of a sheet on the glass; tried in steps
+# times as well that a mirrored scan fits mirrored ways: charts match 1.7 times, other pictures 1.01 either way
 MIRRORED = 1.2
 EXTENT = (0.8, 1.25)  # of what is painted against the chart's: beyond, it is another resolution
-SCALE = (
-    0.03  # by which brushes as thick as thought have marks lie nearer or farther: more is another resolution
-)
+SCALE = 0.03  # by which a brush of another thickness moves marks apart: more is another resolution
 FOUND = 0.6  # share of the strokes whose marks must be in their rooms
 WITHIN = 0.7  # of a mark, in its room
 SPECK_MM2 = 2.0
@@ -38,7 +36,12 @@ LEAST_MM = 20.0  # of a sheet
 
 
 def find_scan_view(
-    pixels: np.ndarray, dpi: float, sheet_mm, rooms: list[Room], ways_mm: list[np.ndarray], dictionary: str
+    pixels: np.ndarray,
+    dpi: float,
+    sheet_mm,
+    stroke_boxes: list[StrokeBox],
+    ways_mm: list[np.ndarray],
+    dictionary: str,
 ) -> tuple[np.ndarray, View]:
     """ways_mm: of the TCP, pressed, (n, 2) by room. The picture, made smaller where it is finer than is of use, and the
     view of the sheet in it, which has seen no markers. Error where it has some, is mirrored, of another resolution or
@@ -46,7 +49,7 @@ def find_scan_view(
     fine = dpi / MM_PER_INCH
     if fine < LEAST_PX_PER_MM:
         raise Error(
-            f"{dpi:g} dpi are {fine:.1f} pixels per mm, it takes {LEAST_PX_PER_MM:g}: scan at 300 dpi or more",
+            f"{dpi:g} dpi are {fine:.1f} pixels per mm, at least {LEAST_PX_PER_MM:g} are needed: scan at 300 or more",
             value=dpi,
             code="photo-too-coarse",
         )
@@ -59,7 +62,7 @@ def find_scan_view(
         )
     if len({number for number, _ in detected(pixels, dictionary)}) >= FEWEST:
         raise Error(
-            "the scan shows a chart's printed markers, which tell its place better than --dpi: leave --dpi out",
+            "the scan shows a chart's printed markers, which give its place better than --dpi: leave --dpi out",
             code="scan-with-markers",
         )
     if fine > ENOUGH_PX_PER_MM:
@@ -69,9 +72,9 @@ def find_scan_view(
     shrunk = COARSE_PX_PER_MM / fine
     coarse = cv2.resize(pixels, None, fx=shrunk, fy=shrunk, interpolation=cv2.INTER_AREA)
     paint = _painted(coarse)
-    _refuse_another_size(paint, rooms, dpi)
+    _refuse_another_size(paint, stroke_boxes, dpi)
     turn, shift = _along_ways(paint, ways_mm)
-    unit, shift = _into_rooms(paint, sheet_mm, rooms, turn, shift, dpi)
+    unit, shift = _into_rooms(paint, sheet_mm, stroke_boxes, turn, shift, dpi)
     unit, shift = unit * fine, (shift * COARSE_PX_PER_MM + 0.5 * (1 + 1j)) / shrunk - 0.5 * (1 + 1j)
     homography = np.array(
         [[unit.real, unit.imag, shift.real], [unit.imag, -unit.real, shift.imag], [0.0, 0.0, 1.0]]
@@ -84,7 +87,7 @@ def _painted(coarse: np.ndarray) -> np.ndarray:
     rows, columns = coarse.shape[:2]
     sheet = (columns / COARSE_PX_PER_MM, rows / COARSE_PX_PER_MM)
     flat = Flat(coarse, COARSE_PX_PER_MM, sheet)
-    seen = paint_seen(flat, np.zeros((rows, columns), np.uint8), [Room("", (0.0, 0.0, *sheet))])
+    seen = paint_seen(flat, np.zeros((rows, columns), np.uint8), [StrokeBox("", (0.0, 0.0, *sheet))])
     _, part, stats, _ = cv2.connectedComponentsWithStats(np.uint8(seen > SEEN), connectivity=8)
     kept = stats[:, cv2.CC_STAT_AREA] > SPECK_MM2 * COARSE_PX_PER_MM**2
     rim = max(1, round(3.0 * COARSE_PX_PER_MM))
@@ -96,9 +99,9 @@ def _painted(coarse: np.ndarray) -> np.ndarray:
     return kept[part]
 
 
-def _refuse_another_size(paint: np.ndarray, rooms: list[Room], dpi: float) -> None:
-    boxes = np.array([room.box_mm for room in rooms])
-    wanted = sorted(boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0))
+def _refuse_another_size(paint: np.ndarray, stroke_boxes: list[StrokeBox], dpi: float) -> None:
+    boxes = np.array([stroke_box.box_mm for stroke_box in stroke_boxes])
+    expected = sorted(boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0))
     rows, columns = np.flatnonzero(paint.any(axis=1)), np.flatnonzero(paint.any(axis=0))
     if not len(rows):
         raise Error(
@@ -106,11 +109,11 @@ def _refuse_another_size(paint: np.ndarray, rooms: list[Room], dpi: float) -> No
             code="photo-without-paint",
         )
     found = sorted(np.array([np.ptp(rows) + 1, np.ptp(columns) + 1]) / COARSE_PX_PER_MM)
-    size = math.sqrt(found[0] * found[1] / (wanted[0] * wanted[1]))
+    size = math.sqrt(found[0] * found[1] / (expected[0] * expected[1]))
     if not EXTENT[0] < size < EXTENT[1]:
         raise Error(
-            f"at {dpi:g} dpi the paint on the scan lies over {found[1]:.0f} x {found[0]:.0f} mm, the strokes of the "
-            f"chart over {wanted[1]:.0f} x {wanted[0]:.0f} mm: was it scanned at {_usual(dpi * size)} dpi, in one "
+            f"at {dpi:g} dpi the paint on the scan covers {found[1]:.0f} x {found[0]:.0f} mm, the strokes of the "
+            f"chart over {expected[1]:.0f} x {expected[0]:.0f} mm: was it scanned at {_usual(dpi * size)} dpi, in one "
             "piece, and is it this chart?",
             value=dpi,
             code="scan-resolution",
@@ -158,7 +161,7 @@ def spectrum(paint: np.ndarray, ways: list[np.ndarray]) -> tuple[np.ndarray, tup
         fy=1 / COARSE_PX_PER_MM,
         interpolation=cv2.INTER_AREA,
     )
-    # both beside each other with what is blurred around the ways: what lies beyond one end must not meet the other
+    # both next to each other, with the blur around the ways: one end must not wrap round to the other
     every = np.concatenate(ways)
     reach = math.ceil(math.hypot(np.ptp(every.real), np.ptp(every.imag))) + 2 * AROUND_MM + max(small.shape)
     size = cv2.getOptimalDFTSize(reach)
@@ -166,8 +169,8 @@ def spectrum(paint: np.ndarray, ways: list[np.ndarray]) -> tuple[np.ndarray, tup
 
 
 def match_ways(seen: np.ndarray, shape: tuple[int, int], ways: list[np.ndarray]) -> tuple[float, complex]:
-    """How much paint lies along the ways (x - iy) at the best shift, and that shift. seen, shape: of `spectrum`; shifts
-    beyond the picture are those up and to the left."""
+    """Return how much paint is along the ways (x - iy) at the best shift, and that shift. seen, shape: of `spectrum`;
+    shifts beyond the picture are those up and to the left."""
     size = len(seen)
     every = np.concatenate(ways)
     corner = complex(math.floor(every.real.min()), math.floor(every.imag.min())) - AROUND_MM * (1 + 1j)
@@ -183,26 +186,26 @@ def match_ways(seen: np.ndarray, shape: tuple[int, int], ways: list[np.ndarray])
 
 
 def _into_rooms(
-    paint: np.ndarray, sheet_mm, rooms: list[Room], turn: float, shift: complex, dpi: float
+    paint: np.ndarray, sheet_mm, stroke_boxes: list[StrokeBox], turn: float, shift: complex, dpi: float
 ) -> tuple[complex, complex]:
     """e^(i turn) and shift, finer: the middles of marks' boxes on the middles of their rooms, by least squares."""
     fine = COARSE_PX_PER_MM
     columns, rows = (math.ceil(side * fine) for side in sheet_mm)
-    boxes = np.array([room.box_mm for room in rooms])
+    boxes = np.array([stroke_box.box_mm for stroke_box in stroke_boxes])
     middles = 0.5 * (boxes[:, :2] + boxes[:, 2:]) @ [1, -1j]
     unit = cmath.exp(1j * turn)
     for _ in range(4):
         start = (-1j * sheet_mm[1] * unit + shift) * fine  # the sheet's upper left corner
         to_scan = np.array([[unit.real, -unit.imag, start.real], [unit.imag, unit.real, start.imag]])
-        lying = cv2.warpAffine(
+        aligned = cv2.warpAffine(
             np.uint8(paint), to_scan, (columns, rows), flags=cv2.WARP_INVERSE_MAP | cv2.INTER_NEAREST
         )
-        of, places = marks_in(lying, sheet_mm, rooms)
-        if len(of) < max(FEWEST, FOUND * len(rooms)):
+        of, places = marks_in(aligned, sheet_mm, stroke_boxes)
+        if len(of) < max(FEWEST, FOUND * len(stroke_boxes)):
             raise Error(
-                f"only {len(of)} of the {len(rooms)} strokes of this chart are found where they should be on the scan, "
-                f"it takes {math.ceil(FOUND * len(rooms))}: is it this chart, painted once, scanned in one piece at "
-                f"{dpi:g} dpi?",
+                f"only {len(of)} of the {len(stroke_boxes)} strokes of this chart are where they should be on the "
+                f"scan, at least {math.ceil(FOUND * len(stroke_boxes))} are needed: is it this chart, painted once, "
+                f"scanned in one piece at {dpi:g} dpi?",
                 value=len(of),
                 code="photo-paint-elsewhere",
             )
@@ -212,7 +215,7 @@ def _into_rooms(
         unit *= change / size
     if abs(size - 1) > SCALE:
         raise Error(
-            f"the strokes lie {size:.3f} times as far from each other as on the chart: was the sheet scanned at "
+            f"the strokes are {size:.3f} times as far from each other as on the chart: was the sheet scanned at "
             f"{_usual(dpi * size)} instead of {dpi:g} dpi?",
             value=dpi,
             code="scan-resolution",
@@ -220,13 +223,13 @@ def _into_rooms(
     return unit, shift
 
 
-def marks_in(lying: np.ndarray, sheet_mm, rooms: list[Room]) -> tuple[list[int], np.ndarray]:
+def marks_in(aligned: np.ndarray, sheet_mm, stroke_boxes: list[StrokeBox]) -> tuple[list[int], np.ndarray]:
     """Numbers of the rooms that hold one mark, and the middles of those marks' boxes, down."""
     fine = COARSE_PX_PER_MM
-    count, part, stats, _ = cv2.connectedComponentsWithStats(lying, connectivity=8)
+    count, part, stats, _ = cv2.connectedComponentsWithStats(aligned, connectivity=8)
     of, places = [], []
-    for number, room in enumerate(rooms):
-        left, bottom, right, top = room.box_mm
+    for number, stroke_box in enumerate(stroke_boxes):
+        left, bottom, right, top = stroke_box.box_mm
         c0, c1 = (round(max(x, 0.0) * fine) for x in (left - STRAY_MM / 2, right + STRAY_MM / 2))
         r0, r1 = (
             round(max(sheet_mm[1] - y, 0.0) * fine) for y in (top + STRAY_MM / 2, bottom - STRAY_MM / 2)
@@ -243,7 +246,7 @@ def marks_in(lying: np.ndarray, sheet_mm, rooms: list[Room]) -> tuple[list[int],
 
 
 def similar(middles: np.ndarray, places: np.ndarray) -> tuple[complex, complex]:
-    """(a, b) of places = a middles + b, without those that lie off."""
+    """Fit (a, b) of places = a middles + b, without outliers."""
     kept = np.ones(len(middles), bool)
     for _ in range(4):
         columns = np.column_stack([middles[kept], np.ones(kept.sum())])

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from .edges import SEEN, Room, paint_seen
+from .edges import SEEN, StrokeBox, paint_seen
 from .flatten import Flat
 from .place_by_strokes import COARSE_PX_PER_MM, FOUND, marks_in, match_ways, similar, spectrum
 
@@ -26,14 +26,18 @@ class PaintPlace:
 
 
 def find_paint(
-    flat: Flat, print_: np.ndarray, rooms: list[Room], ways_mm: list[np.ndarray], scale: float | None = None
+    flat: Flat,
+    print_: np.ndarray,
+    stroke_boxes: list[StrokeBox],
+    ways_mm: list[np.ndarray],
+    scale: float | None = None,
 ) -> PaintPlace | None:
     """Find scale and shift of the paint by its strokes.
 
     print_: pixels of the flattened page that the printer made black; ways_mm: of the TCP, pressed, (n, 2) by room;
     scale: where it is known. None where too few marks are found in rooms that are scaled and moved so.
     """
-    paint = np.float32(paint_seen(flat, print_, rooms) > SEEN)
+    paint = np.float32(paint_seen(flat, print_, stroke_boxes) > SEEN)
     columns, rows = (round(side * COARSE_PX_PER_MM) for side in flat.sheet_mm)
     paint = cv2.resize(paint, (columns, rows), interpolation=cv2.INTER_AREA) > 0.5
     middle = np.array(flat.sheet_mm) / 2 @ [1, -1j]
@@ -44,19 +48,22 @@ def find_paint(
     tried = [(match_ways(seen, shape, [way * s + middle for way in ways]), s) for s in scales]
     (_, shift), found = max(tried, key=lambda each: each[0][0])
     shift -= 1j * flat.sheet_mm[1]  # from the sheet's lower left corner, as middles and places are
-    boxes = np.array([room.box_mm for room in rooms])
+    boxes = np.array([stroke_box.box_mm for stroke_box in stroke_boxes])
     middles = 0.5 * (boxes[:, :2] + boxes[:, 2:]) @ [1, -1j] - middle
     for _ in range(ROUNDS):
         corner = np.array([(middle + shift).real, -(middle + shift).imag])
         moved = (boxes - np.tile(np.array(flat.sheet_mm) / 2, 2)) * found + np.tile(corner, 2)
-        here = [replace(room, box_mm=tuple(box)) for room, box in zip(rooms, moved.tolist(), strict=True)]
+        here = [
+            replace(stroke_box, box_mm=tuple(box))
+            for stroke_box, box in zip(stroke_boxes, moved.tolist(), strict=True)
+        ]
         of, places = marks_in(np.uint8(paint), flat.sheet_mm, here)
-        if len(of) < FOUND * len(rooms):
+        if len(of) < FOUND * len(stroke_boxes):
             return None
         if scale is None:
-            turned, aside = similar(middles[of], places - middle)
-            found, shift = abs(turned), aside
+            turned, displaced = similar(middles[of], places - middle)
+            found, shift = abs(turned), displaced
         else:
-            aside = places - middle - scale * middles[of]
-            shift = complex(np.median(aside.real), np.median(aside.imag))
+            displaced = places - middle - scale * middles[of]
+            shift = complex(np.median(displaced.real), np.median(displaced.imag))
     return PaintPlace(float(found), (shift.real, -shift.imag))

@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import Error
-from .edges import Room
+from .edges import StrokeBox
 from .markers import View
 
 MOST_UNSURE_MM = 0.5  # of a place on the sheet
 
 
-def refuse_cropped(pixels: np.ndarray, view: View, rooms: list[Room]) -> None:
-    """Where room of a stroke lies beyond the picture."""
+def refuse_cropped(pixels: np.ndarray, view: View, stroke_boxes: list[StrokeBox]) -> None:
+    """Refuse a picture that cuts off the box of a stroke."""
     cut = []
-    for room in rooms:
-        left, bottom, right, top = room.box_mm
+    for stroke_box in stroke_boxes:
+        left, bottom, right, top = stroke_box.box_mm
         corners = view.to_px(np.array([(left, bottom), (right, bottom), (right, top), (left, top)]))
         if (corners < 0).any() or (corners > np.array(pixels.shape[1::-1]) - 1).any():
-            cut.append(room.stroke)
+            cut.append(stroke_box.stroke)
     if cut:
         raise Error(
             f"the page is cropped: the room of {len(cut)} stroke{'s' * (len(cut) > 1)} runs out of the picture "
@@ -29,7 +29,7 @@ def refuse_cropped(pixels: np.ndarray, view: View, rooms: list[Room]) -> None:
 
 
 def refuse_unsure(pixels: np.ndarray, view: View, corners_mm: dict[int, np.ndarray]) -> None:
-    """Where the markers that are seen do not say where all of the sheet lies. corners_mm: of all, by their number."""
+    """Refuse markers that do not determine the whole sheet. corners_mm: of all, by their number."""
     if view.unsure_mm <= MOST_UNSURE_MM:
         return
     unseen = np.vstack([corners for number, corners in corners_mm.items() if number not in view.seen])
@@ -38,7 +38,7 @@ def refuse_unsure(pixels: np.ndarray, view: View, corners_mm: dict[int, np.ndarr
     raise Error(
         f"the {len(view.seen)} markers that can be seen ({', '.join(map(str, view.seen))}) leave places on the sheet "
         f"open by {view.unsure_mm:.2f} mm, {MOST_UNSURE_MM:g} is the most, "
-        + ("and others lie beyond the picture" if beyond else "and others are covered")
+        + ("and others are beyond the picture" if beyond else "and others are covered")
         + ": photograph the whole page, with nothing over its markers",
         value=view.unsure_mm,
         code="photo-cropped" if beyond else "photo-markers-missing",

@@ -1,1 +1,1 @@
-"""What a plan needs beside compensation: refinement, order, size."""
+"""Steps of a plan next to compensation: refinement, order, size."""

@@ -1,4 +1,4 @@
-"""Strokes that are asked for wider as paint runs out, so that they come out as wide as they were drawn."""
+"""Widen the targets of strokes as paint runs out, so that the marks come out as wide as drawn."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ MOST_ROUNDS = 8  # of plans: deeper landings are longer, which takes more paint;
 
 @dataclass(frozen=True)
 class Pressed:
-    """painted, wanted: strokes as they are to be asked for; done: what compensates painted; told: where the brush would
-    have to be pressed deeper than it may be."""
+    """painted, targets: strokes to compensate and their targets; done: the compensation of painted; notices: where the
+    brush would have to be pressed deeper than it may be."""
 
     painted: list
-    wanted: list
+    targets: list
     done: object
-    told: list[Notice]
+    notices: list[Notice]
 
 
 def pressed_deeper(
     painted: list,
-    wanted: list,
+    targets: list,
     brush: _core.Brush,
     done,
     compensated: Callable,
@@ -61,8 +61,8 @@ def pressed_deeper(
         now = [wider(*pair, half_mm) for pair in zip(painted, shares, strict=True)]
         done = compensated(now)
     short = [_short(*pair, half_mm) for pair in zip(painted, shares, strict=True)]
-    asked = [wider(*pair, np.inf) for pair in zip(wanted, shares, strict=True)]
-    return Pressed(now, asked, done, _told(short, brush, deepest_mm))
+    wider_targets = [wider(*pair, np.inf) for pair in zip(targets, shares, strict=True)]
+    return Pressed(now, wider_targets, done, _warn_of_shortage(short, brush, deepest_mm))
 
 
 def _is_like(before: np.ndarray, shares: np.ndarray) -> bool:
@@ -108,7 +108,7 @@ def wider(stroke: _core.Stroke, shares: np.ndarray, most_mm: float) -> _core.Str
     knots += [(at, float(np.interp(at, *own.T))) for at in new]
     knots.sort(key=lambda knot: knot[0])
     out = [(at, max(half, min(half / float(np.interp(at, *shares.T)), most_mm))) for at, half in knots]
-    outlines = [_farther_out(np.asarray(ring), stroke, shares) for ring in stroke.wanted_mm]
+    outlines = [_grow(np.asarray(ring), stroke, shares) for ring in stroke.wanted_mm]
     more = [out[k][1] - half for k, (_, half) in zip((0, -1), (knots[0], knots[-1]), strict=True)]
     line = stroke.replaced(half_width=out, wanted_mm=outlines)
     return line if stroke.closed else _shortened(line, *more)
@@ -132,7 +132,7 @@ def _shortened(stroke, first_mm: float, last_mm: float):
     return stroke.replaced(middle_mm=kept.reshape(-1, 8), half_width=at)
 
 
-def _farther_out(ring: np.ndarray, stroke, shares: np.ndarray) -> np.ndarray:
+def _grow(ring: np.ndarray, stroke, shares: np.ndarray) -> np.ndarray:
     """Across the middle line by what the paint will take; along it as it was."""
     closed = np.vstack([ring, ring[:1]])
     at = lengths(closed)
@@ -165,11 +165,11 @@ def _short(stroke, shares: np.ndarray, most_mm: float) -> float:
     return float(1 - (got / np.maximum(half, 1e-9)).min())
 
 
-LEAST_TOLD = 0.01  # of the width
+LEAST_REPORTED = 0.01  # of the width
 
 
-def _told(short: list[float], brush, deepest_mm: float) -> list[Notice]:
-    count = sum(each > LEAST_TOLD for each in short)
+def _warn_of_shortage(short: list[float], brush, deepest_mm: float) -> list[Notice]:
+    count = sum(each > LEAST_REPORTED for each in short)
     if not count:
         return []
     strokes = "1 stroke comes" if count == 1 else f"{count} strokes come"

@@ -31,10 +31,10 @@ class Refined:
         if any(self.moved) or not self.moved:
             return None
         count = {why: self.kept.count(why) for why in self.kept}
-        told = (f"for {n} {'stroke' if n == 1 else 'strokes'} {why}" for why, n in count.items())
+        counts = (f"for {n} {'stroke' if n == 1 else 'strokes'} {why}" for why, n in count.items())
         return Notice(
             "",
-            f"refining changed nothing, the plan is that of closed: {', '.join(told)}",
+            f"refining changed nothing, the plan is that of closed: {', '.join(counts)}",
             code="flag-without-effect",
             about="compensation",
         )
@@ -46,14 +46,14 @@ FORBIDDEN = "a refined way would break a limit of the cell or the sheet"
 WORSE = "a refined way would paint the letter worse"
 
 
-def refined(painted: list, wanted: list, brush, closed, compensated, forbidden=None) -> Refined:
+def refined(painted: list, targets: list, brush, closed, compensated, forbidden=None) -> Refined:
     """The refined passes of strokes, but the closed form's where those are forbidden, or paint a letter worse.
 
-    painted: strokes that the brush can paint; wanted: what they should become; closed: their compensation in closed
+    painted: strokes that the brush can paint; targets: what they should become; closed: their compensation in closed
     form; compensated: (strokes, method) to what _core.compensate returns; forbidden: a plan to the sentences that
     forbid it.
     """
-    aims = [towards_reach(*pair, brush) for pair in zip(painted, wanted, strict=True)]
+    aims = [towards_reach(*pair, brush) for pair in zip(painted, targets, strict=True)]
     done = compensated(aims, "refined")
     passes, tracking_errors, moved = list(done.plan.passes), list(done.tracking_errors), [True] * len(painted)
     kept = [""] * len(painted)
@@ -65,7 +65,7 @@ def refined(painted: list, wanted: list, brush, closed, compensated, forbidden=N
             moved[k], kept[k] = False, kept[k] or why
 
     def worse_of(groups):
-        return worse(passes, closed.plan.passes, wanted, brush, groups)
+        return worse(passes, closed.plan.passes, targets, brush, groups)
 
     same = [k for k, (other, _) in enumerate(fallback) if np.array_equal(passes[k].poses_mm, other.poses_mm)]
     keep_closed(same, NO_GAIN)
@@ -73,17 +73,17 @@ def refined(painted: list, wanted: list, brush, closed, compensated, forbidden=N
         keep_closed(_forbidden(passes, closed.plan, moved, forbidden), FORBIDDEN)
     if redirected := [[k] for k, aim in enumerate(aims) if aim is not painted[k]]:
         keep_closed(worse_of(redirected), WORSE)  # they were judged by what they aimed at
-    keep_closed(worse_of(_core.touching(wanted)), WORSE)
+    keep_closed(worse_of(_core.touching(targets)), WORSE)
     return Refined(passes, tracking_errors, moved, kept)
 
 
-def towards_reach(painted, wanted, brush):
-    """What refinement is to paint of a stroke: where that is far too wide, not the outline it was found in. All of the
-    shape beside the paint would pull the stroke's line to it."""
+def towards_reach(painted, target, brush):
+    """Return the target of refinement for a stroke: its discs, where the outline it was found in is far too wide. All
+    of the shape next to the paint would pull the stroke's line to it."""
     if not painted.wanted_mm or not brush.width_follows_depth():
         return painted
     greatest = brush.half_width_range_mm()[1]
-    half = np.interp(np.linspace(0, 1, 101), *np.array(wanted.half_width).T)
+    half = np.interp(np.linspace(0, 1, 101), *np.array(target.half_width).T)
     if np.maximum(half - greatest, 0).mean() <= SPARED * greatest:
         return painted
     return painted.replaced(wanted_mm=[])

@@ -85,8 +85,8 @@ def _half_width(unit) -> float:
 
 
 def advice(size: Size, scale: float | None = 1.0) -> str:
-    """A sentence for people, "" where no size can be painted. scale: what was asked of --scale; None where the size is
-    given in another way."""
+    """Return a sentence for people, "" where no size can be painted. scale: the value of --scale; None where the size
+    is given in another way."""
     if not any(size.overlaps.values()):
         return ""
     sample = f"tried on {size.tried} of {size.strokes} strokes" if size.tried < size.strokes else "tried"
@@ -103,10 +103,10 @@ def _overlap_at(factor: float, units, brush, made) -> float:
     def area(unit):
         larger = [scaled(stroke, factor) for stroke in unit]
         try:
-            marks, wanted = made(larger)
+            marks, targets = made(larger)
         except Error:  # not to be painted at this size: all of it is missing
-            marks, wanted = [], larger
-        return _core.common_area(marks, wanted, brush)
+            marks, targets = [], larger
+        return _core.common_area(marks, targets, brush)
 
     pool = ThreadPoolExecutor(os.cpu_count())
     try:

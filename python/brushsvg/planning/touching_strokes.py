@@ -10,31 +10,32 @@ CALM, THORN = 0.15, 0.03
 MOST = 12
 
 
-def worse(refined: list, closed: list, wanted: list, brush, groups: list[list[int]]) -> list[int]:
+def worse(refined: list, closed: list, targets: list, brush, groups: list[list[int]]) -> list[int]:
     """Numbers of the strokes of those groups, such as letters, that refined passes paint worse than those in closed
     form.
 
-    wanted: what the passes should become, one each. Groups are judged by the overlap of all they paint with all that is
-    wanted, as the report does, and by how calm their outline is. Where a letter is the calmer without some of its
+    targets: what the passes should become, one each. Groups are judged by the overlap of all they paint with all
+    targets, as in the report, and by how calm their outline is. Where a letter is the calmer without some of its
     refined strokes, by more than it loses of overlap, those are worse.
     """
     first, second = (_core.simulate(_core.Plan(passes=each), brush).passes for each in (refined, closed))
     found = []
     for members in groups:
-        meant = [wanted[k] for k in members]
+        members_targets = [targets[k] for k in members]
         now, then = (
-            _core.common_area([marks[k] for k in members], meant, brush) for marks in (first, second)
+            _core.common_area([marks[k] for k in members], members_targets, brush)
+            for marks in (first, second)
         )
         if now.overlap < then.overlap:
             found += members
         elif 1 < len(members) <= MOST:  # single ones were looked at when they were refined
-            found += _restless(members, first, second, meant, brush)
+            found += _restless(members, first, second, members_targets, brush)
     return found
 
 
-def _restless(members: list[int], refined: list, closed: list, meant: list, brush) -> list[int]:
+def _restless(members: list[int], refined: list, closed: list, members_targets: list, brush) -> list[int]:
     """Those of a letter's strokes without whose refined marks it looks better, one after the other."""
-    shape = _core.unite([ring for each in meant for ring in _core.wanted_outline(each, 0.01)])
+    shape = _core.unite([ring for each in members_targets for ring in _core.wanted_outline(each, 0.01)])
 
     def restless(marks: list) -> tuple[float, int]:
         whole = _core.Marks()
@@ -49,7 +50,7 @@ def _restless(members: list[int], refined: list, closed: list, meant: list, brus
         return CALM * max(0.0, turns - turning) + THORN * max(0, has - thorns)
 
     def overlap(marks: list) -> float:
-        return _core.common_area(marks, meant, brush).overlap
+        return _core.common_area(marks, members_targets, brush).overlap
 
     marks, found = [refined[k] for k in members], []
     best = overlap(marks) - (paid := cost(marks))

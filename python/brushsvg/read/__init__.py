@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ReadOptions:
-    """What a reader is asked for.
+    """Options of a reader.
 
     sheet_mm: (w, h) in place of the drawing's own; units: "mm" or "in", of a drawing that has numbers only (DXF);
-    select: a CSS selector, what neither matches it nor lies in what matches is left out (SVG); background: "auto"
+    select: a CSS selector; elements outside of its matches are left out (SVG); background: "auto"
     leaves out a white shape that comes first and covers the page, "keep" paints it (SVG). Of G-code, pen: "z" or
     "servo", what moves its pen; paper_z_mm: the height at which it draws; skip_regions_mm: (x0, y0, x1, y1), strokes
     inside are left out; skip_comments: so are those behind comments that hold such a text. lenient: take what is
@@ -155,7 +155,7 @@ def read_drawing(path: Source, options: ReadOptions = AS_DRAWN) -> Design:
     read as their files would be, but an ElementTree holds nothing that stands before its root, so of links to style
     sheets there nothing is said.
     Error if it cannot be read, is of no known format, has nothing to paint, or holds damaged geometry and lenient
-    is not asked for.
+    is False.
     """
     refuse_unusable(options)
     reader, data = _opened(path)

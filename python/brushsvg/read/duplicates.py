@@ -25,7 +25,7 @@ def without_duplicates(design: Design) -> Design:
         kept.append(element)
     if not twins:
         return design
-    count = "1 element lies" if len(twins) == 1 else f"{len(twins)} elements lie"
+    count = "1 element is" if len(twins) == 1 else f"{len(twins)} elements are"
     named = ", ".join(twins[:3]) + (f" and {len(twins) - 3} more" if len(twins) > 3 else "")
     sentence = f"{count} exactly on another and would be painted twice: left out, {named}"
     notice = Notice("drawing", sentence, code="drawn-twice")

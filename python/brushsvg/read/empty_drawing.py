@@ -29,4 +29,4 @@ def nothing_to_paint(notices: Iterable[Notice], left_out: Mapping[str, int] | No
 
 def _said(alike: list[Notice]) -> str:
     first = alike[0]
-    return f"{first.where}: {first.told}" if len(alike) == 1 else f"{len(alike)} times: {first.told}"
+    return f"{first.where}: {first.text}" if len(alike) == 1 else f"{len(alike)} times: {first.text}"

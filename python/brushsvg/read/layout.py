@@ -1,4 +1,4 @@
-"""Where a drawing lies on the sheet and which of its layers are painted: Design to Design."""
+"""Place a drawing on the sheet and choose which of its layers are painted: Design to Design."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from .design import Design, Element, SubPath
 
 @dataclass(frozen=True)
 class Layout:
-    """What may be asked of a drawing as a whole; None or empty: as drawn.
+    """Options for a drawing as a whole; None or empty: as drawn.
 
-    layers: names of those to paint, with all they hold; width_mm: of every stroke, whatever the drawing says;
-    fit_mm (w, h): the wanted marks fill this size as far as their shape allows, in the middle of the sheet;
+    layers: names of those to paint, with all they hold; width_mm: of every stroke, in place of the drawing's widths;
+    fit_mm (w, h): the target marks fill this size as far as their shape allows, in the middle of the sheet;
     scale: instead, a factor, about the middle of the marks; origin_mm (x, y): where the lower left corner of the
-    marks lies, instead of the middle of the sheet or where it was.
+    marks is, instead of the middle of the sheet or where it was.
     """
 
     layers: tuple[str, ...] = ()
@@ -30,7 +30,7 @@ class Layout:
 
 
 AS_DRAWN = Layout()
-OF_WIDTHS = ("gcode-no-width", "stretched-unevenly")  # notices on widths that are not asked for any more
+OF_WIDTHS = ("gcode-no-width", "stretched-unevenly")  # notices on widths that are no longer used
 _NAMED = 20  # layers in a sentence
 
 
@@ -54,7 +54,7 @@ def arrange(design: Design, layout: Layout) -> Design:
     if layout.fit_mm is not None:
         scale = _fitting_scale(lines, marks, layout.fit_mm, keeps_width)
     margin = (marks - lines) * (1.0 if keeps_width else scale)
-    scaled = lines * scale + margin  # the marks' bounds, but for where they lie
+    scaled = lines * scale + margin  # the marks' bounds, apart from their place
     if layout.origin_mm is not None:
         shift = np.array(layout.origin_mm) - scaled[:2]
     elif layout.fit_mm is not None:
@@ -66,7 +66,7 @@ def arrange(design: Design, layout: Layout) -> Design:
 
 
 def bounds_mm(design: Design, with_widths: bool = True) -> np.ndarray:
-    """Bounds of the wanted marks, or of their middle lines and outlines alone: x0, y0, x1, y1 [mm]."""
+    """Return the bounds of the target marks, or of their middle lines and outlines alone: x0, y0, x1, y1 [mm]."""
     box = np.array([math.inf, math.inf, -math.inf, -math.inf])
     for element in design.elements:
         if not element.subpaths:
@@ -106,14 +106,14 @@ def _fitting_scale(
 
 def _of_layers(design: Design, names: tuple[str, ...]) -> Design:
     painted = [element.layer for element in design.elements if element.layer]
-    told = [notice.layer for notice in design.notices if notice.layer]
-    paths = list(dict.fromkeys([*painted, *filter(None, design.layers), *told]))
-    wanted = [_layer(name, paths) for name in names]
+    noticed = [notice.layer for notice in design.notices if notice.layer]
+    paths = list(dict.fromkeys([*painted, *filter(None, design.layers), *noticed]))
+    requested = [_layer(name, paths) for name in names]
 
-    def chosen(layer: str | None, among: list[str] = wanted) -> bool:
+    def chosen(layer: str | None, among: list[str] = requested) -> bool:
         return any(layer == path or (layer or "").startswith(path + "/") for path in among)
 
-    for path in wanted:
+    for path in requested:
         if not any(chosen(element.layer, [path]) for element in design.elements):
             raise Error(_why_nothing(design, path, chosen), where="layer", code="nothing-to-paint")
     elements = tuple(element for element in design.elements if chosen(element.layer))
@@ -122,7 +122,7 @@ def _of_layers(design: Design, names: tuple[str, ...]) -> Design:
 
 
 def _layer(name: str, paths: list[str]) -> str:
-    """The layer that a name means: as written, or the end of just one, capitals and underscores aside."""
+    """Return the layer that a name means: as written, or the only one that ends so, ignoring case and underscores."""
 
     def plain(text: str) -> str:
         return text.casefold().replace("_", " ")
@@ -154,10 +154,10 @@ def _layer(name: str, paths: list[str]) -> str:
 def _why_nothing(design: Design, path: str, chosen) -> str:
     if why := design.layers.get(path):
         return f"layer {path!r} cannot be painted: {why}"
-    told = [notice for notice in design.notices if chosen(notice.layer, [path])]
+    of_layers = [notice for notice in design.notices if chosen(notice.layer, [path])]
     sentence = f"layer {path!r} has nothing to paint"
-    if told:
-        first = next((notice for notice in told if notice.damaged), told[0])
+    if of_layers:
+        first = next((notice for notice in of_layers if notice.damaged), of_layers[0])
         sentence += f": {first.where}: {first.sentence}"
     return sentence
 

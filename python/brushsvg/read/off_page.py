@@ -1,4 +1,4 @@
-"""Elements that lie beyond the page: scratch work next to it, or further pages of the file."""
+"""Find elements beyond the page: scratch work next to it, or further pages of the file."""
 
 from __future__ import annotations
 

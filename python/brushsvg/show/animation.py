@@ -16,16 +16,19 @@ FINE, COARSE = 1000, 100  # whole numbers are written: ms, mrad, outlines in um;
 
 
 def animation(
-    moves: Timeline, loads: PlanInLoads, brush, marks, wanted: list, stations, title: str, speed: float
+    moves: Timeline, loads: PlanInLoads, brush, marks, target: list, stations, title: str, speed: float
 ) -> bytes:
-    """The page. marks: of the loads, with outlines; wanted: rings [mm] of what was drawn, [] where that is not known;
-    speed: how many times faster than the robot it plays at first."""
+    """Return the page of the animation.
+
+    marks: of the loads, with outlines; target: rings [mm] of the drawing, [] if it is not known; speed: how many times
+    faster than the robot it plays at first.
+    """
     data = {
         "title": title,
         "brush": brush.name,
         "speed": speed,
         "sheet": list(loads.sheet_mm),
-        "wanted": [_rings(rings) for rings in wanted],
+        "wanted": [_rings(rings) for rings in target],
         "stations": [[station.name, *station.place_mm] for station in stations],
         "passes": [
             {"name": a_pass.stroke, "colour": a_pass.colour, "rings": _rings(trace.outline_mm)}

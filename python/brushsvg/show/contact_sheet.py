@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from .overlap_png import write_legend
-from .png_canvas import TEXT, bgr, canvas, encoded, write
+from .png_canvas import TEXT, bgr, canvas, encoded, text_width, write
 
 ACROSS, DOWN = 5, 6
 CARD_W, PICTURE_H, WORDS_H, GAP, MARGIN, TOP = 360, 220, 64, 16, 40, 110  # px
@@ -53,7 +53,7 @@ def _sheet(cards: list[Card], heading: str) -> bytes:
         if card.picture is None:
             _write_lines(part, card.why)
         else:
-            _lay_picture(part[:PICTURE_H], card.picture())
+            _place_picture(part[:PICTURE_H], card.picture())
         words_y = PICTURE_H + NAME_PX
         write(part, _fitting(card.name, NAME_PX, 600), (12, words_y), NAME_PX, 600, TEXT)
         colour = REFUSED if card.picture is None else QUIET
@@ -61,7 +61,7 @@ def _sheet(cards: list[Card], heading: str) -> bytes:
     return encoded(image)
 
 
-def _lay_picture(part: np.ndarray, png: bytes) -> None:
+def _place_picture(part: np.ndarray, png: bytes) -> None:
     """As large as it fits, in the middle."""
     picture = cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR)
     scale = min(part.shape[0] / picture.shape[0], part.shape[1] / picture.shape[1])
@@ -76,7 +76,7 @@ def _write_lines(part: np.ndarray, text: str) -> None:
     lines, rest = [], text.split()
     while rest:
         line = rest.pop(0)
-        while rest and _width(f"{line} {rest[0]}", WORDS_PX, 400) <= CARD_W - 24:
+        while rest and text_width(f"{line} {rest[0]}", WORDS_PX, 400) <= CARD_W - 24:
             line += f" {rest.pop(0)}"
         lines.append(_fitting(line, WORDS_PX, 400))
     most = (PICTURE_H - 12) // LINE_PX
@@ -88,12 +88,7 @@ def _write_lines(part: np.ndarray, text: str) -> None:
 
 def _fitting(text: str, size: int, weight: int) -> str:
     short = text
-    while short and _width(short, size, weight) > CARD_W - 24:
+    while short and text_width(short, size, weight) > CARD_W - 24:
         text = text[:-1]
         short = f"{text}..."
     return short
-
-
-def _width(text: str, size: int, weight: int) -> int:
-    (x, _, width, _) = cv2.getTextSize((CARD_W, 100), text, (0, 0), cv2.FontFace("sans"), size, weight)
-    return x + width

@@ -123,13 +123,13 @@ def offset_points(stroke) -> np.ndarray:
     inner = np.linspace(0.0, 1.0, _PER_SEGMENT + 1)[:-1]
     places = np.append((np.arange(len(cubics))[:, None] + inner).ravel(), len(cubics))
     lengths = [before[k] + np.interp(inner, table, known[k]) for k in range(len(cubics))]
-    wanted = np.interp(np.append(np.concatenate(lengths), total) / total, at, half)
+    target = np.interp(np.append(np.concatenate(lengths), total) / total, at, half)
     for _ in range(len(places)):
         points = points[np.argsort(points[:, 0], kind="stable")]
-        off = np.abs(johan(points, places, _BETA) - wanted)
+        off = np.abs(johan(points, places, _BETA) - target)
         if off.max() <= EVEN / 2 * half.max():
             break
-        points = np.vstack([points, [places[off.argmax()], wanted[off.argmax()]]])
+        points = np.vstack([points, [places[off.argmax()], target[off.argmax()]]])
     return points
 
 

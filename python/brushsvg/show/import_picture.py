@@ -17,8 +17,9 @@ from ..geometry import polylines
 from ..geometry.cubics import at
 from ..read.design import Design, Notice
 from ..read.layout import bounds_mm
+from ..reporting.label_space import LabelSpace
 from ..text_summary import summarized
-from .stroke_labels import Room, Run, ahead, runs_of, width_text
+from .stroke_labels import CELL_PX, Run, ahead, cells_of, runs_of, width_text
 
 PAPER, SHEET, EDGE, TEXT, QUIET, SHAPE = "#f3f1ec", "#ffffff", "#c9c7c0", "#22252b", "#6d717a", "#d9d7d0"
 WARNING = "#b3401f"
@@ -26,6 +27,7 @@ INKS = ("#2b3a67", "#b3401f", "#2f7d4f", "#8a3ffc", "#c07a00", "#0f7c8a", "#c218
 SHEET_PX, MARGIN_PX, LINE_PX, FONT_PX = 1500, 40, 30, 20
 LISTED = 120  # strokes in the list
 LETTER_PX = 10.0  # room for a letter of the lists, between those of OpenCV's font and of browsers
+REACH_PX = 22.0  # of a number from the start of its stroke
 APART_PX = 80.0  # between two numbers of one element's dashes
 TOLERANCE_MM = 0.02
 
@@ -74,7 +76,7 @@ def _picture(design: Design, strokes: list, notices: list[Notice]) -> _Canvas:
     canvas.text(MARGIN_PX, MARGIN_PX + FONT_PX, design.title or "Drawing as understood", TEXT, 28)
     count = f"{len(strokes)} strokes" if len(strokes) != 1 else "1 stroke"
     warned = f"{len(notices)} warnings" if len(notices) != 1 else "1 warning"
-    # limbs, corners and passes depend on the brush, which is not asked for here
+    # limbs, corners and passes depend on the brush, which is not known here
     more = "; predict shows those that a brush adds" if any(stroke.wanted_mm for stroke in strokes) else ""
     words = f"sheet {w:.6g} x {h:.6g} mm, {count}, {warned}{more}"
     canvas.text(MARGIN_PX, MARGIN_PX + FONT_PX + LINE_PX, words, QUIET)
@@ -92,7 +94,7 @@ def _picture(design: Design, strokes: list, notices: list[Notice]) -> _Canvas:
     lines = [place(_core.flatten(stroke, TOLERANCE_MM)) for stroke in strokes]
     for line, ink in zip(lines, inks, strict=True):
         _direction(canvas, line, ink)
-    _numbers(canvas, lines, inks, runs)
+    _numbers(canvas, lines, inks, runs, top + (y1 - y0) * px_per_mm + LINE_PX)
     y = top + (y1 - y0) * px_per_mm + 2 * LINE_PX
     y = _list_strokes(canvas, strokes, inks, runs, y)
     canvas.height = _list_notices(canvas, notices, y) + MARGIN_PX
@@ -135,9 +137,11 @@ def _direction(canvas: _Canvas, line: np.ndarray, ink: str) -> None:
     canvas.area([line[0] + 4.0 * np.column_stack([np.cos(dot), np.sin(dot)])], ink)
 
 
-def _numbers(canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: list[Run]) -> None:
-    """Numbers at the starts, where there is room for them; of many dashes some."""
-    room = Room(lines)
+def _numbers(
+    canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: list[Run], bottom: float
+) -> None:
+    """Numbers near the starts, behind them first, where there is room; of many dashes some."""
+    space = LabelSpace(cells_of(lines, (canvas.width, bottom)), CELL_PX, (0, 0, canvas.width, bottom))
     for run in runs:
         before = None
         for number in range(run.first, run.last + 1):
@@ -145,9 +149,10 @@ def _numbers(canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: li
             if run.is_one and before is not None and math.dist(before, start) < APART_PX:
                 continue
             label = str(number + 1)
-            corner = room.take(start, ahead(lines[number]), 11.0 * len(label), 16.0)
-            if corner is not None:
-                canvas.text(corner[0], corner[1] + 15, label, inks[number], 18)
+            size = (11.0 * len(label), 16.0)
+            placed = space.place(start, [size], -ahead(lines[number]), reach=REACH_PX, may_cover=False)
+            if placed is not None:
+                canvas.text(placed.left, placed.top + 15, label, inks[number], 18)
                 before = start
 
 
@@ -183,19 +188,19 @@ def _letters(canvas: _Canvas) -> int:
 
 
 def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
-    told = [
+    listed = [
         (colour, notice)
         for is_damage, colour in ((True, WARNING), (False, TEXT))
         for notice in summarized(notice for notice in notices if notice.damaged == is_damage)
     ]
-    for colour, notice in told[:LISTED]:
+    for colour, notice in listed[:LISTED]:
         for line in textwrap.wrap(
-            f"{notice.where}: {notice.told}", _letters(canvas), subsequent_indent="    "
+            f"{notice.where}: {notice.text}", _letters(canvas), subsequent_indent="    "
         ):
             canvas.text(MARGIN_PX, y, line, colour, 18)
             y += LINE_PX
-    if len(told) > LISTED:
-        canvas.text(MARGIN_PX, y, f"and {len(told) - LISTED} warnings more", QUIET, 18)
+    if len(listed) > LISTED:
+        canvas.text(MARGIN_PX, y, f"and {len(listed) - LISTED} warnings more", QUIET, 18)
         y += LINE_PX
     return y
 

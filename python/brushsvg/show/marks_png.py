@@ -11,7 +11,7 @@ from .. import _core
 from ..errors import Error, need
 from .marks_svg import BAND, EDGE, TOOLPATH, Band, check_picture, known_colour, travels
 from .overlap_svg import MISSING
-from .png_canvas import PNG_LONG_SIDE_PX, SUB_PIXEL_BITS, TEXT, bgr, canvas, encoded, lay, write
+from .png_canvas import PNG_LONG_SIDE_PX, SUB_PIXEL_BITS, TEXT, bgr, blend, canvas, encoded, write
 
 
 def marks_png(
@@ -23,9 +23,11 @@ def marks_png(
     blank: Iterable[np.ndarray] = (),
     toolpath_mm: Sequence[np.ndarray] = (),
 ) -> bytes:
-    """The sheet with its paint, anti-aliased, colours over each other in painting order. band: where the edges lie,
-    with a legend; blank: rings of what of shapes stays blank, outlined; toolpath_mm: of each pass the positions of the
-    tool (n, 2) or (n, 3), drawn over the paint, thinner where it travels in the air."""
+    """Draw the sheet with its paint, anti-aliased, with colours over each other in painting order.
+
+    band: of the edges, drawn with a legend; blank: rings of the unpainted parts of shapes, outlined; toolpath_mm: of
+    each pass the positions of the tool (n, 2) or (n, 3), drawn over the paint, thinner where it travels in the air.
+    """
     check_picture(marks, sheet_mm, colours)
     need(brush, _core.Brush, "a brush")
     px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(sheet_mm))
@@ -39,7 +41,7 @@ def marks_png(
         run.passes = list(marks.passes[first:last])
         paint = _core.coverage(run, brush, window, px_per_mm)
         image = canvas(paint.shape, "#ffffff") if image is None else image
-        lay(image, paint, known_colour(colours[first]))
+        blend(image, paint, known_colour(colours[first]))
         first = last
     if image is None:
         raise Error("there is nothing to draw", code="nothing-to-show")
@@ -65,10 +67,10 @@ def _draw_band(image, band, window, px_per_mm: float) -> None:
     size = max(12, round(min(image.shape[:2]) / 40))
     left, low = size, image.shape[0] - size
     for rings in filter(None, band.rings):
-        lay(image, 0.45 * _core.coverage(rings, window, px_per_mm), BAND)
+        blend(image, 0.45 * _core.coverage(rings, window, px_per_mm), BAND)
     if any(band.rings):
         box = np.zeros(image.shape[:2])
         box[low - size : low, left : left + 2 * size] = 0.45
-        lay(image, box, BAND)
+        blend(image, box, BAND)
         left += round(2.5 * size)
     write(image, band.words, (left, low - round(0.15 * size)), size, 400, TEXT)

@@ -16,13 +16,13 @@ from ..errors import Error, need
 from .overlap_svg import MISSING
 from .svg_text import path_data, printable, quoted
 
-BAND = "#e0862b"  # where an edge lies with 95 %
+BAND = "#e0862b"  # the 95 % band of an edge
 TOOLPATH = "#2f6fd0"
 EDGE = 0.002  # of the sheet, how wide the line round what stays blank is
 
 
 class Band(Protocol):
-    """Where the edge of each mark lies with 95 %: rings [mm], and in words where that is known from."""
+    """The 95 % band of the edge of each mark: rings [mm], and its source in words."""
 
     @property
     def rings(self) -> Iterable[list[np.ndarray]]: ...
@@ -42,12 +42,12 @@ def marks_svg(
     astray: Container[str] = (),
     toolpath_mm: Sequence[np.ndarray] = (),
 ) -> str:
-    """One path per pass in its colour, in millimetres of the sheet.
+    """Draw one path per pass in its colour, in millimetres of the sheet.
 
-    marks: with outlines; tracking_errors: of the passes, if known; made: how, in words; band: where their edges lie,
-    with a legend; blank: rings of what of shapes stays blank, outlined; astray: names of strokes that are marked, since
-    their paint lies elsewhere; toolpath_mm: of each pass the (n, 2) or (n, 3) positions of the tool, drawn over the
-    paint, dashed where it travels in the air.
+    marks: with outlines; tracking_errors: of the passes, if known; made: how, in words; band: of their edges,
+    drawn with a legend; blank: rings of the unpainted parts of shapes, outlined; astray: names of strokes that are
+    marked, since their paint is displaced; toolpath_mm: of each pass the (n, 2) or (n, 3) positions of the tool,
+    drawn over the paint, dashed where it travels in the air.
     """
     check_picture(marks, sheet_mm, colours)
     width, height = sheet_mm
@@ -86,7 +86,7 @@ def check_picture(marks: _core.Marks, sheet_mm: tuple[float, float], colours: li
         need(side, Real, "the side of a sheet")
     if len(sheet_mm) != 2 or not all(0 < side <= 1e6 for side in sheet_mm):
         raise Error(
-            f"a sheet of {sheet_mm} mm cannot be drawn: both sides must lie within (0, 1e6] mm",
+            f"a sheet of {sheet_mm} mm cannot be drawn: both sides must be within (0, 1e6] mm",
             code="out-of-range",
         )
     if len(colours) != len(marks.passes):

@@ -2,26 +2,55 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+import cv2
 import numpy as np
 
-from .overlap_svg import BOTH, MISSING, OVERLAP_COLOURS, SPILT
-from .png_canvas import TEXT, bgr, canvas, encoded, write
+from ..reporting.label_space import LabelSpace
+from .overlap_svg import BOTH, MISSING, OVERLAP_COLOURS, RING, SEEN, SPILT
+from .png_canvas import TEXT, bgr, canvas, encoded, text_width, write
 
 
-def overlap_png(wanted: np.ndarray, painted: np.ndarray, legend: bool = True) -> bytes:
-    """Where paint is missing and where there is too much of it. wanted, painted: shares of the same pixels."""
-    common = np.minimum(wanted, painted)
+def overlap_png(
+    target: np.ndarray,
+    painted: np.ndarray,
+    legend: bool = True,
+    places: Mapping[int, tuple[float, float]] | None = None,
+) -> bytes:
+    """Draw where paint is missing and where there is too much of it, and number places.
+
+    target, painted: shares of the same pixels. places: number -> (x, y) px.
+    """
+    common = np.minimum(target, painted)
     rows, columns = common.shape
     size = max(14, round(0.016 * max(rows, columns)))
     image = canvas((rows + 2 * size * legend, columns), "#ffffff")
-    shares = ((common, BOTH), (wanted - common, MISSING), (painted - common, SPILT))
+    shares = ((common, BOTH), (target - common, MISSING), (painted - common, SPILT))
     page = np.full((rows, columns, 3), 255.0)
     for share, colour in shares:  # side by side in a pixel, not over each other
         page -= share[..., None] * (255.0 - np.array(bgr(colour)))
     image[:rows] = np.round(page).clip(0, 255).astype(np.uint8)
+    _number(image, np.maximum(target, painted) > SEEN, places or {}, size)
     if legend:
         write_legend(image, size, rows + size // 2, size)
     return encoded(image)
+
+
+def _number(
+    image: np.ndarray, marks: np.ndarray, places: Mapping[int, tuple[float, float]], size: int
+) -> None:
+    """A ring around each place, and its number next to it."""
+    space = LabelSpace(marks, anchors=[*places.values()], radius=RING * size)
+    for number, (x, y) in places.items():
+        cv2.circle(
+            image, (round(x), round(y)), round(RING * size), bgr(TEXT), max(1, size // 12), cv2.LINE_AA
+        )
+        label = space.place((x, y), [(text_width(str(number), size, 700), size)])
+        if label.leader:
+            ends = [tuple(map(round, end)) for end in label.leader]
+            cv2.line(image, *ends, bgr(TEXT), max(1, size // 12), cv2.LINE_AA)
+        write(image, str(number), (round(label.left), round(label.top + 0.86 * size)), size, 700, TEXT)
 
 
 def write_legend(image: np.ndarray, x: int, y: int, size: int) -> None:

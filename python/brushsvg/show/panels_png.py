@@ -1,4 +1,4 @@
-"""Panels that hold painted marks against what was wanted, as one PNG."""
+"""Draw panels that compare painted marks with the drawing, as one PNG."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import cv2
 import numpy as np
 
 from .. import _core
-from .png_canvas import SUB_PIXEL_BITS, TEXT, bgr, canvas, encoded, lay, write
+from .png_canvas import SUB_PIXEL_BITS, TEXT, bgr, blend, canvas, encoded, write
 
 PAPER = "#fdfcf9"
 CARD = "#f3f1ec"
 QUIET = "#767a82"
-WANTED = "#b7b6b0"
+TARGET = "#b7b6b0"
 INK = "#2b3a67"
 TCP_LINE = "#3f8fd9"
 MIDDLE_LINE = TEXT
@@ -33,7 +33,7 @@ class Panel:
     title: str
     score: tuple[str, str]
     notes: tuple[str, ...]
-    wanted: Sequence[np.ndarray]
+    target: Sequence[np.ndarray]
     painted: Sequence[np.ndarray]
     lines: Sequence[np.ndarray]
     line_colour: str = TCP_LINE
@@ -77,13 +77,13 @@ def _label(image, panel: Panel, x: int, y: int) -> None:
 
 
 def _draw(image, panel: Panel, window, px_per_mm: float, corner: tuple[int, int]) -> None:
-    wanted = _core.coverage(panel.wanted, window, px_per_mm)
-    part = image[corner[1] : corner[1] + wanted.shape[0], corner[0] : corner[0] + wanted.shape[1]]
-    wanted = wanted[: part.shape[0], : part.shape[1]]
-    lay(part, wanted, WANTED)
+    target = _core.coverage(panel.target, window, px_per_mm)
+    part = image[corner[1] : corner[1] + target.shape[0], corner[0] : corner[0] + target.shape[1]]
+    target = target[: part.shape[0], : part.shape[1]]
+    blend(part, target, TARGET)
     if panel.painted:
         painted = _core.coverage(panel.painted, window, px_per_mm)[: part.shape[0], : part.shape[1]]
-        lay(part, 0.86 * painted, INK)
+        blend(part, 0.86 * painted, INK)
     for line in panel.lines:
         at_mm = np.column_stack([line[:, 0] - window[0], window[1] + window[3] - line[:, 1]])
         fixed = np.round((at_mm * px_per_mm - 0.5) * 2**SUB_PIXEL_BITS).astype(np.int32).reshape(-1, 1, 2)
@@ -93,7 +93,7 @@ def _draw(image, panel: Panel, window, px_per_mm: float, corner: tuple[int, int]
 
 
 def _legend(image, x: int, y: int) -> None:
-    signs = ((WANTED, "wanted", 18), (INK, "painted, as predicted", 18), (TCP_LINE, "path of the tool", 4))
+    signs = ((TARGET, "wanted", 18), (INK, "painted, as predicted", 18), (TCP_LINE, "path of the tool", 4))
     for colour, word, height in signs:
         middle = y - 8
         image[middle - height // 2 : middle + height // 2, x : x + 34] = bgr(colour)
@@ -101,7 +101,7 @@ def _legend(image, x: int, y: int) -> None:
 
 
 def _extent(panels: list[Panel]) -> tuple[float, float, float, float]:
-    lines = [line for panel in panels for line in (*panel.wanted, *panel.painted, *panel.lines)]
+    lines = [line for panel in panels for line in (*panel.target, *panel.painted, *panel.lines)]
     points = np.vstack([line[:, :2] for line in lines])
     (x0, y0), (x1, y1) = points.min(axis=0) - 1.0, points.max(axis=0) + 1.0
     return x0, y0, x1, y1

@@ -14,7 +14,7 @@ def canvas(shape: tuple[int, int], colour: str) -> np.ndarray:
     return np.full((*shape, 3), bgr(colour), np.uint8)
 
 
-def lay(image: np.ndarray, coverage: np.ndarray, colour: str) -> None:
+def blend(image: np.ndarray, coverage: np.ndarray, colour: str) -> None:
     painted = coverage > 0  # most of a page is blank
     share = coverage[painted][:, None]
     image[painted] = np.round(image[painted] * (1 - share) + np.array(bgr(colour)) * share).astype(np.uint8)
@@ -28,6 +28,12 @@ def write(image, text: str, baseline: tuple[int, int], size: int, weight: int, c
     """Text in OpenCV's own font; the x where it ends."""
     end, _ = cv2.putText(image, text, baseline, bgr(colour), cv2.FontFace("sans"), size, weight)
     return int(end[0])
+
+
+def text_width(text: str, size: int, weight: int) -> int:
+    """How far a text reaches to the right of where it begins [px]."""
+    (x, _, width, _) = cv2.getTextSize((10000, 100), text, (0, 0), cv2.FontFace("sans"), size, weight)
+    return x + width
 
 
 def encoded(image: np.ndarray) -> bytes:

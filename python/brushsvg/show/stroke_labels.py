@@ -1,4 +1,4 @@
-"""Numbers for the strokes of a picture: which of them are one entry of its list, and where there is room for them."""
+"""Numbers for the strokes of a picture: which of them are one entry of its list, and what they must not cover."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from ..geometry.polylines import lengths
 
 FOLDED = 6  # strokes alike from which on they are one entry
-CELL_PX = 8.0  # grid of the room for numbers: half their height
+CELL_PX = 8.0  # half the height of a number
 
 
 @dataclass(frozen=True)
@@ -66,38 +66,13 @@ def ahead(line: np.ndarray) -> np.ndarray:
     return (far - line[0]) / length if length > 0 else np.array([1.0, 0.0])
 
 
-class Room:
-    """Where numbers still fit between lines and other numbers, on a grid of CELL_PX."""
-
-    def __init__(self, lines: list[np.ndarray]):
-        self.lines: set[tuple[int, int]] = set()
-        self.numbers: set[tuple[int, int]] = set()
-        for line in lines:
-            at = lengths(line)
-            dense = np.linspace(0.0, at[-1], math.ceil(2 * at[-1] / CELL_PX) + 1)
-            points = np.column_stack([np.interp(dense, at, line[:, k]) for k in (0, 1)])
-            self.lines.update(map(tuple, (points // CELL_PX).astype(int).tolist()))
-
-    def take(self, start: np.ndarray, ahead: np.ndarray, w: float, h: float) -> tuple[float, float] | None:
-        """Upper left corner of w x h px near a start, behind it first; None where numbers would pile up."""
-        found = None
-        for reach in (1.0, 1.7):
-            for turn in (0.0, 0.6, -0.6, 1.2, -1.2, 1.9, -1.9):
-                cos, sin = math.cos(turn), math.sin(turn)
-                away = -np.array([cos * ahead[0] - sin * ahead[1], sin * ahead[0] + cos * ahead[1]])
-                x, y = start + away * (np.array([w, h]) / 2 + 7.0) * reach - np.array([w, h]) / 2
-                columns = range(int(x // CELL_PX), int((x + w) // CELL_PX) + 1)
-                cells = {
-                    (c, r) for c in columns for r in range(int(y // CELL_PX), int((y + h) // CELL_PX) + 1)
-                }
-                if not self.numbers.isdisjoint(cells):
-                    continue
-                crossed = len(self.lines & cells)
-                if found is None or crossed < found[0]:
-                    found = crossed, cells, (x, y)
-            if found and found[0] == 0:
-                break
-        if found is None:
-            return None
-        self.numbers |= found[1]
-        return found[2]
+def cells_of(lines: list[np.ndarray], size: tuple[float, float]) -> np.ndarray:
+    """Cells of CELL_PX in a picture of that width and height that lines go through."""
+    cells = np.zeros((math.ceil(size[1] / CELL_PX), math.ceil(size[0] / CELL_PX)), bool)
+    for line in lines:
+        at = lengths(line)
+        dense = np.linspace(0.0, at[-1], math.ceil(2 * at[-1] / CELL_PX) + 1)
+        points = np.column_stack([np.interp(dense, at, line[:, k]) for k in (0, 1)])
+        x, y = (points // CELL_PX).astype(int).clip(0, (cells.shape[1] - 1, cells.shape[0] - 1)).T
+        cells[y, x] = True
+    return cells

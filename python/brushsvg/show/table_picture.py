@@ -1,4 +1,4 @@
-"""The table in front of an arm, seen from above: what it reaches, where the paper lies, and where it would do."""
+"""Draw the table in front of an arm from above: its reach, the paper, and where the paper could be."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import Error
 from ..machine.motion import Move, Program, Section, Wait, distances, settling_s, times_s
 
-HAND_PAUSE_S = 3.0  # a wait for a person is shown for so long: enough to read what is asked of them
+HAND_PAUSE_S = 3.0  # a wait for a person is shown for so long: enough to read the instruction
 # Parts of a move in the air at which its time is taken: a straight line between them hides the ramps otherwise.
 PARTS = np.array([0.01, 0.04, 0.1, 0.9, 0.96, 0.99, 1.0])
 

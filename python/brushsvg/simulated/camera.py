@@ -13,7 +13,7 @@ from functools import cache, lru_cache
 import cv2
 import numpy as np
 
-TEXELS = 20.0  # per mm of the sheet, unless another number is asked for
+TEXELS = 20.0  # per mm of the sheet, by default
 INK = np.array([0.05, 0.04, 0.04])  # of a printer: share of the light thrown back, red green blue
 BLUE = np.array([0.05, 0.09, 0.35])
 
@@ -28,7 +28,7 @@ class Camera:
     turn_deg: float = 2.0
     bend: float = -0.03
     fill: float = 0.93  # of the picture by the sheet
-    aside_mm: tuple[float, float] = (3.0, -2.0)
+    displacement_mm: tuple[float, float] = (3.0, -2.0)
     blur_px: float = 0.8
     noise: float = 0.008
     light: tuple[float, float] = (0.25, -0.18)  # how much it changes across and up the sheet
@@ -137,14 +137,14 @@ def _posed(camera, sheet_mm):
     down = np.cross(forward, right)
     focal_px = camera.focal * camera.size_px[0]
     scale = min(c / s for c, s in zip(camera.size_px, sheet_mm, strict=True)) * camera.fill
-    middle = np.array([*np.array(sheet_mm) / 2 + camera.aside_mm, 0.0])
+    middle = np.array([*np.array(sheet_mm) / 2 + camera.displacement_mm, 0.0])
     place = middle - forward * focal_px / scale
     centre = (np.array(camera.size_px) - 1) / 2 + [3.0, -4.0]  # no lens sits quite in the middle
     return np.column_stack([right, down, forward]), place, focal_px, centre
 
 
 def _height(camera, sheet_mm, points):
-    """Paper that lies flat on two edges and bulges in between."""
+    """Paper that is flat on two edges and bulges in between."""
     return camera.sag_mm * np.sin(np.pi * np.clip(points[..., 0] / sheet_mm[0], 0, 1))
 
 
@@ -160,16 +160,16 @@ def encoded(pixels, quality=92):
 def exposed(sheet, camera=Camera(), seed=1, mirrored=False):
     """8-bit sRGB pixels (rows, columns, 3)."""
     rng = np.random.default_rng(seed)
-    at, aside = _seen(
+    at, from_middle = _seen(
         *(sheet.size_mm, camera.size_px, camera.focal, camera.tilt_deg, camera.turn_deg),
-        *(camera.bend, camera.fill, camera.aside_mm, camera.sag_mm),
+        *(camera.bend, camera.fill, camera.displacement_mm, camera.sag_mm),
     )
     out = _looked_up(sheet, at)
     out *= _lit(camera, sheet.size_mm, at)[..., None]
     if camera.glare[2]:
         away = np.hypot(at[..., 0] - camera.glare[0], at[..., 1] - camera.glare[1]) / camera.glare[2]
         out += 1.5 * np.exp(-((np.minimum(away, 5.0)) ** 4))[..., None]
-    out *= (camera.exposure * (1 - camera.vignette * aside**2))[..., None]
+    out *= (camera.exposure * (1 - camera.vignette * from_middle**2))[..., None]
     if camera.blur_px:
         out = _blurred(out, camera.blur_px)
     if any(camera.motion_px):
@@ -182,10 +182,10 @@ def exposed(sheet, camera=Camera(), seed=1, mirrored=False):
 
 
 @lru_cache(maxsize=2)  # most photographs of a file differ in paint alone
-def _seen(sheet_mm, size_px, focal, tilt_deg, turn_deg, bend, fill, aside_mm, sag_mm):
+def _seen(sheet_mm, size_px, focal, tilt_deg, turn_deg, bend, fill, displacement_mm, sag_mm):
     """Of each pixel, in single precision: the place on the sheet (rows, columns, 2), and its distance from the axis
     over the corner's."""
-    camera = Camera(size_px, focal, tilt_deg, turn_deg, bend, fill, aside_mm, sag_mm=sag_mm)
+    camera = Camera(size_px, focal, tilt_deg, turn_deg, bend, fill, displacement_mm, sag_mm=sag_mm)
     columns, rows = size_px
     rotation, place, focal_px, middle = _posed(camera, sheet_mm)
     # the lens is the same all around its axis
@@ -195,7 +195,7 @@ def _seen(sheet_mm, size_px, focal, tilt_deg, turn_deg, bend, fill, aside_mm, sa
     for _ in range(6):
         ideal_at = seen_at / _bent(camera, ideal_at)
     at = np.empty((rows, columns, 2), np.float32)
-    aside = np.empty((rows, columns), np.float32)
+    from_middle = np.empty((rows, columns), np.float32)
     for top in range(0, rows, 256):
         v, u = np.mgrid[top : min(top + 256, rows), 0:columns].astype(float)
         seen = np.stack([(u - middle[0]) / focal_px, (v - middle[1]) / focal_px], axis=-1)
@@ -207,9 +207,9 @@ def _seen(sheet_mm, size_px, focal, tilt_deg, turn_deg, bend, fill, aside_mm, sa
             here = place[:2] + ray[..., :2] * ((height - place[2]) / ray[..., 2])[..., None]
             height = _height(camera, sheet_mm, here)
         at[top : top + len(v)] = here
-        aside[top : top + len(v)] = distance / (0.5 * np.hypot(columns, rows) / focal_px)
-    at.flags.writeable = aside.flags.writeable = False
-    return at, aside
+        from_middle[top : top + len(v)] = distance / (0.5 * np.hypot(columns, rows) / focal_px)
+    at.flags.writeable = from_middle.flags.writeable = False
+    return at, from_middle
 
 
 def coded(light):
@@ -241,7 +241,7 @@ def _lit(camera, size_mm, at):
 
 
 def _looked_up(sheet, at):
-    """Between texels; beside the sheet a brown table."""
+    """Return the light between texels; outside of the sheet, of a brown table."""
     rows, columns = sheet.shown.shape[:2]
     c = at[..., 0] * sheet.texels - 0.5
     r = (sheet.size_mm[1] - at[..., 1]) * sheet.texels - 0.5

@@ -13,7 +13,7 @@ from ..machine.cells.cell import Machine
 from ..machine.paint_reload import dips_without_cell
 from ..machine.realised.arc_chords import with_chords
 from ..machine.realised.backlash import from_air_mm
-from ..machine.realised.distortion import in_lines_mm, told_mm
+from ..machine.realised.distortion import commanded_mm, in_lines_mm
 from ..machine.realised.passes import as_run
 from ..machine.realised.retimed import on_way
 from ..model.perturbed import with_factors
@@ -24,7 +24,7 @@ LOWER_MM = 0.02  # more than the tilt's and scale's part in a change of height
 
 @dataclass(frozen=True)
 class PaintedStroke:
-    """rings: on the sheet, as it lies; way: (n, 3) x, y of the brush's contact and how far it has come, mm."""
+    """rings: on the sheet; way: (n, 3) x, y of the brush's contact and its distance so far, mm."""
 
     stroke: str
     rings: list[np.ndarray]
@@ -48,7 +48,7 @@ def painted(
     except Error as refusal:
         if refusal.code == "depth-out-of-range" and _deepest_mm(plan.passes) <= brush.depth_range_mm[1]:
             refusal = Error(
-                f"{refusal.sentence}, as high as the studio's paper lies there",
+                f"{refusal.sentence}, at the height of the studio's paper there",
                 refusal.where,
                 refusal.value,
                 refusal.range,
@@ -59,16 +59,16 @@ def painted(
     if brush.paint:
         _core.narrow(marks, brush.paint, dips_mm or dips_without_cell(plan.passes))
     _core.trace_outlines(marks, brush)
-    always = np.random.default_rng(0)  # of this machine: whatever is random
+    always = np.random.default_rng(0)  # of this machine: the part that repeats
     own = {one.stroke: always.normal(0, 1, 2) * off.own_mm for one in plan.passes}
     random = np.random.default_rng(seed + 1)
     turn = rotation(np.radians(studio.sheet.turn_deg))
     out = []
     for mark in marks.passes:
-        aside = own[mark.stroke] + random.normal(0, 1, 2) * off.random_mm
+        shift = own[mark.stroke] + random.normal(0, 1, 2) * off.random_mm
 
-        def laid(points, aside=aside):
-            return (np.asarray(points)[:, :2] + aside - middle) @ turn + middle + studio.sheet.shift_mm
+        def laid(points, shift=shift):
+            return (np.asarray(points)[:, :2] + shift - middle) @ turn + middle + studio.sheet.shift_mm
 
         contact = np.asarray(mark.contact_mm, dtype=float).reshape(-1, 2)
         come = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(contact, axis=0).T))])
@@ -81,7 +81,8 @@ def painted(
 
 
 def low_enough(studio: Studio, plan, brush, undone: Machine | None) -> Studio:
-    """The studio, its paper so low that no stroke is pressed beyond the brush's range, if none is asked to be."""
+    """Return the studio, its paper so low that no stroke is pressed beyond the brush's range, unless the plan asks for
+    it."""
     most_mm = brush.depth_range_mm[1]
     beyond = _deepest_mm(_as_run(plan, studio, undone)) - most_mm
     if beyond <= 0 or _deepest_mm(plan.passes) > most_mm:
@@ -105,12 +106,12 @@ def _as_run(plan, studio: Studio, undone: Machine | None) -> list:
     }
     bent = over_sheet if np.any(over_sheet["field_mm"]) else {}
     machine = Machine(off.lean_mm_per_mm, off.scale, off.skew, off.height_mm, off.tilt_mm_per_mm, **bent)
-    return as_run([_told(one, undone) for one in plan.passes], machine, off.backlash_mm)
+    return as_run([_commanded(one, undone) for one in plan.passes], machine, off.backlash_mm)
 
 
-def _told(a_pass, undone: Machine | None):
+def _commanded(a_pass, undone: Machine | None):
     poses = np.asarray(with_chords(a_pass).poses_mm, dtype=float).reshape(-1, 3)
-    told = told_mm(in_lines_mm(poses, undone), undone)
+    commanded = commanded_mm(in_lines_mm(poses, undone), undone)
     if undone and any(undone.backlash_mm):
-        told = from_air_mm(told, undone.backlash_mm)
-    return on_way(a_pass, told, [])
+        commanded = from_air_mm(commanded, undone.backlash_mm)
+    return on_way(a_pass, commanded, [])

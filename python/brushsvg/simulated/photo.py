@@ -71,7 +71,7 @@ def _camera(lens: Lens, page_mm, fill: float) -> Camera:
         lens.turn_deg,
         lens.bend,
         fill=fill,
-        aside_mm=(0.004 * long, 0.0),
+        displacement_mm=(0.004 * long, 0.0),
         blur_px=lens.blur_px,
         noise=lens.noise,
         shadow=lens.shadow,

@@ -1,4 +1,4 @@
-"""What is amiss in a simulated studio: as a file says it, or drawn at random."""
+"""Faults of a simulated studio: from a file, or drawn at random."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class BrushOff:
 
 @dataclass(frozen=True)
 class MachineOff:
-    """The machine, as a cell's table [machine] has it; backlash_mm: of x and y, all of it; own_mm: how far each stroke
-    lies elsewhere, always alike (standard deviation); random_mm: the same, another time elsewhere; field_x_mm,
+    """The machine, as a cell's table [machine] has it; backlash_mm: of x and y, all of it; own_mm: displacement of each
+    stroke that repeats (standard deviation); random_mm: of one that does not repeat; field_x_mm,
     field_y_mm: the rows of field_mm, over the whole sheet."""
 
     scale: tuple[float, float] = _pair(1.0, 0.9, 1.1)
@@ -49,7 +49,7 @@ class MachineOff:
 
 @dataclass(frozen=True)
 class Laid:
-    """How the sheet lies."""
+    """The pose of the sheet."""
 
     shift_mm: tuple[float, float] = _pair(0.0, -20.0, 20.0)
     turn_deg: float = _number(0.0, -10.0, 10.0)

@@ -19,7 +19,7 @@ _WIDE = 1.5
 _TURNED_IN = 2.0  # half widths round a ring that is all of a filling: in a smaller one the brush would turn on the spot
 _AS_WIDE = 0.98  # a place that is narrower than a pen by less takes it
 _AMID = 0.05  # squares of the half width that a dot and a ring round it may leave between them
-# A ring round a dot, in half widths of the brush: it lies on it by so much, and is so wide at least and at most.
+# A ring round a dot, in half widths of the brush: its overlap with the dot, its least and its greatest width.
 _ON_DOT, _NARROWEST_RING, _WIDEST_RING = 0.2, 0.36, 0.8
 _SIMPLER_MM = 0.02  # an edge of the outline costs as much as all the rest
 _MOST_PAIRS = 10_000  # beyond, a shape is no lettering, and the middle lines have to do
@@ -45,8 +45,9 @@ def contour_passes(shape, least: float, half: float) -> list[list[Line]]:
 
 
 def _dot_and_ring(shape, least: float, half: float) -> list[Line]:
-    """Of a round shape hardly wider than the brush, which would turn too sharply in it: a place where it is turned on
-    the spot, and round it a ring so wide that it lies on what is painted there; none for another shape."""
+    """Return a dot and a ring round it for a round shape hardly wider than the brush, in which a contour would turn too
+    sharply: the place where the brush turns on the spot, and the ring that overlaps its mark; none for another
+    shape."""
     circle = shapely.maximum_inscribed_circle(shape, 0.01 * half)
     width = max((circle.length - half + _ON_DOT * half) / 2, _NARROWEST_RING * half)
     if not least <= width <= _WIDEST_RING * half:
@@ -70,7 +71,8 @@ def _length_mm(line: Line) -> float:
 
 
 def _close_pairs(shape, half: float) -> float:
-    """About how many points of an outline lie within a half width of each other: what GEOS takes to move it inward."""
+    """About how many points of an outline are within a half width of each other: GEOS needs that for an inner
+    offset."""
     points = shapely.get_coordinates(shape)
     some = points[:: max(len(points) // 200, 1)]
     near = [np.count_nonzero(np.hypot(*(points - point).T) < half) for point in some]

@@ -16,8 +16,8 @@ from ..geometry.cubics import split
 _CORNER_RAD = np.radians(20)
 _SHARP_RAD = np.radians(100)  # at less a turn leaves no blot that one sees
 _LIKE_RAD = np.radians(5)
-_STRAIGHT = 0.001  # of a side's length, its control points beside it
-_WORTH = 0.05  # a lift, in squares of the width: paint out of place that it takes away
+_STRAIGHT = 0.001  # of a side's length, its control points off it
+_WORTH = 0.05  # a lift, in squares of the width: misplaced paint that it removes
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def begun_amid_a_side(cubics: np.ndarray, half_width: list) -> tuple[np.ndarray,
 
 
 def lifted_at_corners(strokes: list[_core.Stroke], brush: _core.Brush) -> list[_core.Stroke]:
-    """The strokes, those of drawn lines cut at each sharp corner where two marks lie nearer to what is wanted than one
+    """The strokes, those of drawn lines cut at each sharp corner where two marks are nearer to the target than one
     with a turn in place: paint missing and too much is less by 0.05 squares of the width. The parts of `id` are called
     id, id~2, id~3 ...; a closed line then begins at such a corner."""
     from .. import _core
@@ -138,9 +138,9 @@ def _is_better_lifted(line: Line, before: int, corner: int, after: int, brush) -
 
     whole = line_stroke(line.between(before, after))
     parts = [line_stroke(line.between(before, corner)), line_stroke(line.between(corner, after))]
-    wanted = _core.wanted_outline(whole, 0.01)
+    target = _core.wanted_outline(whole, 0.01)
     try:
-        one, several = (misplaced_mm2(trial_marks(some, brush), wanted, brush) for some in ([whole], parts))
+        one, several = (misplaced_mm2(trial_marks(some, brush), target, brush) for some in ([whole], parts))
     except Error:
         return False
     return one - several > _WORTH * (2 * max(half for _, half in whole.half_width)) ** 2
@@ -163,8 +163,8 @@ def line_stroke(line: Line, like=None, lane: int = 1):
 
 def _is_straight(points: np.ndarray) -> bool:
     chord = points[3] - points[0]
-    beside = np.abs((points[1:3] - points[0]) @ (-chord[1], chord[0]))
-    return bool((beside <= _STRAIGHT * (chord @ chord)).all())
+    distance = np.abs((points[1:3] - points[0]) @ (-chord[1], chord[0]))
+    return bool((distance <= _STRAIGHT * (chord @ chord)).all())
 
 
 def _tangent(points: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from .._core import Stroke
 
 WAYS = ("stroke", "outline")
-# What a fill must show beside the stroke along it, of the stroke's own area, to make a shape of a line.
+# Share of its area that a fill must show next to the stroke along it, to make a shape of a line.
 _SHOWS = 0.01
 
 
@@ -65,10 +65,10 @@ def strokes(
             empty.append(element)
     notices += _left_out(empty, paths_as)
     if not found:
-        where, sentence = (notices[-1].where, notices[-1].told) if notices else ("", "it is empty")
+        where, sentence = (notices[-1].where, notices[-1].text) if notices else ("", "it is empty")
         sentence = f"there is nothing to paint: {sentence}"
-        if told := next(iter(design.notices), None):
-            sentence += f"; for example {told.where}: {told.sentence}"
+        if notice := next(iter(design.notices), None):
+            sentence += f"; for example {notice.where}: {notice.sentence}"
         raise Error(sentence, where=where, code="nothing-to-paint")
     names, renamed = _names([(element, len(lines)) for element, lines in found])
     made = [
@@ -95,7 +95,7 @@ def _left_out(elements: list[Element], paths_as: str | None) -> list[Notice]:
 
 
 def _in_colours(element: Element, paths_as: str | None) -> tuple[Element, ...]:
-    """What of an element is painted, each part in its colour."""
+    """Return the painted parts of an element, each with its colour."""
     if not element.fill_colour or paths_as == "stroke":
         return (element,)
     if paths_as == "outline":

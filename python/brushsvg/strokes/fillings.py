@@ -28,7 +28,7 @@ class WideShape:
     part: list[np.ndarray]
 
     def first_share(self, first: list, lines: list) -> list[np.ndarray]:
-        """What the first of the lines is meant to paint: its own discs, and what those of all lines leave."""
+        """Return the target of the first line: its own discs, and the area that all lines leave."""
         whole = region(self.part)
         share = shapely.union(shapely.intersection(painted(first), whole), unpainted(whole, lines))
         return rings_of(share)

@@ -47,9 +47,9 @@ def joined(strokes: list) -> tuple[list, list[Notice]]:
                 chain.add(lines[other], at_end)
         made.append(chain.stroke() if names else stroke)
         if names:
-            told = ", ".join(names[:3]) + f" and {len(names) - 3} more" * (len(names) > 3)
+            listed = ", ".join(names[:3]) + f" and {len(names) - 3} more" * (len(names) > 3)
             notices.append(
-                Notice(stroke.id, f"joined with {told}, which meet it end to end", code="lines-joined")
+                Notice(stroke.id, f"joined with {listed}, which meet it end to end", code="lines-joined")
             )
     return made, notices
 

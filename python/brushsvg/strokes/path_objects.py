@@ -26,7 +26,7 @@ def stroke_from_path(
     """One stroke along a path, as wide as width_mm everywhere.
 
     path: a svgpathtools.Path, SVG path data as text, or cubics as an array of shape (n, 4, 2), or (n, 4) complex, or
-    (n, 8); one unbroken line in mm, in painting direction. It lies in the paper's frame, y up; with page_height_mm its
+    (n, 8); one unbroken line in mm, in painting direction. It is in the paper's frame, y up; with page_height_mm its
     y points down from the upper edge of a page of that height, as in SVG. Closed where path data end in Z, and where a
     Path or an array ends where it began.
 

@@ -1,4 +1,4 @@
-"""Strokes of filled shapes led otherwise, and added, where their marks cost less for it."""
+"""Search for other and further strokes of filled shapes, where their marks cost less."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ class _Added:
 
 @dataclass(frozen=True)
 class Searched:
-    """What a search made of drawn, painted and wanted strokes, those that it added behind the others of their element;
+    """The result of a search: drawn, painted and target strokes, added ones behind the others of their element;
     done: what compensation says of the painted ones; added: ids of the strokes that the search added."""
 
     drawn: list
     painted: list
-    wanted: list
+    targets: list
     done: _core.Compensated
     added: frozenset[str] = frozenset()
 
@@ -40,7 +40,7 @@ class Searched:
 def searched(
     drawn: list,
     painted: list,
-    wanted: list,
+    targets: list,
     compensated: Callable[[list], _core.Compensated],
     brush,
     detail: str = "normal",
@@ -50,7 +50,7 @@ def searched(
 ) -> Searched:
     """The strokes by which the marks of filled shapes cost least.
 
-    drawn: strokes as they were found; painted: as the brush paints them; wanted: what each should become; compensated:
+    drawn: strokes as they were found; painted: as the brush paints them; targets: what each should become; compensated:
     makes a plan of strokes; done: that of the painted ones, where it is there already. detail: how small an area gets a
     stroke of its own: "draft", "normal", "fine". are_corners_filled: else only limbs without a stroke get one.
     are_sides_painted: along what a stroke of the brush's greatest width leaves of a wider one, too.
@@ -61,12 +61,12 @@ def searched(
     found = _core.search_strokes(
         [(each.rings, each.strokes, each.passes) for each in shapes], brush, detail, are_free
     )
-    rows = [(stroke, meant, k) for k, (stroke, meant) in enumerate(zip(painted, wanted, strict=True))]
+    rows = [(stroke, target, k) for k, (stroke, target) in enumerate(zip(painted, targets, strict=True))]
     lanes = [_lanes(shape.strokes) for shape in shapes]
     wide = _drawn_wider(drawn, brush)
     every: list[_Added] = []
     for shape, (strokes, changed, added), following in zip(shapes, found, lanes, strict=True):
-        rows = _led_otherwise(rows, shape, strokes, changed, following)
+        rows = _replace_paths(rows, shape, strokes, changed, following)
         every += _named(shape, added, following, are_corners_filled)
     if not are_sides_painted:  # nothing next to a stroke that was drawn wider
         every = [each for each in every if not each.is_rim and _part(each.stroke) not in wide]
@@ -75,7 +75,7 @@ def searched(
         if some:
             drawn, rows = _with_added(drawn, rows, shape, some)
     if all(k is not None for _, _, k in rows) and len(rows) == len(painted):
-        return Searched(drawn, painted, wanted, done)
+        return Searched(drawn, painted, targets, done)
     new = compensated([stroke for stroke, _, k in rows if k is None])
     numbers = iter(range(len(rows)))
     done = done.spliced(new, [(True, next(numbers)) if k is None else (False, k) for _, _, k in rows])
@@ -104,12 +104,12 @@ def _with_added(
 ) -> tuple[list, list[tuple]]:
     """The strokes that were found, and the rows, with strokes added to a shape as often as it is painted."""
     copies = [(_repeated(each.stroke, repeat), each) for each in added for repeat in shape.repeats]
-    meant = [stroke.replaced(wanted_mm=each.own_mm) for stroke, each in copies]
+    copy_targets = [stroke.replaced(wanted_mm=each.own_mm) for stroke, each in copies]
     if not shape.is_filled:
         areas_mm = [ring for each in added for ring in each.area_mm]
         rows = [(stroke, _without(of, shape.element, areas_mm), k) for stroke, of, k in rows]
-        drawn = _behind(meant, drawn, lambda stroke: stroke)
-    more = [(stroke, of, None) for (stroke, _), of in zip(copies, meant, strict=True)]
+        drawn = _behind(copy_targets, drawn, lambda stroke: stroke)
+    more = [(stroke, of, None) for (stroke, _), of in zip(copies, copy_targets, strict=True)]
     return drawn, _behind(more, rows, lambda row: row[0])
 
 
@@ -156,45 +156,47 @@ def _shapes(drawn: list, painted: list, passes: list, brush) -> list[_Shape]:
     ]
 
 
-def _led_otherwise(
+def _replace_paths(
     rows: list[tuple], shape: _Shape, strokes: list, changed: list[bool], following
 ) -> list[tuple]:
     """The rows of strokes, what they should become and their numbers, those of a shape as a search leads them."""
-    led = {
+    paths = {
         (stroke.origin.part, stroke.origin.lane): made
         for stroke, made, is_changed in zip(shape.strokes, strokes, changed, strict=True)
         if is_changed
     }
-    lanes = {(part, lane): [lane, *(following(part) for _ in made[1:])] for (part, lane), made in led.items()}
+    lanes = {
+        (part, lane): [lane, *(following(part) for _ in made[1:])] for (part, lane), made in paths.items()
+    }
     out = []
     for row in rows:
         of = row[0].origin
         key = of.part, of.lane
-        if of.element != shape.element or key not in led:
+        if of.element != shape.element or key not in paths:
             out.append(row)
             continue
         parts = [
             made.replaced(id=_core.StrokeId(of.element, of.part, of.repeat, lane))
             for made, lane in zip(
-                led[key], lanes[key], strict=False
+                paths[key], lanes[key], strict=False
             )  # none is left of a stroke that is left out
         ]
-        out += [(part, meant, None) for part, meant in _shared_out(parts, row[1])]
+        out += [(part, target, None) for part, target in _shared_out(parts, row[1])]
     return out
 
 
-def _shared_out(parts: list, meant) -> list[tuple]:
+def _shared_out(parts: list, target) -> list[tuple]:
     """The parts of a stroke with what each should become: a later one its own discs, the first all the rest."""
     if len(parts) < 2:
-        return [(part, meant) for part in parts]
-    if not meant.wanted_mm:
+        return [(part, target) for part in parts]
+    if not target.wanted_mm:
         return [(part, part) for part in parts]
-    left, pairs = meant, []
+    left, pairs = target, []
     for part in parts[:0:-1]:
         own_mm = _core.intersect(
-            _core.wanted_outline(part.replaced(wanted_mm=[]), _SWEPT_MM), meant.wanted_mm
+            _core.wanted_outline(part.replaced(wanted_mm=[]), _SWEPT_MM), target.wanted_mm
         )
-        left = _without(left, meant.origin.element, own_mm)
+        left = _without(left, target.origin.element, own_mm)
         pairs.append((part, part.replaced(wanted_mm=own_mm)))
     return [(parts[0], parts[0].replaced(wanted_mm=left.wanted_mm)), *pairs[::-1]]
 
@@ -266,7 +268,7 @@ def _behind(added: list, rows: list, stroke_of) -> list:
 
 
 def _without(stroke, element: str, areas_mm: list[np.ndarray]):
-    """A stroke of the element, no longer asked for what others paint."""
+    """Return a stroke of the element without the target areas that others paint."""
     if stroke.origin.element != element or not _core.intersect(stroke.wanted_mm, areas_mm):
         return stroke
     import shapely

@@ -11,31 +11,22 @@ SEEN_MM = 0.15  # paint farther outside of a shape is a bulge, blank farther ins
 _TOLERANCE_MM = 0.05  # as plans have by default: a coarser one blurs what corners look like
 
 
-def trial_mark(strokes: list, brush) -> list[np.ndarray]:
-    """Rings of the mark of strokes in closed form, each begun as suits it; Error where they cannot be painted."""
-    return outline_of(trial_marks(strokes, brush), brush)
-
-
-def outline_of(marks, brush) -> list[np.ndarray]:
-    _core.trace_outlines(marks, brush)
-    return marks.outline_mm
-
-
 def trial_overlap(strokes: list, rings: list[np.ndarray], brush) -> float:
-    """How much that mark overlaps with a shape, in pixels: its outline takes ten times as long."""
+    """How much the mark of strokes overlaps with a shape, in pixels: its outline takes ten times as long."""
     shape = _core.Stroke(middle_mm=np.tile(rings[0][0], 4)[None], half_width=[(0.0, 1.0)])
     shape.wanted_mm = rings
     return _core.common_area(trial_marks(strokes, brush, few_poses=False).passes, [shape], brush).overlap
 
 
 def misplaced_mm2(marks, rings: list[np.ndarray], brush) -> float:
-    """Area of what is wanted and not painted, and of what is painted and not wanted."""
-    mark = outline_of(marks, brush)
+    """Return the area of the missing and of the surplus paint."""
+    _core.trace_outlines(marks, brush)
+    mark = marks.outline_mm
     return _core.area(mark) + _core.area(rings) - 2 * _core.area(_core.intersect(mark, rings))
 
 
 def trial_marks(strokes: list, brush, few_poses: bool = True):
-    """The same, not its outline yet. few_poses: as a plan has them; more are made faster."""
+    """Simulate strokes in closed form, each begun as suits it. few_poses: as a plan has them; more are made faster."""
     plan = _core.compensate(
         strokes, brush, _ANY_SHEET_MM, "closed", _TOLERANCE_MM, few_poses=few_poses, start="auto", end="auto"
     ).plan

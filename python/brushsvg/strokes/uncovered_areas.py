@@ -18,7 +18,7 @@ _DISC_MM = 0.05  # to which the discs of a stroke's width are made
 
 @dataclass(frozen=True)
 class Blank:
-    """A connected area of an element's shape: at_mm (x, y) lies in it; share of the shape; rings [mm]; is_rim: of a
+    """A connected area of an element's shape: at_mm (x, y): a point in it; share of the shape; rings [mm]; is_rim: of a
     stroke that is wider than the brush; is_reached: by a stroke whose mark leaves it."""
 
     element: str
@@ -86,7 +86,7 @@ def is_mostly(rings: list[np.ndarray], within: list[np.ndarray]) -> bool:
 
 
 def notices(found: list[Blank]) -> list[Notice]:
-    """One for each element and kind of area: where its largest lies, and the share of all of them."""
+    """Return a notice for each element and kind of area: the place of the largest, and the share of all of them."""
     by_kind: dict[tuple[str, bool, bool], list[Blank]] = {}
     for piece in found:
         by_kind.setdefault((piece.element, piece.is_reached, piece.is_rim), []).append(piece)

@@ -13,13 +13,13 @@ WIDE = ("auto", "clamp", "passes", "refuse")
 # Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
 _WORTH_PASSES = 1 / 0.95
 POINT_MM = 1e-3  # half the width of a line where it ends in a point
-UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge lies beside the shape's by more
+UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge is farther from the shape's
 
 
 def within_reach(
     strokes: list[_core.Stroke], brush: _core.Brush, wide: str = "auto", is_searched: bool = True
 ) -> tuple[list[_core.Stroke], list[_core.Stroke], list[Notice]]:
-    """What to paint, stroke by stroke, and what each should become: (strokes to paint, strokes wanted, notices).
+    """Return what to paint, stroke by stroke, and what each should become: (strokes to paint, targets, notices).
 
     A line that was drawn narrower than the brush is painted at the brush's least width; one drawn wider is refused when
     the plan is made. Other widths are changed only where strokes carry an outline. A stroke whose shape is less than
@@ -50,9 +50,9 @@ def within_reach(
             bounds = (2 * least, 2 * greatest)
             raise Error(sentence, stroke.id, 2 * worst, bounds, code="width-out-of-reach")
     filled = _filled(strokes, _wide(strokes, beyond, greatest), brush) if wide in ("auto", "passes") else {}
-    painted, wanted = [], []
+    painted, targets = [], []
     for k, stroke in enumerate(strokes):
-        made, meant, how = filled.get(k) or ([stroke], [stroke], "")
+        made, its_targets, how = filled.get(k) or ([stroke], [stroke], "")
         if beyond[k] and k not in filled:
             made, how = [_clamped(stroke, least, greatest)], "painted at the nearest width"
             if is_searched and wide != "clamp" and stroke.wanted_mm and beyond[k][1] > greatest:
@@ -69,8 +69,8 @@ def within_reach(
                 )
             )
         painted += made
-        wanted += meant
-    return painted, wanted, notices
+        targets += its_targets
+    return painted, targets, notices
 
 
 def _shows(half: float, least: float, greatest: float) -> bool:
@@ -145,10 +145,13 @@ def _filled(strokes: list, wider: list[int], brush) -> dict[int, tuple]:
                 [],
             )  # the first stroke of the shape has all of them
             if passes:
-                meant = [passes[0].replaced(wanted_mm=shape.first_share(passes[:1], passes)), *passes[1:]]
+                its_targets = [
+                    passes[0].replaced(wanted_mm=shape.first_share(passes[:1], passes)),
+                    *passes[1:],
+                ]
             else:
-                meant, how = [], "painted in the passes of its shape's first stroke"
-            done[k] = (passes, meant, how)
+                its_targets, how = [], "painted in the passes of its shape's first stroke"
+            done[k] = (passes, its_targets, how)
     return done
 
 

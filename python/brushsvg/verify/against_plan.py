@@ -21,7 +21,7 @@ STRAY_MM = 0.02  # what rounding and the chords of circles make of a path; a bru
 def with_plan(
     ran: Ran, expected: PlanInLoads, cell: Cell, first_stroke: int = 1
 ) -> tuple[list[int | None], Problems]:
-    """For each pass that was read which load it is (None: none), and a notice for whatever is missing, in another
+    """Return for each pass that was read its load (None: none), and a notice for each pass that is missing, in another
     order, elsewhere, at another speed or with other paint.
 
     Passes before the program's first stroke were painted before. Error when the plan has no such stroke.
@@ -37,19 +37,19 @@ def with_plan(
     rows = zip(ran.plan.passes, ran.lines, partners, strict=True)
     for a_pass, lines, k in rows:
         problems += _strayed(a_pass, lines, due[k], cell) if k is not None else []
-    if not problems and len(ran.visits) == len(due):  # else a stroke is not one touch, which is told
-        asked = visits(expected, cell, first)[first - 1 :] or ((),) * len(due)
-        problems += _paint(ran, due, asked)
+    if not problems and len(ran.visits) == len(due):  # else a stroke is not one touch, which is reported
+        planned_visits = visits(expected, cell, first)[first - 1 :] or ((),) * len(due)
+        problems += _paint(ran, due, planned_visits)
     return [None if k is None else first - 1 + k for k in partners], problems
 
 
 def _partners(passes, due) -> tuple[list[int | None], Problems]:
     """For each pass the number of the one of due that has its name, in order where there are several."""
     names = [spelled(a_pass.stroke).rstrip(" ") for a_pass in passes]
-    wanted = [spelled(each.stroke) for each in due]
-    if len(names) == len(wanted) and all(map(_same, names, wanted)):
+    required = [spelled(each.stroke) for each in due]
+    if len(names) == len(required) and all(map(_same, names, required)):
         return list(range(len(due))), []
-    left = dict(enumerate(wanted))
+    left = dict(enumerate(required))
     by_name: dict[str, list[int]] = {}
     for number, name in reversed(left.items()):
         by_name.setdefault(name.rstrip(" "), []).append(number)
@@ -74,7 +74,7 @@ def _partners(passes, due) -> tuple[list[int | None], Problems]:
     found = [k for k in partners if k is not None]
     if not problems and found != sorted(found):
         at = next(place for place, k in enumerate(found) if k != place)
-        sentence = f"it is painted where the drawing asks for {wanted[at]}"
+        sentence = f"it is painted where the drawing asks for {required[at]}"
         problems.append(Notice(names[at], sentence, code="stroke-order"))
     return partners, problems
 
@@ -84,29 +84,29 @@ def _same(written: str, name: str) -> bool:
     return written == name.rstrip(" ") or (written.endswith("...") and name.startswith(written[:-3]))
 
 
-def _strayed(a_pass, lines: np.ndarray, meant, cell: Cell) -> Problems:
+def _strayed(a_pass, lines: np.ndarray, planned, cell: Cell) -> Problems:
     """Where a pass that was read, its poses in these lines of the program, does not run where it should, in the order
     in which it should, or not as fast."""
-    problems = _held_otherwise(a_pass, lines, meant)
-    meant = steep_ways_lifted(meant, cell) if cell.servo else meant
+    problems = _held_otherwise(a_pass, lines, planned)
+    planned = steep_ways_lifted(planned, cell) if cell.servo else planned
     # where units are coarse, a pose gives way to one that is less than a move away
     limit_mm = max(STRAY_MM, slack_mm(cell), least_move_mm(cell) + unit_mm(cell))
-    # a servo's height goes in steps of whole values, beside the line by half of both; and a pose at the value of the
+    # a servo's height goes in steps of whole values, off the line by half of both; and a pose at the value of the
     # one before gives way to it, by which the line begins up to a value higher
-    beside_mm = (_step_mm(meant, cell) + 3 * value_mm(cell)) / 2 if cell.servo else 0.0
-    steepness = limit_mm / (limit_mm + beside_mm)
-    if _pose_by_pose(a_pass, meant) > limit_mm:  # it may yet be the same path, with other poses on it
-        (found, owner), (asked, _) = _round(a_pass), _round(meant)
-        found, asked = found * (1, 1, steepness), asked * (1, 1, steepness)
-        at = follows(found, asked, limit_mm)
+    allowance_mm = (_step_mm(planned, cell) + 3 * value_mm(cell)) / 2 if cell.servo else 0.0
+    steepness = limit_mm / (limit_mm + allowance_mm)
+    if _pose_by_pose(a_pass, planned) > limit_mm:  # it may yet be the same path, with other poses on it
+        (found, owner), (reference, _) = _round(a_pass), _round(planned)
+        found, reference = found * (1, 1, steepness), reference * (1, 1, steepness)
+        at = follows(found, reference, limit_mm)
         if at is not None:
-            away_mm = max(_farthest(_along(found), asked), _farthest(_along(asked), found))
+            away_mm = max(_farthest(_along(found), reference), _farthest(_along(reference), found))
             sentence = f"line {lines[owner[min(at, len(owner) - 1)]]}: {_astray(away_mm, limit_mm)}"
             problems.append(Notice(a_pass.stroke, sentence, code="path-elsewhere"))
-    is_dab = not np.ptp(meant.poses_mm[:, :2], axis=0).any()  # pressed on the spot, as slowly as a landing
-    if a_pass.speed_mm_s > meant.speed_mm_s + 0.1 and not is_dab:
-        asked_for = f"the drawing asks for {meant.speed_mm_s:.1f} mm/s"
-        sentence = f"it is painted at {a_pass.speed_mm_s:.1f} mm/s, {asked_for}"
+    is_dab = not np.ptp(planned.poses_mm[:, :2], axis=0).any()  # pressed on the spot, as slowly as a landing
+    if a_pass.speed_mm_s > planned.speed_mm_s + 0.1 and not is_dab:
+        requested = f"the drawing asks for {planned.speed_mm_s:.1f} mm/s"
+        sentence = f"it is painted at {a_pass.speed_mm_s:.1f} mm/s, {requested}"
         problems.append(Notice(a_pass.stroke, sentence, code="stroke-too-fast"))
     return problems
 
@@ -118,26 +118,26 @@ def _step_mm(a_pass, cell: Cell) -> float:
     return max(cell.servo.step_mm, float((np.abs(ways[:, 2]) / servo_parts(ways, cell)).max(initial=0.0)))
 
 
-HELD_DEG = 0.5  # off what was meant, a brush's mark does not show it
+HELD_DEG = 0.5  # off the planned direction: a brush's mark does not show it
 
 
-def _held_otherwise(a_pass, lines: np.ndarray, meant) -> Problems:
+def _held_otherwise(a_pass, lines: np.ndarray, planned) -> Problems:
     """A notice where the brush of a pass that was read is tilted otherwise than it should: at the same pose, or, where
     a pass has others on its way, as far along it."""
-    if not len(a_pass.tool_axes) and axes_of(meant) is None:
+    if not len(a_pass.tool_axes) and axes_of(planned) is None:
         return []
-    found, asked = (_axes(each) for each in (a_pass, meant))
-    if len(found) != len(asked):
-        along, on = (_shares(np.asarray(each.poses_mm)) for each in (a_pass, meant))
-        asked = mixed(asked, np.interp(along, on, np.arange(len(on))))
-    off_deg = between_deg(found, asked)
+    found, reference = (_axes(each) for each in (a_pass, planned))
+    if len(found) != len(reference):
+        along, on = (_shares(np.asarray(each.poses_mm)) for each in (a_pass, planned))
+        reference = mixed(reference, np.interp(along, on, np.arange(len(on))))
+    off_deg = between_deg(found, reference)
     worst = int(off_deg.argmax())
     if off_deg[worst] <= HELD_DEG:
         return []
     sentence = (
         f"line {lines[worst]}: the brush is held {off_deg[worst]:.3g} degrees from how the drawing asks for it, by "
-        f"{float(tilts_deg(asked[worst])):.3g} degrees from upright: it was changed, or made with other flags or of "
-        "another drawing"
+        f"{float(tilts_deg(reference[worst])):.3g} degrees from upright: it was changed, or made with other flags or "
+        "of another drawing"
     )
     return [Notice(a_pass.stroke, sentence, code="held-otherwise")]
 
@@ -163,10 +163,10 @@ def _astray(away_mm: float, limit_mm: float) -> str:
 PLACES = 17  # along a circle, of which two are compared
 
 
-def _pose_by_pose(a_pass, meant) -> float:
+def _pose_by_pose(a_pass, planned) -> float:
     """How far two passes are apart at most [mm], judged by their poses and circles one by one; inf where these do not
     belong to each other."""
-    (ours, our_arcs), (theirs, their_arcs) = _corners(a_pass), _corners(meant)
+    (ours, our_arcs), (theirs, their_arcs) = _corners(a_pass), _corners(planned)
     if len(ours) != len(theirs) or our_arcs.keys() != their_arcs.keys():
         return np.inf
     ends_mm = float(np.linalg.norm(ours - theirs, axis=1).max())
@@ -174,7 +174,7 @@ def _pose_by_pose(a_pass, meant) -> float:
     for k, arc in our_arcs.items():
         if arc.direction != their_arcs[k].direction:
             return np.inf
-        apart = _way_round(a_pass, arc) - _way_round(meant, their_arcs[k])
+        apart = _way_round(a_pass, arc) - _way_round(planned, their_arcs[k])
         away_mm = max(away_mm, float(np.hypot(*apart.T).max()))
     return away_mm
 
@@ -212,26 +212,26 @@ def _round(a_pass) -> tuple[np.ndarray, np.ndarray]:
     return np.array(points), np.array(owner)
 
 
-def follows(found: np.ndarray, asked: np.ndarray, limit_mm: float) -> int | None:
+def follows(found: np.ndarray, reference: np.ndarray, limit_mm: float) -> int | None:
     """None where one can go along both paths (n, 3) and (m, 3) of straight moves at once, from their starts to their
     ends, never back on either, and never farther from each other than the limit; else the point of found to which the
     first move leads on which that is over.
 
-    Decided exactly, as Alt and Godau do: a move of each make a cell, of which the pairs of places within the limit are
-    a convex part. A cell is entered from the move of found before it, or from the move of asked before it, and what
+    Decided exactly, after Alt and Godau: a move of each path makes a cell, whose pairs of places within the limit are
+    a convex part. A cell is entered from the move of found before it, or from the move of reference before it, and what
     matters is how early on the other move that can be.
     """
-    found, asked = (
-        (path if len(path) > 1 else np.repeat(path, 2, axis=0)).tolist() for path in (found, asked)
+    found, reference = (
+        (path if len(path) > 1 else np.repeat(path, 2, axis=0)).tolist() for path in (found, reference)
     )
-    if math.dist(found[0], asked[0]) > limit_mm:
+    if math.dist(found[0], reference[0]) > limit_mm:
         return 0
-    cells = len(asked) - 1
+    cells = len(reference) - 1
     entered: dict[
         int, float
-    ] = {}  # by the move of asked: how early on it, coming from the move of found before
+    ] = {}  # by the move of reference: how early on it, coming from the move of found before
     for j in range(cells):
-        free = _within(found[0], asked[j], asked[j + 1], limit_mm)
+        free = _within(found[0], reference[j], reference[j + 1], limit_mm)
         if free is None or free[0] > 0.0:
             break
         entered[j] = 0.0
@@ -240,8 +240,8 @@ def follows(found: np.ndarray, asked: np.ndarray, limit_mm: float) -> int | None
     for i in range(len(found) - 1):
         begin, end = found[i], found[i + 1]
         left: dict[int, float] = {}
-        below = None  # how early on the move of found, coming from the move of asked before
-        if entered.get(0) == 0.0 and (free := _within(asked[0], begin, end, limit_mm)) and free[0] == 0.0:
+        below = None  # how early on the move of found, coming from the move of reference before
+        if entered.get(0) == 0.0 and (free := _within(reference[0], begin, end, limit_mm)) and free[0] == 0.0:
             below = 0.0
         columns = sorted(entered)
         j = columns[0]
@@ -253,11 +253,11 @@ def follows(found: np.ndarray, asked: np.ndarray, limit_mm: float) -> int | None
                     break
                 j = columns[after]
                 continue
-            if free := _within(end, asked[j], asked[j + 1], limit_mm):
+            if free := _within(end, reference[j], reference[j + 1], limit_mm):
                 least = free[0] if below is not None else max(free[0], early)
                 if least <= free[1]:
                     left[j] = least
-            free = _within(asked[j + 1], begin, end, limit_mm)
+            free = _within(reference[j + 1], begin, end, limit_mm)
             if free is None:
                 below = None
             else:
@@ -267,7 +267,7 @@ def follows(found: np.ndarray, asked: np.ndarray, limit_mm: float) -> int | None
         if not left:
             return i + 1
         entered = left
-    is_whole = cells - 1 in entered and math.dist(found[-1], asked[-1]) <= limit_mm
+    is_whole = cells - 1 in entered and math.dist(found[-1], reference[-1]) <= limit_mm
     return None if is_whole else len(found) - 1
 
 
@@ -336,11 +336,13 @@ def _nearest(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> tuple[
     return float(nearest.max()), at_last
 
 
-def _paint(ran: Ran, due, asked) -> Problems:
+def _paint(ran: Ran, due, planned_visits) -> Problems:
     """The first stroke before which paint is fetched otherwise than the cell says."""
-    for a_pass, found, wanted in zip(due, ran.visits, asked, strict=True):
-        if found != wanted:
-            told = [" and ".join(station.name for station in each) or "nothing" for each in (found, wanted)]
-            sentence = f"before it the program visits {told[0]}, the cell asks for {told[1]}"
+    for a_pass, found, required in zip(due, ran.visits, planned_visits, strict=True):
+        if found != required:
+            stations = [
+                " and ".join(station.name for station in each) or "nothing" for each in (found, required)
+            ]
+            sentence = f"before it the program visits {stations[0]}, the cell asks for {stations[1]}"
             return [Notice(a_pass.stroke, sentence, code="other-station")]
     return []

@@ -31,11 +31,12 @@ def again(
     cell: Cell,
     z_offset_mm: float,
     first_stroke: int = 1,
-    told: Told | None = None,
+    header_notes: HeaderNotes | None = None,
     speeds_mm_s: list[float] | None = None,
 ) -> Program | None:
-    """What brushsvg would make of the strokes and visits that were read; None where a stroke is not one touch. Without
-    a header, unless its words are told. speeds_mm_s: of the strokes, where it is known how they were meant.
+    """Return the program that brushsvg would write for the strokes and visits that were read; None where a stroke is
+    not one touch. Without a header, unless its words are given. speeds_mm_s: planned speeds of the strokes, where
+    known.
     """
     if not ran.visits or len(ran.visits) != len(ran.plan.passes):
         return None
@@ -52,14 +53,16 @@ def again(
     loads = PlanInLoads(tuple(ran.plan.sheet_mm), (None,) * before + tuple(passes))
     job = Job(z_offset_mm, first_stroke, ((),) * before + ran.visits)
     made = unchecked_program(loads, brush, cell, job, written_of(loads, cell, job, was_read=True))
-    if told is None:
+    if header_notes is None:
         return made
-    return replace(made, header=header_of(told.title, brush.name, loads, told.notes, made, job))
+    return replace(
+        made, header=header_of(header_notes.title, brush.name, loads, header_notes.notes, made, job)
+    )
 
 
 @dataclass(frozen=True)
-class Told:
-    """What of a header stands in no line of the program."""
+class HeaderNotes:
+    """The words of a header that no line of the program holds."""
 
     title: str
     notes: tuple[str, ...]
@@ -72,7 +75,7 @@ def differing_line(
 
     However the numbers are written, places may be off by what a brush does not show, feeds may be lower, and what does
     nothing may be missing or stand twice. Of a servo's ways in paint, whose heights were rounded to whole values, only
-    the ends are looked at. least_time_s: that of the program before its feeds were lowered; None: they are as meant.
+    the ends are compared. least_time_s: that of the program before its feeds were lowered; None: they are as planned.
     """
     theirs_text = "".join(text_of(POSTS[cell.language], program))
     again = read_program(theirs_text, POSTS[cell.language].extensions[0], cell)
@@ -126,17 +129,17 @@ def _of_lift(acts: list[Act], lifts: list[Act], number: int) -> list[Act]:
     return acts[bisect_right(lines, before) : bisect_right(lines, lifts[number].line) + 1]
 
 
-def _first_unlike(found: list[Act], wanted: list[Act], like: _Alike) -> tuple[Act, Act]:
+def _first_unlike(found: list[Act], reference: list[Act], like: _Alike) -> tuple[Act, Act]:
     """What makes one lift another one: the value that it ends with, or that is beyond all of the other's, else what is
     waited at the value where that is furthest off. Rounding may have made the values one more or less."""
-    ours, theirs = ([act for act in acts if act.kind == "lift"] for acts in (found, wanted))
+    ours, theirs = ([act for act in acts if act.kind == "lift"] for acts in (found, reference))
     if bool(ours) != bool(theirs):
-        return found[0], wanted[0]
+        return found[0], reference[0]
     for pick in (lambda acts, **_: acts[-1], min, max) if ours else ():
         a, b = (pick(acts, key=lambda act: act.same[0]) for acts in (ours, theirs))
         if abs(a.same[0] - b.same[0]) > like.step_values:
             return a, b
-    ours_at, theirs_at = _by_value(found), _by_value(wanted)
+    ours_at, theirs_at = _by_value(found), _by_value(reference)
 
     def off_s(value: float) -> float:
         waits = [
@@ -145,9 +148,9 @@ def _first_unlike(found: list[Act], wanted: list[Act], like: _Alike) -> tuple[Ac
         return abs(sum(waits[0]) - sum(waits[1]))
 
     value = max([*ours_at, *theirs_at], key=off_s)
-    pairs = zip(ours_at.get(value, found[-1:]), theirs_at.get(value, wanted[-1:]), strict=False)
+    pairs = zip(ours_at.get(value, found[-1:]), theirs_at.get(value, reference[-1:]), strict=False)
     unlike = ((a, b) for a, b in pairs if (a.kind, a.same) != (b.kind, b.same))
-    return next(unlike, (found[-1], wanted[-1]))
+    return next(unlike, (found[-1], reference[-1]))
 
 
 def _by_value(acts: list[Act]) -> dict[float, list[Act]]:
@@ -164,10 +167,10 @@ def _by_value(acts: list[Act]) -> dict[float, list[Act]]:
 def _differs_in_header(
     ours: list[Act], theirs: list[Act], text: list[str], again: list[str], a: Act | None, b: Act | None
 ) -> str | None:
-    """A line that only one of both headers has: they are sorted, and the line beside it says nothing of it."""
-    if b and _TOLD.match(b.text) and _header_word(b) not in map(_header_word, ours):
+    """A line that only one of both headers has: they are sorted, so the line next to it is no counterpart."""
+    if b and _HEADER.match(b.text) and _header_word(b) not in map(_header_word, ours):
         return f"its header lacks the line {again[b.line - 1].strip()[:60]!r}"
-    if a and _TOLD.match(a.text) and _header_word(a) not in map(_header_word, theirs):
+    if a and _HEADER.match(a.text) and _header_word(a) not in map(_header_word, theirs):
         return f"line {a.line}: {text[a.line - 1].strip()[:60]!r} is nothing that brushsvg would write in this header"
     return None
 
@@ -194,8 +197,8 @@ def _differs(ours: list[str], theirs: list[str], a: Act | None, b: Act | None, l
         most = f"by up to {a.same[0]:g} mm" if math.isfinite(a.same[0]) else "as far as the machine likes"
         return f"line {a.line}: corners are cut {most}, brushsvg would write {corners!r}"
     at = next((n for n, (x, y) in enumerate(zip(line, expected, strict=False)) if x != y), len(line))
-    found, wanted = _near(line, at), _near(expected, at)
-    instead = f"brushsvg would write {wanted!r}" if b else "nothing should follow"
+    found, required = _near(line, at), _near(expected, at)
+    instead = f"brushsvg would write {required!r}" if b else "nothing should follow"
     return f"line {a.line}: {found!r}: for these strokes and this cell {instead}"
 
 
@@ -205,15 +208,15 @@ def _near(line: str, place: int) -> str:
     return ("..." if first else "") + line.strip()[first : first + 60]
 
 
-_TOLD = re.compile(r"\((?!stroke \d|paint: |border of )|set_tcp|paper =|local ")
+_HEADER = re.compile(r"\((?!stroke \d|paint: |border of )|set_tcp|paper =|local ")
 
 
 def _with_header_sorted(acts: list[Act]) -> list[Act]:
     """The acts, what a header says and sets in the order of first words, and nothing twice but declarations, of which
     controllers load no two alike."""
-    is_told = [bool(_TOLD.match(act.text)) for act in acts]
-    first = next((k for k, told in enumerate(is_told) if told), len(acts))
-    last = next((k for k in range(first, len(acts)) if not is_told[k]), len(acts))
+    is_header = [bool(_HEADER.match(act.text)) for act in acts]
+    first = next((k for k, is_it in enumerate(is_header) if is_it), len(acts))
+    last = next((k for k in range(first, len(acts)) if not is_header[k]), len(acts))
     said = acts[first:last]
     once = {act.text: act for act in said if not act.text.startswith("local ")}
     declared = [act for act in said if act.text.startswith("local ")]
@@ -221,7 +224,7 @@ def _with_header_sorted(acts: list[Act]) -> list[Act]:
 
 
 def _header_word(act: Act) -> str:
-    """What tells one line of a header from the others: its first word, or what it declares."""
+    """Return the key of a line of a header: its first word, or the name that it declares."""
     word = act.text.partition(":")[0]
     return word if word.startswith("local ") else word[:8]
 
@@ -255,7 +258,7 @@ class _Alike:
         self.upright = upright
         self.blends = max(BLENDS, BLENDS_PER_MM * unit_mm(cell))
         if cell.servo:
-            # rounded heights tell a lift's begin and end to a value, and a way's last part to a step
+            # rounded heights give a lift's begin and end to a value, and a way's last part to a step
             self.value_s = 2 * value_mm(cell) / cell.speeds.press_mm_s
             rows = np.diff(np.array(cell.servo.table), axis=0)
             self.rest_s = cell.servo.settle_s + LIFTS_S + self.value_s
@@ -273,8 +276,8 @@ class _Alike:
             is_cut = a.same[0] > 0 or b.same[0] <= max(slack, self.least_blend_mm(b))
             return a.text == b.text and (a.same == b.same or (is_cut and a.same[0] <= b.same[0] + slack))
         return a.text == b.text and all(
-            found == wanted or abs(found - wanted) <= slack
-            for found, wanted, slack in zip(a.same, b.same, self._slacks(b), strict=True)
+            found == reference or abs(found - reference) <= slack
+            for found, reference, slack in zip(a.same, b.same, self._slacks(b), strict=True)
         )
 
     def least_blend_mm(self, act: Act) -> float:
@@ -290,11 +293,11 @@ class _Alike:
             found <= most + more for found, most, more in zip(a.at_most, b.at_most, slacks, strict=False)
         )
 
-    def is_held(self, found: tuple, wanted: tuple) -> bool:
+    def is_held(self, found: tuple, reference: tuple) -> bool:
         """Whether two rotations of the tool are one, but for what no brush shows; () is upright."""
-        if not found and not wanted:
+        if not found and not reference:
             return True
-        a, b = (np.reshape(turned or self.upright, (3, 3)) for turned in (found, wanted))
+        a, b = (np.reshape(turned or self.upright, (3, 3)) for turned in (found, reference))
         return bool(apart_deg(a, b) <= TURNED_DEG)
 
     def are_held(self, a: Act, b: Act, held: tuple) -> bool:
@@ -339,11 +342,11 @@ class _Alike:
         off = np.linalg.norm(point - start - along * way / length)
         return bool(0 <= along <= length and off <= self.near_mm / 2)
 
-    def _is_near(self, found: tuple, wanted: tuple) -> bool:
+    def _is_near(self, found: tuple, reference: tuple) -> bool:
         """Places that were never named are the same."""
-        return len(found) == len(wanted) and all(
+        return len(found) == len(reference) and all(
             abs(x - y) <= self.near_mm or (math.isnan(x) and math.isnan(y))
-            for x, y in zip(found, wanted, strict=True)
+            for x, y in zip(found, reference, strict=True)
         )
 
     def _slacks(self, act: Act) -> tuple:
@@ -359,19 +362,19 @@ class _Alike:
             return (self.near_mm,) * len(act.same)
         return (1e-4,)
 
-    def _says_same(self, found: str, wanted: str) -> bool:
+    def _says_same(self, found: str, reference: str) -> bool:
         """Time and length in a header, and the numbers of a statement."""
-        if (about := _ABOUT.fullmatch(found)) and (found[:6] == wanted[:6]):
+        if (about := _ABOUT.fullmatch(found)) and (found[:6] == reference[:6]):
             value, unit = _about(about)
             least, most = self.length_mm if about[4] else self.time_s
             return least - unit <= value <= most + 2 * unit
-        if found[:1] == "(" or _NUMBER.sub("0", found) != _NUMBER.sub("0", wanted):
+        if found[:1] == "(" or _NUMBER.sub("0", found) != _NUMBER.sub("0", reference):
             return False
-        in_degrees = wanted.startswith(("$tool", "tool = [", "TOOL = [", "SetTool(", "UTOOL"))
-        tilts = 3 if in_degrees or wanted.startswith(("set_tcp", "return", "paper")) else 0
-        tilted = PAPER_TILTED_RAD if wanted.startswith("paper") else TILTED_RAD
+        in_degrees = reference.startswith(("$tool", "tool = [", "TOOL = [", "SetTool(", "UTOOL"))
+        tilts = 3 if in_degrees or reference.startswith(("set_tcp", "return", "paper")) else 0
+        tilted = PAPER_TILTED_RAD if reference.startswith("paper") else TILTED_RAD
         tilted = math.degrees(tilted) if in_degrees else tilted
-        numbers = list(zip(_NUMBER.findall(found), _NUMBER.findall(wanted), strict=True))
+        numbers = list(zip(_NUMBER.findall(found), _NUMBER.findall(reference), strict=True))
         return all(
             abs(float(x) - float(y))
             <= (
@@ -389,10 +392,10 @@ _ABOUT = re.compile(
 
 
 def _header_ranges(program: Program, least_time_s: float | None) -> tuple[tuple, tuple]:
-    """(least, most) of the length [mm] and of the time [s] that a header may tell, but for one unit of the last digit
-    less and two more: circles that were written as lines took rests.
+    """Return (least, most) of the length [mm] and of the time [s] that a header may state, with one unit of the last
+    digit less and two more: circles that were written as lines took rests.
 
-    A servo's heights in steps make a way longer than it was meant, but not shorter than it is seen from above; and each
+    A servo's heights in steps make a way longer than planned, but not shorter than it is seen from above; and each
     stroke may have lost a step and a value at both ends.
     """
     length_mm, time_s = painting_mm(program), duration_s(program)
@@ -410,7 +413,7 @@ LENGTHS, TIMES = 1e-3, 1e-2
 
 
 def _about(found: re.Match) -> tuple[float, float]:
-    """The seconds or millimetres that a header tells, and the unit that they are rounded to."""
+    """Return the seconds or millimetres of a header, and the unit that they are rounded to."""
     if found[4]:
         return float(found[4]), 1.0
     seconds = sum(int(found[k] or 0) * unit for k, unit in ((1, 3600), (2, 60), (3, 1)))

@@ -27,21 +27,21 @@ def stops(read: Readback, program: Program) -> list[Notice]:
     if language not in TIMED:
         return []
     text = "".join(text_of(POSTS[language], program))
-    found, wanted = read.acts, read_program(text, POSTS[language].extensions[0], program.cell).acts
+    found, expected = read.acts, read_program(text, POSTS[language].extensions[0], program.cell).acts
     for (name, ours), (_, theirs) in zip(
-        _strokes(found, touching_mm_s), _strokes(wanted, touching_mm_s), strict=False
+        _strokes(found, touching_mm_s), _strokes(expected, touching_mm_s), strict=False
     ):
-        (along, when_s), (asked_mm, asked_s) = _times(ours), _times(theirs)
-        if not (along[-1:] > 0 and asked_mm[-1:] > 0):
+        (along, when_s), (expected_mm, expected_s) = _times(ours), _times(theirs)
+        if not (along[-1:] > 0 and expected_mm[-1:] > 0):
             continue
-        at_mm = along / along[-1] * asked_mm[-1]
-        least_s = np.diff(np.interp(at_mm, asked_mm, asked_s))
+        at_mm = along / along[-1] * expected_mm[-1]
+        least_s = np.diff(np.interp(at_mm, expected_mm, expected_s))
         took_s = np.diff(when_s)
         slower = max(1.0, float(np.median(took_s[least_s > 0] / least_s[least_s > 0])))
         # paths of other length have their corners elsewhere by as much
-        off_mm = abs(along[-1] - asked_mm[-1])
-        most_s = np.interp(at_mm[1:] + off_mm, asked_mm, asked_s) - np.interp(
-            at_mm[:-1] - off_mm, asked_mm, asked_s
+        off_mm = abs(along[-1] - expected_mm[-1])
+        most_s = np.interp(at_mm[1:] + off_mm, expected_mm, expected_s) - np.interp(
+            at_mm[:-1] - off_mm, expected_mm, expected_s
         )
         most_s = np.maximum(most_s, _as_next_to_it(np.diff(at_mm), least_s))
         late_s = took_s - slower * most_s

@@ -1,4 +1,4 @@
-"""A servo goes in steps: what was read of it, without them. Ways and lifts as they were meant."""
+"""Undo the steps of a servo in a program that was read: ways and lifts as planned."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .readback import Act
 
 def without_steps(a_pass, lines: np.ndarray, rests: np.ndarray | None):
     """A servo's pass without the poses with which its ways begin, and with one pose for all steps of a lift alone.
-    Where the servo rests at no pose of the last lift, that is the one off the paper, from beside which its last way was
+    Where the servo rests at no pose of the last lift, that is the one off the paper, next to which its last way was
     held. rests: at which poses; None for one that is never waited for.
     """
     goes = np.diff(np.asarray(a_pass.poses_mm)[:, :2], axis=0).any(axis=1)
@@ -38,7 +38,7 @@ def without_steps(a_pass, lines: np.ndarray, rests: np.ndarray | None):
 
 def as_lifts(acts: list[Act]) -> list[Act]:
     """A servo's acts: all that it does at one place as one lift: its last value, what is waited in all, its least and
-    its greatest value, the one that it begins with among them. Its text tells one that begins in paint."""
+    its greatest value, the one that it begins with among them. Its text marks one that begins in paint."""
     out: list[Act] = []
     value, place = 0.0, ()
     up = _up(acts)
@@ -95,8 +95,8 @@ def without_none(
 
 
 def as_ways(acts: list[Act]) -> list[Act]:
-    """A servo's acts, ways in paint that follow each other as the last one. How fast a stroke may be is asked of the
-    way itself."""
+    """Join a servo's acts: ways in paint that follow each other become the last one. The limit of a stroke's speed
+    comes from the way itself."""
     out: list[Act] = []
     in_stroke, up = False, _up(acts)
     for act in acts:

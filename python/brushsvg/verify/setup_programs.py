@@ -21,7 +21,7 @@ from .simulate_program import Problems, slack_mm, walked
 
 @dataclass(frozen=True)
 class Looked:
-    """problems: a notice for each thing that must not be; time_s: how long it takes."""
+    """problems: a notice for each dangerous step; time_s: its duration."""
 
     problems: Problems
     time_s: float

@@ -20,7 +20,7 @@ from ..machine.preflight import as_run, off_sheet
 from ..machine.program import names_of_stations
 from ..machine.realised.arc_chords import OFF_MM
 from ..machine.realised.corner_blending import blend_radii
-from ..machine.realised.distortion import is_similar, told_pass, true_mm, true_pass
+from ..machine.realised.distortion import commanded_pass, is_similar, true_mm, true_pass
 from ..machine.setup_programs import slow_below_mm
 from ..machine.tool_axes import tilts_deg
 from ..machine.workspace_limits import astray, astray_between, broken_limits, rise_astray, touching_mm_s
@@ -61,7 +61,7 @@ def slack_mm(cell: Cell) -> float:
 def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Ran:
     """Simulate the program as a machine of this cell runs it. Error for poses deeper than the brush allows."""
     problems: Problems = []
-    meant, cut, lines, rests = [], [], [], []
+    programmed, cut, lines, rests = [], [], [], []
     slack = slack_mm(cell)
     leans = not read.in_paper_frame and not is_upright(robot_from_paper(cell, z_offset_mm))
     here = None
@@ -86,17 +86,17 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             axes = _axes(section, track, on, frame)
             poses = _no_deeper(poses, brush, slack)
             joint = radii if read.blends_by_radius else blend_radii(poses, Blending(read.joint_mm), arcs)
-            meant.append(_core.Pass(name, poses, speed, arcs=arcs, tool_axes=axes))
-            told = [told_pass(meant[-1], cell)]
-            run = true_pass(as_run(told, lambda *_, joint=joint: joint)[0][0], cell)
+            programmed.append(_core.Pass(name, poses, speed, arcs=arcs, tool_axes=axes))
+            commanded = [commanded_pass(programmed[-1], cell)]
+            run = true_pass(as_run(commanded, lambda *_, joint=joint: joint)[0][0], cell)
             # where a machine whose paper bends cuts a corner it may go some micrometres deeper than the poses that are
-            # meant; those themselves are judged by the simulation
+            # planned; those themselves are judged by the simulation
             is_allowed = poses[:, 2].min(initial=0.0) >= -brush.depth_range_mm[1]
             run_mm = _no_deeper(run.poses_mm, brush, np.inf if is_allowed else slack)
             cut.append(_core.Pass(name, run_mm, run.speed_mm_s, arcs=run.arcs, tool_axes=run.tool_axes))
             lines.append(np.array([section.steps[number].line for number in track.step[on]]))
             rests.append(np.array([_rests(section.steps[number], cell) for number in track.step[on]]))
-    plan = _core.Plan(brush.name, "", tuple(sheet_mm), meant)
+    plan = _core.Plan(brush.name, "", tuple(sheet_mm), programmed)
     ran = _core.Plan(brush.name, "", tuple(sheet_mm), cut)
     marks = _core.simulate(ran, brush, may_rise=True)
     visited = _visits(read, cell)
@@ -105,7 +105,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
         is_counted = cell.reload and len(visited) == len(cut)
         dips = [[0.0] if not is_counted or visited[k] else [] for k in range(len(cut))]
         _core.narrow(marks, brush.paint, dips)
-    problems += broken_limits(meant, sheet_mm, brush, _rounded(cell))
+    problems += broken_limits(programmed, sheet_mm, brush, _rounded(cell))
     problems += off_sheet(marks, brush, sheet_mm, rounded_mm=slack)
     return Ran(plan, ran, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests))
 
@@ -119,7 +119,7 @@ def _no_deeper(poses_mm, brush, slack: float) -> np.ndarray:
 
 
 def _rests(step: Step, cell: Cell) -> bool:
-    """Whether a servo rests behind a step: beside what its way takes, another wait follows."""
+    """Return whether a servo rests behind a step: after the wait for its way, another wait follows."""
     return bool(cell.servo) and step.waits > 1 and step.wait_s >= cell.servo.settle_s
 
 
@@ -130,8 +130,8 @@ def misnumbered(read: Readback, first_stroke: int, count: int) -> Problems:
         if found := _stroke(section):
             number += 1
             if (int(found[1]), int(found[2])) != (number, count):
-                told = f"line {section.line}: stroke {found[1]} of {found[2]}"
-                sentence = f"{told} stands where stroke {number} of {count} should"
+                place = f"line {section.line}: stroke {found[1]} of {found[2]}"
+                sentence = f"{place} stands where stroke {number} of {count} should"
                 return [Notice(_name(section), sentence, code="stroke-misnumbered")]
     left = f"stroke {count} is" if number == count - 1 else f"strokes {number + 1} to {count} are"
     return [Notice("", f"{left} missing at the end", code="strokes-missing")] if number < count else []
@@ -140,12 +140,12 @@ def misnumbered(read: Readback, first_stroke: int, count: int) -> Problems:
 def walked(
     read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0, paper_mm: float = 0.0
 ) -> Iterator[tuple[ReadSection, Track, Problems]]:
-    """Each section with its way in the paper's frame and a notice for whatever on it is careless or astray.
+    """Yield each section with its way in the paper's frame and a notice for each careless or stray step on it.
 
-    paper_mm: how high the paper may lie over where it is believed to: from there down all has to be slow.
+    paper_mm: the greatest height of the paper over its assumed place: from there down all has to be slow.
     """
     frame = np.eye(4) if read.in_paper_frame else robot_from_paper(cell, z_offset_mm)
-    here, here_low, ends = None, None, []  # as told, and as it is over the paper
+    here, here_low, ends = None, None, []  # as commanded, and as it is over the paper
     for section in read.sections:
         track = _track(section, frame, here)
         low = _as_true(track, cell) if _stroke(section) else track
@@ -239,7 +239,7 @@ class Track:
 
 
 def _as_true(track: Track, cell: Cell) -> Track:
-    """Where the machine takes the tool that is told to go along a track."""
+    """Return where the machine takes the tool that is commanded along a track."""
     if cell.machine is None:
         return track
     centres = [None] * len(track.centres)
@@ -264,7 +264,7 @@ def _name(section: ReadSection) -> str:
 def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> Track:
     steps, back = section.steps, np.linalg.inv(frame)
     ends = moved(back, np.array([(step.x, step.y, step.z) for step in steps], dtype=float).reshape(-1, 3))
-    known = np.flatnonzero(~np.isnan(ends).any(axis=1))  # the others go straight up, wherever the tool is
+    known = np.flatnonzero(~np.isnan(ends).any(axis=1))  # the others go straight up, from any place
     stays = (np.diff(ends[known], axis=0) == 0).all(
         axis=1
     )  # as a line that stands twice does, but for a blend
@@ -293,7 +293,7 @@ def _track(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> 
             between = chords(last, ends[number], centres[number])
         elif max(abs(_sweep_rad(*half, centres[number])) for half in halves) < LARGE_RAD:
             between = named
-        else:  # the named place stays in the middle of those between the ends, as it is chosen to be told
+        else:  # the named place stays in the middle of those between the ends, as it is chosen to be written
             middles = [_on_circle(*half, centres[number]) for half in halves]
             between = [middles[0], named[0], middles[1]]
         points += [ends[known[done:at]], np.reshape(between, (-1, 3))]
@@ -333,9 +333,9 @@ def _on_circle(start: np.ndarray, end: np.ndarray, centre: tuple[float, float, i
 
 
 def _with_ends_on_paper(track: Track, here: np.ndarray | None, slack: float) -> Track:
-    """The track with a point wherever a straight line, that from the place before it included, goes through the paper:
-    there a touch begins or ends, whether or not the program names the place. A servo's heights go in steps, through no
-    paper."""
+    """Return the track with a point in each straight line, that from the place before it included, that goes through
+    the paper: there a touch begins or ends, whether or not the program names the place. A servo's heights go in steps,
+    through no paper."""
     if here is None or not len(track.points):
         ways, step = track.points, track.step
     else:
@@ -360,7 +360,7 @@ def _touches(track: Track, slack: float) -> Iterator[slice]:
 
 
 def _pass(section: ReadSection, track: Track, on: slice, cell: Cell, leans: bool) -> tuple:
-    """Poses, blends, speed and arcs of one touch. leans: the paper, in the frame that the places are told in."""
+    """Poses, blends, speed and arcs of one touch. leans: the paper, in the frame of the places."""
     poses = track.points[on].copy()
     poses[:, 2] = np.minimum(poses[:, 2], 0.0)
     owner = track.step[on]
@@ -371,7 +371,7 @@ def _pass(section: ReadSection, track: Track, on: slice, cell: Cell, leans: bool
     # a stroke is landed no faster than it is painted
     landed_mm_s = steps[0].speed_mm_s if steps[0].speed_mm_s <= cell.speeds.press_mm_s else 0.0
     speed = max(speeds, default=0.0)
-    # straight down is so only up to rounding: the slower feed tells what was meant; a servo is slow where it is steep
+    # straight down is so only up to rounding: the slower feed shows the intention; a servo is slow where it is steep
     if leans or cell.servo is None:
         sideways = np.abs(np.diff(poses[:, :2], axis=0)).max(axis=1, initial=0.0)
         slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
@@ -497,8 +497,8 @@ def _play_taken_up(
 def _ahead(
     steps: list, before: np.ndarray, after: np.ndarray, cell: Cell, limit: float, top_mm: float
 ) -> Iterator[Notice]:
-    """A notice where a servo's tip is faster than the limit, from the steps of one touch. Its feed is that of the
-    way beside the lift alone, and its heights go in steps, of a value at least: over any number of moves the tip may be
+    """Return a notice where a servo's tip is faster than the limit, from the steps of one touch. Its feed is that of
+    the way without the lift, and its heights go in steps, of a value at least: over any number of moves the tip may be
     no more than two steps and a value ahead of what the limit allows for their time."""
     lead_mm = _lead_mm(cell)
     ways_mm = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)

@@ -1,4 +1,4 @@
-// The mark of a chain of footprints: its pieces cover each of them and lie within their hulls.
+// The mark of a chain of footprints: its pieces cover each of them and are within their hulls.
 #include "brushsvg/excess_turning.hpp"
 #include "brushsvg/region.hpp"
 #include "fuzzed_input.hpp"

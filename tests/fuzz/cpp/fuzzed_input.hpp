@@ -58,14 +58,14 @@ class Input {
         const int value = byte() * 256 + byte();
         return lo + (hi - lo) * value / 65535.0;
     }
-    /// One of 256: numbers meet each other and lines lie on each other as they do in drawings.
+    /// One of 256: numbers meet each other and lines overlap as they do in drawings.
     double coarse(double lo, double hi) { return lo + (hi - lo) * byte() / 255.0; }
     /// A coordinate [mm] within 40 mm of 0: mostly on a grid of 0.25 mm or 1 mm.
     double coordinate() {
         if (!fine_) return 0.25 * integer(0, 160) - 20.0;
         return number(-40.0, 40.0);
     }
-    /// Whether coordinates lie on a grid, which is decided once for an input.
+    /// Whether coordinates are on a grid, which is decided once for an input.
     void choose_grid() { fine_ = chance(2); }
     /// The number, or one time in 64 one that no code may rely on not to get.
     double wild(double number) {
@@ -105,7 +105,7 @@ inline brushsvg::Ring drop(double to_widest, double half_width, double front, in
     return ring;
 }
 
-/// A brush whose laws and outlines agree, mostly: brushes that check() refuses are rare, and are wanted too.
+/// A brush whose laws and outlines agree, mostly: brushes that check() refuses are rare, and are needed too.
 inline brushsvg::Brush brush_from(Input& in) {
     brushsvg::Brush brush;
     brush.name = "fuzzed";

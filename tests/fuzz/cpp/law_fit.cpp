@@ -1,4 +1,4 @@
-// A law through any measurements: finite, and of the shape that was asked for over its range.
+// A law through any measurements: finite, and of the shape that was requested over its range.
 #include "law_fit.hpp"
 
 #include "fuzzed_input.hpp"

@@ -66,8 +66,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
         const double all_mm2 = area(shape.target_mm);
         for (const UncoveredArea& bare : uncovered_areas({shape}, brush, 0.01).front())
-            fuzz::require(bare.mm2 >= 0.01 * all_mm2 && bare.place_mm.allFinite(), "a bare area is as large as asked",
-                          bare.mm2);
+            fuzz::require(bare.mm2 >= 0.01 * all_mm2 && bare.place_mm.allFinite(),
+                          "a bare area is as large as requested", bare.mm2);
         if (!twice) return;
         const auto again = search_strokes({shape}, brush, weights_for(detail), are_free);
         fuzz::require(again.front().added.size() == one.added.size(), "the same shape has the same strokes");

@@ -76,8 +76,8 @@ def _design(design) -> None:
             if part.widths is not None:
                 require(bool(np.isfinite(part.widths).all()), f"widths of {element.id[:40]!r} are not finite")
     for notice in design.notices:
-        require(bool(notice.code), f"a notice without a code: {notice.told[:200]!r}")
-        require(len(notice.told) <= LONGEST_MESSAGE, f"a notice of {len(notice.told)} characters")
+        require(bool(notice.code), f"a notice without a code: {notice.text[:200]!r}")
+        require(len(notice.text) <= LONGEST_MESSAGE, f"a notice of {len(notice.text)} characters")
 
 
 def _read_svg(data: bytes) -> None:

@@ -12,7 +12,7 @@ from .places import angle_rad, frame
 class Arm:
     """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them.
 
-    by_radius: blends begin so far before a corner, and circles are told in the paper's frame, where they are level.
+    by_radius: blends begin so far before a corner, and circles are given in the paper's frame, where they are level.
     tcp: (4, 4) the tool as the program has set it, the flange where it has not.
     """
 

@@ -25,7 +25,7 @@ def converted(*words) -> list[str]:
     try:
         convert_file(parse(["convert", *map(str, words)]))
     except RefusedError as refused:
-        return [f"{notice.where}: {notice.told}" for notice in refused.why]
+        return [f"{notice.where}: {notice.text}" for notice in refused.why]
     return []
 
 
@@ -33,14 +33,14 @@ def converted(*words) -> list[str]:
 def quick_check():
     """A function: words of `brushsvg check` -> the sentences with which it refuses; CRASHED for anything else.
 
-    What it prepares of a drawing is kept, the figures that it tells are not made: neither decides what it refuses.
+    What it prepares of a drawing is kept, its figures are not made: neither decides what it refuses.
     """
     known: dict[tuple, Work] = {}
     cells: dict[str, object] = {}
-    asked: dict[tuple, object] = {}
+    requested: dict[tuple, object] = {}
     before = {
         checking: {name: getattr(checking, name) for name in ("preparation", "cell_of", "outputs")},
-        command: {name: getattr(command, name) for name in ("tell", "report")},
+        command: {name: getattr(command, name) for name in ("print_text", "report")},
     }
 
     def prepare(source, options, stage):
@@ -65,19 +65,19 @@ def quick_check():
         return cells[name]
 
     def refusals(*words) -> list[str]:
-        if words not in asked:
-            asked[words] = parse(["check", *map(str, words)])
+        if words not in requested:
+            requested[words] = parse(["check", *map(str, words)])
         try:
-            command.check_file(copy.copy(asked[words]))
+            command.check_file(copy.copy(requested[words]))
         except RefusedError as refused:
-            return [f"{notice.where}: {notice.told}" for notice in refused.why]
+            return [f"{notice.where}: {notice.text}" for notice in refused.why]
         except Exception as mistake:
             return [f"{CRASHED}: {type(mistake).__name__} {mistake}"]
         return []
 
     checking.preparation, checking.cell_of = types.SimpleNamespace(prepare=prepare), cell_of
     checking.outputs = types.SimpleNamespace(notes=outputs.notes, reported=lambda *_, **__: None)
-    command.tell, command.report = lambda text: None, types.SimpleNamespace(as_text=lambda *_: "")
+    command.print_text, command.report = lambda text: None, types.SimpleNamespace(as_text=lambda *_: "")
     try:
         yield refusals
     finally:

@@ -1,8 +1,8 @@
 """An EBB, made from its published command set (firmware 2.6.0 to 2.8.1): SM moves both motors evenly for so many
-milliseconds, or waits where no steps are told; it refuses less than 1.31 and more than 25,000 steps in a second. S2
-sets a servo's pulse, at once where no rate is told, and may hold the next command back. SR and EM take effect at once.
+milliseconds, or waits where no steps are given; it refuses less than 1.31 and more than 25,000 steps in a second. S2
+sets a servo's pulse, at once where no rate is given, and may hold the next command back. SR and EM take effect at once.
 
-Lines that begin with # are taken out by whoever sends the file. Every other command counts as one that acts.
+Lines that begin with # are taken out by anyone who sends the file. Every other command counts as one that acts.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ KNOWN = (
 
 
 def run_ebb(text: str, start, motors: dict, table) -> Run:
-    """start: where the brush is before the program, of which the height alone is asked: it must be over the origin.
+    """start: where the brush is before the program, of which the height alone is checked: it must be over the origin.
     motors: of the cell; table: rows (height, value) of its servo."""
     board = _Board(start[2], motors, table)
     try:
@@ -65,17 +65,17 @@ class _Board:
         self.run.acts.append(f"line {self.number}: {what}")
 
     def _command(self, command: str) -> None:
-        word, *told = command.split(",")
+        word, *reported = command.split(",")
         word = word.upper()
         if word not in ("SM", "S2", "SR", "EM"):
             if word in KNOWN.split():
                 self._act(f"{word} does something else")
                 return
             raise RefusedError(f"line {self.number}: !8 Err: Unknown command {word[:10]!r}")
-        if not all(re.fullmatch(r"[+-]?\d+", each) for each in told):
+        if not all(re.fullmatch(r"[+-]?\d+", each) for each in reported):
             raise RefusedError(f"line {self.number}: !7 Err: Invalid parameter")
         {"SM": self._move, "S2": self._servo, "SR": self._power, "EM": self._enable}[word](
-            *map(int, told[:6])
+            *map(int, reported[:6])
         )
 
     def _at(self) -> tuple:

@@ -2,7 +2,7 @@
 damaged.
 
 LinuxCNC: RS274/NGC of its manual, lines of 252 letters, G64 P, comments that act. grbl 1.1: its own list of commands,
-real-time letters wherever they stand, lines of 79 letters; with a servo in laser mode ($32=1). FluidNC (its wiki):
+real-time letters at any place, lines of 79 letters; with a servo in laser mode ($32=1). FluidNC (its wiki):
 the same, with lines of 255 letters, comments that act, and circles whose ends are as far from their centre to 0.005 mm.
 """
 
@@ -109,7 +109,7 @@ class _Controller:
         self.dialect = "linuxcnc" if dialect == "linuxcnc" else "grbl"
         self.at = list(start)
         self.shift = [0.0, 0.0, 0.0]  # of G92
-        # what holds before is whatever the last program or a hand has left: the worst of each
+        # the state before is that of any last program or hand: the worst of each
         self.motion: float | None = None
         self.mm = 25.4
         self.absolute = False
@@ -172,7 +172,7 @@ class _Controller:
             self.run.titles.append((line.strip(), len(self.run.legs)))
 
     def leave(self) -> None:
-        """What this program leaves otherwise than it is used to for whoever comes next, or goes on by hand. Its end
+        """What this program leaves otherwise than it is used to for anyone who comes next, or goes on by hand. Its end
         puts some of that back, but no offset."""
         holds = set(USUAL) - (PUT_BACK if self.ended else set())
         left = [f"G{code:g}" for name, code in self.chosen.items() if name in holds and code != USUAL[name]]
@@ -435,7 +435,7 @@ class _Controller:
             bad = off_mm > 0.5 or (off_mm > 0.005 and off_mm > 0.001 * first)
             bad |= self.firmware == "fluidnc" and off_mm > 0.005
         if bad:
-            raise RefusedError(f"line {self.number}: the circle's ends lie on two circles")
+            raise RefusedError(f"line {self.number}: the circle's ends are on two circles")
         turn = 1 if self.motion == 3.0 else -1
         return Leg(self.number, "arc", start, end, self.feed_mm_s, centre, turn, self.cut_mm)
 

@@ -1,4 +1,4 @@
-"""What a controller does with a program: legs in the robot's frame, and what went wrong or acts besides."""
+"""What a controller does with a program: legs in the robot's frame, and what went wrong or acts in addition."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ class Leg(NamedTuple):
 
 @dataclass
 class Run:
-    """refused: the controller's error, after which nothing runs; acts: what the program does besides moving a brush;
-    titles: (words, number of legs before) of comments behind the header; header: lines of comment before; frame: what
-    decides how the program begins and ends, whatever the machine does here and now."""
+    """refused: the controller's error, after which nothing runs; acts: what the program does in addition to moving a
+    brush; titles: (words, number of legs before) of comments behind the header; header: lines of comment before; frame:
+    what decides how the program begins and ends, for any state of the machine."""
 
     legs: list[Leg] = field(default_factory=list)
     refused: str = ""

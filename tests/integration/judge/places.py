@@ -40,9 +40,9 @@ def paper_of(cell: dict, z_offset_mm: float) -> np.ndarray:
     """The paper's frame in the robot's, from a cell's TOML as a dictionary."""
     paper = cell["paper"]
     if paper.get("taught_mm"):
-        origin, along, beside = (np.array(point, dtype=float) for point in paper["taught_mm"][:3])
+        origin, along, near_by = (np.array(point, dtype=float) for point in paper["taught_mm"][:3])
         x = (along - origin) / np.linalg.norm(along - origin)
-        y = beside - origin - x * (x @ (beside - origin))
+        y = near_by - origin - x * (x @ (near_by - origin))
         y /= np.linalg.norm(y)
         made = frame(origin, np.column_stack([x, y, np.cross(x, y)]))
     else:
@@ -67,29 +67,30 @@ def moved(by: np.ndarray, points: np.ndarray) -> np.ndarray:
     return points @ by[:3, :3].T + by[:3, 3]
 
 
-def true_of(told: np.ndarray, machine: dict | None) -> np.ndarray:
-    """(n, 3) where a machine takes the tool that is told to go there, in the paper's frame, from a cell's table."""
-    if not machine or not len(told):
-        return told
+def true_of(commanded: np.ndarray, machine: dict | None) -> np.ndarray:
+    """(n, 3) where a machine takes the tool that is commanded to go there, in the paper's frame, from a cell's "
+    "table."""
+    if not machine or not len(commanded):
+        return commanded
     along, across = machine.get("scale", (1.0, 1.0))
     lean = machine.get("lean_mm_per_mm", (0.0, 0.0))
-    x, y, z = told.T
-    z = z - paper_height(told, machine)
+    x, y, z = commanded.T
+    z = z - paper_height(commanded, machine)
     pressed = np.maximum(-z, 0.0)
-    aside = np.array([bent(place, machine) for place in told[:, :2]])
+    displaced = np.array([bent(place, machine) for place in commanded[:, :2]])
     x, y = along * x + machine.get("skew", 0.0) * y + lean[0] * pressed, across * y + lean[1] * pressed
-    return np.column_stack([x + aside[:, 0], y + aside[:, 1], z])
+    return np.column_stack([x + displaced[:, 0], y + displaced[:, 1], z])
 
 
-def paper_height(told: np.ndarray, machine: dict) -> np.ndarray:
-    """(n,) how much higher the paper lies where the tool is told to go than it was taught."""
+def paper_height(commanded: np.ndarray, machine: dict) -> np.ndarray:
+    """(n,) how much higher the paper is where the tool is commanded to go than it was taught."""
     tilts = machine.get("tilt_mm_per_mm", (0.0, 0.0))
-    on = on_map(told, machine.get("map_mm", ()))
-    return machine.get("height_mm", 0.0) + told[:, 0] * tilts[0] + told[:, 1] * tilts[1] + on
+    on = on_map(commanded, machine.get("map_mm", ()))
+    return machine.get("height_mm", 0.0) + commanded[:, 0] * tilts[0] + commanded[:, 1] * tilts[1] + on
 
 
 def bent(place, machine: dict) -> np.ndarray:
-    """(2,) by how much the machine's field takes the tool aside: for x and for y half a quadratic form's value."""
+    """(2,) by how much the machine's field displaces the tool: for x and for y half a quadratic form's value."""
     if "field_mm" not in machine:
         return np.zeros(2)
     reach = np.array(machine["field_reach_mm"])
@@ -98,28 +99,30 @@ def bent(place, machine: dict) -> np.ndarray:
     return np.array([at @ form @ at / 2 for form in forms])
 
 
-def on_map(told: np.ndarray, rows) -> np.ndarray:
+def on_map(commanded: np.ndarray, rows) -> np.ndarray:
     """(n,) the height of a map of the paper at places."""
     if not len(rows):
-        return np.zeros(len(told))
+        return np.zeros(len(commanded))
     xs, ys = (sorted({row[k] for row in rows}) for k in range(2))
     heights = {(row[0], row[1]): row[2] for row in rows}
     known = RegularGridInterpolator((xs, ys), np.array([[heights[x, y] for y in ys] for x in xs]))
-    return known(np.clip(told[:, :2], (xs[0], ys[0]), (xs[-1], ys[-1])))
+    return known(np.clip(commanded[:, :2], (xs[0], ys[0]), (xs[-1], ys[-1])))
 
 
-def told_in_air(place, height: float, machine: dict | None) -> np.ndarray:
-    """(3,) where such a machine is told to go so that the tool is that high over the paper at a place: there it leans
+def commanded_in_air(place, height: float, machine: dict | None) -> np.ndarray:
+    """(3,) the command with which the tool is that high over the paper at a place: there it leans
     nowhere."""
     if not machine:
         return np.array([*place[:2], height])
     along, across = machine.get("scale", (1.0, 1.0))
     y = place[1] / across
-    told = np.array([(place[0] - machine.get("skew", 0.0) * y) / along, y])
+    commanded = np.array([(place[0] - machine.get("skew", 0.0) * y) / along, y])
     if "field_mm" in machine:
         axes = np.array([[along, machine.get("skew", 0.0)], [0.0, across]])
-        told = least_squares(lambda at: axes @ at + bent(at, machine) - place[:2], told, xtol=1e-15).x
-    return np.array([*told, height + paper_height(told[None], machine)[0]])
+        commanded = least_squares(
+            lambda at: axes @ at + bent(at, machine) - place[:2], commanded, xtol=1e-15
+        ).x
+    return np.array([*commanded, height + paper_height(commanded[None], machine)[0]])
 
 
 def angle_rad(one: np.ndarray, other: np.ndarray) -> float:

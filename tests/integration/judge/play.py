@@ -10,7 +10,7 @@ STEP_MM = 0.01
 
 
 def with_play(run: Run, backlash_mm) -> Run:
-    """The run as the slides go, circles as chords; from wherever they were, here each on another side."""
+    """The run as the slides go, circles as chords; from any place, here each on another side."""
     half = np.array([*backlash_mm, 0.0]) / 2
     lag, legs, first = half * (1, -1, 0), [], []
     for leg in run.legs:

@@ -22,7 +22,7 @@ AXES = "XYZ"
 
 def run_printer(text: str, firmware: str, start, has_arcs: bool, pen: Pen | None = None) -> Run:
     """firmware: marlin or klipper; start: where the tool is before; has_arcs: whether it was built with G2 and G3; pen:
-    of a Marlin with a servo, which is set as soon as its line is read, whatever moves are still held."""
+    of a Marlin with a servo, which is set as soon as its line is read, even while moves are still held."""
     machine = _Machine(firmware, start, has_arcs, pen)
     try:
         for number, line in enumerate(text.split("\n"), 1):
@@ -34,7 +34,7 @@ def run_printer(text: str, firmware: str, start, has_arcs: bool, pen: Pen | None
 
 
 class Pen(NamedTuple):
-    """number: of its servo; heights: by the servo's values [mm]; least_s: what it takes to get there."""
+    """number: of its servo; heights: by the servo's values [mm]; least_s: what it needs to get there."""
 
     number: int
     heights: dict[float, float]
@@ -50,7 +50,7 @@ class _Machine:
         self.pen, self.is_still, self.moved_s = pen, True, math.inf
         self.run, self.firmware, self.has_arcs = Run(), firmware, has_arcs
         self.at, self.shift = list(start), [0.0, 0.0, 0.0]
-        self.absolute, self.mm = False, 25.4  # whatever the last program has left
+        self.absolute, self.mm = False, 25.4  # any state that the last program left
         self.feed_mm_s = 200.0
         self.number, self.has_code = 0, False
 

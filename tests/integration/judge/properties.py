@@ -19,7 +19,7 @@ from brushsvg.jobs.preparation import preparation
 from brushsvg.model.library import find_brush
 
 from .checked import CRASHED, converted, put
-from .random_jobs import ASKED, judged, said_of
+from .random_jobs import REQUESTED, judged, said_of
 from .random_works import SHEET, random_brush, random_cell, random_flags, random_svg
 from .works import CELLS, PENS
 
@@ -202,7 +202,7 @@ def _brush(random, dialect: str, folder: Path, shelf: Path) -> tuple[str, str]:
 
 
 def _judged(number, dialect, cell, source, flags, folder, check) -> tuple[str, list[str]]:
-    found = judged(dialect, cell, source, flags, folder, check, (*ASKED, *LAYOUT))
+    found = judged(dialect, cell, source, flags, folder, check, (*REQUESTED, *LAYOUT))
     wrong = [*found.wrong, *(f"check: {sentence}" for sentence in found.denied)]
     if found.job is None:
         return next(iter(found.refused), ""), wrong

@@ -46,7 +46,7 @@ def tried(dialect: str, number: int, folder: Path, check) -> Tried:
 
 @dataclass(frozen=True)
 class Judged:
-    """What became of a drawing on a machine, as in Tried. job: what was asked for, where a program was written."""
+    """What became of a drawing on a machine, as in Tried. job: what was requested, where a program was written."""
 
     refused: tuple[str, ...] = ()
     wrong: tuple[str, ...] = ()
@@ -54,11 +54,17 @@ class Judged:
     job: Job | None = None
 
 
-ASKED = ("--brush", "--corners")  # which check needs again
+REQUESTED = ("--brush", "--corners")  # which check needs again
 
 
 def judged(
-    dialect: str, cell, source: Path, flags: tuple[str, ...], folder: Path, check, asked: tuple = ASKED
+    dialect: str,
+    cell,
+    source: Path,
+    flags: tuple[str, ...],
+    folder: Path,
+    check,
+    requested: tuple = REQUESTED,
 ) -> Judged:
     """A drawing converted to mine.toml, a program and plan.json in the folder, run by the judge and by check."""
     suffix = CELLS[dialect][1]
@@ -78,7 +84,7 @@ def judged(
     text = _whole(program)
     # the plan's own file is written without the machine's limits, which the program has passed
     if said := converted(source, plan, "--cell", toml, *planned):
-        if "--z-offset" in flags:  # the plan's paper lies lower, which may be out of reach
+        if "--z-offset" in flags:  # the plan's paper is lower, which may be out of reach
             return Judged(tuple(said))
         return Judged((), (f"no plan: {said}",))
     job = job_for(toml.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags)
@@ -101,7 +107,7 @@ def judged(
             )
             has_circles = re.search(r"^G[23] ", text, re.MULTILINE) is not None
             wrong += apart(way, way_of(of.interpret(_whole(twin)), of), cell, has_circles)
-    words = [word for flag in asked for word in said_of(flags, flag)]
+    words = [word for flag in requested for word in said_of(flags, flag)]
     drawing = () if source.suffix == ".json" else (source,)
     denied = check(program, *drawing, "--cell", toml, *words)
     assert not any(CRASHED in said for said in denied), denied

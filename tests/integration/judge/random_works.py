@@ -117,7 +117,7 @@ def random_cell(random, dialect: str):
         cell = _with_a_clip(random, cell)
     if random.random() < 0.5 and dialect != "hpgl":
         cell = _with_paint(random, cell)
-    (apart,) = random.spawn(1)  # so that all else is as it is on machines that go where they are told to
+    (apart,) = random.spawn(1)  # so that all else is as it is on machines that go where they are commanded to
     if apart.random() < 0.5:
         cell = replace(cell, machine=_machine(apart, dialect))
     (apart,) = apart.spawn(1)
@@ -179,7 +179,7 @@ def _map(random, most_mm: float) -> tuple:
     return tuple(rows)
 
 
-ABOUT = 0.25  # of flatness_mm, which says nothing of a pose: marks a paper that lies about the robot
+ABOUT = 0.25  # of flatness_mm, which says nothing of a pose: marks a paper around the robot
 
 
 def _about_the_robot(random) -> Paper:
@@ -236,7 +236,7 @@ def _with_space(random, cell):
 
 
 def _with_a_clip(random, cell):
-    """Something that stands on the sheet or beside it, up to above the safe height or not."""
+    """Something that stands on the sheet or next to it, up to above the safe height or not."""
     from .places import moved, paper_of
 
     pose = {"origin_mm": cell.paper.origin_mm, "rotation_deg": cell.paper.rotation_deg}

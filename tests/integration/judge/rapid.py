@@ -160,7 +160,7 @@ class _Parser:
         return token.text
 
     def module(self) -> tuple[dict, dict]:
-        """Data as {name: (type, expression or None, kind)}, routines by name."""
+        """Data as {name: (type, expression or None, kind)}, routines by their names."""
         self._want("module")
         self.name = self._name()
         data: dict = {}

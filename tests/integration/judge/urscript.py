@@ -56,7 +56,7 @@ def run_urscript(
     text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray, force_n: float = 0.0
 ) -> Run:
     """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them; force_n: at
-    which the program has to end by itself, 0 where nothing is asked for."""
+    which the program has to end by itself, 0 where nothing is requested."""
     robot = _Robot(start, paper, down, tool, force_n)
     run = robot.run
     try:

@@ -36,7 +36,7 @@ STEP_MM = 0.04  # of samples where the brush may touch: how exactly OFF_MM is kn
 AIR_STEP_MM = 1.0
 LAST_MM = 0.01
 ROUNDING_MM = 0.002  # two units of the last decimal of the coarsest dialect
-LEVER_MM = 10.0  # a tool that leans is as wrong as a brush's length tells
+LEVER_MM = 10.0  # a tool that leans is as wrong as a brush's length makes it
 SLACK_MM = 0.01  # of limits: what is rounded may be beyond by so much
 MOST = 4000  # samples of one leg
 
@@ -59,7 +59,7 @@ SERVOS = ("grbl-servo", "ebb")
 
 @dataclass
 class Job:
-    """What was asked for: a cell as its file has it, a plan.json, the brush's fastest, the paper's height."""
+    """What was requested: a cell as its file has it, a plan.json, the brush's fastest, the paper's height."""
 
     cell: dict
     plan: dict
@@ -109,7 +109,7 @@ class Job:
     @cached_property
     def passes(self) -> list[np.ndarray]:
         """The plan's passes from the first stroke on, sampled, round where it has circles: lines that a machine runs in
-        their place, on paper that leans and by a servo, lie as near."""
+        their place, on paper that leans and by a servo, are as near."""
         return [_sampled(_round(each)) for each in self.plan["passes"][self.first_stroke - 1 :]]
 
     @cached_property
@@ -131,7 +131,7 @@ class Job:
             ]
             if station.get("by_hand"):
                 way = [(x, y, safe), (x, y, safe)]
-            # told as it stands in the cell, on a machine that may lean: bent where it meets the paper
+            # commanded as it stands in the cell, on a machine that may lean: bent where it meets the paper
             ways.append(places.true_of(_sampled(np.array(way, dtype=float)), self.machine))
         return ways
 
@@ -139,7 +139,7 @@ class Job:
     def start(self) -> tuple:
         """Where the tool is before: over the end of the job, low, so that a missing rise is seen."""
         end, height = self.plan["passes"][-1]["poses_mm"][-1], self.cell["heights"]["safe_mm"] / 2
-        return tuple(places.moved(self.paper, places.told_in_air(end, height, self.machine)[None])[0])
+        return tuple(places.moved(self.paper, places.commanded_in_air(end, height, self.machine)[None])[0])
 
     def interpret(self, text: str) -> Run:
         """As the tool goes, on axes that have play."""
@@ -202,8 +202,8 @@ def _sampled(points: np.ndarray) -> np.ndarray:
 @dataclass
 class Way:
     """A run in the paper's frame, as the machine goes. starts, ends (n, 3), speeds (n,) of its legs, circles as chords;
-    leg: which leg each belongs to; samples (m, 3) with the row that each belongs to, and as they are told; touches: of
-    the samples, those of each touch; told_touches: where the tool was told to go for them."""
+    leg: which leg each belongs to; samples (m, 3) with the row that each belongs to, and as they are commanded;
+    touches: of the samples, those of each touch; commanded_touches: where the tool was commanded to go for them."""
 
     run: Run
     starts: np.ndarray
@@ -211,9 +211,9 @@ class Way:
     leg: np.ndarray
     samples: np.ndarray
     row: np.ndarray
-    told: np.ndarray
+    commanded: np.ndarray
     touches: list[np.ndarray] = field(default_factory=list)
-    told_touches: list[np.ndarray] = field(default_factory=list)
+    commanded_touches: list[np.ndarray] = field(default_factory=list)
 
 
 def way_of(run: Run, job: Job) -> Way:
@@ -248,21 +248,21 @@ def way_of(run: Run, job: Job) -> Way:
     counts = np.clip(counts, 1, MOST).astype(int)
     row = np.repeat(np.arange(len(steps)), counts)
     part = (np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts) + 1) / counts[row]
-    told = starts[row] + steps[row] * part[:, None]
-    samples = places.true_of(told, job.machine)
+    commanded = starts[row] + steps[row] * part[:, None]
+    samples = places.true_of(commanded, job.machine)
     on = samples[:, 2] <= job.touch_mm
     edges = np.flatnonzero(np.diff(np.r_[False, on, False].astype(int)))
-    touches, told_touches = (
-        [each[a:b] for a, b in zip(edges[::2], edges[1::2], strict=True)] for each in (samples, told)
+    touches, commanded_touches = (
+        [each[a:b] for a, b in zip(edges[::2], edges[1::2], strict=True)] for each in (samples, commanded)
     )
-    return Way(run, true_starts, true_ends, owner, samples, row, told, touches, told_touches)
+    return Way(run, true_starts, true_ends, owner, samples, row, commanded, touches, commanded_touches)
 
 
 # Limits -----------------------------------------------------------------------------------------------
 
 
 def broken(way: Way, job: Job) -> list[str]:
-    """A sentence for each limit that the run breaks, anywhere along the way, and for whatever is fast or low."""
+    """A sentence for each limit that the run breaks, anywhere along the way, and for all that is fast or low."""
     if not len(way.starts):
         return []
     return [*_beyond(way, job), *_fast(way, job), *_low(way, job), *_leaning(way)]
@@ -270,7 +270,7 @@ def broken(way: Way, job: Job) -> list[str]:
 
 def _beyond(way: Way, job: Job):
     first = _first_place(way)
-    cell, points = job.cell, way.told[first:]
+    cell, points = job.cell, way.commanded[first:]
     if not len(points):
         return
     # how low, of the strokes as they are painted and of vessels as they stand
@@ -302,7 +302,7 @@ def _beyond(way: Way, job: Job):
 
 
 def _first_place(way: Way) -> int:
-    """The first sample behind the way to the first place that the run names, from wherever the tool was."""
+    """The first sample behind the way to the first place that the run names, from any place."""
     if not len(way.row):
         return 0
     sideways = np.linalg.norm((way.ends - way.starts)[:, :2], axis=1) > SLACK_MM
@@ -410,12 +410,12 @@ def _to_path(points: np.ndarray, path: np.ndarray) -> np.ndarray:
 
 
 def strokes_of(way: Way, job: Job) -> list[np.ndarray]:
-    """The touches that are no visits to a vessel. A vessel's place is told as it stands in the cell, so that it is off
-    the sheet where it is told."""
+    """The touches that are no visits to a vessel. A vessel's place is commanded as it stands in the cell, so that it is
+    off the sheet where it is commanded."""
     width, height = job.plan["sheet_mm"]
     found = []
-    for touch, told in zip(way.touches, way.told_touches, strict=True):
-        is_off = (told[:, :2] <= 0).any(axis=1) | (told[:, :2] >= (width, height)).any(axis=1)
+    for touch, commanded in zip(way.touches, way.commanded_touches, strict=True):
+        is_off = (commanded[:, :2] <= 0).any(axis=1) | (commanded[:, :2] >= (width, height)).any(axis=1)
         if is_off.all() and any(_to_path(touch, visit).max() < job.near_mm for visit in job.stations):
             continue
         found.append(touch)
@@ -423,7 +423,7 @@ def strokes_of(way: Way, job: Job) -> list[np.ndarray]:
 
 
 def unlike(way: Way, job: Job, sound: list[np.ndarray] | None = None) -> list[str]:
-    """What of the plan is not painted once, in order, in its direction, within OFF_MM and no deeper by that.
+    """Parts of the plan that are not painted once, in order, in its direction, within OFF_MM and no deeper by that.
 
     sound: the touches of a program that is known to paint the plan: what is the same needs no second look.
     """
@@ -431,16 +431,16 @@ def unlike(way: Way, job: Job, sound: list[np.ndarray] | None = None) -> list[st
     said = []
     if len(strokes) != len(job.passes):
         said.append(f"{len(strokes)} strokes instead of {len(job.passes)}")
-    for k, (stroke, wanted) in enumerate(zip(strokes, job.passes, strict=False)):
+    for k, (stroke, target) in enumerate(zip(strokes, job.passes, strict=False)):
         if sound and k < len(sound) and sound[k].shape == stroke.shape and (sound[k] == stroke).all():
             continue
-        if (away := off_mm(stroke, wanted, sound[k] if sound and k < len(sound) else None)) > OFF_MM:
+        if (away := off_mm(stroke, target, sound[k] if sound and k < len(sound) else None)) > OFF_MM:
             said.append(f"stroke {k + 1} is {away:.3g} mm off, lost in part, or runs another way")
             break
     return said + _corners(way, job)
 
 
-def off_mm(stroke: np.ndarray, wanted: np.ndarray, sound: np.ndarray | None) -> float:
+def off_mm(stroke: np.ndarray, target: np.ndarray, sound: np.ndarray | None) -> float:
     """OFF_MM at most when both can be walked from end to end, never back, without ever being farther apart (Frechet);
     else how far the one is from the other at the worst place, but more than OFF_MM."""
     near = OFF_MM + STEP_MM / 2
@@ -453,13 +453,13 @@ def off_mm(stroke: np.ndarray, wanted: np.ndarray, sound: np.ndarray | None) -> 
         if first < last:
             middle = stroke[max(0, first - 1) : last + 1]
             gap = _to_path(
-                middle[:: max(1, len(middle) // 200)], wanted[:: max(1, len(wanted) // 2000)]
+                middle[:: max(1, len(middle) // 200)], target[:: max(1, len(target) // 2000)]
             ).max()
             if gap > 3 * OFF_MM:
                 return float(gap)
-    if walkable(stroke, wanted, near):
+    if walkable(stroke, target, near):
         return 0.0
-    far = max(_to_path(stroke[::3], wanted[::3]).max(), _to_path(wanted[::3], stroke[::3]).max())
+    far = max(_to_path(stroke[::3], target[::3]).max(), _to_path(target[::3], stroke[::3]).max())
     return max(float(far), OFF_MM * 1.001)
 
 
@@ -611,7 +611,7 @@ class Sound:
 
     @cached_property
     def steps(self) -> list:
-        return _told(self.way, self.job)
+        return _commanded(self.way, self.job)
 
     @cached_property
     def facts(self) -> tuple:
@@ -650,15 +650,15 @@ def judged(text: str, whole: Sound) -> tuple[str, str]:
         return "neither", f"the controller stops: {way.run.refused}"
     if not same_facts(facts(way.run), whole.facts):
         return "neither", "the header or a title says something else"
-    told = _told(way, whole.job)
+    commanded = _commanded(way, whole.job)
     return (
         ("harmless", "")
-        if _same(told, whole.steps, whole.job)
+        if _same(commanded, whole.steps, whole.job)
         else ("neither", "other moves, yet not dangerous")
     )
 
 
-def _told(way: Way, job: Job) -> list:
+def _commanded(way: Way, job: Job) -> list:
     """Legs that move, waits and stops, in order, each with how far its corner may be cut; what a servo does on the spot
     as one lift: its steps are but the rounding of a ramp. What a tolerance of JAKA script bounds, its manual does not
     say: there it counts as it is written."""
@@ -712,8 +712,8 @@ def _same(ours: list, theirs: list, job: Job) -> bool:
     if max(leg.acceleration for leg, _ in ours) > min(leg.acceleration for leg, _ in theirs) * 1.001:
         return False
     # a row less between two with times: the same way in the same time
-    told = (max if job.language == "ros2" else min)(leg.speed_mm_s for leg, _ in theirs)
-    if max(leg.speed_mm_s for leg, _ in ours) > told + FASTER_MM_S:
+    commanded = (max if job.language == "ros2" else min)(leg.speed_mm_s for leg, _ in theirs)
+    if max(leg.speed_mm_s for leg, _ in ours) > commanded + FASTER_MM_S:
         return False
     if max(cut for _, cut in ours) > max(cut for _, cut in theirs) + ROUNDING_MM:
         return False

@@ -1,4 +1,4 @@
-"""Ten small jobs for every dialect: what is drawn, how it is asked for, and on which machine."""
+"""Ten small jobs for every dialect: what is drawn, how it is requested, and on which machine."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ CELLS = {
     "hpgl": ("hpgl-plotter", ".hpgl"),
 }
 PENS = ("hpgl", "marlin-servo")  # which have one height
-FLAT = ("grbl-servo", "ebb", *PENS)  # on paper that lies level, at z 0
+FLAT = ("grbl-servo", "ebb", *PENS)  # on paper that is level, at z 0
 LIKE_GRBL = ("klipper", "fluidnc")  # share writer, reader and judge with others
 FEWER = ("marlin", *LIKE_GRBL, "ebb", *PENS)  # tried less often
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50"><title>small</title>'
@@ -78,7 +78,7 @@ def _with_arcs(cell):
 
 
 def _turned(cell):
-    """On paper that lies askew, and higher; arms that can feel stop where the tool is pressed, other axes have
+    """On paper that is askew, and higher; arms that can feel stop where the tool is pressed, other axes have
     backlash."""
     if not why_no_backlash(cell):
         cell = replace(cell, machine=Machine(backlash_mm=(0.4, 0.25)))
@@ -107,7 +107,7 @@ def _leaning(cell):
 
 
 def _higher(cell):
-    """A servo that can lift the brush over paper that lies higher than thought."""
+    """A servo that can lift the brush over paper that is higher than thought."""
     if cell.language == "grbl-servo":
         return replace(cell, servo=replace(cell.servo, table=((-10.0, 200.0), (0.0, 600.0), (8.0, 920.0))))
     if cell.language == "ebb":
@@ -154,7 +154,7 @@ WORKS = {
 
 @dataclass(frozen=True)
 class Made:
-    """A job that was written. words: what check is asked with; program: where damaged ones go."""
+    """A job that was written. words: the arguments of check; program: where damaged ones go."""
 
     name: str
     dialect: str
@@ -176,7 +176,7 @@ def cell_of(dialect: str, change=None):
 
 
 def flags_for(flags: tuple[str, ...], dialect: str) -> tuple[str, ...]:
-    """Of a pen, which has one height: without what would tell others."""
+    """Of a pen, which has one height: without the features of others."""
     if dialect not in PENS:
         return flags
     pairs = zip(flags[::2], flags[1::2], strict=True)

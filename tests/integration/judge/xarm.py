@@ -1,4 +1,4 @@
-"""A program for xArm, run by Python itself against a stub of the vendor's SDK: an arm that is where it is told to be.
+"""A program for xArm, run by Python itself against a stub of the vendor's SDK: an ideal arm.
 
 The SDK's own manual says what a call does: codes other than 0 are errors, an arm that is not enabled, in mode 0 and
 state 0 takes no moves, a radius of None or below 0 is a line that stops at its end, angles turn about fixed axes.
@@ -26,7 +26,7 @@ def run_xarm(
     text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray, sensitivity: int = 0
 ) -> Run:
     """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them; sensitivity:
-    that the arm has to have, 0 where nothing is asked for."""
+    that the arm has to have, 0 where nothing is requested."""
     return executed(text, XArmAPI(start, paper, down, tool, sensitivity)).run
 
 
@@ -40,7 +40,7 @@ def executed(text: str, arm: XArmAPI) -> XArmAPI:
         return arm
     run.frame += [ast.dump(each) for each in ast.parse(text).body if isinstance(each, ast.FunctionDef)]
     known = {name: getattr(builtins, name) for name in ("len", "range", "SystemExit")}
-    known |= {"__import__": arm.imported, "input": arm.asked, "print": arm.printed}
+    known |= {"__import__": arm.imported, "input": arm.requested, "print": arm.printed}
     try:
         exec(code, {"__name__": "__main__", "__builtins__": known})
         run.frame.append(
@@ -88,11 +88,11 @@ def _rpy_deg(turned: np.ndarray) -> list[float]:
 
 
 class XArmAPI(Arm):
-    """Calls with the parameters that the SDK's have; calls: (name, positional, by name) of all of them."""
+    """Calls with the parameters that the SDK's have; calls: (name, positional, keywords) of all of them."""
 
     def __init__(self, start, paper, down, tool, sensitivity=0):
         super().__init__(start, paper, down, tool, by_radius=True)
-        self.wanted_sensitivity, self.sensitivity = sensitivity, 0
+        self.target_sensitivity, self.sensitivity = sensitivity, 0
         self.calls: list[tuple[str, tuple, dict]] = []
         self.is_enabled = self.is_closed = False
         self.mode, self.state = 2, 4  # as somebody may have left it
@@ -107,7 +107,7 @@ class XArmAPI(Arm):
             return types.SimpleNamespace(XArmAPI=self._connected)
         raise RefusedError(f"line {_line()}: there is no module {name}")
 
-    def asked(self, message=""):
+    def requested(self, message=""):
         self.run.titles.append((f"stop: {message}", len(self.run.legs)))
         self.rest(_line(), "stop")
         return ""
@@ -189,7 +189,7 @@ class XArmAPI(Arm):
         number = _line()
         if not self._ready() or self.is_closed:
             return NOT_READY
-        if self.sensitivity != self.wanted_sensitivity:
+        if self.sensitivity != self.target_sensitivity:
             self.run.acts.append(f"line {number}: another sensitivity of collisions")
         given = [x, y, z, roll, pitch, yaw]
         self.is_waiting = wait

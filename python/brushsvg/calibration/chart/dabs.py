@@ -21,7 +21,7 @@ HEADINGS_DEG = (
     180.0,
     90.0,
     270.0,
-)  # what the sheet or the tool does to them all is told from the footprint
+)  # effects of the sheet or of the tool on all of them can be separated from the footprint
 SHALLOWEST = 0.2  # of the greatest depth: below, outlines shrink in proportion to depth
 LEAST_HALF_MM = 0.5  # of the shallowest: narrower dabs are taken for splashes
 # of the lag: more, and a brush that trails a little less than thought is dragged, its dab longer
@@ -101,6 +101,6 @@ def dab_chart_report(chart, brush: _core.Brush) -> str:
         f"{len(chart.strokes)} dabs on {width:g} x {height:g} mm, {len(chart.strokes) // len(depths)} at each of the "
         f"depths {', '.join(f'{depth:g}' for depth in depths)} mm",
         f"Landed for brush {brush.name}, which lags {brush.lag(depths[0]):.1f} to {brush.lag(depths[-1]):.1f} mm: "
-        "calibrate its lag first, dabs do not tell it",
+        "calibrate its lag first, dabs do not show it",
     ]
     return "\n".join([*lines, ""])

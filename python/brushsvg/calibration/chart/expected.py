@@ -1,4 +1,4 @@
-"""What a chart will tell of a brush, before anyone paints it; in words."""
+"""Say in words how well a chart will calibrate a brush, before anyone paints it."""
 
 from __future__ import annotations
 
@@ -39,19 +39,19 @@ def chart_report(chart, brush, noise_mm: float) -> str:
         lines.append(f"{depth:7.2f}" + "".join(cell.rjust(18) for cell in cells))
     lines += ["  +-: half the 95 % confidence interval of the law", *remarks]
     machine = expected_machine(chart.plan, brush, noise_mm, painted=painted)
-    told = [f"{one.name} +- {one.half:.2g}" for one in machine]
-    lines += ["Of the machine, with calibrate --machine " + ",".join(PARTS) + ":", "  " + ", ".join(told)]
+    listed = [f"{one.name} +- {one.half:.2g}" for one in machine]
+    lines += ["Of the machine, with calibrate --machine " + ",".join(PARTS) + ":", "  " + ", ".join(listed)]
     return "\n".join([*lines, *_of_paint(expected_paint(chart.plan, brush, noise_mm, painted)), ""])
 
 
-def _of_paint(told: Expected) -> list[str]:
-    alike = f"depth explains {100 * told.told_by_depth:.0f} % of how far each stroke is from the dip"
-    if told.is_refused:
+def _of_paint(paint: Expected) -> list[str]:
+    alike = f"depth explains {100 * paint.explained_by_depth:.0f} % of how far each stroke is from the dip"
+    if paint.is_refused:
         return [
-            "Whether marks narrow as paint runs out, this chart cannot tell: its strokes go from shallow to deep, so "
+            "This chart cannot show whether marks narrow as paint runs out: its strokes go from shallow to deep, so "
             f"that less paint looks like less depth ({alike}); chart --paint has another order"
         ]
     return [
         "Of paint that runs out, with calibrate --paint, painted with one load:",
-        f"  narrowing per metre +- {told.half_per_m:.2g}; {alike}; the load has to last for {told.way_mm:.0f} mm",
+        f"  narrowing per metre +- {paint.half_per_m:.2g}; {alike}; the load has to last for {paint.way_mm:.0f} mm",
     ]

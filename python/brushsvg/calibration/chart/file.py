@@ -46,7 +46,7 @@ def write_chart(chart: Chart) -> str:
 
 
 def is_chart(data: bytes) -> bool:
-    """Whether a file says that it is a chart.json, in whatever state."""
+    """Return whether a file says that it is a chart.json, complete or not."""
     try:
         content = json.loads(data)
     except (ValueError, RecursionError):

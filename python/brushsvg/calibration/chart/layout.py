@@ -2,7 +2,7 @@
 
 Each set of strokes is painted at one depth: a straight one with a slow landing (b), an angular one with an auxiliary
 stroke parallel to its second line (r), an arc and a reversal (r where it turns; when the bristles go loose). Reference
-strokes, painted there and back on parallel lines, tell a sheet that was moved from a lag: the one moves both of a pair
+strokes, painted there and back on parallel lines, separate a moved sheet from a lag: the one moves both of a pair
 the same way, the other apart. The TCP's path is known and not compensated.
 """
 
@@ -39,7 +39,7 @@ CODES = {"straight": "S", "angular": "A", "arc": "C", "reversal": "V", "referenc
 LETTER_MM = 1.4  # of a label, on average
 QUIET = 1 / 6  # of a marker's side, white around it: more than a module
 MARKERS = (8.0, 20.0)  # mm, the least and the greatest side
-BESIDE = (
+MARKER_HEIGHTS = (
     0.5,
     0.45,
     0.55,
@@ -50,7 +50,7 @@ BESIDE = (
 )  # of the sheet's height, where markers at its sides are tried
 BETWEEN = 5.0  # sides that an edge has at least where a marker stands in its middle too
 TICK_MM = 2.2  # height of the bar's ends
-# Eight markers of a thousand: which eight is the chart's, so that another chart is told from it
+# Eight markers of a thousand: which eight is the chart's, so that no other chart is taken for it
 DICTIONARY, GROUP, GROUPS = "DICT_5X5_1000", 8, 125
 PAINT_MM_S = 20.0
 LARGEST_SHEET_MM = 10_000.0
@@ -153,14 +153,14 @@ def chart(
     """The chart of a brush that is known roughly: its depth range, its lag, its width.
 
     strokes: few, normal, many; None for as many as the sheet has room for; deepest_mm: what the machine can reach, if
-    less than the brush; dabs: of a brush whose lag is known, for its outlines; one_load: in an order that tells how
+    less than the brush; dabs: of a brush whose lag is known, for its outlines; one_load: in an order that separates how
     marks narrow from depth, with paint fetched before the first stroke only. Error for a pen, and where the sheet is
     too small, with the size that would do.
     """
     need(brush, _core.Brush, "a brush")
     _core.check(brush)
     if dabs and one_load:
-        raise Error("dabs do not tell how marks narrow: one load is for strokes", code="options-contradict")
+        raise Error("dabs do not show how marks narrow: one load is for strokes", code="options-contradict")
     sheet_mm = as_listed(sheet_mm)
     if not isinstance(sheet_mm, (list, tuple)) or len(sheet_mm) != 2:
         raise Error("a sheet is (width, height) in mm", "sheet", code="wrong-type")
@@ -184,17 +184,17 @@ def chart(
             "sheet",
             code="sheet-too-small",
         )
-    best, beside = None, None
+    best, marker_gap = None, None
     for depths, repeats in [(SETS[strokes], 1)] if strokes else _dab_choices() if dabs else _choices():
         if dabs:
             units = _dab_units(brush, dab_depths(brush, depths, deepest_mm), repeats)
         else:
             units = _units(brush, chart_depths(brush, depths, deepest_mm), repeats)
         # the first choice settles where markers stand at the sides; strokes matter more than these two
-        for tried in (beside,) if best is not None else (*_marker_gaps(sheet_mm, side), None):
+        for tried in (marker_gap,) if best is not None else (*_marker_gaps(sheet_mm, side), None):
             placed, used = _packed(units, room[0], side, room[1], tried)
             if used <= room[1]:
-                beside = tried
+                marker_gap = tried
                 break
         if used > room[1]:
             break
@@ -209,7 +209,7 @@ def chart(
             code="sheet-too-small",
             advice="--strokes few needs less" if strokes in ("normal", "many") else "",
         )
-    return _laid_out(brush, sheet_mm, best, side, beside, one_load)
+    return _laid_out(brush, sheet_mm, best, side, marker_gap, one_load)
 
 
 def _side(sheet_mm: tuple[float, float]) -> float:
@@ -220,7 +220,7 @@ def _marker_gaps(sheet_mm: tuple[float, float], side: float) -> Iterator[tuple[f
     """From where to where, down from the sheet's inner edge, markers may stand near the middle of its left and right
     side."""
     if sheet_mm[1] >= BETWEEN * side:
-        for share in BESIDE:
+        for share in MARKER_HEIGHTS:
             middle = share * sheet_mm[1] - EDGE_MM
             yield middle - (0.5 + QUIET) * side, middle + (0.5 + QUIET) * side
 
@@ -297,7 +297,7 @@ def angular(brush, depth: float) -> Drawn:
 
 
 def _auxiliary(brush, depth: float, shallow: float) -> Drawn:
-    """Beyond the second line, parallel to it: where it lies on the paper says where that line is."""
+    """Draw a line beyond the second line, parallel to it: its place on the paper gives the place of that line."""
     x = _before_corner(brush, depth) + WIDER * (brush.half_width(depth) + brush.half_width(shallow)) + GAP_MM
     length = 2 * shallow / LIFT_STEP + brush.lag(shallow) + 5.0
     return Drawn("auxiliary", shallow, _path(shallow, [(x, 0), (x, -length)]))
@@ -356,11 +356,11 @@ def _packed(
     width: float,
     side: float,
     enough: float = 0.0,
-    beside: tuple[float, float] | None = None,
+    marker_gap: tuple[float, float] | None = None,
 ) -> tuple[list[tuple[_Unit, float, float]], float]:
     """Units one after the other, each as near to the top as it finds room: (unit, left, down from the sheet's inner
     edge), and how tall all are; infinite where one unit is wider. The best of some orders, the large ones early, and
-    of upright and turned units, or the first that is no taller than enough; in steps of 1 mm. beside: between which
+    of upright and turned units, or the first that is no taller than enough; in steps of 1 mm. marker_gap: between which
     heights the markers on the left and right stand."""
     random = np.random.default_rng(0)  # the same chart each time
     size = np.array([max(unit.size_mm) for unit in units])
@@ -370,13 +370,13 @@ def _packed(
         order = np.argsort(-size * random.uniform(1.0, 1.0 + attempt / ATTEMPTS, len(units)))
         turn = random.random(len(units)) < (attempt % 4) / 4
         now = [turned[k] if turn[k] else units[k] for k in order]
-        best = min(best, _packed_so(now, width, side, beside), key=lambda each: each[1])
+        best = min(best, _packed_so(now, width, side, marker_gap), key=lambda each: each[1])
         if best[1] <= enough:
             break
     return best
 
 
-def _packed_so(units: list[_Unit], width: float, side: float, beside: tuple[float, float] | None):
+def _packed_so(units: list[_Unit], width: float, side: float, marker_gap: tuple[float, float] | None):
     taken = np.full(int(width), BAR_MM)
     corner = side + QUIET * side
     columns = math.ceil(corner)
@@ -392,10 +392,12 @@ def _packed_so(units: list[_Unit], width: float, side: float, beside: tuple[floa
         if wide > len(taken):
             return [], math.inf
         tops = _highest(taken, wide)
-        if beside:
+        if marker_gap:
             lefts = np.arange(len(tops))
             at_edge = (lefts < columns) | (lefts + wide > len(taken) - columns)
-            tops = np.where(at_edge & (tops < beside[1]) & (tops + tall > beside[0]), beside[1], tops)
+            tops = np.where(
+                at_edge & (tops < marker_gap[1]) & (tops + tall > marker_gap[0]), marker_gap[1], tops
+            )
         left = int(tops.argmin())
         placed.append((unit, float(left), float(tops[left])))
         taken[left : left + wide] = tops[left] + tall
@@ -432,7 +434,7 @@ def _turned(unit: _Unit) -> _Unit:
 
 
 def _laid_out(
-    brush, sheet_mm, placed, side: float, beside: tuple[float, float] | None, one_load: bool
+    brush, sheet_mm, placed, side: float, marker_gap: tuple[float, float] | None, one_load: bool
 ) -> Chart:
     height = sheet_mm[1]
     what = [(unit.strokes[0].kind, unit.strokes[0].depth_mm) for unit, _, _ in placed]
@@ -461,13 +463,13 @@ def _laid_out(
     base = GROUP * (int(mark, 16) % GROUPS)
     markers = tuple(
         Marker(base + k, ((x, y), (x + side, y), (x + side, y - side), (x, y - side)))
-        for k, (x, y) in _marker_places(sheet_mm, side, beside)
+        for k, (x, y) in _marker_places(sheet_mm, side, marker_gap)
     )
     return Chart(plan, strokes, markers, tuple(labels), mark, bar)
 
 
 def _marker_places(
-    sheet_mm, side: float, beside: tuple[float, float] | None
+    sheet_mm, side: float, marker_gap: tuple[float, float] | None
 ) -> list[tuple[int, tuple[float, float]]]:
     """Numbers and upper left corners: those in the corners, clockwise, then those in the middle of the edges."""
     width, height = sheet_mm
@@ -476,8 +478,8 @@ def _marker_places(
     places = [(0, (left, top)), (1, (right, top)), (2, (right, bottom)), (3, (left, bottom))]
     if width >= BETWEEN * side:
         places += [(4, (across, top - _top_middle(side))), (6, (across, bottom))]
-    if beside:
-        up = height - EDGE_MM - beside[0] - QUIET * side
+    if marker_gap:
+        up = height - EDGE_MM - marker_gap[0] - QUIET * side
         places += [(5, (right, up)), (7, (left, up))]
     return sorted(places)
 
@@ -490,7 +492,7 @@ def _bar(sheet_mm, side: float) -> Bar:
 
 
 def _titles(brush, sheet_mm, side: float, mark: str, bar: Bar) -> list[Label]:
-    """What it is, beside the lower markers, and what to measure, below the bar."""
+    """Write the chart's name next to the lower markers, and what to measure below the bar."""
     width, height = sheet_mm
     left = EDGE_MM + side + 3
     parts = 2 if width >= BETWEEN * side else 1  # a marker stands in between

@@ -10,7 +10,7 @@ import numpy as np
 
 from ... import _core
 from ...errors import Error, Notice
-from ...photo.edges import Marks, Room, find_marks, printed_pixels, told_apart
+from ...photo.edges import Marks, StrokeBox, assign_marks, find_marks, printed_pixels
 from ...photo.flatten import Flat, flatten
 from ...photo.markers import TOO_WHITE, Printed, View, find_view
 from ...photo.photo import grey_light, jpeg_quality, read_photo, refuse_dark_paper, refuse_twice
@@ -22,7 +22,7 @@ from .page import bar_rings, label_box
 
 ANOTHER_SIZE = (0.9, 1.1)  # of the page, which --bar corrects; beyond, strokes run into labels and markers
 MARGIN = 1 / 5  # of a marker's side around it: blur
-# Standard deviation of where all edges of a picture lie off together: dark paint lies 0.02 to 0.08 px outward, yellow,
+# Standard deviation of the shift of all edges of a picture together: dark paint is 0.02 to 0.08 px outward, yellow,
 # of which JPEG keeps one colour for four pixels, 0.11 to 0.19. With 0.2 the lag of a narrow brush, whose width the
 # paper's height changes as little, had intervals five times as wide as its errors.
 EDGE_PX = 0.1
@@ -64,11 +64,11 @@ def read_chart_photos(
     """photos: names and what their files hold, of one painted sheet; bar_mm: how long the printed bar is by a ruler,
     where the page was not printed at 100 %; dpi: of a flatbed's scan of a sheet on which nothing is printed; mirrored:
     taken from below, through a clear sheet and glass. Several
-    photographs must agree; their paint is averaged, and the view is that of the one whose markers lie farthest off.
+    photographs must agree; their paint is averaged, and the view is that of the one whose markers are farthest off.
     Error in one sentence, with the file."""
     size = _size(chart, bar_mm)
     page = _page(chart, size)
-    rooms = [Room(stroke.id, stroke.box_mm, stroke.depth_mm) for stroke in chart.strokes]
+    stroke_boxes = [StrokeBox(stroke.id, stroke.box_mm, stroke.depth_mm) for stroke in chart.strokes]
     refuse_twice(photos)
     reads: list[Read] = []
     for name, data in photos:
@@ -80,19 +80,21 @@ def read_chart_photos(
             fine = reads[0].flat.px_per_mm if reads else None
             if dpi is not None:
                 pixels, view = find_scan_view(
-                    pixels, dpi, chart.plan.sheet_mm, rooms, _pressed(chart), chart.dictionary
+                    pixels, dpi, chart.plan.sheet_mm, stroke_boxes, _pressed(chart), chart.dictionary
                 )
-                reads.append(_read(chart, replace(page, rings=(), labels=()), rooms, pixels, view, fine))
+                reads.append(
+                    _read(chart, replace(page, rings=(), labels=()), stroke_boxes, pixels, view, fine)
+                )
                 continue
             view = _view(pixels, page.printed, mirrored)
             try:
-                reads.append(_read(chart, page, rooms, pixels, view, fine))
+                reads.append(_read(chart, page, stroke_boxes, pixels, view, fine))
             except Error as refusal:
                 if refusal.code not in OF_ANOTHER_PLACE or reads:  # photographs of one sheet have one place
                     raise
-                page = _moved_page(chart, page, size, rooms, pixels, view, refusal)
+                page = _moved_page(chart, page, size, stroke_boxes, pixels, view, refusal)
                 view = _view(pixels, page.printed, mirrored)
-                reads.append(_read(chart, page, rooms, pixels, view, fine))
+                reads.append(_read(chart, page, stroke_boxes, pixels, view, fine))
         except Error as refusal:
             raise Error(
                 refusal.sentence,
@@ -105,8 +107,8 @@ def read_chart_photos(
             ) from None
     if len(reads) == 1:
         return reads[0]
-    marks = told_apart(
-        np.mean([each.marks.paint for each in reads], axis=0), reads[0].flat, rooms, page.labels
+    marks = assign_marks(
+        np.mean([each.marks.paint for each in reads], axis=0), reads[0].flat, stroke_boxes, page.labels
     )
     for (name, _), each in zip(photos, reads, strict=True):
         _refuse_another_sheet(each.marks, marks, name)
@@ -129,32 +131,36 @@ def _page(chart: Chart, size: float, shift_mm=None) -> _Page:
     """Print the page at `size` about its middle, then move it."""
     middle = np.array(chart.plan.sheet_mm) / 2
 
-    def lies(points) -> np.ndarray:
+    def placed(points) -> np.ndarray:
         return (np.asarray(points, float) - middle) * size + middle + (0.0 if shift_mm is None else shift_mm)
 
-    corners = {marker.id: lies(marker.corners_mm) for marker in chart.markers}
+    corners = {marker.id: placed(marker.corners_mm) for marker in chart.markers}
     rings = [each.mean(axis=0) + (each - each.mean(axis=0)) * (1 + 2 * MARGIN) for each in corners.values()]
-    rings += [lies(ring) for ring in bar_rings(chart.bar, beyond_mm=0.5)] if chart.bar else []
-    labels = [lies(np.reshape(label_box(label), (2, 2))).ravel() for label in chart.labels]
+    rings += [placed(ring) for ring in bar_rings(chart.bar, beyond_mm=0.5)] if chart.bar else []
+    labels = [placed(np.reshape(label_box(label), (2, 2))).ravel() for label in chart.labels]
     printed = Printed(chart.plan.sheet_mm, corners, chart.dictionary, chart.id)
     return _Page(printed, tuple(rings), tuple(labels), size != 1.0)
 
 
-def _read(chart: Chart, page: _Page, rooms: list[Room], pixels: np.ndarray, view: View, fine) -> Read:
-    refuse_cropped(pixels, view, rooms)
+def _read(
+    chart: Chart, page: _Page, stroke_boxes: list[StrokeBox], pixels: np.ndarray, view: View, fine
+) -> Read:
+    refuse_cropped(pixels, view, stroke_boxes)
     refuse_unsure(pixels, view, page.printed.corners_mm)
     flat = flatten(pixels, view, chart.plan.sheet_mm, fine)
     refuse_dark_paper(float(np.median(grey_light(flat.pixels[::3, ::3]))))
-    marks = find_marks(flat, rooms, page.rings, page.labels)
+    marks = find_marks(flat, stroke_boxes, page.rings, page.labels)
     return Read(chart, flat, view, marks, is_rescaled=page.is_rescaled)
 
 
-def _moved_page(chart: Chart, page: _Page, size: float, rooms, pixels, view: View, refusal: Error) -> _Page:
+def _moved_page(
+    chart: Chart, page: _Page, size: float, stroke_boxes, pixels, view: View, refusal: Error
+) -> _Page:
     """Where strokes are not where the page has them: the page of a known size that was printed about another point than
     its middle. Error naming the scale where the page seems to have been printed at another one; else the refusal."""
     flat = flatten(pixels, view, chart.plan.sheet_mm)
     known = 1.0 if size != 1.0 else None
-    found = find_paint(flat, printed_pixels(flat, page.rings), rooms, _pressed(chart), known)
+    found = find_paint(flat, printed_pixels(flat, page.rings), stroke_boxes, _pressed(chart), known)
     if found is None:
         raise refusal
     if known is not None:
@@ -196,15 +202,15 @@ def _refuse_compressed(data: bytes) -> None:
     quality = jpeg_quality(data)
     if quality is not None and quality < WORST_QUALITY:
         raise Error(
-            f"the JPEG was saved at quality {quality:.0f} of 100, it takes {WORST_QUALITY:g}: give the picture as the "
-            "camera wrote it, not as a messenger sent it on",
+            f"the JPEG was saved at quality {quality:.0f} of 100, at least {WORST_QUALITY:g} is needed: give the "
+            "picture as the camera wrote it, not as a messenger sent it on",
             value=quality,
             code="photo-compressed",
         )
 
 
 def _refuse_another_sheet(one: Marks, all_: Marks, name: str) -> None:
-    """By how far its marks lie from the mean of all photographs."""
+    """Sort by the distance of their marks from the mean of all photographs."""
     both = [stroke for stroke in one.outlines_mm if stroke in all_.outlines_mm]
     off = [
         np.vstack(one.outlines_mm[stroke]).mean(axis=0) - np.vstack(all_.outlines_mm[stroke]).mean(axis=0)
@@ -213,8 +219,8 @@ def _refuse_another_sheet(one: Marks, all_: Marks, name: str) -> None:
     away = float(np.sqrt(np.mean(np.sum(np.square(off), axis=1)))) if off else np.inf
     if away > ALIKE_MM:
         raise Error(
-            f"its marks lie {away:.2f} mm (rms) from where all photographs have them on average, more than "
-            f"{ALIKE_MM:g}: are they of one sheet, which lay flat?",
+            f"its marks are {away:.2f} mm (rms) from where all photographs have them on average, more than "
+            f"{ALIKE_MM:g}: are they of one flat sheet?",
             file=name,
             code="photos-differ",
         )
@@ -243,7 +249,7 @@ def _size(chart: Chart, bar_mm: float | None) -> float:
 
 
 def edge_mm(read: Read) -> float:
-    """By how much all edges may lie off together, as a standard deviation."""
+    """Return by how much all edges may be off together, as a standard deviation."""
     return EDGE_PX / read.view.px_per_mm
 
 
@@ -270,7 +276,7 @@ def write_marks(read: Read) -> str:
     return f'{{{head},\n "plan": {plan},\n "marks": [\n  {rows}]}}\n'
 
 
-def told(read: Read) -> str:
+def describe_reading(read: Read) -> str:
     """How well it could be read, in one line."""
     view, count, found = read.view, len(read.chart.strokes), len(read.marks.outlines_mm)
     strokes = f"{found} strokes" if found == count else f"{found} of {count} strokes"
@@ -293,14 +299,14 @@ def remarks(read: Read) -> list[Notice]:
     view = read.view
     if view.residual_mm > 0.5 * view.most_residual_mm:
         sentence = (
-            f"the markers lie {view.residual_mm:.2f} mm (rms) off, marker {view.worst[0]} most: the paper may not be "
-            "flat, or the picture is noisy, and marks may lie off by more than that"
+            f"the markers are {view.residual_mm:.2f} mm (rms) off, marker {view.worst[0]} most: the paper may not be "
+            "flat, or the picture is noisy, and marks may be off by more than that"
         )
         out.append(Notice("", sentence, code="photo-not-flat"))
     if view.white > TOO_WHITE:
         sentence = (
             f"{100 * view.white:.0f} % of the brightest parts are as white as can be: the picture is overexposed, and "
-            "edges may lie farther out than they are"
+            "edges may be too far out"
         )
         out.append(Notice("", sentence, code="photo-overexposed"))
     if missing := read.marks.missing:
@@ -314,7 +320,7 @@ def remarks(read: Read) -> list[Notice]:
     if unseen and view.seen:
         sentence = f"marker{'s' * (len(unseen) > 1)} {', '.join(map(str, unseen))} cannot be seen whole"
         if view.unsure_mm > UNSURE_MM:
-            sentence += f": places on the sheet may lie off by {view.unsure_mm:.2f} mm (standard deviation)"
+            sentence += f": places on the sheet may be off by {view.unsure_mm:.2f} mm (standard deviation)"
         out.append(Notice("", sentence, code="photo-markers-missing"))
     return out
 

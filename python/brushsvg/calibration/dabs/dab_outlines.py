@@ -1,4 +1,4 @@
-"""Dabs to outlines: each seen from its patch, those of a depth averaged, what is no dab left out by name."""
+"""Turn dabs into outlines: each seen from its patch, those of a depth averaged, others left out with their names."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from ...geometry.rotation import rotation
 STEP_MM = 0.05
 VERTICES = 96  # of an outline; more cost time in every sweep
 HOLLOW = 0.03  # share of a dab that is bare inside of its edge: more, and its middle has no paint
-BROKEN = 0.1  # share of its paint that lies apart
+BROKEN = 0.1  # share of its paint that is apart
 RAGGED = 0.15  # share of its hull that is bare: paint was dry, or it is no footprint
 # times the usual distance from the others of its depth, and at least so far: no repeat of them
 UNLIKE, UNLIKE_MM = 4.0, 0.15
-ASIDE, ASIDE_MM = 6.0, 0.6  # the same of its place
-LEAST_LEFT = 2  # dabs of a depth: one alone cannot be told from a bad one
+MAX_DISPLACEMENT, MAX_DISPLACEMENT_MM = 6.0, 0.6  # the same of its place
+LEAST_LEFT = 2  # dabs of a depth: one alone cannot be distinguished from a bad one
 # times what chance does to sides that are alike: less, and the outline is the mean of both sides, amid the axis. Sides
-# that differ by chance would push every stroke aside
+# that differ by chance would displace every stroke
 LOPSIDED = 3.0
 # rms over the outline, of dabs of one heading against all: more, and the shape does not turn with the brush
 MOST_TURNED_MM = 0.25
@@ -50,13 +50,13 @@ class Seen:
 
     dab: Dab
     outline_mm: np.ndarray
-    aside_mm: np.ndarray
+    displacement_mm: np.ndarray
 
 
 @dataclass(frozen=True)
 class Shape:
-    """What the dabs of one depth say: the outline from its tip, where the tip lies behind the place at which the tool
-    was set down, how far single dabs lie from the mean (rms), and how far all of them may."""
+    """What the dabs of one depth say: the outline from its tip, where the tip is behind the place at which the tool
+    was set down, the distance of single dabs from the mean (rms), and the possible one of all."""
 
     depth_mm: float
     outline_mm: np.ndarray
@@ -71,8 +71,8 @@ class Shape:
 
 @dataclass(frozen=True)
 class Outlines:
-    """shift_mm, turn_rad: how the sheet lay amid the dabs, turned about centre_mm; turned_mm: by how much dabs of one
-    heading differ; is_even: both sides of the outlines are alike; remarks: dabs that were left out, and why."""
+    """shift_mm, turn_rad: the pose of the sheet under the dabs, turned about centre_mm; turned_mm: by how much dabs of
+    one heading differ; is_even: both sides of the outlines are alike; remarks: dabs that were left out, and why."""
 
     shapes: tuple[Shape, ...]
     shift_mm: np.ndarray
@@ -82,12 +82,13 @@ class Outlines:
     is_even: bool
     remarks: tuple[Notice, ...]
 
-    def lying_mm(self) -> dict[str, np.ndarray]:
-        """By name, where the outline of its depth lies for each dab that was not left out, (n, 2) mm on the sheet."""
+    def predicted_mm(self) -> dict[str, np.ndarray]:
+        """Return the predicted outline for each dab that was not left out, in a dictionary of names, (n, 2) mm on the
+        sheet."""
         out = {}
         for shape in self.shapes:
             for seen in shape.seen:
-                from_patch = shape.outline_mm - [shape.tip_gap_mm, 0.0] + seen.aside_mm
+                from_patch = shape.outline_mm - [shape.tip_gap_mm, 0.0] + seen.displacement_mm
                 planned = from_patch @ rotation(seen.dab.heading_rad) + seen.dab.place_mm
                 turned = (planned - self.centre_mm) @ rotation(self.turn_rad)
                 out[seen.dab.name] = turned + self.centre_mm + self.shift_mm
@@ -147,7 +148,7 @@ def _bad(dab: Dab, joined: set[str]) -> Notice | None:
             dab.name, f"{100 * bare:.0f} % of it has no paint, amid the rest: left out", code="dab-hollow"
         )
     if 1 - areas.max() / paint.sum() > BROKEN:
-        sentence = f"its paint lies in {len(paint)} parts, as where paint runs dry: left out"
+        sentence = f"its paint is in {len(paint)} parts, as where paint runs dry: left out"
         return Notice(dab.name, sentence, code="dab-dry")
     ragged = 1 - areas.max() / cv2.contourArea(cv2.convexHull(np.float32(_outer(dab))))
     if ragged > RAGGED:
@@ -161,10 +162,10 @@ def _refuse_open(depths: list[float], dabs: list[Dab], remarks: list[Notice]) ->
         left = [dab.name for dab in dabs if dab.depth_mm == depth]
         if len(left) >= LEAST_LEFT:
             continue
-        told = "; ".join(f"{each.where}: {each.sentence}" for each in remarks[:4])
+        listed = "; ".join(f"{each.where}: {each.sentence}" for each in remarks[:4])
         raise Error(
-            f"{len(left)} dabs are left at depth {depth:g} mm, it takes {LEAST_LEFT}: paint the page again with more "
-            f"paint on the brush, and wipe it in between ({told}{'; ...' * (len(remarks) > 4)})",
+            f"{len(left)} dabs are left at depth {depth:g} mm, at least {LEAST_LEFT} are needed: paint the page again "
+            f"with more paint on the brush, and wipe it in between ({listed}{'; ...' * (len(remarks) > 4)})",
             f"{depth:g} mm",
             len(left),
             code="dabs-too-few",
@@ -203,8 +204,8 @@ class _Sheet:
 
 
 def _placed(dabs: list[Dab], remarks: list[Notice]) -> tuple[_Sheet, list[Dab]]:
-    """Shift and turn of the sheet by all middles, of which those of a depth lie alike before and beside the place of
-    each dab; and the dabs without those that lie elsewhere."""
+    """Fit shift and turn of the sheet to all middles; those of a depth have one place ahead of and across the place of
+    each dab. Returns also the dabs without outliers."""
     while True:
         depths = sorted({dab.depth_mm for dab in dabs})
         found, place = (
@@ -218,13 +219,13 @@ def _placed(dabs: list[Dab], remarks: list[Notice]) -> tuple[_Sheet, list[Dab]]:
         for row, dab in zip(columns, dabs, strict=True):
             at = 3 + 2 * depths.index(dab.depth_mm)
             row[:, at : at + 2] = rotation(dab.heading_rad).T
-        columns, wanted = columns.reshape(2 * len(dabs), -1), (found - place).ravel()
-        answer = np.linalg.lstsq(columns, wanted, rcond=None)[0]
-        off = np.hypot(*(wanted - columns @ answer).reshape(-1, 2).T)
+        columns, target = columns.reshape(2 * len(dabs), -1), (found - place).ravel()
+        answer = np.linalg.lstsq(columns, target, rcond=None)[0]
+        off = np.hypot(*(target - columns @ answer).reshape(-1, 2).T)
         worst = int(off.argmax())
-        if off[worst] <= max(ASIDE * float(np.median(off)), ASIDE_MM):
+        if off[worst] <= max(MAX_DISPLACEMENT * float(np.median(off)), MAX_DISPLACEMENT_MM):
             return _Sheet(answer[:2], float(answer[2]), place.mean(axis=0)), dabs
-        sentence = f"it lies {off[worst]:.1f} mm from where the others say it should: left out"
+        sentence = f"it is {off[worst]:.1f} mm from where the others say it should: left out"
         remarks.append(Notice(dabs[worst].name, sentence, code="mark-astray"))
         dabs = dabs[:worst] + dabs[worst + 1 :]
         if {dab.depth_mm for dab in dabs} != set(depths):
@@ -237,17 +238,17 @@ def _seen_from_patch(dab: Dab, sheet: _Sheet) -> Seen:
 
 
 def _across(seen: list[Seen]) -> tuple[Callable[[float], float], float]:
-    """How far beside the axis the middle of a dab lies, over depth: single dabs lie aside by more than that. And how
-    many times as far as by chance."""
+    """Return the distance of a dab's middle from the axis, over depth, which is less than the scatter of single dabs;
+    and its ratio to that by chance."""
     depths = np.array([each.dab.depth_mm for each in seen])
-    beside = np.array([_middle(each.outline_mm)[1] for each in seen])
+    off_axis = np.array([_middle(each.outline_mm)[1] for each in seen])
     wide = np.array([np.ptp(each.outline_mm[:, 1]) for each in seen])
     usual = {depth: float(wide[depths == depth].mean()) for depth in depths.tolist()}
     columns = np.array(
         [usual[depth] for depth in depths.tolist()]
     )  # a shape that grows is as lopsided as before
-    share = float(columns @ beside / (columns @ columns))
-    chance = np.sum((beside - share * columns) ** 2) / max(1, len(seen) - 1)
+    share = float(columns @ off_axis / (columns @ columns))
+    chance = np.sum((off_axis - share * columns) ** 2) / max(1, len(seen) - 1)
     times = abs(share) * np.sqrt(columns @ columns / max(chance, 1e-12))
     return lambda depth: share * usual[depth], float(times)
 
@@ -268,7 +269,9 @@ class _Depth:
         middles = np.array([_middle(each.outline_mm) for each in seen])
         self.middle = np.array([middles[:, 0].mean(), across_mm])
         self.seen = [
-            replace(each, outline_mm=each.outline_mm + self.middle - middle, aside_mm=middle - self.middle)
+            replace(
+                each, outline_mm=each.outline_mm + self.middle - middle, displacement_mm=middle - self.middle
+            )
             for each, middle in zip(seen, middles, strict=True)
         ]
         spans = np.array([np.ptp(each.outline_mm, axis=0) for each in self.seen])
@@ -280,7 +283,7 @@ class _Depth:
         self.reach = np.array([self._reach(each.outline_mm) for each in self.seen])
 
     def _reach(self, ring: np.ndarray) -> np.ndarray:
-        """How far along each ray an outline lies."""
+        """Return the distance of an outline along each ray."""
         even = (ring - self.centre) / self.axes
         angle = np.unwrap(np.arctan2(even[:, 1], even[:, 0]))
         order = np.argsort(np.mod(angle, 2 * np.pi))
@@ -312,7 +315,7 @@ class _Depth:
             if away[worst] <= most_mm:
                 break
             sentence = (
-                f"its outline lies {away[worst]:.2f} mm (rms) from those of the others at depth {self.depth:g} mm, "
+                f"its outline is {away[worst]:.2f} mm (rms) from those of the others at depth {self.depth:g} mm, "
                 f"{most_mm:.2f} is the most: left out"
             )
             remarks.append(Notice(self.seen[worst].dab.name, sentence, code="dab-unlike"))
@@ -321,7 +324,7 @@ class _Depth:
         return remarks
 
     def by_heading_mm(self) -> dict[float, np.ndarray]:
-        """How far the mean of the dabs of each heading lies beyond the mean of all."""
+        """Return the distance of the mean of the dabs of each heading from the mean of all."""
         heading = np.round(np.degrees([each.dab.heading_rad for each in self.seen])) % 360
         all_ = self.reach.mean(axis=0)
         return {h: self._mm(self.reach[heading == h].mean(axis=0) - all_) for h in np.unique(heading)}
@@ -363,7 +366,7 @@ def _turned_mm(shapes: list[_Depth]) -> float:
 
 
 def _smooth(reach: np.ndarray, size_mm: np.ndarray, unsure_mm: float) -> np.ndarray:
-    """The least bent of what lies within unsure_mm (rms) and SMOOTHED_MM; free to have a corner at the tip."""
+    """Return the least bent outline within unsure_mm (rms) and SMOOTHED_MM; free to have a corner at the tip."""
     closed = np.append(reach, reach[0])
     bends = np.diff(np.eye(len(closed)), 2, axis=0)
     penalty = bends.T @ bends

@@ -1,4 +1,4 @@
-"""What dabs told of a brush: outlines, laws, what was left out, and what dabs do not say; in words and as a picture."""
+"""Report what dabs show of a brush: outlines, laws, omissions and limits, in words and as a picture."""
 
 from __future__ import annotations
 
@@ -7,69 +7,61 @@ import math
 import numpy as np
 
 from ... import _core
-from ...model.confidence import law_band
 from ...model.plot import INK, brush_picture_on, encoded, new_figure
+from ...reporting.report_text import Report, plural, verdict
+from ..law_text import HALF_95, coefficients, law_table, name_and_depths, values
 from .dab_outlines import SMOOTHED_MM, Shape
 
 NOT_SAID = (
     "Dabs do not say how far the brush lags: that is the lag of brush {before}.",
     "A dab shows all that was touched at its depth and above, by a brush that stands: bristles that are dragged along "
-    "lie a little closer together.",
+    "are a little closer together.",
 )
-HIDDEN_MM = 0.05  # a front that lies no farther ahead than a shallower dab's may be that one's
+HIDDEN_MM = 0.05  # a front no farther ahead than a shallower dab's may be that one's
 FOUND, ASSUMED = "#3f8fd9", "#c0392b"
 
 
-def report(made) -> str:
-    """made: from_dabs.DabCalibration."""
-    brush, shapes = made.brush, made.outlines.shapes
+def report(made) -> Report:
+    """What `brushsvg calibrate` prints. made: from_dabs.DabCalibration."""
+    brush, outlines, shapes = made.brush, made.outlines, made.outlines.shapes
     count = sum(len(shape.seen) for shape in shapes)
-    shift, turn = made.outlines.shift_mm, math.degrees(made.outlines.turn_rad)
+    shift, turn = outlines.shift_mm, math.degrees(outlines.turn_rad)
+    hidden = _hidden_fronts(brush)
+    but = [f"the front is uncertain at {plural(len(hidden), 'depth')}"] if hidden else []
     lines = [
-        f"brush {brush.name}, depth {brush.depth_range_mm[0]:g} to {brush.depth_range_mm[1]:g} mm: outlines of {count} "
-        f"dabs at {len(shapes)} depths, the lag of brush {made.before.name}",
-        f"the sheet lay {shift[0]:+.2f}, {shift[1]:+.2f} mm aside, turned by {turn:+.2f} degrees; "
-        f"dabs of different headings differ by {made.outlines.turned_mm:.2f} mm (rms)",
-        "",
-        "  depth   dabs   one dab from the mean, rms" + "".join(law.rjust(17) for law in _LAWS),
+        f"{name_and_depths(brush)}: outlines of {count} dabs at {len(shapes)} depths, the lag of brush "
+        f"{made.before.name}",
+        f"the sheet is displaced by {shift[0]:+.2f}, {shift[1]:+.2f} mm and turned by {turn:+.2f} degrees; dabs of "
+        f"different headings differ by {outlines.turned_mm:.2f} mm (rms)",
+        *([_hidden(hidden)] if hidden else []),
+        *(text.format(before=made.before.name) for text in NOT_SAID),
     ]
-    bands = {law: law_band(brush, law, np.array([shape.depth_mm for shape in shapes])) for law in _LAWS}
-    for k, shape in enumerate(shapes):
-        cells = [_cell(getattr(brush, law)(shape.depth_mm), bands[law], k) for law in _LAWS]
-        lines.append(
-            f"{shape.depth_mm:7.2f}{len(shape.seen):7d}{shape.repeat_mm:29.3f}"
-            + "".join(cell.rjust(17) for cell in cells)
-        )
-    lines += ["  +-: half the 95 % confidence interval of the law"]
-    if made.edge_mm > 0:
-        lines[-1] += f"; in it that all edges may lie {made.edge_mm:.2f} mm off together"
-    sides = (
-        "both sides alike" if made.outlines.is_even else "one side larger than the other, by more than chance"
-    )
-    lines += [f"outlines: {sides}; smoothed by {SMOOTHED_MM:g} mm at most", ""]
-    lines += [_hidden(hidden)] if (hidden := _hidden_fronts(brush)) else []
-    return "\n".join([*lines, *(text.format(before=made.before.name) for text in NOT_SAID), ""])
+    depths = np.array([shape.depth_mm for shape in shapes])
+    counts = [str(len(shape.seen)) for shape in shapes]
+    repeats = [f"{shape.repeat_mm:.3f}" for shape in shapes]
+    columns = [("dabs", counts), ("one dab from the mean, rms", repeats)]
+    details = law_table(depths, [*columns, *((law, values(brush, law, depths)) for law in _LAWS)])
+    edges = f"; in it that all edges may be {made.edge_mm:.2f} mm off together" if made.edge_mm > 0 else ""
+    sides = "both sides alike" if outlines.is_even else "one side larger than the other, by more than chance"
+    details += [f"{HALF_95}{edges}", f"outlines: {sides}; smoothed by {SMOOTHED_MM:g} mm at most"]
+    return Report(verdict([], but), tuple(lines), (*details, "", *coefficients(brush)))
 
 
 _LAWS = ("tip_gap", "tip_to_widest", "half_width")
 
 
-def _cell(value: float, band, k: int) -> str:
-    return f"{value:.2f}" + (f" +- {band[0][k]:.2f}" if band else "")
-
-
 def _hidden_fronts(brush: _core.Brush) -> list[float]:
-    """Depths at which what lies ahead may have been touched before the brush was so deep."""
+    """Return the depths at which the front may have been touched before the brush was so deep."""
     shapes = brush.footprints.dragged
     fronts = [float(shape.outline_mm[:, 0].max()) - brush.tip_gap(shape.depth_mm) for shape in shapes]
     return [shape.depth_mm for k, shape in enumerate(shapes) if k and fronts[k] < max(fronts[:k]) + HIDDEN_MM]
 
 
 def _hidden(depths: list[float]) -> str:
-    told = ", ".join(f"{depth:g}" for depth in depths)
+    listed = ", ".join(f"{depth:g}" for depth in depths)
     return (
-        f"At depth {told} mm the front is no farther ahead than at a lesser depth, on the way to which it was touched: "
-        "the footprint there may be shorter."
+        f"At depth {listed} mm the front is no farther ahead than at a lesser depth, on the way to which it was "
+        "touched: the footprint there may be shorter."
     )
 
 

@@ -1,5 +1,5 @@
 """Dabs to a brush: its outlines as they were seen, and the laws of width, widest section and tip gap that agree with
-them. The lag is that of the brush for which the dabs were landed: dabs do not tell it."""
+them. The lag is that of the brush for which the dabs were landed: dabs do not show it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ...model.confidence import places
 from ...model.laws.fitted import need_fits
 from .dab_outlines import SMOOTHED_MM, Dab, Outlines, Shape, outlines_of, widths_at
 
-# a law bends enough that lies so near to the mean of each depth, or so many errors of that mean
+# a law bends enough if it is so near to the mean of each depth, or so many errors of that mean
 CLOSE_MM, CHANCE = 0.03, 2.0
 AGREE_MM = 0.4  # farther from an outline, and the brush would be refused
 MOST_TERMS = 5
@@ -39,7 +39,7 @@ class DabCalibration:
 def calibrate_dabs(
     dabs: list[Dab], before: _core.Brush, name: str, edge_mm: float = 0.0, joined: tuple[str, ...] = ()
 ) -> DabCalibration:
-    """edge_mm: standard deviation of what all edges lie off outward together. joined: names of dabs that touch others.
+    """edge_mm: standard deviation of a common outward shift of all edges. joined: names of dabs that touch others.
     Error where the dabs leave an outline open, or give a brush that cannot be used."""
     need_fits()
     _refuse_other_lag(dabs, before)
@@ -54,14 +54,14 @@ def calibrate_dabs(
     brush = _with_outlines(before, name, outlines)
     fits = {law: _fitted(law, values[law], brush.depth_range_mm) for law in LAWS}
     for law in LAWS:
-        setattr(brush, law, _told(fits[law].law, shapes, fits[law].law.half_interval_95))
+        setattr(brush, law, _profile_of(fits[law].law, shapes, fits[law].law.half_interval_95))
     covariance = _covariance(before, brush, fits, values, edge_mm)
     if covariance is not None:
         brush.covariance = covariance.tolist()
         for law in LAWS:
             variance = np.diag(covariance)[places(brush)[law]]
             half = _core.deviations_of_95(fits[law].law.degrees_of_freedom) * np.sqrt(variance)
-            setattr(brush, law, _told(fits[law].law, shapes, half.tolist()))
+            setattr(brush, law, _profile_of(fits[law].law, shapes, half.tolist()))
     _core.check(brush)
     return DabCalibration(brush, before, outlines, values, edge_mm, outlines.remarks)
 
@@ -120,8 +120,8 @@ def _seen(law: str, shape: Shape) -> np.ndarray:
         tops = np.array([_top(seen.outline_mm) for seen in shape.seen])
         return np.column_stack([np.full(len(tops), depth), _widest(shape.outline_mm) + tops - tops.mean()])
     if law == "tip_gap":
-        # a dab that lies farther ahead has its tip nearer to where it was set down
-        return np.array([[depth, shape.tip_gap_mm - seen.aside_mm[0]] for seen in shape.seen])
+        # a dab that is farther ahead has its tip nearer to where it was set down
+        return np.array([[depth, shape.tip_gap_mm - seen.displacement_mm[0]] for seen in shape.seen])
     spans = np.array([_broadest(seen.outline_mm) for seen in shape.seen])
     return np.column_stack([np.full(len(spans), depth), _half(shape) + (spans - spans.mean()) / 2])
 
@@ -134,14 +134,14 @@ def _broadest(outline: np.ndarray) -> float:
 
 
 def _widest(outline: np.ndarray) -> float:
-    """Amid what is as wide as can be told."""
+    """In the middle of the rows that are the widest, within the error."""
     x, wide = widths_at(outline)
     top = x[wide >= wide.max() - 0.004]
     return float((top[0] + top[-1]) / 2)
 
 
 def _top(outline: np.ndarray) -> float:
-    """Where the middle of the broad part lies, by all of it: which point of it is the broadest is chance."""
+    """Return the middle of the broad part, from all of it: its broadest point is chance."""
     x, wide = widths_at(np.roll(outline, -int(outline[:, 0].argmin()), axis=0))
     broad = wide >= BROAD * wide.max()
     bend, slope, _ = np.polyfit(x[broad], wide[broad], 2)
@@ -172,7 +172,7 @@ def _fitted(law: str, values: np.ndarray, range_mm, terms: int = 0):
     if abs(off[worst]) > AGREE_MM:
         raise Error(
             f"no law of {law.replace('_', ' ')} over depth runs within {AGREE_MM:g} mm of what the dabs show: at depth "
-            f"{depths[worst]:g} mm it is {off[worst]:.2f} mm off; look at the outlines (--picture)",
+            f"{depths[worst]:g} mm it is {off[worst]:.2f} mm off; look at the outlines (--marks-picture)",
             law,
             off[worst],
             code="law-undetermined",
@@ -203,7 +203,7 @@ def _with_outlines(before: _core.Brush, name: str, outlines: Outlines) -> _core.
     return brush
 
 
-def _told(found: _core.Profile, shapes: tuple[Shape, ...], half_interval_95) -> _core.Profile:
+def _profile_of(found: _core.Profile, shapes: tuple[Shape, ...], half_interval_95) -> _core.Profile:
     return _core.Profile(
         found.coefficients,
         calibrated_mm=(shapes[0].depth_mm, shapes[-1].depth_mm),
@@ -215,7 +215,7 @@ def _told(found: _core.Profile, shapes: tuple[Shape, ...], half_interval_95) -> 
 
 
 def _covariance(before, brush, fits, values, edge_mm: float) -> np.ndarray | None:
-    """That of the lag as it was, those of the new laws, and what all edges farther out would do to these together."""
+    """Return the covariance of the lag as it was, of the new laws, and of a common shift of all edges."""
     if any(not np.size(fit.covariance) for fit in fits.values()):
         return None
     at = places(brush)

@@ -27,7 +27,7 @@ OUTLINES = 10
 LEAST_RATIO = 0.1  # of widest section and front to the half width, as the fit has it
 ROUND_TAIL = (1.0, 0.4)  # of a footprint with a round tail: tip to widest section in half widths, sigma
 FOREIGN = 0.2  # share of a mark's points beyond that where it says nothing of the tail
-TELLS = 4.0  # chi-square by which one tail must fit better than the other for the marks to tell them apart
+MIN_CHI_SQUARE = 4.0  # chi-square by which one tail must fit better than the other to be chosen
 # A law with a 95 % interval of more than this share of it, and this long, over this part of the depths: no measurement
 UNDETERMINED, UNDETERMINED_MM, UNDETERMINED_PART = 0.5, 0.5, 0.25
 
@@ -37,7 +37,7 @@ class MarkCalibration(ArrayValue):
     """A brush that can be used, the fit it comes from, the marks, and what was expected of them.
 
     round_tail_gain: chi-square by which footprints with a round tail fit the marks better than pointed ones.
-    edge_mm: by which all edges may lie off together (sigma), and covariance, of all that is fitted, with that in it.
+    edge_mm: the common shift of all edges (sigma), and covariance, of all that is fitted, with that in it.
     paint_bends: by how many standard deviations marks narrow by another law than the one of brush.paint; dry: between
     which strokes its load ran dry.
     strays: marks that are not like the others, which the fit had no part of where they were left out.
@@ -72,8 +72,8 @@ def calibrate_marks(
 ) -> MarkCalibration:
     """Fit a brush to painted marks. Error where they leave a law open, or give a brush that cannot be used.
 
-    edge_mm: standard deviation of what all edges lie off outward together: how a picture was blurred, where paint was
-    told from paper. No mark tells it from a wider brush, so the intervals hold it.
+    edge_mm: standard deviation of a common outward shift of all edges: how a picture was blurred, where paint was
+    separated from paper. No mark distinguishes it from a wider brush, so the intervals hold it.
 
     Footprints have a pointed tail, or a round one where that fits the marks better. options: sigmas of sheet,
     displacement and height; depths, numbers per law and the tail are set here. leave_out_strays: fit once more without
@@ -111,7 +111,7 @@ def calibrate_marks(
     refuse_unlike(fit, painted)
     covariance = np.array(fit.covariance)
     if edge_mm > 0:
-        moved = _moved(fit, farther_out(painted.marks, edge_mm), options)
+        moved = _moved(fit, grow_outlines(painted.marks, edge_mm), options)
         covariance += np.outer(moved, moved)
         wetter = wetter_where_wider(fit, deepest, edge_mm)
         covariance += np.outer(wetter, wetter)
@@ -141,13 +141,13 @@ def calibrate_marks(
 
 
 def refuse_many(astray: tuple[Stray, ...], painted: Painted, scale: SheetScale | None = None) -> None:
-    """scale: of the sheet, where another one may be what takes marks aside."""
+    """scale: of the sheet, where another one may be what displaces marks."""
     most = math.floor(MOST * len(painted.marks))
     if len(astray) > most:
         refuse_scale(scale)
         raise Error(
             f"{len(astray)} of {len(painted.marks)} marks are not where or what the others say, the range is "
-            f"[0, {most}]: {', '.join(each.mark.stroke for each in astray)}; does anything lie on the page, is the "
+            f"[0, {most}]: {', '.join(each.mark.stroke for each in astray)}; is anything on the page, is the "
             "paint smeared, is it the page on which this chart was painted, and is its bar as long as it says?",
             "marks",
             len(astray),
@@ -172,16 +172,16 @@ def moved_by(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
 
 
 def moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float) -> np.ndarray:
-    """The same where every edge lies edge_mm farther out."""
-    return moved_by(fit, farther_out(marks, edge_mm), options)
+    """Return the marks grown by edge_mm at every edge."""
+    return moved_by(fit, grow_outlines(marks, edge_mm), options)
 
 
-def farther_out(marks: list, edge_mm: float) -> list:
+def grow_outlines(marks: list, edge_mm: float) -> list:
     return [
         _core.PaintedMark(
             mark.stroke,
             np.array(mark.poses_mm),
-            [_farther_out(ring, edge_mm) for ring in mark.outline_mm],
+            [_grow(ring, edge_mm) for ring in mark.outline_mm],
             mark.arcs,
         )
         for mark in marks
@@ -189,8 +189,8 @@ def farther_out(marks: list, edge_mm: float) -> list:
 
 
 def wetter_where_wider(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
-    """The same where edges lie the farther out the wider a mark is, by edge_mm at the greatest depth: more paint runs
-    farther. The fit would take edges that all lie as far out for a paper that lies higher; these are wider marks."""
+    """Return the marks grown the more the wider a mark is, by edge_mm at the greatest depth: more paint
+    runs farther. The fit would take a common shift of all edges for higher paper; these are wider marks."""
     half = np.array(fit.laws.half_width)
     shape = len(widest_ratio(fit.laws)) + len(front_ratio(fit.laws))
     moved, end = np.zeros(len(fit.covariance)), height_at(fit) - shape
@@ -243,8 +243,8 @@ def height_at(fit) -> int:
     return len(laws.lag) + len(laws.tip_gap) - 1 + len(laws.half_width) - 1 + ratios
 
 
-def _farther_out(ring: np.ndarray, by_mm: float) -> np.ndarray:
-    """Paint lies on the left of a ring."""
+def _grow(ring: np.ndarray, by_mm: float) -> np.ndarray:
+    """Return the ring with the paint on its left."""
     along = np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0)
     along /= np.maximum(np.hypot(*along.T), 1e-9)[:, None]
     return ring + by_mm * np.column_stack([along[:, 1], -along[:, 0]])
@@ -253,7 +253,7 @@ def _farther_out(ring: np.ndarray, by_mm: float) -> np.ndarray:
 def _likelier_tail(marks: list, options: _core.MarkOptions, start=None) -> tuple[object, float]:
     """The fit with the tail that fits better, and by how much the round one does. start: laws that are near.
 
-    Both are asked for laws that do not depart from their few numbers, which would make up for a wrong tail."""
+    Both get laws that do not depart from their few numbers, which would make up for a wrong tail."""
     usual, departing = options.widest_per_half, options.departing
     options.round_tail = options.departing = False
     pointed = _core.fit_marks(marks, start, options)
@@ -268,7 +268,7 @@ def _likelier_tail(marks: list, options: _core.MarkOptions, start=None) -> tuple
         if np.mean(off > OUTLYING) < FOREIGN:
             squares = np.minimum(off, OUTLYING) ** 2
             gain += float(squares[0].sum() - squares[1].sum()) / alike
-    fit = rounded if gain > TELLS else pointed
+    fit = rounded if gain > MIN_CHI_SQUARE else pointed
     if fit is pointed:
         options.round_tail, options.widest_per_half = False, usual
     options.departing = departing
@@ -318,7 +318,7 @@ def expected_brush(
     painted: list[_core.PaintedMark] | None = None,
 ) -> tuple[_core.Brush, list[str]]:
     """What marks of this plan will say of such a brush, before anyone paints: the brush as the fit sees it, with
-    the covariance and intervals to expect, and in words what the strokes cannot tell apart.
+    the covariance and intervals to expect, and in words what the strokes cannot separate.
 
     noise_mm: standard deviation of a painted edge, which forgets itself over noise_length_mm along the outline.
     options: sigmas of sheet, displacement and height, as for calibrate_marks.
@@ -336,7 +336,7 @@ def expected_machine(
     parts: tuple[str, ...] = tuple(PARTS),
     painted: list[_core.PaintedMark] | None = None,
 ) -> list[Number]:
-    """What such marks will say of a machine that does as it is told: each number with half its 95 % interval."""
+    """Return the numbers of a machine without errors that such marks will give, each with half its 95 % interval."""
     options = _core.MarkOptions()
     ask_for(options, parts)
     painted = painted or expected_marks(plan, brush)
@@ -490,7 +490,7 @@ def refuse_unlike(fit, painted: Painted) -> None:
 def _refuse_undetermined(brush: _core.Brush, fit) -> None:
     depths = np.linspace(*brush.depth_range_mm, 21)[1:]
     covariance, at = np.array(brush.covariance), places(brush)
-    for law in ("lag", "half_width"):  # the others are not what a plan is led by
+    for law in ("lag", "half_width"):  # the others do not matter for a plan
         half = half_interval_mm(covariance[at[law], at[law]], depths, None)
         values = np.array([getattr(brush, law)(d) for d in depths])
         undetermined = (half > UNDETERMINED * values) & (half > UNDETERMINED_MM)

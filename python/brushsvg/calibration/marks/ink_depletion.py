@@ -27,7 +27,7 @@ class RanDry:
         """About whole_mm: anywhere between both ways the load may have come to its end."""
         return (self.dry_mm - self.whole_mm) ** 2 / 3
 
-    def told(self) -> str:
+    def describe(self) -> str:
         return (
             f"the load ran dry between {self.whole_mm:.0f} mm, where stroke {self.whole} ends, the last whole mark, "
             f"and {self.dry_mm:.0f} mm, the end of {self.dry}, which is missing or broken, as all after it are: "

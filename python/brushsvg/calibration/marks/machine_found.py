@@ -1,4 +1,4 @@
-"""What a machine does besides what it is told, found from painted marks; in words and as a cell's table."""
+"""Find the errors of a machine from painted marks; in words and as a cell's table."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from ...errors import Error, Notice, need
 
 # Standard deviation of each number beforehand. A tool on a long thin arm gives way by half as much as it is pressed;
 # a printed or scanned page is as long as it should be to 1 %; 1 mm over a sheet is what a table is off level; worn
-# screws and loose belts leave some tenths of a mm where they turn; a frame that is warped or sags takes the tool half a
-# mm aside at the sheet's edges.
+# screws and loose belts leave some tenths of a mm where they turn; a frame that is warped or sags displaces the tool by
+# half a mm at the sheet's edges.
 PARTS = {
     "lean": ("lean_mm_per_mm", 0.5),
     "axes": ("axes", 0.01),
@@ -38,7 +38,8 @@ ONE_WAY = 0.8
 
 @dataclass(frozen=True)
 class Number:
-    """One number of a machine with half its 95 % interval. part: by which it was asked for; unit: what it counts in."""
+    """One number of a machine with half its 95 % interval. part: the option that requests it; unit: what it counts
+    in."""
 
     part: str
     name: str
@@ -74,13 +75,13 @@ def ask_for(options: _core.MarkOptions, parts: tuple[str, ...]) -> None:
         setattr(options, key, sigma)
 
 
-def asked(options: _core.MarkOptions) -> tuple[str, ...]:
+def list_parts(options: _core.MarkOptions) -> tuple[str, ...]:
     return tuple(part for part, (key, _) in PARTS.items() if getattr(options, key) > 0)
 
 
 def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Number]:
-    """All that was asked for, in the order of the fit."""
-    parts = asked(options)
+    """Return all requested numbers, in the order of the fit."""
+    parts = list_parts(options)
     if not parts:
         return []
     machine = fit.machine
@@ -109,27 +110,28 @@ def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Num
     ]
 
 
-def told(found: list[Number]) -> list[str]:
+def describe_numbers(found: list[Number]) -> list[str]:
     """A line for each number, and of the field what becomes of it."""
     lines = [f"{one.name}: {one.value:.4f} +- {one.half:.4f} {one.unit}".rstrip() for one in found]
     field = [one for one in found if one.part == "field"]
     if field and min(one.half for one in field) > HARDLY * _core.deviations_of_95() * PARTS["field"][1]:
-        lines.append("field: the marks tell nothing of it; strokes all over the sheet would")
+        lines.append("field: the marks do not show it; strokes all over the sheet would")
     elif field and not has_field(found):
         lines.append("field: none that is certain, and none for the cell")
     return lines
 
 
 def has_field(found: list[Number]) -> bool:
-    """Whether there is a field at all: that six numbers are 0 is asked of all of them at once."""
+    """Return whether there is a field at all: the test that six numbers are 0 is one for all of them."""
     return any(abs(one.value) > CERTAIN * one.half for one in found if one.part == "field")
 
 
 def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str]:
-    """The lines of a cell's table [machine]; none where nothing is asked for that a cell can undo. Backlash and a field
-    that may as well be none are left out. Which machine it is may not be known: a remark says where a line has no use.
+    """The lines of a cell's table [machine]; none where no requested number can be undone by a cell. Backlash and a
+    field that may as well be none are left out. Which machine it is may not be known: a remark says where a line has no
+    use.
     """
-    parts, machine = asked(options), fit.machine
+    parts, machine = list_parts(options), fit.machine
     backlash = [
         one.value if one.value > max(one.half, LEAST_MM) else 0.0 for one in found if one.part == "backlash"
     ]
@@ -163,8 +165,8 @@ def _pair(values) -> str:
 
 
 def doubts(painted, options: _core.MarkOptions) -> list[Notice]:
-    """A notice where lean cannot be told from lag."""
-    if "lean" not in asked(options):
+    """Return a notice where lean cannot be separated from lag."""
+    if "lean" not in list_parts(options):
         return []
     way, total = np.zeros(2), 0.0
     for mark in painted.marks:

@@ -13,7 +13,9 @@ from ... import _core, json_fields
 from ...errors import Error
 from ...geometry import polylines
 
-FARTHEST_MM = 60.0  # a mark lies no farther from its stroke: lag, sheet and displacement together are shorter
+FARTHEST_MM = (
+    60.0  # greatest distance of a mark from its stroke: lag, sheet and displacement together are shorter
+)
 WIDEST_MM = 60.0  # no brush paints so much beyond its stroke, from one side to the other
 LEAST_MM2 = 0.1
 LARGEST_MM = 1e6
@@ -23,7 +25,7 @@ PAINTED_MM = 5.0  # a depth counts where this much was painted at it
 DEPTH_BINS = 20
 DAB = "dab"  # the kind of stroke, in a plan's settings, that is set down and taken up without a way
 UNITS = ((1 / 1000, "metres"), (1 / 25.4, "inches"), (0.1, "centimetres"), (25.4, "points or pixels"))
-# How a sheet may lie: plan to sheet, and what to say
+# Possible exchanges of a sheet's sides: plan to sheet, and what to say
 LAID = (
     (((-1, 0), (0, -1)), "turned by 180 degrees"),
     (((0, -1), (1, 0)), "turned by 90 degrees, counter-clockwise"),
@@ -47,7 +49,7 @@ class Painted:
     way_mm: float = 0.0
 
     def without(self, strokes: set[str]) -> Painted:
-        """Error where what is left tells nothing."""
+        """Raise Error where the remaining marks are not informative."""
         left = painted_of([mark for mark in self.marks if mark.stroke not in strokes])
         return replace(left, before_mm=self.before_mm, way_mm=self.way_mm)
 
@@ -100,9 +102,9 @@ def ways_before_mm(passes: dict[str, _core.Pass]) -> tuple[dict[str, float], flo
 
 
 def painted_of(marks: list) -> Painted:
-    """Error where the marks tell nothing of a brush."""
+    """Raise Error where the marks are not informative about a brush."""
     ways = [np.array(mark.poses_mm) for mark in marks]
-    _refuse_what_tells_nothing(ways)
+    _refuse_uninformative(ways)
     return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))
 
 
@@ -132,7 +134,7 @@ def _passes(plan, read) -> dict[str, _core.Pass]:
             )
         if one.settings.kind == DAB:
             raise Error(
-                f"{name!r} is a dab: dabs tell the outline of the brush, but no lag",
+                f"{name!r} is a dab: dabs show the outline of the brush, but no lag",
                 "plan",
                 code="dabs-tell-no-lag",
                 advice="brushsvg calibrate PHOTO --chart CHART.json --brush BRUSH",
@@ -194,7 +196,7 @@ def middle(points: np.ndarray) -> np.ndarray:
 
 
 def _refuse_other_frames(found: list) -> None:
-    """Units, direction of y, exchanged marks: seen in where marks lie beside where their strokes do."""
+    """Find wrong units, direction of y, exchanged marks: from the places of marks relative to their strokes."""
     planned = np.array([middle(poses[:, :2]) for _, poses, _ in found])
     seen = np.array([middle(np.vstack(rings)) for _, _, rings in found])
     spread = lambda points: float(np.hypot(*np.std(points, axis=0)))  # noqa: E731
@@ -231,14 +233,14 @@ def _refuse_other_frames(found: list) -> None:
     for i in wrong:
         if other[i] in wrong or off[i] > FARTHEST_MM:
             raise Error(
-                f"the mark of stroke {found[i][0]!r} lies {off[i]:.0f} mm from it, where stroke "
+                f"the mark of stroke {found[i][0]!r} is {off[i]:.0f} mm from it, where stroke "
                 f"{found[other[i]][0]!r} was painted: do the marks have the ids of their strokes?",
                 f"marks[{i}]",
                 code="mark-off-stroke",
             )
     if (worst := int(off.argmax())) is not None and off[worst] > FARTHEST_MM:
         raise Error(
-            f"the mark of stroke {found[worst][0]!r} lies {off[worst]:.0f} mm from it, more than {FARTHEST_MM:g} mm: "
+            f"the mark of stroke {found[worst][0]!r} is {off[worst]:.0f} mm from it, more than {FARTHEST_MM:g} mm: "
             "are plan and marks those of one sheet, both in mm from its lower left corner?",
             f"marks[{worst}]",
             code="mark-off-stroke",
@@ -258,20 +260,20 @@ def _refuse_laid_otherwise(planned: np.ndarray, seen: np.ndarray) -> None:
     for laid, words in LAID:
         if np.linalg.norm(slopes / size - laid) < 0.5:
             raise Error(
-                f"the sheet of the marks lies {words}; outlines count from the lower left corner of the plan's sheet",
+                f"the sheet of the marks is {words}; outlines count from the lower left corner of the plan's sheet",
                 "marks",
                 code="marks-displaced",
             )
     if abs(size - 1) > 0.2:
         raise Error(
-            f"the marks lie {size:.3g} times as far apart as their strokes: are the outlines in pixels, or scanned at "
+            f"the marks are {size:.3g} times as far apart as their strokes: are the outlines in pixels, or scanned at "
             "another scale? They count in mm",
             "marks",
             code="marks-scaled",
         )
     if (away := float(np.hypot(*(seen - planned).mean(axis=0)))) > 0.5 * FARTHEST_MM:
         raise Error(
-            f"all marks lie {away:.0f} mm from their strokes, all the same way: outlines count from the lower left "
+            f"all marks are {away:.0f} mm from their strokes, all the same way: outlines count from the lower left "
             "corner of the plan's sheet",
             "marks",
             code="marks-displaced",
@@ -301,7 +303,7 @@ def _refuse_what_is_no_paint(found: list) -> None:
 
 
 def depths_painted(ways: list[np.ndarray]) -> int:
-    """At how many depths PAINTED_MM or more were painted, told apart by a twentieth of the deepest."""
+    """Return at how many depths PAINTED_MM or more were painted; depths differ by a twentieth of the deepest."""
     deepest = max(float(-poses[:, 2].min()) for poses in ways)
     if not deepest > 0:
         return 0
@@ -317,7 +319,7 @@ def depths_painted(ways: list[np.ndarray]) -> int:
     return int(np.sum(runs & ~np.concatenate([[False], runs[:-1]]))) if runs.sum() < 4 else int(runs.sum())
 
 
-def _refuse_what_tells_nothing(ways: list[np.ndarray]) -> None:
+def _refuse_uninformative(ways: list[np.ndarray]) -> None:
     count = depths_painted(ways)
     if count == 0:
         raise Error(
@@ -334,7 +336,7 @@ def _refuse_what_tells_nothing(ways: list[np.ndarray]) -> None:
         )
     if all(_turning(poses) < STRAIGHT_RAD for poses in ways):
         raise Error(
-            "all strokes are straight: lag and displacement of the marks cannot be told apart; add corners, arcs and "
+            "all strokes are straight: lag and displacement of the marks cannot be separated; add corners, arcs and "
             "reversals, at each depth",
             "plan",
             code="law-undetermined",

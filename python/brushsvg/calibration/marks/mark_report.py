@@ -1,4 +1,4 @@
-"""What painted marks told of a brush: laws, confidence, what moved, residuals; in words and as a picture."""
+"""What painted marks show of a brush: a verdict, laws, confidence, residuals, what moved; and as a picture."""
 
 from __future__ import annotations
 
@@ -10,14 +10,15 @@ from ... import _core
 from ...errors import Notice
 from ...geometry.rotation import rotation
 from ...model.confidence import law_band, paint_interval_per_m
-from ...model.describe import LAWS, polynomial
-from ...model.plot import INK, brush_picture_on, encoded, fill_rings, new_figure
+from ...model.plot import INK, brush_picture_on, encoded, fill_rings, new_figure, shortened
+from ...reporting.report_text import Report, overlap_reasons, plural, verdict
+from ..law_text import coefficients, in_short, laws_table, name_and_depths, paper_height
 from . import machine_found
 from .from_marks import (
     GAP_TERMS,
     HALF_TERMS,
     LAG_TERMS,
-    TELLS,
+    MIN_CHI_SQUARE,
     front_ratio,
     height_at,
     simulated,
@@ -25,53 +26,96 @@ from .from_marks import (
 )
 from .stray_marks import OUTLYING
 
-TABLE_ROWS = 6
 FOREIGN = 0.1  # of all points, masked: more than blots and gaps
-ALIKE = 0.5  # overlap of painted and predicted marks; photographs of hairy strokes have 0.6 to 0.8
+ALIKE, GOOD_FIT = (
+    0.5,
+    0.9,
+)  # overlap of painted and predicted marks; photographs of hairy strokes have 0.6 to 0.8
 UNLIKELY, UNLIKELY_RMS = 3.0, 1.5  # times what was expected, of one number and of the displacements' rms
+WORST_MARKS = 3
 PAINT, PREDICTED, WAY = "#c9ced8", "#c0392b", "#3f8fd9"
 
 
-def report(made, of_photo: bool = False) -> str:
-    """The text that `brushsvg calibrate` prints. made: a mark_calibrate.MarkCalibration; of_photo: of a photograph,
-    which has flags and no measurement file."""
-    brush, fit, painted = made.brush, made.fit, made.painted
-    lines = [
-        f"brush {brush.name}, depth {brush.depth_range_mm[0]:g} to {brush.depth_range_mm[1]:g} mm, from "
-        f"{len(painted.marks)} painted marks",
-        "",
+def report(made, of_photo: bool = False) -> Report:
+    """What `brushsvg calibrate` prints. made: a mark_calibrate.MarkCalibration; of_photo: of a photograph, which has
+    flags and no measurement file.
+
+    Do not use: the fit did not converge, or marks overlap with their predictions by 0.5 or less without displacements.
+    Usable, but: by less than 0.9; marks were left out or are astray; the sheet differs from what was expected; a tenth
+    of the edges is masked; too few depths were painted for the usual lag.
+    """
+    brush, fit = made.brush, made.fit
+    in_place, moved = overlaps(made)
+    unexpected = _unexpected(made, of_photo)
+    against, low = coinciding(moved)
+    against += [] if fit.converged else ["the fit had not converged when it was stopped"]
+    strays = plural(len(made.strays), "mark")
+    but = [
+        *low,
+        (f"{strays} had to be left out" if made.strays_left_out else f"the fit is unlike {strays}")
+        if made.strays
+        else "",
+        f"{plural(len(unexpected), 'value')} of the sheet {'differs' if len(unexpected) == 1 else 'differ'} from what "
+        "was expected"
+        if unexpected
+        else "",
+        f"{100 * fit.left_aside:.0f} % of the edges had to be masked" if fit.left_aside > FOREIGN else "",
+        f"only {made.painted.depths} depths were painted" if len(brush.lag.coefficients) < LAG_TERMS else "",
     ]
-    for name, _ in LAWS:
-        law = getattr(brush, name)
-        lines.append(f"{name} = {polynomial(law.coefficients)}")
-        halves = ", ".join(f"{half:.2g}" for half in law.half_interval_95)
-        lines.append(f"  95 % confidence intervals +- {halves} (ascending powers)")
-    overlap = overlaps(made)
-    lines += _paint(made) if brush.paint else []
-    lines += ["", _tail(made), "", *_table(brush), "", *_moved(made), "", *_stays(made, *overlap)]
     found = machine_found.numbers(fit, made.covariance, made.expected)
-    if table := machine_found.cell_table(fit, made.expected, found):
-        lines += ["", "for the cell:", *table]
-    remarks = [
-        f"note: {sentence}"
-        for sentence in [
-            *_few_depths(made),
-            *_departing(made),
-            *_astray(made),
-            *_unexpected(made, of_photo),
-            *_unlike(fit, overlap[1]),
-            *fit.remarks,
-        ]
+    cell = machine_found.cell_table(fit, made.expected, found)
+    lines = [
+        f"{name_and_depths(brush)}: {in_short(brush)}, from {len(made.painted.marks)} painted marks",
+        f"painted and predicted marks overlap by {moved:.3f}, by {in_place:.3f} with the displacements of marks (mean "
+        "of intersection over union)",
+        *(_paint(made) if brush.paint else []),
+        _displaced(made),
+        _worst(made),
+        *(
+            ["the machine has faults that its cell can undo: the details have a table for the cell file"]
+            if cell
+            else []
+        ),
+        *_astray(made),
+        *unexpected,
+        *_unlike(fit, moved),
+        *_few_depths(made),
+        *fit.remarks,
     ]
-    if not fit.converged:
-        remarks.append("note: the fit had not converged when it was stopped: look at the picture")
-    return "\n".join([*lines, *([""] if remarks else []), *remarks, ""])
+    details = [*laws_table(brush), "", _tail(made), *_departing(made)]
+    details += ["", *_moved(made), "", *_stays(made), *(["", "for the cell:", *cell] if cell else [])]
+    return Report(verdict(against, but), tuple(lines), (*details, "", *coefficients(brush)))
+
+
+def coinciding(moved: float) -> tuple[list[str], list[str]]:
+    """What the overlap of painted and predicted marks, without displacements, says of a brush."""
+    return overlap_reasons(moved, "painted and predicted marks", GOOD_FIT, ALIKE + 1e-9)
+
+
+def _displaced(made) -> str:
+    sizes = [math.hypot(*residual.displacement_mm) for residual in made.fit.marks]
+    far = int(np.argmax(sizes))
+    half = _core.deviations_of_95() * float(
+        np.sqrt(made.covariance[height_at(made.fit), height_at(made.fit)])
+    )
+    return (
+        f"{paper_height(made.fit.height_mm, half)}; marks are displaced by {_rms(sizes):.2f} mm (rms), "
+        f"{made.painted.marks[far].stroke} most, by {sizes[far]:.2f} mm"
+    )
+
+
+def _worst(made) -> str:
+    """The marks that fit worst."""
+    rms_mm = np.array([residual.rms_mm for residual in made.fit.marks])
+    worst = np.argsort(-rms_mm, kind="stable")[:WORST_MARKS]
+    listed = ", ".join(f"{made.painted.marks[k].stroke} {rms_mm[k]:.2f} mm" for k in worst)
+    return f"worst marks, by the residual of their edges (rms): {listed}"
 
 
 def _paint(made) -> list[str]:
     paint, bends = made.brush.paint, made.paint_bends
     half = paint_interval_per_m(paint)
-    known = "" if paint.narrows_per_m > half else ": these marks do not tell that they do"
+    known = "" if paint.narrows_per_m > half else ": these marks do not show that they do"
     lines = [
         f"marks narrow by {paint.narrows_per_m:.3f} +- {half:.2g} per metre of way since the dip{known} (95 %, up to "
         f"{paint.calibrated_mm[1]:.0f} mm)"
@@ -82,7 +126,7 @@ def _paint(made) -> list[str]:
             "and the freshly dipped width is off by more than its interval"
         )
     lines.append(
-        made.dry.told()
+        made.dry.describe()
         if made.dry
         else f"no mark ran dry: a load lasts {made.painted.way_mm:.0f} mm at least"
     )
@@ -91,8 +135,8 @@ def _paint(made) -> list[str]:
 
 def _tail(made) -> str:
     gain = made.round_tail_gain
-    if abs(gain) < TELLS:
-        return "these marks do not tell whether the footprint's tail is pointed or round; it is taken to be pointed"
+    if abs(gain) < MIN_CHI_SQUARE:
+        return "these marks do not show whether the footprint's tail is pointed or round; it is taken to be pointed"
     kinds = ("round", "pointed") if gain > 0 else ("pointed", "round")
     return "footprints with a {} tail fit these marks, {} ones worse (chi-square {:.0f} more)".format(
         *kinds, abs(gain)
@@ -132,10 +176,10 @@ def _departing(made) -> list[str]:
 
 
 def _unexpected(made, of_photo: bool = False) -> list[str]:
-    """What lies so far off that the sigmas the fit was given are not those of this sheet: they pull at the laws."""
+    """Return the values that are too large for the sigmas of the fit, which then pull at the laws."""
     fit, expected = made.fit, made.expected
     astray = {stray.mark.stroke for stray in made.strays}
-    aside = [
+    displaced = [
         residual.displacement_mm
         for mark, residual in zip(made.painted.marks, fit.marks, strict=True)
         if mark.stroke not in astray
@@ -145,7 +189,7 @@ def _unexpected(made, of_photo: bool = False) -> list[str]:
         (
             "displacement_mm",
             "marks are displaced (rms) by",
-            _rms(aside),
+            _rms(displaced),
             expected.displacement_mm,
             UNLIKELY_RMS,
         ),
@@ -181,17 +225,17 @@ def _remedy(key: str, sigma: float, of_photo: bool) -> str:
         ),
         "displacement_mm": ": add --spread FILE, which brushsvg compare --sheets writes",
     }
-    return of_flags.get(key, ": compare the picture (--picture) with the page that you painted")
+    return of_flags.get(key, ": compare the picture (--marks-picture) with the page that you painted")
 
 
 def _astray(made) -> list[str]:
     if made.strays_left_out and made.strays:
         names = ", ".join(stray.mark.stroke for stray in made.strays)
         return [f"left out, not being where or what the other marks say: {names}"]
-    return [f"{notice.where}: {notice.told}" for notice in strays_told(made)]
+    return [f"{notice.where}: {notice.text}" for notice in list_strays(made)]
 
 
-def strays_told(made) -> list[Notice]:
+def list_strays(made) -> list[Notice]:
     """Of each mark that is not where or what the others say: where it was found and where expected, what it costs."""
     out = []
     for stray in made.strays:
@@ -203,13 +247,13 @@ def strays_told(made) -> list[Notice]:
         if stray.is_displaced:
             dx, dy = stray.displacement_mm
             what = (
-                f"its mark lies {math.hypot(dx, dy):.1f} mm aside ({dx:+.1f}, {dy:+.1f}), the others scatter by "
+                f"its mark is displaced by {math.hypot(dx, dy):.1f} mm ({dx:+.1f}, {dy:+.1f}), the others scatter by "
                 f"{stray.spread_mm:.2f} mm"
             )
         else:
             what = (
                 f"its outline is off by {stray.rms_mm:.2f} mm (rms), the others by {stray.usual_rms_mm:.2f}: something "
-                "lies on the mark, or it is smeared or torn"
+                "is on the mark, or it is smeared or torn"
             )
         sentence = f"{what}; found in {found}, expected in {expected}; {_cost(made, stray.mark)}"
         out.append(Notice(stray.mark.stroke, sentence, code="mark-astray", about=stray.mark.stroke))
@@ -258,60 +302,33 @@ def _rounded_up(size: float) -> float:
     return unit * math.ceil(size / unit)
 
 
-def _table(brush) -> list[str]:
-    lines = ["  depth" + "".join(name.rjust(18) for name, _ in LAWS)]
-    depths = np.linspace(*brush.depth_range_mm, TABLE_ROWS)
-    bands = {name: law_band(brush, name, depths) for name, _ in LAWS}
-    for i, depth in enumerate(depths):
-        cells = []
-        for name, _ in LAWS:
-            band = bands[name]
-            half = f" +- {band[0][i]:.2f}" if band else ""
-            cells.append(f"{getattr(brush, name)(depth):.2f}{half}".rjust(18))
-        lines.append(f"{depth:7.2f}" + "".join(cells))
-    return [*lines, "  +-: half the 95 % confidence interval of the law"]
-
-
 def _moved(made) -> list[str]:
-    """Height of the paper, place of the sheet, displacement of the marks: found along with the laws."""
+    """Place of the sheet and errors of the machine: found along with the laws."""
     fit = made.fit
     half_intervals = _core.deviations_of_95() * np.sqrt(np.diag(made.covariance))
     first = height_at(fit)
-    height, shift, turn = (
-        half_intervals[first],
-        half_intervals[first + 1 : first + 3],
-        half_intervals[first + 3],
-    )
-    way = "higher" if fit.height_mm >= 0 else "lower"
-    sizes = [math.hypot(*residual.displacement_mm) for residual in fit.marks]
-    far = int(np.argmax(sizes))
+    shift, turn = half_intervals[first + 1 : first + 3], half_intervals[first + 3]
     lines = [
-        f"the paper lies {abs(fit.height_mm):.2f} +- {height:.2f} mm {way} than the plan took it to be",
         f"the sheet is shifted by {fit.shift_mm[0]:+.2f} +- {shift[0]:.2f}, {fit.shift_mm[1]:+.2f} +- {shift[1]:.2f} "
         f"mm and turned by {math.degrees(fit.turn_rad):+.2f} +- {math.degrees(turn):.2f} degrees",
-        f"marks are displaced by {np.sqrt(np.mean(np.square(sizes))):.2f} mm (rms), {made.painted.marks[far].stroke} "
-        f"most, by {sizes[far]:.2f} mm",
     ]
-    lines += machine_found.told(machine_found.numbers(fit, made.covariance, made.expected))
+    lines += machine_found.describe_numbers(machine_found.numbers(fit, made.covariance, made.expected))
     if made.scale:
-        lines.append(f"by where its marks lie the sheet is {made.scale.told(made.scale.both)} than the plan")
+        lines.append(
+            f"by the places of its marks the sheet is {made.scale.describe(made.scale.both)} than the plan"
+        )
     return lines
 
 
-def _stays(made, lying: float, moved: float) -> list[str]:
-    """lying, moved: overlap with and without the displacements."""
+def _stays(made) -> list[str]:
     fit = made.fit
-    worst = int(np.argmax([residual.rms_mm for residual in fit.marks]))
     lines = [
         f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, worth "
         f"{fit.effective_samples:.0f} independent ones",
-        f"largest residuals: {made.painted.marks[worst].stroke}, {fit.marks[worst].rms_mm:.2f} mm (rms)",
-        f"painted and predicted marks overlap by {lying:.3f} where they lie, by {moved:.3f} with their displacements "
-        "taken away (mean of intersection over union)",
     ]
     if made.edge_mm > 0:
         lines.append(
-            f"all edges may lie {made.edge_mm:.2f} mm off together (standard deviation), as a picture has them: the "
+            f"all edges may be {made.edge_mm:.2f} mm off together (standard deviation), as a picture has them: the "
             "intervals hold that"
         )
     if fit.left_aside > 0.01:
@@ -319,7 +336,7 @@ def _stays(made, lying: float, moved: float) -> list[str]:
         lines.append(f"masked: {100 * fit.left_aside:.0f} % of the points, outliers ({bound})")
     if fit.slim > 0.01:
         lines.append(
-            f"masked: {100 * fit.slim:.0f} % of the points, beside ends hardly wider than the residuals"
+            f"masked: {100 * fit.slim:.0f} % of the points, next to ends hardly wider than the residuals"
         )
     outliers = [
         mark.stroke for mark, found in zip(made.painted.marks, fit.marks, strict=True) if found.outlier
@@ -332,14 +349,16 @@ def _stays(made, lying: float, moved: float) -> list[str]:
 
 
 def overlaps(made) -> tuple[float, float]:
-    """Mean overlap of painted with predicted marks, where they lie and with their displacements taken away: how well
-    the brush says where paint will be, which is more than the confidence of its laws."""
-    marks, lying, moved = made.painted.marks, [], []
+    """Return the mean overlap of painted with predicted marks, in place and without their displacements.
+
+    It shows how well the brush predicts where paint will be, which is more than the confidence of its laws.
+    """
+    marks, in_place, moved = made.painted.marks, [], []
     predicted = predicted_marks(made, marks)
     for mark, residual, rings in zip(marks, made.fit.marks, predicted, strict=True):
-        lying.append(_core.overlap(_home(made, mark.outline_mm, (0.0, 0.0)), rings))
+        in_place.append(_core.overlap(_home(made, mark.outline_mm, (0.0, 0.0)), rings))
         moved.append(_core.overlap(_home(made, mark.outline_mm, residual.displacement_mm), rings))
-    return float(np.mean(lying)), float(np.mean(moved))
+    return float(np.mean(in_place)), float(np.mean(moved))
 
 
 def report_picture(made, suffix: str) -> bytes:
@@ -357,7 +376,7 @@ def report_picture(made, suffix: str) -> bytes:
             axes.plot(*np.vstack([ring, ring[:1]]).T, color=PREDICTED, linewidth=1)
         axes.plot(*mark.poses_mm[:, :2].T, color=WAY, linewidth=0.8)
         axes.set_aspect("equal")
-        title = f"{what}: {mark.stroke}, {residual.rms_mm:.2f} mm (rms)".replace("$", r"\$")
+        title = f"{what}: {shortened(mark.stroke, 16)}, {residual.rms_mm:.2f} mm (rms)"
         axes.set_title(title, fontsize=9, color=INK)
         axes.tick_params(labelsize=7)
     marks.suptitle("grey: painted; red: predicted; blue: the tool's way", fontsize=8)
@@ -365,14 +384,14 @@ def report_picture(made, suffix: str) -> bytes:
 
 
 def _home(made, rings, displacement) -> list[np.ndarray]:
-    """Rings of the sheet in the frame of the plan, as the fit found the one to lie on the other."""
+    """Transform rings of the sheet to the frame of the plan, with the fitted pose of the sheet."""
     fit = made.fit
     centre, back = np.array(fit.centre_mm), rotation(-fit.turn_rad)
     return [(ring - fit.shift_mm - centre) @ back + centre - displacement for ring in rings]
 
 
 def on_sheet(made, rings) -> list[np.ndarray]:
-    """Rings in the frame of the plan where they lie on the sheet that was painted."""
+    """Transform rings of the plan to the frame of the painted sheet, with its fitted pose."""
     fit = made.fit
     centre, turned = np.array(fit.centre_mm), rotation(fit.turn_rad)
     return [(ring - centre) @ turned + centre + fit.shift_mm for ring in rings]

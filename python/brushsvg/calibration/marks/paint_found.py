@@ -17,13 +17,13 @@ from .mark_report import predicted_marks
 
 ROUNDS = 8
 SETTLED = 0.3  # of the standard deviation: added in squares 4 % of it; fits of like marks differ by up to 0.2
-# Of how the way grows, what depth may not tell: with less its interval is 1.5 times as wide, and a width law that is
-# not of the family passes for paint
+# Share of the growth of the way that depth must not explain: with less its interval is 1.5 times as wide, and a width
+# law that is not of the family passes for paint
 LEAST_OWN = 0.45
 OUTLYING = 4.0  # standard deviations of the edges
 ACROSS = (0.5, 1.5)  # half widths from the middle: flanks, not what ends and crossings paint
 STEP_MM = 0.5
-APART = 3.0  # standard deviations between two rates that tell what the fit takes of a rate
+APART = 3.0  # standard deviations between two rates that show the effect of a rate on the fit
 LEAST_KEPT = 0.2
 MOST_WIDER = (
     0.1  # per metre that marks may seem to widen by: strokes of other shapes, early and late, feign some
@@ -97,15 +97,15 @@ def freshly_dipped(painted: Painted, made: MarkCalibration, rate_per_m: float) -
     brush, traces = simulated(made, painted.marks)
     fit, turned = made.fit, rotation(made.fit.turn_rad)
     centre = np.array(fit.centre_mm)
-    aside = dict(zip((each.stroke for each in made.painted.marks), fit.marks, strict=True))
+    residuals = dict(zip((each.stroke for each in made.painted.marks), fit.marks, strict=True))
     paint = _core.Paint(abs(rate_per_m))
     marks = []
     for mark, trace in zip(painted.marks, traces, strict=True):
-        moved = np.array(aside[mark.stroke].displacement_mm) if mark.stroke in aside else np.zeros(2)
+        moved = np.array(residuals[mark.stroke].displacement_mm) if mark.stroke in residuals else np.zeros(2)
         side = Sides(brush, trace, painted.before_mm[mark.stroke])
         rings = []
         for ring in map(np.asarray, mark.outline_mm):
-            at = side.beside((ring - fit.shift_mm - centre) @ turned.T + centre - moved)
+            at = side.locate((ring - fit.shift_mm - centre) @ turned.T + centre - moved)
             shares = np.array([paint.width_share(way) for way in at.way_mm])
             more = 1 / shares - 1 if rate_per_m > 0 else shares - 1
             rings.append(ring + (more * at.across_mm)[:, None] * (at.normal @ turned))
@@ -114,9 +114,9 @@ def freshly_dipped(painted: Painted, made: MarkCalibration, rate_per_m: float) -
 
 
 @dataclass(frozen=True)
-class Beside:
-    """Of each point: depth and way of the brush where its widest section was nearest, how far to the left of it the
-    point lies, which way that is, and how far the section ran to there, or from there on, whichever is less."""
+class NearestSections:
+    """Of each point: depth and way of the brush where its widest section was nearest, the distance to the left of it,
+    the direction of that, and the way of the section up to there, or from there on, the lesser of both."""
 
     depth_mm: np.ndarray
     way_mm: np.ndarray
@@ -126,7 +126,7 @@ class Beside:
 
 
 class Sides:
-    """Where points lie beside the way of the widest section."""
+    """Locates points relative to the way of the widest section."""
 
     def __init__(self, brush, trace, before_mm: float) -> None:
         down = np.flatnonzero(np.asarray(trace.depth_mm) >= 0)
@@ -144,7 +144,7 @@ class Sides:
         self.ways_mm = before_mm + between(lengths(np.asarray(trace.tcp_mm)[down]))
         self.along_mm = fine
 
-    def beside(self, points: np.ndarray) -> Beside:
+    def locate(self, points: np.ndarray) -> NearestSections:
         row = np.concatenate(
             [
                 ((part[:, None] - self.widest_mm) ** 2).sum(axis=2).argmin(axis=1)
@@ -154,21 +154,21 @@ class Sides:
         normal = self.normals[row]
         across = ((points - self.widest_mm[row]) * normal).sum(axis=1)
         ends = np.minimum(self.along_mm[row], self.along_mm[-1] - self.along_mm[row])
-        return Beside(self.depth_mm[row], self.ways_mm[row], across, normal, ends)
+        return NearestSections(self.depth_mm[row], self.ways_mm[row], across, normal, ends)
 
 
 @dataclass(frozen=True)
 class Expected:
     """What marks will say of how they narrow: half the 95 % interval of the rate per metre, the share of how the way
-    grows that the depth tells, and the way in mm that one load has to last."""
+    grows that the depth explains, and the way in mm that one load has to last."""
 
     half_per_m: float
-    told_by_depth: float
+    explained_by_depth: float
     way_mm: float
 
     @property
     def is_refused(self) -> bool:
-        return 1 - self.told_by_depth < LEAST_OWN
+        return 1 - self.explained_by_depth < LEAST_OWN
 
 
 def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painted: list) -> Expected:
@@ -176,20 +176,20 @@ def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painte
     options = _core.MarkOptions()
     fit = expected_fit(painted, plan, brush, noise_mm, 1.0, options)
     before_mm, _ = ways_before_mm({one.stroke: one for one in plan.passes})
-    told = replace(painted_of(painted), before_mm=before_mm)
-    made = MarkCalibration(brush_of(fit.laws, brush.name, brush.depth_range_mm), fit, told, options)
+    complete = replace(painted_of(painted), before_mm=before_mm)
+    made = MarkCalibration(brush_of(fit.laws, brush.name, brush.depth_range_mm), fit, complete, options)
     flanks = _flanks(made)
     own = flanks.own()
-    kept = np.exp(-options.spacing_mm / 1.0)  # points beside each other know of each other, over 1 mm
+    kept = np.exp(-options.spacing_mm / 1.0)  # neighbouring points are correlated, over 1 mm
     sigma = noise_mm * np.sqrt((1 + kept) / (1 - kept) / float(own @ own))
     half = _core.deviations_of_95(flanks.freedom) * sigma
-    last_mm = max(told.before_mm[mark.stroke] + _lengths(mark)[-1] for mark in told.marks)
-    return Expected(float(half), flanks.told_by_depth(), float(last_mm))
+    last_mm = max(complete.before_mm[mark.stroke] + _lengths(mark)[-1] for mark in complete.marks)
+    return Expected(float(half), flanks.explained_by_depth(), float(last_mm))
 
 
 @dataclass(frozen=True)
 class Flanks:
-    """Points of the edges beside the middle line, row by row: by how much a narrowing of 1 per metre moves the edge
+    """Points of the edges along the middle line, row by row: by how much a narrowing of 1 per metre moves the edge
     out, the half width, powers of the depth, how far off the edge is (all mm), and of which mark the point is."""
 
     moved: np.ndarray
@@ -207,17 +207,17 @@ class Flanks:
         return [self.of_mark == one for one in np.unique(self.of_mark)]
 
     def own(self) -> np.ndarray:
-        """What of moved no width law and no height of the paper does."""
-        return beside_powers(self.moved, self.powers)
+        """Return the part of moved that no width law and no height of the paper explains."""
+        return residual_of_powers(self.moved, self.powers)
 
-    def told_by_depth(self) -> float:
+    def explained_by_depth(self) -> float:
         """Of how moved differs from what one way for all points would make of it."""
         way = float(self.moved @ self.half_mm) / float(self.half_mm @ self.half_mm)
         about, own = self.moved - way * self.half_mm, self.own()
         return 1 - float(own @ own) / max(float(about @ about), 1e-12)
 
 
-def beside_powers(values: np.ndarray, powers: np.ndarray) -> np.ndarray:
+def residual_of_powers(values: np.ndarray, powers: np.ndarray) -> np.ndarray:
     return values - powers @ np.linalg.lstsq(powers, values, rcond=None)[0]
 
 
@@ -228,16 +228,16 @@ def _flanks(made: MarkCalibration) -> Flanks:
     for number, (residual, trace) in enumerate(zip(made.fit.marks, traces, strict=True)):
         if trace.stroke in astray or residual.outlier:
             continue
-        at = Sides(brush, trace, made.painted.before_mm[trace.stroke]).beside(np.asarray(residual.point_mm))
+        at = Sides(brush, trace, made.painted.before_mm[trace.stroke]).locate(np.asarray(residual.point_mm))
         half = np.array([brush.half_width(d) for d in at.depth_mm])
         long = np.array([brush.tip_to_widest(d) for d in at.depth_mm]) + half
         share = np.abs(at.across_mm) / np.maximum(half, 1e-6)
         distance = np.asarray(residual.distance_mm)
-        told = (share > ACROSS[0]) & (share < ACROSS[1]) & (at.ends_mm > long)
-        told &= np.abs(distance) < OUTLYING * made.fit.noise_mm
+        is_flank = (share > ACROSS[0]) & (share < ACROSS[1]) & (at.ends_mm > long)
+        is_flank &= np.abs(distance) < OUTLYING * made.fit.noise_mm
         powers = at.depth_mm[:, None] ** np.arange(3 if made.painted.depths > 1 else 1)
         rows = np.column_stack([-1e-3 * half * at.way_mm, half, distance, np.full(len(half), number), powers])
-        found.append(rows[told])
+        found.append(rows[is_flank])
     rows = np.vstack(found) if found else np.empty((0, 5))
     marks = len(np.unique(rows[:, 3]))
     if marks < FEWEST + 4:
@@ -248,30 +248,31 @@ def _flanks(made: MarkCalibration) -> Flanks:
 
 def _left(made: MarkCalibration) -> tuple[float, float, float]:
     """By how much the rate is off that the marks were made fresh with, per metre, by the edges' residuals: least
-    squares of what narrowing moves beside powers of the depth; its standard deviation by whole marks, whose points
+    squares of the effect of narrowing next to powers of the depth; its standard deviation by whole marks, whose points
     know of each other, each as far off as its residuals say times what the rate is without it: the residuals of the few
     that decide are smaller than their errors (HC2 of MacKinnon and White, 1985, by marks); and marks beyond what is
     found."""
     flanks = _flanks(made)
-    told = flanks.told_by_depth()
-    if 1 - told < LEAST_OWN:
+    explained = flanks.explained_by_depth()
+    if 1 - explained < LEAST_OWN:
         raise Error(
-            f"{100 * told:.0f} % of how the way since the dip grows is told by the depth alone, so narrower and "
-            "shallower marks are alike: paint strokes of one depth early and late, as `brushsvg chart --paint` does",
+            f"{100 * explained:.0f} % of how the way since the dip grows is explained by the depth alone, so narrower "
+            "and shallower marks are alike: paint strokes of one depth early and late, as `brushsvg chart --paint` "
+            "does",
             "paint",
             code="paint-undetermined",
         )
     columns, own = np.column_stack([flanks.moved, flanks.powers]), flanks.own()
     rate = _first_number(columns, flanks.off_mm)
-    beside = beside_powers(flanks.off_mm, flanks.powers) - rate * own
-    says = np.array([float((own * beside)[mark].sum()) for mark in flanks.marks()]) / float(own @ own)
+    others = residual_of_powers(flanks.off_mm, flanks.powers) - rate * own
+    says = np.array([float((own * others)[mark].sum()) for mark in flanks.marks()]) / float(own @ own)
     without = _without_each(columns, flanks)
     return rate, float(np.sqrt(max(says @ (rate - without), 0.0))), flanks.freedom
 
 
 def _bends(made: MarkCalibration) -> float:
-    """How far what is left of the edges goes with the square of the way besides the way, in its standard deviations by
-    leaving out marks one by one."""
+    """Return the dependence of the residuals on the square of the way, in addition to the way, in its standard
+    deviations by leaving out marks one by one."""
     flanks = _flanks(made)
     ways = -1e3 * flanks.moved / np.maximum(flanks.half_mm, 1e-9)
     columns = np.column_stack([flanks.moved * ways, flanks.moved, flanks.powers])

@@ -7,6 +7,7 @@ import numpy as np
 
 from ... import _core
 from ...photo.flatten import Flat
+from ...reporting.label_space import LabelSpace
 from .mark_report import on_sheet, predicted_marks
 
 # blue first
@@ -15,8 +16,11 @@ LETTER_MM, FOUND_MM, PREDICTED_MM, HALO_MM = (
     2.0,
     0.2,
     0.08,
-    0.5,
+    0.3,
 )  # letters, lines, and the white round letters
+FONT, FONT_PX = cv2.FONT_HERSHEY_SIMPLEX, 22  # height of its letters at size 1
+CELLS_PER_MM = 4.0  # by which labels keep clear of marks
+DARK, AROUND_MM = 0.95, 25.0  # of the usual brightness around a place: darker is paint or print
 LEAST_PX_PER_MM = 14.0  # of the picture that is drawn: coarser, letters cannot be read and two lines are one
 SHARP = 16  # of polylines: fractions of a pixel
 
@@ -36,13 +40,27 @@ def dabs_picture(read, made) -> bytes:
 def _drawn(read, compared) -> bytes:
     """compared: draws on (picture, flat), and gives what is to be said of each stroke, the longest first."""
     flat = _enlarged(read.flat)
-    picture = flat.pixels
-    for rings in read.marks.outlines_mm.values():
+    picture, outlines = flat.pixels, read.marks.outlines_mm
+    space = _label_space(flat, outlines)
+    for rings in outlines.values():
         _draw(picture, flat, rings, FOUND, FOUND_MM)
-    boxes = {stroke.id: stroke.box_mm for stroke in read.chart.strokes}
     for stroke, words in compared(picture, flat).items():
-        _write(picture, flat, boxes[stroke], words)
+        points = np.vstack(outlines[stroke])
+        _write(picture, flat, space, points[points[:, 1].argmax()], words)
     return cv2.imencode(".png", picture)[1].tobytes()
+
+
+def _label_space(flat: Flat, outlines: dict) -> LabelSpace:
+    """Return the free space around everything that was painted or printed."""
+    size = tuple(round(side * CELLS_PER_MM) for side in flat.sheet_mm)
+    grey = cv2.resize(cv2.cvtColor(flat.pixels, cv2.COLOR_BGR2GRAY), size, interpolation=cv2.INTER_AREA)
+    around = cv2.medianBlur(grey, round(AROUND_MM * CELLS_PER_MM) | 1)
+    marks = (grey < DARK * around).astype(np.uint8)
+    step = CELLS_PER_MM / flat.px_per_mm
+    for rings in outlines.values():
+        cv2.fillPoly(marks, [np.round(flat.to_px(ring) * step).astype(np.int32) for ring in rings], 1)
+    rows, columns = flat.pixels.shape[:2]
+    return LabelSpace(marks > 0, 1 / step, (0, 0, columns, rows))
 
 
 def _enlarged(flat: Flat) -> Flat:
@@ -53,7 +71,7 @@ def _enlarged(flat: Flat) -> Flat:
 
 
 def _compared(picture, flat, read, made) -> dict[str, list[str]]:
-    """Predictions drawn where their marks lie; what is to be said of each stroke, the longest first."""
+    """Draw the predictions on their marks, and return labels for each stroke, the longest first."""
     if made is None:
         return {stroke: [stroke] for stroke in read.marks.outlines_mm}
     words = {}
@@ -65,51 +83,49 @@ def _compared(picture, flat, read, made) -> dict[str, list[str]]:
     marks = made.painted.marks
     predicted = predicted_marks(made, marks)
     for mark, residual, rings in zip(marks, made.fit.marks, predicted, strict=True):
-        lying = on_sheet(made, [ring + np.array(residual.displacement_mm) for ring in rings])
-        _draw(picture, flat, lying, PREDICTED, PREDICTED_MM)
-        overlap = _core.overlap([np.array(ring) for ring in mark.outline_mm], lying)
-        aside = np.hypot(*residual.displacement_mm)
+        drawn = on_sheet(made, [ring + np.array(residual.displacement_mm) for ring in rings])
+        _draw(picture, flat, drawn, PREDICTED, PREDICTED_MM)
+        overlap = _core.overlap([np.array(ring) for ring in mark.outline_mm], drawn)
+        displaced = np.hypot(*residual.displacement_mm)
         words[mark.stroke] = [
-            f"{mark.stroke}: overlap {overlap:.3f}, {aside:.2f} mm aside",
-            f"{mark.stroke}: {overlap:.3f}, {aside:.2f} mm",
-            f"{overlap:.3f}, {aside:.2f} mm",
-            f"{overlap:.2f}, {aside:.1f}",
+            f"{mark.stroke}: overlap {overlap:.3f}, displaced {displaced:.2f} mm",
+            f"{mark.stroke}: {overlap:.3f}, {displaced:.2f} mm",
+            f"{overlap:.3f}, {displaced:.2f} mm",
+            f"{overlap:.2f}, {displaced:.1f}",
         ]
     return words
 
 
 def _dabs_compared(picture, flat, read, outlines) -> dict[str, list[str]]:
-    lying, words = outlines.lying_mm(), {}
+    drawn, words = outlines.predicted_mm(), {}
     for shape in outlines.shapes:
-        for name, aside in ((each.dab.name, np.hypot(*each.aside_mm)) for each in shape.seen):
-            _draw(picture, flat, [lying[name]], PREDICTED, PREDICTED_MM)
-            told = f"{shape.depth_mm:g} mm deep, {aside:.2f} mm aside"
-            words[name] = [f"{name}: {told}", told, f"{shape.depth_mm:g} mm", f"{shape.depth_mm:g}"]
+        for name, displaced in ((each.dab.name, np.hypot(*each.displacement_mm)) for each in shape.seen):
+            _draw(picture, flat, [drawn[name]], PREDICTED, PREDICTED_MM)
+            label = f"{shape.depth_mm:g} mm deep, displaced {displaced:.2f} mm"
+            words[name] = [f"{name}: {label}", label, f"{shape.depth_mm:g} mm", f"{shape.depth_mm:g}"]
     for name, rings in read.marks.outlines_mm.items():
-        if name not in lying:
+        if name not in drawn:
             _draw(picture, flat, rings, ASTRAY, FOUND_MM)
             words[name] = [f"{name}: LEFT OUT", "LEFT OUT", "OUT"]
     return words
 
 
-def _write(picture, flat, box_mm, words: list[str]) -> None:
-    """Above a box, the first that fits its width, within the picture."""
-    size = LETTER_MM * flat.px_per_mm / 22  # letters of this font are 22 px tall
+def _write(picture, flat, space: LabelSpace, at_mm, words: list[str]) -> None:
+    """Write the first of the words that has room near a place."""
+    size, edge = LETTER_MM * flat.px_per_mm / FONT_PX, HALO_MM * flat.px_per_mm
     thick = max(1, round(0.15 * flat.px_per_mm))
-    widths = [cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, size, thick)[0][0] for text in words]
-    room = (box_mm[2] - box_mm[0] + 1.0) * flat.px_per_mm
-    text, width = next(
-        (each for each in zip(words, widths, strict=True) if each[1] <= room), (words[-1], widths[-1])
-    )
-    x, y = flat.to_px([(box_mm[0], box_mm[3])])[0]
-    x = min(max(x, 0.0), picture.shape[1] - width)
-    y = max(y - 0.3 * flat.px_per_mm, LETTER_MM * flat.px_per_mm)
-    edge, tall = round(HALO_MM * flat.px_per_mm), round(LETTER_MM * flat.px_per_mm)
-    behind = picture[
-        max(int(y) - tall - edge, 0) : int(y) + 2 * edge, max(int(x) - edge, 0) : int(x) + width + edge
-    ]
+    texts = [cv2.getTextSize(text, FONT, size, thick) for text in words]
+    below = max(lower for _, lower in texts)
+    boxes = [(width + 2 * edge, height + below + 2 * edge) for (width, height), _ in texts]
+    label = space.place(flat.to_px([at_mm])[0], boxes, towards=(0, -1))
+    if label.leader:
+        ends = [tuple(map(round, end)) for end in label.leader]
+        cv2.line(picture, *ends, TEXT, thick, cv2.LINE_AA)
+    left, top, right, bottom = map(round, label.box)
+    behind = picture[max(top, 0) : bottom, max(left, 0) : right]
     behind[:] = 0.25 * behind + 0.75 * 255
-    cv2.putText(picture, text, (int(x), int(y)), cv2.FONT_HERSHEY_SIMPLEX, size, TEXT, thick, cv2.LINE_AA)
+    baseline = (round(label.left + edge), round(label.top + label.height - edge - below))
+    cv2.putText(picture, words[label.choice], baseline, FONT, size, TEXT, thick, cv2.LINE_AA)
 
 
 def _draw(picture, flat, rings, colour, wide_mm: float) -> None:

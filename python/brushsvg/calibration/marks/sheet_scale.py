@@ -1,4 +1,4 @@
-"""Whether a sheet of painted marks has the size of its plan: marks displaced the more, the farther out they lie."""
+"""Test whether a sheet of painted marks has the size of its plan: outer marks are then displaced more."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ REMEDY = (
 
 @dataclass(frozen=True)
 class SheetScale:
-    """By which share marks lie farther apart than planned, in x, in y and on the whole, each (share, standard error),
-    with so many degrees of freedom."""
+    """The share by which marks are farther apart than planned, in x, in y and on the whole, each (share, standard
+    error), with so many degrees of freedom."""
 
     x: tuple[float, float]
     y: tuple[float, float]
@@ -33,7 +33,7 @@ class SheetScale:
         size, error = abs(share[0]), max(share[1], 1e-12)
         return size > LEAST_SCALE and _core.as_normal(size / error, self.freedom) > CERTAIN
 
-    def told(self, share: tuple[float, float]) -> str:
+    def describe(self, share: tuple[float, float]) -> str:
         """A share with its 95 % interval."""
         size = "larger" if share[0] >= 0 else "smaller"
         half = _core.deviations_of_95(self.freedom) * share[1]
@@ -41,7 +41,7 @@ class SheetScale:
 
 
 def sheet_scale(middles_mm: np.ndarray, displacements_mm: np.ndarray) -> SheetScale | None:
-    """From where marks were planned and by what they lie off, both (n, 2). None: they cannot tell.
+    """Fit the scale to planned places and displacements, both (n, 2). None: it cannot be determined.
 
     Least squares of dx and of dy over 1, x and y, so that a turn of the sheet does not count.
     """
@@ -70,13 +70,13 @@ def refuse_scale(scale: SheetScale | None) -> None:
     apart = (scale.x[0] - scale.y[0], math.hypot(scale.x[1], scale.y[1]))
     if scale.is_off(apart):
         raise Error(
-            f"the sheet is {scale.told(scale.x)} than the plan in x and {scale.told(scale.y)} in y. {REMEDY}",
+            f"the sheet is {scale.describe(scale.x)} than the plan in x and {scale.describe(scale.y)} in y. {REMEDY}",
             "marks",
             code="marks-scaled",
         )
     if scale.is_off(scale.both):
         raise Error(
-            f"the sheet is {scale.told(scale.both)} than the plan. {REMEDY}",
+            f"the sheet is {scale.describe(scale.both)} than the plan. {REMEDY}",
             "marks",
             code="marks-scaled",
         )

@@ -10,15 +10,15 @@ import numpy as np
 
 from ...errors import Error
 
-# Where the line is laid down between the chords that points are held against, in lags from the corner: chords lie off
-# it by 1e-4 lags. Before the corner and 12 lags beyond it is straight.
+# Where points of the line are placed between the chords that points are held against, in lags from the corner: chords
+# are off it by 1e-4 lags. Before the corner and 12 lags beyond it is straight.
 PLACES = np.concatenate([np.arange(0.0, 4.0, 0.03), np.arange(4.0, 12.1, 0.25)])
 MOST_POINTS = 500  # of one line that count: one in so many, evenly
 UNSURE = 0.5  # share of the lag: less is known of it by a line that ends too early
 CLEARLY = 16.0  # times the variance by which one sign of e must fit better, or the other is possible as well
 # Noise of standard deviation 1 in x and y, averaged exactly up to the third power (the rule of 2 n points), turned.
 SHAKES = math.sqrt(2.0) * np.array([(math.cos(a), math.sin(a)) for a in np.arange(8) * math.pi / 4.0])
-OFF = 0.15  # of the lag: lines that lie farther off on the mean are no turns
+OFF = 0.15  # of the lag: lines with a larger mean distance are no turns
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def _at(values: np.ndarray, piece: np.ndarray, share: np.ndarray) -> np.ndarray:
     return values[piece] + share[:, None] * (values[piece + 1] - values[piece])
 
 
-def _beside(points_mm) -> np.ndarray:
+def _below_second_line(points_mm) -> np.ndarray:
     """At most MOST_POINTS of them, below the handle's second line."""
     points = np.array(points_mm, float)
     points = points[:: -(-len(points) // MOST_POINTS)]
@@ -77,12 +77,12 @@ def _off(points: np.ndarray, lag_mm: float, turning_mm: float) -> tuple[np.ndarr
 def read_turn_near(points_mm, lag_mm: float, turning_mm: float) -> Turn:
     """The same points as read_turn's, read by one Gauss-Newton step from lengths that are about right.
 
-    Near e = 0 the lengths of smallest distance scatter more than the points say, and r - e lies short of the truth: the
+    Near e = 0 the lengths of smallest distance scatter more than the points say, and r - e is too small: the
     distance hardly depends on e there. A step from the laws of all measurements does neither, and repeated it ends at
     the least squares of all points of all lines. Points scattered about a bent line are nearest to its inside on
     average; what that adds to the step is taken off, as noise of the size that is found adds it to points on the line.
     """
-    points = _beside(points_mm)
+    points = _below_second_line(points_mm)
     off, gradient, normal = _normal_equations(points, lag_mm, turning_mm)
     freedom = len(points) - 2
     variance = float((off**2).sum()) / freedom
@@ -108,17 +108,17 @@ def _normal_equations(points: np.ndarray, lag_mm: float, turning_mm: float):
 
 def read_turn(points_mm, where: str = "") -> Turn:
     """points_mm (n, 2): of the middle of the mark, the handle's corner at the origin, its second line along +x; the
-    mark lies on one side of that line.
+    mark is on one side of that line.
 
     Least squares of the distances from the line of `middle_of_turn`. Raises Error for points that are no such turn.
     """
     from scipy.optimize import least_squares
 
-    points = _beside(points_mm)
+    points = _below_second_line(points_mm)
     reach = float(-points[:, 1].min())
     if not reach > 0.0 or points[:, 0].max() <= 0.0:
         raise Error(
-            "the points do not lie beside the handle's second line: that line is y = 0, x counts along it from the "
+            "the points are not along the handle's second line: that line is y = 0, x counts along it from the "
             "corner",
             where,
             code="not-a-turn",
@@ -146,7 +146,7 @@ def read_turn(points_mm, where: str = "") -> Turn:
     covariance, rmse = _spread(best, freedom)
     if rmse > OFF * lag:
         raise Error(
-            f"the points lie {rmse:.2g} mm off any brush's turn, which would have a lag of {lag:.3g} mm: the corner of "
+            f"the points are {rmse:.2g} mm off any brush's turn, which would have a lag of {lag:.3g} mm: the corner of "
             "the handle is (0, 0), its second line goes along x",
             where,
             rmse,
@@ -166,7 +166,7 @@ def read_turn(points_mm, where: str = "") -> Turn:
 
 
 def _spread(fit, freedom: int) -> tuple[np.ndarray, float]:
-    """Covariance of lag and r - e, and how far the points lie off; of a fit of lag and (r - e) / r."""
+    """Return the covariance of lag and r - e, and the residual of the points; of a fit of lag and (r - e) / r."""
     lag, share = fit.x
     variance = 2.0 * fit.cost / freedom
     to_lengths = np.array([[1.0, 0.0], [share, lag]])

@@ -63,7 +63,7 @@ class Fitted:
     remarks: tuple[str, ...] = ()
     outliers: dict[int, plausibility.Outlier] = field(default_factory=dict)
 
-    def outliers_told(self) -> list[str]:
+    def list_outliers(self) -> list[str]:
         """A sentence for each outlier, the farthest first."""
         return [
             f"{self.points[k].where} is an outlier: {found.off_mm:+.2f} mm off the law of the others, studentized "
@@ -120,7 +120,7 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     brush = maker.brush(name or measured.name or "measured")
     laws = tuple(maker.done.get(law, Fitted(law, (), None)) for law in LAWS)
     plausibility.refuse_brush(brush)
-    for law in ("lag", "half_width"):  # what a plan is led by
+    for law in ("lag", "half_width"):  # the laws that matter for a plan
         plausibility.refuse_open(brush, maker.done[law])
     return Calibration(brush, laws, (*remarks, *maker.remarks), tuple(plausibility.odd(brush, laws)))
 
@@ -211,7 +211,7 @@ class _Maker:
         if "tip_gap" not in self.done and "lag" not in self.done:
             raise Error(
                 "angular, straight, side_view and video all measure the sum of lag and tip gap, so the two cannot be "
-                "told apart: add centre_line, angles, or rows of lag or tip_gap",
+                "separated: add centre_line, angles, or rows of lag or tip_gap",
                 next(kind for kind in SUMS if kind in self.measured.rows),
                 code="law-undetermined",
             )
@@ -320,7 +320,7 @@ class _Maker:
         return _core.Profile([*found.coefficients, *more], floor=found.floor)
 
     def _refuse_negative(self, law: str, points: tuple[Point, ...], fit: _core.LawFit) -> None:
-        """Error for values that lie below 0 on the whole, by more than the law's interval."""
+        """Raise Error for values below 0 on the whole, by more than the law's interval."""
         mean = float(np.mean([point.value_mm for point in points]))
         depths = np.array([point.depth_mm for point in points])
         half = half_interval_mm(fit.covariance, np.array([depths.mean()]), fit.law.degrees_of_freedom)[0]
@@ -435,11 +435,11 @@ class _Maker:
             outliers = plausibility.outliers_of_kinds(left, spare, np.array(scatter), np.array(freedoms))
             self._refuse_negative(law, points, fit)
             self.done[law] = Fitted(law, points, fit, self.done[law].remarks, outliers)
-        told = ", ".join(
+        listed = ", ".join(
             f"{kind.name} ({kind.count}, scatter {' and '.join(f'{mm:.2f}' for mm in kind.scatter_mm)} mm)"
             for kind in found.kinds
         )
-        self.remarks.append(f"lag, tip gap and what they are read with were fitted together: {told}")
+        self.remarks.append(f"lag, tip gap and what they are read with were fitted together: {listed}")
         if found.held:
             self.remarks.append(
                 "fitted with a constraint: without it the lag or the tip gap is not positive somewhere in the depth "
@@ -520,7 +520,7 @@ class _Maker:
         half = self.done["half_width"].fit.law
         if law not in self.done:
             share, what = ASSUMED[law]
-            source = f"{what} is taken to lie {share:g} half widths from the tip."
+            source = f"{what} is assumed to be {share:g} half widths from the tip."
             return _core.Profile([share * c for c in half.coefficients], source=source, assumed=True)
         points, fitted = self.done[law].points, self.done[law].fit.law
         kinds = sorted({point.where.split("[")[0] for point in points})

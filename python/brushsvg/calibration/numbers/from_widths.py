@@ -25,7 +25,7 @@ LAG_DEGREES = (1, 2, 3)
 BENDS = 1e-3  # weight of a law's bends against the data: small, it only decides where the data leave it open
 DEPTHS = 10  # outlines, evenly spaced
 LONGEST_MM = 1000.0
-MOST = 1e9  # what is farther out is damage; closer bounds are those of brushes
+MOST = 1e9  # a larger number is damage; closer bounds are those of brushes
 
 
 def new_brush(
@@ -93,7 +93,7 @@ def lag_of_turn(turn_mm: float, width_mm: float) -> float:
 
 
 def outlines_assumed(source: str) -> str:
-    """What a brush file says beside its laws when nobody measured its outlines, as JSON."""
+    """Return the contents of a brush file next to its laws when nobody measured its outlines, as JSON."""
     return json.dumps({"footprints": {"source": f"Assumed: {source}", "assumed": True}})
 
 
@@ -187,12 +187,12 @@ def _lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
             values[worst],
             code="law-undetermined",
         )
-    told = ", ".join(f"{lag:g} mm at depth {depth:g} mm" for depth, lag in lags[:4])
+    listed = ", ".join(f"{lag:g} mm at depth {depth:g} mm" for depth, lag in lags[:4])
     more = f" and {len(lags) - 4} more" if len(lags) > 4 else ""
     return _core.Profile(
         fit.law.coefficients,
         calibrated_mm=fit.law.calibrated_mm,
-        source=f"Lags as typed in: {told}{more}; met to {off_mm:.2f} mm.",
+        source=f"Lags as typed in: {listed}{more}; met to {off_mm:.2f} mm.",
         assumed=places == 1,
         half_interval_95=fit.law.half_interval_95,
         rmse_mm=fit.law.rmse_mm,
@@ -231,13 +231,13 @@ def _half_width(widths: list[tuple[float, float]], deepest: float) -> _core.Prof
             2 * halves[worst],
             code="width-falls",
         )
-    told = ", ".join(f"{width:g} mm at depth {depth:g} mm" for depth, width in widths[:4])
+    listed = ", ".join(f"{width:g} mm at depth {depth:g} mm" for depth, width in widths[:4])
     more = f" and {len(widths) - 4} more" if len(widths) > 4 else ""
     return _core.Profile(
         fit.law.coefficients,
         calibrated_mm=fit.law.calibrated_mm,
-        source=f"Widths as typed in: {told}{more}; met to {2 * off_mm:.2f} mm. That the brush touches with no width at "
-        "depth 0 is assumed.",
+        source=f"Widths as typed in: {listed}{more}; met to {2 * off_mm:.2f} mm. That the brush touches with no width "
+        "at depth 0 is assumed.",
         assumed=places == 1,
         half_interval_95=fit.law.half_interval_95,
         rmse_mm=fit.law.rmse_mm,
@@ -248,7 +248,7 @@ def _half_width(widths: list[tuple[float, float]], deepest: float) -> _core.Prof
 def _share(half_width: _core.Profile, share: float, what: str) -> _core.Profile:
     return _core.Profile(
         [share * c for c in half_width.coefficients],
-        source=f"{what} is taken to lie {share:g} half widths from the tip.",
+        source=f"{what} is assumed to be {share:g} half widths from the tip.",
         assumed=True,
     )
 

@@ -63,7 +63,8 @@ class Kind:
 
 @dataclass(frozen=True)
 class Together:
-    """Laws by name with the covariance of all their coefficients, those of the laws one after the other.
+    """Return laws in a dictionary of names, with the covariance of all their coefficients, those of the laws one after
+    the other.
 
     residual_mm, spare and scatter_mm (n,): measured less law, the share of each value that is left to spare, and the
     standard deviation it was weighted by, in the order of the readings and their lengths. held: without a constraint
@@ -208,7 +209,7 @@ class _Unknowns:
         return np.vander(depth, size, increasing=True)[:, self.first[name] :]
 
     def rows(self, x: np.ndarray) -> np.ndarray:
-        """d value / d unknown, over the spread. Where a polynomial lies below its floor it says nothing."""
+        """d value / d unknown, over the spread. Where a polynomial is below its floor it is 0."""
         out = []
         for reading in self.readings:
             for each in reading.sums:
@@ -235,7 +236,7 @@ class _Unknowns:
         )
 
     def solve_sound(self, a: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """The same least squares where no control point of lag and tip gap lies lower than may be."""
+        """Solve the same least squares where no control point of lag and tip gap is lower than allowed."""
         from scipy.optimize import lsq_linear
 
         from_controls = np.eye(a.shape[1])

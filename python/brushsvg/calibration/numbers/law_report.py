@@ -1,64 +1,55 @@
-"""What a calibration found: laws, their confidence, what to measure next; in words and as a picture."""
+"""What a calibration of measured numbers found: a verdict, its laws, what to measure next; and as a picture."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ...model.confidence import law_band
-from ...model.describe import polynomial
 from ...model.plot import brush_picture
+from ...reporting.report_text import Report, plural, verdict
+from ..law_text import coefficients, in_short, laws_table, name_and_depths
 
-TABLE_ROWS = 6
-EXACT = 1e-9  # an interval below comes from rounding
 
-
-def report(made) -> str:
-    """The text that `brushsvg calibrate` prints. made: a calibrate.Calibration."""
+def report(made) -> Report:
+    """What `brushsvg calibrate` prints. made: a from_measurements.Calibration."""
     brush = made.brush
-    lines = [f"brush {brush.name}, depth {brush.depth_range_mm[0]:g} to {brush.depth_range_mm[1]:g} mm"]
+    odd = sum(len(fitted.list_outliers()) for fitted in made.laws)
+    assumed = [fitted.name for fitted in made.laws if fitted.fit is None]
+    unsure = [
+        fitted.name for fitted in made.laws if fitted.fit and getattr(brush, fitted.name).rmse_mm is None
+    ]
+    but = [
+        f"{' and '.join(assumed)} {'is' if len(assumed) == 1 else 'are'} assumed, not measured"
+        if assumed
+        else "",
+        f"{plural(odd, 'value')} should be measured again" if odd else "",
+        f"{' and '.join(unsure)} has too few values for a confidence interval" if unsure else "",
+        *(notice.sentence for notice in made.doubts),
+    ]
+    lines = [
+        f"{name_and_depths(brush)}: {in_short(brush)}",
+        *(_how_known(brush, fitted) for fitted in made.laws),
+    ]
     for fitted in made.laws:
-        lines += ["", *_law(brush, fitted)]
-    lines += ["", *_table(brush)]
-    remarks = [*made.remarks, *_next(made)]
-    return "\n".join([*lines, *([""] if remarks else []), *remarks, ""])
+        lines += [f"{fitted.name}: {remark}" for remark in (*fitted.list_outliers(), *fitted.remarks)]
+    details = [
+        *laws_table(brush),
+        *made.remarks,
+        "",
+        *coefficients(brush),
+    ]
+    return Report(verdict([], but), (*lines, *_next(made)), tuple(details))
 
 
-def _law(brush, fitted) -> list[str]:
+def _how_known(brush, fitted) -> str:
     law = getattr(brush, fitted.name)
-    lines = [f"{fitted.name} = {polynomial(law.coefficients)}"]
     if fitted.fit is None:
-        return [*lines, f"  assumed: {law.source}"]
+        return f"{fitted.name}: assumed: {law.source}"
     depths = [point.depth_mm for point in fitted.points]
-    known = f"{len(depths)} values at depths {min(depths):g} to {max(depths):g} mm"
+    known = f"{fitted.name}: {len(depths)} values at depths {min(depths):g} to {max(depths):g} mm"
     if law.rmse_mm is None:
-        known += ", no degree of freedom left: no confidence interval"
-    else:
-        known += f", R^2 {fitted.fit.r_squared:.3f}, RMSE {law.rmse_mm:.2f} mm"
-    lines.append(f"  {known}")
-    if law.half_interval_95:
-        lines.append(
-            "  95 % confidence intervals +- "
-            + ", ".join(f"{half if half > EXACT else 0:.2g}" for half in law.half_interval_95)
-            + " (ascending powers)"
-        )
-    lines += [f"  {remark}" for remark in fitted.remarks]
-    return [*lines, *(f"  {told}" for told in fitted.outliers_told())]
-
-
-def _table(brush) -> list[str]:
-    names = ("lag", "tip_gap", "tip_to_widest", "half_width")
-    depths = np.linspace(*brush.depth_range_mm, TABLE_ROWS)
-    lines = ["  depth" + "".join(name.rjust(18) for name in names)]
-    bands = {name: law_band(brush, name, depths) for name in names}
-    for i, depth in enumerate(depths):
-        cells = []
-        for name in names:
-            value = f"{getattr(brush, name)(depth):.2f}"
-            band = bands[name]
-            cells.append(value + (f" +- {band[0][i]:.2f}" if band else ""))
-        lines.append(f"{depth:7.2f}" + "".join(cell.rjust(18) for cell in cells))
-    told = {band[1] for band in bands.values() if band}
-    return [*lines, *(f"  +-: {what}" for what in sorted(told))]
+        return f"{known}, no degree of freedom left: no confidence interval"
+    return f"{known}, R^2 {fitted.fit.r_squared:.3f}, RMSE {law.rmse_mm:.2f} mm"
 
 
 def _next(made) -> list[str]:

@@ -15,7 +15,7 @@ LONGEST_MM = 1000.0
 SPEEDS_MM_S = (0.01, 10000.0)
 WHOLE_TURN_DEG = 360.0
 SHALLOWEST_MM = 0.2  # if no depth is greater these are hardly millimetres
-# Kind -> the numbers of one row, beside depth_mm. Those in _READINGS can stand in a table as value_mm.
+# Kind -> the numbers of one row, next to depth_mm. Those in _READINGS can stand in a table as value_mm.
 KINDS = {
     "lag": ("value_mm",),
     "tip_gap": ("value_mm",),
@@ -42,7 +42,7 @@ EXPECTED = ("placement_mm", "turn_deg", "displacement_mm", "height_mm")
 
 @dataclass(frozen=True)
 class Row:
-    """One measurement at a depth: its numbers by name, series as tuples; where it stands in the file."""
+    """One measurement at a depth: its numbers in a dictionary of names, series as tuples; its place in the file."""
 
     kind: str
     where: str
@@ -126,7 +126,8 @@ def _table_rows(
     text: str, columns: tuple[str, ...], numbers: tuple[str, ...]
 ) -> list[tuple[str, dict[str, str | float]]]:
     """(line, cells of these columns) of a table, some of them numbers, whose first line names its columns. Between
-    cells stand commas, semicolons or tabs, in numbers points or commas. Error for whatever could be read in two ways.
+    cells stand commas, semicolons or tabs, in numbers points or commas. Error for anything that could be read in two
+    ways.
     """
     try:
         table = _table(text.removeprefix("\ufeff"), columns)
@@ -141,14 +142,14 @@ def _table_rows(
         raise Error(
             "this is not a table: a line end stands amid a value, or a value has no end", code="not-a-table"
         ) from None
-    told = [(f"{where}, {name}", row[name]) for where, row in rows for name in numbers]
-    for where, cell in told:
+    cells = [(f"{where}, {name}", row[name]) for where, row in rows for name in numbers]
+    for where, cell in cells:
         if not _NUMBER.fullmatch(cell):
             advice = (
                 "write a number of mm, without its unit" if _NUMBER.match(cell) else "write a number of mm"
             )
             raise Error(f"{cell!r} is not a number: {advice}", where, code="not-a-number")
-    points, commas = ([each for each in told if mark in each[1]] for mark in ".,")
+    points, commas = ([each for each in cells if mark in each[1]] for mark in ".,")
     if points and commas:
         raise Error(
             f"{commas[0][1]!r} has a comma for its decimals and {points[0][1]!r} in {points[0][0]} a point: write all "
@@ -235,7 +236,7 @@ def _refuse_surplus(line: dict, where: str, separator: str) -> None:
 
 def _read_json(text: str) -> Measurements:
     content = json_fields.document(text, FORMAT)
-    json_fields.refuse_unknown(content, (*_ABOUT, *_PAINTED), told=(*KINDS, "marks"))
+    json_fields.refuse_unknown(content, (*_ABOUT, *_PAINTED), listed=(*KINDS, "marks"))
     rows = {}
     for kind in KINDS:
         if listed := json_fields.objects(content.get(kind, []), kind):
@@ -270,7 +271,7 @@ def _read_json(text: str) -> Measurements:
         return Measurements(rows, name, about, span, speed)
     if rows:
         raise Error(
-            "marks tell what the other kinds tell, and are fitted alone: leave these out, or make two files",
+            "marks contain what the other kinds measure, and are fitted alone: leave these out, or make two files",
             next(iter(rows)),
             code="measurements-mixed",
         )
@@ -360,7 +361,7 @@ def _centre_line(kind: str, row: dict, where: str) -> list[Row]:
         points = _places(row["points_mm"], f"{where}.points_mm")
         if len(points) < LEAST_POINTS:
             raise Error(
-                f"a centre line of {len(points)} points tells no turn: give {LEAST_POINTS} or more",
+                f"a centre line of {len(points)} points shows no turn: give {LEAST_POINTS} or more",
                 f"{where}.points_mm",
                 len(points),
                 code="measurement-missing",

@@ -167,11 +167,11 @@ def outliers_above_floor(
 def off_the_others(
     depths_mm, values_mm, range_mm: tuple[float, float], degree: int
 ) -> dict[int, tuple[float, float]]:
-    """How unlikely each value is beside the law with floor 0 of the others, as the size of a normal one, and how far it
-    lies off that law [mm].
+    """Return how unlikely each value is given the law with floor 0 of the others, as the size of a normal value, and
+    its distance from that law [mm].
 
     The law of the others has a polynomial p at this depth, known to s, and a noise n about it. The value y is as
-    unlikely as the likeliest truth leaves it: the polynomial lies above the floor, t^2 = (y - p)^2 / (n^2 + s^2),
+    unlikely as the likeliest truth leaves it: the polynomial is above the floor, t^2 = (y - p)^2 / (n^2 + s^2),
     or not, t^2 = y^2 / n^2 + max(0, p)^2 / s^2. Values whose law the others leave open are left out.
     """
     depths, values = np.array(depths_mm, float), np.array(values_mm, float)
@@ -308,7 +308,7 @@ def refuse_brush(brush) -> None:
         )
     if not brush.tip_to_widest.assumed and widest > lag + gap:
         raise Error(
-            f"the widest section lies {widest:.3g} mm from the tip at depth {depth:g} mm, farther than the tool, "
+            f"the widest section is {widest:.3g} mm from the tip at depth {depth:g} mm, farther than the tool, "
             f"{lag + gap:.3g} mm: measure it from the tip of the footprint, in millimetres",
             "tip_to_widest",
             widest,
@@ -318,7 +318,7 @@ def refuse_brush(brush) -> None:
     if not brush.tip_gap.assumed and gap > 1.5 * length:
         raise Error(
             f"the tip gap is {gap:.3g} mm at depth {depth:g} mm, the footprint {length:.3g} mm long: the centre of "
-            "friction must lie in it; measure the gap from the tip of the footprint, in millimetres",
+            "friction must be in it; measure the gap from the tip of the footprint, in millimetres",
             "tip_gap",
             gap,
             code="not-millimetres",
@@ -335,7 +335,7 @@ def refuse_open(brush, fitted) -> None:
     if np.mean(half > values) <= OPEN_PART:
         return
     worst = int(np.argmax(half / np.maximum(values, 1e-9)))
-    todo = next(iter(fitted.outliers_told()), "measure it at more depths, from shallow to the deepest")
+    todo = next(iter(fitted.list_outliers()), "measure it at more depths, from shallow to the deepest")
     raise Error(
         f"these values do not determine the {fitted.name}: {values[worst]:.1f} +- {half[worst]:.1f} mm (95 %) at "
         f"depth {depths[worst]:.3g} mm: {todo}",

@@ -12,7 +12,8 @@ from ...photo.mask_contours import mask_outlines
 from ...photo.photo import LIGHT, read_photo
 
 APART_MM = 0.5  # of the points along the line
-LEAST_SHARE = 0.8  # what a branch of the skeleton must add, as of letters: less are corners of its outline
+# share that a branch of the skeleton must add, for example of letters: less are corners of its outline
+LEAST_SHARE = 0.8
 # The skeleton of a stroke bends towards the corners of its ends: so many half widths of either end are left out.
 ENDS = 1.5
 LEAST_LIGHT = 0.1  # of the light, by which paint and paper differ

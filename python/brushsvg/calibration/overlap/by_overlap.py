@@ -1,7 +1,7 @@
 """A brush fitted to painted marks, changed so that it predicts further marks best: to the largest overlap.
 
 Edges say what the usual mark is; overlap (intersection over union of painted and predicted area) says what to predict
-where marks vary and lie off. overlap_search changes few numbers on top of what edges told, overlap_choice says which.
+where marks vary and are displaced. overlap_search changes few numbers of the fit by edges, overlap_choice says which.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ PIXEL, MARGIN_MM = 1 / 6, 8.0  # of the pictures: half widths of the deepest mar
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OverlapCalibration(ArrayValue):
-    """made: the marks with the brush that predicts best, lying where it has them (Placed); by_edges: what it was made
+    """made: the marks with the brush that predicts best, at their places by it (Placed); by_edges: what it was made
     of, the brush with intervals; found: what was changed."""
 
     made: MarkCalibration
@@ -45,8 +45,8 @@ class OverlapCalibration(ArrayValue):
 def by_overlap(
     made: MarkCalibration, progress: Callable[[str], object] = lambda text: None
 ) -> OverlapCalibration:
-    """made: what edges told of the marks. Those that are outliers as a whole have no say here, either. progress: is
-    told in words how far it is."""
+    """made: the fit of the marks by edges. Its outliers as a whole are left out here, too. progress: receives the
+    progress in words."""
     fit, options = made.fit, copy(made.expected)
     options.deepest_mm = made.brush.depth_range_mm[1]
     seen = [
@@ -74,14 +74,14 @@ def _calibrated(made: MarkCalibration, found: Predicting) -> OverlapCalibration:
     brush.max_speed_mm_s = made.brush.max_speed_mm_s
     for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
         was = getattr(brush, law)
-        told = _core.Profile(
+        profile = _core.Profile(
             was.coefficients,
             calibrated_mm=(0.0, made.painted.deepest_mm),
             source=f"Fitted to {count} painted marks, to the largest overlap; without intervals.",
             floor=was.floor,
             floor_slope=was.floor_slope,
         )
-        setattr(brush, law, told)
+        setattr(brush, law, profile)
     _core.check(brush)
     placed = Placed(
         fit.turn_rad,
@@ -90,7 +90,7 @@ def _calibrated(made: MarkCalibration, found: Predicting) -> OverlapCalibration:
         found.height_mm,
         tuple(
             PlacedMark(
-                found.led.way(np.array(residual.way_mm), found.height_mm),
+                found.offsets.way(np.array(residual.way_mm), found.height_mm),
                 tuple((residual.displacement_mm - found.shift_mm).tolist()),
             )
             for residual in fit.marks

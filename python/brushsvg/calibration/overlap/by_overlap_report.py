@@ -1,53 +1,53 @@
-"""What the largest overlap made of a brush that edges told, in words and as a picture."""
+"""What the largest overlap made of a brush that edges showed, in words and as a picture."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from ...model.describe import LAWS, polynomial
+from ...model.describe import LAWS
 from ...model.plot import brush_picture
-from ..marks.mark_report import TABLE_ROWS, overlaps
+from ...reporting.report_text import Report, verdict
+from ..law_text import coefficients, depths_shown, in_short, law_table, name_and_depths, paper_height
+from ..marks.mark_report import coinciding, overlaps
 from ..marks.mark_report import report as of_edges
 from ..marks.mark_report import report_picture as picture_of_edges
 
 
-def report(made, of_photo: bool = False) -> str:
-    """The text that `brushsvg calibrate --aim overlap` prints. made: by_overlap.OverlapCalibration; of_photo: see
+def report(made, of_photo: bool = False) -> Report:
+    """What `brushsvg calibrate --aim overlap` prints. made: by_overlap.OverlapCalibration; of_photo: see
     mark_report.report."""
     brush, edges, found = made.brush, made.by_edges, made.found
     if found.kind == "edges":
-        return of_edges(edges, of_photo) + chosen_in_words(found) + "\n"
+        by_edges = of_edges(edges, of_photo)
+        return replace(by_edges, lines=(chosen_in_words(found), *by_edges.lines))
+    (in_place, moved), (now_in_place, now_moved) = overlaps(edges), overlaps(made.made)
     lines = [
-        f"brush {brush.name}, depth {brush.depth_range_mm[0]:g} to {brush.depth_range_mm[1]:g} mm, from "
-        f"{len(edges.painted.marks)} painted marks, to the largest overlap",
-        "",
-        *(f"{name} = {polynomial(getattr(brush, name).coefficients)}" for name, _ in LAWS),
-        "",
-        "  depth" + "".join(f"{name} (edges)".rjust(24) for name, _ in LAWS),
-    ]
-    for depth in np.linspace(*brush.depth_range_mm, TABLE_ROWS):
-        cells = [
-            f"{getattr(brush, name)(depth):.2f} ({getattr(edges.brush, name)(depth):.2f})" for name, _ in LAWS
-        ]
-        lines.append(f"{depth:7.2f}" + "".join(cell.rjust(24) for cell in cells))
-    way = "higher" if found.height_mm >= 0 else "lower"
-    (lying, moved), (now_lying, now_moved) = overlaps(edges), overlaps(made.made)
-    lines += [
-        "  in brackets: by edges, which calibrate without --aim overlap writes, with intervals",
-        "",
+        f"{name_and_depths(brush)}: {in_short(brush)}, from {len(edges.painted.marks)} painted marks, to the largest "
+        "overlap",
+        f"painted and predicted marks overlap by {now_in_place:.3f} as painted, by {now_moved:.3f} without the "
+        f"displacements of the edges' fit; by edges {in_place:.3f} and {moved:.3f}",
         chosen_in_words(found),
-        f"the paper lies {abs(found.height_mm):.2f} mm {way} than the plan took it to be "
-        f"({edges.fit.height_mm:+.2f} mm by edges)",
-        f"painted and predicted marks overlap by {now_lying:.3f} where they lie, by {now_moved:.3f} with the "
-        f"displacements of the edges' fit taken away; by edges {lying:.3f} and {moved:.3f}",
-        *_machine(edges, found.led),
+        f"{paper_height(found.height_mm)} ({edges.fit.height_mm:+.2f} mm by edges)",
+        *_machine(edges, found.offsets),
         "no intervals: those of the edges' fit do not hold for these laws",
     ]
-    return "\n".join([*lines, ""])
+    depths = depths_shown(brush)
+    columns = [
+        (
+            f"{law} (edges)",
+            [f"{getattr(brush, law)(at):.2f} ({getattr(edges.brush, law)(at):.2f})" for at in depths],
+        )
+        for law, _ in LAWS
+    ]
+    by_edges = "  in brackets: by edges, which calibrate without --aim overlap writes, with intervals"
+    details = [*law_table(depths, columns), by_edges, "", *coefficients(brush)]
+    return Report(verdict(*coinciding(now_moved)), tuple(lines), tuple(details))
 
 
 KINDS = {
-    "edges": "what edges told",
+    "edges": "what edges showed",
     "disc": "a dragged disc",
     "laws": "laws and footprint",
     "machine": "laws, footprint and machine",
@@ -62,40 +62,42 @@ def chosen_in_words(found) -> str:
             f"changed: {KINDS[found.kind]}; the marks are too few to be parted, so whether that predicts further ones "
             "better than edges do is not known"
         )
-    told = "; ".join(f"{KINDS[kind]} {sum(both) / 2:.3f}" for kind, both in found.left_out.items())
+    listed = "; ".join(f"{KINDS[kind]} {sum(both) / 2:.3f}" for kind, both in found.left_out.items())
     return (
         f"chosen: {KINDS[found.kind]}, since so marks that had no part in the fit overlap most, each of {found.parts} "
-        f"parts predicted by the others (mean of where they lie and where each may move): {told}"
+        f"parts predicted by the others (mean of the overlaps in place and with each mark moved): {listed}"
     )
 
 
 MOST_LAYOUTS = 3
 
 
-def aside_in_words(aside) -> str:
-    """By where on their sheets marks lie aside: aside is overlap_field.FoundField."""
-    if aside.won is None:
+def describe_displacement(displaced) -> str:
+    """Describe how marks are displaced depending on their place: displaced is overlap_field.FoundField."""
+    if displaced.won is None:
         return "no field over the sheets: the marks are too few"
-    won = f"marks that had no part in it overlap by {aside.won:+.3f} +- {aside.error:.3f} more with it"
-    if aside.field is None:
+    won = (
+        f"marks that had no part in it overlap by {displaced.won:+.3f} +- {displaced.error:.3f} more with it"
+    )
+    if displaced.field is None:
         return f"no field over the sheets, since {won}"
-    likely = sorted(aside.field.layouts, key=lambda one: -one[1])[:MOST_LAYOUTS]
-    told = ", ".join(f"{one.rows} rows of {one.columns} ({weight:.2f})" for one, weight, _ in likely)
-    return f"a field over the sheets, since {won}; sheets are averaged over by their probability: {told}"
+    likely = sorted(displaced.field.layouts, key=lambda one: -one[1])[:MOST_LAYOUTS]
+    listed = ", ".join(f"{one.rows} rows of {one.columns} ({weight:.2f})" for one, weight, _ in likely)
+    return f"a field over the sheets, since {won}; sheets are averaged over by their probability: {listed}"
 
 
-def _machine(edges, led) -> list[str]:
-    """What edges told of it and what came beside."""
+def _machine(edges, offsets) -> list[str]:
+    """What edges showed of it, and what was found in addition."""
     lines, was = [], edges.fit.machine
-    if led.lean_mm_per_mm.any():
-        x, y = led.lean_mm_per_mm + was.lean_mm_per_mm
+    if offsets.lean_mm_per_mm.any():
+        x, y = offsets.lean_mm_per_mm + was.lean_mm_per_mm
         lines.append(
             f"lean: {x:+.3f} and {y:+.3f} mm per mm of depth in x and y "
             "({:+.3f} and {:+.3f} by edges)".format(*was.lean_mm_per_mm)
         )
-    if led.map.any():
+    if offsets.map.any():
         axes = np.array([[was.scale[0], was.skew], [0.0, was.scale[1]]])
-        (a, b), (c, d) = (np.eye(2) + led.map) @ axes - np.eye(2)
+        (a, b), (c, d) = (np.eye(2) + offsets.map) @ axes - np.eye(2)
         lines.append(
             f"ways: {a:+.4f} and {b:+.4f} mm in x, {c:+.4f} and {d:+.4f} in y per mm in x and y (scale "
             f"{was.scale[0]:.4f} and {was.scale[1]:.4f}, skew {was.skew:+.4f} by edges)"

@@ -1,7 +1,7 @@
 """The lag of painted marks by a brush whose outlines were measured, in place of the drops or eggs that a fit assumes.
 
-The fit of marks knows drops and eggs alone: where the true footprint is another it tells another lag. Here the
-outlines are those of the brush, and what moves until the edges of the painted marks lie on those that are predicted is
+The fit of marks knows drops and eggs alone: where the true footprint is another it gives another lag. Here the
+outlines are those of the brush, and the numbers that change until the edges of painted and predicted marks agree are
 the lag, the height of the paper, and each mark's displacement. Least squares over distances by Gauss and Newton, under
 Tukey's loss, from what the fit found on.
 """
@@ -31,9 +31,9 @@ FARTHEST = 0.3  # share of a lag that outlines may change: more, and they are of
 
 @dataclass(frozen=True)
 class LagByOutlines:
-    """made: the marks, and what they say of the brush by its own outlines, lying where these have them (Placed);
+    """made: the marks, and what they say of the brush by its own outlines, at their places by these (Placed);
     before: what the fit said of them by drops or eggs; own: the brush whose outlines and other laws stay; height_mm: of
-    the paper above the taught one; noise_mm: what edges lie off (robust standard deviation)."""
+    the paper above the taught one; noise_mm: residual of the edges (robust standard deviation)."""
 
     made: MarkCalibration
     before: MarkCalibration
@@ -52,21 +52,24 @@ def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagBy
     refuse_assumed(own)
     _refuse_shallow(own, made.painted.deepest_mm)
     edges = _Edges(made, own)
-    told = np.array(made.fit.laws.lag)
+    fitted_lag = np.array(made.fit.laws.lag)
     depths = np.linspace(0.0, made.painted.deepest_mm, 21)[1:]
     terms = min(LAG_TERMS, made.painted.depths)
     # lags at so many depths, as coefficients
     at = np.linspace(0.0, made.painted.deepest_mm, terms + 1)[1:]
     to_law = np.linalg.inv(np.vander(at, terms, increasing=True))
     more = np.zeros(terms)
-    height, aside = made.fit.height_mm, np.array([residual.displacement_mm for residual in made.fit.marks])
+    height, displaced = (
+        made.fit.height_mm,
+        np.array([residual.displacement_mm for residual in made.fit.marks]),
+    )
     for _ in range(ROUNDS):
-        off, slopes = edges.looked_at(_raised(told, to_law @ more), to_law, height, aside)
-        change, covariance, noise = edges.solved(off, slopes, height, aside)
-        more, height, aside = (
+        off, slopes = edges.looked_at(_raised(fitted_lag, to_law @ more), to_law, height, displaced)
+        change, covariance, noise = edges.solved(off, slopes, height, displaced)
+        more, height, displaced = (
             more + change[:terms],
             height + change[terms],
-            aside + change[terms + 1 :].reshape(-1, 2),
+            displaced + change[terms + 1 :].reshape(-1, 2),
         )
         left = float(np.abs(polyval(depths, to_law @ change[:terms])).max())
         if left < SETTLED_MM:
@@ -80,8 +83,8 @@ def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagBy
             code="law-undetermined",
         )
     # no shorter than the tip gap: what that is off, the lag is off the other way
-    lag = _raised(_raised(told, to_law @ more), np.zeros(len(own.tip_gap.coefficients)))
-    _refuse_far(lag, told, depths, own)
+    lag = _raised(_raised(fitted_lag, to_law @ more), np.zeros(len(own.tip_gap.coefficients)))
+    _refuse_far(lag, fitted_lag, depths, own)
     brush = _with_lag(own, lag, name)
     block = _raised_covariance(made, to_law @ covariance[:terms, :terms] @ to_law.T)
     whole = _joined(own, brush, block)
@@ -97,7 +100,7 @@ def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagBy
     fit = made.fit
     marks = [
         PlacedMark(np.array(residual.way_mm), tuple(by.tolist()))
-        for residual, by in zip(fit.marks, aside, strict=True)
+        for residual, by in zip(fit.marks, displaced, strict=True)
     ]
     placed = Placed(fit.turn_rad, fit.shift_mm, fit.centre_mm, float(height), tuple(marks))
     return LagByOutlines(replace(made, brush=brush, fit=placed), made, own, float(height), noise)
@@ -105,7 +108,7 @@ def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagBy
 
 @dataclass(frozen=True)
 class PlacedMark:
-    """The way of a mark as the machine ran it, and how far the mark lies aside."""
+    """Return the way of a mark as the machine ran it, and the displacement of the mark."""
 
     way_mm: np.ndarray
     displacement_mm: tuple[float, float]
@@ -113,7 +116,7 @@ class PlacedMark:
 
 @dataclass(frozen=True)
 class Placed:
-    """Where marks lie, as the fit of drops or eggs says it: sheet, height of the paper, each mark."""
+    """Return the places of marks by the fit of drops or eggs: sheet, height of the paper, each mark."""
 
     turn_rad: float
     shift_mm: tuple[float, float]
@@ -132,42 +135,44 @@ class _Edges:
         ]
         self.of = np.repeat(np.arange(len(self.points)), [len(each) for each in self.points])
 
-    def looked_at(self, lag, to_law, height, aside) -> tuple[np.ndarray, np.ndarray]:
+    def looked_at(self, lag, to_law, height, displaced) -> tuple[np.ndarray, np.ndarray]:
         """Distances (n,) outward from the predicted edges, and their slopes over lags, height and each displacement."""
         rings = self._painted(lag, height)
-        off = self._off(rings, aside)
-        columns = [self._off(self._painted(_raised(lag, STEP_MM * row), height), aside) for row in to_law.T]
-        columns.append(self._off(self._painted(lag, height + STEP_MM), aside))
+        off = self._off(rings, displaced)
+        columns = [
+            self._off(self._painted(_raised(lag, STEP_MM * row), height), displaced) for row in to_law.T
+        ]
+        columns.append(self._off(self._painted(lag, height + STEP_MM), displaced))
         slopes = np.zeros((len(off), len(columns) + 2 * len(self.points)))
         slopes[:, : len(columns)] = (np.column_stack(columns) - off[:, None]) / STEP_MM
         for axis, step in enumerate(STEP_MM * np.eye(2)):
-            moved = (self._off(rings, aside + step) - off) / STEP_MM
+            moved = (self._off(rings, displaced + step) - off) / STEP_MM
             slopes[np.arange(len(off)), len(columns) + 2 * self.of + axis] = moved
         return off, slopes
 
-    def solved(self, off, slopes, height, aside) -> tuple[np.ndarray, np.ndarray, float]:
+    def solved(self, off, slopes, height, displaced) -> tuple[np.ndarray, np.ndarray, float]:
         """The step, the covariance of what it ends at, and the noise. What is known beforehand: height and
-        displacements, as the fit was told; points beside each other say less than as many."""
+        displacements, as in the fit; neighbouring points count for less than as many independent ones."""
         expected, fit = self.made.expected, self.made.fit
         noise = max(LEAST_NOISE_MM, 1.4826 * float(np.median(np.abs(off))))
         weight = np.clip(1 - (off / (OUTLYING * noise)) ** 2, 0.0, 1.0)  # the root of Tukey's
         alike = noise * np.sqrt(fit.samples / max(fit.effective_samples, 1.0))
-        first = slopes.shape[1] - 1 - aside.size
-        known = np.zeros((1 + aside.size, slopes.shape[1]))
+        first = slopes.shape[1] - 1 - displaced.size
+        known = np.zeros((1 + displaced.size, slopes.shape[1]))
         known[0, first] = 1 / expected.height_mm.sigma
-        known[1:, first + 1 :] = np.eye(aside.size) / expected.displacement_mm
+        known[1:, first + 1 :] = np.eye(displaced.size) / expected.displacement_mm
         usual = np.append(
             (expected.height_mm.value - height) / expected.height_mm.sigma,
-            -aside.ravel() / expected.displacement_mm,
+            -displaced.ravel() / expected.displacement_mm,
         )
         both = np.vstack([slopes * (weight / alike)[:, None], known])
-        wanted = np.append(-off * weight / alike, usual)
+        right_side = np.append(-off * weight / alike, usual)
         inverse = np.linalg.inv(both.T @ both)
-        # what all edges, painted or measured on dabs, lie off together
+        # common shift of all edges, painted or measured on dabs
         together = float(np.hypot(self.made.edge_mm, _unsure_mm(self.own)))
         moved = inverse @ both.T[:, : len(off)] @ (weight / alike * together)
         covariance = inverse + np.outer(moved, moved)
-        return inverse @ both.T @ wanted, covariance, noise
+        return inverse @ both.T @ right_side, covariance, noise
 
     def _painted(self, lag, height: float) -> list:
         brush = _with_lag(self.own, lag, self.own.name)
@@ -180,11 +185,11 @@ class _Edges:
         _core.trace_outlines(painted, brush)
         return [[np.array(ring) for ring in one.outline_mm] for one in painted.passes]
 
-    def _off(self, painted: list, aside: np.ndarray) -> np.ndarray:
+    def _off(self, painted: list, displaced: np.ndarray) -> np.ndarray:
         return np.concatenate(
             [
                 _outward(points - by, rings)
-                for points, by, rings in zip(self.points, aside, painted, strict=True)
+                for points, by, rings in zip(self.points, displaced, painted, strict=True)
             ]
         )
 
@@ -254,8 +259,8 @@ def _refuse_shallow(own: _core.Brush, deepest_mm: float) -> None:
         )
 
 
-def _refuse_far(lag, told, depths: np.ndarray, own: _core.Brush) -> None:
-    usual, now = polyval(depths, told), polyval(depths, lag)
+def _refuse_far(lag, fitted_lag, depths: np.ndarray, own: _core.Brush) -> None:
+    usual, now = polyval(depths, fitted_lag), polyval(depths, lag)
     share = np.abs(now - usual) / np.maximum(usual, usual.max() / 4)
     worst = int(share.argmax())
     if share[worst] > FARTHEST or polyval(np.append(0.0, depths), lag).min() < 0:
@@ -278,7 +283,7 @@ def _with_lag(own: _core.Brush, lag, name: str) -> _core.Brush:
 
 def _joined(own: _core.Brush, brush: _core.Brush, of_lag: np.ndarray) -> np.ndarray:
     """Covariance over the coefficients of the brush: of the lag as it was found, of the others as they were. The lag
-    was found by where tips lie, so it is off by what the tip gap is off, the other way."""
+    was found from the places of tips, so it is off by what the tip gap is off, the other way."""
     at, was = places(brush), places(own)
     out = np.zeros((at[LAWS[-1]].stop,) * 2)
     out[: len(of_lag), : len(of_lag)] = of_lag

@@ -1,9 +1,9 @@
-"""What of a brush the largest overlap is to change, chosen by marks that had no part in it.
+"""Choose which numbers of a brush the largest overlap is to change, by marks that had no part in it.
 
 The more numbers a search may change, the more marks overlap with what it was fitted to; whether they predict others is
-another matter. So the marks are parted, each part is predicted by what the others told, edges included, and the kind of
-search is chosen with which the parts left out overlap most (cross-validation): half where they lie, half where each may
-move, as in the search.
+another matter. So the marks are parted, each part is predicted by the others, edges included, and the kind of
+search is chosen with which the parts left out overlap most (cross-validation): half at their places, half where each
+may move, as in the search.
 """
 
 from __future__ import annotations
@@ -19,7 +19,17 @@ from ...errors import Error
 from ..marks.from_marks import ROUND_TAIL
 from ..marks.machine_found import PARTS
 from .overlap_field import FoundField, found_field, moved
-from .overlap_search import Begin, Led, Search, Target, best_from, each_kind, few_of, middle_of, polished
+from .overlap_search import (
+    Begin,
+    MachineOffsets,
+    Search,
+    Target,
+    best_from,
+    each_kind,
+    few_of,
+    middle_of,
+    polished,
+)
 
 HALVES = 30  # marks from which on two parts do; fewer are parted in three: each fit needs enough of them
 LEAST = 9  # marks; the edges of fewer, parted, leave laws open
@@ -29,24 +39,24 @@ EVERY = 20  # looks between two words on how far it is
 @dataclass(frozen=True, eq=False)
 class Predicting:
     """What overlaps most: laws as a fit of marks has them, height of the paper, displacement of all marks, what the
-    machine does besides; the overlap by edges and now, and how many numbers were changed.
+    machine does in addition; the overlap by edges and now, and how many numbers were changed.
 
     kind: one of KINDS; parts: into how many the marks were parted to choose it, 0 where they are too few; left_out: of
-    each kind the overlaps of marks left out, where they lie and where each may move. aside: by where on a sheet marks
-    were painted, where their order was told.
+    each kind the overlaps of marks left out, at their places and where each may move. displacement: by the place on a
+    sheet where marks were painted, where their order is known.
     """
 
     laws: _core.MarkLaws
     height_mm: float
     shift_mm: np.ndarray
-    led: Led
+    offsets: MachineOffsets
     before: float
     overlap: float
     numbers: int
     kind: str
     parts: int
     left_out: dict[str, tuple[float, float]]
-    aside: FoundField | None = None
+    displacement: FoundField | None = None
 
 
 def best_predicting(
@@ -57,9 +67,9 @@ def best_predicting(
     progress: Callable[[int], object] = lambda looks: None,
     order: np.ndarray | None = None,
 ) -> Predicting:
-    """marks: in the frame of the targets, which they are; begin: what edges told of all of them; order: as of
-    sheet_field(), where that tells on which part of a sheet they were painted. progress: is told how many overlaps were
-    looked at."""
+    """marks: in the frame of the targets, which they are; begin: the fit of all of them by edges; order: as in
+    sheet_field(), where that shows on which part of a sheet they were painted. progress: receives how many overlaps
+    were looked at."""
     looks = 0
 
     def look() -> None:
@@ -77,10 +87,10 @@ def best_predicting(
     starts = [one.x for one in tried[kind] if len(one.x) == len(search.begin)]
     if starts:
         x = best_from(search, kind, starts, few_of(targets), look)
-    else:  # fewer marks told fewer numbers of a law
+    else:  # fewer marks determine fewer numbers of a law
         kind, x = _searched(search, targets, look, kind)
     found = _predicting(search, kind, x, targets, look, order)
-    means = {one: (float(lying), float(moved)) for one, (lying, moved) in left_out.items()}
+    means = {one: (float(in_place), float(moved)) for one, (in_place, moved) in left_out.items()}
     return replace(found, parts=len(tried["edges"]), left_out=means)
 
 
@@ -105,15 +115,15 @@ def _searched(search: Search, targets: list[Target], look, last: str | None = No
 
 
 def _predicting(search: Search, kind: str, x, targets: list[Target], look, order=None) -> Predicting:
-    x, aside = polished(search, kind, x, targets, look), None
+    x, displacement = polished(search, kind, x, targets, look), None
     if order is not None:
-        aside = found_field(search, x, targets, order)
-        if aside.field is not None:
-            targets = moved(targets, aside.field.at(order))
+        displacement = found_field(search, x, targets, order)
+        if displacement.field is not None:
+            targets = moved(targets, displacement.field.at(order))
             # along the way a place is what a lag is, too
             x = polished(search, kind, x, targets, look, ("lag",))
     before, now = (float(search.overlaps(each, targets)[:, 0].mean()) for each in (search.begin, x))
-    return Predicting(*search.read(x), before, now, search.changed(kind), kind, 0, {}, aside)
+    return Predicting(*search.read(x), before, now, search.changed(kind), kind, 0, {}, displacement)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,10 +1,10 @@
-"""The search for the brush whose marks overlap most with painted ones, in few numbers on top of what edges told.
+"""Search for the brush whose marks overlap most with painted ones, in few numbers on top of the fit by edges.
 
 Changed are lag (as values at depths), tip gap, half width, the footprint's two lengths, the height of the paper and the
-displacement of the sheet; where it is asked for lean and a map of the ways; where tools are tilted a lever. By a
+displacement of the sheet; on request lean and a map of the ways; where tools are tilted a lever. By a
 simplex of Nelder and Mead, on a part of the marks first.
 
-Where marks lie aside by chance, a wider brush overlaps more than the true one: its mark reaches all places at which
+Where marks are displaced by chance, a wider brush overlaps more than the true one: its mark reaches all places at which
 paint may be. So half of the aim is the overlap where each mark may move by what displacements are expected to be: there
 the true width overlaps most. See docs/reference/measurements.md.
 
@@ -12,8 +12,8 @@ What the machine does is changed with the laws, in one search: found before or a
 A simplex of so many numbers stops too early: pictures of predicted and painted marks are registered first, by least
 squares. The laws without a machine are one more start.
 
-Lag and footprint tell little apart where the brush hardly turns, so that a footprint that is not round has its price,
-as for the edges: squares of what it is off, weighed against overlaps as if those scattered normally.
+Lag and footprint are hard to separate where the brush hardly turns, so that a footprint that is not round has its
+price, as for the edges: squares of what it is off, weighed against overlaps as if those scattered normally.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from numpy.polynomial.polynomial import polyval
 from ... import _core
 from ..marks.from_marks import brush_of, front_ratio, widest_ratio
 
-# Share of the overlap with each mark moved: 0 paints too wide, 1 says nothing of where marks lie
+# Share of the overlap with each mark moved: 0 paints too wide, 1 ignores the places of marks
 SHIFTED = 0.5
 FARTHEST = 2.0  # how far, in standard deviations of what displacements are expected to be
 FEW = 30  # marks on which the search begins
@@ -80,8 +80,8 @@ class Target:
 
 
 @dataclass(frozen=True, eq=False)
-class Led:
-    """How a machine runs a way besides what edges told of it: aside by lean_mm_per_mm (2,) of depth, by map (2, 2)
+class MachineOffsets:
+    """Displacement of a machine's ways in addition to the fit by edges: by lean_mm_per_mm (2,) of depth, by map (2, 2)
     times the way from centre_mm (2,), mm per mm, and by lever_mm (2,) times the tangent of what the tool leans."""
 
     lean_mm_per_mm: np.ndarray
@@ -100,7 +100,7 @@ class Led:
 
 @dataclass(frozen=True, eq=False)
 class Begin:
-    """What edges told, which the search starts at. shift_mm: of the marks, where their frame does not hold it."""
+    """The fit by edges, at which the search starts. shift_mm: of the marks, where their frame does not hold it."""
 
     laws: _core.MarkLaws
     height_mm: float
@@ -166,7 +166,7 @@ class Search:
             free[self.at[name]] = False
         return free
 
-    def read(self, x) -> tuple[_core.MarkLaws, float, np.ndarray, Led]:
+    def read(self, x) -> tuple[_core.MarkLaws, float, np.ndarray, MachineOffsets]:
         """Laws, height of the paper, displacement, machine."""
         change, deepest, old = x - self.begin, self.deepest_mm, self.laws
         half = np.cumsum(change[self.at["half_width"]])
@@ -183,28 +183,28 @@ class Search:
         )
         height = float(x[self.at["height"]][0]) if self.has_height else self.height_mm
         lean, by_map, lever = (x[self.at[name]] for name in MACHINE)
-        led = Led(
+        machine = MachineOffsets(
             lean if len(lean) else np.zeros(2),
             by_map.reshape(2, 2) if len(by_map) else np.zeros((2, 2)),
             self.centre_mm,
             lever if len(lever) else np.zeros(2),
         )
-        return laws, height, x[self.at["shift"]], led
+        return laws, height, x[self.at["shift"]], machine
 
     def loss(self, x, targets: list[Target]) -> float:
-        laws, height, shift, led = self.read(x)
+        laws, height, shift, machine = self.read(x)
         if self._impossible(x, laws, height):
             return 1.0
-        aim = self._overlaps(targets, laws, height, shift, led) @ (1 - SHIFTED, SHIFTED)
+        aim = self._overlaps(targets, laws, height, shift, machine) @ (1 - SHIFTED, SHIFTED)
         return 1 - float(aim.mean()) + float(self._price(x) @ self._price(x)) / self.count
 
     def differences(self, x, targets: list[Target], blur_px: int) -> np.ndarray | None:
         """Of predicted and painted pixels, blurred; squares are shares of each mark's paint, and the price. None where
         there is no such brush."""
-        laws, height, shift, led = self.read(x)
+        laws, height, shift, machine = self.read(x)
         if self._impossible(x, laws, height):
             return None
-        pictures = predicted(_led(targets, led, height), laws, height, shift, self.deepest_mm)
+        pictures = predicted(_move_targets(targets, machine, height), laws, height, shift, self.deepest_mm)
         out = [
             blur_px / np.sqrt(target.paint.sum()) * _blurred(picture - target.paint, blur_px).ravel()
             for target, picture in zip(targets, pictures, strict=True)
@@ -212,21 +212,23 @@ class Search:
         return np.concatenate([*out, self._price(x)])
 
     def overlaps(self, x, targets: list[Target]) -> np.ndarray:
-        """Of each mark where it lies, and where it may move (n, 2)."""
-        laws, height, shift, led = self.read(x)
-        return self._overlaps(targets, laws, height, shift, led)
+        """Return the overlap of each mark at its place, and where it may move (n, 2)."""
+        laws, height, shift, machine = self.read(x)
+        return self._overlaps(targets, laws, height, shift, machine)
 
-    def _overlaps(self, targets: list[Target], laws, height: float, shift, led: Led) -> np.ndarray:
+    def _overlaps(
+        self, targets: list[Target], laws, height: float, shift, machine: MachineOffsets
+    ) -> np.ndarray:
         def compared(target: Target, picture: np.ndarray) -> tuple[float, float]:
             moved, _ = best_shift(picture, target.paint, 1 / target.px_per_mm, self.farthest_mm)
             return soft_overlap(target.paint, picture), moved
 
-        led_targets = _led(targets, led, height)
-        return np.array(of_predicted(compared, led_targets, laws, height, shift, self.deepest_mm))
+        moved_targets = _move_targets(targets, machine, height)
+        return np.array(of_predicted(compared, moved_targets, laws, height, shift, self.deepest_mm))
 
     def _price(self, x) -> np.ndarray:
-        """Of a footprint that is not round, and of a machine that does not as it is told: its squares over all marks
-        are what it costs."""
+        """Return the cost of a footprint that is not round, and of a machine with errors: its squares over all
+        marks."""
         behind, front = x[self.at["shape"]]
         friction = x[self.at["tip_gap"]][0] / max(0.1, x[self.at["half_width"]].sum()) - behind
         if not self.laws.round_tail:
@@ -276,8 +278,8 @@ def each_kind(
     x = _best_of(loss, starts, steps, alone)
     yield "laws", x
     if search.has_machine:
-        led = search.without(*HELD["machine"])
-        x = _best_of(loss, [_registered(search, search.begin, led, few, look), x], 0.4 * steps, led)
+        machine = search.without(*HELD["machine"])
+        x = _best_of(loss, [_registered(search, search.begin, machine, few, look), x], 0.4 * steps, machine)
         yield "machine", x
     if len(search.begin[search.at["lever"]]):
         leant = search.without("lag", "tip_gap", "half_width", "shape", "height", "lean", "map")
@@ -295,7 +297,7 @@ def _best_of(loss, starts: list[np.ndarray], steps, free) -> np.ndarray:
 def polished(
     search: Search, kind: str, x, targets: list[Target], look: Callable[[], None], held: tuple[str, ...] = ()
 ) -> np.ndarray:
-    """What few marks told, searched on with all; held: names of numbers that stay."""
+    """Continue the search of few marks with all; held: names of numbers that stay."""
     if kind == "edges":
         return x
 
@@ -330,16 +332,16 @@ def few_of(targets: list[Target]) -> list[Target]:
     return targets[:: max(1, len(targets) // FEW)]
 
 
-def of_led(search: Search, x, targets: list[Target], what: Callable) -> list:
+def apply_to_moved(search: Search, x, targets: list[Target], what: Callable) -> list:
     """what(target, picture) of what the numbers x paint of each target."""
-    laws, height, shift, led = search.read(x)
-    return of_predicted(what, _led(targets, led, height), laws, height, shift, search.deepest_mm)
+    laws, height, shift, machine = search.read(x)
+    return of_predicted(what, _move_targets(targets, machine, height), laws, height, shift, search.deepest_mm)
 
 
-def _led(targets: list[Target], led: Led, height_mm: float) -> list[Target]:
-    if not (led.lean_mm_per_mm.any() or led.map.any() or led.lever_mm.any()):
+def _move_targets(targets: list[Target], machine: MachineOffsets, height_mm: float) -> list[Target]:
+    if not (machine.lean_mm_per_mm.any() or machine.map.any() or machine.lever_mm.any()):
         return targets
-    return [replace(one, poses_mm=led.way(one.poses_mm, height_mm, one.leant)) for one in targets]
+    return [replace(one, poses_mm=machine.way(one.poses_mm, height_mm, one.leant)) for one in targets]
 
 
 def _registered(search: Search, x, free, targets: list[Target], look: Callable[[], None]) -> np.ndarray:
@@ -396,8 +398,8 @@ def _simplex(loss, x, steps, free, most: int, corners=None):
 
     if corners is None:
         corners = np.vstack([x[free], *(x[free] + d for d in np.diag(steps[free]))])
-    told = {"initial_simplex": corners, "maxfev": most, "adaptive": True, "xatol": 0.01, "fatol": 1e-5}
-    found = minimize(lambda changed: loss(filled(changed)), x[free], method="Nelder-Mead", options=told)
+    simplex = {"initial_simplex": corners, "maxfev": most, "adaptive": True, "xatol": 0.01, "fatol": 1e-5}
+    found = minimize(lambda changed: loss(filled(changed)), x[free], method="Nelder-Mead", options=simplex)
     found.all_x = filled(found.x)
     return found
 
@@ -443,7 +445,7 @@ def _workers() -> ThreadPoolExecutor:
 
 
 def on_paper(poses_mm, height_mm: float, shift_mm) -> np.ndarray:
-    """The TCP's way where paper and sheet were found to lie."""
+    """Return the TCP's way with the heights and places of paper and sheet that were found."""
     poses = np.array(poses_mm)
     poses[:, :2] += shift_mm
     poses[:, 2] = np.minimum(poses[:, 2] - height_mm, 0.0)

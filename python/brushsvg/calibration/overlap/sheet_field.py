@@ -1,5 +1,5 @@
-"""By how much marks lie aside where on the sheet they were painted: what a robot and a camera that were calibrated to
-each other do not agree in.
+"""Displacement of marks by their place on the sheet: the disagreement of a robot and a camera that were calibrated to
+each other.
 
 A smooth field, polynomials of row and column and a displacement of each sheet, found from the marks' own displacements
 by Bayesian linear regression. Where only the order is known in which strokes were painted, it is that of rows of as
@@ -21,7 +21,7 @@ DEGREES = np.array([(i, j) for i in range(DEGREE + 1) for j in range(DEGREE + 1 
 # more are smaller, of a sheet; of the mean of all
 SIZES, FALLS, SHEETS, MEAN = (0.5, 1.0, 2.0), (0.2, 0.6), (0.0, 0.7), 10.0
 OUTLYING = 3.0  # robust standard deviations beyond which a displacement counts as this far
-LEAST_MM = 0.2  # standard deviation of single marks: below, pixels tell no more
+LEAST_MM = 0.2  # standard deviation of single marks: below, pixels show no more
 SHAPE = 2.0  # of the inverse gamma distribution of the single marks' variance
 LEAST_WEIGHT = 1e-4
 
@@ -53,8 +53,8 @@ class Layout:
 
     def variances(self, size: float, fall: float, sheet: float, terms: int) -> np.ndarray:
         """Beforehand, in variances of single marks."""
-        told = (DEGREES[:, 0] < self.columns) & (DEGREES[:, 1] < self.rows)
-        field = np.where(told, (size * fall ** (DEGREES.sum(axis=1) - 1.0)) ** 2, 0.0)
+        is_free = (DEGREES[:, 0] < self.columns) & (DEGREES[:, 1] < self.rows)
+        field = np.where(is_free, (size * fall ** (DEGREES.sum(axis=1) - 1.0)) ** 2, 0.0)
         return np.concatenate([[MEAN**2], field, np.full(terms - 1 - len(field), sheet**2)])
 
 
@@ -110,9 +110,9 @@ def _of_layout(basis, moved, scale, layout: Layout) -> tuple[float, np.ndarray]:
     total, out = 0.0, []
     for one, variance in zip(moved.T, scale, strict=True):
         each = [_regressed(basis, one, layout.variances(*size, basis.shape[1]), variance) for size in sizes]
-        told = np.array([evidence for evidence, _ in each]) + shares
-        weights = np.exp(told - told.max())
-        total += told.max() + np.log(weights.sum())
+        log_weights = np.array([evidence for evidence, _ in each]) + shares
+        weights = np.exp(log_weights - log_weights.max())
+        total += log_weights.max() + np.log(weights.sum())
         out.append(weights / weights.sum() @ [coefficients for _, coefficients in each])
     return total, np.column_stack(out)
 

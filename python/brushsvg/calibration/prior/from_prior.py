@@ -1,4 +1,4 @@
-"""A brush that is known already, updated by further painted marks: which laws they told anything of."""
+"""Update a known brush by further painted marks: only the laws that they determine change."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ from ...model.confidence import (
     LEARNED,
     fitted_down_to_mm,
     half_interval_mm,
-    law_band,
     learned_of,
     places,
 )
@@ -38,7 +37,8 @@ from ..marks.mark_input import Painted, depths_painted
 from ..marks.stray_marks import Stray, strays
 from .prior import DEPTHS, KnownLaws, known_laws, numbers_of, root_of_inverse
 
-TOLD = 0.9  # a law's standard deviation over that before, at some depth: above it, the marks told nothing of the law
+# Ratio of a law's standard deviations after and before, at some depth: above it, the marks add nothing to the law.
+LEARNED_BELOW = 0.9
 ROUNDS = 20
 LOOSE = 0.25  # of a law, standard deviation: farther off than brushes of one make are
 LIKELY = 1.645  # normal deviate: a brush as far from its prior is met once in twenty times
@@ -49,25 +49,25 @@ FOLLOWED = 0.01
 
 @dataclass(frozen=True)
 class Updated:
-    """known: the prior; wider: by law, how many times as wide its intervals had to be taken; told: by law, the least
+    """known: the prior; wider: by law, the factor of its intervals that was needed; doubts_left: by law, the least
     ratio of the standard deviation now to that before, and at which depth. covariance: of all that was fitted."""
 
     brush: _core.Brush
     before: _core.Brush
     known: KnownLaws
     wider: dict[str, float]
-    told: dict[str, tuple[float, float]]
+    doubts_left: dict[str, tuple[float, float]]
     fit: object
     painted: Painted
     covariance: np.ndarray
     strays: tuple[Stray, ...]
     options: object
 
-    def is_told(self, law: str) -> bool:
-        return self.told[law][0] < TOLD
+    def is_learned(self, law: str) -> bool:
+        return self.doubts_left[law][0] < LEARNED_BELOW
 
 
-def marks_beside_a_prior(marks: list) -> Painted:
+def marks_with_prior(marks: list) -> Painted:
     """Any marks: what they leave open the prior says."""
     ways = [np.array(mark.poses_mm) for mark in marks]
     return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))
@@ -82,7 +82,7 @@ def update_brush(
     displacement_mm: float | None = None,
 ) -> Updated:
     """edge_mm: as for calibrate_marks; machine: parts of it that are found as well; displacement_mm: standard deviation
-    of where a mark lies, in x and in y, where that is known. Error where the marks are not of this brush at all."""
+    of a mark's place, in x and in y, where that is known. Error where the marks are not of this brush at all."""
     need_fits()
     known = known_laws(brush)
     options = _core.MarkOptions()
@@ -100,7 +100,7 @@ def update_brush(
     if astray:
         refuse_many(astray, painted)
         gone = {each.mark.stroke for each in astray}
-        painted = marks_beside_a_prior([mark for mark in painted.marks if mark.stroke not in gone])
+        painted = marks_with_prior([mark for mark in painted.marks if mark.stroke not in gone])
         fit, wider = _fit_wide_enough(painted.marks, known, options)
     laws, covariance = _followed(known, known.widened(wider), fit, painted.deepest_mm)
     if edge_mm > 0:
@@ -109,17 +109,17 @@ def update_brush(
             wetter_where_wider(fit, options.deepest_mm, edge_mm),
         ):
             covariance += np.outer(moved, moved)
-    told = _told(known.widened(wider), covariance, known.laws, brush)
-    changed = {law for law in LAWS if told[law][0] < TOLD}
+    left = _doubts_left(known.widened(wider), covariance, known.laws, brush)
+    changed = {law for law in LAWS if left[law][0] < LEARNED_BELOW}
     made = _brush_of(brush, known, laws, covariance, changed, name, painted)
     _core.check(made)
-    return Updated(made, brush, known, wider, told, fit, painted, covariance, astray, options)
+    return Updated(made, brush, known, wider, left, fit, painted, covariance, astray, options)
 
 
 def _fit_wide_enough(marks: list, known: KnownLaws, options) -> tuple[object, dict[str, float]]:
-    """A law that lies farther from its prior than that allows is fitted with a wider one. One that is too narrow for
-    another brush of the same make would hold the law where it is: edges that lie far from there would count as wild,
-    have no say, and leave it sure of itself. So the marks are asked first with a loose prior."""
+    """A law that is farther from its prior than that allows is fitted with a wider one. One that is too narrow for
+    another brush of the same make would hold the law where it is: edges far from there would count as wild,
+    have no say, and leave it sure of itself. So the marks are fitted first with a loose prior."""
     loosened = known.loosened(LOOSE)
     options.laws = known.prior(loosened)
     loose = _core.fit_marks(marks, known.laws, options)
@@ -131,7 +131,7 @@ def _fit_wide_enough(marks: list, known: KnownLaws, options) -> tuple[object, di
 def _followed(
     known: KnownLaws, before: np.ndarray, fit, deepest_mm: float
 ) -> tuple[_core.MarkLaws, np.ndarray]:
-    """Laws and covariance where marks down to this depth tell of the true law no more than a polynomial follows it.
+    """Laws and covariance where marks down to this depth determine the true law only as far as a polynomial follows it.
 
     In numbers in which the prior (covariance `before`) is standard normal: the marks' information L becomes that of
     what they measured and F, the covariance of what it does not follow, together: L - L (L + 1/F)^-1 L.
@@ -140,12 +140,12 @@ def _followed(
     root, after = root_of_inverse(before), np.array(fit.covariance)
     values, vectors = np.linalg.eigh(root @ after[:size, :size] @ root.T)
     information = (vectors * np.maximum(1.0 / np.maximum(values, 1e-12) - 1.0, 0.0)) @ vectors.T
-    told = (np.eye(size) + information) @ root @ (_numbers(fit.laws) - _numbers(known.laws))
+    evidence = (np.eye(size) + information) @ root @ (_numbers(fit.laws) - _numbers(known.laws))
     unfollowed = np.linalg.inv(root @ known.unfollowed(FOLLOWED, deepest_mm) @ root.T)
     kept = np.eye(size) - information @ np.linalg.inv(information + unfollowed)
     now = np.linalg.inv(np.eye(size) + kept @ information)
     back = np.linalg.inv(root)
-    numbers = _numbers(known.laws) + back @ now @ kept @ told
+    numbers = _numbers(known.laws) + back @ now @ kept @ evidence
     after[:size, :size] = back @ (now + now.T) / 2 @ back.T
     at = {law: numbers[place].tolist() for law, place in numbers_of().items()}
     one = fit.laws
@@ -184,21 +184,21 @@ def too_narrow(known: KnownLaws, loosened: np.ndarray, loose) -> dict[str, float
 
 
 def _off_as_expected(moved, expected, before, after) -> float:
-    """How many times as far it moved as expected (rms), over the directions in which the marks tell anything; 1 where
+    """How many times as far it moved as expected (rms), over the directions that the marks determine; 1 where
     that is likely."""
     root = root_of_inverse(before)
     values, vectors = np.linalg.eigh(root @ after @ root.T)
-    along = vectors[:, values < TOLD].T @ root
+    along = vectors[:, values < LEARNED_BELOW].T @ root
     count = len(along)
     if not count:
         return 1.0
-    told = along @ moved
-    squared = float(told @ np.linalg.lstsq(along @ expected @ along.T, told, rcond=None)[0])
+    moved_along = along @ moved
+    squared = float(moved_along @ np.linalg.lstsq(along @ expected @ along.T, moved_along, rcond=None)[0])
     return float(np.sqrt(squared / count)) if squared > _quantile(count) else 1.0
 
 
 def _quantile(freedom: int) -> float:
-    """Of chi-square, that 5 % lie above (Wilson and Hilferty)."""
+    """Return the 95 % quantile of chi-square (Wilson and Hilferty)."""
     part = 2.0 / (9.0 * freedom)
     return freedom * (1.0 - part + LIKELY * np.sqrt(part)) ** 3
 
@@ -221,7 +221,7 @@ def bands_mm(covariance: np.ndarray, laws, depths: np.ndarray) -> dict[str, np.n
     return out
 
 
-def _told(before: np.ndarray, after: np.ndarray, laws, brush) -> dict[str, tuple[float, float]]:
+def _doubts_left(before: np.ndarray, after: np.ndarray, laws, brush) -> dict[str, tuple[float, float]]:
     """tip_to_widest: of its ratio to the half width."""
     depths = np.linspace(*brush.depth_range_mm, DEPTHS)[1:]
     was, is_now = bands_mm(before, laws, depths), bands_mm(after, laws, depths)
@@ -233,34 +233,34 @@ def _told(before: np.ndarray, after: np.ndarray, laws, brush) -> dict[str, tuple
     return out
 
 
-def _brush_of(brush, known: KnownLaws, laws, covariance, told: set[str], name: str, painted: Painted):
-    """The brush with the laws that were told anything of; the others stay as they are."""
-    if told & {"half_width", "tip_to_widest"}:
-        told = told | {"tip_to_widest"}  # it is counted in half widths
+def _brush_of(brush, known: KnownLaws, laws, covariance, learned: set[str], name: str, painted: Painted):
+    """Return the brush with the laws that the marks determine; the others stay as they are."""
+    if learned & {"half_width", "tip_to_widest"}:
+        learned = learned | {"tip_to_widest"}  # it is counted in half widths
     made = brush_of(laws, name, brush.depth_range_mm, covariance)
     fitted = places(made)
     whole = over_brush(laws, covariance)
     for law in LAWS:
-        setattr(made, law, _law(getattr(brush, law), getattr(made, law), law in told, painted, brush.name))
+        setattr(made, law, _law(getattr(brush, law), getattr(made, law), law in learned, painted, brush.name))
     made.kind, made.max_speed_mm_s, made.paint_depth_mm = (
         brush.kind,
         brush.max_speed_mm_s,
         brush.paint_depth_mm,
     )
-    made.covariance = _joined(brush, made, told, whole, fitted).tolist()
+    made.covariance = _joined(brush, made, learned, whole, fitted).tolist()
     made.extra, made.footprints, made.paint = brush.extra, brush.footprints, brush.paint
-    known_mm = {law: max(painted.deepest_mm, fitted_down_to_mm(brush, law)) for law in LAWS if law in told}
+    known_mm = {law: max(painted.deepest_mm, fitted_down_to_mm(brush, law)) for law in LAWS if law in learned}
     before_mm = learned_of(brush).get("deepest_mm")
     before_mm = before_mm if isinstance(before_mm, dict) else {}
     new_mm = {law: round(depth, 3) for law, depth in known_mm.items() if np.isfinite(depth)}
     _say_learned(made, learned_of(brush) | {"deepest_mm": before_mm | new_mm})
-    if told & {"half_width", "tip_to_widest"}:
+    if learned & {"half_width", "tip_to_widest"}:
         made.footprints = _reshaped(brush, made, laws.front_per_half / known.laws.front_per_half)
     return made
 
 
-def _law(before, now, is_told: bool, painted: Painted, prior: str):
-    if not is_told:
+def _law(before, now, is_learned: bool, painted: Painted, prior: str):
+    if not is_learned:
         return before
     least, deepest = before.calibrated_mm or (0.0, 0.0)
     return _core.Profile(
@@ -271,21 +271,22 @@ def _law(before, now, is_told: bool, painted: Painted, prior: str):
     )
 
 
-def _joined(brush, made, told: set[str], whole: np.ndarray, fitted: dict[str, slice]) -> np.ndarray:
-    """Covariance over the coefficients of the brush: of laws that were told, and of the others as it was."""
+def _joined(brush, made, learned: set[str], whole: np.ndarray, fitted: dict[str, slice]) -> np.ndarray:
+    """Covariance over the coefficients of the brush: of updated laws, and of the others as it was."""
     at, was = places(made), places(brush)
     out = np.zeros((at[LAWS[-1]].stop,) * 2)
     known = np.array(brush.covariance)
     for law, other in itertools.product(LAWS, LAWS):
-        if law in told and other in told:
+        if law in learned and other in learned:
             out[at[law], at[other]] = whole[fitted[law], fitted[other]]
-        elif len(known) and law not in told and other not in told:
+        elif len(known) and law not in learned and other not in learned:
             out[at[law], at[other]] = known[was[law], was[other]]
     return out
 
 
 def _reshaped(brush, made, longer: float) -> _core.FootprintTable:
-    """Its outlines with the half width and widest section of the laws, what lies in front of that as much longer."""
+    """Return its outlines with the half width and widest section of the laws, the part in front of that as much
+    longer."""
 
     def reshaped(shape):
         d = shape.depth_mm
@@ -309,7 +310,7 @@ def refuse_learned(brush: _core.Brush, photos: list[str]) -> None:
     """photos: sha256 of each."""
     if known := set(photos) & set(_learned(brush)["photos"]):
         raise Error(
-            f"brush {brush.name} was made from this very photograph (sha256 {sorted(known)[0][:12]}): told twice, it "
+            f"brush {brush.name} was made from the same photograph (sha256 {sorted(known)[0][:12]}): used twice, it "
             "would seem twice as sure",
             "prior",
             code="photo-learned-twice",
@@ -351,11 +352,6 @@ def _learned(brush) -> dict:
 
 
 def found_height(updated: Updated) -> tuple[float, float]:
-    """How much higher the paper lies than taught [mm], and half its 95 % interval."""
+    """Return how much higher the paper is than taught [mm], and half its 95 % interval."""
     at = height_at(updated.fit)
     return updated.fit.height_mm, float(_core.deviations_of_95() * np.sqrt(updated.covariance[at, at]))
-
-
-def band_before(updated: Updated, law: str, depths: np.ndarray):
-    """As brush.confidence.law_band has it, of the brush that was the prior."""
-    return law_band(updated.before, law, depths)

@@ -24,7 +24,7 @@ TERMS = {"lag": LAG_TERMS, "tip_gap": GAP_TERMS, "half_width": HALF_TERMS}
 class KnownLaws:
     """laws: of the brush, in the numbers that marks are fitted with; covariance (n, n) of those: lag, tip_gap and
     half_width without their constant 0, widest_per_half. how: by law, in words, how sure the file is. off_mm: by law,
-    how far the laws lie from the brush's own at most."""
+    the greatest distance of the laws from the brush's own."""
 
     laws: _core.MarkLaws
     covariance: np.ndarray
@@ -72,7 +72,7 @@ class KnownLaws:
 
 
 def numbers_of() -> dict[str, slice]:
-    """Where each law's numbers lie among those of a fit; tip_to_widest: its ratio to the half width."""
+    """Return where each law's numbers are among those of a fit; tip_to_widest: its ratio to the half width."""
     lag, gap, half = LAG_TERMS, LAG_TERMS + GAP_TERMS, LAG_TERMS + GAP_TERMS + HALF_TERMS
     return {
         "lag": slice(0, lag),
@@ -177,7 +177,7 @@ def _said(law, name: str, depths: np.ndarray, to_numbers: np.ndarray) -> tuple[n
     form = as_measured(name, depths, FORM * _size(law, depths))
     return to @ (
         alike * np.outer(sd, sd)
-    ) @ to.T + form, "its half-intervals, as of numbers fitted to even depths"
+    ) @ to.T + form, "its half-intervals, as for numbers fitted to even depths"
 
 
 def _to_numbers(brush, depths: np.ndarray, ratio: float) -> np.ndarray:

@@ -1,1 +1,1 @@
-"""What was typed, parsed and checked. Nothing heavy is imported: a typing error is told at once."""
+"""Parse and check the command line. Imports nothing heavy, so a typing error is reported at once."""

@@ -7,7 +7,7 @@ from dataclasses import fields
 from ...photo import PHOTOS
 from ...read import READERS
 from . import values
-from .flags import A_PROGRAM, add_looks, add_output, add_picture, add_writes, add_z_offset
+from .flags import A_PROGRAM, add_explain, add_looks, add_output, add_picture, add_writes, add_z_offset
 from .usage_checks import PICTURES, PROGRAMS, check_extension, check_files, check_job, suffix_of
 
 
@@ -58,6 +58,7 @@ def add_chart(commands) -> None:
         f"default: {values.EDGE_NOISE_MM:g}",
     )
     add_z_offset(chart)
+    add_explain(chart, "drawing")
     add_writes(chart)
     chart.set_defaults(run="chart_file", parser=chart, check=_check_chart)
 
@@ -65,9 +66,9 @@ def add_chart(commands) -> None:
 def _check_chart(args) -> None:
     check_job(args)
     if args.dabs and args.noise is not None:
-        args.parser.error("--noise is for intervals to expect of strokes: a chart of dabs tells none")
+        args.parser.error("--noise predicts the confidence intervals of strokes: a chart of dabs has none")
     if args.dabs and args.paint:
-        args.parser.error("--paint is for strokes: dabs do not tell how marks narrow")
+        args.parser.error("--paint is for strokes: dabs do not show how marks narrow")
     written = [(args.output, (".json", *PROGRAMS)), (args.page, (".pdf", ".svg")), (args.chart, (".json",))]
     check_files(args, [(args.brush, None), (args.drawing, tuple(READERS))], written)
 
@@ -118,7 +119,7 @@ def add_calibrate(commands) -> None:
         metavar="PARTS",
         type=values.machine_parts,
         default=(),
-        help="from painted marks: also find what the machine does besides what it is told, of "
+        help="also estimate these errors of the machine from painted marks: any of "
         "lean,axes,tilt,backlash,field",
     )
     fit.add_argument(
@@ -150,6 +151,7 @@ def add_calibrate(commands) -> None:
         "brushsvg setup height; default: 0.3, as by eye",
     )
     add_picture(fit, "the brush laws, data and residuals")
+    fit.add_argument("--details", action="store_true", help="print all tables of the report")
     add_writes(fit)
     fit.set_defaults(run="calibrate_file", parser=fit, check=_check_calibrate)
 
@@ -166,7 +168,7 @@ def _add_photo(command) -> None:
         "--dpi",
         metavar="DPI",
         type=values.resolution,
-        help="of a flatbed's scan of a sheet on which nothing is printed: the strokes themselves tell its place",
+        help="resolution of a flatbed scan of a sheet without printed markers: the strokes themselves show its place",
     )
     command.add_argument(
         "--mirrored",

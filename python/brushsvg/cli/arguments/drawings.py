@@ -15,6 +15,7 @@ from .flags import (
     add_output,
     add_picture,
     add_quiet,
+    add_report,
     add_script,
     add_speed,
     add_writes,
@@ -51,7 +52,7 @@ def add_convert(commands) -> None:
     convert.add_argument(
         "--page", metavar="FILE", help="also write the page to paint on, with markers for compare (.pdf .svg)"
     )
-    convert.add_argument("--report", metavar="FILE", help="also write the figures (.txt .json)")
+    convert.add_argument("--report", metavar="FILE", help="also write the report (.txt .json .csv)")
     add_writes(convert)
     convert.set_defaults(run="convert_file", parser=convert, check=_check_convert)
 
@@ -69,7 +70,7 @@ def _check_convert(args) -> None:
         (args.output, (".json", *PROGRAMS)),
         (args.picture, PICTURES),
         (args.page, (".pdf", ".svg")),
-        (args.report, (".txt", ".json")),
+        (args.report, (".txt", ".json", ".csv")),
     ]
     read = [(args.input, DRAWINGS), (args.brush, None), (args.corrections, (".json",))]
     check_files(args, read, written)
@@ -81,7 +82,8 @@ def add_batch(commands) -> None:
         "inputs",
         metavar="IN",
         nargs="*",
-        help=f"drawings ({' '.join(READERS)}), folders of them, patterns with *, lists (.txt, a path on each line)",
+        help=f"drawings ({' '.join(READERS)}), folders of them, patterns with *, lists (.txt, a path on each line); "
+        "brushsvg.toml near the first one serves all",
     )
     add_output(batch, "a folder for programs, pictures and tables")
     batch.add_argument(
@@ -100,6 +102,7 @@ def add_batch(commands) -> None:
     )
     batch.add_argument("--parquet", action="store_true", help="also write the table as table.parquet")
     add_choices(batch)
+    batch.set_defaults(project_near="inputs")
     add_speed(batch)
     add_z_offset(batch)
     add_order(batch)
@@ -145,20 +148,20 @@ def add_compare(commands) -> None:
     compare.add_argument(
         "--corrected-cell",
         metavar="FILE",
-        help="also write the cell whose table [machine] undoes what is certain, besides what it undid (.toml)",
+        help="also write the cell with the certain errors of the machine corrected (.toml)",
     )
     compare.add_argument(
         "--at-least",
         metavar="OVERLAP",
         type=values.share,
-        help="exit with 1 where the paint overlaps by less with what was wanted",
+        help="exit with 1 if the paint overlaps the drawing by less than this",
     )
     compare.add_argument(
         "--sheets",
         action="store_true",
         help="each photograph shows another sheet, or the one shows copies of strokes: how well they repeat",
     )
-    compare.add_argument("--json", action="store_true", help="as JSON")
+    add_report(compare)
     add_writes(compare)
     compare.set_defaults(run="compare_files", parser=compare, check=_check_compare)
 
@@ -193,7 +196,7 @@ def add_simulate_photo(commands) -> None:
     simulate.add_argument(
         "--studio",
         metavar="FILE",
-        help="what is amiss (.toml); default: drawn at random by --seed, and printed",
+        help="the errors to simulate (.toml); default: drawn at random by --seed, and printed",
     )
     simulate.add_argument(
         "--true-brush", metavar="NAME|FILE", help="the brush that paints; default: the one of the plan"
@@ -221,8 +224,7 @@ def add_preview(commands) -> None:
     add_input(preview)
     add_output(
         preview,
-        "a picture (.png .svg), a page that plays the motion in a browser (.html), or marks (.json); default: none, "
-        "print the report",
+        "a picture (.png .svg), a page that plays the motion (.html), or marks (.json); default: print the report",
         False,
     )
     preview.add_argument(
@@ -251,7 +253,7 @@ def add_preview(commands) -> None:
     preview.add_argument(
         "--all-brushes", action="store_true", help="report one line for each brush, the best first"
     )
-    preview.add_argument("--json", action="store_true", help="print the report as JSON")
+    add_report(preview)
     add_writes(preview)
     preview.set_defaults(parser=preview, check=_check_preview)
 
@@ -273,8 +275,9 @@ def _check_preview(args) -> None:
         error("--playback needs -o FILE.html")
     if args.all_brushes and args.output is not None:
         error("--all-brushes prints a list: leave -o out")
-    if args.json and not shows_report:
-        error("--json is for the report, which is printed without -o, or with --show errors")
+    for flag in ("json", "details"):
+        if getattr(args, flag) and not shows_report:
+            error(f"--{flag} is for the report, which is printed without -o, or with --show errors")
     if len(args.brush or ()) > 1 and not args.all_brushes:
         error("--brush is given more than once, which needs --all-brushes")
     if args.all_brushes and suffix_of(args.input) == ".json":
@@ -284,8 +287,6 @@ def _check_preview(args) -> None:
     brushes = [(brush, None) for brush in args.brush or ()]
     read = tuple(READERS) if args.show == "strokes" else DRAWINGS
     check_files(args, [(args.input, read), *brushes], [(args.output, (*PICTURES, ".html", ".json"))])
-    if not args.all_brushes:
-        args.brush = args.brush[0] if args.brush else None
 
 
 def _preview_of(args) -> str:
@@ -305,7 +306,7 @@ def add_text(commands) -> None:
         "--font",
         metavar="FILE",
         required=True,
-        help="an SVG font of single lines, also by name from Inkscape's, or TrueType, OpenType",
+        help="an SVG font of single lines, the name of one of Inkscape's, or a TrueType or OpenType font",
     )
     text.add_argument("--size", metavar="MM", type=values.width, default=20.0, help="of the em; default: 20")
     text.add_argument(

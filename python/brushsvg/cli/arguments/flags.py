@@ -38,6 +38,12 @@ def add_picture(command: argparse.ArgumentParser, what: str, kinds: str = ".png 
     command.add_argument("--picture", metavar="FILE", help=f"also draw {what} ({kinds})")
 
 
+def add_report(command: argparse.ArgumentParser) -> None:
+    """Add --details and --json: how much of a report is printed, and in which form."""
+    command.add_argument("--details", action="store_true", help="print all tables of the report")
+    command.add_argument("--json", action="store_true", help="print the report as JSON")
+
+
 def add_looks(commands, kind: str, about: str, shown: str, file: str):
     """`brush` or `cell` with list, show and check; what else it does is added to the parsers returned."""
     whats = commands.add_parser(kind, help=about).add_subparsers(metavar="WHAT", required=True)
@@ -70,7 +76,7 @@ def add_z_offset(command: argparse.ArgumentParser) -> None:
         metavar="MM",
         type=values.height,
         default=0.0,
-        help="how much higher the paper lies than the cell says; default: 0",
+        help="how much higher the paper is than the cell says; default: 0",
     )
 
 
@@ -78,7 +84,7 @@ def add_corrections(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--corrections",
         metavar="FILE",
-        help="what compare found on a painted sheet: strokes are led elsewhere by it (.json)",
+        help="corrections that compare found on a painted sheet: they displace strokes (.json)",
     )
 
 
@@ -103,6 +109,19 @@ def add_writes(command: argparse.ArgumentParser) -> None:
         help="replace existing brushes, cells, corrections and drawings, and files edited since brushsvg wrote them",
     )
     add_quiet(command)
+
+
+def add_explain(command: argparse.ArgumentParser, drawing: str | None = "input") -> None:
+    """For a command that takes settings from a project file.
+
+    drawing: the operand near which the file is searched; None: the current folder.
+    """
+    command.add_argument(
+        "--explain",
+        action="store_true",
+        help="also print where each setting comes from, for example brushsvg.toml",
+    )
+    command.set_defaults(project_near=drawing)
 
 
 def add_input(command: argparse.ArgumentParser) -> None:
@@ -150,6 +169,7 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add("--start", choices=TERMINALS, help="the start of strokes, where it differs from --terminals")
     add("--end", choices=TERMINALS, help="the end of strokes, where it differs from --terminals")
     add("--lenient", action="store_true", help="paint what is sound of damaged geometry")
+    add_explain(command)
 
 
 def add_colour(command: argparse.ArgumentParser) -> None:
@@ -167,7 +187,7 @@ def add_speed(command: argparse.ArgumentParser) -> None:
         dest="paint_speed",
         metavar="MM/S",
         type=values.paint_speed,
-        help="of painting, whatever the drawing says, within what brush and cell allow; default: the drawing's, or 20",
+        help="painting speed, within the limits of brush and cell; default: the drawing's, or 20",
     )
 
 
@@ -234,7 +254,7 @@ def add_layout(command: argparse.ArgumentParser) -> None:
         "--select",
         metavar="CSS",
         type=values.words,
-        help="paint what this selector names and what lies in it (SVG)",
+        help="paint the elements that this selector matches and all they contain (SVG)",
     )
     add(
         "--background",
@@ -259,7 +279,7 @@ def add_layout(command: argparse.ArgumentParser) -> None:
         type=values.words,
         help="leave out strokes of G-code that follow a comment with this text; several: more than once",
     )
-    add("--width", metavar="MM", type=values.width, help="of all strokes, whatever the drawing says")
+    add("--width", metavar="MM", type=values.width, help="width of all strokes; default: as drawn")
     add(
         "--as",
         dest="paths_as",
@@ -273,4 +293,9 @@ def add_layout(command: argparse.ArgumentParser) -> None:
     size.add_argument(
         "--scale", metavar="FACTOR", type=values.scale, help="scale it, widths too: 1.5 or 150%%"
     )
-    add("--origin", metavar="X,Y", type=values.point, help="where the lower left corner of the marks lies")
+    add(
+        "--origin",
+        metavar="X,Y",
+        type=values.point,
+        help="the position of the lower left corner of the marks",
+    )

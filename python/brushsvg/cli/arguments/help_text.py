@@ -6,14 +6,14 @@ import argparse
 from collections.abc import Iterable
 
 COMMANDS = {
-    "Start": ("demo", "doctor"),
+    "Start": ("demo", "init", "doctor"),
     "Drawings": ("text", "preview", "convert", "check", "batch"),
     "Machines": ("cell", "setup"),
     "Brushes": ("brush", "chart", "calibrate", "compare"),
     "Research": ("simulate-photo",),
 }
 TOPICS = {
-    "output": "output show picture marks-picture page report playback band editable json all-brushes",
+    "output": "output show picture marks-picture page report playback band editable details json all-brushes",
     "brush and machine": "brush cell speed z-offset compensation lag tolerance corrections",
     "size and place": "sheet fit scale origin units",
     "what is painted": "layer select colour background width as lenient pen paper-z skip-region skip-comment",
@@ -25,10 +25,11 @@ RARE = {
     for name in (
         "z-offset compensation lag tolerance corrections origin units select colour background width as lenient pen "
         "paper-z skip-region skip-comment start end corners script join order from-stroke margin-strokes norm total "
-        "spread height dpi mirrored prior noise aim paint playback editable at-least"
+        "spread height dpi mirrored prior noise aim paint playback editable at-least explain"
     ).split()
 }
 IN_CONVERT = {
+    "--explain",
     "--wide",
     "--detail",
     "--terminals",
@@ -79,11 +80,7 @@ def command_text(parser: argparse.ArgumentParser, is_whole: bool) -> str:
     options = [action for action in parser._actions if action.option_strings]
     rare = RARE if parser.prog.endswith(" convert") else RARE | IN_CONVERT
     is_long = len(options) > MANY and not is_whole
-    hidden = [
-        action
-        for action in options
-        if is_long and rare & {*action.option_strings} and (action.dest != "speed")  # of an animation
-    ]
+    hidden = [action for action in options if is_long and (rare | {"--help-all"}) & {*action.option_strings}]
     kept = {action: action.help for action in hidden}
     for action in hidden:
         action.help = argparse.SUPPRESS
@@ -92,7 +89,7 @@ def command_text(parser: argparse.ArgumentParser, is_whole: bool) -> str:
     parser.usage = None
     for action, words in kept.items():
         action.help = words
-    more = f"\n--help-all shows {len(hidden)} more options.\n"
+    more = f"\n--help-all shows {len(hidden) - 1} more options.\n"
     return text + more * bool(hidden)
 
 

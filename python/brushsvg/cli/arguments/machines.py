@@ -10,6 +10,7 @@ from .flags import (
     add_corners,
     add_corrections,
     add_detail,
+    add_explain,
     add_input,
     add_join,
     add_layout,
@@ -17,6 +18,7 @@ from .flags import (
     add_margin_strokes,
     add_output,
     add_picture,
+    add_report,
     add_script,
     add_speed,
     add_wide,
@@ -43,6 +45,7 @@ def _add_first_run(commands) -> None:
     first.add_argument(
         "--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100"
     )
+    add_explain(first, None)
     add_writes(first)
     first.set_defaults(run="first_run_file", parser=first, check=_check_first_run)
 
@@ -94,6 +97,7 @@ def _add_height(commands) -> None:
     height.add_argument(
         "--step", metavar="MM", type=values.step, default=0.1, help="between strokes; default: 0.1"
     )
+    add_explain(height, None)
     add_writes(height)
     height.set_defaults(run="height_file", parser=height, check=_check_height)
 
@@ -140,7 +144,8 @@ def add_check(commands) -> None:
     )
     check.add_argument("--lenient", action="store_true", help="paint what is sound of damaged geometry")
     add_picture(check, "what will be painted")
-    check.add_argument("--json", action="store_true", help="figures as JSON")
+    add_explain(check)
+    add_report(check)
     add_writes(check)
     check.set_defaults(
         run="check_file",

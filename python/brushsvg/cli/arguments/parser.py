@@ -1,20 +1,26 @@
-"""What was typed, parsed and checked. Nothing heavy is imported: a typing error is told at once."""
+"""Parse and check the command line. Imports nothing heavy, so a typing error is reported at once."""
 
 from __future__ import annotations
 
 import argparse
 import functools
+import os
 import re
 from collections.abc import Iterator
 
 from ...suggestions import did_you_mean
-from ..console import say, tell
-from . import brushes, drawings, help_text, installation, machines
+from ..console import print_text, say
+from . import brushes, drawings, help_text, installation, machines, project
 
 
 def parse(argv: list[str] | None = None) -> argparse.Namespace:
     """The choices; `run` names a function of `commands`. SystemExit on --help, --version and wrong usage."""
-    args = command_parser().parse_args(argv)
+    parser = command_parser()
+    if "_ARGCOMPLETE" in os.environ:  # a shell asks for completions
+        from .completion import complete
+
+        complete(parser)
+    args = parser.parse_args(argv)
     if "check" in args:
         args.check(args)
     return args
@@ -28,7 +34,7 @@ class _Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def _get_values(self, action, arg_strings):
-        # argparse drops "--" wherever it stands: --width=-- would become an empty list
+        # argparse drops "--" at any place: --width=-- would become an empty list
         if action.option_strings and "--" in arg_strings:
             raise argparse.ArgumentError(action, "'--' is no value")
         return super()._get_values(action, arg_strings)
@@ -40,13 +46,15 @@ class _Parser(argparse.ArgumentParser):
             raise argparse.ArgumentError(action, sentence)
 
     def parse_known_args(self, args=None, namespace=None):
-        """Of a command's own parser, too, nothing is left over: only it knows the flags that may have been meant."""
+        """Refuse unknown arguments, and suggest a similar flag of this parser."""
         found, others = super().parse_known_args(args, namespace)
         if others:
             flag = others[0].partition("=")[0]
             flags = [name for action in self._actions for name in action.option_strings]
-            meant = did_you_mean(flag, flags) if flag.startswith("-") else "."
-            self.error(f"unrecognized arguments: {' '.join(others)}{meant.removesuffix('.')}")
+            hint = did_you_mean(flag, flags) if flag.startswith("-") else "."
+            if flag == "--messages":
+                hint = ": it stands before the command, as in brushsvg --messages json convert"
+            self.error(f"unrecognized arguments: {' '.join(others)}{hint.removesuffix('.')}")
         return found, others
 
     def format_help(self) -> str:
@@ -58,7 +66,7 @@ class _Parser(argparse.ArgumentParser):
         return help_text.command_text(self, is_whole=False)
 
     def print_help(self, file=None) -> None:
-        tell(self.format_help())
+        print_text(self.format_help())
 
     def error(self, message: str):
         say(f"{message} (see {self.prog} --help)")
@@ -67,7 +75,7 @@ class _Parser(argparse.ArgumentParser):
 
 class _HelpAll(argparse.Action):
     def __call__(self, parser, *_):
-        tell(help_text.command_text(parser, is_whole=True))
+        print_text(help_text.command_text(parser, is_whole=True))
         parser.exit()
 
 
@@ -75,7 +83,7 @@ class _Version(argparse.Action):
     def __call__(self, parser, *_):
         from ... import __version__
 
-        tell(f"brushsvg {__version__}\n")
+        print_text(f"brushsvg {__version__}\n")
         parser.exit()
 
 
@@ -93,6 +101,7 @@ def command_parser() -> argparse.ArgumentParser:
     )
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     installation.add_demo(commands)
+    project.add_init(commands)
     drawings.add_text(commands)
     drawings.add_preview(commands)
     drawings.add_convert(commands)

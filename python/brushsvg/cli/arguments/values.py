@@ -6,14 +6,9 @@ import argparse
 
 from ...errors import Error
 from ...jobs.calibration_options import LEAST_DPI, MOST_DPI
+from ...units import PAPERS_MM
 
-SHEETS_MM = {
-    "a2": (420.0, 594.0),
-    "a3": (297.0, 420.0),
-    "a4": (210.0, 297.0),
-    "a5": (148.0, 210.0),
-    "letter": (215.9, 279.4),
-}
+SHEETS_MM = PAPERS_MM
 
 
 def size(text: str) -> tuple[float, float]:
@@ -22,7 +17,7 @@ def size(text: str) -> tuple[float, float]:
     return _read(size_mm, text)
 
 
-EDGE_NOISE_MM = 0.1  # of digitized edges, unless told otherwise
+EDGE_NOISE_MM = 0.1  # of digitized edges, by default
 
 
 def noise(text: str) -> float:
@@ -30,7 +25,9 @@ def noise(text: str) -> float:
 
 
 def sheet(text: str) -> tuple[float, float]:
-    return SHEETS_MM.get(text.lower()) or size(text)
+    from ...units import paper_mm
+
+    return _read(paper_mm, text)
 
 
 def lag(text: str) -> float:
@@ -146,7 +143,7 @@ def point(text: str) -> tuple[float, float]:
         raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a point; write for example 20,15 or 2cm,1in")
     x, y = (_read(length_mm, part) for part in parts)
     if not max(abs(x), abs(y)) <= 1e6:
-        raise argparse.ArgumentTypeError(f"{text[:24]!r} lies beyond 1e6 mm")
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is beyond 1e6 mm")
     return x, y
 
 
@@ -178,7 +175,7 @@ def point3(text: str) -> tuple[float, float, float]:
         raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a point; write for example 120.5,-300,42")
     x, y, z = (_read(length_mm, part) for part in parts)
     if not max(abs(x), abs(y), abs(z)) <= 1e5:
-        raise argparse.ArgumentTypeError(f"{text[:24]!r} lies beyond 1e5 mm")
+        raise argparse.ArgumentTypeError(f"{text[:24]!r} is beyond 1e5 mm")
     return x, y, z
 
 

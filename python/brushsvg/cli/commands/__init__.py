@@ -26,6 +26,7 @@ _HOME = {
     "demo_picture": "installation.demo",
     "first_run_file": "setup.first_run",
     "height_file": "setup.height",
+    "init_project": "installation.init",
     "install_plugin": "setup.inkscape",
     "list_installation": "installation.doctor",
     "preview_animation": "preview.animation",

@@ -13,8 +13,11 @@ from .output_places import suffix_of
 
 
 def typed(args, **instead) -> Choices:
-    """What was typed, but for what is known better."""
-    return Choices(**({name: getattr(args, name, None) for name in CHOICES} | instead))
+    """What was typed or comes from a project file, but for what is known better."""
+    given = {name: getattr(args, name, None) for name in CHOICES} | instead
+    if isinstance(given["brush"], list):  # of an option that may be given more than once
+        given["brush"] = given["brush"][0] if given["brush"] else None
+    return choices.without_overruled(Choices(**given, from_project=getattr(args, "from_project", ())))
 
 
 def settled(chosen: Choices, drawing: str, alone: bool = False) -> Choices:

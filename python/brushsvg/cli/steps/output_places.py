@@ -1,4 +1,4 @@
-"""Where a command writes: places asked for before any work, all files or none."""
+"""Check where a command writes before any work, then write all files or none."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Collection
 from ...errors import Notice
 from ...files import write_files
 from ...units import clock
-from ..console import RefusedError, about, clear_stage, say, stage, tell
+from ..console import RefusedError, about, clear_stage, print_text, say, stage
 from .replacing import refuse_replacing, remember
 
 
@@ -59,8 +59,8 @@ def write(
     say(", ".join(map(str, files)), "; ".join(["written", *filter(None, [", ".join(known)])]))
 
 
-def tell_list(names: list[str], describe) -> None:
+def print_list(names: list[str], describe) -> None:
     width = max(map(len, names))
     for name in names:
         with about(name):
-            tell(f"{name.ljust(width)}  {describe(name)}\n")
+            print_text(f"{name.ljust(width)}  {describe(name)}\n")

@@ -2,8 +2,8 @@
 
 What it wrote is remembered in a file of the user's own, a line of two hashes for each path. A mark inside the outputs
 would change the bytes of programs, which must be the same for the same input, and most formats of pictures have no
-place for one; a file next to each output would litter folders. Where nothing is remembered, as of files that were
-copied from another machine, a file counts as somebody's own.
+place for one; a file next to each output would litter folders. Where nothing is remembered, for example about
+files copied from another machine, a file counts as somebody's own.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The cell's machine for the next job: what is certain of its faults, besides what it undid already."""
+"""Correct the cell's machine for the next job: by its certain faults, in addition to those undone before."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def certain_of(faults: Faults) -> dict[str, float]:
 def sure(
     faults: Faults, before: Machine | None, along: Along, left_out: Container[str] = ()
 ) -> dict[str, float]:
-    """By the name of each number what of it goes into a cell: 0 where it is not certain. left_out: keys of the table
-    that this machine cannot undo."""
+    """Return by the name of each number the part that goes into a cell: 0 where it is not certain. left_out: keys of
+    the table that this machine cannot undo."""
     certain = {name: 0.0 if key_of(name) in left_out else value for name, value in certain_of(faults).items()}
     for paper, name in enumerate("xy"):
         was = before.backlash_mm[along[paper]] if before and along else 0.0

@@ -1,4 +1,4 @@
-"""What a job's marks would be if this or that were amiss: of the sheet, the machine, the paper, the brush."""
+"""Predict a job's marks with errors of the sheet, the machine, the paper and the brush."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ OTHER_OF_MAKE, OTHER_BENT = (
     0.15,
     0.1,
 )  # of a law, standard deviation between brushes of one make; how it bends
-SUREST = 0.005  # of a law: on paper as it lies no brush is surer
+SUREST = 0.005  # of a law: on the paper as it is no brush is surer
 AT_ONCE = min(8, os.cpu_count() or 1)
 ROUGHLY_MM = 0.02  # between rows of a mark: with 0.1 outlines are rough by as much as a number moves them
 
 
 @dataclass(frozen=True)
 class Number:
-    """One number that may be amiss, 0 where it is not. sigma: standard deviation beforehand; step: that moves edges by
+    """One number that may be off, 0 where it is not. sigma: standard deviation beforehand; step: that moves edges by
     about 0.1 mm."""
 
     cause: str
@@ -40,7 +40,7 @@ class Number:
 
 @dataclass(frozen=True)
 class FaultModel:
-    """plan: as it was told; names: of the strokes that are looked at; the frame is the sheet's; turn, height and
+    """plan: as commanded; names: of the examined strokes; the frame is the sheet's; turn, height and
     tilt are about the middle of the marks, scale and skew about the work zero, which is the sheet's corner. learned:
     the brush was made from these marks and its laws are as sure as its file says; else it may be another of its
     make."""
@@ -95,11 +95,21 @@ class FaultModel:
         share = float(band[0][0]) / _core.deviations_of_95() / max(getattr(self.brush, law)(usual), 1e-6)
         return min(max(share, SUREST), OTHER_OF_MAKE)
 
-    def rings(self, amiss: np.ndarray) -> dict[str, list[np.ndarray]]:
+    def rings(self, fault_values: np.ndarray) -> dict[str, list[np.ndarray]]:
         """By stroke, on the sheet; strokes that would not be painted are left out."""
-        shift, turn = amiss[:2], np.radians(amiss[2])
-        scale, skew, lean, backlash = 1 + amiss[3:5], amiss[5], amiss[6:8], amiss[8:10]
-        height, tilt, lag, width = amiss[10], amiss[11:13], amiss[13:15], amiss[15:17]
+        shift, turn = fault_values[:2], np.radians(fault_values[2])
+        scale, skew, lean, backlash = (
+            1 + fault_values[3:5],
+            fault_values[5],
+            fault_values[6:8],
+            fault_values[8:10],
+        )
+        height, tilt, lag, width = (
+            fault_values[10],
+            fault_values[11:13],
+            fault_values[13:15],
+            fault_values[15:17],
+        )
         middle = self.middle_mm
         machine = Machine(
             tuple(lean.tolist()),
@@ -112,7 +122,7 @@ class FaultModel:
         run = as_run(self.plan.passes, machine, np.maximum(backlash, 0.0), deepest)
         if (backlash < 0).any():  # as far the other way: only a derivative at 0 asks for it
             run = as_run(self.plan.passes, machine, (0.0, 0.0), deepest)
-        asked = [one for one in run if one.stroke in self.names]
+        requested = [one for one in run if one.stroke in self.names]
         usual, spread = self._depths_mm
         factors = {
             name: (1 + even - slope * usual / spread, slope / spread)
@@ -120,19 +130,19 @@ class FaultModel:
         }
         brush = with_factors(self.brush, factors)
         marks = _core.simulate(
-            _core.Plan("", "", self.plan.sheet_mm, asked), brush, ROUGHLY_MM, may_rise=True
+            _core.Plan("", "", self.plan.sheet_mm, requested), brush, ROUGHLY_MM, may_rise=True
         )
-        lie = rotation(turn)
+        turned = rotation(turn)
         with ThreadPoolExecutor(AT_ONCE) as pool:  # without the interpreter's lock
             outlines = list(pool.map(lambda mark: _traced(mark, brush), marks.passes))
         return {
-            mark.stroke: [(np.array(ring) - middle) @ lie + middle + shift for ring in outline]
+            mark.stroke: [(np.array(ring) - middle) @ turned + middle + shift for ring in outline]
             for mark, outline in zip(marks.passes, outlines, strict=True)
         }
 
 
 def _traced(mark, brush):
-    """The rings of one stroke: what all paint together covers is not asked."""
+    """Return the rings of one stroke: the area that all paint covers together is not computed."""
     alone = _core.Marks()
     alone.passes = [mark]
     _core.trace_outlines(alone, brush)

@@ -1,66 +1,62 @@
-"""Whose fault the differences are, in words and as JSON."""
+"""Report the causes of the differences, in words and as JSON."""
 
 from __future__ import annotations
 
 from ...machine.cells.cell import Machine
+from ...reporting.report_text import table
 from ..job_marks import PAINT_A_CHART
 from .corrected_cell import as_table
-from .faults import DRY, OWN, Faults, Found, Share
+from .faults import DRY, OWN, Faults, Found
 from .model import BRUSH, MACHINE, PAPER, SHEET
 
-MEND = {
-    SHEET: "teach the paper anew, or lay the sheet where it was taught",
+REMEDIES = {
+    SHEET: "teach the paper anew, or put the sheet where it was taught",
     MACHINE: "give convert the cell of --corrected-cell, or fix the machine",
     PAPER: "give convert the cell of --corrected-cell, or level the paper",
     BRUSH: "update the brush: calibrate --plan --prior",
-    OWN: "correct each stroke: convert --corrections; several sheets tell what of it repeats (compare --sheets)",
+    OWN: "correct each stroke: convert --corrections; several sheets show which part repeats (compare --sheets)",
     DRY: "let the brush fetch paint earlier: [paint] of the cell",
 }
-NONE_ALONE = f"no stroke of this sheet lies alone with its paint whole, to learn from; {PAINT_A_CHART}"
+NONE_ALONE = f"no stroke of this sheet is separate and complete enough to learn from; {PAINT_A_CHART}"
 
 
-def told(share: Share) -> str:
-    return f"{share.cause}: {share.gain:+.3f} ({share.low:+.3f} to {share.high:+.3f})"
-
-
-def in_words(faults: Faults | None, machine: Machine | None, any_alone: bool = True) -> list[str]:
-    """machine: of the cell, as the next job should be told it; any_alone: whether a brush could learn from a stroke of
-    this sheet."""
+def fix_first(faults: Faults | None, any_alone: bool = True) -> str:
+    """The cause that costs most, and what helps. any_alone: whether a brush could learn from a stroke of this sheet."""
     if faults is None:
-        sentence = (
-            "What the difference is made of is not told: too few strokes, or too few edges that lie free."
-        )
-        return ["", sentence]
+        return "No cause is named: too few strokes, or too few edges away from other paint."
+    if faults.first is None:
+        return "No single fix is certain to help: use the corrections."
+    gain = next(share.gain for share in faults.shares if share.cause == faults.first)
+    how = REMEDIES[faults.first] if any_alone or faults.first != BRUSH else NONE_ALONE
+    return f"Fix first: {faults.first}, which gains {gain:.3f}: {how}."
+
+
+def in_words(faults: Faults | None, machine: Machine | None) -> list[str]:
+    """Every cause with its gain, every number, and the table for a cell. machine: of the cell, for the next job."""
+    if faults is None:
+        return []
+    gains = [
+        (f"  {share.cause}", f"{share.gain + 0.0:+.3f}", f"({share.low:+.3f} to {share.high:+.3f})")
+        for share in sorted(faults.shares, key=lambda one: -one.gain)
+    ]
+    head, *rows = table(("  fixing this cause alone", "gains", "95 %"), gains)
     lines = [
         "",
-        f"What lies between paint and drawing, from {faults.edges} places on edges; in brackets what holds by 95 %.",
-        f"Paint with these faults alone would overlap by {faults.overlap:.3f}; mending one of them gains:",
-    ]
-    width = max(len(share.cause) for share in faults.shares)
-    for share in sorted(faults.shares, key=lambda one: -one.gain):
-        interval = f"({share.low:+.3f} to {share.high:+.3f})"
-        lines.append(f"  {share.cause.ljust(width)}  {share.gain + 0.0:+.3f}  {interval}")
-    lines += [
+        f"Causes of the difference between paint and drawing, from {faults.edges} places on edges. Paint with these",
+        f"causes alone would overlap by {faults.overlap:.3f}:",
+        head,
+        *rows,
         "",
         *(f"  {_number(one)}" for one in faults.found),
-        f"  each stroke's own place: {faults.own_mm:.2f} mm (rms); one sheet does not tell what of it repeats",
+        f"  each stroke's own place: {faults.own_mm:.2f} mm (rms); one sheet does not show which part repeats",
         f"  edges beyond all that: {faults.rest_mm:.3f} mm (rms)",
-        "",
     ]
     for one, other in faults.alike:
-        lines.append(
-            f"Hard to tell apart on these marks: {one}, and {other}; their sum is surer than either."
-        )
-    if faults.first is None:
-        lines.append("No single fix is certain to help: use the corrections.")
-    else:
-        gain = next(share.gain for share in faults.shares if share.cause == faults.first)
-        how = MEND[faults.first] if any_alone or faults.first != BRUSH else NONE_ALONE
-        lines.append(f"Fix first: {faults.first}, which gains {gain:.3f}: {how}.")
+        lines.append(f"Hard to separate on these marks: {one}, and {other}; their sum is surer than either.")
     if machine:
         lines += [
             "",
-            "The cell's table for the next job: what is certain, and what it undid before:",
+            "The table for the next cell: what is certain, and what it undid before:",
             *as_table(machine),
         ]
     return lines

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..photographs import BESIDE_MM, Comparison, Wanted, without
+from ..photographs import BLUR_MM, Comparison, TargetStroke, without
 from ..placing import NOWHERE, Canvas, Placed, place
 from .model import FaultModel
 
 FINE_PX_PER_MM = 8.0
 
 
-def beside_machine(
-    found: Comparison, certain: dict[str, float], plan, brush, strokes: list[Wanted]
+def subtract_faults(
+    found: Comparison, certain: dict[str, float], plan, brush, strokes: list[TargetStroke]
 ) -> Comparison:
     """Return the comparison without the effect of the faults that a corrected cell undoes.
 
@@ -20,18 +20,18 @@ def beside_machine(
     """
     names = tuple(stroke.stroke for stroke in strokes if stroke.predicted)
     model = FaultModel(plan, brush, names, found.middle_mm)
-    amiss = np.array([certain.get(number.name, 0.0) for number in model.numbers])
-    straight, led = (model.rings(numbers) for numbers in (np.zeros_like(amiss), amiss))
-    done = {name: _does(straight.get(name), led.get(name), found.canvas) for name in names}
+    fault_values = np.array([certain.get(number.name, 0.0) for number in model.numbers])
+    straight, moved = (model.rings(numbers) for numbers in (np.zeros_like(fault_values), fault_values))
+    done = {name: _does(straight.get(name), moved.get(name), found.canvas) for name in names}
     return without(found, done)
 
 
-def _does(straight, led, canvas: Canvas) -> Placed:
-    """Where a mark lies, against what it would be."""
-    if not straight or not led:
+def _does(straight, moved, canvas: Canvas) -> Placed:
+    """Return the place of a mark, relative to its prediction."""
+    if not straight or not moved:
         return NOWHERE
-    points = np.vstack([*straight, *led])
-    low, high = points.min(axis=0) - 4 * BESIDE_MM, points.max(axis=0) + 4 * BESIDE_MM
+    points = np.vstack([*straight, *moved])
+    low, high = points.min(axis=0) - 4 * BLUR_MM, points.max(axis=0) + 4 * BLUR_MM
     small = Canvas((*low.tolist(), *high.tolist()), min(canvas.px_per_mm, FINE_PX_PER_MM))
-    painted = small.filled(led)
+    painted = small.filled(moved)
     return place(painted, np.ones_like(painted), straight, small)

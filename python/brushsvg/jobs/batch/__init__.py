@@ -1,1 +1,1 @@
-"""Many drawings: each converted on its own, wherever; what is done stays done."""
+"""Convert many drawings, each on its own; finished ones are kept."""

@@ -16,7 +16,7 @@ from ...files import read_bytes
 from ...read import READERS, InMemory
 from ...read.text import text_svg
 
-IN_FOLDERS = (".svg", ".svgz", ".dxf")  # G-code is read where it is named: programs lie in folders, too
+IN_FOLDERS = (".svg", ".svgz", ".dxf")  # G-code is read only by its path: programs are in folders, too
 LIST = ".txt"
 MOST_LETTERS = 60  # of a word, in the name of its files
 
@@ -24,8 +24,8 @@ MOST_LETTERS = 60  # of a word, in the name of its files
 @dataclass(frozen=True)
 class Item:
     """One drawing. name: of its files, without extension, below the batch's folder; source: what a person calls it;
-    read: it, when it is its turn; digest: of all that it depends on; "" where it cannot be read, which `read` tells;
-    path: where it lies, absolute; "" where it is no file."""
+    read: reads it, when it is its turn; digest: of all that it depends on; "" where it cannot be read, which `read`
+    raises; path: its path, absolute; "" where it is no file."""
 
     name: str
     source: str
@@ -36,7 +36,7 @@ class Item:
 
 def drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
     """Of files, folders (all SVG and DXF below them), patterns with * ? [], and lists (.txt: a path on each line, from
-    where the list lies), in that order. Error where one names nothing, or two would have the same name."""
+    the folder of the list), in that order. Error where one names nothing, or two would have the same name."""
     items = []
     for operand in map(os.fspath, operands):
         if os.path.isdir(operand):
@@ -59,7 +59,7 @@ def drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
 def _below(folder: Path) -> list[Path]:
     found = sorted(path for path in folder.rglob("*") if path.suffix.lower() in IN_FOLDERS and path.is_file())
     if not found:
-        sentence = f"no drawing lies in this folder; looked for {', '.join(IN_FOLDERS)}"
+        sentence = f"no drawing is in this folder; looked for {', '.join(IN_FOLDERS)}"
         raise Error(sentence, file=str(folder), code="file-unreadable")
     return found
 
@@ -181,7 +181,7 @@ def given(items: Iterable) -> list[Item]:
             if len(each) != 2 or not isinstance(each[0], str) or not isinstance(each[1], str | bytes):
                 raise Error("a pair is a name and an SVG document as text or bytes", code="wrong-type")
             found.append(_in_memory(*each))
-    _told_apart(found)
+    _make_unique(found)
     return found
 
 
@@ -190,7 +190,7 @@ def _in_memory(name: str, document: str | bytes) -> Item:
     return Item(name, name, hashlib.sha256(b".svg\n" + data).hexdigest(), lambda: InMemory(".svg", data))
 
 
-def _told_apart(items: list[Item]) -> None:
+def _make_unique(items: list[Item]) -> None:
     """Error where two would be written to the same place, or one outside of the folder."""
     by_name: dict[str, Item] = {}
     for item in items:

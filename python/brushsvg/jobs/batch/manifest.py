@@ -1,5 +1,5 @@
-"""What of a batch is done: a line of JSON for each drawing, added when its files lie there, so that a run goes on where
-the last one ended."""
+"""The finished part of a batch: a line of JSON for each drawing, added when its files are written: a run continues
+where the last one ended."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Row:
     path: str = ""
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         return ": ".join(filter(None, (self.where, self.sentence)))
 
 
@@ -134,25 +134,25 @@ class Manifest:
         self._add(as_line(row))
 
     def done(self, key: str, item: Item) -> Row | None:
-        """The row of what is done already and lies there as it was written. A refused drawing is not done: its cause
-        may be gone, as a missing font or a full disk."""
+        """Return the row of a drawing whose files are there as they were written. A refused drawing is not finished:
+        its cause may be gone, as a missing font or a full disk."""
         for row in self._by_name.get(item.name, []):
-            if row.figures and row.key == key and all(map(self._lies_there, row.files.items())):
+            if row.figures and row.key == key and all(map(self._has_file, row.files.items())):
                 return replace(row, source=item.source, path=self.way_to(item))
         return None
 
     def way_to(self, item: Item) -> str:
-        """The path of the drawing, from this folder: the same wherever the command is typed."""
+        """Return the path of the drawing, from this folder: the same from any current folder."""
         try:
             return Path(os.path.relpath(item.path, self._place)).as_posix() if item.path else ""
         except ValueError:  # Windows: another drive
             return item.path
 
     def refuse_other_drawing(self, item: Item) -> None:
-        """Error where what lies there under this name was made of another drawing, which lies there still."""
+        """Raise Error where files with this name were made of another drawing that still exists."""
         path = self.way_to(item)
         for row in self._by_name.get(item.name, []):
-            here = [file for file in row.files.items() if self._lies_there(file)]
+            here = [file for file in row.files.items() if self._has_file(file)]
             if here and row.path not in ("", path) and (self.folder / row.path).exists():
                 sentence = (
                     f"{here[0][0]} was made of {row.source}: that of {item.source} would be written over it"
@@ -181,7 +181,7 @@ class Manifest:
             file for each in self._by_name.get(row.name, []) for file in each.files.items()
         ):
             is_outdated = file[0] not in row.files and (not row.figures or Path(file[0]).suffix in endings)
-            if is_outdated and self._lies_there(file):
+            if is_outdated and self._has_file(file):
                 try:
                     (self.folder / file[0]).unlink()
                 except OSError as problem:
@@ -190,7 +190,7 @@ class Manifest:
                 removed.append(file[0])
         return removed
 
-    def _lies_there(self, file: tuple[str, str]) -> bool:
+    def _has_file(self, file: tuple[str, str]) -> bool:
         try:
             return sha256(read_bytes(self.folder / file[0])) == file[1]
         except Error:
@@ -198,7 +198,7 @@ class Manifest:
 
     def finish(self, rows: Sequence[Row]) -> None:
         """The rows of the whole batch in its order, then the last of each other name whose files or whose drawing still
-        lie there: another batch into this folder goes on where it ended, and no other drawing takes its names."""
+        exist: another batch into this folder goes on where it ended, and no other drawing takes its names."""
         ours = {row.name for row in rows}
         others = [each[-1] for name, each in self._by_name.items() if name not in ours]
         kept = [row for row in others if self._is_there(row)]
@@ -213,7 +213,7 @@ class Manifest:
 
 
 def below(folder: Path, name: str) -> str:
-    """Where a file lies, for the writer of files; its folder is made."""
+    """Return the path of a file, for the writer of files; its folder is made."""
     path = folder / name
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

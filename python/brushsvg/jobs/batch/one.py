@@ -1,4 +1,4 @@
-"""One drawing of a batch, converted wherever there is room: takes and gives what can be sent there and back."""
+"""Convert one drawing of a batch, in any process: arguments and results can be pickled."""
 
 from __future__ import annotations
 

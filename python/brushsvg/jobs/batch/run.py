@@ -19,7 +19,7 @@ from ...files import find_file, read_bytes, write_files
 from ...machine.cells import cell_file
 from ...machine.cells.cell_file import write_cell
 from ...machine.posts import POSTS, sources_of_post
-from ...machine.writer import beside
+from ...machine.writer import path_next_to
 from ...model import library
 from ...show.contact_sheet import Card, contact_sheets
 from ...units import clock
@@ -69,7 +69,7 @@ def batch(
     **choices: Unpack[Given],
 ) -> Batch:
     """Convert many drawings, each as `convert` does. What an earlier run into the same folder has done with the same
-    drawing, choices, brush, cell and version, and what lies there as it was written, is not done again.
+    drawing, choices, brush, cell and version, and whose files are there as written, is not done again.
 
     items: paths of drawings, folders, patterns with * and lists (.txt), and pairs of a name and an SVG document.
     out: the folder: programs/NAME.ngc, pictures/NAME.png, manifest.jsonl, table.csv, contact-1.png ...; a drawing that
@@ -77,7 +77,7 @@ def batch(
     executor: any of concurrent.futures; it is given functions and values that can be pickled, and is not shut down.
     jobs: without it, the number of processes, by default one for each processor (a script that starts them needs
     `if __name__ == "__main__":`); cluster: the address of a scheduler of Dask's instead. The rows and files are the
-    same whatever does the work.
+    same in any process.
     format: extension of the programs, by default the first of the cell's language; parquet: table.parquet, too.
     progress, cancel, order, lenient, choices: as for convert; corrections are for one drawing alone.
 
@@ -126,7 +126,7 @@ def batch(
             manifest.refuse_other_drawing(listed[index])
         places = _Places(listed, manifest)
         removed = [path for row in rows if row for path in manifest.remove_outdated(row)]
-        tell = _told(len(listed), resumed, progress or (lambda text: None))
+        report_row = _make_reporter(len(listed), resumed, progress or (lambda text: None))
         with ExitStack() as stack:
             is_ours = executor is None and cluster is None
             if left and executor is None:
@@ -137,7 +137,7 @@ def batch(
                 row = rows[index] = replace(row, path=manifest.way_to(listed[index]))
                 removed += manifest.remove_outdated(row)
                 manifest.add(row)
-                tell(row)
+                report_row(row)
         manifest.finish(rows)
         files = _summary(folder, rows, parquet)
     finally:
@@ -192,7 +192,7 @@ def _sent(brush) -> SentBrush:
 
 
 def _each_made(executor, is_ours: bool, left: list[int], items: list[Item], way: _Way, is_over):
-    """(Number, Made) of each that is left, as they come. is_ours: it ends with what it has, and is not to be asked."""
+    """(Number, Made) of each that is left, as they come. is_ours: the work ends by itself, and is not polled."""
     done: queue.SimpleQueue = queue.SimpleQueue()
     waiting: dict[Future, tuple[int, int]] = {}
     numbers = iter(left)
@@ -271,7 +271,7 @@ def _kept(folder: Path, item: Item, key: str, done: Made, places: _Places) -> Ro
         return Row(item.name, item.source, key, None, done.code, done.where, done.sentence, done.notices)
     place = Path(PROGRAMS, item.name) if len(done.texts) > 1 else Path(PROGRAMS, item.name).parent
     first = place / f"{Path(item.name).name}{done.suffix}"
-    data = {Path(beside(first, name)).as_posix(): text for name, text in done.texts.items()}
+    data = {Path(path_next_to(first, name)).as_posix(): text for name, text in done.texts.items()}
     data[f"{PICTURES}/{item.name}.png"] = done.picture
     try:
         places.refuse_taken(item, data)
@@ -282,11 +282,11 @@ def _kept(folder: Path, item: Item, key: str, done: Made, places: _Places) -> Ro
     return Row(item.name, item.source, key, done.figures, notices=done.notices, files=sums)
 
 
-def _told(count: int, resumed: int, progress):
-    """What tells of each row how far it is, how fast, and how long it will take."""
+def _make_reporter(count: int, resumed: int, progress):
+    """Return a function that reports each row with the progress, the speed, and the time left."""
     start, found = time.monotonic(), [0, 0]
 
-    def tell(row: Row) -> None:
+    def report_row(row: Row) -> None:
         found[0] += 1
         found[1] += row.figures is None
         rate = found[0] / max(time.monotonic() - start, 1e-9)
@@ -296,7 +296,7 @@ def _told(count: int, resumed: int, progress):
             f"{resumed + found[0]} of {count} drawings{refused}; {rate:.1f} a second, {clock(left_s)} left"
         )
 
-    return tell
+    return report_row
 
 
 def _summary(folder: Path, rows: list[Row], parquet: bool) -> list[str]:
@@ -319,7 +319,7 @@ def _summary(folder: Path, rows: list[Row], parquet: bool) -> list[str]:
 
 def _card(folder: Path, row: Row) -> Card:
     if row.figures is None:
-        return Card(row.name, row.code, row.told, None)
+        return Card(row.name, row.code, row.text, None)
     figures = row.figures
     overlap = "" if figures.overlap is None else f"overlap {figures.overlap:.3f}"
     takes = "" if figures.time_s is None else clock(figures.time_s)

@@ -21,7 +21,7 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
     px_per_mm = min(
         4.0, 4000.0 / max(work.plan.sheet_mm)
     )  # overlaps to 2e-4, in a twentieth of the rings' time
-    wanted = _core.wanted_coverage(work.strokes, window, px_per_mm)
+    target = _core.wanted_coverage(work.strokes, window, px_per_mm)
     best, most = work, -1.0
     greatest_mm = max(work.brush.lag(depth) for depth in np.linspace(*work.brush.depth_range_mm, 101))
     for lag_mm in np.arange(0.0, greatest_mm + step_mm, step_mm).tolist():
@@ -36,7 +36,7 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
             options.speed_mm_s,
         )
         painted = _core.coverage(_core.simulate(done.plan, work.brush), work.brush, window, px_per_mm)
-        overlap = np.minimum(painted, wanted).sum() / np.maximum(painted, wanted).sum()
+        overlap = np.minimum(painted, target).sum() / np.maximum(painted, target).sum()
         if overlap > most:
             best, most = (
                 replace(work, plan=done.plan, tracking_errors=tuple(done.tracking_errors), options=options),

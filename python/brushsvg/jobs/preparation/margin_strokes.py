@@ -1,6 +1,6 @@
 """A few strokes in the margin of a job's page: each sheet teaches the brush like a small chart.
 
-They lie in a strip that is added to the sheet above the drawing, so that every later step treats them as strokes of the
+They are in a strip that is added to the sheet above the drawing, so that every later step treats them as strokes of the
 plan. Their tool path is set, not compensated. They are no part of the drawing: figures and corrections leave them out.
 """
 
@@ -23,7 +23,7 @@ KIND = "margin"
 DEPTHS = 3  # a straight stroke at the least, a corner at each of the others
 # Room for a brush that nobody measured: it may trail and spread by half of it more or less.
 LAG_SHARES, WIDER = (0.5, 1.0, 1.5), 1.5
-EDGE_NOISE_MM = 0.1  # that edges are seen to in a photograph, as of a chart
+EDGE_NOISE_MM = 0.1  # that edges are seen to in a photograph, for example of a chart
 HAIR_MM = 0.02  # a stroke is as wide everywhere; where the brush just touches it paints nothing
 
 
@@ -40,12 +40,16 @@ def is_calibrated(brush, deepest_mm: float) -> bool:
 
 
 def with_margin_strokes(work: Work) -> Work:
-    """Add margin strokes to the plan where they are asked for, or where the brush is not calibrated.
+    """Add margin strokes to the plan where they are requested, or where the brush is not calibrated.
 
     The work stays as it is, with a notice, where the sheet is too narrow or the cell cannot paint them.
     """
-    asked, deepest_mm = work.options.margin_strokes, _deepest_mm(work.plan)
-    if asked == "off" or deepest_mm <= 0 or (asked == "auto" and is_calibrated(work.brush, deepest_mm)):
+    requested, deepest_mm = work.options.margin_strokes, _deepest_mm(work.plan)
+    if (
+        requested == "off"
+        or deepest_mm <= 0
+        or (requested == "auto" and is_calibrated(work.brush, deepest_mm))
+    ):
         return work
     if work.brush.is_rigid():
         return _left_out(work, f"brush {work.brush.name} is a pen, which marks teach nothing")

@@ -50,7 +50,7 @@ def suit(brush: str, rows, overlap: float | None, refused) -> Suit:
         worst and worst.overlap,
         len(refused),
         len(rows) + len(refused),
-        f"{refused[0].where}: {refused[0].told}" if refused else "",
+        f"{refused[0].where}: {refused[0].text}" if refused else "",
     )
 
 

@@ -41,8 +41,8 @@ def _trial(brush, options: Options):
         found = _searched(strokes, brush, options, compensated)
         plan = found.done.plan
         if options.compensation == "refined":
-            plan.passes = refined(found.painted, found.wanted, brush, found.done, compensated).passes
-        return _core.simulate(plan, brush).passes, found.wanted
+            plan.passes = refined(found.painted, found.targets, brush, found.done, compensated).passes
+        return _core.simulate(plan, brush).passes, found.targets
 
     return made
 
@@ -65,15 +65,15 @@ def _quick_trial(brush, options: Options):
 
     def made(strokes):
         found = _searched(strokes, brush, options, compensated)
-        return _core.simulate(found.done.plan, brush).passes, found.wanted
+        return _core.simulate(found.done.plan, brush).passes, found.targets
 
     return made
 
 
 def _searched(strokes: list, brush, options: Options, compensated) -> Searched:
-    painted, wanted, _ = within_reach(strokes, brush, options.wide)
+    painted, targets, _ = within_reach(strokes, brush, options.wide)
     if options.compensation not in ("closed", "refined"):
-        return Searched(strokes, painted, wanted, compensated(painted))
+        return Searched(strokes, painted, targets, compensated(painted))
     corners = (options.start, options.end, options.corners) == ("auto", "auto", "auto")
     sides = options.wide != "clamp"
-    return searched(strokes, painted, wanted, compensated, brush, options.detail, corners, sides)
+    return searched(strokes, painted, targets, compensated, brush, options.detail, corners, sides)

@@ -1,4 +1,4 @@
-"""Strokes whose paint lies where nobody wants it, by more than one sees and than the brush is known to."""
+"""Find strokes whose paint is visibly outside of the drawing, by more than the error of the brush."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from ... import _core
 from ...model.confidence import unseen_mm
 from ...read.design import Notice
 
-BESIDE = 0.5  # of half the width: paint farther outside of what was drawn is seen as a bulge or a thorn
+MIN_OVERSPILL = (
+    0.5  # of half the width: paint farther outside of what was drawn is seen as a bulge or a thorn
+)
 _SWEPT_MM = 0.05
 
 
@@ -32,12 +34,12 @@ def off_middle_line(painted, tracking_errors, brush, tolerance_mm: float) -> lis
     return found
 
 
-def outside(wanted, passes, brush) -> list[Notice]:
-    """Of passes that leave their middle lines on purpose: where their paint lies outside of all that was drawn.
+def outside(targets, passes, brush) -> list[Notice]:
+    """Of passes that leave their middle lines on purpose: where their paint is outside of all that was drawn.
 
-    wanted: what strokes should become; passes: one each, None for those that are not looked at.
+    targets: what strokes should become; passes: one each, None for those that are not looked at.
     """
-    looked_at = [(stroke, run) for stroke, run in zip(wanted, passes, strict=True) if run is not None]
+    looked_at = [(stroke, run) for stroke, run in zip(targets, passes, strict=True) if run is not None]
     if not looked_at:
         return []
     import shapely
@@ -46,19 +48,19 @@ def outside(wanted, passes, brush) -> list[Notice]:
 
     marks = _core.simulate(_core.Plan(sheet_mm=(1.0, 1.0), passes=[run for _, run in looked_at]), brush)
     _core.trace_outlines(marks, brush)
-    shapes = [region(_core.unite(_core.wanted_outline(stroke, _SWEPT_MM))) for stroke in wanted]
+    shapes = [region(_core.unite(_core.wanted_outline(stroke, _SWEPT_MM))) for stroke in targets]
     near = shapely.STRtree(shapes)
     found = []
     for (stroke, _), trace in zip(looked_at, marks.passes, strict=True):
         paint = region(_core.unite(list(trace.outline_mm)))
         drawn = shapely.union_all([shapes[k] for k in near.query(paint)])
         half_mm = max(half for _, half in stroke.half_width)
-        seen_mm = max(BESIDE * half_mm, unseen_mm(brush, _depth(stroke, brush)))
+        seen_mm = max(MIN_OVERSPILL * half_mm, unseen_mm(brush, _depth(stroke, brush)))
         corners = shapely.points(shapely.get_coordinates(shapely.difference(paint, drawn)))
         away_mm = shapely.distance(corners, drawn) if len(corners) else np.zeros(1)
         if away_mm.max() > seen_mm:
             place = _place(shapely.get_coordinates(corners[away_mm.argmax()])[0])
-            sentence = f"its paint lies up to {away_mm.max():.2g} mm outside of what was drawn, near {place}"
+            sentence = f"its paint is up to {away_mm.max():.2g} mm outside of what was drawn, near {place}"
             found.append(Notice(stroke.id, sentence, code="paint-outside"))
     return found
 

@@ -48,7 +48,7 @@ def prepare(
     stage: Callable[[str], object] = lambda text: None,
     partly: bool = False,
 ) -> Work:
-    """Read a drawing or plan.json and lay out the TCP's path. source: the path of one, a Plan, a Design, or an open
+    """Read a drawing or plan.json and plan the TCP's path. source: the path of one, a Plan, a Design, or an open
     drawing as read_drawing takes it. Error when it cannot be read or painted; partly: strokes that are refused are left
     out."""
     work = _prepared(source, options, stage, partly)
@@ -74,7 +74,7 @@ def _prepared(source: Source, options: Options, stage: Callable[[str], object], 
 
 
 def _planned(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> Work:
-    """The work of a drawing that was read. notices: what was told of it; what else is found is added."""
+    """The work of a drawing that was read. notices: its warnings; further ones are added."""
     stage("finding strokes")
     found, of_strokes = _found(design, brush, options)
     notices += of_strokes
@@ -88,13 +88,13 @@ def _planned(design: Design, brush, options: Options, stage, partly: bool, notic
     notices += lines.notices
     way = _refined(_way(lines, done, brush, compensated, options, stage), brush, compensated, options)
     lines = _without_left_out(lines, way)
-    way.plan = _at_speed(_with_speeds(way.plan, lines.wanted), options)
+    way.plan = _at_speed(_with_speeds(way.plan, lines.targets), options)
     advised = compensated if options.layout.width_mm is None else None
-    bare, blank, astray = _beside_shapes(lines, way, brush, options)
+    bare, blank, astray = _find_stray_paint(lines, way, brush, options)
     notices += (
         *way.notices,
         *warnings_with_advice(way.painted, way.done, brush, advised),
-        *_other_brushes(lines.wanted, brush),
+        *_other_brushes(lines.targets, brush),
         *blank_notices(bare),
         *blank_notices(blank),
         *(astray if _leads(options) else []),
@@ -103,7 +103,7 @@ def _planned(design: Design, brush, options: Options, stage, partly: bool, notic
         design.title,
         brush,
         way.plan,
-        lines.wanted,
+        lines.targets,
         tuple(way.tracking_errors),
         options,
         tuple(notices),
@@ -126,12 +126,12 @@ def _leads(options: Options) -> bool:
 
 @dataclass(frozen=True)
 class _Lines:
-    """Strokes as they were found, as the brush will paint them, and what each of these should become; what is told of
+    """Strokes as they were found, as the brush will paint them, and what each of these should become; notices on
     them, why some were refused, what those should have become, and which the search added."""
 
     drawn: list
     painted: list
-    wanted: list
+    targets: list
     notices: list[Notice]
     refused: list[Notice]
     left_out: list
@@ -140,11 +140,11 @@ class _Lines:
 
 @dataclass
 class _Way:
-    """How lines are painted. painted, wanted: as in _Lines, pressed deeper where paint runs out; done: what
+    """How lines are painted. painted, targets: as in _Lines, pressed deeper where paint runs out; done: what
     compensation said; moved: which strokes refinement moved."""
 
     painted: list
-    wanted: list
+    targets: list
     done: _core.Compensated
     plan: _core.Plan
     tracking_errors: list
@@ -154,7 +154,7 @@ class _Way:
 
 
 def _found(design: Design, brush, options: Options) -> tuple[list, list[Notice]]:
-    """A design's strokes, joined, lifted and cut at their corners as is asked for."""
+    """Return a design's strokes, joined, lifted and cut at their corners as requested."""
     thin: list[Notice] = []
     if options.paths_as is None:
         design, thin = without_thin_outlines(design, brush)
@@ -180,8 +180,8 @@ def _within_reach(found: list, brush, options: Options, partly: bool) -> _Lines:
         strokes, _, refused, left_out = _sorted_out(
             strokes, strokes, lambda some: within_reach(some, brush, options.wide)
         )
-    painted, wanted, notices = within_reach(strokes, brush, options.wide, _leads(options))
-    return _Lines(list(found), painted, wanted, notices, refused, left_out)
+    painted, targets, notices = within_reach(strokes, brush, options.wide, _leads(options))
+    return _Lines(list(found), painted, targets, notices, refused, left_out)
 
 
 def _searched(lines: _Lines, done, brush, compensated, options: Options) -> tuple[_Lines, _core.Compensated]:
@@ -189,7 +189,7 @@ def _searched(lines: _Lines, done, brush, compensated, options: Options) -> tupl
     found = searched(
         lines.drawn,
         lines.painted,
-        lines.wanted,
+        lines.targets,
         compensated,
         brush,
         options.detail,
@@ -197,7 +197,7 @@ def _searched(lines: _Lines, done, brush, compensated, options: Options) -> tupl
         options.wide != "clamp",
         done,
     )
-    lines = replace(lines, drawn=found.drawn, painted=found.painted, wanted=found.wanted, added=found.added)
+    lines = replace(lines, drawn=found.drawn, painted=found.painted, targets=found.targets, added=found.added)
     return lines, found.done
 
 
@@ -207,11 +207,11 @@ def _compensated(lines: _Lines, compensated, partly: bool) -> tuple[_Lines, _cor
     except Error:
         if not partly:
             raise
-    painted, wanted, refused, left_out = _sorted_out(lines.painted, lines.wanted, compensated)
+    painted, targets, refused, left_out = _sorted_out(lines.painted, lines.targets, compensated)
     lines = replace(
         lines,
         painted=painted,
-        wanted=wanted,
+        targets=targets,
         refused=lines.refused + refused,
         left_out=lines.left_out + left_out,
     )
@@ -220,14 +220,14 @@ def _compensated(lines: _Lines, compensated, partly: bool) -> tuple[_Lines, _cor
 
 def _way(lines: _Lines, done, brush, compensated, options: Options, stage) -> _Way:
     """Begun where the tool may be, and pressed deeper as paint runs out."""
-    painted, wanted, notices, known, cell = lines.painted, lines.wanted, [], None, options.cell
+    painted, targets, notices, known, cell = lines.painted, lines.targets, [], None, options.cell
     if cell is not None and _leads(options):
         fitting, known = begun_within_reach(
             painted, brush, done.plan, compensated, options, stage, lines.added
         )
         if fitting is not painted:
             kept = {stroke.id for stroke in fitting}
-            wanted = [meant for meant, stroke in zip(wanted, painted, strict=True) if stroke.id in kept]
+            targets = [target for target, stroke in zip(targets, painted, strict=True) if stroke.id in kept]
             painted, done = fitting, compensated(fitting)
     if brush.paint and brush.width_follows_depth() and _leads(options):
         lowest_mm = cell.heights.lowest_mm if cell else -np.inf
@@ -235,42 +235,42 @@ def _way(lines: _Lines, done, brush, compensated, options: Options, stage) -> _W
         def fetched(plan):
             return fetched_mm(plan, brush, cell)
 
-        pressed = pressed_deeper(painted, wanted, brush, done, compensated, fetched, lowest_mm)
-        painted, wanted, done = pressed.painted, pressed.wanted, pressed.done
-        notices = pressed.told
+        pressed = pressed_deeper(painted, targets, brush, done, compensated, fetched, lowest_mm)
+        painted, targets, done = pressed.painted, pressed.targets, pressed.done
+        notices = pressed.notices
     return _Way(
-        painted, wanted, done, done.plan, done.tracking_errors, [False] * len(painted), notices, known
+        painted, targets, done, done.plan, done.tracking_errors, [False] * len(painted), notices, known
     )
 
 
 def _without_left_out(lines: _Lines, way: _Way) -> _Lines:
     """The lines without the added strokes for which the cell has no room."""
     left_out = lines.added - {stroke.id for stroke in way.painted}
-    drawn, wanted = (
-        [each for each in some if each.id not in left_out] for some in (lines.drawn, lines.wanted)
+    drawn, targets = (
+        [each for each in some if each.id not in left_out] for some in (lines.drawn, lines.targets)
     )
-    return replace(lines, drawn=drawn, wanted=wanted)
+    return replace(lines, drawn=drawn, targets=targets)
 
 
 def _refined(way: _Way, brush, compensated, options: Options) -> _Way:
-    """The same, or moved where the mark lies better, if that is asked for."""
+    """Return the way, or a refined one whose marks are nearer to the target, if requested."""
     if options.compensation != "refined":
         return way
     forbidden = _forbidden(brush, options)
-    better = refined(way.painted, way.wanted, brush, way.done, compensated, forbidden)
+    better = refined(way.painted, way.targets, brush, way.done, compensated, forbidden)
     way.plan.passes = better.passes
-    told = better.nothing_moved()
+    unmoved = better.nothing_moved()
     return replace(
         way,
         tracking_errors=better.tracking_errors,
         moved=better.moved,
-        notices=[*way.notices, *([told] if told else [])],
+        notices=[*way.notices, *([unmoved] if unmoved else [])],
     )
 
 
-def _beside_shapes(lines: _Lines, way: _Way, brush, options: Options) -> tuple[list, list, list[Notice]]:
-    """Pieces of shapes that no stroke reaches, those that strokes reach and their marks do not, and which strokes lie
-    where nobody wants them."""
+def _find_stray_paint(lines: _Lines, way: _Way, brush, options: Options) -> tuple[list, list, list[Notice]]:
+    """Return pieces of shapes that no stroke reaches, those that strokes reach and their marks do not, and the strokes
+    whose paint is outside of the drawing."""
     refused = {notice.where for notice in lines.refused}
     planned = [stroke for stroke in lines.drawn if stroke.id not in refused]
     areas = uncovered_areas(planned, way.painted, list(way.plan.passes), brush)
@@ -309,11 +309,11 @@ def _forbidden(brush, options: Options):
     return sentences
 
 
-def _sorted_out(painted, wanted, step):
+def _sorted_out(painted, targets, step):
     """Strokes that a step takes, with what they should become, why it refuses the others, and what those should become:
     each is tried alone."""
     sound, refused, left_out = [], [], []
-    for pair in zip(painted, wanted, strict=True):
+    for pair in zip(painted, targets, strict=True):
         try:
             step(pair[:1])
         except Error as error:
@@ -347,7 +347,7 @@ def _check_speed(brush, options: Options) -> None:
 
 
 def _at_speed(plan, options: Options):
-    """The plan with the one speed that all was asked to be painted at."""
+    """Return the plan with the one speed that was requested for all."""
     if options.speed_of_all_mm_s is not None:
         for a_pass in plan.passes:
             a_pass.speed_mm_s = options.speed_of_all_mm_s
@@ -355,32 +355,32 @@ def _at_speed(plan, options: Options):
 
 
 def _other_brushes(strokes, brush) -> list[Notice]:
-    asked = ((stroke.id, stroke.settings.brush or brush.name) for stroke in strokes)
+    brushes = ((stroke.id, stroke.settings.brush or brush.name) for stroke in strokes)
     return [
         Notice(
             name,
             f"the drawing asks for brush {other}, all is painted with {brush.name}",
             code="brush-asked-for",
         )
-        for name, other in asked
+        for name, other in brushes
         if other != brush.name
     ]
 
 
 def _astray(way: _Way, brush, options: Options) -> list[Notice]:
-    """Of strokes that lie where nobody wants them. Who drew a shape drew no middle line, and refinement leaves it on
+    """Return notices on strokes outside of the drawing. A shape has no drawn middle line, and refinement leaves it on
     purpose: there the paint is judged."""
-    shapes = {stroke.origin.element for stroke in way.wanted if stroke.wanted_mm}
+    shapes = {stroke.origin.element for stroke in way.targets if stroke.wanted_mm}
     by_paint = [
         is_moved or stroke.origin.element in shapes
-        for stroke, is_moved in zip(way.wanted, way.moved, strict=True)
+        for stroke, is_moved in zip(way.targets, way.moved, strict=True)
     ]
     lines = [None if by else stroke for stroke, by in zip(way.painted, by_paint, strict=True)]
     off = [by and not error.within_tolerance for by, error in zip(by_paint, way.tracking_errors, strict=True)]
     runs = [run if is_off else None for run, is_off in zip(way.plan.passes, off, strict=True)]
     return [
         *off_middle_line(lines, way.tracking_errors, brush, options.tolerance_mm),
-        *outside(way.wanted, runs, brush),
+        *outside(way.targets, runs, brush),
     ]
 
 

@@ -14,12 +14,12 @@ from ...read.design import Notice
 def warnings_with_advice(painted, done, brush, compensated) -> list[Notice]:
     """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored. Not
     where that is so at a stroke's ends alone: every brush is set down and lifted through less depth, and who draws a
-    point can do nothing about it. compensated: tries what is advised, None where one width was asked for."""
+    point can do nothing about it. compensated: tries what is advised, None where one width was requested."""
     laws = (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
     ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
     measured = (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
     pairs = zip(painted, done.plan.passes, strict=True)
-    thin = {stroke.id for stroke, run in pairs if measured and _thins_out(stroke, run, brush, *measured)}
+    thin = {stroke.id for stroke, run in pairs if measured and _gets_thinner(stroke, run, brush, *measured)}
     off = {each.where for each in done.warnings if each.code == "depth-not-measured"} - thin
     advice, lines = "", []
     if compensated is not None and measured and measured[0] < measured[1]:
@@ -51,8 +51,8 @@ def _width_advice(lines: list, brush, measured: tuple[float, float], compensated
     return f"--width MM, from {least:.2g} to {greatest:.2g}, gives all strokes one width that was measured"
 
 
-def _thins_out(stroke, run, brush, least_mm: float, greatest_mm: float) -> bool:
-    """Whether a stroke is pressed less than was measured at its ends alone, no farther in than it is wide. run: its
+def _gets_thinner(stroke, run, brush, least_mm: float, greatest_mm: float) -> bool:
+    """Whether a stroke is pressed less than was measured at its ends alone, over no more than its width. run: its
     pass; a dot, which is turned round on the spot, is pressed less than a line as wide."""
     if -np.asarray(run.poses_mm)[:, 2].min() < least_mm:
         return False

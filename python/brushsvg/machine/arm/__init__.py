@@ -1,1 +1,1 @@
-"""What an arm's joints do while it paints, how far and fast they turn, and where paper may lie for them."""
+"""What an arm's joints do while it paints, how far and fast they turn, and where the paper may be for them."""

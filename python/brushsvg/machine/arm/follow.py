@@ -3,7 +3,7 @@
 A posture is one of the ways in which an arm reaches a place: elbow up or down, shoulder left or right, wrist turned or
 not. Straight moves keep it. So each posture that reaches the first place is followed from place to place, at most
 STEP_MM apart, and closer until no joint turns by more than SAME_RAD between two. What one of them does to the end, the
-arm can do; else it is told what stops the one that comes farthest.
+arm can do; else the problem of the one that comes farthest is reported.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ LEAST_STEP_MM, LEAST_TURN_DEG = 0.01, 0.05
 SINGULAR_RAD_MM = np.radians(5.0)
 CALM_RAD_MM = (
     SINGULAR_RAD_MM / 5
-)  # before and behind a singularity, where joints tell whether the wrist turned over
+)  # before and behind a singularity, where joints show whether the wrist turned over
 AHEAD_MM = 30.0  # so far behind it that is looked for
 FLIP_RAD, SAME_ARM_RAD = np.radians(90.0), np.radians(30.0)
 ELBOW = 2  # joint 3
@@ -127,7 +127,7 @@ def follow(made: Program, joints: Joints, to_the_end: bool = True) -> Followed:
                 _go_on(posture, before, place, found, find, arm)
                 posture.failed_at, posture.failed = number, place
             elif _may_have_flipped(posture, place.robot_mm):
-                _tell_flip(posture, found, arm)
+                _note_flip(posture, found, arm)
         before = place
         if not to_the_end and all(posture.failure for posture in postures):
             break
@@ -148,7 +148,7 @@ def _found(angles: np.ndarray, there: np.ndarray, place: Place, frame: np.ndarra
 
 def lowest_joint_mm(there: np.ndarray, frame: np.ndarray) -> np.ndarray:
     """(...) how far the lowest joint from the elbow on is above the table, by the frames (..., n + 1, 4, 4) of joints.
-    Paper may lie on a block and a robot stand on a pedestal: what is lower than both paper and base is in the table.
+    Paper may be on a block and a robot stand on a pedestal: what is lower than both paper and base is in the table.
 
     frame: (4, 4) the paper's in the robot's.
     """
@@ -161,8 +161,8 @@ def lowest_joint_mm(there: np.ndarray, frame: np.ndarray) -> np.ndarray:
 def _gone_on(
     arm: Arm, postures: list[_Posture], flange: np.ndarray, place: Place, frame: np.ndarray
 ) -> _Found | None:
-    """The angles of postures that go on, each by Newton's steps from where it was; None where all angles for a place
-    must be looked for: one comes nowhere near, or a singularity lies behind one."""
+    """Return the angles of postures that go on, each by Newton's steps from where it was; None where all angles for a
+    place must be searched: one comes nowhere near, or a singularity is behind one."""
     if any(_may_have_flipped(posture, place.robot_mm) for posture in postures):
         return None
     here = [posture.here_rad for posture in postures if posture.failure is None]
@@ -284,7 +284,7 @@ def rates(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) -> np.ndarray:
 def _inverse(jacobian: np.ndarray) -> np.ndarray:
     try:
         return np.linalg.inv(jacobian)
-    except np.linalg.LinAlgError:  # at a singularity to the last digit: whatever is near it turns as fast
+    except np.linalg.LinAlgError:  # at a singularity to the last digit: anything near it turns as fast
         return np.linalg.inv(jacobian + 1e-9 * np.eye(6))
 
 
@@ -357,15 +357,15 @@ def _near_singularity(place: Place, arm: Arm, most: float, joints_rad: np.ndarra
 
 
 def _may_have_flipped(posture: _Posture, robot_mm: np.ndarray) -> bool:
-    """Whether a place lies so near to where a posture came to a singularity that its joints tell what became of it."""
+    """Return whether a place is so near to a posture's singularity that the joints show its outcome."""
     failure = posture.failure
     if failure is None or failure.code != "singularity":
         return False
     return float(np.linalg.norm(robot_mm - posture.failed.robot_mm)) <= AHEAD_MM
 
 
-def _tell_flip(posture: _Posture, found: _Found, arm: Arm) -> None:
-    """The failure at a singularity told as a flip where, calm again behind it, the wrist that bends the same way has
+def _note_flip(posture: _Posture, found: _Found, arm: Arm) -> None:
+    """Report the failure at a singularity as a flip where, calm again behind it, the wrist that bends the same way has
     turned over."""
     turns = _turned(posture.calm_rad, found.angles_rad)
     bends = np.sin(found.angles_rad[:, BENDS]) * np.sin(posture.calm_rad[BENDS])
@@ -390,7 +390,7 @@ def _near(place: Place) -> str:
 
 
 def extremes(made: Program) -> np.ndarray:
-    """(n, 3) few places of a program, in its frame, that lie outermost: what those allow, most between them do."""
+    """Return (n, 3) few outermost places of a program, in its frame: what those allow, most between them do."""
     points = np.vstack(list(chain.from_iterable([m.points_mm for m in s.moves] for s in made.sections())))
     turns = np.radians(np.arange(0, 360, 45))
     ways = np.column_stack([np.cos(turns), np.sin(turns)])

@@ -25,7 +25,7 @@ MOST_STEP_RAD = 0.02  # a longer one is no rounding: at a singularity it leads a
 @dataclass(frozen=True)
 class Joints:
     """solutions: from a flange frame (4, 4) [mm, robot's frame] to all angles (k, 6) [rad, each in (-pi, pi]] that put
-    the flange there, limits not asked; k = 0 where there are none."""
+    the flange there, limits are not checked; k = 0 where there are none."""
 
     arm: Arm
     solutions: Callable[[np.ndarray], np.ndarray]

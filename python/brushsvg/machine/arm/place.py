@@ -1,4 +1,4 @@
-"""Where paper may lie for an arm to paint on it: the nearest place for a job, and a map of the table."""
+"""Find where paper can be for an arm to paint on it: the nearest place for a job, and a map of the table."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ UNREACHED, LIMITED, SINGULAR, REACHED = range(4)  # what a place on the table is
 
 @dataclass(frozen=True)
 class Elsewhere:
-    """Where the paper would have to lie: moved by shift_mm (x, y) of the robot's frame, or turned in its plane about
+    """The place that the paper would need: moved by shift_mm (x, y) of the robot's frame, or turned in its plane about
     the job's middle, about_mm (x, y) of the sheet. frame: (4, 4) it then has in the robot's."""
 
     shift_mm: tuple[float, float]
@@ -35,7 +35,7 @@ class Elsewhere:
     frame: np.ndarray
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         if self.turn_deg:
             x, y = self.about_mm
             return f"turned by {self.turn_deg:g} degrees about x {x:.0f}, y {y:.0f} mm of it"
@@ -50,7 +50,7 @@ def unreachable(made: Program, allowed: Callable[[Program], bool]) -> list[Notic
     if not problems:
         return []
     found = nearest(made, joints, allowed)
-    advice = f"the sheet {found.told} would do" if found else NOWHERE
+    advice = f"the sheet {found.text} would do" if found else NOWHERE
     return [replace(problem, advice=advice) for problem in problems]
 
 

@@ -1,4 +1,4 @@
-"""The robot's side of the table: where the paper lies, how high, how fast and how far the tool may go, the paint."""
+"""The robot's side of the table: the place of the paper, how high, how fast and how far the tool may go, the paint."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def _number(help: str, least: float, greatest: float, default=MISSING):
 
 @dataclass(frozen=True)
 class Paper:
-    """Where the sheet's lower left corner lies in the robot's frame: a pose, or points that were taught."""
+    """Place of the sheet's lower left corner in the robot's frame: a pose, or points that were taught."""
 
     origin_mm: tuple = _key(
         "lower left corner of the sheet in the robot's frame", (3,), default=(0.0, 0.0, 0.0)
@@ -43,12 +43,12 @@ class Paper:
     )
     taught_mm: tuple = _key(
         "instead of the pose: the brush's tip at the lower left corner, somewhere along the lower edge and somewhere "
-        "along the left edge, each just touching; a fourth point anywhere on the paper tells whether it is flat",
+        "along the left edge, each just touching; a fourth point anywhere on the paper shows whether it is flat",
         (None, 3),
         default=(),
     )
     flatness_mm: float = _number(
-        "how far off the plane of three the fourth point may lie", 0.01, 10, default=0.5
+        "how far off the plane of three the fourth point may be", 0.01, 10, default=0.5
     )
     example: bool = _key("true until the paper has been taught: every program warns", "yes", default=False)
 
@@ -80,7 +80,7 @@ class Tool:
         "fanuc: of the arm over the sheet, as the pendant shows it", "text", default=FANUC_CONFIGURATION
     )
     base_frame: str = _key("ros2: the robot's frame", "text", default=ROS_FRAMES[0])
-    flange_frame: str = _key("ros2: the link whose poses are told", "text", default=ROS_FRAMES[1])
+    flange_frame: str = _key("ros2: the link whose poses are written", "text", default=ROS_FRAMES[1])
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ class Blending:
     tolerance_mm: float = _number("at most so far from the joint; 0: joints are met exactly", 0, 10)
     radius_mm: float = _number("robots: blends begin so far before the joint at most", 0, 100, default=0.0)
     step_mm: float = _number(
-        "dobot: blends are told in steps of so much, rounded down", 0.001, 1, default=BLEND_STEP_MM
+        "dobot: blends are written in steps of so much, rounded down", 0.001, 1, default=BLEND_STEP_MM
     )
     ramp_s: float = _number(
         "fanuc: how long the arm takes to its speed, by which CNT cuts corners", 0.02, 5, default=RAMP_S
@@ -153,7 +153,7 @@ class Servo:
 
 @dataclass(frozen=True)
 class Motors:
-    """Two motors that are told steps, from the origin on, and the pin of the servo that lifts the brush."""
+    """Two motors that count steps, from the origin on, and the pin of the servo that lifts the brush."""
 
     steps_per_mm: tuple = _key(
         "a row for each motor: its steps for a mm along x, and for a mm along y", (2, 2), -1e4, 1e4
@@ -199,20 +199,20 @@ class Contact:
 
 @dataclass(frozen=True)
 class Machine:
-    """Where the machine takes the tool that is told to go elsewhere, as `brushsvg calibrate --machine` finds it: it is
-    told otherwise, so that the tool goes where it should. x and y from the sheet's lower left corner."""
+    """Errors of the machine, as `brushsvg calibrate --machine` finds them: programs are corrected, so that the tool
+    goes where it should. x and y from the sheet's lower left corner."""
 
     lean_mm_per_mm: tuple = _key(
         "x and y by which the tool gives way for each mm that it is pressed", (2,), -1.5, 1.5, (0.0, 0.0)
     )
-    scale: tuple = _key("how far x and y go for each mm they are told", (2,), 0.9, 1.1, (1.0, 1.0))
-    skew: float = _number("how far x goes for each mm that y is told", -0.1, 0.1, default=0.0)
+    scale: tuple = _key("how far x and y go for each commanded mm", (2,), 0.9, 1.1, (1.0, 1.0))
+    skew: float = _number("how far x goes for each commanded mm of y", -0.1, 0.1, default=0.0)
     height_mm: float = _number(
-        "how much higher the paper lies at its corner than it was taught", -5, 5, default=0.0
+        "how much higher the paper is at its corner than it was taught", -5, 5, default=0.0
     )
     tilt_mm_per_mm: tuple = _key("by how much it rises along x and along y", (2,), -0.05, 0.05, (0.0, 0.0))
     map_mm: tuple = _key(
-        "x, y and how much higher still it lies there, at all places of a grid: straight in between, and beyond the "
+        "x, y and how much higher still it is there, at all places of a grid: straight in between, and beyond the "
         "grid as at its edge",
         (None, 3),
         -2e3,
@@ -220,14 +220,14 @@ class Machine:
         (),
     )
     backlash_mm: tuple = _key(
-        "how far the machine's own x and y are told to go before they follow, where they turn back",
+        "commanded way of the machine's own x and y before they follow, where they turn back",
         (2,),
         0,
         3,
         (0.0, 0.0),
     )
     field_mm: tuple = _key(
-        "how far the tool goes aside over the sheet: three numbers for x and three for y, at its edges, of u u, u v "
+        "displacement of the tool over the sheet: three numbers for x and three for y, at its edges, of u u, u v "
         "and v v, where u and v go from -1 to 1",
         (2, 3),
         -10,
@@ -253,9 +253,9 @@ class Arm:
     )
     limits_deg: tuple = _key("least and greatest angle of each joint", (None, 2), -1e4, 1e4)
     speeds_deg_s: tuple = _key(
-        "the most that each joint turns by in a second; none: not asked", (None,), 0.1, 1e4, default=()
+        "the most that each joint turns by in a second; none: not checked", (None,), 0.1, 1e4, default=()
     )
-    base_mm: tuple = _key("where the first joint's frame lies in the robot's", (3,), default=(0.0, 0.0, 0.0))
+    base_mm: tuple = _key("place of the first joint's frame in the robot's", (3,), default=(0.0, 0.0, 0.0))
     base_rotation_deg: tuple = _key("of that frame, about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0))
     flange_rotation_deg: tuple = _key(
         "of the flange behind the last joint, about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0)
@@ -352,7 +352,7 @@ class Cell:
     blending: Blending
     workspace: Workspace
     arc_segment_mm: float = _number(
-        "marlin and klipper: how long the lines are that the firmware makes of circles; 0: it is told none",
+        "marlin and klipper: how long the lines are that the firmware makes of circles; 0: no circles are written",
         0,
         10,
         0.0,
@@ -399,7 +399,7 @@ NEEDED_BY = {
 } | dict.fromkeys(
     ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), ("tool",)
 )
-CONTACT_BY = {"urscript": "force_n", "xarm": "sensitivity"}  # how a language is told what ends a program
+CONTACT_BY = {"urscript": "force_n", "xarm": "sensitivity"}  # the key for the contact that ends a program
 OF_JOINTS = "joints of an arm have play of their own"
 NO_BACKLASH = dict.fromkeys(  # and why it is not undone
     ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), OF_JOINTS
@@ -424,7 +424,7 @@ RELOADS = ("length", "stroke", "layer")
 def robot_from_paper(cell: Cell, z_offset_mm: float = 0.0) -> np.ndarray:
     """(4, 4): the paper's frame in the robot's, the paper z_offset_mm higher than the cell says.
 
-    Error when taught points do not make a plane or the fourth one does not lie in it.
+    Error when taught points do not make a plane or the fourth one is not in it.
     """
     paper = cell.paper
     if paper.taught_mm:
@@ -436,8 +436,8 @@ def robot_from_paper(cell: Cell, z_offset_mm: float = 0.0) -> np.ndarray:
 
 
 def unit_mm(cell: Cell) -> float:
-    """How far apart places of x, and of y, lie that the cell's language tells from each other; of motors, twice what
-    rounding moves them by at most."""
+    """Return the distance between places of x, and of y, that the cell's language can express; of motors, twice the
+    greatest shift by rounding."""
     if cell.motors:
         return _unit_of_motors_mm(cell.motors)
     return UNITS_MM.get(cell.language, 10.0**-cell.decimals)
@@ -486,7 +486,7 @@ def value_mm(cell: Cell) -> float:
 
 
 def servo_stands(steps_mm: np.ndarray, cell: Cell) -> np.ndarray:
-    """(n,) which steps (n, 3) are a servo's lift alone: what they go beside it rounding need not leave."""
+    """(n,) which steps (n, 3) are a servo's lift alone: rounding need not leave their sideways part."""
     return np.hypot(steps_mm[:, 0], steps_mm[:, 1]) < 0.5 * unit_mm(cell)
 
 
@@ -549,7 +549,7 @@ def required(table) -> set[str]:
 
 
 def tables_of(cell: Cell) -> dict[str, object]:
-    """The tables that the cell has, by name."""
+    """Return the tables that the cell has, in a dictionary of names."""
     return {name: getattr(cell, name) for name in TABLES if is_dataclass(getattr(cell, name))}
 
 
@@ -572,7 +572,7 @@ def why_no_backlash(cell: Cell) -> str:
 def not_undone(cell: Cell) -> dict[str, str]:
     """The keys of a table machine that this machine cannot undo, each with the reason."""
     found = {}
-    if cell.servo:  # at its steps a way would jump aside
+    if cell.servo:  # at its steps a way would jump sideways
         found |= dict.fromkeys(
             ("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm"), "a servo's depth goes in steps"
         )
@@ -588,7 +588,7 @@ ALONG_RAD = 0.1  # an axis that is turned by less goes along the paper's edge, a
 
 
 def axes_along_paper(cell: Cell) -> tuple[int, int] | None:
-    """Which of the machine's axes go along x and along y of the paper; None where it lies askew, or backlash is not
+    """Which of the machine's axes go along x and along y of the paper; None where it is askew, or backlash is not
     undone."""
     if why_no_backlash(cell):
         return None

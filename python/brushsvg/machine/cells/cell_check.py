@@ -1,4 +1,4 @@
-"""Whether a cell makes sense: what no single key tells is refused, what is odd is remarked on."""
+"""Check whether a cell makes sense: contradictions of several keys are refused, oddities are reported."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ COARSEST_VALUE_MM = 0.5  # of height, that a servo's value may change: half of i
 
 
 def check(cell: Cell) -> None:
-    """Error, with the key in `where`, for what no single key tells."""
+    """Raise Error, with the key in `where`, for contradictions that no single key shows."""
     heights = cell.heights
     if not heights.clearance_mm <= heights.safe_mm:
         raise Error(
@@ -95,7 +95,7 @@ def _check_contact(cell: Cell) -> None:
         )
     for key in CONTACT_BY.values():
         if bool(getattr(cell.contact, key)) != (key == by):
-            says = "needs" if key == by else "is not told"
+            says = "needs" if key == by else "does not use"
             raise Error(
                 f"language {cell.language!r} {says} {key}", where=f"contact.{key}", code="cell-contact"
             )
@@ -122,8 +122,8 @@ def _check_arm(cell: Cell) -> None:
 
 OWN = {  # keys that one language has, and why another has none
     "blending.step_mm": ("dobot", "has no steps of blends: they are as fine as its decimals"),
-    "blending.ramp_s": ("fanuc", "tells blends in mm, whatever the time to speed"),
-    "tool.configuration": ("fanuc", "tells no configuration of the arm"),
+    "blending.ramp_s": ("fanuc", "gives blends in mm, for any time to speed"),
+    "tool.configuration": ("fanuc", "gives no configuration of the arm"),
     "pen.servo_values": ("marlin-servo", "sets no servo"),
     "pen.servo_number": ("marlin-servo", "sets no servo"),
     "pen.settle_s": ("marlin-servo", "waits for no pen"),
@@ -133,7 +133,7 @@ OWN = {  # keys that one language has, and why another has none
 
 
 def _check_own_keys(cell: Cell) -> None:
-    """What only one language tells must not be said for another."""
+    """Refuse the keys of one language in a cell of another."""
     for key, (language, why) in OWN.items():
         name, _, entry = key.partition(".")
         table = getattr(cell, name)
@@ -200,7 +200,7 @@ def _check_paper(cell: Cell) -> None:
             f"the paper leans {tilt_deg:.2f} degrees, outside the range [0, {limit_deg:g}] degrees of tilt_limit_deg",
             where="paper",
             code="paper-tilted",
-            advice="seen from above, the third point lies to the left of the way from the first to the second"
+            advice="seen from above, the third point is to the left of the way from the first to the second"
             if cell.paper.taught_mm and tilt_deg > 90
             else "",
         )
@@ -257,13 +257,13 @@ def _beyond(cell: Cell, height_mm: float) -> list[Notice]:
                 else f"at most {farthest_mm:.0f} mm"
             )
             bounds = "[{:g}, {:g}] mm".format(*reach_mm)
-            sentence = f"{at} lies {away} from the robot's origin, outside the range {bounds} of its reach"
+            sentence = f"{at} is {away} from the robot's origin, outside the range {bounds} of its reach"
             return [Notice("workspace.reach_mm", sentence, code="sheet-out-of-reach")]
     return []
 
 
 def _clipped(corners: np.ndarray, inside: np.ndarray) -> np.ndarray:
-    """What of a flat polygon (n, 3) lies where `inside` (n,), which is linear on it, is not negative."""
+    """Return the part of a flat polygon (n, 3) where `inside` (n,), which is linear on it, is not negative."""
     kept = []
     for k in range(len(corners)):
         a, b = inside[k - 1], inside[k]
@@ -295,7 +295,7 @@ def _check_pen(cell: Cell) -> None:
     pen = cell.pen
     if cell.language not in PENS:
         sentence = (
-            f"language {cell.language!r} tells heights: a pen that knows none is for {' and '.join(PENS)}"
+            f"language {cell.language!r} has heights: a pen that knows none is for {' and '.join(PENS)}"
         )
         raise Error(sentence, where="pen", code="out-of-range")
     if cell.language == "marlin-servo" and len(set(map(round, pen.servo_values))) != 2:
@@ -308,7 +308,7 @@ def _check_pen(cell: Cell) -> None:
         raise Error(sentence, where="pen.colours", code="out-of-range")
     frame = robot_from_paper(cell)
     if abs(frame[2, 3]) > 1e-9 or normal_tilt_deg(frame) > 1e-9:
-        sentence = "a pen is up or down over the paper: it must lie level, at z 0"
+        sentence = "a pen is up or down over the paper: it must be level, at z 0"
         raise Error(sentence, where="paper", code="paper-tilted")
     if pen.down_mm < cell.heights.lowest_mm:
         sentence = f"down_mm {pen.down_mm:g} is below lowest_mm {cell.heights.lowest_mm:g}"
@@ -330,11 +330,11 @@ MOST_VALUE = 65_535  # of its servo
 
 def _check_motors(cell: Cell) -> None:
     if cell.language != "ebb":
-        sentence = f"language {cell.language!r} tells no steps: motors that are told them are for ebb"
+        sentence = f"language {cell.language!r} has no steps: motors that count them are for ebb"
         raise Error(sentence, where="motors", code="out-of-range")
     rows = np.array(cell.motors.steps_per_mm)
     if np.linalg.cond(rows) > 1e3:
-        sentence = "both motors turn for the same way: no place can be told by them"
+        sentence = "both motors turn for the same way: no place can be reached by them"
         raise Error(sentence, where="motors.steps_per_mm", code="out-of-range")
     most_mm_s = MOST_STEPS_S / float(np.linalg.norm(rows, axis=1).max())
     for name in ("travel_mm_s", "approach_mm_s", "press_mm_s", "paint_mm_s"):
@@ -352,10 +352,10 @@ def _check_motors(cell: Cell) -> None:
 
 def _check_servo(cell: Cell) -> None:
     frame = robot_from_paper(cell)
-    lies_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
-    if "servo" in NEEDED_BY.get(cell.language, ()) and not lies_level:
+    is_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
+    if "servo" in NEEDED_BY.get(cell.language, ()) and not is_level:
         raise Error(
-            "a servo's heights are those over the paper: it must lie level, at z 0",
+            "a servo's heights are those over the paper: it must be level, at z 0",
             where="paper",
             code="paper-tilted",
         )
@@ -563,14 +563,14 @@ USUAL = (  # (key, least, greatest, what is unusual beyond them)
 
 OF_EXAMPLE = Notice(
     "paper",
-    "the paper's place is an example: teach where yours lies",
+    "the paper's place is an example: teach the place of yours",
     code="paper-example",
     advice="brushsvg cell new --taught writes a cell with it",
 )
 
 
 def remarks(cell: Cell) -> list[Notice]:
-    """A notice of the key for what is odd, and yet may be meant so."""
+    """Return a notice of the key for a value that is odd, but may be intended."""
     found = []
     for key, least, greatest, why in USUAL:
         table, _, name = key.partition(".")
@@ -597,7 +597,7 @@ def _faces_away(cell: Cell) -> list[Notice]:
         return []
     sentence = (
         f"the paper leans {tilt_deg:.0f} degrees and faces away from the robot's origin, as if painted from behind: "
-        "seen from its front, the third point lies to the left of the way from the first to the second"
+        "seen from its front, the third point is to the left of the way from the first to the second"
     )
     return [Notice("paper", sentence, code="paper-faces-away")]
 

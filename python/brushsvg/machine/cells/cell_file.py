@@ -143,8 +143,8 @@ def _text(value, where: str) -> str:
 
 
 def _number(entry: Entry, value, where: str):
-    wanted = int if entry.kind == "whole" else int | float
-    if isinstance(value, bool) or not isinstance(value, wanted) or value != value or abs(value) == math.inf:
+    types = int if entry.kind == "whole" else int | float
+    if isinstance(value, bool) or not isinstance(value, types) or value != value or abs(value) == math.inf:
         said = "a whole number" if entry.kind == "whole" else "a finite number"
         raise Error(f"{where} must be {said}, not {str(value)[:40]}", where=where, code="wrong-type")
     if not entry.least <= value <= entry.greatest:
@@ -206,5 +206,5 @@ def _toml(value) -> str:
         return "true" if value else "false"
     if isinstance(value, tuple):
         return "[" + ", ".join(map(_toml, value)) + "]"
-    # JSON's escapes are TOML's, but for what lies beyond 16 bits
+    # JSON's escapes are TOML's, except those beyond 16 bits
     return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)

@@ -33,8 +33,8 @@ def cell_page(cell) -> str:
         ends = (cell.servo.table[0], cell.servo.table[-1])
         rows.append(("servo", " to ".join(f"{value:g} at {height:g} mm" for height, value in ends)))
     if cell.motors:
-        told = " and ".join(f"{x:g} x {y:+g} y" for x, y in cell.motors.steps_per_mm)
-        rows.append(("motors", f"{told} steps for mm, servo on RP{cell.motors.servo_pin}"))
+        steps = " and ".join(f"{x:g} x {y:+g} y" for x, y in cell.motors.steps_per_mm)
+        rows.append(("motors", f"{steps} steps for mm, servo on RP{cell.motors.servo_pin}"))
     if cell.pen:
         pens = f", pens of {', '.join(cell.pen.colours)}" if cell.pen.colours else ""
         rows.append(("pen", f"up or at {cell.pen.down_mm:g} mm{pens}"))

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 class Post(NamedTuple):
     """title: for people; extensions: of its files; write: the program as pieces of 7-bit text, one after another.
 
-    in_robot_frame: points are wanted in the robot's frame; else in the paper's, which the program then tells it.
-    circles_by: what tells a circle, its "centre" or a "pose" on its way; "": it is run as lines. Where a firmware makes
-    lines of circles, its cell says how long these are, 0 of one that is told no circles: see circles_by.
+    in_robot_frame: points are in the robot's frame; else in the paper's, which the program then defines.
+    circles_by: what defines a circle, its "centre" or a "pose" on its way; "": it is run as lines. Where a firmware
+    makes lines of circles, its cell says how long these are, 0 if no circles are written: see circles_by.
     line_end: as the controller's own files have it; has_tabs: so have they, too.
     parted: the module that knows the several files of a long job; None: there is but one.
     others: what writes files of other extensions in another way.
@@ -33,8 +33,8 @@ class Post(NamedTuple):
     others: Mapping[str, Callable[[Program], Iterator[str | bytes]]] = MappingProxyType({})
 
     def programs(self, text: str) -> dict[str, str]:
-        """The texts of the files of a job by name, "" that of the one which is asked for. A name that begins with "-"
-        goes on with that file's."""
+        """Return the texts of the files of a job, in a dictionary of names, "" for the requested one. A name that
+        begins with "-" goes on with that file's."""
         return self.parted().programs(text) if self.parted else {"": text}
 
     def called(self, text: str) -> list[str]:
@@ -178,7 +178,7 @@ def sources_of_post(cell: Cell) -> list[str]:
 
 
 def circles_by(cell: Cell) -> str:
-    """What tells a circle on this cell, see Post."""
+    """Return what defines a circle on this cell, see Post."""
     from ..cells.cell import ARCS_IN_SEGMENTS
 
     post = POSTS.get(cell.language)

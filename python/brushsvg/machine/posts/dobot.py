@@ -71,8 +71,8 @@ def _lines(move: Move, upright: np.ndarray, step_mm: float, decimals: int) -> It
         for point, turned, r in zip(move.points_mm, turned_at(move, upright), blends.tolist(), strict=True):
             place = numbers(point, decimals)
             angles = "" if turned is None else f", {numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
-            told = f"{speed}, {blend % r}" if r > 0 else speed
-            yield f"MovL({'tilted' if angles else 'on_paper'}({place}{angles}), {{{told}}})\n"
+            options = f"{speed}, {blend % r}" if r > 0 else speed
+            yield f"MovL({'tilted' if angles else 'on_paper'}({place}{angles}), {{{options}}})\n"
         return
     values, is_blended = np.column_stack([move.points_mm, blends]), blends > 0
     for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):

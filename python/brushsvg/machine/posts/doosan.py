@@ -32,7 +32,7 @@ STOPS = f"""    tp_popup("TCP {TCP} is not as long as the cell says", DR_PM_ALAR
 def doosan(program: Program) -> Iterator[str]:
     """One script that runs from top to bottom. Points are those of the user coordinate system: to teach the paper
     anew, only its line has to change. Scripts choose a tool by its name alone: that it is as long as the cell says is
-    asked before anything moves."""
+    checked before anything moves."""
     cell, decimals = program.cell, program.cell.decimals
     frame = program.robot_from_frame
     paper = f"{numbers(frame[:3, 3], decimals)}, {numbers(zyz_deg(frame[:3, :3]), DEGREE_DECIMALS)}"

@@ -1,5 +1,5 @@
 """Moves -> commands of an EBB (.ebb), the board of AxiDraw and NextDraw: steps of two motors in so many milliseconds, a
-servo's pulse in 1/12 microseconds. Lines that begin with # are for readers; whoever sends the file leaves them out."""
+servo's pulse in 1/12 microseconds. Lines that begin with # are for readers; a sender leaves them out."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .text import feed_mm_min, plain
 
 LINE_LIMIT = 100
 LEAST_MS = 16  # no slice is shorter: firmware 2.4 left gaps between such (evil-mad/EggBot, issues 71 and 72)
-SLOWEST_S = 0.5  # no slice takes longer: below 1.31 steps in a second a motor is told, the board refuses
+SLOWEST_S = 0.5  # no slice takes longer: below 1.31 steps in a second a command, the board refuses
 STEPS_MS = 25  # no motor makes more in a millisecond
 HOME = "end: back to where it began"
 EBB_END = "end: the brush is held up, over where it began"
@@ -96,10 +96,10 @@ class _Writer:
         if not lifts:
             return ""
         self.value = lifts[-1][0]
-        told = "".join(self._set(*lift) for lift in lifts)
-        return self._told(feed_mm_min(move.speed_mm_s)) + told + _waited(servo.settle_s)
+        set_lifts = "".join(self._set(*lift) for lift in lifts)
+        return self._set_feed(feed_mm_min(move.speed_mm_s)) + set_lifts + _waited(servo.settle_s)
 
-    def _told(self, feed: float) -> str:
+    def _set_feed(self, feed: float) -> str:
         """The line that says the most that the moves have which follow, where it is another one."""
         before, self.feed = self.feed, feed
         return "" if feed == before else f"# feed {feed:.1f} mm/min\n"
@@ -161,7 +161,7 @@ class _Writer:
         goes = moves.any(axis=1)  # where it stands, what follows takes the time, too
         part, when_s, moves = part[goes], when_s[goes], moves[goes]
         ways_mm = np.hypot(*places_of(moves, motors).T)
-        # never faster than it may be, whatever rounding makes of ways and times
+        # never faster than allowed, with any rounding of ways and times
         least_s = np.maximum(_steps(when_s, 0.0), 60 * ways_mm / feeds[part])
         times_ms = np.ceil(np.maximum(1e3 * least_s, np.abs(moves).max(axis=1) / STEPS_MS) - 1e-6)
         first = _none_short(part, times_ms)
@@ -169,18 +169,18 @@ class _Writer:
         times_ms = np.maximum(np.add.reduceat(times_ms, first), LEAST_MS)
         values, feeds = values[part], feeds[part]
         new_value, new_feed = _steps(values, self.value) != 0, _steps(feeds, self.feed) != 0
-        told = zip(times_ms.astype(int).tolist(), *moves.T.tolist(), strict=True)
-        lines = [f"SM,{time_ms},{one},{two}\n" for time_ms, one, two in told]
+        rows = zip(times_ms.astype(int).tolist(), *moves.T.tolist(), strict=True)
+        lines = [f"SM,{time_ms},{one},{two}\n" for time_ms, one, two in rows]
         for k in np.flatnonzero(new_value):
             lines[k] = self._set(values[k], 0) + lines[k]
         for k in np.flatnonzero(new_feed):
-            lines[k] = self._told(feeds[k]) + lines[k]
+            lines[k] = self._set_feed(feeds[k]) + lines[k]
         self.value = int(values[-1]) if len(values) else self.value
         return "".join(lines)
 
 
 def _steps(values: np.ndarray, before: float) -> np.ndarray:
-    """(n,) how far each value lies beyond the one before."""
+    """(n,) how far each value is beyond the one before."""
     steps = values - before
     steps[1:] = values[1:] - values[:-1]
     return steps

@@ -16,7 +16,7 @@ from .dobot import whole_mm_s
 from .script import Words, blends_mm, down, part_name, section_lines, turned_at
 from .text import ENDS, number, plain, rows
 
-LINE_LIMIT = 100  # of what a remark says, in as many lines as it takes
+LINE_LIMIT = 100  # of a remark, on as many lines as it needs
 REMARK = 32  # letters of one line of it
 DEGREE_DECIMALS, POINT_DECIMALS = 5, 3  # of the angles of frames and of points
 MAIN = "BRUSHSVG"
@@ -54,7 +54,7 @@ def fanuc(program: Program) -> Iterator[str]:
 
 
 def programs(text: str) -> dict[str, str]:
-    """The texts of a stream of programs by name, the main one's as ""."""
+    """Return the texts of a stream of programs in a dictionary of names, the main one's as ""."""
     found = re.split(r"^(?=/PROG)", text, flags=re.MULTILINE)[1:]
     named = {re.match(r"/PROG +(\S*)", each)[1]: each for each in found}
     return {"" if name == MAIN else name: each for name, each in named.items()}
@@ -106,15 +106,15 @@ class _Points:
         return np.arange(first, self.count + 1)
 
     def text(self) -> str:
-        told, first = "", 1
+        rows_text, first = "", 1
         for angles, alike in itertools.groupby(self.held, lambda each: each[1]):
             places = np.vstack([points_mm for points_mm, _ in alike])
             values = np.column_stack([np.arange(first, first + len(places)), places])
             w, p, r = angles
             held = f"\tW = {w} deg,\tP = {p} deg,\tR = {r} deg\n}};"
-            told += "".join(rows(self.place + held, values, self.decimals))
+            rows_text += "".join(rows(self.place + held, values, self.decimals))
             first += len(places)
-        return told
+        return rows_text
 
 
 def _angles(turned: np.ndarray) -> tuple[str, str, str]:

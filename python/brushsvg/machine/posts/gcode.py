@@ -1,5 +1,5 @@
 """Moves -> G-code for LinuxCNC (RS274/NGC), grbl 1.1, FluidNC, Marlin 2 and Klipper, 7-bit text, the same bytes for the
-same moves. What their firmware tells apart stands in DIALECTS."""
+same moves. Their differences are in DIALECTS."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from ..motion import SAFE_MEANINGS, Move, Program, Wait
 from .text import AT_ONCE, BRACKETS, feed_mm_min, number, plain, rows
 
 LINE_LIMIT = 120  # LinuxCNC reads 252 characters; this also fits a screen
-GRBL_LINE_LIMIT = 70  # grbl 1.1 reads 79 characters of a line beside blanks, builds with less memory 69
+GRBL_LINE_LIMIT = (
+    70  # grbl 1.1 reads 79 characters of a line, not counting blanks, builds with less memory 69
+)
 PRINTER_LINE_LIMIT = 90  # Marlin keeps 96
 MODES = "G21 G90 G94 G17 G40 G80"
 HELD_UP = "end: the brush is held up"
@@ -42,7 +44,7 @@ def comment(text: str) -> str:
 
 
 def grbl_comment(text: str) -> str:
-    """The same without the letters that grbl takes for commands of the moment wherever they stand: ~ would end a stop
+    """The same without the letters that grbl takes for immediate commands anywhere in a line: ~ would end a stop
     while somebody's hand is at the brush, ! would begin one."""
     text = plain(text.translate(BRACKETS), GRBL_LINE_LIMIT - 2)
     return f"({text.translate(AT_ONCE)})\n"
@@ -118,10 +120,10 @@ def _program(program: Program, modes: list[str], dialect: Dialect) -> Iterator[s
                 yield wait(step, dialect)
                 continue
             if step.meaning not in SAFE_MEANINGS or not dialect.has_blocks:
-                wanted = f"F{feed_mm_min(step.speed_mm_s):.1f}\n"
-                if wanted != feed:
-                    yield wanted if dialect.has_blocks else f"G1 {wanted}"
-                feed = wanted
+                feed_word = f"F{feed_mm_min(step.speed_mm_s):.1f}\n"
+                if feed_word != feed:
+                    yield feed_word if dialect.has_blocks else f"G1 {feed_word}"
+                feed = feed_word
             yield from _lines(step, here, decimals)
             here = step.points_mm[-1]
     yield "\nM2\n" if dialect.has_blocks else "\nM400\n" + dialect.comment(HELD_UP)
@@ -129,7 +131,7 @@ def _program(program: Program, modes: list[str], dialect: Dialect) -> Iterator[s
 
 def _lines(move: Move, here: np.ndarray | None, decimals: int) -> Iterator[str]:
     if move.arc is not None and here is not None:
-        # I and J are counted from the point as it was written, so that both ends lie on one circle
+        # I and J are counted from the point as it was written, so that both ends are on one circle
         start = np.round(here[:2], decimals)
         values = np.array([[*move.points_mm[-1], *(np.array(move.arc.centre_mm) - start)]])
         word = "G3" if move.arc.turn > 0 else "G2"

@@ -13,7 +13,7 @@ from .text import feed_mm_min, number, rows
 
 
 def marlin_servo(program: Program) -> Iterator[str]:
-    """The firmware sets a servo as soon as it reads of it, whatever moves it still holds: M400 stands before each
+    """The firmware sets a servo as soon as it reads of it, even while it still holds moves: M400 stands before each
     value, and the machine stands. So a pen is up or down, and no height changes along a line."""
     cell, dialect = program.cell, DIALECTS["marlin-servo"]
     yield "".join(map(dialect.comment, program.header))
@@ -34,10 +34,10 @@ def marlin_servo(program: Program) -> Iterator[str]:
             path = np.vstack([places[:1] + 1 if here is None else here, places])
             new, here = places[(path[1:] != path[:-1]).any(axis=1)], places[-1]
             speed_mm_s = section.drawn_mm_s if step.meaning == "land" else step.speed_mm_s
-            wanted = f"G1 F{feed_mm_min(speed_mm_s):.1f}\n"
-            if (len(new) or step.meaning == "land") and wanted != feed:
-                yield wanted
-                feed = wanted
+            feed_word = f"G1 F{feed_mm_min(speed_mm_s):.1f}\n"
+            if (len(new) or step.meaning == "land") and feed_word != feed:
+                yield feed_word
+                feed = feed_word
             yield from rows(f"{_word(step)} X%.{cell.decimals}f Y%.{cell.decimals}f", new, cell.decimals)
             if step.meaning == "land":
                 yield lifted(cell, is_down=True)

@@ -20,13 +20,13 @@ TOUCHING = (
     "lift",
     "dip",
     "wipe",
-)  # here the lift goes as slowly as it is told; in the air at once
+)  # here the lift goes at the programmed speed; in the air at once
 
 
 def grbl_servo(program: Program) -> Iterator[str]:
     """Heights become values of the servo's table, held along each line; a line is split where the height
     changes by more than the servo's step. The machine must run in grbl's laser mode ($32=1), in which a new S
-    takes effect with the move that it stands in and does not stop it. There grbl switches the output off wherever
+    takes effect with the move that it stands in and does not stop it. There grbl switches the output off where
     the motion mode is not G1, G2 or G3, at M5 and at M2, and the brush would fall: so all is G1, from the first line
     to the last, and the program ends without M2, the brush held up."""
     servo = program.cell.servo
@@ -47,10 +47,10 @@ def grbl_servo(program: Program) -> Iterator[str]:
             if isinstance(step, Wait):
                 yield wait(step, DIALECTS["grbl-servo"])
                 continue
-            wanted = feed_mm_min(step.speed_mm_s)
-            if wanted != feed:
-                yield f"F{wanted:.1f}\n"
-                feed = wanted
+            feed_word = feed_mm_min(step.speed_mm_s)
+            if feed_word != feed:
+                yield f"F{feed_word:.1f}\n"
+                feed = feed_word
             fastest = program.touching_mm_s if step.meaning in TOUCHING else math.inf
             value, feed = yield from _lines(step, here, value, program.cell, fastest, feed)
             here = step.points_mm[-1]
@@ -117,12 +117,12 @@ def lifted(
     is that between the values, which are whole: after a line it begins where its last part was held."""
     feed_mm_s = feed_mm_min(speed_mm_s) / 60
     count = max(1, math.ceil(abs(to_mm - from_mm) / step_mm - 1e-9))
-    told = value_at(servo, from_mm + (to_mm - from_mm) * np.arange(1, count + 1) / count)
-    told = np.concatenate([[value], told])
-    told = told[np.concatenate([[True], told[1:] != told[:-1]])]
-    at_mm = np.interp(told, *_by_value(servo.table))
+    servo_values = value_at(servo, from_mm + (to_mm - from_mm) * np.arange(1, count + 1) / count)
+    servo_values = np.concatenate([[value], servo_values])
+    servo_values = servo_values[np.concatenate([[True], servo_values[1:] != servo_values[:-1]])]
+    at_mm = np.interp(servo_values, *_by_value(servo.table))
     waits_ms = np.ceil(1e3 * np.abs(at_mm[1:] - at_mm[:-1]) / feed_mm_s).astype(int)
-    return tuple(zip(told[1:].tolist(), waits_ms.tolist(), strict=True))
+    return tuple(zip(servo_values[1:].tolist(), waits_ms.tolist(), strict=True))
 
 
 def _ways(
@@ -138,9 +138,9 @@ def _ways(
         which = np.repeat(np.arange(len(way)), counts)
         number = np.arange(1, len(which) + 1) - (np.cumsum(counts) - counts)[which]
         start, way, counts = start[which], way[which], counts[which]
-        told = start + way * (number / counts)[:, None]
-        told[:, 2] = values = value_at(cell.servo, start[:, 2] + way[:, 2] * (number - 0.5) / counts)
-        text = "".join(rows(pattern, told, decimals))
+        points = start + way * (number / counts)[:, None]
+        points[:, 2] = values = value_at(cell.servo, start[:, 2] + way[:, 2] * (number - 0.5) / counts)
+        text = "".join(rows(pattern, points, decimals))
         at = feeds[first + which]
         changes = [0] * bool(at[0] != feed) + (np.flatnonzero(at[1:] != at[:-1]) + 1).tolist()
         if changes:
@@ -154,7 +154,7 @@ def _ways(
 
 
 def feeds_mm_min(way: np.ndarray, speed_mm_s: float, fastest_mm_s: float) -> np.ndarray:
-    """(n,) the feed [mm/min] of each line (n, 3). It is that of the way beside the lift alone: where both together
+    """(n,) the feed [mm/min] of each line (n, 3). It is that of the way without the lift: where both together
     would be faster than the tip may be, it is lower, in hundredths of the fastest, so that few lines change it."""
     feeds = np.full(len(way), feed_mm_min(speed_mm_s))
     if math.isinf(fastest_mm_s):

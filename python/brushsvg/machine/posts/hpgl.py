@@ -13,7 +13,7 @@ from .text import ENDS, QUOTES, plain, rows
 
 LINE_LIMIT = 80
 UNIT_MM = UNITS_MM["hpgl"]
-CM_S = 10.0  # VS tells whole centimetres in a second
+CM_S = 10.0  # VS takes whole centimetres in a second
 HELD_UP = "end: the pen is put away"
 PUT_AWAY = ("PU;", "SP0;")
 
@@ -30,9 +30,9 @@ def hpgl(program: Program) -> Iterator[str]:
         if not section.moves:
             yield f"SP{pen_number(section.name, cell)};\n"
         for move in section.moves:
-            if move.meaning == "land" and speed != (wanted := f"VS{round(section.drawn_mm_s / CM_S)};\n"):
-                yield wanted
-                speed = wanted
+            if move.meaning == "land" and speed != (speed_word := f"VS{round(section.drawn_mm_s / CM_S)};\n"):
+                yield speed_word
+                speed = speed_word
             here = yield from _lines(move, here)
     yield "".join(f"{line}\n" for line in PUT_AWAY) + comment(HELD_UP)
 

@@ -66,7 +66,7 @@ def krl(program: Program) -> Iterator[str]:
 
 
 def programs(text: str) -> dict[str, str]:
-    """The texts of a stream of programs by name, the main one's as ""."""
+    """Return the texts of a stream of programs in a dictionary of names, the main one's as ""."""
     found = re.split(r"^(?=DEF )", text, flags=re.MULTILINE)[1:]
     named = {re.match(r"DEF (\w+)", each)[1]: each for each in found}
     return {"" if name == MAIN else name: each for name, each in named.items()}

@@ -35,7 +35,7 @@ _FUNCTIONS = """
 
 def rapid(program: Program) -> Iterator[str]:
     """A module whose routine paint does all. The points are those of the work object paper: to teach it anew, only its
-    line has to change. Configurations are not asked for: the robot keeps the one in which it was put over the sheet."""
+    line has to change. Configurations are free: the robot keeps the one in which it was put over the sheet."""
     cell, decimals = program.cell, program.cell.decimals
     acceleration = rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, SPEED_DECIMALS)
     tool = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)

@@ -33,7 +33,7 @@ CALLS = (
 
 def robodk(program: Program) -> Iterator[str]:
     """The one file that the post saves. Joints are not known, so that no move is MoveJ, and there is no rise before the
-    first one: posts cannot ask where the arm is. Error for whatever the post cannot do, and for what it logs."""
+    first one: posts cannot ask where the arm is. Error for anything the post cannot do, and for what it logs."""
     where = program.cell.robodk.post
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
         try:
@@ -90,12 +90,12 @@ def _loaded(where: str) -> ModuleType:
     if spec is None or spec.loader is None:
         raise Error(f"the post {where} is no file of Python", where="robodk.post", code="post-failed")
     module = importlib.util.module_from_spec(spec)
-    beside = str(path.resolve().parent)  # where a post looks for the one that it changes
-    sys.path.insert(0, beside)
+    post_folder = str(path.resolve().parent)  # where a post looks for the one that it changes
+    sys.path.insert(0, post_folder)
     try:
         spec.loader.exec_module(module)
     finally:
-        sys.path.remove(beside)
+        sys.path.remove(post_folder)
     return module
 
 
@@ -117,18 +117,18 @@ def _called(post, mat, program: Program) -> None:
     post.setFrame(pose(program.robot_from_frame), -1, "paper")
     post.setTool(pose(frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)), -1, "brush")
     post.setAcceleration(cell.speeds.acceleration_mm_s2)
-    told = _Told(post)
+    settings = _Settings(post)
     for section in program.sections():
         post.RunMessage(plain(section.title, LINE_LIMIT), True)
         for step in section.steps:
             if isinstance(step, Wait):
                 _wait(post, step)
             else:
-                _move(post, told, step, at, upright, cell)
+                _move(post, settings, step, at, upright, cell)
     post.ProgFinish(NAME)
 
 
-class _Told:
+class _Settings:
     """What holds until another one is said: speeds and zones."""
 
     def __init__(self, post):
@@ -142,14 +142,14 @@ class _Told:
         self.speed, self.zone = speed_mm_s, zone_mm
 
 
-def _move(post, told: _Told, move: Move, at, upright: np.ndarray, cell: Cell) -> None:
+def _move(post, settings: _Settings, move: Move, at, upright: np.ndarray, cell: Cell) -> None:
     if move.arc is not None:
-        told.at(move.speed_mm_s, EXACT)
+        settings.at(move.speed_mm_s, EXACT)
         post.MoveC(at(via(move.points_mm)), None, at(move.points_mm[-1]), None)
         return
     zones = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, cell.decimals)
     for point, turned, zone in zip(move.points_mm, turned_at(move, upright), zones.tolist(), strict=True):
-        told.at(move.speed_mm_s, zone if zone > 0 else EXACT)
+        settings.at(move.speed_mm_s, zone if zone > 0 else EXACT)
         post.MoveL(at(point, upright if turned is None else turned), None)
 
 

@@ -30,7 +30,7 @@ TILTED_COLUMNS = 6  # of a row, behind which stands how the brush is held
 
 
 def csv(program: Program) -> Iterator[str]:
-    """Remarks begin with #, as readers of tables can be told."""
+    """Remarks begin with #: readers of tables can be set to skip them."""
     yield "".join(map(comment, _head(program))) + COLUMNS + "\n"
     for title, table in timed(program):
         yield comment(title)
@@ -145,7 +145,7 @@ def _lines(table: np.ndarray, cell: Cell) -> Iterator[tuple[str, str]]:
         turned, turns = ",".join([f"%.{TURN_DECIMALS}f"] * 4), turn.T.tolist()
     pattern = f"%.{SECOND_DECIMALS}f,{place},{place},{place},{turned},%s"
     limits = {limit: _shortest(limit) for limit in set(table[:, 4])}
-    told = [limits[limit] for limit in table[:, 4].tolist()]
-    values = zip(table[:, 0].tolist(), *places_m.T.tolist(), *turns, told, strict=True)
+    limited = [limits[limit] for limit in table[:, 4].tolist()]
+    values = zip(table[:, 0].tolist(), *places_m.T.tolist(), *turns, limited, strict=True)
     lines = ("\n".join([pattern] * len(table)) % tuple(chain.from_iterable(values))).split("\n")
     return zip(lines if len(table) else [], (KINDS[int(kind)] for kind in table[:, 5]), strict=True)

@@ -14,7 +14,7 @@ AT_ONCE = {ord("!"): ".", ord("?"): ".", ord("%"): ".", ord("~"): "-"}
 ENDS = {ord(";"): ","}  # an instruction of TP, and of HP-GL
 QUOTES = {ord('"'): "'"}  # that end a comment of HP-GL
 NAMED = 40  # letters of a name that no line of a program is too short for
-ROWS_AT_ONCE = 10_000  # of points that become text: some megabytes, whatever a stroke's length
+ROWS_AT_ONCE = 10_000  # of points that become text: some megabytes, for any stroke length
 
 
 def plain(text: str, room: int) -> str:
@@ -32,7 +32,7 @@ def spelled(text: str) -> str:
     return plain(text, len(text) * 18).translate(BRACKETS | AT_ONCE | ENDS | QUOTES)
 
 
-def told_apart(names: Sequence[str]) -> list[str]:
+def make_unique(names: Sequence[str]) -> list[str]:
     """The names, with their number where a program would write them like another one, or as nothing at all."""
     short = [spelled(name)[:NAMED] for name in names]
     has_own = [
@@ -46,7 +46,7 @@ def told_apart(names: Sequence[str]) -> list[str]:
 
 
 def number(value: float, decimals: int) -> str:
-    """Fixed decimals, a point whatever the locale, no minus sign before a zero."""
+    """Fixed decimals, a point in any locale, no minus sign before a zero."""
     return f"{round(value, decimals) + 0.0:.{decimals}f}"
 
 

@@ -84,7 +84,7 @@ def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int)
 
 
 def _watch(force_n: float) -> str:
-    """A thread beside the moves: the whole program ends where the tool is pressed harder."""
+    """A thread that runs with the moves: the whole program ends where the tool is pressed harder."""
     newtons = number(force_n, 1)
     return (
         "  thread watch():\n"

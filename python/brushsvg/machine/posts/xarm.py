@@ -19,7 +19,7 @@ SPEED_DECIMALS = 3
 # of up to 100 degrees, where brushsvg blends, so much cuts a corner by no more than the tolerance in both readings
 BLENDED = 0.8
 XARM_END = "end: the brush is held up"
-NAMES_LETTERS = re.compile(r"coding(?=[:=])")  # tells Python how a file's letters are to be read
+NAMES_LETTERS = re.compile(r"coding(?=[:=])")  # sets the encoding of a file in Python
 
 BEFORE = """import sys
 
@@ -75,8 +75,8 @@ AFTER = "arrive()\narm.disconnect()\n"
 
 
 def xarm(program: Program) -> Iterator[str]:
-    """A script for a computer beside the arm, which sends the moves one by one; the SDK waits while the arm's list of
-    them is full. Turns of the brush are lines: the SDK tells a circle by its share of a whole one, not by its end."""
+    """A script for a computer next to the arm, which sends the moves one by one; the SDK waits while the arm's list of
+    them is full. Turns of the brush are lines: the SDK defines a circle by its share of a whole one, not by its end."""
     cell, decimals = program.cell, program.cell.decimals
     tool = numbers(cell.tool.tcp_mm, decimals), numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)
     yield NAMES_LETTERS.sub("coding ", "".join(map(comment, program.header)))

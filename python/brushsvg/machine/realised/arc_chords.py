@@ -10,7 +10,7 @@ import numpy as np
 from ... import _core
 from .retimed import on_way
 
-# a chord turns by no more, and lies no farther from its circle: what the mark's edge shows of a polygon is less
+# a chord turns by no more, and is no farther from its circle: what the mark's edge shows of a polygon is less
 TURN_RAD = 0.12
 OFF_MM = 0.01
 
@@ -103,7 +103,7 @@ def _rows(poses: np.ndarray, arcs) -> list[np.ndarray]:
 
 
 def _between(arc, poses: np.ndarray):
-    """Poses that are wanted after each pose of an arc, with its row."""
+    """Return the poses to add after each pose of an arc, with its row."""
     for row, next_row in pairwise(range(arc.first, arc.last + 1)):
         a, b = (poses[k, :2] - arc.centre_mm for k in (row, next_row))
         turn = atan2(a[0] * b[1] - a[1] * b[0], float(a @ b))

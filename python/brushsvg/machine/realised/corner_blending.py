@@ -15,7 +15,7 @@ SEEN_MM = 1e-4  # corners that are cut by less are left as they are
 
 @dataclass(frozen=True)
 class _Moves:
-    """What lies between n poses: unit directions (n - 1, 3) in which each move leaves one and reaches the next, how
+    """The moves between n poses: unit directions (n - 1, 3) in which each move leaves one and reaches the next, how
     long it is (n - 1,) [mm], and how it bends: the turn of its circle over the radius [1/mm], 0 for a straight one."""
 
     leaving: np.ndarray
@@ -74,7 +74,7 @@ def blends(poses_mm: np.ndarray, blending: Blending, arcs=()) -> tuple[np.ndarra
     turns = all_turns[1:-1]
     quarter = np.tan(turns / 4)
     most = np.divide(blending.tolerance_mm, quarter, out=np.full_like(quarter, np.inf), where=quarter > 0)
-    if len(arcs):  # on a circle no farther than its tangent tells where it goes
+    if len(arcs):  # on a circle no farther than its tangent shows the way
         bends = np.abs(moves.bends)
         bend = np.maximum(bends[:-1], bends[1:])
         least = np.divide(blending.tolerance_mm, bend, out=np.full_like(bend, np.inf), where=bend > 0)

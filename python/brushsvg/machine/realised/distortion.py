@@ -1,4 +1,4 @@
-"""Where a machine takes the tool that is told to go elsewhere, and what to tell it instead. In the paper's frame."""
+"""Model where a machine takes the tool for a command, and the command for a place. In the paper's frame."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .retimed import on_way
 from .smooth_field import edge_cuts, field_mm, is_bent, parts_of
 
 NEAR_MM, MOST_ROUNDS = 1e-9, 60  # of the way back through a field: each round leaves a quarter of it or less
-MAP_OFF_MM = 0.003  # how far a line that is told may lie from the paper's map between its ends
+MAP_OFF_MM = 0.003  # greatest distance of a commanded line from the paper's map between its ends
 
 
 def is_similar(machine: Machine | None) -> bool:
@@ -32,79 +32,80 @@ def leans(machine: Machine | None) -> bool:
 
 
 def true_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
-    """(n, 3): where the tool goes that is told to go there. It leans as deep as it is pressed: not in the air."""
+    """Return (n, 3): where the tool goes for commands. It leans as deep as it is pressed: not in the air."""
     if machine is None:
         return points_mm
-    told = np.asarray(points_mm, dtype=float)
-    z = told[:, 2] - _paper_mm(told[:, :2], machine)
+    commanded = np.asarray(points_mm, dtype=float)
+    z = commanded[:, 2] - _paper_mm(commanded[:, :2], machine)
     depth = np.maximum(-z, 0.0)
-    place = told[:, :2] @ _axes(machine).T + field_mm(told[:, :2], machine)
+    place = commanded[:, :2] @ _axes(machine).T + field_mm(commanded[:, :2], machine)
     return np.column_stack([place + np.outer(depth, machine.lean_mm_per_mm), z])
 
 
-def true_way_mm(told_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
-    """(m, 3): where the tool goes along lines between places (n, 3) that are told, with more of them where it bends."""
+def true_way_mm(commanded_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
+    """Return (m, 3): where the tool goes along commanded lines between places (n, 3), with more of them where it
+    bends."""
     if is_bent(machine):
-        told_mm = _in_parts(told_mm, parts_of(told_mm[:, :2], machine))
-    run = true_mm(told_mm, machine)
+        commanded_mm = _in_parts(commanded_mm, parts_of(commanded_mm[:, :2], machine))
+    run = true_mm(commanded_mm, machine)
     if not leans(machine):
         return run
     # it begins to lean where it touches the paper, not where the line began
     over, under = run[:-1, 2], run[1:, 2]
     cuts = [[a / (a - b), 1.0] if a * b < 0 else [1.0] for a, b in zip(over, under, strict=True)]
-    return true_mm(_cut(np.asarray(told_mm, dtype=float), map(np.array, cuts)), machine)
+    return true_mm(_cut(np.asarray(commanded_mm, dtype=float), map(np.array, cuts)), machine)
 
 
-def told_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
-    """(n, 3): what to tell the machine so that the tool goes there."""
+def commanded_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
+    """Return (n, 3): the commands that take the tool there."""
     if machine is None:
         return points_mm
-    wanted = np.asarray(points_mm, dtype=float)
-    depth = np.maximum(-wanted[:, 2], 0.0)
-    place = _led_to(wanted[:, :2] - np.outer(depth, machine.lean_mm_per_mm), machine)
-    return np.column_stack([place, wanted[:, 2] + _paper_mm(place, machine)])
+    target = np.asarray(points_mm, dtype=float)
+    depth = np.maximum(-target[:, 2], 0.0)
+    place = _solve_place(target[:, :2] - np.outer(depth, machine.lean_mm_per_mm), machine)
+    return np.column_stack([place, target[:, 2] + _paper_mm(place, machine)])
 
 
-def _led_to(wanted_mm: np.ndarray, machine: Machine) -> np.ndarray:
-    """(n, 2) what to tell the machine so that its axes and its field take the tool there."""
+def _solve_place(target_mm: np.ndarray, machine: Machine) -> np.ndarray:
+    """Return (n, 2) the commands for which the machine's axes and its field take the tool there."""
     back = np.linalg.inv(_axes(machine)).T
-    place = wanted_mm @ back
+    place = target_mm @ back
     for _ in range(MOST_ROUNDS if is_bent(machine) else 0):
-        before, place = place, (wanted_mm - field_mm(place, machine)) @ back
+        before, place = place, (target_mm - field_mm(place, machine)) @ back
         if np.max(np.abs(place - before), initial=0.0) < NEAR_MM:
             break
     return place
 
 
-def told_high_mm(told_mm: np.ndarray, height_mm: float, machine: Machine | None) -> np.ndarray:
-    """(n,) what to tell the machine at places (n, 2) that it is told, so that the tool is at least so high over the
+def commanded_high_mm(commanded_mm: np.ndarray, height_mm: float, machine: Machine | None) -> np.ndarray:
+    """Return (n,) the commanded heights at commanded places (n, 2), so that the tool is at least so high over the
     paper, and over what stands as it was taught, such as vessels."""
-    rises_mm = np.zeros(len(told_mm))
+    rises_mm = np.zeros(len(commanded_mm))
     if machine is not None:
-        plane_mm = machine.height_mm + told_mm @ machine.tilt_mm_per_mm
+        plane_mm = machine.height_mm + commanded_mm @ machine.tilt_mm_per_mm
         highest_mm = max((row[2] for row in machine.map_mm), default=0.0)  # between places, too
         rises_mm = np.maximum(plane_mm + highest_mm, 0.0)
     return height_mm + rises_mm
 
 
 def goes_straight(machine: Machine | None) -> bool:
-    """Whether lines that are told are lines on the paper."""
+    """Return whether commanded lines are lines on the paper."""
     return machine is None or not (machine.map_mm or machine.field_mm)
 
 
 def in_lines_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
     """(m, k): places (n, k), x, y, z and what else changes evenly, where the tool shall go, with more of them between,
-    so that straight lines between what is told keep the tool on its way, and its height over the paper's map."""
+    so that straight lines between the commands keep the tool on its way, and its height over the paper's map."""
     if goes_straight(machine):
         return points_mm
-    wanted = np.asarray(points_mm, dtype=float)
+    target = np.asarray(points_mm, dtype=float)
     if is_bent(machine):
-        wanted = _in_parts(wanted, parts_of(told_mm(wanted[:, :3], machine)[:, :2], machine))
-        wanted = _cut(wanted, edge_cuts(told_mm(wanted[:, :3], machine)[:, :2], machine))
+        target = _in_parts(target, parts_of(commanded_mm(target[:, :3], machine)[:, :2], machine))
+        target = _cut(target, edge_cuts(commanded_mm(target[:, :3], machine)[:, :2], machine))
     if not machine.map_mm:
-        return wanted
-    told = told_mm(wanted[:, :3], machine)[:, :2]
-    return _cut(wanted, [_cuts(*ends, machine) for ends in pairwise(told)])
+        return target
+    commanded = commanded_mm(target[:, :3], machine)[:, :2]
+    return _cut(target, [_cuts(*ends, machine) for ends in pairwise(commanded)])
 
 
 def _cut(points: np.ndarray, cuts) -> np.ndarray:
@@ -144,7 +145,7 @@ def _cuts(a: np.ndarray, b: np.ndarray, machine: Machine) -> np.ndarray:
 
 
 def _paper_mm(places_mm: np.ndarray, machine: Machine) -> np.ndarray:
-    """(n,) how much higher the paper lies at places (n, 2) that are told than it was taught."""
+    """Return (n,) how much higher the paper is at commanded places (n, 2) than it was taught."""
     plane_mm = machine.height_mm + places_mm @ machine.tilt_mm_per_mm
     if not machine.map_mm:
         return plane_mm
@@ -166,7 +167,7 @@ def _grid(map_mm: tuple) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _cell(grid: np.ndarray, places):
-    """Between which of the grid's lines and the next one places lie, or nearest to it beyond its ends."""
+    """Return the lines of the grid between which places are, or the nearest ones beyond its ends."""
     return np.clip(np.searchsorted(grid, places, side="right") - 1, 0, len(grid) - 2)
 
 
@@ -180,13 +181,13 @@ def _axes(machine: Machine) -> np.ndarray:
 
 
 def true_pass(a_pass, cell: Cell):
-    """A pass that the machine was told, as it runs it; circles that do not stay any as the poses on them."""
+    """Return a commanded pass as the machine runs it; circles that do not stay any become the poses on them."""
     return _mapped(a_pass, cell.machine, true_mm)
 
 
-def told_pass(a_pass, cell: Cell):
-    """What to tell the machine so that it runs this pass."""
-    return _mapped(a_pass, cell.machine, told_mm)
+def commanded_pass(a_pass, cell: Cell):
+    """Return the commands with which the machine runs this pass."""
+    return _mapped(a_pass, cell.machine, commanded_mm)
 
 
 def _mapped(a_pass, machine: Machine | None, to):

@@ -14,17 +14,17 @@ from .retimed import on_way
 
 STEP_MM = 0.4
 STRAIGHT = 1e-7  # sine of the turn of two moves that are one
-AIR_MM = 100.0  # above whatever height a paper has
+AIR_MM = 100.0  # above any height of the paper
 
 
 def as_run(passes, machine: Machine, backlash_mm=(0.0, 0.0), deepest_mm: float = np.inf) -> list:
-    """What is on the paper of passes that were told; those that never reach it are left out. deepest_mm: below, no
-    depth counts. Error for a tilted brush, which no machine of ours holds."""
+    """Return the part of commanded passes that is on the paper; those that never reach it are left out. deepest_mm:
+    below, no depth counts. Error for a tilted brush, which no machine of ours holds."""
     _core.refuse_tilted(passes, "machines are simulated with the brush upright")
     out = []
     for one in with_play(passes, backlash_mm):
         poses = np.asarray(with_chords(one).poses_mm, dtype=float).reshape(-1, 3)
-        if leans(machine):  # also on its way down to a pose that lies below the paper as it is
+        if leans(machine):  # also on its way down to a pose below the true paper
             poses = np.vstack([poses[0] + (0, 0, AIR_MM), poses, poses[-1] + (0, 0, AIR_MM)])
         down = _on_paper(true_way_mm(poses, machine))
         if down is not None:

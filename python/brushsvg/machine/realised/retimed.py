@@ -6,10 +6,10 @@ from ... import _core
 
 
 def on_way(a_pass, poses_mm, arcs, tool_axes=None):
-    """The pass, with all that is said of it, led along other poses (n, 3) and arcs; tool_axes: (n, 3) how the brush is
+    """Return the pass, with all its settings, along other poses (n, 3) and arcs; tool_axes: (n, 3) how the brush is
     held there. Error for a tilted one where that is not known."""
     if tool_axes is None:
-        _core.refuse_tilted([a_pass], "a pass is led another way with the brush upright")
+        _core.refuse_tilted([a_pass], "a pass is moved to another way with the brush upright")
     return _core.Pass(
         a_pass.origin,
         poses_mm,

@@ -1,4 +1,4 @@
-"""What of a pass is left in a program's text: who writes it and who reads it back decide from the same places."""
+"""Round a pass as a program's text does: writers and readers decide from the same places."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from ..posts import POSTS, circles_by
 from ..tool_axes import axes_of
 from .arc_chords import OFF_MM, with_chords, with_chords_on
 from .corner_blending import ON_THE_SPOT_MM
-from .distortion import leans, told_pass
+from .distortion import commanded_pass, leans
 from .retimed import on_way
 
 # circles that are smaller or flatter, in units of the last decimal, are run along their chords: rounded, they could
-# turn the other way, or all round, or lie on one line
+# turn the other way, or all round, or be on one line
 CIRCLE_UNITS = 10
 
 
 @dataclass(frozen=True)
 class Written:
-    """told_mm: (k, 3) what the machine is told for each pose that a program has; poses_mm: (k, 3) the same as the
-    program has it, in the paper's frame; arcs: what of these it tells as circles; sideways_mm: steps of less than that
+    """commanded_mm: (k, 3) the command for each pose that a program has; poses_mm: (k, 3) the same rounded as in the
+    program, in the paper's frame; arcs: those of them written as circles; sideways_mm: steps of less than that
     are straight up and down; axes: (k, 3) how the brush is held there, None: upright."""
 
-    told_mm: np.ndarray
+    commanded_mm: np.ndarray
     poses_mm: np.ndarray
     arcs: list
     sideways_mm: float
@@ -40,31 +40,31 @@ class Written:
 
 def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) -> Written:
     """A pass as the cell's language has it; frame: (4, 4) the paper's in the robot's. The pass is what shall be run,
-    written is what the cell's machine is told for it. was_read: in a program."""
-    a_pass = told_pass(steep_ways_lifted(a_pass, cell, was_read) if cell.servo else a_pass, cell)
+    written is the command for the cell's machine. was_read: in a program."""
+    a_pass = commanded_pass(steep_ways_lifted(a_pass, cell, was_read) if cell.servo else a_pass, cell)
     post = POSTS.get(cell.language)
     unit = unit_mm(cell)
-    meant = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
-    told_by = circles_by(cell)
+    exact = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    given_by = circles_by(cell)
     in_robot = bool(post and post.in_robot_frame and not np.array_equal(frame, np.eye(4)))
-    # what leans is told to go aside for it to go straight down, which it does up to rounding
+    # a leaning tool is commanded sideways to go straight down, which it does up to rounding
     sideways_mm = 2 * unit if leans(cell.machine) else ON_THE_SPOT_MM
     if in_robot and not is_upright(frame):
         sideways_mm = 2 * unit  # up and down are only so up to rounding
-        told_by = ""  # and circles lie in no plane that the robot knows
+        given_by = ""  # and circles are in no plane that the robot knows
 
     def on_grid(poses: np.ndarray) -> np.ndarray:
         if in_robot:
             return moved(np.linalg.inv(frame), rounded(moved(frame, poses), cell))
         return rounded(poses, cell)
 
-    poses, arcs = on_grid(meant), []
+    poses, arcs = on_grid(exact), []
     least_mm = least_move_mm(cell)
-    if told_by:
-        arcs, others = _told(a_pass.arcs, poses, told_by, cell)
-        dense, arcs = with_chords_on(meant, others, arcs)
-        if len(dense) > len(meant):
-            meant, poses = dense, on_grid(dense)
+    if given_by:
+        arcs, others = _split_arcs(a_pass.arcs, poses, given_by, cell)
+        dense, arcs = with_chords_on(exact, others, arcs)
+        if len(dense) > len(exact):
+            exact, poses = dense, on_grid(dense)
     run = _at_values(poses, cell.servo) if cell.servo else poses
     kept = _kept(run, {row for arc in arcs for row in (arc.first, arc.last)}, least_mm)
     if len(kept) < len(poses):
@@ -73,12 +73,12 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
             for arc in arcs
         ]
     poses = poses[kept]
-    told_mm = meant[kept]
+    commanded_mm = exact[kept]
     if cell.servo:
         held = _held(poses[:, :2], least_mm)
-        poses[:, :2], told_mm[:, :2] = poses[held, :2], told_mm[held, :2]
+        poses[:, :2], commanded_mm[:, :2] = poses[held, :2], commanded_mm[held, :2]
     axes = axes_of(a_pass)  # without arcs
-    return Written(told_mm, poses, arcs, sideways_mm, axes if axes is None else axes[kept])
+    return Written(commanded_mm, poses, arcs, sideways_mm, axes if axes is None else axes[kept])
 
 
 def _at_values(poses: np.ndarray, servo: Servo) -> np.ndarray:
@@ -110,7 +110,7 @@ def steep_ways_lifted(a_pass, cell: Cell, was_read: bool = False):
 
 def _held(places: np.ndarray, least_mm: float) -> np.ndarray:
     """(n,) at which of its rounded places (n, 2) a servo stands: its lift alone names none, and stays where the last
-    way ended as long as less than a move is gone beside it."""
+    way ended as long as the sideways part is less than a move."""
     stays = np.arange(len(places))
     near = np.hypot(*(places[1:] - places[:-1]).T) < least_mm
     on, done = places.tolist(), 0
@@ -124,27 +124,27 @@ def _held(places: np.ndarray, least_mm: float) -> np.ndarray:
     return stays
 
 
-def _told(arcs, poses: np.ndarray, told_by: str, cell: Cell) -> tuple[list, list]:
-    """The arcs that are told as circles, those that come back to where they began or beyond in parts, and none where no
-    more than a tiny move would lead to it or away from it; and the others."""
+def _split_arcs(arcs, poses: np.ndarray, given_by: str, cell: Cell) -> tuple[list, list]:
+    """Return the arcs that are written as circles, those that come back to where they began or beyond in parts, and
+    none where no more than a tiny move would go to it or away from it; and the others."""
     unit, least_mm = unit_mm(cell), least_move_mm(cell)
 
     def is_tiny(first: int, last: int) -> bool:
         return first != last and dist(poses[first], poses[last]) < least_mm
 
-    told, others, done = [], [], 0
+    written_arcs, others, done = [], [], 0
     for part in chain.from_iterable(_parts(arc, poses, CIRCLE_UNITS * unit) for arc in arcs):
         if (
-            _is_told(poses[part.first : part.last + 1, :2], told_by, CIRCLE_UNITS * unit)
+            _is_writable(poses[part.first : part.last + 1, :2], given_by, CIRCLE_UNITS * unit)
             and _is_round(poses[[part.first, part.last], :2] - part.centre_mm, cell)
             and not is_tiny(done, part.first)
             and not is_tiny(part.last, len(poses) - 1)
         ):
-            told.append(part)
+            written_arcs.append(part)
             done = part.last
         else:
             others.append(part)
-    return told, others
+    return written_arcs, others
 
 
 def _parts(arc, poses: np.ndarray, least_mm: float) -> Iterator:
@@ -179,9 +179,9 @@ def _is_round(spokes: np.ndarray, cell: Cell) -> bool:
     return abs(first - last) <= near_mm and sagitta_mm <= OFF_MM
 
 
-def _is_told(on: np.ndarray, circles_by: str, least_mm: float) -> bool:
-    """Whether points (n, 2) of a circle tell it: its ends are apart; by a pose on its way, the three are the corners of
-    a triangle that is nowhere flatter."""
+def _is_writable(on: np.ndarray, circles_by: str, least_mm: float) -> bool:
+    """Return whether points (n, 2) determine a circle: its ends are apart; by a pose on its way, the three are the
+    corners of a triangle that is nowhere flatter."""
     if circles_by == "centre":
         return dist(on[0], on[-1]) >= least_mm
     if len(on) < 3:

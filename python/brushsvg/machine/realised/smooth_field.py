@@ -9,8 +9,8 @@ import numpy as np
 from ...errors import Notice
 from ..cells.cell import Cell, Machine
 
-OFF_MM = 0.003  # how far the way may lie from what was meant, between the ends of a line that is told
-BEYOND_MM = 1.0  # told only from there on: a field is no other within a mm
+OFF_MM = 0.003  # greatest distance of the way from its target, between the ends of a commanded line
+BEYOND_MM = 1.0  # reported only from there on: a field does not change within a mm
 
 
 def is_bent(machine: Machine | None) -> bool:
@@ -18,7 +18,7 @@ def is_bent(machine: Machine | None) -> bool:
 
 
 def field_mm(places_mm: np.ndarray, machine: Machine) -> np.ndarray:
-    """(n, 2): where the tool goes beside places (n, 2) that are told, a u^2 + b u v + c v^2 for x and for y, with u and
+    """(n, 2): the displacement at commanded places (n, 2), a u^2 + b u v + c v^2 for x and for y, with u and
     v from -1 to 1 over where the field was measured; beyond as at its edge."""
     if not machine.field_mm:
         return np.zeros_like(places_mm)
@@ -34,20 +34,20 @@ def steepest(machine: Machine) -> float:
     return max(by_x, by_y)
 
 
-def parts_of(told_mm: np.ndarray, machine: Machine) -> np.ndarray:
-    """(n - 1,) lines that it takes from each place (n, 2) that is told to the next, so that each is straight enough: a
+def parts_of(commanded_mm: np.ndarray, machine: Machine) -> np.ndarray:
+    """Return (n - 1,) the lines from each commanded place (n, 2) to the next, so that each is straight enough: a
     way with the second derivative q over it has chords that leave it by q / 8 k^2, in k of them."""
-    du, dv = (np.diff(told_mm, axis=0) / machine.field_reach_mm).T
+    du, dv = (np.diff(commanded_mm, axis=0) / machine.field_reach_mm).T
     bends = 2 * np.column_stack([du * du, du * dv, dv * dv]) @ np.array(machine.field_mm).T
     return np.maximum(np.ceil(np.sqrt(np.hypot(*bends.T) / (8 * OFF_MM))), 1).astype(int)
 
 
-def edge_cuts(told_mm: np.ndarray, machine: Machine) -> list[np.ndarray]:
-    """For each line between places (n, 2) that are told shares of it, up to 1, where it leaves or enters what was
+def edge_cuts(commanded_mm: np.ndarray, machine: Machine) -> list[np.ndarray]:
+    """Return for each line between commanded places (n, 2) shares of it, up to 1, where it leaves or enters what was
     measured: there the field has a kink."""
-    if not beyond_mm(told_mm, machine):
-        return [np.ones(1)] * (len(told_mm) - 1)
-    at = (told_mm - machine.field_middle_mm) / machine.field_reach_mm
+    if not beyond_mm(commanded_mm, machine):
+        return [np.ones(1)] * (len(commanded_mm) - 1)
+    at = (commanded_mm - machine.field_middle_mm) / machine.field_reach_mm
     cuts = []
     for start, end in pairwise(at):
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -56,14 +56,14 @@ def edge_cuts(told_mm: np.ndarray, machine: Machine) -> list[np.ndarray]:
     return cuts
 
 
-def beyond_mm(told_mm: np.ndarray, machine: Machine) -> float:
-    """How far the farthest of places (n, 2) that are told lies beyond where the field was measured."""
-    out = np.abs(told_mm - machine.field_middle_mm) - machine.field_reach_mm
+def beyond_mm(commanded_mm: np.ndarray, machine: Machine) -> float:
+    """Return the farthest distance of commanded places (n, 2) beyond where the field was measured."""
+    out = np.abs(commanded_mm - machine.field_middle_mm) - machine.field_reach_mm
     return float(np.max(out, initial=0.0))
 
 
 def beyond_field(passes, cell: Cell) -> list[Notice]:
-    """A notice of the stroke that is led farthest beyond where the cell's field was measured."""
+    """Return a notice of the stroke that goes farthest beyond where the cell's field was measured."""
     if not is_bent(cell.machine):
         return []
     far = {one.stroke: beyond_mm(np.asarray(one.poses_mm)[:, :2], cell.machine) for one in passes}

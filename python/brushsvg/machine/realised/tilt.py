@@ -14,7 +14,7 @@ LEAST_AXES = 5
 # What a move is cut into, so that a robot between two poses keeps to what is predicted. Between two axes at most so far
 # apart a robot, which turns the tool evenly about one line in space, holds it within 0.03 degrees as predicted.
 STEP_DEG = 2.0
-# A move that goes d deeper and leans by s more would be led straight: off its way by d s / 4 in its middle.
+# A move that goes d deeper and leans by s more would go straight: off its way by d s / 4 in its middle.
 OFF_MM = 0.005
 ON_THE_SPOT_MM = 1e-6  # as simulate has it
 

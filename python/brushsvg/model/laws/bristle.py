@@ -1,4 +1,4 @@
-"""Lemma 1: a bristle as a beam, clamped at its root and sliding at its tip, whatever its rigidity and load."""
+"""Lemma 1: a bristle as a beam, clamped at its root and sliding at its tip, with any rigidity and load."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def bristle(
     sliding_end: what holds at the tip, "shear_free", (EI w'')'(1) = 0, as mechanics has it, or "third_derivative",
     w'''(1) = 0, as the article prints it; where EI is not constant the two differ.
 
-    With an end free of shear there is exactly one solution, whatever EI > 0. As printed there is not: with f = 1 / EI
+    With an end free of shear there is exactly one solution, for any EI > 0. As printed there is not: with f = 1 / EI
     the fourth condition fails where f(1) int f + f'(1) int (1 - z) f = 0, which takes a bristle that grows stiffer to
     its tip, as EI = 1 / (1 + sqrt(3) (1 - z)).
 
@@ -123,7 +123,7 @@ def _values(function: Callable, z: np.ndarray, what: str, least: float) -> np.nd
 
 
 def _drawn(function: Callable, what: str) -> Chebyshev:
-    """A function on [0, 1] as a series, of as many terms as it takes."""
+    """A function on [0, 1] as a series, with as many terms as it needs."""
     terms = 17
     while terms <= MOST_TERMS:
         series = Chebyshev.interpolate(function, terms - 1, domain=[0.0, 1.0])

@@ -1,4 +1,4 @@
-"""Theorem 1: how a taut brush turns and where its patch and tip lie; section 2.2: what a loose one does."""
+"""Theorem 1: how a taut brush turns and where its patch and tip are; section 2.2: what a loose one does."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def alpha_on_ramp(
 
 
 def alpha_after_turn(alpha0_rad: ArrayLike, s_mm: ArrayLike, lag_mm: ArrayLike) -> np.ndarray:
-    """Angle after a straight move at one depth, whatever the turn: section 2.2 where it is beyond 90 degrees, then (7).
+    """Return the angle after a straight move at one depth: section 2.2 where the turn is beyond 90 degrees, then (7).
 
     A brush pushed rather than pulled goes loose: the patch rests for s* = -2 r cos(alpha0) while the handle passes it,
     and is dragged from there on, alpha then being 180 degrees - alpha0 on the same side.
@@ -77,7 +77,7 @@ def alpha_after_turn(alpha0_rad: ArrayLike, s_mm: ArrayLike, lag_mm: ArrayLike) 
 
 
 def contact_offset(alpha_rad: ArrayLike, lag_mm: ArrayLike) -> np.ndarray:
-    """Where the patch's centre of friction lies as seen from the handle, (5) and (6).
+    """Return the patch's centre of friction as seen from the handle, (5) and (6).
 
         (Delta x, Delta y) = (-r cos(alpha), -r sin(alpha))
 
@@ -92,7 +92,7 @@ def contact_offset(alpha_rad: ArrayLike, lag_mm: ArrayLike) -> np.ndarray:
 
 
 def tip_offset(alpha_rad: ArrayLike, lag_mm: ArrayLike, tip_gap_mm: ArrayLike) -> np.ndarray:
-    """Where the brush's tip lies as seen from the handle, (15) and (16): contact_offset with r + b in place of r.
+    """Return the brush's tip as seen from the handle, (15) and (16): contact_offset with r + b in place of r.
 
     alpha_rad, lag_mm, tip_gap_mm: (...). Returns mm, (..., 2).
 
@@ -125,7 +125,7 @@ def follow(
 
     tcp_mm: (n, 2), n >= 1, places of the handle in the frame of the paper. depth_mm: (n,) or one for all, linear
     between them, in [0, 1000]. law: the lag, a Profile (brush.lag) or a number [mm]. contact_mm: (2,), where the
-    patch lies at first, no farther than the lag; None: the brush is set down there. The print tells loose from taut
+    patch is at first, no farther than the lag; None: the brush is set down there. The print separates loose from taut
     by an epsilon of 0.01 mm, which fine steps never reach; here the moments are roots.
 
     Raises Error for other shapes and numbers, and a lag that is negative, or 0 in part, at the depths passed.

@@ -33,7 +33,7 @@ class Curve:
 def curves(entity, tolerance: float) -> list[Curve] | None:
     """The lines of an entity, of a FILLED one its outlines; [] if it has no geometry, None if it is not read.
 
-    tolerance: in drawing units. Raises whatever ezdxf raises where the entity is broken.
+    tolerance: in drawing units. Raises the errors of ezdxf if the entity is broken.
     """
     draw = _DRAWN.get(entity.dxftype())
     return None if draw is None else draw(entity, tolerance)

@@ -64,7 +64,7 @@ class _Place:
         return float(np.linalg.norm(self.mm_from_block[:3, :3], 2))
 
     def widths_mm(self, line: Curve, normal) -> np.ndarray:
-        """Of a polyline in the plane of its normal, across the line as it lies on paper: blocks can be squeezed."""
+        """Return the vector across the line on paper, from the plane of a polyline's normal: blocks can be squeezed."""
         mean = math.sqrt(abs(float(np.linalg.det(self.mm_from_block[:2, :2]))))
         along = line.cubics[:, (1, 3)] - line.cubics[:, (0, 2)]  # at the start and end of each
         along /= np.linalg.norm(along, axis=2, keepdims=True)
@@ -106,7 +106,7 @@ class Walk:
         self.notices: list[Notice] = []
         self._counts: Counter[tuple[str, str, str | None, str]] = Counter()
         self._known: dict[tuple[str | None, float], list[Curve] | None] = {}
-        self._told: set[tuple[str, str]] = set()
+        self._reported: set[tuple[str, str]] = set()
         self._entities = self._cubics = 0
 
     def run(self) -> None:
@@ -153,7 +153,7 @@ class Walk:
                 raise
             except NoFontError:
                 self._leave_out(kind, _TEXT_ADVICE, layer, code="text-unread")
-            except Exception as problem:  # whatever ezdxf meets in numbers that anyone may have written
+            except Exception as problem:  # ezdxf raises anything on arbitrary numbers
                 self._note(
                     name,
                     f"it is damaged ({reason(problem)}): left out",
@@ -311,13 +311,11 @@ class Walk:
                 self._note(
                     name, "its gradient is not read: it counts as filled", pen.layer, code="paint-unread"
                 )
-        self._tell_what_is_not_painted(
-            entity, kind, name, pen, bool(fill_rule) or found[0].widths is not None
-        )
+        self._report_unpainted(entity, kind, name, pen, bool(fill_rule) or found[0].widths is not None)
         joinable = kind in _JOINABLE and len(found) == 1 and not found[0].closed
         self.pieces.append(Piece(name, place.name, filling, tuple(found), fill_rule, joinable))
 
-    def _tell_what_is_not_painted(self, entity, kind: str, name: str, pen: Pen, filled: bool) -> None:
+    def _report_unpainted(self, entity, kind: str, name: str, pen: Pen, filled: bool) -> None:
         header, dxf = self.document.header, entity.dxf
         if pen.see_through:
             self._note(name, "it is see-through: it counts as opaque", pen.layer, code="opacity-unread")
@@ -333,8 +331,8 @@ class Walk:
             )
 
     def _once(self, where: str, sentence: str) -> None:
-        if (where, sentence) not in self._told:
-            self._told.add((where, sentence))
+        if (where, sentence) not in self._reported:
+            self._reported.add((where, sentence))
             self._note(where, sentence, None, code="shown-otherwise")
 
     def _leave_out(

@@ -60,7 +60,7 @@ with _empty_home():
     import ezdxf.tools.text_layout
     import ezdxf.xclip
 
-# What it logs is told as notices; without a handler the standard library would print it.
+# Its log becomes notices; without a handler the standard library would print it.
 logging.getLogger("ezdxf").addHandler(logging.NullHandler())
 
 __all__ = ["ezdxf"]

@@ -37,7 +37,7 @@ class _Auditor(ezdxf.audit.Auditor):
             self.fixes.pop()
 
     def repairs(self) -> list[Notice]:
-        """A notice for each repair that may change what is painted; those of one kind are told as one."""
+        """Return a notice for each repair that may change the painting; repairs of one kind share a notice."""
         return [
             Notice(
                 str(fix.entity or "file"),
@@ -65,7 +65,7 @@ def open_dxf(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
         auditor.run()
     except ezdxf.DXFError as problem:
         raise Error(f"the DXF is damaged beyond repair: {reason(problem)}", code="dxf-damaged") from None
-    except Exception:  # whatever ezdxf meets in bytes that anyone may have written
+    except Exception:  # ezdxf raises anything on arbitrary bytes
         raise Error("the DXF is damaged beyond repair, or cut short", code="dxf-damaged") from None
     problems = _some([("file", error.message) for error in auditor.errors], damaged=False)
     return document, notices + problems + auditor.repairs()
@@ -84,7 +84,7 @@ def _text(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
     try:
         document, recovered = _loaded(data, entities)
         bad_numbers = any(code == _NUMBER for code, _ in recovered.errors)
-    except Exception:  # as above; entity by entity it is told what is wrong
+    except Exception:  # as above; the walk reports the problem entity by entity
         bad_numbers = True
     if bad_numbers:
         entities = Entities(is_strict=True)
@@ -134,8 +134,8 @@ def shown(text: str, most: int = 120) -> str:
     return text if len(text) <= most else text[: most - 3] + "..."
 
 
-def _some(told: list[tuple[str, str]], damaged: bool) -> list[Notice]:
-    kept = [(where, shown(sentence).rstrip(".")) for where, sentence in told[:_MOST_NOTICES]]
-    if more := len(told) - len(kept):
+def _some(reported: list[tuple[str, str]], damaged: bool) -> list[Notice]:
+    kept = [(where, shown(sentence).rstrip(".")) for where, sentence in reported[:_MOST_NOTICES]]
+    if more := len(reported) - len(kept):
         kept.append(("file", f"and {more} more such problems"))
     return [Notice(where, sentence, damaged, code="dxf-repaired", about=sentence) for where, sentence in kept]

@@ -1,4 +1,5 @@
-"""Fonts of this machine for the text of a DXF: files found by name, only those opened that a text asks for."""
+"""Find fonts of this machine for the text of a DXF: files are found by their names, and opened only when a text needs
+them."""
 
 from __future__ import annotations
 
@@ -31,7 +32,7 @@ class NoFontError(Exception):
 
 @dataclass(frozen=True)
 class Font:
-    """name: for people; path: of its file; why: it stands for another one, "" if it is what was asked for."""
+    """name: for people; path: of its file; why: it replaces another one, "" if it is the requested font."""
 
     name: str
     path: Path
@@ -125,7 +126,7 @@ def _usable(path: Path) -> Font | None:
         names = font.glyph_cache.font["name"]
         name = names.getBestFullName() or names.getBestFamilyName() or path.stem
         return Font(shown(name, 40), path)
-    except Exception:  # whatever fontTools meets in a file that is no font
+    except Exception:  # fontTools raises anything on a file that is no font
         return None
 
 

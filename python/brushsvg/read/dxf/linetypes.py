@@ -25,7 +25,7 @@ class Dashes:
         self._left = _MOST_DASHES
 
     def cut(self, element: Element, pen: Pen, anew: list[np.ndarray]) -> Element:
-        """The element with each dash a sub-path. anew: for each sub-path the cubics with which, beside the first, the
+        """The element with each dash a sub-path. anew: for each sub-path the cubics with which, next to the first, the
         pattern begins. Error if there are too many."""
         if pen.line_type is None or element.fill_rule:
             return element

@@ -1,4 +1,4 @@
-"""Where a DXF's lines lie on the sheet: model space has no page, and may be measured from anywhere on earth."""
+"""Place a DXF's lines on the sheet: model space has no page, and its origin can be anywhere on earth."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ MARGIN_MM = 20.0
 
 
 def anchored(pieces: list[Piece]) -> list[Piece]:
-    """The pieces, moved to the origin if most of them lie beyond 1e6 mm from it, as in the coordinates of maps."""
+    """Return the pieces, moved to the origin if most of them are beyond 1e6 mm from it, as in the coordinates of
+    maps."""
     if not pieces:
         return pieces
     starts = np.array([piece.curves[0].cubics[0, 0, :2] for piece in pieces])
@@ -30,13 +31,13 @@ def anchored(pieces: list[Piece]) -> list[Piece]:
 
 
 def in_range(pieces: list[Piece]) -> tuple[list[Piece], list[Notice]]:
-    """Those within 1e6 mm, and what is to be told of the others."""
+    """Return the pieces within 1e6 mm, and the notices about the others."""
     kept, notices = [], []
     for piece in pieces:
         if all(np.abs(curve.cubics).max() <= LARGEST_MM for curve in piece.curves):
             kept.append(piece)
         else:
-            sentence = "its geometry lies beyond 1e6 mm: left out"
+            sentence = "its geometry is beyond 1e6 mm: left out"
             notices.append(
                 Notice(piece.id, sentence, damaged=True, layer=piece.pen.layer, code="geometry-out-of-range")
             )

@@ -21,7 +21,8 @@ def joined(cubics: np.ndarray) -> np.ndarray:
 
 
 def interpolated(fit_points, tangents, tolerance: float) -> list[np.ndarray]:
-    """Cubics (n, 4, 3) through fit points as CAD programs lay them; tangents: at the start and end, or None."""
+    """Return cubics (n, 4, 3) through fit points, as CAD programs draw them; tangents: at the start and end, or
+    None."""
     if len(fit_points) > _MOST_FIT_POINTS:
         raise ValueError(f"{len(fit_points)} fit points without control points, {_MOST_FIT_POINTS} are read")
     places = [tuple(point) for point in fit_points]

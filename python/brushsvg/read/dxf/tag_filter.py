@@ -110,7 +110,7 @@ def _fault(whole: list[list[Tag]]) -> str:
             ezdxf.entities.factory.load(
                 ezdxf.lldxf.extendedtags.ExtendedTags(ezdxf.lldxf.tags.Tags(list(tags)[:-1]))
             )
-        except Exception as problem:  # whatever ezdxf meets in bytes that anyone may have written
+        except Exception as problem:  # ezdxf raises anything on arbitrary bytes
             return str(problem).rstrip(".")
     return ""
 

@@ -30,7 +30,7 @@ _STROKES = re.compile(r"(?<!%)%%[kou]", re.IGNORECASE)  # lines along TEXT
 
 
 class Letters:
-    """notices: what fonts the text so far was drawn in, once its outlines or parts were asked for."""
+    """notices: the fonts of the text so far, once its outlines or parts were requested."""
 
     def __init__(self, document: ezdxf.document.Drawing):
         self._document = document

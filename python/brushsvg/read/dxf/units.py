@@ -37,13 +37,13 @@ _UNITS = {
     24: ("US survey miles", 5280 * _SURVEY_FOOT_MM),
 }
 _LARGE_MM = 5000.0  # no brush paints so far
-_ASKED_FOR = {"mm": _UNITS[4], "in": _UNITS[1]}
+_REQUESTED = {"mm": _UNITS[4], "in": _UNITS[1]}
 
 
-def unit_of(document, asked_for: str | None) -> tuple[float, list[Notice]]:
-    """Of the drawing, or as asked for. Error where neither says a unit."""
+def unit_of(document, requested: str | None) -> tuple[float, list[Notice]]:
+    """Return the unit of the drawing, or the requested one. Error where neither says a unit."""
     name, drawn = _UNITS.get(document.header.get("$INSUNITS", 0), ("", None))
-    if asked_for is None:
+    if requested is None:
         if drawn is None:
             raise Error(
                 "the drawing does not say its unit: give --units mm or --units in",
@@ -51,13 +51,13 @@ def unit_of(document, asked_for: str | None) -> tuple[float, list[Notice]]:
                 code="unit-unknown",
             )
         return drawn, []
-    wanted_name, wanted = _ASKED_FOR[asked_for]
-    if drawn is None or drawn == wanted:
-        return wanted, []
-    return wanted, [
+    unit_name, unit_mm = _REQUESTED[requested]
+    if drawn is None or drawn == unit_mm:
+        return unit_mm, []
+    return unit_mm, [
         Notice(
             "$INSUNITS",
-            f"the drawing is in {name}; read in {wanted_name}, as asked for",
+            f"the drawing is in {name}; read in {unit_name}, as requested",
             code="unit-overruled",
         )
     ]

@@ -95,14 +95,14 @@ def _goes_on(chain: list[Way], way: Way) -> bool:
 
 
 def _without_dips(chains: list, said: dict[int, str], options: ReadOptions) -> tuple[list, list[Notice]]:
-    """The lines that draw, with a notice for those that fetch paint and for those that were asked to be left out."""
+    """Return the lines that draw, with a notice for those that fetch paint and for those left out on request."""
     strokes = [(chain[0].line, np.concatenate([way.points_mm[:, :2] for way in chain])) for chain in chains]
-    asked = [_is_skipped(line, points, said, options) for line, points in strokes]
+    skipped = [_is_skipped(line, points, said, options) for line, points in strokes]
     notices = []
-    if any(asked):
-        sentence = f"left out by region or comment: {sum(asked)} of {len(asked)} strokes"
+    if any(skipped):
+        sentence = f"left out by region or comment: {sum(skipped)} of {len(skipped)} strokes"
         notices.append(Notice("skip", sentence, code="strokes-skipped"))
-    left = [(chain, stroke) for chain, stroke, gone in zip(chains, strokes, asked, strict=True) if not gone]
+    left = [(chain, stroke) for chain, stroke, gone in zip(chains, strokes, skipped, strict=True) if not gone]
     if options.skip_comments or options.skip_regions_mm:  # who chooses what is left out chooses the rest, too
         return [chain for chain, _ in left], notices
     are_dips, how = dips([stroke for _, stroke in left], said)

@@ -87,8 +87,8 @@ def _at_pots(strokes: list[np.ndarray]) -> list[bool]:
     points = shapely.points(places)
     tree, visits, coats = shapely.STRtree(points), np.zeros(len(places)), np.zeros(len(places))
     for first in range(0, len(places), AT_ONCE):
-        asked, found = tree.query(points[first : first + AT_ONCE], predicate="dwithin", distance=PLACE_MM)
-        np.add.at(visits, first + asked, there[found])
-        np.add.at(coats, first + asked, followed[found])
+        queried, found = tree.query(points[first : first + AT_ONCE], predicate="dwithin", distance=PLACE_MM)
+        np.add.at(visits, first + queried, there[found])
+        np.add.at(coats, first + queried, followed[found])
     is_pot = ((visits >= LEAST_VISITS) & (coats == 0))[of]
     return _outside(strokes, is_pot.tolist())

@@ -23,8 +23,8 @@ MOST_LEVELS = 200  # distinct heights that are tried as the lowest one of travel
 @dataclass(frozen=True)
 class Pen:
     """down: for each way whether the pen is on the paper all along it. kind: "z" or "servo". how: in words, for people.
-    share: length of what is drawn, of all that may be meant to be. notices: what to look at. is_inverted: by a Z that
-    counts downwards."""
+    share: length of the drawn ways over that of all ways that may be drawn. notices: what to look at. is_inverted: by a
+    Z that counts downwards."""
 
     down: tuple[bool, ...]
     kind: str
@@ -42,7 +42,7 @@ def read_pen(some: list[Way], kind: str | None = None, paper_z_mm: float | None 
     downwards where that is clearly shown, see _as_travel. A servo is up at the value of rapid ways, behind M5, and at
     the value that is set first.
 
-    Error where nothing tells, or where what was asked for does not move.
+    Error where nothing shows it, or where the requested axis does not move.
     """
     # grbl's laser is dark on rapid ways
     some = [replace(way, power=None) if way.rapid and way.by_laser else way for way in some]
@@ -221,7 +221,7 @@ def _by_servo(some: list[Way], across: list[bool]) -> tuple[list[bool], str]:
 
 
 def _share(some: list[Way], across: list[bool], down: list[bool]) -> float:
-    """Length of what is drawn, as a share of that and of what may be meant to be: ways by G1, G2 and G3 that are read
+    """Return the drawn length over that of all ways that may be drawn: ways by G1, G2 and G3 that are read
     as travel and do not look like it, for the pen is not lifted before them or they go on for long."""
     lengths = [length(way.points_mm[:, :2]) for way in some]
     drawn = doubtful = 0.0

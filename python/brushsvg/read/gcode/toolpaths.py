@@ -39,7 +39,7 @@ class Way:
     rapid: bool
     speed_mm_s: float
     power: float | None
-    unit_told: bool
+    unit_known: bool
     centre_mm: tuple[float, float] | None = None
     turn: int = 0
     by_angle: int = 0
@@ -79,7 +79,7 @@ class _Reader:
         self.ways: list[Way] = []
         self.at = np.full(3, np.nan)  # where the tool is before, nobody knows
         self.shift = np.zeros(3)
-        self.mm, self.unit_told = 1.0, False
+        self.mm, self.unit_known = 1.0, False
         self.absolute, self.absolute_centres = True, False
         self.motion, self.feed_mm_s = None, 0.0
         self.power, self.on, self.by_angle, self.ended = 0.0, False, 0, False
@@ -147,7 +147,7 @@ class _Reader:
         """Where a pen goes down and up again without a move."""
         if power is not None and len(self.ways) == self.ways_before and np.isfinite(self.at[:2]).all():
             here = np.array([self.at, self.at])
-            dot = Way(number, here, False, self.feed_mm_s, power, self.unit_told, by_angle=self.by_angle)
+            dot = Way(number, here, False, self.feed_mm_s, power, self.unit_known, by_angle=self.by_angle)
             self.ways.append(dot)
         self.ways_before = len(self.ways)
 
@@ -155,7 +155,7 @@ class _Reader:
         if letter == "G" and code in (0, 1, 2, 3):
             self.motion = int(code)
         elif letter == "G" and code in (20, 21):
-            self.mm, self.unit_told = 25.4 if code == 20 else 1.0, True
+            self.mm, self.unit_known = 25.4 if code == 20 else 1.0, True
         elif letter == "G" and code in (90, 91):
             self.absolute = code == 90
         elif letter == "G" and code in (90.1, 91.1):
@@ -188,15 +188,15 @@ class _Reader:
         start, end = self.at.copy(), self.at.copy()
         for k, axis in enumerate("XYZ"):
             if axis in values:
-                told = values[axis] * self.mm
+                given_mm = values[axis] * self.mm
                 if not self.absolute and math.isnan(self.at[k]):
                     self.at[k] = start[k] = 0.0  # what begins relative begins at its zero
-                end[k] = told + self.shift[k] if self.absolute else self.at[k] + told
+                end[k] = given_mm + self.shift[k] if self.absolute else self.at[k] + given_mm
         if np.abs(np.nan_to_num(end)).max() > LARGEST_MM:
             raise _too_far(number, line)
         straight = np.array([start, end])
         rapid, by_angle = self.motion == 0, self.by_angle
-        way = Way(number, straight, rapid, self.feed_mm_s, self.pen(), self.unit_told, by_angle=by_angle)
+        way = Way(number, straight, rapid, self.feed_mm_s, self.pen(), self.unit_known, by_angle=by_angle)
         way = replace(way, by_laser=self.by_laser)
         if self.motion in (2, 3):
             way = self._circle(number, line, way, values)
@@ -219,8 +219,8 @@ class _Reader:
             high = math.sqrt(max(radius**2 - chord**2 / 4, 0.0)) * turn * (1 if radius > 0 else -1)
             centre = start[:2] + half + high * np.array([-half[1], half[0]]) * 2 / chord
         elif {"I", "J"} & set(values):
-            told = np.array([values.get("I", 0.0), values.get("J", 0.0)]) * self.mm
-            centre = told + self.shift[:2] if self.absolute_centres else start[:2] + told
+            offset_mm = np.array([values.get("I", 0.0), values.get("J", 0.0)]) * self.mm
+            centre = offset_mm + self.shift[:2] if self.absolute_centres else start[:2] + offset_mm
         else:
             raise Error(f"line {number}: {line.strip()[:40]!r} is no circle", code="line-incomplete")
         if not np.abs(centre).max() <= LARGEST_MM:

@@ -38,8 +38,9 @@ def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
 
 
 def settings_of(data: bytes, alone: bool = False) -> dict:
-    """What the root says of the whole job; {} for a file that is not sound, of which read_svg tells what is wrong.
-    alone: nobody asks read_svg, so that is told here."""
+    """Return the root's settings for the whole job; {} for a damaged file, which read_svg reports.
+
+    alone: read_svg is not called, so the problems are reported here."""
     is_plain = not data.startswith((b"\x1f\x8b", b"\xff\xfe", b"\xfe\xff"))  # neither compressed nor UTF-16
     if is_plain and PREFIX.encode() not in data and not alone:
         return {}
@@ -81,13 +82,13 @@ def _read(document: Document, options: ReadOptions) -> Design:
 
 
 def _outside_the_tree(document: Document, root: ET.Element, page: Page) -> list[Notice]:
-    """What is to be told of what stands beside the tree."""
+    """Return the notices about text next to the tree."""
     notices = []
     if "xml-stylesheet" in document.instructions:
         sentence = "CSS in another file is not read: what it says is missing"
         notices.append(Notice("xml-stylesheet", sentence, code="css-unread"))
     if page.in_px and (found := _other_pixels(document, root)):
-        own = page if root.get("viewBox") is None else read_page(root.attrib)  # whatever sheet is asked for
+        own = page if root.get("viewBox") is None else read_page(root.attrib)  # for any requested sheet
         notices.append(_probable_size(*found, own.sheet_mm, root.get("viewBox") is not None))
     return notices
 

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class Context(NamedTuple):
     """viewport: (w, h) in user units; clip: the region on paper that clip paths and
     nested viewports show, None for all; prefix: ids of the
-    uses that led here; copied: what the innermost of them copies; size: width and height that it asks of a symbol or
-    svg right below it.
+    uses that enclose it; copied: the element that the innermost copies; size: width and height that it gives a symbol
+    or svg right below it.
     """
 
     matrix: Matrix
@@ -43,7 +43,7 @@ class Context(NamedTuple):
 
     @property
     def is_of_screen(self) -> bool:
-        """Whether widths and dashes count in px of the screen, whatever the transforms."""
+        """Return whether widths and dashes count in px of the screen, under any transforms."""
         return self.style.own["vector-effect"] == "non-scaling-stroke"
 
     def length(self, text: str, percent_of: float) -> float:
@@ -51,7 +51,7 @@ class Context(NamedTuple):
         return length_px(text, percent_of, self.em_px)
 
     def name(self, node: ET.Element) -> str:
-        """What an element is called through the uses that led to it, "" without an id."""
+        """Return the name of an element through the uses that copy it, "" without an id."""
         return "/".join(filter(None, (self.prefix, one_line(node.get("id", "")))))
 
 
@@ -76,8 +76,10 @@ class Notes:
     ) -> None:
         """Say something of an element that is to be painted; of any other there is nothing to say."""
         if context.chosen or node is self.root:
-            told = one_line(sentence)
-            self.notices.append(Notice(self.label(node), told, damaged, context.layer, code, about, advice))
+            in_one_line = one_line(sentence)
+            self.notices.append(
+                Notice(self.label(node), in_one_line, damaged, context.layer, code, about, advice)
+            )
 
     def label(self, node: ET.Element) -> str:
         """An element's id, or which one of its kind it is: "rect 3"."""

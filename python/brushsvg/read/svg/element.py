@@ -33,7 +33,7 @@ _MOST_DATA = 10_000_000  # characters of path data
 
 
 class Painted:
-    """elements: those of the drawing in the order painted. bent: what lies in path effects of groups."""
+    """elements: those of the drawing in the order painted. bent: elements in path effects of groups."""
 
     def __init__(self, by_id: dict[str, ET.Element], notes: Notes, paints: Paints, bent: set[ET.Element]):
         self.elements: list[Element] = []
@@ -50,7 +50,7 @@ class Painted:
         stroke, of_stroke = self.paints.of(properties, "stroke")
         fill, of_fill = self.paints.of(properties, "fill") if tag != "line" else ("none", [])
         attributes = {**node.attrib, **context.style.geometry} if context.style.geometry else node.attrib
-        power, told = drawn_line(node, self.by_id, node in self.bent) if tag == "path" else (None, [])
+        power, unread = drawn_line(node, self.by_id, node in self.bent) if tag == "path" else (None, [])
         greatest, least = scales(context.matrix)
         if least <= 1e-12 * greatest:
             self.notes.add(
@@ -88,7 +88,7 @@ class Painted:
         if stroke != "none" and greatest > _UNEVEN * least and not is_even:
             sentence = f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
             self.notes.add(node, context, sentence, code="stretched-unevenly")
-        for each in told + of_fill * (fill != "none") + of_stroke * (stroke != "none"):
+        for each in unread + of_fill * (fill != "none") + of_stroke * (stroke != "none"):
             self.notes.add(node, context, each.sentence, code=each.code, about=each.about)
         if any(is_light(colour) for colour in (fill, stroke) if colour.startswith("#")):
             sentence = (
@@ -96,7 +96,7 @@ class Painted:
                 'too; data-brushsvg-skip="yes" on it leaves it out'
             )
             self.notes.add(node, context, sentence, code="white-paint")
-        # a fill that nobody chose is black, and hardly ever meant next to a stroke of another colour
+        # a black fill that nobody chose is rarely intended next to a stroke of another colour
         is_two = properties["fill"] and "none" not in (fill, stroke) and fill != stroke
         if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
             self.notes.add(node, context, "markers are not read: left out", code="markers-unread")
@@ -130,8 +130,8 @@ class Painted:
         return found
 
     def _why_unpainted(self, properties: dict[str, str], tag: str, width_mm: float) -> str:
-        """What of a stroke or fill that the drawing does ask for is the cause."""
-        asked = [
+        """Return the reason why a stroke or fill of the drawing paints nothing."""
+        kinds = [
             name
             for name in ("stroke", "fill")
             if properties[name] != "none" and (name, tag) != ("fill", "line")
@@ -140,7 +140,7 @@ class Painted:
             "its stroke-width is 0"
             if name == "stroke" and width_mm == 0
             else self.paints.why_none(properties, name)
-            for name in asked
+            for name in kinds
         ]
         return " and ".join(causes) or "it has neither stroke nor fill"
 
@@ -158,16 +158,16 @@ class Painted:
         (x, y), (width, height) = points.min(axis=0).tolist(), np.ptp(points, axis=0).tolist()
         return x, y, width, height
 
-    def _named(self, node: ET.Element, context: Context, told: int) -> str:
-        """A painted element's name; what was told about one without an id is told about its name as well."""
+    def _named(self, node: ET.Element, context: Context, first: int) -> str:
+        """Return a painted element's name; notices about one without an id are renamed as well."""
         if name := context.name(node):
             return name
         self.nameless += 1
         name = f"stroke{self.nameless}"
         notices = self.notes.notices
-        if len(notices) > told:
+        if len(notices) > first:
             label = f"{name} ({self.notes.label(node)})"
-            notices[told:] = [replace(notice, where=label) for notice in notices[told:]]
+            notices[first:] = [replace(notice, where=label) for notice in notices[first:]]
         return name
 
     def _outline(
@@ -278,6 +278,6 @@ def _encloses(subpaths: tuple[SubPath, ...], width_mm: float) -> bool:
 def _beyond(attributes, tag: str, place: int) -> str:
     name = {"path": "d", "polyline": "points", "polygon": "points"}.get(tag)
     if name is None:
-        return "its geometry lies beyond 1e6 mm: left out"
+        return "its geometry is beyond 1e6 mm: left out"
     found = shapes.snippet(attributes[name], place)
     return f"{name} leads beyond 1e6 mm at character {place + 1}: found {found}; read up to there"

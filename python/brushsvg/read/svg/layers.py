@@ -1,7 +1,7 @@
 """Which groups of an SVG file are layers, and what they are called, by the habits of the programs that write them.
 
 Inkscape marks layers. Elsewhere they are the outermost groups with a name: an id, in which Illustrator and CorelDRAW
-escape what an id cannot hold, or, beside it, Affinity's serif:id or Illustrator's data-name. Where such a group holds
+escape what an id cannot hold, or, next to it, Affinity's serif:id or Illustrator's data-name. Where such a group holds
 the whole drawing, as a page or an artboard does, the groups in it are layers, too.
 """
 
@@ -18,11 +18,11 @@ _SERIF = "{http://www.serif.com/}"
 _ESCAPE = re.compile("_x([0-9A-Fa-f]{2,6})_")
 _AROUND = frozenset(("svg", "switch", "a"))  # what stands around layers without being one
 _DEEPEST = 100  # layers in layers with names of their own: nobody clicks deeper
-_BESIDE = frozenset("title desc metadata defs style script foreignObject namedview".split())
+_NOT_DRAWN = frozenset("title desc metadata defs style script foreignObject namedview".split())
 
 
 def layer_names(root: ET.Element) -> dict[ET.Element, str]:
-    """The name of each group that is a layer, with those of the layers it lies in: "Ink/Fine"."""
+    """Return the name of each group that is a layer, with those of the layers around it: "Ink/Fine"."""
     own = {
         node: one_line(node.get(INKSCAPE + "label") or node.get("id", ""))
         for node in root.iter()
@@ -64,7 +64,7 @@ def _by_convention(root: ET.Element) -> dict[ET.Element, str]:
 
 
 def _outermost(parent: ET.Element) -> Iterator[tuple[ET.Element, str]]:
-    """Groups with a name and, with "", whatever else is painted, as far in as there is no group with a name."""
+    """Return the outermost named groups and, with "", everything painted outside of them."""
     waiting = [iter(parent)]
     while waiting:
         node = next(waiting[-1], None)
@@ -74,7 +74,7 @@ def _outermost(parent: ET.Element) -> Iterator[tuple[ET.Element, str]]:
             yield node, name
         elif local(node) in _AROUND or local(node) == "g":
             waiting.append(iter(node))
-        elif local(node) not in _BESIDE:
+        elif local(node) not in _NOT_DRAWN:
             yield node, ""
 
 

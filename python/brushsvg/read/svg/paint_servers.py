@@ -29,19 +29,19 @@ class Paints:
         ] = {}  # thousands of shapes share a long gradient
 
     def of(self, properties: dict[str, str], name: str) -> tuple[str, list[Notice]]:
-        """What "stroke" or "fill" paints with: "#rrggbb" or "none", and what of it is not read."""
+        """Return the paint of "stroke" or "fill", "#rrggbb" or "none", and the notices about unread parts."""
         key = properties[name] or "#000000", name
         if key not in self._known:
             self._known[key] = self._colour(*key)
-        colour, told = self._known[key]
-        told = [*told]
+        colour, notices = self._known[key]
+        notices = [*notices]
         colour = properties["color"] if colour == "currentcolor" else colour
         opacity = float(properties[f"{name}-opacity"])
         alpha = int(colour[7:], 16) / 255 if len(colour) == 9 else 1.0
         if colour == "none" or alpha * opacity < UNSEEN:
             return "none", []
         if alpha < 1:
-            told.append(
+            notices.append(
                 Notice(
                     "",
                     f"the {name}'s colour has an opacity of {alpha:.2g}: it counts as 1",
@@ -49,11 +49,11 @@ class Paints:
                 )
             )
         if opacity < 1:
-            told.append(Notice("", f"{name}-opacity is not read: it counts as 1", code="opacity-unread"))
-        return colour[:7], told
+            notices.append(Notice("", f"{name}-opacity is not read: it counts as 1", code="opacity-unread"))
+        return colour[:7], notices
 
     def why_none(self, properties: dict[str, str], name: str) -> str:
-        """Why a stroke or fill that is asked for paints nothing."""
+        """Return why a stroke or fill of the drawing paints nothing."""
         found = URL.match(properties[name])
         if found and self._colour(properties[name], name)[0] == "none":
             return f"the {name}'s paint {found[1].strip()[:40]} is nowhere in the drawing or paints nothing"

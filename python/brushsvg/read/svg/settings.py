@@ -13,7 +13,7 @@ PREFIX = "data-brushsvg-"
 
 
 def own_settings(attributes: dict[str, str], is_root: bool = False) -> tuple[dict, list[str]]:
-    """Settings that an element says itself, as docs/reference/drawings.md lists them, and what of them is not valid."""
+    """Return the settings of an element, as docs/reference/drawings.md lists them, and notices about invalid ones."""
     settings, problems = _read(attributes, _KNOWN | _OF_THE_DOCUMENT if is_root else _KNOWN)
     of_job = _OF_THE_DOCUMENT.keys() | (_OF_JOB_ON_ROOT if is_root else set())
     return {key: value for key, value in settings.items() if key not in of_job}, problems

@@ -35,7 +35,7 @@ _TEXT_ADVICE = (
     "inkscape --export-text-to-path --export-plain-svg -o out.svg in.svg"
 )
 _ELSEWHERE = (
-    "a selector asks for what lies around it where it is copied from, as Inkscape shows the copy, and browsers do not: "
+    "a selector depends on the elements around the original, as Inkscape shows the copy, and browsers do not: "
     "read as browsers do"
 )
 _TRANSFORMS = frozenset(("transform", "translate", "rotate", "scale"))
@@ -312,7 +312,7 @@ class Walk:
             self.notes.add(node, context, sentence, code="use-of-nothing")
             return
         if target in self.entered or target is node:
-            sentence = f"it uses {reference[:40]}, in which it lies itself: left out"
+            sentence = f"it uses {reference[:40]}, which contains it: left out"
             self.notes.add(node, context, sentence, damaged=True, code="use-of-itself")
             return
         attributes = {**node.attrib, **context.style.geometry}
@@ -340,7 +340,7 @@ def _matrix_of_use(attributes: dict[str, str], context: Context) -> Matrix:
 
 
 def _within(clip, corners: list[tuple[float, float]]):
-    """What of a region lies within a quadrilateral."""
+    """Return the part of a region within a quadrilateral."""
     import shapely  # loaded for drawings that cut something
 
     window = shapely.Polygon(corners)
@@ -350,7 +350,7 @@ def _within(clip, corners: list[tuple[float, float]]):
 def _why_nothing(reference: str, by_id: dict[str, ET.Element]) -> str:
     if referred(reference.strip(), by_id) is not None:
         return "has blanks around it and so refers to nothing, as in browsers"
-    return "is nowhere in the drawing" if reference.startswith("#") else "lies outside of the drawing"
+    return "is nowhere in the drawing" if reference.startswith("#") else "is outside of the drawing"
 
 
 def _applies(node: ET.Element) -> bool:

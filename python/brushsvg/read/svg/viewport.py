@@ -1,4 +1,4 @@
-"""Where SVG's user units lie on paper: viewport, viewBox and preserveAspectRatio."""
+"""Map SVG's user units to paper: viewport, viewBox and preserveAspectRatio."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ def nested_viewport(
 
     Error if a length or the viewBox makes no sense.
     """
-    asked = dict(zip(("width", "height"), size, strict=True))
+    given = dict(zip(("width", "height"), size, strict=True))
     x, y, width, height = (
         length_px(text if text and text.strip() not in ("", "auto") else default, outer[axis], em_px)
         for text, default, axis in (
             (attributes.get("x"), "0", 0),
             (attributes.get("y"), "0", 1),
-            (asked["width"] or attributes.get("width"), "100%", 0),
-            (asked["height"] or attributes.get("height"), "100%", 1),
+            (given["width"] or attributes.get("width"), "100%", 0),
+            (given["height"] or attributes.get("height"), "100%", 1),
         )
     )
     if not (width > 0 and height > 0):
@@ -68,8 +68,8 @@ def read_page(
 ) -> Page:
     """The page of a root element. A given sheet replaces the drawing's; the upper left corners stay together.
 
-    style: what its CSS says of width and height. Browsers go by it and Inkscape by the attributes: so it counts where
-    these are missing, and where they say something else that is told.
+    style: the width and height of its CSS. Browsers go by it and Inkscape by the attributes: so it counts where
+    these are missing, and a notice reports a difference.
 
     Error if neither the drawing nor the caller says how large it is.
     """

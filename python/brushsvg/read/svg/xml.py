@@ -30,7 +30,7 @@ class Document:
     comments: list[str]
 
 
-# How files begin that are given as drawings, whatever they are called; Illustrator's .ai is a PDF.
+# How files begin that users pass as drawings, under any name; Illustrator's .ai is a PDF.
 _OTHERS = {
     b"%PDF": "a PDF",
     b"%!PS": "a PostScript file",
@@ -42,7 +42,7 @@ _OTHERS = {
 
 
 def parse_xml(data: bytes) -> Document:
-    """The document's tree and what stands beside it.
+    """Return the document's tree and the processing instructions next to it.
 
     Error, with the line where there is one, for what is not XML, reads other files or inflates itself.
     """
@@ -81,9 +81,7 @@ def parse_xml(data: bytes) -> Document:
 
     def entity(name, is_parameter, value, _base, system_id, _public_id, _notation) -> None:
         if system_id is not None:
-            raise Error(
-                f"{line()}: entity {name!r} lies in another file, which is not read", code="xml-entity"
-            )
+            raise Error(f"{line()}: entity {name!r} is in another file, which is not read", code="xml-entity")
         if is_parameter or re.search("&[^#]", value):
             raise Error(
                 f"{line()}: entity {name!r} is built from other entities, which is refused", code="xml-entity"

@@ -39,17 +39,17 @@ def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
     setter = _Setter(unpacked, size_mm)
     placed = tuple(map(setter.place, lines))
     is_filled = not setter.is_of_lines()
-    told: tuple[Notice, ...] = tuple(_choices(unpacked, setter.face))
+    notices: tuple[Notice, ...] = tuple(_choices(unpacked, setter.face))
     if not is_filled:
-        told = Notice("font", _LINES_NOTICE, code="font-of-lines"), *told
+        notices = Notice("font", _LINES_NOTICE, code="font-of-lines"), *notices
         placed = tuple(
             tuple(replace(each, subpaths=as_lines(each.subpaths)) for each in line) for line in placed
         )
-    return Setting(placed, is_filled, tuple(setter.missing), told, tuple(setter.blank))
+    return Setting(placed, is_filled, tuple(setter.missing), notices, tuple(setter.blank))
 
 
 def _choices(data: bytes, face: hb.Face) -> Iterator[Notice]:
-    """What else the font holds, besides what is taken of it."""
+    """Further tables of the font."""
     if data.startswith(b"ttcf") and (count := int.from_bytes(data[8:12], "big")) > 1:
         yield Notice(
             "font",
@@ -110,7 +110,7 @@ class _Setter:
         for info, position in zip(infos, positions, strict=True):
             characters = line[info.cluster : ends[info.cluster]]
             if info.codepoint == 0:
-                inked.add(info.cluster)  # told as missing
+                inked.add(info.cluster)  # reported as missing
                 lacking = [each for each in characters if not self.font.get_nominal_glyph(ord(each))]
                 self.missing.update(dict.fromkeys(lacking or characters))
                 continue
@@ -207,10 +207,8 @@ def _refuse_unmeasured(face: hb.Face) -> None:
         )
     widths = int.from_bytes(hhea[34:36], "big") if len(hhea) >= 36 else 0
     if not 0 < 4 * widths <= len(hmtx):
-        there, asked = min(widths, len(hmtx) // 4), widths or face.glyph_count
-        sentence = (
-            f"this is a damaged font: it has the widths of {there} glyphs, and should have those of {asked}"
-        )
+        there, expected = min(widths, len(hmtx) // 4), widths or face.glyph_count
+        sentence = f"this is a damaged font: it has the widths of {there} glyphs, and should have those of {expected}"
         raise Error(sentence, "hmtx", code="font-damaged")
 
 
@@ -257,7 +255,7 @@ def _unpacked(data: bytes) -> bytes:
         font.save(out, reorderTables=None)
     except Error:
         raise
-    except Exception as error:  # fontTools raises whatever it meets in damaged tables
+    except Exception as error:  # fontTools raises anything on damaged tables
         reason = str(error).splitlines() or [type(error).__name__]
         raise Error(f"this is a damaged WOFF font: {reason[0][:120]}", code="font-damaged") from None
     return out.getvalue()

@@ -1,4 +1,4 @@
-"""Text that is set to an SVG document in mm: where it lies on the sheet, and what is written."""
+"""Set text to an SVG document in mm: its place on the sheet, and its letters."""
 
 from __future__ import annotations
 

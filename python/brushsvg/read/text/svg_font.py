@@ -18,7 +18,7 @@ from .setting import Placed, Setting, is_seen
 _LIGATURE = (
     32  # characters; no script joins more, and each place in the text is tried at every length there is
 )
-_UNITS = (1, 1e6)  # per em: beyond it, numbers of a glyph and of the sheet cannot be told from damage
+_UNITS = (1, 1e6)  # per em: beyond it, numbers of a glyph cannot be distinguished from damage
 _RANGE = re.compile(r"[Uu]\+([0-9A-Fa-f]{0,6})(\?{0,6})(?:-([0-9A-Fa-f]{1,6}))?")
 
 

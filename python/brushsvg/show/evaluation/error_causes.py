@@ -16,6 +16,35 @@ GRAVE = 0.25  # of half the width: a middle that is so far off the line is what 
 EXPLAINS = 0.3  # of what is missing at a place: a width out of reach that leaves less is not why
 POINTED = 0.3  # of its greatest width, a tenth of the way there from its tip: a disc has 0.44, a drop 0.1
 
+LARGER = "use a finer brush, or scale the drawing up"
+REMEDIES = {  # by code, where something helps
+    "wider-than-brush": "use a wider brush, or --wide passes",
+    "thinner-than-brush": "use a finer brush, or draw it wider",
+    "thinner-than-measured": "draw it wider, or calibrate the brush with thinner lines",
+    "one-width": "use another pen, or draw it as wide as this one",
+    "unreached": LARGER,
+    "shape-corner": LARGER,
+    "lag-not-compensated": "leave out --compensation",
+    "coarse-tolerance": "use a smaller --tolerance",
+    "shorter-than-footprint": LARGER,
+    "sharp-corner": LARGER,
+    "stroke-start": "try another --start",
+    "stroke-end": "try another --end",
+    "tighter-than-lag": "try --compensation refined, or scale the drawing up",
+    "tighter-than-width": "draw it thinner there, or bend it less",
+    "steep-width": "let its width change more slowly",
+    "off-middle-line": "use a smaller --tolerance",
+    "wider-on-bends": "try --compensation refined",
+}
+
+
+OF_LINES = ("stroke-start", "stroke-end", "off-middle-line")  # in a shape nobody drew the strokes
+
+
+def remedy(code: str, stroke) -> str:
+    """What helps against a cause, "" where nothing does."""
+    return LARGER if code in OF_LINES and stroke.wanted_mm else REMEDIES.get(code, "")
+
 
 @dataclass(frozen=True)
 class Cause:
@@ -36,9 +65,9 @@ def cause(
     tolerance_mm: float,
     compensation: str = "closed",
 ) -> Cause:
-    """The first of the causes that holds near a place, the gravest first.
+    """Return the gravest cause that holds near a place.
 
-    stroke: as it was wanted; line: its middle, flattened, (n, 4) rows x, y, arc length, half width; place: of the
+    stroke: as it was drawn; line: its middle, flattened, (n, 4) rows x, y, arc length, half width; place: of the
     stroke's verdict, size_mm: side of its square; where: "bare" where no stroke reaches, "rim" where one that is wider
     than the brush would, "corner" where discs of this one's widths do not, else ""; tracking_error: of the pass.
     """
@@ -59,7 +88,7 @@ def cause(
 
 
 class _Here:
-    """A place of a stroke's middle line: at, its row; s_mm, how far along it lies; half_mm, wide there."""
+    """A place of a stroke's middle line: at, its row; s_mm, its arc length; half_mm, the half width there."""
 
     def __init__(self, stroke, line: np.ndarray, brush, at: int, is_missing: bool):
         self.stroke, self.line, self.brush, self.at, self.is_missing = stroke, line, brush, at, is_missing
@@ -72,9 +101,9 @@ def _of_width(here: _Here, area_mm2: float, size_mm: float, where: str) -> Cause
     """What the brush is too wide or too narrow for, or no stroke reaches."""
     half, (least, greatest) = here.half_mm, here.brush.half_width_range_mm()
     finest = max(least, _finest_measured(here.brush))
-    beside_mm2 = (half - greatest) * size_mm  # what a mark too narrow leaves in the square
+    unpainted_mm2 = (half - greatest) * size_mm  # what a mark too narrow leaves in the square
     is_wide = here.is_missing and half > greatest + SLIGHT
-    if is_wide and (where == "rim" or beside_mm2 > EXPLAINS * area_mm2):
+    if is_wide and (where == "rim" or unpainted_mm2 > EXPLAINS * area_mm2):
         words = f"{2 * half:.3g} mm wide there, wider than the brush paints, {2 * greatest:.3g} mm"
         return Cause(words, code="wider-than-brush")
     if where == "bare":
@@ -102,7 +131,7 @@ def _of_one_width(here: _Here) -> Cause | None:
 def _of_compensation(
     here: _Here, off_mm: float, tolerance_mm: float, compensation: str, off: str
 ) -> Cause | None:
-    """What was asked for leads the paint elsewhere."""
+    """Return the cause if the chosen compensation or tolerance displaces the paint."""
     if compensation in ("none", "constant") and off_mm > max(tolerance_mm, GRAVE * here.half_mm):
         is_none = compensation == "none"
         how = "the lag is not compensated" if is_none else "one lag does not fit all of the stroke"

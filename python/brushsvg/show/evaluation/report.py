@@ -1,10 +1,12 @@
-"""How well a plan paints what was drawn, in mm: per stroke and in all, as text and as JSON."""
+"""How well a plan paints what was drawn, in mm: per stroke and in all, as text, JSON and CSV."""
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Protocol
 
 import numpy as np
@@ -12,9 +14,14 @@ import numpy as np
 from ... import _core
 from ...errors import Notice
 from ...geometry.polylines import length
+from ...reporting import report_text
+from ...reporting.report_text import percent, plural, table
+from ...text_summary import summarized
 from ...units import clock
-from .error_causes import cause
-from .uncertainty import PlanConfidence
+from .error_causes import Cause, cause
+from .places import Place, find_places
+from .uncertainty import Confidence, PlanConfidence
+from .verdict import verdict_of
 
 RING_TOLERANCE_MM = 0.01
 SMALL_MM2 = 0.005  # that is no difference worth a word
@@ -24,12 +31,12 @@ _BARE = 0.1  # of that square, what no stroke reaches: less does not make it the
 
 @dataclass(frozen=True)
 class Figures:
-    """Lengths in mm. None: cannot be said, since what was wanted is not known or nothing could be measured.
+    """Lengths in mm. None: the drawing is not known, or nothing could be measured.
 
-    overlap: area of intersection over area of union of predicted and wanted mark.
+    overlap: area of intersection over area of union of predicted and drawn mark.
     centre_*: distance of the widest point from the middle line over taut rows.
-    width_error_mm: mean absolute difference of predicted and wanted width across the middle line.
-    excess_turning: how much more the mark's outline turns than the wanted one's, in full turns; over all, the mean.
+    width_error_mm: mean absolute difference of predicted and drawn width across the middle line.
+    excess_turning: how much more the mark's outline turns than the drawn one's, in full turns; over all, the mean.
     drawn_mm, painted_mm: length of the middle line; of the TCP's path on the paper.
     """
 
@@ -48,8 +55,11 @@ class Figures:
 
 @dataclass(frozen=True)
 class Worst:
-    """Where a stroke's paint differs most from what was drawn: place_mm (x, y); is_missing: wanted but not painted,
-    else painted but not wanted, area_mm2 of it near that place; reason: why, in words; code: see error_causes."""
+    """The place where a stroke's paint differs most from the drawing.
+
+    place_mm: (x, y); is_missing: drawn but not painted, else painted but not drawn; area_mm2: of the difference near
+    that place; reason: why, in words; code: see error_causes.
+    """
 
     place_mm: tuple[float, float]
     is_missing: bool
@@ -69,6 +79,12 @@ class Group:
 
 @dataclass(frozen=True)
 class Report:
+    """Everything that is known of how a plan will look.
+
+    assumed: the properties of the brush that were never measured, in words; places: the worst ones, with the numbers
+    of the overlap picture.
+    """
+
     title: str
     brush: str
     compensation: str
@@ -83,6 +99,13 @@ class Report:
     is_tilted: bool = False  # the brush, somewhere: of that no confidence is known
     groups: tuple[Group, ...] = ()
     advice: str = ""  # on the drawing's size
+    assumed: tuple[str, ...] = ()
+    places: tuple[Place, ...] = ()
+
+    @property
+    def verdict(self) -> str:
+        """One line: "good", "usable, but ..." or "do not use, because ..."."""
+        return verdict_of(self)
 
 
 class Bare(Protocol):
@@ -96,7 +119,7 @@ class Bare(Protocol):
     def is_rim(self) -> bool: ...
 
 
-def wanted_rings(strokes: Iterable[_core.Stroke]) -> list[np.ndarray]:
+def target_rings(strokes: Iterable[_core.Stroke]) -> list[np.ndarray]:
     """Outline of everything that was drawn."""
     return _core.unite([ring for s in strokes for ring in _core.wanted_outline(s, RING_TOLERANCE_MM)])
 
@@ -129,8 +152,8 @@ def measure(
         else _figures(a_pass, stroke, *next(found), brush, tolerance_mm, compensation, unreached)
         for a_pass, stroke in zip(runs, strokes, strict=True)
     )
-    meant = alone if drawn is None else list(drawn)
-    overlap = _core.common_area(traces, meant, brush).overlap if rows else None
+    target = alone if drawn is None else list(drawn)
+    overlap = _core.common_area(traces, target, brush).overlap if rows else None
     return rows, _in_all(rows, overlap)
 
 
@@ -140,17 +163,8 @@ def _figures(
     line = _core.flatten(stroke, RING_TOLERANCE_MM)
     worst, place = None, verdict.worst
     if place.area_mm2 >= SMALL_MM2:
-        size_mm = max(_LEAST_SQUARE_MM, float(np.median(line[:, 3])))
-        here = [
-            piece
-            for piece in unreached
-            if piece.element == stroke.origin.element and _lies_in(place.at_mm, piece.rings, size_mm / 2)
-        ]
-        is_bare = place.is_missing and any(not piece.is_rim for piece in here)
-        is_rim = place.is_missing and bool(here)
-        is_corner = place.is_missing and _beside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
-        where = "bare" if is_bare else "rim" if is_rim else "corner" if is_corner else ""
-        why = cause(stroke, line, brush, place, size_mm, where, tracking_error, tolerance_mm, compensation)
+        size_mm = _square_mm(line)
+        why = _why(stroke, line, brush, place, size_mm, tracking_error, tolerance_mm, compensation, unreached)
         worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why.words, why.code)
     return replace(
         _bare_figures(a_pass),
@@ -165,12 +179,59 @@ def _figures(
     )
 
 
-def _lies_in(place_mm, rings, reach_mm: float) -> bool:
+def worst_places(
+    plan: _core.Plan,
+    marks: _core.Marks,
+    brush: _core.Brush,
+    strokes: Sequence[_core.Stroke] | None = None,
+    tolerance_mm: float = 0.05,
+    drawn: Sequence[_core.Stroke] | None = None,
+    compensation: str = "closed",
+    unreached: Iterable[Bare] = (),
+) -> tuple[Place, ...]:
+    """Where all paint differs most from all that was drawn, the largest first. Arguments: see measure."""
+    pairs = zip(plan.passes, strokes or (), strict=bool(strokes))
+    whole = {stroke.id: (run, stroke) for run, stroke in pairs if stroke is not None}
+
+    def why(name: str, area) -> tuple[Cause, float | None]:
+        if name not in whole:
+            return Cause("", ""), None
+        run, stroke = whole[name]
+        (error,) = _core.tracking_errors_of([run], [stroke], brush, tolerance_mm)
+        line = _core.flatten(stroke, RING_TOLERANCE_MM)
+        size_mm = max(_square_mm(line), area.area_mm2**0.5)
+        found = _why(stroke, line, brush, area, size_mm, error, tolerance_mm, compensation, unreached)
+        is_off = not (stroke.wanted_mm or error.within_tolerance or "tracking error" in found.words)
+        return found, error.largest_mm if is_off else None
+
+    targets = drawn if drawn is not None else [stroke for _, stroke in whole.values()]
+    return find_places(marks, brush, list(targets), why)
+
+
+def _square_mm(line: np.ndarray) -> float:
+    return max(_LEAST_SQUARE_MM, float(np.median(line[:, 3])))
+
+
+def _why(stroke, line, brush, place, size_mm, tracking_error, tolerance_mm, compensation, unreached) -> Cause:
+    """Why paint differs at a place. size_mm: side of the square around it that is looked at."""
+    here = [
+        piece
+        for piece in unreached
+        if piece.element == stroke.origin.element and _is_in(place.at_mm, piece.rings, size_mm / 2)
+    ]
+    is_bare = place.is_missing and any(not piece.is_rim for piece in here)
+    is_rim = place.is_missing and bool(here)
+    is_corner = place.is_missing and _outside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
+    where = "bare" if is_bare else "rim" if is_rim else "corner" if is_corner else ""
+    return cause(stroke, line, brush, place, size_mm, where, tracking_error, tolerance_mm, compensation)
+
+
+def _is_in(place_mm, rings, reach_mm: float) -> bool:
     """Whether a square about a place meets what rings enclose."""
     return _core.area(_core.intersect([_square(place_mm, reach_mm)], rings)) > _BARE * (2 * reach_mm) ** 2
 
 
-def _beside_discs_mm2(stroke, place_mm, size_mm: float) -> float:
+def _outside_discs_mm2(stroke, place_mm, size_mm: float) -> float:
     """What discs of its widths leave of a stroke's shape in a square about a place: there no round brush paints."""
     if not stroke.wanted_mm:
         return 0.0
@@ -190,11 +251,11 @@ def groups(
 ) -> tuple[Group, ...]:
     """Strokes that touch, each letter judged as one. strokes: one per pass, None for a part of one."""
     known = [pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None]
-    traces, wanted = [trace for trace, _ in known], [stroke for _, stroke in known]
-    together = _core.touching(wanted)
-    areas = _core.common_areas(traces, wanted, together, brush)
+    traces, targets = [trace for trace, _ in known], [stroke for _, stroke in known]
+    together = _core.touching(targets)
+    areas = _core.common_areas(traces, targets, together, brush)
     return tuple(
-        Group(tuple(wanted[k].id for k in members), area.overlap)
+        Group(tuple(targets[k].id for k in members), area.overlap)
         for members, area in zip(together, areas, strict=True)
     )
 
@@ -229,7 +290,7 @@ def _in_all(rows: tuple[Figures, ...], overlap: float | None) -> Figures:
 
 def _out_of_reach(stroke, brush) -> int:
     if not brush.width_follows_depth():
-        return 0  # the drawn width is not asked of such a brush
+        return 0  # such a brush cannot vary its width
     least, greatest = brush.half_width_range_mm()
     return sum(not least - 1e-9 <= half_width <= greatest + 1e-9 for _, half_width in stroke.half_width)
 
@@ -273,6 +334,8 @@ def to_json(report: Report) -> str:
                     for group in report.groups
                 ],
                 "advice": report.advice,
+                "verdict": report.verdict,
+                "places": [_rounded(place.as_json()) for place in report.places],
             },
             indent=1,
             ensure_ascii=False,
@@ -281,13 +344,77 @@ def to_json(report: Report) -> str:
     )
 
 
-def as_text(suffix: str, report: Report) -> str:
-    """As JSON for .json, else for people."""
-    return to_json(report) if suffix == ".json" else to_text(report)
+def as_text(kind: str, report: Report, details: bool = False, picture: str = "") -> str:
+    """As JSON for .json, as a table of strokes for .csv, else for people: see to_text."""
+    if kind == ".json":
+        return to_json(report)
+    return to_csv(report) if kind == ".csv" else to_text(report, details, picture)
 
 
-def to_text(report: Report) -> str:
-    """A table of strokes, the sum, the time, the warnings."""
+def to_csv(report: Report) -> str:
+    """One row for each stroke, with the columns of the JSON; empty cells for what is not known."""
+    plain = [each.name for each in fields(Figures) if each.name != "worst"]
+    worst = [each.name for each in fields(Worst) if each.name != "place_mm"]
+    known = [each.name for each in fields(Confidence)] if report.confidence else []
+    out = io.StringIO()
+    rows = csv.writer(out, lineterminator="\n")
+    rows.writerow(
+        [
+            *plain,
+            "worst_x_mm",
+            "worst_y_mm",
+            *(f"worst_{name}" for name in worst),
+            *(f"{name}_95" for name in known),
+        ]
+    )
+    intervals = report.confidence.strokes if report.confidence else [None] * len(report.strokes)
+    for row, interval in zip(report.strokes, intervals, strict=True):
+        at = row.worst.place_mm if row.worst else ("", "")
+        cells = [getattr(row, name) for name in plain]
+        cells += [*at, *(getattr(row.worst, name, "") for name in worst)]
+        rows.writerow([_rounded(cell) for cell in (*cells, *(getattr(interval, name) for name in known))])
+    return out.getvalue()
+
+
+def to_text(report: Report, details: bool = False, picture: str = "") -> str:
+    """At most ten lines: the verdict, the overlap and the time, the worst places, and what was left out.
+
+    details: also tables of the strokes and of those that touch, and every warning. picture: the file that numbers the
+    places, "" for none.
+    """
+    lines = [_sum(report), *(place.line for place in report.places)]
+    if not report.places and report.total.overlap is not None:
+        lines.append("Paint and drawing differ nowhere by more than 0.2 mm.")
+    if report.refused:
+        count = len(report.refused)
+        lines.append(
+            f"Left out: {_listed(report.refused)}"
+            if count == 1
+            else f"Left out: {count}, {_listed(report.refused)}"
+        )
+    if report.warnings:
+        lines.append(f"{plural(len(report.warnings), 'warning')}: {_listed(report.warnings)}")
+    if report.advice and len(lines) + 2 + bool(picture) <= report_text.MOST_LINES:
+        lines.append(report.advice)
+    return report_text.Report(report.verdict, tuple(lines), tuple(_details(report))).text(details, picture)
+
+
+def _sum(report: Report) -> str:
+    name, total = report.title or "untitled", report.total
+    what = f"{plural(len(report.strokes), 'stroke')}"
+    if total.overlap is not None:
+        what = f"{percent(total.overlap)} of paint and drawing coincide (overlap {total.overlap:.3f})"
+    return f"{name}: {what}; painting takes {clock(report.time_s)}."
+
+
+def _listed(notices: Iterable[Notice]) -> str:
+    """The first of the notices; the details have all of them."""
+    first, *others = summarized(notices)
+    return ": ".join(filter(None, (first.where, first.text))) + (" ..." if others else "")
+
+
+def _details(report: Report) -> list[str]:
+    """Tables of all strokes, and everything that was left out or warned of."""
     rows = [*report.strokes, report.total]
     columns = [
         ("stroke", [_short(row.stroke) for row in rows]),
@@ -303,41 +430,43 @@ def to_text(report: Report) -> str:
         *_confidence_columns(report.confidence),
     ]
     notes = ["differs most", *map(_worst_text, rows)] if any(row.worst for row in rows) else []
-    table = _table(columns, notes)
-    rule = "-" * len(table[0])
+    lines = _ruled(columns, notes)
     how = f", compensation {report.compensation}" if report.compensation else ""
     how += f", tolerance {report.tolerance_mm:g} mm" if report.tolerance_mm is not None else ""
-    count = len(report.strokes)
     lines = [
-        f"{report.title or 'untitled'}: {count} stroke{'s' * (count != 1)}, brush {report.brush}{how}",
+        f"{report.title or 'untitled'}: {plural(len(report.strokes), 'stroke')}, brush {report.brush}{how}",
         "",
-        *table[:-1],
-        rule,
-        table[-1],
+        *lines[:-1],
+        lines[1],
+        lines[-1],
         "",
         "Lengths in mm. Overlap: intersection over union of predicted mark and target mark. Centre: tracking",
         "error, the distance of the widest point from the middle line. Painted: path of the TCP on the paper.",
         "Turning: of the mark's outline beyond that of the target mark, in full turns.",
         *_confidence_words(report.confidence, report.is_tilted),
-        f"Time, with the acceleration of the machine: {clock(report.time_s)}",
     ]
     if report.groups:
+        names = [_short(" + ".join(group.strokes), 64) for group in report.groups]
+        overlaps = [_figure(group.overlap, 3) for group in report.groups]
         lines += ["", "Strokes that touch, judged together:", ""]
-        lines += _table(
-            [
-                ("strokes", [_short(" + ".join(group.strokes), 64) for group in report.groups]),
-                ("overlap", [_figure(group.overlap, 3) for group in report.groups]),
-            ]
-        )
+        lines += table(("strokes", "overlap"), zip(names, overlaps, strict=True))
     if report.advice:
         lines += ["", report.advice]
     if report.refused:
         lines += ["", f"Left out, since they cannot be painted: {len(report.refused)}"]
-        lines += ["  " + ": ".join((notice.where, notice.told)) for notice in report.refused]
+        lines += ["  " + ": ".join((notice.where, notice.text)) for notice in report.refused]
     if report.warnings:
         lines += ["", f"Warnings: {len(report.warnings)}"]
-        lines += ["  " + ": ".join(filter(None, (notice.where, notice.told))) for notice in report.warnings]
-    return "\n".join([*lines, ""])
+        lines += ["  " + ": ".join(filter(None, (notice.where, notice.text))) for notice in report.warnings]
+    return lines
+
+
+def _ruled(columns: list[tuple[str, list[str]]], notes: Sequence[str] = ()) -> list[str]:
+    """Lines of a table by its columns, with a rule below their names."""
+    head, *rows = table(
+        [name for name, _ in columns], zip(*(cells for _, cells in columns), strict=True), notes
+    )
+    return [head, "-" * max(map(len, (head, *rows))), *rows]
 
 
 def _confidence_columns(confidence: PlanConfidence | None) -> list[tuple[str, list[str]]]:
@@ -364,7 +493,7 @@ def _confidence_words(confidence: PlanConfidence | None, is_tilted: bool) -> lis
 
 def comparison_text(rows: list[tuple[str, Figures]]) -> str:
     """A table of several ways to paint the same drawing: (how, its figures in all)."""
-    table = _table(
+    lines = _ruled(
         [
             ("compensation", [how for how, _ in rows]),
             ("overlap", [_figure(total.overlap, 3) for _, total in rows]),
@@ -373,7 +502,7 @@ def comparison_text(rows: list[tuple[str, Figures]]) -> str:
         ]
     )
     heading = "Compensations compared; distances of the widest point from the middle line in mm:"
-    return "\n".join([heading, "", table[0], "-" * len(table[0]), *table[1:], ""])
+    return "\n".join([heading, "", *lines, ""])
 
 
 def brushes_json(title: str, suits) -> str:
@@ -385,7 +514,7 @@ def brushes_json(title: str, suits) -> str:
 
 def brushes_text(title: str, suits) -> str:
     """A table of brushes that were tried on a drawing, see suit.Suit."""
-    table = _table(
+    lines = _ruled(
         [
             ("brush", [each.brush for each in suits]),
             ("overlap", [_figure(each.overlap, 3) for each in suits]),
@@ -396,7 +525,7 @@ def brushes_text(title: str, suits) -> str:
         ["", *(_short(each.why, 100) for each in suits)],
     )
     heading = f"{title or 'untitled'}: which brush suits it; overlap of all that was drawn, refused strokes included"
-    return "\n".join([heading, "", table[0], "-" * len(table[0]), *table[1:], ""])
+    return "\n".join([heading, "", *lines, ""])
 
 
 def _worst_text(row: Figures) -> str:
@@ -405,18 +534,6 @@ def _worst_text(row: Figures) -> str:
     x, y = row.worst.place_mm
     what = "not painted" if row.worst.is_missing else "too much paint"
     return f"x {x:.1f}, y {y:.1f}: {what}; {row.worst.reason}"
-
-
-def _table(columns: list[tuple[str, list[str]]], notes: tuple[str, ...] | list[str] = ()) -> list[str]:
-    """Lines of a table, the names first; the first column is flush left, the others flush right; notes follow."""
-    widths = [max(len(cell) for cell in (name, *cells)) for name, cells in columns]
-    lines = []
-    for name, *values in zip(*((name, *cells) for name, cells in columns), strict=True):
-        padded = [value.rjust(width) for value, width in zip(values, widths[1:], strict=True)]
-        lines.append("  ".join([name.ljust(widths[0]), *padded]))
-    if notes:
-        lines = [f"{line}  {note}".rstrip() for line, note in zip(lines, notes, strict=True)]
-    return lines
 
 
 def _figure(value, decimals: int) -> str:

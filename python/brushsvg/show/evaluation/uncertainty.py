@@ -1,6 +1,6 @@
 """Confidence in the brush, carried into what a plan paints: millimetres on paper.
 
-Linear propagation at the rows of the plan's marks. The law is asked only for what the lag changes, by central
+Linear propagation at the rows of the plan's marks. The law is evaluated only for what the lag changes, by central
 differences along the independent directions of its covariance, one standard deviation to either side; the other laws
 enter in closed form: m = p + (x_w - b) u, tip = p - b u, width 2 h.
 """
@@ -46,7 +46,7 @@ class PlanConfidence:
 
 @dataclass(frozen=True)
 class Band:
-    """Where the edge of each pass's mark lies with 95 %: rings in mm, and in words where that is known from."""
+    """The 95 % band of the edge of each pass's mark: rings in mm, and its source in words."""
 
     rings: tuple[list, ...]
     words: str
@@ -170,9 +170,9 @@ def _moved(brush, passes, traces, sides) -> list[tuple[np.ndarray, np.ndarray]]:
     if not sides:
         return [(np.zeros((len(trace.pose), 2, 0)),) * 2 for trace in traces]
     up, down, part = zip(*sides, strict=True)
-    led = _core.follow_lags(passes, traces, (*up, *down), brush.depth_range_mm)
+    followed = _core.follow_lags(passes, traces, (*up, *down), brush.depth_range_mm)
     steps, k = 2 * np.array(part), len(sides)
-    return [tuple((at[:, :, :k] - at[:, :, k:]) / steps for at in each) for each in led]
+    return [tuple((at[:, :, :k] - at[:, :, k:]) / steps for at in each) for each in followed]
 
 
 def _effects(brush, trace, parts, d_contact, d_along) -> _Effects:
@@ -243,7 +243,7 @@ def _largest(strokes: tuple[Confidence, ...]) -> Confidence:
 
 
 def _swept(ring: np.ndarray, effects: _Effects) -> list[np.ndarray]:
-    """Where the edges between the vertices of an outline may lie, as counter-clockwise triangles."""
+    """Return the area in which the edges of an outline may be, as counter-clockwise triangles."""
     if len(ring) < 3 or not len(effects.half):
         return []
     edge = np.roll(ring, -1, axis=0) - ring
@@ -273,12 +273,12 @@ def _edge_spread(ring: np.ndarray, outward: np.ndarray, effects: _Effects) -> np
     along = effects.along[row]
     left = np.column_stack([-along[:, 1], along[:, 0]])
     offset = ring - effects.middle[row]
-    ahead, aside = np.sum(offset * along, axis=1), np.sum(offset * left, axis=1)
+    ahead, sideways = np.sum(offset * along, axis=1), np.sum(offset * left, axis=1)
     turn = np.einsum("ij,ijk->ik", left, effects.d_along[row])  # d(theta)
     moved = np.einsum("ij,ijk->ik", outward, effects.d_middle[row])
-    moved += turn * np.sum(outward * (ahead[:, None] * left - aside[:, None] * along), axis=1)[:, None]
+    moved += turn * np.sum(outward * (ahead[:, None] * left - sideways[:, None] * along), axis=1)[:, None]
     share = np.clip(-ahead / np.maximum(effects.widest[row], 1e-3), 0, 1)  # 1 at the tip
     moved -= effects.d_widest[row] * (share * np.sum(outward * along, axis=1))[:, None]
-    spread = np.clip(aside / np.maximum(effects.half[row], 1e-3), -1, 1)
+    spread = np.clip(sideways / np.maximum(effects.half[row], 1e-3), -1, 1)
     moved += effects.d_half[row] * (spread * np.sum(outward * left, axis=1))[:, None]
     return _spread(moved)

@@ -7,22 +7,22 @@ import numpy as np
 from ... import _core
 from ...geometry.cubics import at
 from ...geometry.rings import is_within
-from .edges import amid, beside_edges, can_follow, find_bent_ends, find_ways_in
+from .edges import amid, can_follow, find_bent_ends, find_ways_in, follow_edges
 from .junctions import STEM_END, STRAIGHTEST_RAD, Arm, Crossing, turn_across
 
-# Of the shape around a corner, what lines that end beside each other may leave bare beside those that meet: a u's bend
-# is one stroke's.
+# Of the shape around a corner, area that lines ending next to each other may leave bare, more than lines that meet: a
+# u's bend is one stroke's.
 NOTCH = 0.01
-# What one line of two limbs has to leave bare beside a third, more than two lines do, of the shape around.
+# Area that one line of two limbs must leave bare next to a third, more than two lines do, of the shape around.
 FORK = 0.04
-# Of a line's width, what there must be room for where it begins: at the end of a stem that sticks out at a corner less,
-# as of an n with a hump, which narrows towards its top. Farther up a straight stem would have to be a wedge.
+# Of a line's width, the space that the shape needs where it begins: at the end of a stem that sticks out at a corner
+# less, as in an n with a hump, which narrows towards its top. Above, a straight stem would have to be a wedge.
 WHOLE, IN_HUMP = 0.95, 0.5
-# Beside the middle of a bar, in its half widths, where it is looked how far the shape goes on: the outer two in the
+# Offsets from the middle of a bar, in its half widths, where the extent of the shape is measured: the outer two in the
 # stem that it meets, so far from its sides and with its far side no more slanted than that. And how much farther the
 # shape has to go on amid the bar, how much at most, and on all of its width. FLAT: cosine of the angle with the stem,
 # at most.
-_BESIDE = np.array([-1.6, -0.7, 0.0, 0.7, 1.6])
+_ACROSS = np.array([-1.6, -0.7, 0.0, 0.7, 1.6])
 IN_STEM, SLANTED, STUB, LIMB, SHOULDER, FLAT = 0.3, 0.6, 0.35, 1.8, 0.1, 0.5
 ELBOW = 0.3  # of a turn by 17 degrees
 TOUCHING_RAD = np.radians(25)  # lines that cross turn by less
@@ -41,18 +41,18 @@ def _grid(count: int) -> np.ndarray:
 
 
 _AROUND, _FINELY_AROUND = _grid(17), _grid(41)
-# Places times points of the outline, of which it is asked whether they lie in the shape: a second.
-_MOST_ASKED = 200_000_000
+# Places times points of the outline, at most, that are tested for being in the shape: a second.
+_MOST_QUERIES = 200_000_000
 
 
-# A belly: a disc so much wider than both arms where they leave it, whose middle lies no farther aside of the straight
-# way between them than so much of its radius. No bend of a line has such a disc, and a knob at one side lies aside.
+# A belly: a disc so much wider than both arms where they leave it, whose middle is no farther from the straight
+# way between them than so much of its radius. No bend of a line has such a disc, and a knob at one side is farther off.
 BELLY, AMID = 1.25, 0.25
 
 
 def bridge(a: Arm, b: Arm, crossing: Crossing) -> np.ndarray:
     """From one arm to the other through a crossing: a cubic along their directions; the width changes evenly. Where it
-    is the belly of one line, the line goes on as it lies."""
+    is the belly of one line, the line continues unchanged."""
     if a.bridge is not None:
         return a.bridge
     p, q = a.line[a.out], b.line[b.out]
@@ -66,8 +66,8 @@ def bridge(a: Arm, b: Arm, crossing: Crossing) -> np.ndarray:
 
 def _is_belly(disc: np.ndarray, p: np.ndarray, q: np.ndarray) -> bool:
     way, to_middle = (q - p)[:2], (disc - p)[:2]
-    aside_mm = abs(way[0] * to_middle[1] - way[1] * to_middle[0]) / max(np.hypot(*way), 1e-12)
-    return bool(disc[2] > BELLY * max(p[2], q[2]) and aside_mm < AMID * disc[2])
+    distance_mm = abs(way[0] * to_middle[1] - way[1] * to_middle[0]) / max(np.hypot(*way), 1e-12)
+    return bool(disc[2] > BELLY * max(p[2], q[2]) and distance_mm < AMID * disc[2])
 
 
 def stub(arm: Arm, crossing: Crossing) -> np.ndarray:
@@ -85,7 +85,8 @@ def stub(arm: Arm, crossing: Crossing) -> np.ndarray:
 
 
 def find_bridges(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
-    """Lines through crossings beside one edge of the shape, which they keep; those through corners cut them."""
+    """Return the lines through crossings along one edge of the shape, which they keep; those through corners cut
+    them."""
     inner = [crossing for crossing in crossings if not crossing.is_corner]
     if not can_follow(sum(len(crossing.arms) for crossing in inner), rings):
         return
@@ -99,7 +100,7 @@ def find_bridges(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     ]
     if not through:
         return
-    found, _ = beside_edges([bridge(a, a.mate, c) for a, c in through], rings)
+    found, _ = follow_edges([bridge(a, a.mate, c) for a, c in through], rings)
     for (a, _), line in zip(through, found, strict=True):
         a.bridge, a.mate.bridge = line, line[::-1]
 
@@ -117,7 +118,7 @@ def _join_along_edges(crossing: Crossing, rings: list[np.ndarray]) -> None:
         if all(a.other is b for a, b in pairs):
             continue  # both rings of an 8, which is one line
         if max(turn_across(*pair) for pair in pairs) < STRAIGHTEST_RAD:
-            _, have_edges = beside_edges([bridge(a, b, crossing) for a, b in pairs], rings)
+            _, have_edges = follow_edges([bridge(a, b, crossing) for a, b in pairs], rings)
             if all(have_edges):
                 for a, b in pairs:
                     a.mate, b.mate = b, a
@@ -125,8 +126,8 @@ def _join_along_edges(crossing: Crossing, rings: list[np.ndarray]) -> None:
 
 
 def find_forks(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
-    """Two limbs that turn sharply beside a third, as the arm and the leg of a k before their short bar, are no one line
-    where that leaves more of the shape bare than either that runs straight on."""
+    """Two limbs that turn sharply next to a third, as the arm and the leg of a k before their short bar, are no one
+    line where that leaves more of the shape bare than either that runs straight on."""
     forks = []
     for crossing in crossings:
         limbs = [arm for arm in crossing.arms if arm.mate is not None]
@@ -148,8 +149,8 @@ def find_forks(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
 
 
 def find_ends(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
-    """How the arms that end at crossings run on into them. Without room for their width up to the middle, as two limbs
-    that meet beside a stem, they end before it, if that leaves less bare than to narrow up to there."""
+    """Decide how the arms that end at crossings continue into them. Without space for their width up to the middle, as
+    two limbs that meet next to a stem, they end before it, if that leaves less bare than to narrow up to there."""
     shorter = find_ways_in(crossings, rings)
     if not _can_ask(sum(len(crossing.discs) for _, crossing, _ in shorter), rings):
         return
@@ -162,7 +163,7 @@ def find_ends(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
 
 
 def _can_ask(discs: int, rings: list[np.ndarray]) -> bool:
-    return discs * len(_FINELY_AROUND) * sum(map(len, rings)) < _MOST_ASKED
+    return discs * len(_FINELY_AROUND) * sum(map(len, rings)) < _MOST_QUERIES
 
 
 def _inside(crossing: Crossing, rings: list[np.ndarray]) -> np.ndarray:
@@ -190,10 +191,10 @@ def find_bars(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     backs = np.array([-arm.direction for arm, _ in ending])
     lefts = np.column_stack([-backs[:, 1], backs[:, 0]])
     middles = np.array([amid(arm, crossing) for arm, crossing in ending])
-    at = middles[:, None] + (halves[:, None] * _BESIDE)[..., None] * lefts[:, None]
-    ways = np.repeat(backs, len(_BESIDE), axis=0)
+    at = middles[:, None] + (halves[:, None] * _ACROSS)[..., None] * lefts[:, None]
+    ways = np.repeat(backs, len(_ACROSS), axis=0)
     reached = np.array(_core.first_crossings(rings, at.reshape(-1, 2), ways)).reshape(len(ending), -1)
-    stem = reached[:, [0, -1]].max(axis=1)  # its far side, beside the bar
+    stem = reached[:, [0, -1]].max(axis=1)  # its far side, next to the bar
     sticks_out = (reached[:, 1:-1] > (stem + SHOULDER * halves)[:, None]).all(axis=1)
     sticks_out &= (reached[:, 2] > stem + STUB * halves) & (reached[:, 2] < stem + LIMB * halves)
     rooms = np.array(_core.clearance(rings, at[:, [0, -1]].reshape(-1, 2))).reshape(-1, 2)
@@ -276,7 +277,7 @@ def _keep_disc(
     crossing: Crossing, ways: list[np.ndarray], around: np.ndarray, rings: list[np.ndarray]
 ) -> None:
     """The wide one of two lines begins in the disc of a corner, as wide as that, and the thin one runs on, two
-    strokes, if that leaves less bare: a bowl that widens towards a thin bar, as of a bold serif's e."""
+    strokes, if that leaves less bare: a bowl that widens towards a thin bar, as in a bold serif's e."""
     thin, wide = sorted((0, 1), key=lambda n: float(crossing.arms[n].line[crossing.arms[n].out, 2]))
     one, other = crossing.arms[thin], crossing.arms[wide]
     is_unlike = one.line[one.out, 2] < UNLIKE * other.line[other.out, 2]
@@ -296,20 +297,22 @@ def _keep_disc(
 def _keep_bent(crossing: Crossing, around: np.ndarray, most_bare: float) -> None:
     """The ways of arms along bent edges stay if they leave less bare. A stroke of both arms turns at the end of the
     one that bends, or where both meet."""
-    led = [arm for arm in crossing.arms if arm.lead is not None]
+    with_lead = [arm for arm in crossing.arms if arm.lead is not None]
     thin, wide = sorted(arm.line[arm.out, 2] for arm in crossing.arms)
     stubs = [stub(arm, crossing) for arm in crossing.arms]
-    if led and (thin < UNLIKE * wide or _bare(crossing, stubs, around) >= most_bare):
-        for arm in led:
+    if with_lead and (thin < UNLIKE * wide or _bare(crossing, stubs, around) >= most_bare):
+        for arm in with_lead:
             arm.lead = None
-    elif len(led) == 1:
-        if led[0].line[led[0].out, 2] > AS_WIDE * max(arm.line[arm.out, 2] for arm in crossing.arms):
-            crossing.corner = led[0].lead[0, :2], float(led[0].lead[0, 2])
+    elif len(with_lead) == 1:
+        if with_lead[0].line[with_lead[0].out, 2] > AS_WIDE * max(
+            arm.line[arm.out, 2] for arm in crossing.arms
+        ):
+            crossing.corner = with_lead[0].lead[0, :2], float(with_lead[0].lead[0, 2])
             crossing.is_on_lead = True
         else:
-            led[0].lead = None
-    elif len(led) == 2 and crossing.dropped < WHOLE_STEM:
-        thin, wide = (arm.lead for arm in sorted(led, key=lambda arm: arm.line[arm.out, 2]))
+            with_lead[0].lead = None
+    elif len(with_lead) == 2 and crossing.dropped < WHOLE_STEM:
+        thin, wide = (arm.lead for arm in sorted(with_lead, key=lambda arm: arm.line[arm.out, 2]))
         off = np.hypot(*(thin[:, None, :2] - wide[None, :, :2]).transpose(2, 0, 1))
         i, j = np.unravel_index(off.argmin(), off.shape)
         if off[i, j] < NEAR_EACH_OTHER * wide[j, 2]:

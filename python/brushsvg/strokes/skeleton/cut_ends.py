@@ -19,11 +19,11 @@ LOOKED_AT = 4.5
 LEVEL = 0.06
 # How far to both sides the cut is looked at, how far cut and sides may stray from straight, and how steep the cut may
 # be, in half widths. A brush squares what is no steeper (drawn_cut.cpp).
-ASIDE, STRAIGHT, BENT, STEEPEST = 0.92, 0.12, 0.5, 1.3
-ACROSS = ASIDE * np.linspace(-1.0, 1.0, 7)
+OFF_MIDDLE, STRAIGHT, BENT, STEEPEST = 0.92, 0.12, 0.5, 1.3
+ACROSS = OFF_MIDDLE * np.linspace(-1.0, 1.0, 7)
 ALONG = 0.9 * np.linspace(0.0, 1.0, 4)  # where sides are looked at, in shares of the way to the cut
 FLICK = 0.25  # in half widths: a last piece that is no longer is but how the axis ends
-# The axis of an arm whose sides bend as they end, as of an r, points past the middle of its cut by so much.
+# The axis of an arm whose sides bend as they end, as in an r, points past the middle of its cut by this angle.
 TURNS_RAD = np.radians([0, -8, 8, -16, 16])
 UNSEEN_RAD = np.radians(6)  # a last step that turns by less is no hook
 
@@ -105,16 +105,16 @@ def straight_cuts(
 ) -> tuple[np.ndarray, np.ndarray]:
     """How far ahead of places (..., 2), in mm, the outline of rings is cut straight across, over the width of lines of
     these half widths (...), and its slope; nan where there is no such cut. ways: (..., 2), unit vectors."""
-    aside = np.asarray(half)[..., None] * ACROSS
+    offsets = np.asarray(half)[..., None] * ACROSS
     left = np.stack([-ways[..., 1], ways[..., 0]], axis=-1)
-    at = here[..., None, :] + aside[..., None] * left[..., None, :]
+    at = here[..., None, :] + offsets[..., None] * left[..., None, :]
     along = np.broadcast_to(ways[..., None, :], at.shape)
     found = _core.first_crossings(rings, at.reshape(-1, 2), along.reshape(-1, 2))
     reached = np.array(found).reshape(at.shape[:-1])
     reached[~np.isfinite(reached).all(axis=-1)] = np.nan
-    slope = (reached[..., -1] - reached[..., 0]) / (aside[..., -1] - aside[..., 0])
+    slope = (reached[..., -1] - reached[..., 0]) / (offsets[..., -1] - offsets[..., 0])
     middle = (reached[..., 0] + reached[..., -1]) / 2
-    bent = np.abs(middle[..., None] + slope[..., None] * aside - reached).max(axis=-1)
+    bent = np.abs(middle[..., None] + slope[..., None] * offsets - reached).max(axis=-1)
     is_cut = (np.abs(slope) <= STEEPEST) & (bent <= STRAIGHT * np.asarray(half))
     return np.where(is_cut, middle, np.nan), np.where(is_cut, slope, np.nan)
 
@@ -125,12 +125,12 @@ def _has_straight_sides(
     """Whether a line has straight sides from a place on to the cut ahead of it."""
     left = _left_of(ahead)
     for side in (-1, 1):
-        on_mm = (to_cut_mm + slope * side * ASIDE * half) * ALONG
+        on_mm = (to_cut_mm + slope * side * OFF_MIDDLE * half) * ALONG
         at = (
             here + on_mm[:, None] * ahead + 0.7 * half * side * left
         )  # inside, on either side of a slanted cut
-        beside_mm = np.array(_core.first_crossings(rings, at, np.tile(side * left, (len(at), 1))))
-        if (np.abs(beside_mm - 0.3 * half) > BENT * half).any():
+        side_mm = np.array(_core.first_crossings(rings, at, np.tile(side * left, (len(at), 1))))
+        if (np.abs(side_mm - 0.3 * half) > BENT * half).any():
             return False
     return True
 

@@ -1,4 +1,4 @@
-"""Beside a junction the medial axis is none of a line's own: it bends and widens towards the junction's disc. What goes
+"""Next to a junction the medial axis is not that of a line: it bends and widens towards the junction's disc. What goes
 on there is the outline on one side. A line that passes a junction keeps its distance from that edge; one that ends
 there runs on along it, with the width that it had."""
 
@@ -11,13 +11,13 @@ from .junctions import STEM_END, Arm, Crossing
 
 # Arms times points of the outline: letters have some thousands, Chinese characters a hundred thousand.
 MOST = 3_000_000
-# How far an edge may lie off a line's half width, beside a junction that it passes, and be its edge still: an arm that
+# How far an edge may be off a line's half width, next to a junction that it passes, and be its edge still: an arm that
 # leaves there is wider. In its half widths.
 OWN = 0.3
 WAVES_RAD = np.radians(20)  # an edge along which a line would turn by so much more has a corner
 STEPS = 16  # on the way of a line into a junction
 # An edge that leaves a step's way by more is lost, in lengths of it: at a corner of the outline, where an arm leaves.
-# The first step is that of the axis, which may lie aslant.
+# The first step is that of the axis, which may be slanted.
 FIRST, BENDS = 1.0, 0.5
 NEAR = 0.25  # half widths over which the axis has its direction
 LASTS = 0.6  # half widths for which an edge has to last, or the line runs straight on
@@ -27,16 +27,16 @@ AT_END = -0.7  # half width won per length where a limb ends: there its line doe
 AS_STRAIGHT = np.cos(np.radians(2))  # a way that bends by less is left to what finds straight ones
 WIDER = 1.25  # than the line in which it ends
 # Shares of the half width: what room there must be for it on the way, and how far it may stick out of what covers it.
-ROOM, COVERED = 0.85, 0.05
+MIN_SPACE, COVERED = 0.85, 0.05
 
 
 def can_follow(arms: int, rings: list[np.ndarray]) -> bool:
     return arms * sum(map(len, rings)) < MOST
 
 
-def beside_edges(lines: list[np.ndarray], rings: list[np.ndarray]) -> tuple[list[np.ndarray], list[bool]]:
+def follow_edges(lines: list[np.ndarray], rings: list[np.ndarray]) -> tuple[list[np.ndarray], list[bool]]:
     """Stretches of lines through junctions, rows (k, 3), each moved so that it keeps its half width from the one edge
-    of the shape that goes on beside it, and which have one; as they are where there is none or one on both sides."""
+    of the shape that continues along it, and which have one; as they are where there is none or one on both sides."""
     has_edge = [False] * len(lines)
     for _ in range(2):
         lefts = [_left_of(_directions(line)) for line in lines]
@@ -52,10 +52,10 @@ def beside_edges(lines: list[np.ndarray], rings: list[np.ndarray]) -> tuple[list
             has_edge[n] = is_edge.sum() == 1
             if has_edge[n]:
                 side = int(is_edge.argmax())
-                beside = line.copy()
-                beside[:, :2] += (off[side] * (1, -1)[side])[:, None] * left
-                has_edge[n] = _turned(beside) < _turned(line) + WAVES_RAD
-                line = beside if has_edge[n] else line
+                on_edge = line.copy()
+                on_edge[:, :2] += (off[side] * (1, -1)[side])[:, None] * left
+                has_edge[n] = _turned(on_edge) < _turned(line) + WAVES_RAD
+                line = on_edge if has_edge[n] else line
             moved.append(line)
         lines = moved
     return lines, has_edge
@@ -113,7 +113,7 @@ def ways_on(
 
 
 def amid(arm: Arm, crossing: Crossing) -> np.ndarray:
-    """Straight on along an arm, as far into its crossing as the middle of that lies."""
+    """Continue straight along an arm, up to the middle of its crossing."""
     start, back = arm.line[arm.out, :2], -arm.direction
     return start + max(float((crossing.discs[:, :2].mean(axis=0) - start) @ back), 0.0) * back
 
@@ -145,10 +145,10 @@ def find_ways_in(
     short = []
     for k, (arm, crossing) in enumerate(ending):
         half = starts[k, 2]
-        last = int(np.logical_and.accumulate(rooms[k] >= ROOM * half).sum()) - 1
+        last = int(np.logical_and.accumulate(rooms[k] >= MIN_SPACE * half).sum()) - 1
         mid = min(round(to_mid[k] / reach_mm[k] * STEPS), STEPS)
         through = _through(crossing)
-        covering = np.vstack([through, *(_beginning(leg) for leg in crossing.beside)])
+        covering = np.vstack([through, *(_beginning(leg) for leg in crossing.neighbours)])
         end = min(mid + _covered_at(places[k, mid:], half, covering), last)
         if end <= 0 or (len(through) and half > WIDER * through[:, 2].max()):
             continue  # no room for its width, or a stem that ends in a thin bar: narrowed
@@ -183,7 +183,7 @@ def find_bent_ends(corners: list[Crossing], reach_mm: np.ndarray, rings: list[np
             way = np.column_stack([np.interp(finer, at, column) for column in places[n].T])
             rooms, half = np.array(_core.clearance(rings, way)), starts[n, 2]
             to_axis = (way - past.line[past.out, :2]) @ _left_of(past.direction)
-            is_on = (rooms >= ROOM * half) & ((to_axis * to_axis[0] > 0) | (corner.dropped > STEM_END))
+            is_on = (rooms >= MIN_SPACE * half) & ((to_axis * to_axis[0] > 0) | (corner.dropped > STEM_END))
             is_on &= finer <= lasted[n] / reach_mm[n] * STEPS
             if corner.dropped > STEM_END:
                 is_on &= (rooms >= half) | (np.gradient(rooms, reach_mm[n] / (len(way) - 1)) > AT_END)

@@ -13,7 +13,7 @@ from ...read.design import Element
 FLATTENED_MM = 0.02
 # An alphabet has some thousands of edges and hardly a crossing; ten seconds' work is all that a shape may ask for.
 _MOST_EDGES, _MOST_CROSSINGS, _MOST_PAIRS = 200_000, 10_000, 30_000_000
-_PASSED = 0.04  # what a pair costs that is passed over, beside one that is looked at
+_PASSED = 0.04  # Cost of a pair that is skipped, relative to one that is examined.
 
 
 def filled(element: Element) -> list[np.ndarray]:
@@ -34,7 +34,7 @@ def filled(element: Element) -> list[np.ndarray]:
     from_left = np.argsort(low[:, 0])
     if (pairs := _side_by_side(low[from_left], high[from_left])) > _MOST_PAIRS:
         raise Error(
-            f"its outline lies too densely: {pairs:.2g} pairs of edges side by side, more than {_MOST_PAIRS:.2g}",
+            f"its outline is too dense: {pairs:.2g} pairs of edges side by side, more than {_MOST_PAIRS:.2g}",
             code="outline-too-complex",
         )
     return _core.fill([ring for ring in outlines if len(ring) >= 3], element.fill_rule or "evenodd")
@@ -76,7 +76,7 @@ def _side_by_side(
             low[above], high[above], cut, ceiling
         )
     behind = np.searchsorted(low[:, 0], high[:, 0]) - np.arange(1, count + 1)
-    # those that reach up into the band are passed over one by one, until one lies in it
+    # those that reach up into the band are skipped one by one, until one is in it
     inside = low[:, 1] >= floor
     ends = np.append(np.flatnonzero(inside), count)
     follows = ends[np.searchsorted(low[inside, 0], high[~inside, 0])]

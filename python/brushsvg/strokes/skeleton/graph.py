@@ -19,7 +19,7 @@ BARE = 0.2  # of the places along a branch inside of a crossing: with less the l
 @dataclass
 class Piece:
     """line: see above; ends: the crossing at either end, None at a free one; branches: what it is made of, those inside
-    crossings too; inside: stretches of the line that lie in crossings; through: crossings on its way; closed: the last
+    crossings too; inside: stretches of the line in crossings; through: crossings on its way; closed: the last
     point is the first again."""
 
     line: np.ndarray
@@ -72,7 +72,7 @@ def skeleton(rings: list[np.ndarray], nodes: np.ndarray, branches: list) -> Skel
 
 
 def _give_away(crossings: list[Crossing], pieces: list[Piece], lines: list[np.ndarray]) -> None:
-    """What lies inside of a crossing through which nothing runs goes to a line that ends there; if there is none, the
+    """The inside of a crossing through which no line runs goes to a line that ends there; if there is none, the
     longest branch inside is one."""
     passed = {number for piece in pieces for number in piece.through}
     ending = {number: piece for piece in reversed(pieces) for number in piece.ends if number is not None}
@@ -98,7 +98,7 @@ def _paint_inside(crossings: list[Crossing], pieces: list[Piece], lines: list[np
         near = at_crossing.get(number, [])
         if not near:
             continue
-        near = [*near, *(piece for leg in crossing.beside for piece in at_crossing.get(leg.crossing, ()))]
+        near = [*near, *(piece for leg in crossing.neighbours for piece in at_crossing.get(leg.crossing, ()))]
         for branch in crossing.inner:
             middle = lines[branch][:, :2]
             bare = np.ones(len(middle), bool)

@@ -15,13 +15,13 @@ CROSSING_REACH = 0.9
 # Lines that turn by less, in all, where they cross others are one line.
 STRAIGHTEST_RAD = np.radians(60)
 # A neck is where an arm leaves narrower than so much of the widest disc and is wider farther on. Two arms between which
-# all others have one are one line up to a greater turn: the stem of an a and its foot, beside which the bowl comes in.
+# all others have one are one line up to a greater turn: the stem of an a and its foot, next to which the bowl joins.
 NECK, STRAIGHTEST_THICK_RAD = 0.6, np.radians(120)
 # What a dropped branch adds, in squares of the radius: the outer corner of a line that turns by less has 0.05, one of
 # 90 degrees 0.21. More is the end of a stem, which a line that cuts the corner would leave bare.
 STEM_END = 0.3
 # Of the turns of two legs towards their tip the less is at least so much of the other: else one of them is a stem that
-# goes on, as of a b below its bowl.
+# goes on, as in a b below its bowl.
 SIDED = 0.4
 ACUTE = 0.5  # cosine of the angle between legs, at most: wider apart they are a bend
 # Nodes of one crossing, and its arms of which pairs are tried: more is an asterisk of hairs, no writing, and would take
@@ -65,12 +65,12 @@ class Crossing:
     dropped: float = 0.0  # the largest that a branch dropped there would add, in squares of the radius
     inner: list[int] = field(default_factory=list)  # branches between its nodes
     arms: list[Arm] = field(default_factory=list)
-    beside: list[Arm] = field(default_factory=list)  # at corners in its disc; see _leave_out_stem_end
+    neighbours: list[Arm] = field(default_factory=list)  # at corners in its disc; see _leave_out_stem_end
     has_tip: bool = False  # of legs that meet, which are strokes of their own
     corner: tuple[np.ndarray, float] | None = (
         None  # where both arms begin, and the half width there; see joints
     )
-    is_on_lead: bool = False  # whether that lies on the ways of arms along edges
+    is_on_lead: bool = False  # whether that is on the ways of arms along edges
 
     @property
     def is_corner(self) -> bool:
@@ -78,8 +78,8 @@ class Crossing:
 
     @property
     def has_hump(self) -> bool:
-        """Whether the end of a stem sticks out beside the neck of an arm, as an n's beside its arch; not that of two
-        legs, as of an A, nor beside a flag."""
+        """Return whether the end of a stem sticks out next to the neck of an arm, as an n's next to its arch; not that
+        of two legs, as in an A, nor next to a flag."""
         if not self.is_corner or self.dropped <= STEM_END or _are_legs(*self.arms):
             return False
         thin, wide = sorted(self.arms, key=lambda arm: arm.line[arm.out, 2])
@@ -122,7 +122,7 @@ def crossings_of(nodes, lines, ends, degree) -> tuple[list[Crossing], list[Arm]]
 
 
 def _leave_out_tip(crossing: Crossing) -> None:
-    """The blunt tip in which two legs meet, as of an A, is no line: both legs run on into it."""
+    """The blunt tip in which two legs meet, as in an A, is not a line: both legs run on into it."""
     if len(crossing.arms) != 3 or len(crossing.discs) > 1:
         return
     x, y, radius = crossing.discs[0]
@@ -138,8 +138,8 @@ def _leave_out_tip(crossing: Crossing) -> None:
 
 
 def _leave_out_stem_end(crossing: Crossing, crossings: list[Crossing]) -> None:
-    """What lies between a crossing and a corner in its disc is no line if it goes on as a thin one: the top of a stem,
-    beside which the leg of an M or N begins and out of which a serif leads."""
+    """The part between a crossing and a corner in its disc is no line if it continues as a thin one: the top of a stem,
+    next to which the leg of an M or N begins and out of which a serif leads."""
     if crossing.is_corner:
         return
     for arm in crossing.arms:
@@ -153,7 +153,7 @@ def _leave_out_stem_end(crossing: Crossing, crossings: list[Crossing]) -> None:
         if length(arm.line[:, :2]) < reach and thin < NECK * arm.line[arm.out, 2]:
             arm.mate.mate = arm.mate = None
             crossing.inner.append(arm.branch)
-            crossing.beside += [leg for leg in corner.arms if leg is not arm.other]
+            crossing.neighbours += [leg for leg in corner.arms if leg is not arm.other]
 
 
 def _are_legs(one: Arm, two: Arm) -> bool:
@@ -210,8 +210,8 @@ def _join(crossing: Crossing) -> None:
     narrow = NECK * crossing.discs[:, 2].max()
     thick = [arm for arm in crossing.arms if arm.line[arm.out, 2] >= narrow]
     necks = [arm for arm in crossing.arms if arm.line[arm.out, 2] < narrow <= arm.line[arm.out :, 2].max()]
-    is_beside = len(thick) == 2 and necks and len(necks) + 2 == len(crossing.arms)
-    if is_beside and turn_across(*thick) < STRAIGHTEST_THICK_RAD:
+    is_neighbour = len(thick) == 2 and necks and len(necks) + 2 == len(crossing.arms)
+    if is_neighbour and turn_across(*thick) < STRAIGHTEST_THICK_RAD:
         thick[0].mate, thick[1].mate = thick[1], thick[0]
     turns = []
     for a, b in combinations(crossing.arms[:MOST_ARMS], 2):
@@ -225,7 +225,7 @@ def _join(crossing: Crossing) -> None:
 
 
 def _join_thick(crossing: Crossing, a: Arm, b: Arm) -> None:
-    """The arms that are left beside a line that runs through are one line that bends there, as an x has it, if that
+    """Join the arms next to a line that runs through: they are one line that bends there, as an x has it, if that
     line parts them and is no wider than either. Joined, thin ones would cut their corners across a thick line."""
     one, two = (arm.line[arm.out] for arm in crossing.arms if arm.mate is not None)
     along = two[:2] - one[:2]

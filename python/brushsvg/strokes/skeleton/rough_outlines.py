@@ -3,7 +3,7 @@
 The largest disc between two rough edges touches their dents. A line would become too thin, and deep dents would become
 branches. The mean edge gives the line's width instead.
 
-An outline turns one way, then the other. A bump is what lies between two such changes, from the middle of one edge to
+An outline turns one way, then the other. A bump is the part between two such changes, from the middle of one edge to
 the middle of another. A clean letter has about 30 bumps, and most of them are as high as its lines are wide. A rough
 outline has hundreds of low ones. Each bump counts by how far it turns: long straight edges have no weight.
 """
@@ -92,8 +92,8 @@ def measure_roughness_mm(rings: list[np.ndarray]) -> tuple[float, float]:
 
 
 def _without_ripples(rings: list[np.ndarray]) -> list[np.ndarray]:
-    """Rings with as few points as lie within RIPPLE_MM of all: a straight line of many points, rounded to 0.01 mm,
-    changes its direction everywhere."""
+    """Return rings with as few points as stay within RIPPLE_MM of all: a straight line of many points, rounded to 0.01
+    mm, changes its direction everywhere."""
     import shapely
 
     fewer = shapely.simplify([shapely.LinearRing(ring) for ring in rings], RIPPLE_MM, preserve_topology=False)

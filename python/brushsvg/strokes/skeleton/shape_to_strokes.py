@@ -28,18 +28,18 @@ SMOOTHED = 0.03
 # What a branch must add to be painted, in squares of the half width where it leaves. A corner of 90 degrees adds 0.21,
 # of 60 degrees 0.69, of 45 degrees 1.24: those are ends of strokes, not strokes.
 LEAST_SHARE = 0.8
-# The bar of a t is thin beside its stem: it stays if it adds so much to the stem's disc, and to a disc of its own width
-# what any branch must. More loses bars and serifs; with less the teeth of a rough edge become hairs.
+# The bar of a t is thin next to its stem: it stays if it adds so much to the stem's disc, and to a disc of its own
+# width what any branch must. More loses bars and serifs; with less the teeth of a rough edge become hairs.
 LEAST_LIMB = 0.1
 MOST_BRANCHES = 20_000  # of a shape: a millisecond each, where a page of letters has some thousands
 MOST_CUT = 200_000  # points of a shape times its strokes: letters have some thousands
 # Slivers are left where curves cross that should touch. To land for one, no wider than this anywhere, would leave a
-# touch of the brush, or is refused as less than a program can tell. And where they touch the shape, moving corners
+# touch of the brush, or is refused as less than a program can express. And where they touch the shape, moving corners
 # apart for the medial axis made their sides cross: it went out of the shape, by as much as 28 m.
 SLIVER_MM = 0.01
 HAIR = 0.01  # of a stroke's greatest width: no brush paints a point of no width
-# How far round an end it is looked whether others cover it, beyond what of its half width, and how much of that
-# suffices: of a stem below thin serifs less than half, of the outside of a corner a quarter.
+# Where the surroundings of an end are checked for other strokes, beyond its half width, in half widths, and the share
+# that must be covered: at a stem below thin serifs less than half, outside of a corner a quarter.
 _AHEAD_RAD, _BEYOND_CAP, _COVERED = np.radians(np.linspace(-80, 80, 9)), 1.15, 0.35
 _ROUND = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0, 2 * np.pi, 24, endpoint=False)])
 
@@ -48,7 +48,7 @@ _ROUND = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0, 2 
 class OutlineStroke:
     """middle_mm: cubics (n, 8); half_width: [(fraction of arc length, mm)]; wanted_mm: rings of its part of the shape.
     The parts of all strokes make up the shape, none is empty; where they cross, it belongs to both. covered: whether
-    its start and its end are covered by others, most of what lies round them being of the shape."""
+    its start and its end are covered by others, most of their surroundings being in the shape."""
 
     middle_mm: np.ndarray
     half_width: list[tuple[float, float]]
@@ -104,7 +104,8 @@ def _dab(disc: np.ndarray, wanted_mm: list[np.ndarray]) -> OutlineStroke:
 
 
 def _part(chain, found: Skeleton, area: list[np.ndarray] | None) -> list[np.ndarray]:
-    """What lies nearest to a chain's branches, and what of the area, if given, it paints inside of crossings."""
+    """Return the area nearest to a chain's branches, and the part of the given area that it paints inside of
+    crossings."""
     nearest = [ring for piece in chain for branch in piece.branches for ring in found.parts[branch]]
     if area is None:
         return _core.unite(nearest)
@@ -136,8 +137,8 @@ def _stroke(chain, wanted_mm: list[np.ndarray], area: list[np.ndarray]) -> Outli
 
 
 def _is_covered(line: np.ndarray, rings: list[np.ndarray]) -> bool:
-    """Whether ahead of the end of a line (k, 3) the outline lies farther off than a cap of its own, in enough of all
-    directions: other strokes paint there."""
+    """Return whether ahead of the end of a line (k, 3) the outline is farther off than a cap of its own, in enough of
+    all directions: other strokes paint there."""
     x, y, half = line[-1]
     is_back = np.hypot(*(line[:, :2] - (x, y)).T) > half
     if not is_back.any():

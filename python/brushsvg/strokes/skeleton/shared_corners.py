@@ -1,4 +1,4 @@
-"""Outer corners of a shape in which two of its strokes end, as the left ones of B and D: the corner lies nearest to one
+"""Outer corners of a shape in which two of its strokes end, as the left ones of B and D: the corner is nearest to one
 of them, or half to each, so that neither has a straight end in what it shall paint. It belongs to both."""
 
 from __future__ import annotations
@@ -10,13 +10,14 @@ import numpy as np
 from ... import _core
 from .cut_ends import straight_cuts
 
-# In half widths: how far from its end a line's cut may lie, and what of the corners no disc of any line reaches, in
+# In half widths: how far from its end a line's cut may be, and the area of the corners that no disc reaches, in
 # their squares; one corner of 90 degrees has 0.21.
 NEAR, BARE = (0.75, 1.35), 0.12
 
 
 def with_shared_corners(strokes: list, area: list[np.ndarray]) -> list:
-    """The strokes of a shape, given by its rings, each with the corners beside its ends in its part of the shape."""
+    """Return the strokes of a shape, given by its rings, each with the corners next to its ends in its part of the
+    shape."""
     ends = [(k, box) for k, stroke in enumerate(strokes) for box in _boxes(stroke, area)]
     if not ends:
         return strokes
@@ -31,7 +32,8 @@ def with_shared_corners(strokes: list, area: list[np.ndarray]) -> list:
 
 
 def _boxes(stroke, area) -> list[tuple[np.ndarray, float]]:
-    """What lies between each end of a stroke and the straight cut before it, (4, 2), with the half width there."""
+    """Return the area between each end of a stroke and the straight cut before it, (4, 2), with the half width
+    there."""
     if stroke.closed:
         return []
     line = _core.flatten(_drawn(stroke), 0.01)

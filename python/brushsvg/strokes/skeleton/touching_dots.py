@@ -7,7 +7,7 @@ import numpy as np
 from ... import _core
 from ...geometry.polylines import lengths
 
-# Half width of the waist, of the smaller dot's. Of each dot's half width: how far its middle lies from the waist, at
+# Half width of the waist, of the smaller dot's. Of each dot's half width: the distance of its middle from the waist, at
 # most, as the corner of a square does from its own, and how long its line is beyond the waist.
 WAIST, TO_MIDDLE, LENGTH = 0.65, 1.45, 1.9
 

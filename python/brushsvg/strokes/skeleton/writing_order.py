@@ -24,7 +24,7 @@ DIRECTION_WEIGHTS = {
     "cjk": np.array([0.67, -0.71, 0.88]),
     "auto": np.array([0.62, -0.78, 0.63]),
 }
-# So far an arm bends that is written from its stem on; straight ones, as of a K, are written towards it.
+# So far an arm bends that is written from its stem on; straight ones, as in a K, are written towards it.
 ARCH_RAD = np.radians(15)
 # A piece shorter than this many of its half widths, and than this share of what it meets at a corner, has no direction
 # of its own: a flick.

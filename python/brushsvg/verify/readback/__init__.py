@@ -25,7 +25,7 @@ class Step(NamedTuple):
     blend_mm: how far before the point the next move may begin; via: a point of the circle that was named, in the
     frame of the program; wait_s: what is waited for behind it, in so many waits. What a servo does alone takes no time
     but that. axis: (3,) the unit vector from the tip up along a tilted brush, in the frame of the program; () upright.
-    took_s: how long it takes, where the program says that; 0: it says how fast it is.
+    took_s: its duration, where the program gives it; 0: it gives the speed.
     """
 
     line: int
@@ -76,7 +76,7 @@ class ReadSection:
 @dataclass
 class Readback:
     """joint_mm: how far every corner may be cut; acts: all that the program does, in order; modes: what it sets before
-    it first moves; rises_mm: heights to which it goes straight from wherever the tool is; unsure: lines behind which an
+    it first moves; rises_mm: heights to which it goes straight from any place; unsure: lines behind which an
     axis may be anywhere in its backlash, as it was before the program.
 
     in_paper_frame: points are the paper's; else the robot's. blends_by_radius: each move says how far before its end
@@ -100,7 +100,7 @@ class Readback:
         return self.sections[-1]
 
     def comment(self, number: int, text: str) -> None:
-        """Perhaps the title of a section. Blanks at its end are not told apart: some languages drop them."""
+        """Perhaps the title of a section. Blanks at its end are ignored: some languages drop them."""
         text = text.rstrip(" ")
         text += " " * text.endswith(":")  # of a name without plain letters
         self.tilts = self.tilts or text == TILT_LINE
@@ -119,7 +119,7 @@ def circle(out: Readback, number: int, via: np.ndarray, end: np.ndarray, speed_m
     to_via, to_end = via[:2] - start, end[:2] - start
     cross = to_via[0] * to_end[1] - to_via[1] * to_end[0]
     if abs(cross) < 1e-9:
-        raise Error(f"line {number}: the three points of the circle lie on one line", code="line-incomplete")
+        raise Error(f"line {number}: the three points of the circle are on one line", code="line-incomplete")
     square_via, square_end = to_via @ to_via, to_end @ to_end
     centre = start + np.array(
         [
@@ -133,7 +133,7 @@ def circle(out: Readback, number: int, via: np.ndarray, end: np.ndarray, speed_m
 
 
 def text_of_file(data: bytes) -> str:
-    """With whatever letters an editor left in it, so that they can be named."""
+    """Decode bytes with any letters that an editor left, so that they can be named."""
     if data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
         raise Error("it is written in UTF-16: brushsvg writes plain 7-bit text", code="line-unread")
     try:

@@ -68,7 +68,7 @@ def read_doosan(text: str, cell: Cell) -> Readback:
     """The program as steps in the paper's frame. Error with the line for what brushsvg does not write."""
     for number, line in enumerate(text.splitlines()[:2], 1):
         if NAMES_LETTERS.search(line):
-            sentence = f"line {number}: {line[:60]!r} tells Python to read the program's letters as others"
+            sentence = f"line {number}: {line[:60]!r} makes Python decode the program with another encoding"
             raise Error(sentence, code="line-unread")
     try:
         ast.parse(text)

@@ -100,7 +100,7 @@ class _Reader:
                 f"line {number}: {line!r} is outside the range [{self.range[0]}, {self.range[-1]}] of the cell's servo",
                 code="servo-out-of-range",
             )
-        if self.value is None:  # before the first move: up from wherever it is
+        if self.value is None:  # before the first move: up from any height
             self.value = value
             self.out.rises_mm.append(self._height(value))
             self.out.acts.append(Act(number, "lift", same=(float(value),)))

@@ -95,7 +95,7 @@ def _in_order(text: str, cell: Cell) -> Numbered:
 
 
 def _programs(text: str) -> dict[str, tuple[Numbered, Numbered]]:
-    """Instructions and points of each program, by name."""
+    """Return the instructions and points of each program, in a dictionary of names."""
     found: dict[str, tuple[Numbered, Numbered]] = {}
     name, where, has_group = "", "out", False
     for number, raw in enumerate(text.splitlines(), 1):
@@ -146,7 +146,7 @@ def _with_places(lines: Numbered, said: Numbered, cell: Cell) -> Iterator[tuple[
     for number, line in lines:
         move, circle, onward = _LINE.fullmatch(line), _CIRCLE.fullmatch(line), _ONWARD.fullmatch(line)
         if bool(onward) != (opened is not None):
-            raise Error(f"line {number}: a circle is told in two lines", code="line-unread")
+            raise Error(f"line {number}: a circle is written in two lines", code="line-unread")
         if move:
             to, turned = at(number, move[1])
             speed, percent = _mm_s(move[2]), int(move[3] or 0)

@@ -37,7 +37,7 @@ ALONE = {
     "M2",
     "M3",
     "M5",
-}  # no other word of command beside them
+}  # no other word of command with them
 STANDING = {"G17", "G18", "G19", "G21", "G40", "G90", "G90.1", "G91.1", "G94"}  # modes that end no motion
 UNKNOWN_TO_GRBL = {
     "G64",
@@ -162,7 +162,7 @@ class _Reader:
             self.out.modes = frozenset(self.seen)
         if first in ("G2", "G3") and not self.may_circle:
             raise Error(
-                f"line {number}: {line[:40]!r} is a circle, and the cell's firmware is told none",
+                f"line {number}: {line[:40]!r} is a circle, which brushsvg does not write for the cell's firmware",
                 code="line-unread",
             )
         if first in WAYS:
@@ -218,7 +218,7 @@ class _Reader:
         if self.servo and not codes and set(values) == {"S"} and "M3" in self.seen:
             first = "M3"  # which holds
         if values and first in STANDING and self.motion in ("G0", "G1"):
-            first = self.motion  # which goes on beside a mode
+            first = self.motion  # which stays in force next to a mode
         if first not in self.words:
             raise Error(
                 f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
@@ -266,7 +266,7 @@ class _Reader:
             )
 
     def _comment(self, number: int, line: str, said: str) -> None:
-        """Error for one that is too long, or has letters that a machine obeys wherever they stand."""
+        """Raise Error for a line that is too long, or has letters that a machine obeys anywhere."""
         if (plain := self.dialect.comment(said).rstrip("\n")) != line:
             raise Error(
                 f"line {number}: {line[:40]!r}: in this language brushsvg would write {plain[:40]!r}",

@@ -12,7 +12,7 @@ from ...errors import Error
 class Made:
     """What a program's header says of how it was made; tolerance_mm None: it does not say.
 
-    strokes: how many the job has; notes: the lines that tell how it was planned, as they are written.
+    strokes: how many the job has; notes: the lines about its planning, as they are written.
     border_mm: what an air run goes round, left, bottom, right, top; heights_mm: highest, lowest and step of the strokes
     that find the paper; first_mm: the same of a first run; None for programs that paint.
     """
@@ -35,7 +35,7 @@ class Made:
     border_mm: tuple[float, ...] | None = None
     heights_mm: tuple[float, ...] | None = None
     first_mm: tuple[float, ...] | None = None
-    has_margin: bool = False  # margin strokes were asked for, whether there was room or not
+    has_margin: bool = False  # margin strokes were requested, even if they did not fit
     is_of_plan: bool = False  # made from a plan.json, which does not say how it was planned
 
 
@@ -56,8 +56,8 @@ def made(text: str) -> Made:
     first = _said(header, "first", r"heights (\S+) to (\S+) mm, (\S+) mm apart", (-1000.0, 1000.0))
     how = re.match(r"(none|constant|closed|refined), ", header.get("compensation", "closed, "))
     ends = r"(?:, start (?:auto|round|butt|pointed))?(?:, end (?:auto|round|butt|pointed))?"
-    told = rf"\w+, tolerance (\S+) mm(?:, lag \S+ mm)?{ends}"
-    tolerance = _said(header, "compensation", told, (1e-5, 10.0))
+    written = rf"\w+, tolerance (\S+) mm(?:, lag \S+ mm)?{ends}"
+    tolerance = _said(header, "compensation", written, (1e-5, 10.0))
     start = re.search(r", start (\w+)(?:, end \w+)?$", header.get("compensation", ""))
     end = re.search(r", end (\w+)$", header.get("compensation", ""))
     has_lag = ", lag " in header.get("compensation", "")
@@ -126,9 +126,9 @@ def _damaged(word: str, said: str) -> Error:
 def _header_of(text: str) -> dict[str, str]:
     """The lines at the top of a program of ours, by their first word: title, brush, sheet, cell, ..."""
     text = re.sub(r" *; *\r?\n *\d*: *!\+", "", text)  # a remark of TP goes on
-    told = re.compile(
+    written = re.compile(
         r"\((\w+): (.*)\)| *(?:[#!;]|--) (\w+):(?: (.*))?| *\d*: *!(\w+):(?: (.*?))? *;|CO \"(\w+): (.*)\";"
     )
-    lines = (told.fullmatch(line.rstrip(" \r")) for line in text.lstrip("\ufeff").split("\n")[:100])
+    lines = (written.fullmatch(line.rstrip(" \r")) for line in text.lstrip("\ufeff").split("\n")[:100])
     found = ([each for each in line.groups() if each is not None] for line in lines if line)
     return {word: said[0] if said else "" for word, *said in found}

@@ -96,7 +96,7 @@ def _in_order(text: str) -> Numbered:
 
 
 def _programs(text: str) -> tuple[Numbered, dict[str, Numbered]]:
-    """The lines of the main program, remarks above it among them, and of others by name."""
+    """Return the lines of the main program, with the remarks above it, and a dictionary of the lines of others."""
     main: Numbered = []
     others: dict[str, Numbered] = {}
     lines, names = main, set()

@@ -1,4 +1,4 @@
-"""Where axes with backlash go that are told what a program says: each stands until it is told half of it ahead."""
+"""Model axes with backlash that run a program: each stands until the command is half of it ahead."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ CHORD_RAD = 0.02
 
 
 def as_gone(read: Readback, cell: Cell) -> Readback:
-    """The program with the places where the tool goes instead of those that it tells, in its steps as in its acts.
-    Steps on which the tool stands while an axis takes up its play are kept aside."""
+    """Return the program with the places of the tool in place of the commanded ones, in its steps and in its acts.
+    Steps on which the tool stands while an axis takes up its play are kept apart."""
     half = half_mm(cell)
     if not half.any():
         return read
@@ -36,32 +36,34 @@ def as_gone(read: Readback, cell: Cell) -> Readback:
 
 
 class _Axes:
-    """near_mm: what rounding makes of places; step_mm: of a servo's heights. told (3,): what they were told last; slide
-    (2,): where they are; beside (2,): where they are if they began on the other side of their backlash; unsure: the
-    lines behind which that makes a difference; stood: whether the tool stood on the last step; gone: by line the steps
-    to which each of its own led, None for one on which the tool stands."""
+    """near_mm: the effect of rounding on places; step_mm: of a servo's heights. commanded (3,): the last commanded
+    place; slide (2,): where the axes are; far_side (2,): where they are if they began on the other side of their
+    backlash; unsure: the lines behind which that makes a difference; stood: whether the tool stood on the last step;
+    gone: by line the steps that its own steps became, None for one on which the tool stands."""
 
     def __init__(self, known: list[Step], half: np.ndarray, near_mm: float, step_mm: float):
         self.half, self.near_mm, self.step_mm = half, near_mm, step_mm
-        self.told = np.array([known[0].x, known[0].y, known[0].z])
+        self.commanded = np.array([known[0].x, known[0].y, known[0].z])
         places = np.array([(step.x, step.y) for step in known])
         first = first_side(np.diff(places, axis=0))
         # as a program begins, its axes are on the way to the other side of their play
         sides = np.where(first == 0, 1.0, first)
-        self.slide, self.beside = self.told[:2] + sides * half, self.told[:2] - sides * half
+        self.slide, self.far_side = self.commanded[:2] + sides * half, self.commanded[:2] - sides * half
         self.unsure: set[int] = set()
         self.stood = False
         self.gone: dict[int, list[Step | None]] = defaultdict(list)
 
     def go(self, step: Step) -> tuple[list[Step], list[Step]]:
         """The steps that a step leads to, and those on which the tool stands."""
-        told, slide = self.told, self.slide
+        commanded, slide = self.commanded, self.slide
         steps = list(self._along_circle(step) if step.centre else self._straight(step))
-        if (np.abs(self.beside - self.slide) > self.near_mm).any():
+        if (np.abs(self.far_side - self.slide) > self.near_mm).any():
             self.unsure.add(step.line)
-        places = [(*slide.tolist(), float(told[2])), *((each.x, each.y, each.z) for each in steps)]
-        is_told = bool((told[:2] != self.told[:2]).any()) or self.stood  # or once more where it stands
-        stay = [is_told and before == after for before, after in pairwise(places)]
+        places = [(*slide.tolist(), float(commanded[2])), *((each.x, each.y, each.z) for each in steps)]
+        is_move = (
+            bool((commanded[:2] != self.commanded[:2]).any()) or self.stood
+        )  # or once more where it stands
+        stay = [is_move and before == after for before, after in pairwise(places)]
         goes, stands = (
             [each for each, stays in zip(steps, stay, strict=True) if stays == which]
             for which in (False, True)
@@ -78,7 +80,7 @@ class _Axes:
         return (before.x, before.y) == (lift.x, lift.y) and abs(lift.z - before.z) <= self.step_mm
 
     def _straight(self, step: Step) -> Iterator[Step]:
-        begin, end = self.told, np.array([step.x, step.y, step.z])
+        begin, end = self.commanded, np.array([step.x, step.y, step.z])
         way = end[:2] - begin[:2]
         after = self._dragged(end)
         starts = set()  # shares of the way from where on an axis follows
@@ -90,20 +92,20 @@ class _Axes:
             place = begin + share * (end - begin)
             x, y = self._dragged(place).tolist()
             yield step._replace(x=x, y=y, z=float(place[2]), blend_mm=0.0, wait_s=0.0, waits=0)
-        self.beside = self._pushed(self.beside, end)
-        self.told, self.slide = end, after
+        self.far_side = self._pushed(self.far_side, end)
+        self.commanded, self.slide = end, after
         yield step._replace(x=float(after[0]), y=float(after[1]))
 
-    def _dragged(self, told: np.ndarray) -> np.ndarray:
+    def _dragged(self, commanded: np.ndarray) -> np.ndarray:
         """(2,) where the slides are then."""
-        return self._pushed(self.slide, told)
+        return self._pushed(self.slide, commanded)
 
-    def _pushed(self, slide: np.ndarray, told: np.ndarray) -> np.ndarray:
-        return np.round(np.clip(slide, told[:2] - self.half, told[:2] + self.half), 9) + 0.0
+    def _pushed(self, slide: np.ndarray, commanded: np.ndarray) -> np.ndarray:
+        return np.round(np.clip(slide, commanded[:2] - self.half, commanded[:2] + self.half), 9) + 0.0
 
     def _along_circle(self, step: Step) -> Iterator[Step]:
         """A circle, where both axes push one way all along it; else straight moves close to where they go."""
-        begin, end = self.told, np.array([step.x, step.y, step.z])
+        begin, end = self.commanded, np.array([step.x, step.y, step.z])
         x, y, turn = step.centre
         first, last = (math.atan2(place[1] - y, place[0] - x) for place in (begin, end))
         sweep = (last - first) * turn % math.tau * turn
@@ -116,10 +118,10 @@ class _Axes:
         is_one_way = (on > low - near_mm).all() and (on < high + near_mm).all()
         pushes = np.abs(begin[:2] - self.slide - np.sign(end - begin)[:2] * self.half) < self.near_mm
         if is_one_way and (pushes | (np.abs(end - begin)[:2] < self.near_mm)).all():
-            aside, self.beside = self.slide - begin[:2], self._pushed(self.beside, end)
-            after = np.round(np.clip(end[:2] + aside, end[:2] - self.half, end[:2] + self.half), 9) + 0.0
-            self.told, self.slide = end, after
-            centre = (x + float(aside[0]), y + float(aside[1]), turn)
+            slack, self.far_side = self.slide - begin[:2], self._pushed(self.far_side, end)
+            after = np.round(np.clip(end[:2] + slack, end[:2] - self.half, end[:2] + self.half), 9) + 0.0
+            self.commanded, self.slide = end, after
+            centre = (x + float(slack[0]), y + float(slack[1]), turn)
             yield step._replace(x=float(after[0]), y=float(after[1]), centre=centre)
             return
         heights = begin[2] + (end[2] - begin[2]) * np.arange(1, count) / count

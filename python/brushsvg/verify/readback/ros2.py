@@ -167,9 +167,11 @@ class _Rows:
         now_s: float,
         turned: np.ndarray | None,
     ) -> None:
-        axis, told = ((), ()) if turned is None else (tuple(-turned[:, 2]), tuple(turned.ravel().tolist()))
+        axis, turned_axes = (
+            ((), ()) if turned is None else (tuple(-turned[:, 2]), tuple(turned.ravel().tolist()))
+        )
         self.out.section().steps.append(Step(number, False, *tip, at_most[0], axis=axis))
-        self.out.acts.append(Act(number, "move", "movel", tip, at_most, (0.0,), told))
+        self.out.acts.append(Act(number, "move", "movel", tip, at_most, (0.0,), turned_axes))
         self.here = self.last = tip
         self.turned = turned
         self.now_s = self.begin_s = now_s
@@ -187,8 +189,8 @@ class _Rows:
         for number, place, its_mm_s, its_turn in self.ways:
             step = np.array(place) - start
             along = float(step @ way) / length if length else 0.0
-            beside = float(np.linalg.norm(step - along * way / length)) if length else math.inf
-            if beside > self.near_mm or not done - self.near_mm <= along <= length + self.near_mm:
+            sideways_mm = float(np.linalg.norm(step - along * way / length)) if length else math.inf
+            if sideways_mm > self.near_mm or not done - self.near_mm <= along <= length + self.near_mm:
                 raise Error(f"line {number}: it is on no straight line to the next pose", code="line-unread")
             a, b, c = (self.upright if each is None else each for each in (self.turned, its_turn, turned))
             share = min(max(along / length, 0.0), 1.0)

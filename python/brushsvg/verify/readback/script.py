@@ -101,7 +101,7 @@ class _Reader:
 
     def _comment(self, number: int, text: str) -> None:
         if self.spelled(self.script.remark + text) in map(self.spelled, self.script.last):
-            return  # which the end of the program is asked for
+            return  # at which the program must end
         acts, before = self.out.acts, len(self.out.acts)
         self.out.comment(number, text)
         if 0 < before < len(acts) and acts[before - 1].text.startswith("here"):
@@ -111,7 +111,7 @@ class _Reader:
         return line.lower() if self.script.any_case else line
 
     def _values(self, number: int, kind: str, line: str, found: re.Match) -> dict[str, float]:
-        """The numbers of a line by name, in mm and s; how it turns the tool is kept aside."""
+        """Return the numbers of a line by their names, in mm and s; its turn of the tool is kept apart."""
         said = {name: text for name, text in found.groupdict().items() if text is not None}
         if kind != "move" or "x" in said:
             self.turned = ()
@@ -131,7 +131,7 @@ class _Reader:
     def _rotation(self, number: int, line: str, values: list[float]) -> tuple:
         turned = self.script.rotation(values)
         if turned is None:
-            raise Error(f"line {number}: {line[:60]!r} tells no rotation of the tool", code="line-unread")
+            raise Error(f"line {number}: {line[:60]!r} has no rotation of the tool", code="line-unread")
         if self.script.turned_deg:  # digits apart it is upright
             off = np.abs(turned - self.script.rotation(list(self.script.turned_deg))).max()
             if off < ROUNDED_RAD:
@@ -143,12 +143,12 @@ class _Reader:
         if not self.script.turned_deg:
             sentence = f"line {number}: {line[:60]!r} tilts the brush, and no line of its header says so"
             raise Error(sentence, code="tool-turned")
-        wanted_deg = np.round(self.script.turned_deg, 6) + 0.0
-        off_deg = np.abs((np.array(found_deg) - wanted_deg + 180.0) % 360.0 - 180.0).max()
+        expected_deg = np.round(self.script.turned_deg, 6) + 0.0
+        off_deg = np.abs((np.array(found_deg) - expected_deg + 180.0) % 360.0 - 180.0).max()
         if off_deg > LEANS_DEG:
-            wanted = ", ".join(f"{value:g}" for value in wanted_deg)
+            expected = ", ".join(f"{value:g}" for value in expected_deg)
             raise Error(
-                f"line {number}: {line[:60]!r} turns the tool {off_deg:.4g} degrees from {wanted}, "
+                f"line {number}: {line[:60]!r} turns the tool {off_deg:.4g} degrees from {expected}, "
                 "which sets the brush upright on the cell's paper",
                 code="tool-turned",
             )

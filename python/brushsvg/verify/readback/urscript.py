@@ -148,8 +148,8 @@ def _rise(part: Numbered) -> list[str]:
     return lines[first : last + 2 * (lines[last : last + 1] == ["zero_ftsensor()"])]
 
 
-def _is_the_same(part: Numbered, wanted: list[str], found: list[str]) -> None:
-    if found != wanted:
+def _is_the_same(part: Numbered, expected: list[str], found: list[str]) -> None:
+    if found != expected:
         raise Error(
             f"line {part[0][0]}: this part begins or ends otherwise than the one before it: a part is missing, "
             "is another job's, or was changed",

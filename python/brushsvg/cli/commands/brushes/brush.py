@@ -9,18 +9,18 @@ from ....errors import Error
 from ....files import read_bytes
 from ....model.describe import LAWS, one_line, page, reach
 from ....model.library import brush_like, brush_names, find_brush, unknown_keys
-from ...console import about, tell, warn
+from ...console import about, print_text, warn
 from ...steps.ask_measurements import ask_measurements, few_depths
-from ...steps.output_places import check_places, suffix_of, tell_list, write
+from ...steps.output_places import check_places, print_list, suffix_of, write
 
 
 def brush_list(_args) -> None:
-    tell_list(brush_names(), lambda name: one_line(find_brush(name)))
+    print_list(brush_names(), lambda name: one_line(find_brush(name)))
 
 
 def brush_show(args) -> None:
     with about(args.input):
-        tell(page(find_brush(args.input)) + "\n")
+        print_text(page(find_brush(args.input)) + "\n")
 
 
 def brush_check(args) -> None:
@@ -28,7 +28,7 @@ def brush_check(args) -> None:
         brush = find_brush(args.input)
         odd = [*unknown_keys(brush), *remarks(brush)]
     warn(args.input, odd)
-    tell(f"{args.input}: brush {brush.name} can be used\n")
+    print_text(f"{args.input}: brush {brush.name} can be used\n")
 
 
 def brush_new(args) -> None:
@@ -57,9 +57,9 @@ def brush_new(args) -> None:
         text = write_brush(brush)
     warn(path, few_depths(args, widths))
     write(args, {path: text}, sources=[path])
-    tell(f"{path}: {reach(brush)}\n")
+    print_text(f"{path}: {reach(brush)}\n")
     if args.like is not None:
-        tell(f"assumed: all of it, as {args.like} has it; brushsvg brush show {path} says how\n")
+        print_text(f"assumed: all of it, as {args.like} has it; brushsvg brush show {path} says how\n")
         return
     assumed = [law for law, _ in LAWS if getattr(brush, law).assumed]
     deepest, measured = brush.depth_range_mm[1], max(depth for depth, _ in widths)
@@ -72,7 +72,7 @@ def brush_new(args) -> None:
         assumed.append(
             f"lags beyond {farthest:g} mm of depth ({brush.lag(deepest):.1f} mm at {deepest:g} mm)"
         )
-    tell(f"assumed: {', '.join(assumed)} and the footprints; brushsvg brush show {path} says how\n")
+    print_text(f"assumed: {', '.join(assumed)} and the footprints; brushsvg brush show {path} says how\n")
 
 
 def brush_plot(args) -> None:

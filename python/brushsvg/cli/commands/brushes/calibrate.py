@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 from ...._core import remarks, write_brush
-from ...console import about, stage, tell, warn
+from ...console import about, print_text, stage, warn
 from ...steps.output_places import check_places, suffix_of, write
 
 
@@ -24,4 +24,4 @@ def calibrate_file(args) -> None:
             files[args.marks_picture] = made.picture()
     warn(args.output, remarks(made.brush))
     write(args, files, more=made.reading, sources=[args.output])
-    tell(made.text)
+    print_text(made.report.text(args.details, args.marks_picture or args.picture or ""))

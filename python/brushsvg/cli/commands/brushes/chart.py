@@ -11,7 +11,7 @@ from ....machine.program import Job
 from ....model.library import find_brush
 from ....text_summary import summarized
 from ...arguments.values import EDGE_NOISE_MM
-from ...console import RefusedError, about, stage, tell
+from ...console import RefusedError, about, print_text, stage
 from ...steps.options import brush_of, exact_cell, settled, typed, warn_of_cell
 from ...steps.output_places import check_places, suffix_of, write
 
@@ -50,6 +50,6 @@ def chart_file(args) -> None:
         files[args.chart] = write_chart(made).encode()
     warn_of_cell(args, cell)
     write(args, files, len(loads.loads), time_written_s(suffix, made.plan, walk, brush, cell))
-    tell(
+    print_text(
         dab_chart_report(made, brush) if args.dabs else chart_report(made, brush, args.noise or EDGE_NOISE_MM)
     )

@@ -1,10 +1,10 @@
-"""brushsvg compare: photographs of a painted job held against what was wanted and predicted."""
+"""brushsvg compare: compare photographs of a painted job with the drawing and the prediction."""
 
 from __future__ import annotations
 
 from ....errors import Error, Notice
 from ....machine.cells.cell_file import parse_cell, write_cell
-from ...console import RefusedError, about, stage, tell, warn
+from ...console import RefusedError, about, print_text, stage, warn
 from ...steps.options import typed
 from ...steps.output_places import check_places, suffix_of, write
 
@@ -21,22 +21,20 @@ def compare_files(args) -> None:
         return
     with about(args.photos[0]):
         job = compared(sheet, args.photos, stage, warn)
-    files = {}
+    files, details = {}, args.details
     if args.output:
-        files[args.output] = job.json if suffix_of(args.output) == ".json" else job.text
+        files[args.output] = job.json if suffix_of(args.output) == ".json" else job.report.text(details)
     if args.picture:
         files[args.picture] = job.picture()
     if args.corrected_cell:
         with about(args.corrected_cell):
             files[args.corrected_cell] = _cell_text(job.cell)
         if not job.is_corrected:
-            sentence = (
-                "nothing is certain to be amiss of the machine or the paper's height: the cell is as it was"
-            )
+            sentence = "no error of the machine or the paper's height is certain: the cell is unchanged"
             warn(args.corrected_cell, [Notice("machine", sentence, code="cell-unchanged")])
     if files:
         write(args, files, sources=sources)
-    tell(job.json if args.json else job.text)
+    print_text(job.json if args.json else job.report.text(details, args.picture or ""))
     if args.at_least is not None and job.overlap < args.at_least:
         sentence = f"the overlap {job.overlap:.3f} is below {args.at_least:g}"
         low = Error(sentence, value=job.overlap, code="overlap-low")
@@ -57,9 +55,9 @@ def _cell_text(cell) -> str:
 
 
 def _repeats(args, sheet) -> None:
-    """How well the same strokes lie on several sheets, or copies of strokes on one."""
+    """Report how well strokes repeat on several sheets, or copies of strokes on one sheet."""
     from ....comparison.photographs import compare_sheets
-    from ....comparison.repeats import as_json, as_text, repeats
+    from ....comparison.repeats import as_json, repeats, report
     from ....comparison.repeats_picture import repeats_png
     from ....jobs.comparing import on_its_page, photographs
 
@@ -71,12 +69,12 @@ def _repeats(args, sheet) -> None:
         warn(path, list(each.notices))
     with about(args.photos[0]):
         found = repeats(sheet.plan, sheets)
-    files = {}
+    files, details, picture = {}, args.details, args.picture or ""
     if args.output:
-        makes = as_json if suffix_of(args.output) == ".json" else as_text
-        files[args.output] = makes(title, found)
+        is_json = suffix_of(args.output) == ".json"
+        files[args.output] = as_json(title, found) if is_json else report(title, found).text(details)
     if args.picture:
         files[args.picture] = repeats_png(title, found, sheets, strokes)
     if files:
         write(args, files, sources=_sources(args))
-    tell(as_json(title, found) if args.json else as_text(title, found))
+    print_text(as_json(title, found) if args.json else report(title, found).text(details, picture))

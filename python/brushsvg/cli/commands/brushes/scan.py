@@ -7,7 +7,7 @@ from ...steps.output_places import check_places, write
 
 
 def scan_file(args) -> None:
-    from ....calibration.chart.photograph import told, write_marks
+    from ....calibration.chart.photograph import describe_reading, write_marks
     from ....calibration.marks.photo_report import read_picture
     from ....jobs.calibrating import read_photographs
 
@@ -17,4 +17,4 @@ def scan_file(args) -> None:
     files = {args.output: write_marks(read)}
     if args.marks_picture:
         files[args.marks_picture] = read_picture(read)
-    write(args, files, more=told(read))
+    write(args, files, more=describe_reading(read))

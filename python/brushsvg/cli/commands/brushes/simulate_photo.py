@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ....files import read_bytes
-from ...console import about, stage, tell, warn
+from ...console import about, print_text, stage, warn
 from ...steps.options import brush_of, settled, typed
 from ...steps.output_places import check_places, suffix_of, write
 from ...steps.prepared import prepare
@@ -43,7 +43,7 @@ def simulate_photo_file(args) -> None:
         made = simulated_photo(page, strokes, studio, args.seed)
     write(args, {args.output: made}, len(strokes), more="simulated")
     if args.studio is None:
-        tell(write_studio(studio))
+        print_text(write_studio(studio))
 
 
 def _chart(path: str):

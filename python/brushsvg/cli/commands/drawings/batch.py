@@ -23,7 +23,7 @@ def batch_files(args) -> None:
         set_in_font = (
             words(args.words, font_of(args.font), args.size or 20.0, args.sheet) if args.words else []
         )
-    chosen = typed(args)
+    chosen = typed(args, input=None)
     with about(args.output):
         done = batch(
             [*drawings(args.inputs), *set_in_font],
@@ -36,12 +36,13 @@ def batch_files(args) -> None:
             parquet=args.parquet,
             progress=stage,
             **{name: getattr(chosen, name) for name in CHOICES if name not in OF_ONE},
+            from_project=chosen.from_project,
         )
     clear_stage()
-    told = [replace(each, where=_where(row, each.where)) for row in done.rows for each in row.notices]
+    notices = [replace(each, where=_where(row, each.where)) for row in done.rows for each in row.notices]
     outdated = "removed: it was made from an earlier version of the drawing"
-    told += [Notice(path, outdated, code="outdated-removed") for path in done.removed]
-    warn(args.output, told)
+    notices += [Notice(path, outdated, code="outdated-removed") for path in done.removed]
+    warn(args.output, notices)
     if not args.quiet:
         say(args.output, _said(done))
     if done.refused:

@@ -7,10 +7,11 @@ import json
 from ....errors import Error
 from ....jobs import outputs, prediction
 from ....jobs.checking import Check, checked
+from ....reporting.report_text import AGAINST
 from ....show.evaluation import report
 from ....text_summary import summarized
 from ....units import clock
-from ...console import RefusedError, about, stage, tell, warn
+from ...console import RefusedError, about, print_text, stage, warn
 from ...steps.options import typed
 from ...steps.output_places import check_places, suffix_of, write
 
@@ -33,23 +34,25 @@ def check_file(args) -> None:
             overlap = None if done.is_foreign else done.figures.total.overlap
             write(args, {args.picture: picture}, len(done.plan.passes), done.time_s, overlap)
     if done.job == "painting":
-        tell(report.as_text(".json" if args.json else ".txt", done.figures))
+        print_text(report.as_text(".json" if args.json else ".txt", done.figures, args.details))
     elif args.json:
-        tell(json.dumps(_in_json(done)) + "\n")
+        print_text(json.dumps(_in_json(done)) + "\n")
     else:
-        tell(f"{args.program}: {_does(done)}; takes about {clock(done.time_s)}\n")
+        print_text(f"{args.program}: {_does(done)}; takes about {clock(done.time_s)}\n")
     if done.problems:
         raise RefusedError(args.program, summarized(list(done.problems)))
     if not args.json:
-        tell(f"{args.program}: {_allowed(done)}\n")
+        print_text(f"{args.program}: {_allowed(done)}\n")
 
 
 def _allowed(done: Check) -> str:
     if done.is_foreign:
         return (
-            f"brushsvg did not write it; with brush {done.work.brush.name} it keeps the limits asked of it: "
+            f"brushsvg did not write it; with brush {done.work.brush.name} it keeps the limits that are checked: "
             "depth, speed, rapid moves while the brush touches, the sheet, the workspace"
         )
+    if done.figures is not None and done.figures.verdict.startswith(AGAINST):
+        return "it breaks no limit, but its paint is not what the drawing needs: read the verdict above"
     is_alone = not done.is_compared and done.job in ("painting", "border")
     return RUNNABLE + ("; it was not compared with a drawing" if is_alone else "")
 
@@ -69,5 +72,5 @@ def _does(done: Check) -> str:
 
 
 def _in_json(done: Check) -> dict:
-    told = {"job": done.job, "time_s": round(done.time_s, 3)}
-    return told | ({"border_mm": done.border_mm} if done.border_mm else {"heights_mm": done.heights_mm})
+    made = {"job": done.job, "time_s": round(done.time_s, 3)}
+    return made | ({"border_mm": done.border_mm} if done.border_mm else {"heights_mm": done.heights_mm})

@@ -15,9 +15,9 @@ from ....jobs.preparation.margin_strokes import expected_in_words
 from ....jobs.work import Work, colours, of_colour
 from ....machine.paint_reload import has_pens, may_pause, pens_changed
 from ....machine.program import Job
-from ....machine.writer import beside, called_programs
+from ....machine.writer import called_programs, path_next_to
 from ....show.evaluation import report
-from ...console import RefusedError, about, stage, tell, warn
+from ...console import RefusedError, about, print_text, stage, warn
 from ...steps.options import settled, typed, warn_of_cell
 from ...steps.output_places import check_places, suffix_of, write
 from ...steps.prepared import prepare
@@ -31,14 +31,14 @@ def convert_file(args) -> None:
     warn(args.input, [notice for notice in work.notices if args.lenient or not notice.damaged])
     parts = _per_colour(args.output, work) if args.per_colour else [(args.output, work)]
     check_places(args, *(path for path, _ in parts))
-    files, overlap = {}, None
+    files, figures = {}, None
     if args.page:
         with about(args.page):
             files[args.page] = outputs.page(suffix_of(args.page), work)
     with about(args.input):
         tries = [_tried(args, path, part) for path, part in parts]
         for (path, _), one in reversed([*zip(parts, tries, strict=True)]):
-            files = {beside(path, name): text for name, text in one.encoded().items()} | files
+            files = {path_next_to(path, name): text for name, text in one.encoded().items()} | files
         shown = tries[0] if len(tries) == 1 else None
         if args.picture or args.report:
             marks = (
@@ -50,7 +50,6 @@ def convert_file(args) -> None:
         if args.report:
             figures = outputs.reported(of_all, marks, work.options.cell)
             files[args.report] = report.as_text(suffix_of(args.report), figures)
-            overlap = figures.total.overlap
     warn(args.input, dict.fromkeys(notice for one in tries for notice in one.remarks()))
     warn_of_cell(args, tries[0].cell)
     warn(args.output, _left_from_before(args.output, files, _called_before(args.output)))
@@ -58,10 +57,17 @@ def convert_file(args) -> None:
     times_s = [one.time_s() for one in tries]
     seconds = None if None in times_s else sum(times_s)
     write(
-        args, files, strokes, seconds, overlap, "" if args.per_colour else _pens(tries[0], args.from_stroke)
+        args,
+        files,
+        strokes,
+        seconds,
+        figures and figures.total.overlap,
+        "" if args.per_colour else _pens(tries[0], args.from_stroke),
     )
+    if figures and not args.quiet:
+        print_text(f"{figures.verdict}\n")
     if not args.quiet and (words := expected_in_words(work)):
-        tell(f"{words}\n")
+        print_text(f"{words}\n")
 
 
 def _per_colour(output: str, work: Work) -> list[tuple[str, Work]]:

@@ -38,6 +38,6 @@ def font_of(name: str) -> bytes:
                 return read_bytes(known)
         sentence = "there is no such file"
         if Path(name).suffix.lower() in ("", ".svg"):
-            sentence += f"; single-line fonts of Inkscape are found by name in {SINGLE_LINE_FONTS}"
+            sentence += f"; the names of Inkscape's single-line fonts are looked up in {SINGLE_LINE_FONTS}"
         raise Error(sentence, file=name, code="file-unreadable")
     return read_bytes(name)

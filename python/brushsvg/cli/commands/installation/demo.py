@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from ...console import stage, tell
+from ...console import print_text, stage
 from ...steps.output_places import check_places, write
 
 WORD = Path(__file__).parents[3] / "data" / "drawings" / "vincent.svg"
@@ -30,7 +30,7 @@ def demo_picture(args) -> None:
     }
     made = comparison_png(works, marks, totals)
     write(args, {args.output: made}, len(works["closed"].strokes or ()), overlap=totals["closed"].overlap)
-    tell(f"{os.path.abspath(args.output)}\n")
+    print_text(f"{os.path.abspath(args.output)}\n")
     if not args.no_open:
         open_picture(args.output)
 

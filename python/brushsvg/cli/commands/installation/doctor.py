@@ -13,7 +13,7 @@ from importlib import metadata
 from pathlib import Path
 
 from ....errors import Notice, command_to_add
-from ...console import RefusedError, tell
+from ...console import RefusedError, print_text
 from ...install_plugin import FOLDER, NOTE, SOURCE, extensions_folder, own_program
 from ..drawings.text import SINGLE_LINE_FONTS
 
@@ -23,6 +23,7 @@ PURPOSE = {  # of each extra that a user may want
     "arm": "the joints of robot arms",
     "cluster": "batch on several computers",
     "parquet": "the table of batch as Parquet",
+    "completion": "commands completed by the shell",
 }
 _WAIT_S = 20  # for Inkscape's version: a Snap starts slowly the first time
 
@@ -40,7 +41,7 @@ def list_installation(args) -> None:
         "Inkscape": _inkscape(),
     }
     for title, rows in sections.items():
-        tell(f"{title}\n" + "".join(f"  {name:<23} {what}\n" for name, what in rows))
+        print_text(f"{title}\n" + "".join(f"  {name:<23} {what}\n" for name, what in rows))
     if unusable:
         what = ", ".join(f"{package} {problem}" for package, problem in unusable.items())
         why = Notice("", f"{what}: install with  {command_to_add(*unusable)}", code="package-missing")

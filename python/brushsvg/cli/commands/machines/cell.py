@@ -24,19 +24,19 @@ from ....machine.posts import POSTS
 from ....machine.program import stations_astray
 from ....machine.writer import whole_program
 from ....model.library import find_brush
-from ...console import RefusedError, about, stage, tell, warn
+from ...console import RefusedError, about, print_text, stage, warn
 from ...steps.options import brush_of, exact_cell, typed
-from ...steps.output_places import check_places, suffix_of, tell_list, write
+from ...steps.output_places import check_places, print_list, suffix_of, write
 from ...steps.prepared import prepare
 
 
 def cell_list(_args) -> None:
-    tell_list(cell_names(), lambda name: find_cell(name).description)
+    print_list(cell_names(), lambda name: find_cell(name).description)
 
 
 def cell_show(args) -> None:
     with about(args.input):
-        tell(cell_page(find_cell(args.input)) + "\n")
+        print_text(cell_page(find_cell(args.input)) + "\n")
 
 
 def cell_check(args) -> None:
@@ -50,7 +50,7 @@ def cell_check(args) -> None:
     if problems := cell_checks.out_of_reach(cell) or stations_astray(find_brush(DEFAULT_BRUSH), cell, frame):
         raise RefusedError(args.input, problems)
     warn(args.input, cell_checks.remarks(cell))
-    tell(f"{args.input}: cell {cell.name} can be used\n")
+    print_text(f"{args.input}: cell {cell.name} can be used\n")
 
 
 def cell_place(args) -> None:
@@ -90,13 +90,13 @@ def cell_place(args) -> None:
         )
         write(args, {args.output: drawn})
     if not problems:
-        tell(f"{args.input}: arm {cell.arm.name} does it all with the paper where it lies\n")
+        print_text(f"{args.input}: arm {cell.arm.name} reaches all of it with the paper where it is\n")
     elif found:
         pose = place.cell_at(cell, found.frame).paper
-        tell(f"{args.input}: the sheet {found.told} would do: {_pose(pose)}\n")
+        print_text(f"{args.input}: the sheet {found.text} would do: {_pose(pose)}\n")
     if there.start_rad is not None:
-        told = ", ".join(f"{math.degrees(angle):.0f}" for angle in there.start_rad)
-        tell(f"{args.input}: it begins with its joints at {told} degrees, or turned by whole turns\n")
+        angles = ", ".join(f"{math.degrees(angle):.0f}" for angle in there.start_rad)
+        print_text(f"{args.input}: it begins with its joints at {angles} degrees, or turned by whole turns\n")
     if problems:
         if not found:
             problems[0] = replace(problems[0], advice=place.NOWHERE)

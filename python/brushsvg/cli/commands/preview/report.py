@@ -11,7 +11,7 @@ from ....read import read_drawing
 from ....read.layout import arrange
 from ....show.evaluation import report
 from ....text_summary import summarized
-from ...console import RefusedError, about, stage, tell
+from ...console import RefusedError, about, print_text, stage
 from ...steps.options import options_of, settled, typed
 from ...steps.output_places import check_places, suffix_of, write
 from ...steps.prepared import look
@@ -36,28 +36,28 @@ def preview_report(args) -> None:
             seconds=looked.seconds(),
             advice=advice,
         )
-        text = report.as_text(".json" if args.json else ".txt", figures)
+        text = report.as_text(".json" if args.json else ".txt", figures, args.details, args.output or "")
         if args.output:
-            picture = outputs.overlap_picture(suffix_of(args.output), work, marks)
+            picture = outputs.overlap_picture(suffix_of(args.output), work, marks, places=figures.places)
             write(args, {args.output: picture}, len(figures.strokes), figures.time_s, figures.total.overlap)
     if work.plan.passes or args.json:
-        tell(text)
+        print_text(text)
     elif advice:
-        tell(advice + "\n")
+        print_text(advice + "\n")
     if work.refused:
         raise RefusedError(args.input, summarized(work.refused))
 
 
 def _all_brushes(args) -> None:
-    # whatever brush the drawing asks for
+    # in place of the brush that the drawing names
     chosen = settled(typed(args, brush=DEFAULT_BRUSH), args.input)
-    asked = [*brush_names(), *(name for name in args.brush or () if name not in brush_names())]
+    names = [*brush_names(), *(name for name in args.brush or () if name not in brush_names())]
     brushes = []
-    for name in asked:
+    for name in names:
         with about(name):
             brushes.append(find_brush(name))
     options = options_of(chosen)
     with about(args.input):
         suits = other_brushes.suits(args.input, options, brushes, stage)
         title = arrange(read_drawing(args.input, reading_of(chosen)), layout_of(chosen)).title
-        tell(report.brushes_json(title, suits) if args.json else report.brushes_text(title, suits))
+        print_text(report.brushes_json(title, suits) if args.json else report.brushes_text(title, suits))

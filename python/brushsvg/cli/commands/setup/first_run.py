@@ -12,7 +12,7 @@ from ...console import about
 from ...steps.options import brush_of, exact_cell, warn_of_cell
 from ...steps.output_places import check_places, suffix_of, write
 
-HEIGHTS_MM = (1.0, -1.0, 0.1)  # as of the command height
+HEIGHTS_MM = (1.0, -1.0, 0.1)  # the defaults of the command height
 
 
 def first_run_file(args) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...console import about, tell
+from ...console import about, print_text
 
 
 def install_plugin(args) -> None:
@@ -11,8 +11,8 @@ def install_plugin(args) -> None:
     if args.remove:
         with about("inkscape"):
             folder = remove_inkscape()
-        tell(f"{folder}: removed; start Inkscape again\n")
+        print_text(f"{folder}: removed; start Inkscape again\n")
         return
     with about("inkscape"):
         folder = install_inkscape(args.zip)
-    tell(f"{folder}: installed; start Inkscape again, and look under Extensions > Brush\n")
+    print_text(f"{folder}: installed; start Inkscape again, and look under Extensions > Brush\n")

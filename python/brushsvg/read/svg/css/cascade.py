@@ -19,7 +19,7 @@ INHERITED = {
     "stroke-opacity": "1",
     "stroke-dasharray": "none",
     "stroke-dashoffset": "0",
-    "fill": "",  # SVG's default, black, that nobody asked for
+    "fill": "",  # SVG's default, black, which the drawing does not set
     "fill-opacity": "1",
     "fill-rule": "nonzero",
     "clip-rule": "nonzero",
@@ -154,9 +154,9 @@ def cascade(
 def unread_own(own: dict[str, str]) -> list[tuple[str, str]]:
     """(property, sentence) for those of an element or group that apply to all it holds and are not read."""
     effects = [name for name in _UNREAD if own[name] != OWN[name]]
-    told = [(name, f"{name} is not read: it counts as {OWN[name] or 'not given'}") for name in effects]
+    unread = [(name, f"{name} is not read: it counts as {OWN[name] or 'not given'}") for name in effects]
     if own["display"] == "contents":
-        told.append(("display", "display: contents is not read: it counts as inline"))
+        unread.append(("display", "display: contents is not read: it counts as inline"))
     if own["opacity"] != "1":
-        told.append(("opacity", "opacity is not read: it counts as 1"))
-    return told
+        unread.append(("opacity", "opacity is not read: it counts as 1"))
+    return unread

@@ -16,15 +16,15 @@ Amount = tuple[float, str]  # of a unit: "" for a number, "px", or one of _RELAT
 
 
 def computed_length(value: str) -> str:
-    """The one length that a function comes to; the value itself where it holds none, or percent beside px."""
-    tokens = _told(tinycss2.parse_component_value_list(value))
+    """Return the one length of a function; the value itself where it holds none, or percent together with px."""
+    tokens = _without_spaces(tinycss2.parse_component_value_list(value))
     if len(tokens) != 1 or tokens[0].type != "function":
         return value
     found = _amount(tokens[0], 0)
     return value if found is None or not math.isfinite(found[0]) else f"{found[0]:.15g}{found[1]}"
 
 
-def _told(tokens: list) -> list:
+def _without_spaces(tokens: list) -> list:
     return [each for each in tokens if each.type != "comment"]
 
 
@@ -43,11 +43,11 @@ def _amount(token, depth: int) -> Amount | None:
     if depth > DEEPEST:
         return None
     if token.type == "() block":
-        return _sum(_told(token.content), depth + 1)
+        return _sum(_without_spaces(token.content), depth + 1)
     if token.type != "function":
         return None
     parts: list[list] = [[]]
-    for each in _told(token.arguments):
+    for each in _without_spaces(token.arguments):
         if each == ",":
             parts.append([])
         else:

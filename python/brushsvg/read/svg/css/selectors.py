@@ -57,7 +57,7 @@ class _Node(ElementWrapper):
 
 
 class Tree:
-    """A document, or what of it is copied, as selectors see it. budget: of the document that it is copied from."""
+    """A document, or the copied part of it, as selectors see it. budget: of the document that it is copied from."""
 
     def __init__(self, root: ET.Element, budget: _Budget | None = None):
         self.budget = budget or _Budget()

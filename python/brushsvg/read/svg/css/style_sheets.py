@@ -22,7 +22,7 @@ _STYLES = (f"{{{_SVG}}}style", "{http://www.w3.org/1999/xhtml}style", "style")
 
 
 class Rules:
-    """The document's style sheets, in order. notices: what of them is not read."""
+    """Return the document's style sheets, in order. notices: receives the parts that are not read."""
 
     def __init__(self, root: ET.Element):
         self.notices: list[Notice] = []
@@ -108,7 +108,7 @@ class Rules:
         return style.get("type", "").strip().lower() in ("", "text/css") and self._for_screens(media)
 
     def _for_screens(self, media) -> bool:
-        """Whether one of the media queries holds on a screen in daylight, or there is none; told if that is open."""
+        """Return whether a media query holds on a screen in daylight, or there is none; reports an open case."""
         queries = [" ".join(query.split()) for query in tinycss2.serialize(media).lower().split(",")]
         known = [_MEDIA.get(query.removeprefix("only ")) for query in queries]
         if True not in known and None in known:

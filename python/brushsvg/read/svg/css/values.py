@@ -122,5 +122,5 @@ def path_text(value: str) -> str | None:
     token, *others = tinycss2.parse_component_value_list(value, skip_comments=True)
     if others or token.type != "function" or token.lower_name != "path":
         return None
-    told = [each for each in token.arguments if each.type not in ("whitespace", "comment")]
-    return told[0].value if len(told) == 1 and told[0].type == "string" else None
+    given = [each for each in token.arguments if each.type not in ("whitespace", "comment")]
+    return given[0].value if len(given) == 1 and given[0].type == "string" else None

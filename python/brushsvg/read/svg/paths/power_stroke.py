@@ -43,7 +43,7 @@ class PowerStroke:
 
 
 def in_effects_of_groups(root: ET.Element) -> set[ET.Element]:
-    """What lies in groups that have path effects themselves: their outlines are made of its outlines."""
+    """Return the elements of groups that have path effects: these work on the elements' outlines."""
     found: set[ET.Element] = set()
     for node in root.iter():
         if (
@@ -58,7 +58,7 @@ def in_effects_of_groups(root: ET.Element) -> set[ET.Element]:
 def drawn_line(
     node: ET.Element, by_id: dict[str, ET.Element], in_group: bool
 ) -> tuple[PowerStroke | None, list[Notice]]:
-    """The line under a PowerStroke, None if there is none, and what of the element's effects is not read.
+    """Return the line under a PowerStroke, None if there is none, and the notices about its unread effects.
 
     in_group: whether a group around it has path effects.
     """
@@ -78,7 +78,9 @@ def drawn_line(
     if in_group or len(effects) > 1:
         others = [kind for kind in kinds if kind != "powerstroke"] + ["of a group"] * in_group
         also = ", ".join(others) or "a second one"
-        return None, [_unread(f"its PowerStroke is not read beside path effect {also}: its outline counts")]
+        return None, [
+            _unread(f"its PowerStroke is not read together with path effect {also}: its outline counts")
+        ]
     (said,) = power
     pairs = [numbers(pair.strip()) for pair in said.get("offset_points", "").split("|")]
     scales = (numbers(said.get(name, "1").strip()) for name in ("scale_width", "interpolator_beta"))
@@ -90,20 +92,20 @@ def drawn_line(
     offsets = np.array(pairs) * [1.0, scale[0]]
     if said.get("sort_points", "true") == "true":
         offsets = offsets[np.argsort(offsets[:, 0], kind="stable")]
-    told = []
+    notices = []
     interpolator = said.get("interpolator_type", "Linear")
     if interpolator not in _INTERPOLATORS:
         how = re.sub("[^A-Za-z]", "", interpolator)[:30]
-        told.append(_unread(f"the width of its PowerStroke is interpolated {how}, read as Linear"))
+        notices.append(_unread(f"the width of its PowerStroke is interpolated {how}, read as Linear"))
     caps = [said.get(f"{end}_linecap_type", "round") for end in ("start", "end")]
     for cap in dict.fromkeys(caps):
         if cap not in _CAPS:
             how = re.sub("[^A-Za-z_]", "", cap)[:30]
-            told.append(
+            notices.append(
                 _unread(f"the cap {how} of its PowerStroke is not read: its ends are as the brush makes them")
             )
     tapers = (caps[0] == "zerowidth", caps[1] == "zerowidth")
-    return PowerStroke(original, offsets, interpolator, beta[0], tapers), told
+    return PowerStroke(original, offsets, interpolator, beta[0], tapers), notices
 
 
 def _unread(sentence: str) -> Notice:

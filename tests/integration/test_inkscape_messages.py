@@ -1,4 +1,4 @@
-"""What Inkscape's user is told: in the words of dialogs, and without a dialog that nobody can close."""
+"""Notices for Inkscape's user: in the words of dialogs, and without a dialog that nobody can close."""
 
 import re
 
@@ -12,7 +12,7 @@ TOO_WIDE = path("M20 30 H90", width="30")
 
 
 @pytest.mark.parametrize(
-    ("drawing", "action", "suffix", "told"),
+    ("drawing", "action", "suffix", "reported"),
     [
         (
             FILLED,
@@ -31,12 +31,12 @@ TOO_WIDE = path("M20 30 H90", width="30")
     ],
 )
 def test_in_batches_inkscape_ends_and_what_it_would_show_is_on_stderr(
-    plugin, tmp_path, drawing, action, suffix, told
+    plugin, tmp_path, drawing, action, suffix, reported
 ):
     """A dialog would stay until the time is up."""
     source = tmp_path / "drawing.svg"
     source.write_text(drawing)
-    assert told in plugin.batch(source, tmp_path / f"out.{suffix}", action).stderr
+    assert reported in plugin.batch(source, tmp_path / f"out.{suffix}", action).stderr
 
 
 def test_without_a_display_warnings_are_on_stderr_too(plugin, tmp_path):
@@ -51,7 +51,7 @@ def document(setting: str) -> str:
     return SOUND.replace("<svg ", f"<svg {setting} ")
 
 
-ADVICE = {  # by the code of what brushsvg tells: a script of ours and a drawing that are told so
+ADVICE = {  # by the code of the notice: a script of ours and a drawing that give it
     "background": (
         "save",
         SOUND.replace("<path", '<rect x="-1" y="-1" width="900" height="900" fill="#fff"/><path', 1),
@@ -75,7 +75,7 @@ ADVICE = {  # by the code of what brushsvg tells: a script of ours and a drawing
 @pytest.fixture
 def in_dialogs(monkeypatch):
     monkeypatch.syspath_prepend(SOURCE)
-    from brushsvg_tell import IN_DIALOGS
+    from brushsvg_dialogs import IN_DIALOGS
 
     return IN_DIALOGS
 
@@ -86,11 +86,11 @@ def test_advice_is_worded_for_who_has_dialogs(plugin, tmp_path, in_dialogs, code
     source = tmp_path / "drawing.svg"
     source.write_text(text)
     done = plugin.script(script, source, *words)
-    told = " ".join(
+    reported = " ".join(
         re.sub("<[^>]*>", " ", (done.stdout + done.stderr).decode()).split()
     )  # a check breaks its lines
-    assert in_dialogs[code] in told.replace("&gt;", ">")
-    assert "--" not in told.replace("brushsvg cell new --taught, in a terminal", ""), "a flag"
+    assert in_dialogs[code] in reported.replace("&gt;", ">")
+    assert "--" not in reported.replace("brushsvg cell new --taught, in a terminal", ""), "a flag"
 
 
 @pytest.mark.parametrize(
@@ -105,19 +105,19 @@ def test_advice_is_worded_for_who_has_dialogs(plugin, tmp_path, in_dialogs, code
 )
 def test_no_flag_is_shown_in_a_dialog(monkeypatch, sentence, advice, shown):
     monkeypatch.syspath_prepend(SOURCE)
-    from brushsvg_tell import in_dialogs
+    from brushsvg_dialogs import in_dialogs
 
     notice = {"sentence": sentence, "advice": advice, "code": "any", "damaged": False, "refused": False}
     assert in_dialogs(notice) == shown
 
 
-def test_damage_is_to_be_mended_whatever_its_code(plugin, tmp_path):
+def test_damage_is_to_be_corrected_for_any_code(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(path("M20 30 H90 V"))
     assert b"; repair or delete it, or draw it again" in plugin.script("save", source).stderr
 
 
-def test_a_cell_is_advised_by_name(plugin, tmp_path):
+def test_a_cell_is_advised_with_its_name(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(document('data-brushsvg-cell="linuxcnc-3axis"'))
     done = plugin.script("save", source, "--format=script")

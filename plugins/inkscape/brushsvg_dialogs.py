@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What people are told: in the words of Inkscape's dialogs, and without a dialog where nobody is there to close it."""
+"""Messages for people: in the words of Inkscape's dialogs, and without a dialog where nobody can close it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import re
 import sys
 
 UNATTENDED = (b"--batch-process", b"--export-", b"-o")  # with these Inkscape opens no window that stays
-IN_DIALOGS = {  # by the code of what brushsvg tells: what is done in Inkscape where it advises those who type
+IN_DIALOGS = {  # by the code of the notice: what to do in Inkscape in place of its advice for those who type
     "background": "raise it above another object to paint it",
     "brush-unknown": "choose another one in Brush settings, or a brush file in this dialog",
     "cell-unknown": "choose another one in Brush settings",
@@ -23,11 +23,11 @@ IN_DIALOGS = {  # by the code of what brushsvg tells: what is done in Inkscape w
     "to strokes",
 }
 FLAG = re.compile(r"(?:^|[\s(`])(?:brushsvg [a-z]+ [^;]*)?--[a-z]")
-REPAIR = "repair or delete it, or draw it again"  # what is damaged, whatever its code
+REPAIR = "repair or delete it, or draw it again"  # for damage of any code
 
 
 def in_dialogs(notice: dict) -> str:
-    """What brushsvg tells, with its advice worded for who has dialogs and no flags."""
+    """The text of a notice, with its advice worded for who has dialogs and no flags."""
     sentence, advice = notice["sentence"], notice["advice"]
     done = IN_DIALOGS.get(notice["code"], REPAIR if notice["damaged"] else "") if advice else ""
     if done:
@@ -38,7 +38,7 @@ def in_dialogs(notice: dict) -> str:
     return "; ".join([*(clauses or [first]), *([done] if done else [])])
 
 
-def tell(text: str) -> None:
+def show_message(text: str) -> None:
     """Show sentences in Inkscape's dialog, which it makes of stderr and which waits for somebody to close it.
 
     Where nobody will, they go where Inkscape's own warnings go.

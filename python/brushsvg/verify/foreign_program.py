@@ -24,7 +24,7 @@ Lift = Callable[[float | None], float]
 _ROOM = dict.fromkeys(
     ("left", "lower"), "its zero is the sheet's lower left corner: move the program's lines"
 )
-_ROOM |= dict.fromkeys(("right", "upper"), "tell the sheet's size with --sheet WxH")
+_ROOM |= dict.fromkeys(("right", "upper"), "give the sheet's size with --sheet WxH")
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def foreign_program(text: str, brush, cell: Cell, sheet_mm=None, paper_z_mm: flo
 
 
 def _assumed(some: list[Way]) -> tuple[Notice, ...]:
-    if some[0].unit_told:
+    if some[0].unit_known:
         return ()
     sentence = "neither G20 nor G21 stands before it: its numbers count as millimetres"
     return (Notice(f"line {some[0].line}", sentence, code="unit-assumed"),)
@@ -151,9 +151,9 @@ def _touches(some: list[Way], cell: Cell) -> tuple[list, list[Notice]]:
                 careless.append(Notice(f"line {way.line}", sentence, code="rapid-too-low"))
             elif not way.rapid and not np.array_equal(start[:2], end[:2]):
                 if way.speed_mm_s <= 0:
-                    told = f"a feed of {60 * way.speed_mm_s:g} mm/min while the brush touches"
+                    feed = f"a feed of {60 * way.speed_mm_s:g} mm/min while the brush touches"
                     raise Error(
-                        f"line {way.line}: {told}: an F above 0 must stand before it",
+                        f"line {way.line}: {feed}: an F above 0 must stand before it",
                         code="speed-out-of-range",
                     )
                 speeds.append(way.speed_mm_s)
@@ -164,7 +164,7 @@ def _touches(some: list[Way], cell: Cell) -> tuple[list, list[Notice]]:
 
 
 def _below(start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:
-    """The ends of what of a straight way is not above the paper."""
+    """Return the ends of the part of a straight way that is not above the paper."""
     rise = end[2] - start[2]
 
     def at_paper() -> np.ndarray:

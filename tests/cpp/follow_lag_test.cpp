@@ -1,4 +1,4 @@
-#include "marks_way.hpp"
+#include "marks/follow_lag.hpp"
 
 #include <doctest/doctest.h>
 
@@ -32,36 +32,34 @@ LagLaw<double> law_of(const Brush& brush) {
 
 }  // namespace
 
-TEST_CASE("the brush itself on its marks' way does what the simulator says at every row") {
+TEST_CASE("the brush itself, followed along its marks, is where the simulator has it at every row") {
     const Brush brush = shipped("round-6");
     const Pass pass = pass_with_arc();
     const PassMarks marks = simulate(pass, brush, 0.02, true, true);
-    const ManyStates again = follow_many(way_of(pass, marks), {law_of(brush), law_of(brush)});
-    REQUIRE(again.taut.rows() == marks.contact_mm.rows());
-    REQUIRE((way_of(pass, marks).turn_rad != 0.0).count() > 5);
+    const FollowedRows again = follow_lag(pass, marks, law_of(brush));
+    REQUIRE(again.contact_mm.rows() == marks.contact_mm.rows());
+    CHECK((again.contact_mm - marks.contact_mm).cwiseAbs().maxCoeff() < 1e-9);
     for (Index i = 0; i < marks.contact_mm.rows(); ++i) {
         CAPTURE(i);
-        CHECK(std::abs(again.contact_x_mm(i, 1) - marks.contact_mm(i, 0)) < 1e-9);
-        CHECK(std::abs(again.contact_y_mm(i, 1) - marks.contact_mm(i, 1)) < 1e-9);
-        CHECK(std::abs(again.heading_x(i, 1) - std::cos(marks.heading_rad[std::size_t(i)])) < 1e-9);
-        CHECK(std::abs(again.heading_y(i, 1) - std::sin(marks.heading_rad[std::size_t(i)])) < 1e-9);
+        CHECK(std::abs(again.heading(i, 0) - std::cos(marks.heading_rad[std::size_t(i)])) < 1e-9);
+        CHECK(std::abs(again.heading(i, 1) - std::sin(marks.heading_rad[std::size_t(i)])) < 1e-9);
     }
 }
 
-TEST_CASE("another lag on these marks' way is where its own simulation has it at the poses") {
+TEST_CASE("another lag, followed along these marks, is where its own simulation has it at the poses") {
     const Brush brush = shipped("round-6");
     Brush other = brush;
     for (double& c : other.lag.coefficients) c *= 1.2;
     const Pass pass = pass_with_arc();
     const PassMarks marks = simulate(pass, brush, 0.02, true, true), own = simulate(pass, other, 0.02, true, true);
-    const ManyStates led = follow_many(way_of(pass, marks), {law_of(other)});
+    const FollowedRows followed = follow_lag(pass, marks, law_of(other));
     int compared = 0;
     for (std::size_t i = 0; i < marks.pose.size(); ++i)
         for (std::size_t k = 0; k < own.pose.size(); ++k) {
             if (marks.pose[i] != std::floor(marks.pose[i]) || own.pose[k] != marks.pose[i]) continue;
             if (own.depth_mm[k] != marks.depth_mm[i]) continue;
-            CHECK(std::abs(led.contact_x_mm(Index(i), 0) - own.contact_mm(Index(k), 0)) < 1e-9);
-            CHECK(std::abs(led.contact_y_mm(Index(i), 0) - own.contact_mm(Index(k), 1)) < 1e-9);
+            CHECK(std::abs(followed.contact_mm(Index(i), 0) - own.contact_mm(Index(k), 0)) < 1e-9);
+            CHECK(std::abs(followed.contact_mm(Index(i), 1) - own.contact_mm(Index(k), 1)) < 1e-9);
             ++compared;
         }
     CHECK(compared >= 9);
@@ -71,13 +69,15 @@ TEST_CASE("marks that are not those of the pass") {
     const Brush brush = shipped("round-6");
     Pass pass = pass_with_arc();
     PassMarks marks = simulate(pass, brush, 0.02, true, true);
+    const LagLaw<double> law = law_of(brush), shallow = make_law(pieces(brush.lag, 0.0, 3.5));
+    CHECK(agrees(refusal([&] { follow_lag(pass, marks, shallow); }), "depth-out-of-range", "s"));
     marks.pose.back() = 99.0;
-    CHECK(agrees(refusal([&] { way_of(pass, marks); }), "not-ascending", "s"));
+    CHECK(agrees(refusal([&] { follow_lag(pass, marks, law); }), "not-ascending", "s"));
     marks.depth_mm.pop_back();
-    CHECK(agrees(refusal([&] { way_of(pass, marks); }), "sizes-differ", "s"));
+    CHECK(agrees(refusal([&] { follow_lag(pass, marks, law); }), "sizes-differ", "s"));
     pass.arcs.clear();
     pass.tool_axes.setZero(pass.poses_mm.rows(), 3);
     pass.tool_axes.col(2).setConstant(std::sqrt(0.99));
     pass.tool_axes.col(0).setConstant(0.1);
-    CHECK(agrees(refusal([&] { way_of(pass, marks); }), "tilt-unsupported", "s"));
+    CHECK(agrees(refusal([&] { follow_lag(pass, marks, law); }), "tilt-unsupported", "s"));
 }

@@ -1,0 +1,120 @@
+"""brushsvg init: four questions, and the project file with their answers."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable
+
+from ....errors import Error, Notice
+from ....jobs.options import DEFAULT_BRUSH
+from ....jobs.project import NAME, write_project
+from ....machine.cells.cell_file import DEFAULT_CELL, cell_names, find_cell
+from ....machine.posts import POSTS
+from ....model.library import brush_names, find_brush
+from ...arguments import values
+from ...console import RefusedError, about, print_text, say
+from ...steps.ask_measurements import can_answer
+from ...steps.output_places import check_places, write
+
+NOT_MEASURED = "none"
+PAPER = "a4"
+
+
+def init_project(args) -> None:
+    """Ask for what no flag gives, and write the file. Without a terminal, what no flag gives has its default."""
+    check_places(args, args.output, sources=[args.output])
+    folder = os.path.dirname(os.path.abspath(args.output))
+    with about(""):  # errors name the brush or cell
+        cell = _cell(args.cell, folder) if args.cell else None
+        brush = _brush(args.brush, folder) if args.brush else None
+    paper, speed = args.sheet, args.paint_speed
+    if can_answer(args):
+        if cell is None:
+            for line in _machines():
+                say(line)
+            cell = _ask(f"Machine, a name or a cell.toml [{DEFAULT_CELL}]: ", DEFAULT_CELL, folder, _cell)
+        if args.brush is None:
+            say(f"Brushes: {', '.join(brush_names())}, or your own brush.json")
+            brush = _ask(
+                f"Brush, a name, a file, or {NOT_MEASURED} if it is not measured yet [{NOT_MEASURED}]: ",
+                NOT_MEASURED,
+                folder,
+                _brush,
+            )
+        if paper is None:
+            say(f"Papers: {', '.join(values.SHEETS_MM)}, or a size such as 300x200mm")
+            paper = _ask(f"Paper [{PAPER}]: ", PAPER, folder, _paper)
+        if speed is None:
+            speed = _ask("Painting speed in mm/s [as each drawing says, or 20]: ", "", folder, _speed)
+    text = write_project(brush or None, cell, paper or PAPER, speed)
+    write(args, {args.output: text}, sources=[args.output])
+    if not args.quiet:
+        print_text("".join(f"{line}\n" for line in _next(brush)))
+
+
+def _machines() -> list[str]:
+    """Return a line of shipped cells for each robot language."""
+    by_title: dict[str, list[str]] = {}
+    for name in cell_names():
+        by_title.setdefault(POSTS[find_cell(name).language].title, []).append(name)
+    return [f"{title}: {', '.join(names)}" for title, names in by_title.items()]
+
+
+def _ask(question: str, default: str, folder: str, read: Callable[[str, str], object]):
+    """Ask until the answer can be read; an empty answer is the default. Refuse where the answers end."""
+    while True:
+        sys.stderr.write(question)
+        sys.stderr.flush()
+        answer = sys.stdin.readline()
+        if not answer:
+            sentence = "the answers ended. Answer all questions, or give --cell, --brush, --sheet and --speed"
+            raise RefusedError("init", [Notice("", sentence, code="answer-missing")])
+        try:
+            return read(answer.strip() or default, folder)
+        except (Error, argparse.ArgumentTypeError) as problem:
+            say(str(problem))
+
+
+def _cell(text: str, folder: str) -> str:
+    find_cell(text)
+    return text if text in cell_names() else _from(folder, text)
+
+
+def _brush(text: str, folder: str) -> str:
+    """Return "" for a brush that is not measured yet."""
+    if text == NOT_MEASURED:
+        return ""
+    find_brush(text)
+    return text if text in brush_names() else _from(folder, text)
+
+
+def _paper(text: str, _folder: str) -> str:
+    values.sheet(text)
+    return text
+
+
+def _speed(text: str, _folder: str) -> float | None:
+    return values.paint_speed(text.replace(",", ".")) if text else None
+
+
+def _from(folder: str, path: str) -> str:
+    """Return the path as a file in this folder has to write it."""
+    try:
+        relative = os.path.relpath(os.path.abspath(path), folder)
+    except ValueError:  # on another drive of Windows
+        return os.path.abspath(path)
+    return relative.replace(os.sep, "/")
+
+
+def _next(brush: str | None) -> list[str]:
+    """Return what to do next."""
+    lines = [f"Commands use {NAME} for every drawing in this folder; edit it as you like."]
+    if not brush:
+        lines += [
+            f"The brush is not set: commands use {DEFAULT_BRUSH}. Measure yours with "
+            "`brushsvg brush new -o mine.json`,",
+            f'then write brush = "mine.json" into {NAME}.',
+        ]
+    return [*lines, "Next: brushsvg convert --help. With --explain, it prints where each setting comes from."]

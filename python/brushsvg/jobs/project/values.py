@@ -1,0 +1,122 @@
+"""Values of a project file, read as the options of the command line read them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+
+from ...errors import Error, need, need_number
+from ...suggestions import did_you_mean
+from ...units import length_mm, number, paper_mm, size_mm
+
+
+def read_value(choice: str, value: object, key: str) -> object:
+    """Read a value as the option of the command line does. Error with the key."""
+    from ..choices import ONE_OF
+
+    try:
+        if choice == "join":
+            need(value, bool, f"true or false, which {key} is")
+            return value
+        if choice in ("layer", "skip_region", "skip_comment"):
+            need(value, list, f"a list of texts, which {key} is")
+            return [_read(choice, _as_typed(each, key), key) for each in value]
+        text = _as_typed(value, key)
+        if choice in ONE_OF and text not in ONE_OF[choice]:
+            known = ONE_OF[choice]
+            sentence = (
+                f"{key} {text[:40]!r} is not known{did_you_mean(text, known)} Known are {', '.join(known)}"
+            )
+            raise Error(sentence, code="choice-unknown")
+        return _read(choice, text, key)
+    except Error as refusal:
+        sentence = refusal.sentence if key in refusal.sentence else f"{key}: {refusal.sentence}"
+        raise Error(
+            sentence, key, refusal.value, refusal.range, code=refusal.code, advice=refusal.advice
+        ) from None
+
+
+def _as_typed(value: object, key: str) -> str:
+    """Return the text that a user would type for a value of TOML."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return str(value)[:400]
+    need(value, str, f"a text or a number, which {key} is")
+    return str(value)
+
+
+def _read(choice: str, text: str, key: str) -> object:
+    from ..choices import RANGES, colour_of
+
+    readers: dict[str, Callable[[str], object]] = {
+        "sheet": paper_mm,
+        "fit": size_mm,
+        "origin": lambda text: _lengths(text, 2, "a point, as 20,15"),
+        "skip_region": _region,
+        "colour": colour_of,
+        "scale": _factor,
+        "paint_speed": number,
+    } | dict.fromkeys(("width", "lag", "tolerance", "z_offset", "paper_z"), length_mm)
+    found = readers.get(choice, _words)(text)
+    if choice in RANGES:
+        return need_number(found, key, *RANGES[choice])
+    return found
+
+
+def _words(text: str) -> str:
+    if not text.strip():
+        raise Error("the text is empty", code="not-text")
+    return text
+
+
+def _factor(text: str) -> float:
+    return number(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+
+
+def _lengths(text: str, count: int, shape: str) -> tuple[float, ...]:
+    parts = text.split(",")
+    if len(parts) != count:
+        raise Error(f"{text[:24]!r} is not {shape}", code="wrong-type")
+    return tuple(need_number(length_mm(part), "a number of it", -1e6, 1e6) for part in parts)
+
+
+def _region(text: str) -> tuple[float, ...]:
+    x0, y0, x1, y1 = _lengths(text, 4, "a region, as 0,0,30,20")
+    return min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
+
+
+def name_or_path(kind: str, text: str, folder: str) -> str:
+    """Return a shipped name as it is, and a file with the folder of the project. Error if there is neither."""
+    from ...machine.cells.cell_file import cell_names
+    from ...model.library import brush_names
+
+    names, suffix = (brush_names(), ".json") if kind == "brush" else (cell_names(), ".toml")
+    if text in names:
+        return text
+    if text.endswith(suffix) or "/" in text or os.sep in text:
+        path = os.path.join(folder, os.path.expanduser(text))
+        if _is_file(path):
+            return path
+        raise Error(
+            f"{kind} {text[:80]!r} is a file that does not exist; looked for {path}",
+            where=kind,
+            code="file-unreadable",
+            advice="correct the path, which counts from the folder of the project file",
+        )
+    own = f"{text}{suffix}"
+    advice = (
+        f"{own} is in this folder: write it with its ending" if _is_file(os.path.join(folder, own)) else ""
+    )
+    raise Error(
+        f"{kind} {text[:80]!r} is not known{did_you_mean(text, names)} Known are {', '.join(names)}, and any file that "
+        f"ends in {suffix}",
+        where=kind,
+        code=f"{kind}-unknown",
+        advice=advice,
+    )
+
+
+def _is_file(path: str) -> bool:
+    try:
+        return os.path.isfile(path)
+    except ValueError:  # a name that no file can have
+        return False

@@ -1,0 +1,146 @@
+"""Find places for labels in a picture: they cover no marks and no other labels, and stay inside."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+GAP = 0.3  # label heights, between an anchor and its label
+RINGS = (1.0, 2.0, 4.0, 8.0, 16.0)  # label heights from the anchor: within each, longer texts are tried first
+DIRECTIONS = 16  # around an anchor
+LEADER_SAMPLES = 16  # places along a leader that must be off other labels
+LABEL_WEIGHT = 1e3  # a label on another label is worse than one on marks
+UP_RIGHT = (1.0, -1.0)
+
+
+@dataclass(frozen=True)
+class PlacedLabel:
+    """A label's box, in the units of the picture, y down.
+
+    choice: which of the sizes it has. leader: a line from the anchor to the box, None next to the anchor. is_free: it
+    covers neither marks nor other labels, and its leader crosses none; covers_labels: it covers other labels.
+    """
+
+    left: float
+    top: float
+    width: float
+    height: float
+    choice: int
+    leader: tuple[tuple[float, float], tuple[float, float]] | None
+    is_free: bool
+    covers_labels: bool
+
+    @property
+    def box(self) -> tuple[float, float, float, float]:
+        """Return left, top, right, bottom."""
+        return self.left, self.top, self.left + self.width, self.top + self.height
+
+
+class LabelSpace:
+    """The room for labels in one picture.
+
+    marks: (rows, columns) of booleans, where labels would cover something. cell: the side of one of them in the units
+    of the picture, pixels or millimetres. bounds: left, top, right, bottom that labels stay in, by default all of
+    marks. anchors: (n, 2) places that labels keep free, with a disc of radius around them.
+    """
+
+    def __init__(
+        self, marks: np.ndarray, cell: float = 1.0, bounds=None, anchors: Sequence = (), radius: float = 0.0
+    ):
+        rows, columns = marks.shape
+        self.cell, self.radius = cell, radius
+        self.bounds = np.array(bounds if bounds is not None else (0, 0, columns * cell, rows * cell), float)
+        self._sums = np.zeros((rows + 1, columns + 1), np.int64)
+        self._sums[1:, 1:] = np.asarray(marks, bool).cumsum(axis=0, dtype=np.int32).cumsum(axis=1)
+        self._anchors = np.array(anchors, float).reshape(-1, 2)
+        self._boxes, self._leaders = np.zeros((0, 4)), np.zeros((0, 2))
+
+    def place(
+        self, anchor, sizes, towards=UP_RIGHT, reach: float = math.inf, may_cover: bool = True
+    ) -> PlacedLabel | None:
+        """Place one label: at the first candidate that is free, else where it covers least.
+
+        anchor: (x, y). sizes: (width, height) of the texts to choose from, the best first: one near the anchor is
+        better than a longer one far from it. towards: direction of the first candidate. reach: largest distance of the
+        label from its anchor. may_cover: else None where it would cover other labels.
+        """
+        anchor = np.asarray(anchor, float)
+        best = None
+        for limit in dict.fromkeys(min(reach, times * sizes[0][1]) for times in (*RINGS, math.inf)):
+            for choice, size in enumerate(sizes):
+                boxes = self._candidates(anchor, np.asarray(size, float), towards, limit)
+                cost, on_labels = self._cost(boxes, anchor)
+                first = int(cost.argmin())
+                if best is None or cost[first] < best[0]:
+                    best = cost[first], boxes[first], choice, on_labels[first]
+                if cost[first] == 0:
+                    break
+            if best[0] == 0:
+                break
+        cost, box, choice, on_labels = best
+        if on_labels > 0 and not may_cover:
+            return None
+        left, top, right, bottom = box.tolist()
+        leader = self._leader(anchor, box)
+        self._boxes = np.vstack([self._boxes, box])
+        if leader:
+            along = np.linspace(*leader, LEADER_SAMPLES)
+            self._leaders = np.vstack([self._leaders, along])
+        return PlacedLabel(left, top, right - left, bottom - top, choice, leader, cost == 0, on_labels > 0)
+
+    def _candidates(self, anchor, size, towards, reach: float) -> np.ndarray:
+        """(n, 4) boxes around the anchor, in rings of growing distance, moved into the picture."""
+        low, high = self.bounds[:2], self.bounds[2:]
+        farthest = min(reach, float(np.hypot(*(high - low))))
+        nearest = self.radius + GAP * size[1]
+        away = nearest + np.arange(0.0, max(farthest - nearest, 0.0) + 1e-9, size[1] / 2)
+        turns = 2 * np.pi / DIRECTIONS * np.array([(k + 1) // 2 * (-1) ** k for k in range(DIRECTIONS)])
+        angles = math.atan2(towards[1], towards[0]) + turns
+        aim = np.column_stack([np.cos(angles), np.sin(angles)])
+        aim /= np.abs(aim).max(axis=1, keepdims=True)  # on a square: boxes touch the same distance
+        middles = anchor + aim * size / 2 + (aim / np.hypot(*aim.T)[:, None]) * away[:, None, None]
+        corners = middles.reshape(-1, 2) - size / 2
+        corners = np.clip(corners, low, np.maximum(high - size, low))
+        return np.hstack([corners, corners + size])
+
+    def _cost(self, boxes: np.ndarray, anchor) -> tuple[np.ndarray, np.ndarray]:
+        """What each box covers: 0 for a free one; and the area of labels in it."""
+        rows, columns = np.array(self._sums.shape) - 1
+        left, top = np.floor(boxes[:, :2] / self.cell + 1e-9).astype(int).clip(0, (columns, rows)).T
+        right, bottom = np.ceil(boxes[:, 2:] / self.cell - 1e-9).astype(int).clip(0, (columns, rows)).T
+        sums = self._sums
+        marks = sums[bottom, right] - sums[top, right] - sums[bottom, left] + sums[top, left]
+        width = np.minimum(boxes[:, None, 2], self._boxes[:, 2]) - np.maximum(
+            boxes[:, None, 0], self._boxes[:, 0]
+        )
+        height = np.minimum(boxes[:, None, 3], self._boxes[:, 3]) - np.maximum(
+            boxes[:, None, 1], self._boxes[:, 1]
+        )
+        labels = (np.maximum(width, 0) * np.maximum(height, 0)).sum(axis=1)
+        anchors = np.vstack([self._anchors, anchor])
+        nearest = np.clip(anchors, boxes[:, None, :2], boxes[:, None, 2:])
+        covered = (np.hypot(*np.moveaxis(nearest - anchors, -1, 0)) <= self.radius).sum(axis=1)
+        areas = (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
+        covered += _inside(self._leaders, boxes).any(axis=0)
+        ends = np.clip(anchor, boxes[:, :2], boxes[:, 2:])
+        leaders = np.linspace(np.broadcast_to(anchor, ends.shape), ends, LEADER_SAMPLES)
+        covered += _inside(leaders[:, :, None], self._boxes).any(axis=(0, 2))
+        return marks * self.cell**2 + LABEL_WEIGHT * labels + covered * areas, labels
+
+    def _leader(self, anchor, box):
+        """A line from an anchor to its label, None where they are next to each other."""
+        end = np.clip(anchor, box[:2], box[2:])
+        away = float(np.hypot(*(end - anchor)))
+        if away <= self.radius + 2 * GAP * (box[3] - box[1]):
+            return None
+        start = anchor + (end - anchor) * self.radius / away
+        return tuple(start.tolist()), tuple(end.tolist())
+
+
+def _inside(points, boxes) -> np.ndarray:
+    """Which points (..., 2) are in which boxes (n, 4): (..., n)."""
+    at = points[..., None, :] if points.ndim == 2 else points
+    return ((at > boxes[:, :2]) & (at < boxes[:, 2:])).all(axis=-1)

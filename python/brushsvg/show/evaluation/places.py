@@ -1,0 +1,97 @@
+"""Find the places where the predicted paint differs most from the drawing, why, and what helps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ... import _core
+from ...reporting.report_text import place_line
+from .error_causes import Cause, remedy
+
+PX_PER_MM, MOST_PX = 10.0, 8e6  # of the pixels that are compared
+AROUND_MM = 10.0  # of the drawing, where its paint can be
+ROUGH_MM = 0.05  # of a line along a stroke
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place where paint and drawing differ, by its number in the report and in the picture.
+
+    place_mm: (x, y). missing_mm2: target without paint; outside_mm2: paint outside the target. tracking_error_mm: the
+    largest of a drawn line, where it is above the tolerance; reason, code: see error_causes; remedy: what helps, "" for
+    nothing; size: all of these sizes in words.
+    """
+
+    number: int
+    stroke: str
+    place_mm: tuple[float, float]
+    missing_mm2: float
+    outside_mm2: float
+    tracking_error_mm: float | None
+    reason: str
+    code: str
+    remedy: str
+    size: str
+
+    @property
+    def line(self) -> str:
+        return place_line(self.number, self.stroke, self.place_mm, self.size, self.reason, self.remedy)
+
+    def as_json(self) -> dict:
+        keys = (
+            "number",
+            "stroke",
+            "missing_mm2",
+            "outside_mm2",
+            "tracking_error_mm",
+            "reason",
+            "code",
+            "remedy",
+        )
+        return {key: getattr(self, key) for key in keys} | {"place_mm": list(self.place_mm)}
+
+
+def find_places(
+    marks: _core.Marks,
+    brush: _core.Brush,
+    drawn: Sequence[_core.Stroke],
+    why: Callable[[str, object], tuple[Cause, float | None]],
+) -> tuple[Place, ...]:
+    """Return the five worst places, the largest first.
+
+    drawn: strokes that the marks should be. why: of a stroke's id and a worst_areas.WorstArea, the cause and the
+    tracking error [mm].
+    """
+    if not drawn or not marks.passes:
+        return ()
+    from ...reporting.worst_areas import worst_areas  # brings OpenCV, which a verdict does not need
+
+    lines = [_core.flatten(stroke, ROUGH_MM) for stroke in drawn]
+    window, px_per_mm = _window(lines)
+    target = _core.wanted_coverage(drawn, window, px_per_mm)
+    painted = _core.coverage(marks, brush, window, px_per_mm)
+    corner = (window[0], window[1] + window[3])
+    areas = worst_areas(target, painted, corner, px_per_mm, [line[:, :2] for line in lines])
+    return tuple(_place(number, drawn[area.stroke], area, why) for number, area in enumerate(areas, 1))
+
+
+def _place(number: int, stroke, area, why) -> Place:
+    cause, error_mm = why(stroke.id, area)
+    size = area.words
+    if error_mm is not None:
+        size += f", tracking error up to {error_mm:.2g} mm"
+    at = (area.missing_mm2, area.outside_mm2, error_mm)
+    return Place(
+        number, stroke.id, area.at_mm, *at, cause.words, cause.code, remedy(cause.code, stroke), size
+    )
+
+
+def _window(lines: Iterable[np.ndarray]) -> tuple[tuple[float, float, float, float], float]:
+    points = np.vstack([line[:, :2] for line in lines])
+    half = max(float(line[:, 3].max()) for line in lines)
+    low, high = points.min(axis=0) - half - AROUND_MM, points.max(axis=0) + half + AROUND_MM
+    size = high - low
+    return (*low.tolist(), *size.tolist()), min(PX_PER_MM, float(np.sqrt(MOST_PX / size.prod())))

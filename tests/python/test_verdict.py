@@ -1,0 +1,85 @@
+"""The verdict of a report: each threshold, from either side."""
+
+from dataclasses import replace
+
+import pytest
+from diagnostics import gives
+
+from brushsvg.errors import Notice
+from brushsvg.reporting.report_text import (
+    GOOD,
+    GOOD_OVERLAP,
+    USABLE_OVERLAP,
+    Report,
+    overlap_reasons,
+    percent,
+    verdict,
+)
+from brushsvg.show.evaluation import report
+from brushsvg.show.evaluation.uncertainty import Confidence, PlanConfidence
+from brushsvg.show.evaluation.verdict import UNCERTAIN_MM
+
+ROW = report.Figures("s", 0.97, 0.01, 0.04, 0.1, 0, 60.0, 81.5, 42)
+MADE = report.Report("T", "mine", "closed", 0.05, (ROW,), ROW, 5)
+BUT, NOT = "usable, but ", "do not use, because "
+
+
+def with_overlap(overlap):
+    return replace(MADE, total=replace(ROW, overlap=overlap))
+
+
+def known_to(middle_mm):
+    interval = Confidence(middle_mm, 0.1, 0.1)
+    return replace(MADE, confidence=PlanConfidence("covariance", "", (interval,), interval))
+
+
+@pytest.mark.parametrize(
+    ("made", "begins", "named"),
+    [
+        (MADE, GOOD, ()),
+        (with_overlap(GOOD_OVERLAP), GOOD, ()),
+        (with_overlap(GOOD_OVERLAP - 0.001), BUT, ("94 %",)),
+        (with_overlap(USABLE_OVERLAP), BUT, ("70 %",)),
+        (with_overlap(USABLE_OVERLAP - 0.001), NOT, ("69 %",)),
+        (with_overlap(None), BUT, ()),
+        (replace(MADE, refused=(Notice("t", "SENTENCE"),)), BUT, ("1 of 2",)),
+        (replace(MADE, strokes=(), refused=(Notice("t", "SENTENCE"),)), NOT, ()),
+        (replace(MADE, strokes=()), NOT, ()),
+        (replace(MADE, forbidden=(Notice("t", "SENTENCE"),)), NOT, ("SENTENCE",)),
+        (replace(MADE, warnings=(Notice("t", "SENTENCE", code="odd"),)), GOOD, ()),
+        *(
+            (replace(MADE, warnings=(Notice("t", "SENTENCE", code=code),)), BUT, ("1",))
+            for code in ("off-middle-line", "paint-outside")
+        ),
+        (replace(MADE, assumed=("lag", "width")), BUT, ("lag", "width", "mine")),
+        (known_to(UNCERTAIN_MM - 0.01), GOOD, ()),
+        (known_to(UNCERTAIN_MM), BUT, ("mine", "1.0 mm")),
+        (known_to(None), GOOD, ()),
+    ],
+)
+def test_each_reason_counts(made, begins, named):
+    assert made.verdict.startswith(begins) and gives(made.verdict, *named)
+    assert (made.verdict == GOOD) == (begins == GOOD)
+
+
+def test_the_thresholds_are_those_of_the_docs():
+    assert (GOOD_OVERLAP, USABLE_OVERLAP, UNCERTAIN_MM) == (0.95, 0.7, 1.0)
+
+
+def test_what_forbids_goes_before_what_warns_and_the_rest_is_counted():
+    assert verdict(["A"], ["B"]) == f"{NOT}A"
+    assert verdict([], ["A", "", "B"]) == f"{BUT}A, and B"
+    assert gives(verdict([], ["A", "B", "C", "D"]), "A", "B", "2") and "C" not in verdict([], ["A", "B", "C"])
+    assert overlap_reasons(None, "X") == ([], [])
+
+
+@pytest.mark.parametrize(("share", "words"), [(1.0, "100 %"), (0.999, "99 %"), (0.989, "98 %"), (0.0, "0 %")])
+def test_only_all_is_a_hundred_percent(share, words):
+    assert percent(share) == words
+
+
+def test_a_report_has_ten_lines_and_all_of_them_in_the_details():
+    made = Report(GOOD, tuple("abcdefghijk"), ("table",))
+    assert len(made.text().splitlines()) == 10 and gives(made.text().splitlines()[-1], "3")
+    assert made.text(details=True).splitlines() == [GOOD, *"abcdefghijk", "", "table"]
+    assert Report(GOOD, tuple("abcdefghi")).text().splitlines()[-1] == "i"
