@@ -75,6 +75,9 @@ def test_a_program_before_the_first_stroke(desk, capsys):
     left, bottom, right, top = found.border_mm
     assert (found.job, found.problems, found.plan, found.figures) == ("border", (), None, None)
     assert 15 < left < 25 < 90 < right < 120 and 10 < bottom < top < 60
+    plan = brushsvg.convert("two.svg").plan
+    tool_mm = np.vstack([a_pass.poses_mm[:, :2] for a_pass in plan.passes])
+    assert np.all(tool_mm >= (left, bottom)) and np.all(tool_mm <= (right, top)), "a clamp there would be hit"
     moved = TWO.replace("M20 40", "M5 50")
     Path("moved.svg").write_text(moved)
     assert is_reported(brushsvg.check("border.ngc", "moved.svg").problems, "border-elsewhere")

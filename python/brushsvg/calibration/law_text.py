@@ -11,6 +11,7 @@ from ..model.describe import polynomial
 from ..reporting.report_text import table
 
 TABLE_ROWS = 6
+NOT_CONVERGED = "the fit stopped before it converged: compare the picture of the next sheet with the drawing"
 HALF_95 = "  +-: half the 95 % confidence interval of the law"
 EXACT = 1e-9  # an interval below comes from rounding
 

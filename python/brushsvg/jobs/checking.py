@@ -389,13 +389,13 @@ def _setup(program: _Program, chosen: Choices, stage, warn: Warn) -> Check:
 def _border_notices(made, work: Work, stage) -> list[Notice]:
     """A sentence where an air run does not go round what a drawing's paint needs."""
     marks = prediction.predict(work, outlines=False, stage=stage)
-    needed, found = around(preflight.bounds_mm(marks, work.brush)), made.border_mm
+    needed, found = around(preflight.job_bounds_mm(work.plan, marks, work.brush)), made.border_mm
     if max(abs(ours - theirs) for ours, theirs in zip(found, needed, strict=True)) <= STRAY_MM:
         return []
     place = "{0:.2f} to {2:.2f} mm, {1:.2f} to {3:.2f} mm"
     sentence = (
-        f"the program goes round {place.format(*found)}, the drawing is painted within {place.format(*needed)}: it was "
-        "changed, or made with other flags or of another drawing"
+        f"the program goes round {place.format(*found)}, paint and tool of the drawing stay within "
+        f"{place.format(*needed)}: it was changed, or made with other flags or of another drawing"
     )
     return [Notice("", sentence, code="border-elsewhere")]
 

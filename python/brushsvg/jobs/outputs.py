@@ -11,6 +11,7 @@ from .. import _core
 from ..errors import Error, Notice
 from ..machine.cells.cell import Cell
 from ..machine.paint_reload import PlanInLoads, in_loads
+from ..machine.realised.arc_chords import with_chords
 from ..machine.tool_axes import is_tilted
 from ..machine.writer import time_s, whole_program
 from ..show.animation import animation
@@ -56,7 +57,7 @@ def picture(
     if suffix == ".json":
         return _core.write_marks(marks).encode()
     colours = [a_pass.colour for a_pass in work.plan.passes]
-    toolpath_mm = [a_pass.poses_mm for a_pass in work.plan.passes] if with_toolpath else []
+    toolpath_mm = [with_chords(a_pass).poses_mm for a_pass in work.plan.passes] if with_toolpath else []
     bare = [ring for piece in (*work.unreached, *work.missed) for ring in piece.rings]
     if suffix == ".svg":
         how = "" if work.strokes is None else f", {work.options.compensation}"

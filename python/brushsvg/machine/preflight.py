@@ -12,6 +12,7 @@ from ..errors import Error, Notice
 from .cells.cell import Cell, unit_mm
 from .paint_reload import PlanInLoads
 from .program import POSES_AT_ONCE, WHOLE_JOB, Job, Walked, out_of_arm, walked, written_of
+from .realised.arc_chords import with_chords
 from .realised.corner_blending import blend_radii, blended
 from .realised.distortion import true_pass
 from .realised.rounding import Written
@@ -133,6 +134,17 @@ def bounds_mm(marks: _core.Marks, brush: _core.Brush) -> tuple[float, float, flo
     if not len(bounds):
         raise Error("nothing touches the paper: there is no border", code="nothing-painted")
     return (*bounds[:, :2].min(axis=0).tolist(), *bounds[:, 2:].max(axis=0).tolist())
+
+
+def job_bounds_mm(
+    plan: _core.Plan, marks: _core.Marks, brush: _core.Brush
+) -> tuple[float, float, float, float]:
+    """Left, bottom, right, top of all paint and of the path of the tool, which leads into strokes from outside them.
+    Error when nothing touches the paper."""
+    left, bottom, right, top = bounds_mm(marks, brush)
+    path_mm = np.vstack([with_chords(a_pass).poses_mm[:, :2] for a_pass in plan.passes])
+    (x0, y0), (x1, y1) = path_mm.min(axis=0).tolist(), path_mm.max(axis=0).tolist()
+    return (min(left, x0), min(bottom, y0), max(right, x1), max(top, y1))
 
 
 def shifted_by_blends(

@@ -146,7 +146,7 @@ def _touch(place, clearance_mm: float, brush, cell: Cell) -> tuple[Move | Wait, 
 
 
 def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
-    """An air run: at safe height round (left, bottom, right, top) [mm] of what will be painted, corner by corner.
+    """An air run: at safe height round (left, bottom, right, top) [mm] of the job, corner by corner.
 
     Error when it leaves the workspace.
     """

@@ -12,7 +12,7 @@ from ...geometry.rotation import rotation
 from ...model.confidence import law_band, paint_interval_per_m
 from ...model.plot import INK, brush_picture_on, encoded, fill_rings, new_figure, shortened
 from ...reporting.report_text import Report, overlap_reasons, plural, verdict
-from ..law_text import coefficients, in_short, laws_table, name_and_depths, paper_height
+from ..law_text import NOT_CONVERGED, coefficients, in_short, laws_table, name_and_depths, paper_height
 from . import machine_found
 from .from_marks import (
     GAP_TERMS,
@@ -40,18 +40,18 @@ def report(made, of_photo: bool = False) -> Report:
     """What `brushsvg calibrate` prints. made: a mark_calibrate.MarkCalibration; of_photo: of a photograph, which has
     flags and no measurement file.
 
-    Do not use: the fit did not converge, or marks overlap with their predictions by 0.5 or less without displacements.
-    Usable, but: by less than 0.9; marks were left out or are astray; the sheet differs from what was expected; a tenth
-    of the edges is masked; too few depths were painted for the usual lag.
+    Do not use: marks overlap with their predictions by 0.5 or less without displacements.
+    Usable, but: by less than 0.9; the fit stopped before it converged; marks were left out or are astray; the sheet
+    differs from what was expected; a tenth of the edges is masked; too few depths were painted for the usual lag.
     """
     brush, fit = made.brush, made.fit
     in_place, moved = overlaps(made)
     unexpected = _unexpected(made, of_photo)
     against, low = coinciding(moved)
-    against += [] if fit.converged else ["the fit had not converged when it was stopped"]
     strays = plural(len(made.strays), "mark")
     but = [
         *low,
+        "" if fit.converged else NOT_CONVERGED,
         (f"{strays} had to be left out" if made.strays_left_out else f"the fit is unlike {strays}")
         if made.strays
         else "",

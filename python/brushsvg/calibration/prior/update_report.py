@@ -8,7 +8,15 @@ import numpy as np
 
 from ...model.confidence import LAWS
 from ...reporting.report_text import Report, plural, verdict
-from ..law_text import coefficients, depths_shown, law_table, name_and_depths, paper_height, values
+from ..law_text import (
+    NOT_CONVERGED,
+    coefficients,
+    depths_shown,
+    law_table,
+    name_and_depths,
+    paper_height,
+    values,
+)
 from ..marks.machine_found import cell_table, describe_numbers, numbers
 from .from_prior import found_height
 
@@ -19,8 +27,8 @@ def report(made) -> Report:
     """What `brushsvg calibrate --prior` prints. made: a from_prior.Updated."""
     brush, fit, count = made.brush, made.fit, len(made.painted.marks)
     laws = [law for law in LAWS if made.is_learned(law)]
-    against = [] if fit.converged else ["the fit had not converged when it was stopped"]
     but = [
+        "" if fit.converged else NOT_CONVERGED,
         "" if laws else "the marks show nothing new: the brush is as it was before",
         f"{plural(len(made.strays), 'mark')} had to be left out" if made.strays else "",
     ]
@@ -39,7 +47,7 @@ def report(made) -> Report:
         *describe_numbers(found),
         *(["", *table] if table else []),
     ]
-    return Report(verdict(against, but), tuple(lines), (*details, "", *coefficients(brush)))
+    return Report(verdict([], but), tuple(lines), (*details, "", *coefficients(brush)))
 
 
 def _remarks(made) -> list[str]:

@@ -117,4 +117,7 @@ def _next(brush: str | None) -> list[str]:
             "`brushsvg brush new -o mine.json`,",
             f'then write brush = "mine.json" into {NAME}.',
         ]
-    return [*lines, "Next: brushsvg convert --help. With --explain, it prints where each setting comes from."]
+    return [
+        *lines,
+        "Next: convert a drawing of this folder. Add --explain to see where each setting comes from.",
+    ]

@@ -1,4 +1,4 @@
-"""brushsvg setup border: move the tool around the painted area at safe height."""
+"""brushsvg setup border: move the tool around all paint and the path of the tool, at safe height."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def border_file(args) -> None:
     with about(args.output):
         post = writer.post_for(suffix_of(args.output), cell)
     with about(args.input):
-        around_mm = around(preflight.bounds_mm(looked.marks, work.brush))
+        around_mm = around(preflight.job_bounds_mm(work.plan, looked.marks, work.brush))
         made = border(around_mm, work.brush, cell, work.plan.sheet_mm, args.z_offset)
         title, count = f"border of {work.title or 'untitled'}", len(work.plan.passes)
         job = Job(args.z_offset)
