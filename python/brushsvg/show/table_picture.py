@@ -73,7 +73,8 @@ def _png(table: Table, step_mm: float, low, high, sheets, title: str) -> bytes:
         write(image, f"{x:g}", (at(x, 0)[0] + 3, head + height - 4), TEXT_PX * 3 // 4, 400, TEXT)
     for y in _ticks(low[1], high[1]):
         cv2.line(image, at(low[0], y), at(high[0], y), bgr(LINE), 1)
-        write(image, f"{y:g}", (3, at(0, y)[1] - 3), TEXT_PX * 3 // 4, 400, TEXT)
+        if at(0, y)[1] < head + height - 2 * TEXT_PX:  # above the numbers of x
+            write(image, f"{y:g}", (3, at(0, y)[1] - 3), TEXT_PX * 3 // 4, 400, TEXT)
     cv2.circle(image, at(0, 0), 9, bgr(TEXT), -1, cv2.LINE_AA)
     write(image, "robot", (at(0, 0)[0] + 14, at(0, 0)[1] + 7), TEXT_PX, 400, TEXT)
     for ring, colour, words in sheets:
@@ -120,7 +121,8 @@ def _svg(table: Table, step_mm: float, low, high, sheets, title: str) -> str:
         )
     for y in _ticks(low[1], high[1]):
         lines.append(f'<path stroke="{LINE}" d="M{at(low[0], y)}L{at(high[0], y)}"/>')
-        lines.append(f'<text x="2" y="{head + high[1] - y - 2:.1f}" font-size="10">{y:g}</text>')
+        if high[1] - y < height - 2 * size:  # above the numbers of x
+            lines.append(f'<text x="2" y="{head + high[1] - y - 2:.1f}" font-size="10">{y:g}</text>')
     lines.append(f'<circle cx="{-low[0]:.1f}" cy="{head + high[1]:.1f}" r="6" fill="{TEXT}"/>')
     lines.append(f'<text x="{10 - low[0]:.1f}" y="{head + high[1] + 5:.1f}">robot</text>')
     for ring, colour, words in sheets:
