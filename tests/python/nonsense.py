@@ -172,6 +172,10 @@ OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="90mm" viewB
 (FOLDER / "none.svg").write_bytes(b"")
 (FOLDER / "noise.dxf").write_bytes(bytes(range(256)) * 50)
 (FOLDER / "broken.toml").write_text("name = [[[[")
+(FOLDER / "shared").mkdir()
+(FOLDER / "shared" / "brushsvg.toml").write_text(
+    'format = "brushsvg/project"\nversion = 1\nbrush = "rigid"\n'
+)
 (FOLDER / "broken.json").write_text("[" * 100_000)
 (FOLDER / "m.csv").write_text(
     "\n".join(["kind,depth_mm,value_mm", *(f"{k},{d},{d}" for d in range(1, 7) for k in ("lag", "width"))])
@@ -342,7 +346,9 @@ ARGUMENTS = {
     "overlap": [rings, rings],
     "path_from_pass": [lambda: [a_pass(), brushsvg.Pass()], [None, *NUMBERS]],
     "path_from_stroke": [some_strokes, [None, *NUMBERS]],
-    "read_project": [[*PATHS, FOLDER / "broken.toml", FOLDER / "huge.toml", *TEXTS]],
+    "read_project": [
+        [FOLDER / "shared" / "brushsvg.toml", *PATHS, FOLDER / "broken.toml", FOLDER / "huge.toml", *TEXTS]
+    ],
     "read_cell": [[SOUND_CELL, *PATHS, FOLDER / "broken.toml", FOLDER / "huge.toml", *TEXTS]],
     "read_drawing": [[FOLDER / "d.svg", *PATHS], lambda: read_options()],
     "read_marks": [lambda: [brushsvg.write_marks(next(marks())), *TEXTS]],

@@ -148,7 +148,7 @@ def test_from_the_command_line(tmp_path, capsys):
         assert (
             cli.main(["preview", str(drawing), "-o", str(tmp_path / name), "--compensation", "refined"]) == 0
         )
-    assert cli.main(["preview", str(drawing), "--compensation", "refined"]) == 0
+    assert cli.main(["preview", str(drawing), "--compensation", "refined", "--details"]) == 0
     assert "compensation refined" in capsys.readouterr().out
     # the program is held against the drawing by the same way
     assert cli.main(["check", str(programs[0]), str(drawing)]) == 0

@@ -20,10 +20,10 @@ from brushsvg.jobs.work import Work
 CRASHED = "this should not happen"
 
 
-def converted(*words) -> list[str]:
+def converted(source, program, *words) -> list[str]:
     """The sentences with which `brushsvg convert` refuses; empty when it has written."""
     try:
-        convert_file(parse(["convert", *map(str, words)]))
+        convert_file(parse(["convert", str(source), "-o", str(program), *map(str, words)]))
     except RefusedError as refused:
         return [f"{notice.where}: {notice.text}" for notice in refused.why]
     return []
