@@ -101,11 +101,14 @@ void warn(const Depths& depths, const std::string& stroke, const Brush& brush, s
     warnings.push_back(Warning{"depth-not-measured", stroke, text + brush.name + " was measured"});
 }
 
-/// Depths at which the brush is turned on the spot, where a stroke begins with that alone: a dot.
+/// Depths at which the brush is turned on the spot, where a stroke begins with that alone: a dot. Its other moves may
+/// be lines, which have no turn.
 std::optional<Depths> depths_of_turns(const BrushMoves& moves) {
     if (moves.front().line) return {};
-    const auto [least, greatest] = std::minmax(moves.front().turn->depth_mm, moves[moves.size() / 2].turn->depth_mm);
-    return Depths{least, greatest};
+    Depths found{std::numeric_limits<double>::infinity(), 0.0};
+    for (const BrushMove& move : moves)
+        if (move.turn) found = {std::min(found[0], move.turn->depth_mm), std::max(found[1], move.turn->depth_mm)};
+    return found;
 }
 
 constexpr double kLongestLagMm = 1000.0;  // no brush is longer

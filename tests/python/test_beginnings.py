@@ -5,6 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
+import brushsvg
 from brushsvg import _core, compensate, find_brush
 
 
@@ -111,3 +112,14 @@ def test_a_ball_is_filled_where_the_line_begins_next_to_its_middle():
     brush = find_brush("round-6")
     stroke = ball(3.5, 2.8, 0.7)
     assert overlap(stroke, brush, "auto") > 0.965
+
+
+def test_a_dot_with_sides_of_its_own_has_the_depths_of_its_turns(tmp_path):
+    """Moves of such a dot may be lines, which have no turn: a depth of 185 km was read from them."""
+    drawing = (
+        '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="70mm" viewBox="0 0 100 70">'
+        '<circle id="dot" cx="70" cy="40" r="1.2"/></svg>'
+    )
+    (tmp_path / "dot.svg").write_text(drawing)
+    done = brushsvg.convert(tmp_path / "dot.svg", brush="liner-1")
+    assert [notice.code for notice in done.notices] == ["width-out-of-reach"]
