@@ -1,7 +1,8 @@
 """Pages of docs/start and docs/howto, followed from top to bottom in one folder, as a reader does it.
 
-Commands are typed by a shell. A block of toml, csv, json, xml or text is a file: the last name in backticks before it is the
-name of the file. It is added to the file if it exists, else written. Python runs in tests/python/test_doc_code.py.
+Commands are typed by a shell. A block of toml, csv, json, xml or text is a file: the last name in backticks before it
+is the name of the file. It is added to the file if it exists, else written. Python runs in
+tests/python/test_doc_code.py.
 """
 
 import re
