@@ -1,7 +1,8 @@
 """Pages of docs/start and docs/howto, followed from top to bottom in one folder, as a reader does it.
 
-Commands are typed by a shell. A block of toml, csv, xml or text is a file: the last name in backticks before it is the
-name of the file. It is added to the file if it exists, else written. Python runs in tests/python/test_doc_code.py.
+Commands are typed by a shell. A block of toml, csv, json, xml or text is a file: the last name in backticks before it
+is the name of the file. It is added to the file if it exists, else written. Python runs in
+tests/python/test_doc_code.py.
 """
 
 import re
@@ -12,9 +13,9 @@ from sampling import sample
 from shown_code import DOCS, FOLLOWED, FOLLOWED_NOT_RUN, blocks, name_of
 from test_doc_commands import Desk
 
-FILES = ("toml", "csv", "xml", "text")
+FILES = ("toml", "csv", "json", "xml", "text")
 TYPED = ("commands", "shell", "make")
-NAME = re.compile(r"`([\w-]+\.(?:toml|csv|svg|txt))`")
+NAME = re.compile(r"`([\w-]+\.(?:toml|csv|json|svg|txt))`")
 WRITES = re.compile(r"(?:-o|--picture|--marks-picture|--page|--chart|--report|--corrected-cell) +(\S+\.\w+)")
 
 
