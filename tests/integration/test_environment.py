@@ -35,7 +35,7 @@ def test_too_little_memory_is_a_sentence(desk, room_mb, is_enough):
         preexec_fn=limited(resource.RLIMIT_AS, room_mb * MB),
     )
     assert done.status == (0 if is_enough else 1), done
-    assert set(listing(desk)) == {"line.svg", *(words[2::2] if is_enough else ())}
+    assert set(listing(desk)) == {"line.svg", *(words[3::2] if is_enough else ())}
     if not is_enough:
         assert done.reported[-1][1].code == "memory-exhausted"
 

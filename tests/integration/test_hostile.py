@@ -140,7 +140,7 @@ OUTLINES = {
     "a zigzag of 100,000 edges": (
         lambda: filled(zigzag(100_000, [(95, 55), (5, 55)])),
         0,
-        "nothing-to-paint densely",
+        "nothing-to-paint dense",
     ),
     "a ribbon of 40,000 edges": (
         lambda: filled(ribbon(20_000)),
@@ -157,11 +157,11 @@ OUTLINES = {
     "10,000 nested contours": (
         lambda: filled(nested(10_000), "evenodd"),
         0,
-        "nothing-to-paint densely",
+        "nothing-to-paint dense",
     ),
     "one contour 1,001 times": (lambda: filled(BAR * 1001, "evenodd"), 0, ""),
     "one contour 1,000 times": (lambda: filled(BAR * 1000, "evenodd"), 0, "nothing-to-paint 'no area'"),
-    "one contour 20,000 times": (lambda: filled(BAR * 20_000), 0, "nothing-to-paint densely"),
+    "one contour 20,000 times": (lambda: filled(BAR * 20_000), 0, "nothing-to-paint dense"),
     "10,000 contours": (lambda: filled(boxes(10_000, 0.4)), 0, ""),
     "a sieve of 4,900 holes": (lambda: filled("M0 0H100V60H0Z" + boxes(4900, 0.4), "evenodd"), 0, ""),
     "open": (lambda: filled("M10 20H60V26H10M10 40Q40 60 60 40"), 0, ""),

@@ -66,7 +66,7 @@ ADVICE = {  # by the code of the notice: a script of ours and a drawing that giv
         ),
     ),
     "paper-example": ("save", document('data-brushsvg-cell="ur5e"'), "--format=script"),
-    "sheet-too-small": ("chart", "-o", SOUND, "--strokes=many", "--sheet=letter"),
+    "sheet-too-small": ("chart", SOUND, "--strokes=many", "--sheet=letter"),
     "program-format": ("save", document('data-brushsvg-cell="linuxcnc-3axis"'), "--format=script"),
     "text-unread": ("save", SOUND.replace("</svg>", '<text id="word" x="9" y="9">a</text></svg>')),
 }

@@ -53,6 +53,7 @@ LATER = {
     "commands": ["learn"],
     "formats": [".pdf", ".krl"],
 }
+OUTPUT = r"(?ms)--output OUT  .*?(?=^  -|^$)"  # the lines of -o in a help page
 PAGES = [
     [],
     ["convert"],
@@ -120,7 +121,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             assert "unrecognized arguments" not in " ".join(done.err), (page, flag)
     # every extension that help names is one the command takes
     values = {"IN": "sound.svg", "--brush": "round-6"}
-    for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("convert",)])[0]):
+    for suffix in re.findall(r"\.\w+\b", re.search(OUTPUT, pages[("convert",)])[0]):
         if suffix == ".robodk":
             continue  # asks for a post processor of the user's own
         cell = {
@@ -140,7 +141,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             ".plt": ("--cell", "hpgl-plotter", "--brush", "rigid"),
         }.get(suffix, ())
         brushsvg("convert", values["IN"], "-o", f"made{suffix}", *cell, cwd=desk, status=0)
-    for suffix in re.findall(r"\.\w+\b", re.search(r"(?s)OUT  .*?\n\n", pages[("preview",)])[0]):
+    for suffix in re.findall(r"\.\w+\b", re.search(OUTPUT, pages[("preview",)])[0]):
         brushsvg("preview", values["IN"], "-o", f"seen{suffix}", cwd=desk, status=0)
     for flag in ("picture", "report", "page"):
         says = re.search(rf"(?s)--{flag} FILE .*?\((.*?)\)", pages[("convert",)])[1]

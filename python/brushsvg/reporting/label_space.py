@@ -108,26 +108,27 @@ class LabelSpace:
 
     def _cost(self, boxes: np.ndarray, anchor) -> tuple[np.ndarray, np.ndarray]:
         """What each box covers: 0 for a free one; and the area of labels in it."""
+        low = np.minimum(boxes[:, :2].min(axis=0), anchor) - self.radius
+        high = np.maximum(boxes[:, 2:].max(axis=0), anchor) + self.radius
+        taken = self._boxes[((self._boxes[:, 2:] > low) & (self._boxes[:, :2] < high)).all(axis=1)]
+        crossed = self._leaders[((self._leaders > low) & (self._leaders < high)).all(axis=1)]
+        near = self._anchors[((self._anchors >= low) & (self._anchors <= high)).all(axis=1)]
         rows, columns = np.array(self._sums.shape) - 1
         left, top = np.floor(boxes[:, :2] / self.cell + 1e-9).astype(int).clip(0, (columns, rows)).T
         right, bottom = np.ceil(boxes[:, 2:] / self.cell - 1e-9).astype(int).clip(0, (columns, rows)).T
         sums = self._sums
         marks = sums[bottom, right] - sums[top, right] - sums[bottom, left] + sums[top, left]
-        width = np.minimum(boxes[:, None, 2], self._boxes[:, 2]) - np.maximum(
-            boxes[:, None, 0], self._boxes[:, 0]
-        )
-        height = np.minimum(boxes[:, None, 3], self._boxes[:, 3]) - np.maximum(
-            boxes[:, None, 1], self._boxes[:, 1]
-        )
+        width = np.minimum(boxes[:, None, 2], taken[:, 2]) - np.maximum(boxes[:, None, 0], taken[:, 0])
+        height = np.minimum(boxes[:, None, 3], taken[:, 3]) - np.maximum(boxes[:, None, 1], taken[:, 1])
         labels = (np.maximum(width, 0) * np.maximum(height, 0)).sum(axis=1)
-        anchors = np.vstack([self._anchors, anchor])
+        anchors = np.vstack([near, anchor])
         nearest = np.clip(anchors, boxes[:, None, :2], boxes[:, None, 2:])
         covered = (np.hypot(*np.moveaxis(nearest - anchors, -1, 0)) <= self.radius).sum(axis=1)
         areas = (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
-        covered += _inside(self._leaders, boxes).any(axis=0)
+        covered += _inside(crossed, boxes).any(axis=0)
         ends = np.clip(anchor, boxes[:, :2], boxes[:, 2:])
         leaders = np.linspace(np.broadcast_to(anchor, ends.shape), ends, LEADER_SAMPLES)
-        covered += _inside(leaders[:, :, None], self._boxes).any(axis=(0, 2))
+        covered += _inside(leaders[:, :, None], taken).any(axis=(0, 2))
         return marks * self.cell**2 + LABEL_WEIGHT * labels + covered * areas, labels
 
     def _leader(self, anchor, box):
