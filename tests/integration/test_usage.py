@@ -176,7 +176,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
             "seen.svg",
             "seen.json",
         ),
-        *("picture.png", "picture.svg", "seen.html", "report.txt", "report.json"),
+        *("picture.png", "picture.svg", "seen.html", "report.txt", "report.json", "report.csv"),
     }
 
 
