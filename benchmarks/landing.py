@@ -4,7 +4,7 @@
 
 FOLDER, sets and the fit: as for real_paint.py; strokes with even numbers are fitted, odd ones scored. The patch
 lands d = (along, across) away from the place under the tool, across to the left, and is there until the lag law drags
-it on: the pass begins with a pose at that place, and d is cut to what the lag reaches, since farther away no patch
+it on: the pass begins with a pose at that place, and d is cut to what the lag reaches, since further away no patch
 is. Frames of d:
 
     paper     x and y of the sheet

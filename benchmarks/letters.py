@@ -11,7 +11,7 @@ mark compared with its shape.
   thorns    corners of the mark beyond 20 degrees that stick out of the shape by more than 0.3 mm
   notches   unpainted parts of the shape, deeper in it than 0.15 mm, mm2 per glyph: wedges at crotches, waves
             next to stems, blunt corners
-  bulges    how much paint is farther outside of the shape than that
+  bulges    how much paint is further outside of the shape than that
   turning   how much the mark's outline turns more than the shape's, full turns per glyph; rings below 0.01 mm2 are
             pinholes, and left out
   torn      glyphs whose mark has more pieces than their shape

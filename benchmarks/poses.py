@@ -28,7 +28,7 @@ SHEET_MM = (400.0, 400.0)
 
 
 def simplified(poses: np.ndarray, tolerance_mm: float) -> np.ndarray:
-    """Douglas and Peucker: the farthest pose stays where one is farther off the chord than the tolerance."""
+    """Douglas and Peucker: the farthest pose stays where one is further off the chord than the tolerance."""
     stays = np.zeros(len(poses), bool)
     stays[[0, -1]] = True
     todo = [(0, len(poses) - 1)]

@@ -73,7 +73,7 @@ DISCS = ((0, "disc, no lag"), (1, "disc, constant r"), (2, "disc, r0 + r1 depth"
 OWN_WIDTHS, OWN_LAGS = (0.7, 0.85, 1.0, 1.15, 1.3), (0.5, 0.75, 1.0, 1.25, 1.5)
 LAWS = ("lag", "tip_gap", "half_width")
 # Commands are nearly equal: rms distance of their ways as a share of the paint's width, rms distance of their depths
-# as a share of the deepest, the sum of both. Farther apart, what strokes miss no longer grows along a line.
+# as a share of the deepest, the sum of both. Further apart, what strokes miss no longer grows along a line.
 ALIKE_WIDTHS, ALIKE_DEPTH = 0.5, 0.3
 FEWEST_PAIRS, TENTHS = 60, 10
 

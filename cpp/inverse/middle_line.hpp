@@ -113,7 +113,7 @@ class Line {
 /// How far a sample's TCP is from the chord between two others, in mm, a depth off the chord's counted half.
 double off_chord(const Sample& a, const Sample& b, const Sample& between);
 
-/// Splits the steps along the line until no chord of the TCP's path is farther than `tolerance` from it, depth
+/// Splits the steps along the line until no chord of the TCP's path is further than `tolerance` from it, depth
 /// included. Looks at both thirds of a step: the middle of an S is on its chord. `solve` fills contact, heading and
 /// tcp of all samples.
 template <class Solve>

@@ -41,7 +41,7 @@ void require_within(const std::vector<double>& values, const std::string& path, 
                         path + "[" + std::to_string(i) + "]", values[i], std::array<double, 2>{least, greatest});
 }
 
-/// No brush is tilted farther than a plan may say.
+/// No brush is tilted further than a plan may say.
 void require_lean(const PassMarks& pass, const std::string& path) {
     static const double most = std::tan((kMostTiltDeg + kRoundedTiltDeg) * std::acos(-1.0) / 180.0);
     for (Eigen::Index i = 0; i < pass.lean_mm_per_mm.rows(); ++i) {

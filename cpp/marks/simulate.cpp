@@ -273,7 +273,7 @@ class Tracer {
         split(piece, m, start, begin, tm, c, tb, b, level + 1);
     }
 
-    /// Whether the outline half way is farther than the tolerance from the mean of the outlines at both ends, as
+    /// Whether the outline half way is further than the tolerance from the mean of the outlines at both ends, as
     /// support functions h(n) = max n.v (Hausdorff distance of convex shapes): the hull of both ends is what they sweep
     /// only where it is not.
     bool shape_bends(const Instant& a, const Instant& b, const Instant& c) const {

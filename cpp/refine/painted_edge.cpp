@@ -14,7 +14,7 @@ constexpr double kPi = 3.14159265358979323846;
 /// What is rounded where a box is held against an edge [mm].
 constexpr double kRounding = 1e-9;
 
-/// Corners that a polyline cannot do without: the others are no farther from it than the tolerance (Douglas, Peucker).
+/// Corners that a polyline cannot do without: the others are no further from it than the tolerance (Douglas, Peucker).
 void keep_corners(const Ring& ring, Index first, Index last, double tolerance, std::vector<bool>& keep) {
     double most = tolerance;
     Index worst = -1;

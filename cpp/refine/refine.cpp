@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Index;
 
-// Samples of the patch's way, in half widths of the mark: farther apart the footprints leave waists between them.
+// Samples of the patch's way, in half widths of the mark: further apart the footprints leave waists between them.
 constexpr double kStep = 0.3, kWidestStep = 0.6;
 constexpr std::size_t kMostSamples = 1000;
 // Controls of the splines along the way, in half widths: twice as far apart ends and corners keep what they miss (0.002

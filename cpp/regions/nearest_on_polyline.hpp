@@ -13,7 +13,7 @@ namespace brushsvg {
 /// Points that are visited between the rows of one polyline, at most: kilometres of it are looked at less closely.
 constexpr double kMostBetween = 2e5;
 
-/// Visits the points of rows `begin` to `end` of a polyline and points between them, so that no two are farther apart
+/// Visits the points of rows `begin` to `end` of a polyline and points between them, so that no two are further apart
 /// than the step: what curves away between two rows must not be missed.
 template <class Points, class Visit>
 void along(const Points& rows, Eigen::Index begin, Eigen::Index end, double step_mm, Visit&& visit) {

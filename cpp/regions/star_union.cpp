@@ -62,7 +62,7 @@ double beyond(const Vector2d& from, const Vector2d& to, const Vector2d& place) {
 struct Edges {
     Vector2d a0, a1, b0, b1;
 
-    /// Which one reaches farther in the direction of a corner of one of them: 1 a, -1 b, else `before`.
+    /// Which one reaches further in the direction of a corner of one of them: 1 a, -1 b, else `before`.
     int outer_at(const Vector2d& corner, bool is_of_a, int before) const {
         const double by = is_of_a ? beyond(b0, b1, corner) : -beyond(a0, a1, corner);
         return by > kSameMm ? 1 : by < -kSameMm ? -1 : before;

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// Lines that are joined meet within as much. What is farther apart would be painted straight across.
+/// Lines that are joined meet within as much. What is further apart would be painted straight across.
 constexpr double kGapMm = 0.01;
 
 /// Precision of parameters at a length: 47 halves of a cubic, less than a hair of a metre of it.

@@ -300,7 +300,7 @@ TEST_CASE("no paint and no tool leaves the sheet for it") {
     const RefinedPass kept = refine(s, brush, on_sheet);
     CHECK(painted_bounds(simulate(kept.plan.pass, brush), brush)[0] >=
           std::min(0.0, painted_bounds(simulate(compensate(s, brush).pass, brush), brush)[0]));
-    on_sheet.sheet_mm = {60.0, 20.0};  // half of it is beyond: no farther than before
+    on_sheet.sheet_mm = {60.0, 20.0};  // half of it is beyond: no further than before
     const RefinedPass half = refine(s, brush, on_sheet);
     CHECK(painted_bounds(simulate(half.plan.pass, brush), brush)[3] <=
           painted_bounds(simulate(compensate(s, brush).pass, brush), brush)[3] + 1e-9);

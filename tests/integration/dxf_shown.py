@@ -136,7 +136,7 @@ def _points(cubics):
 
 
 def difference(theirs, ours) -> float:
-    """Area of what only one of them shows, farther than NEAR_MM from the other, of all that they show."""
+    """Area of what only one of them shows, further than NEAR_MM from the other, of all that they show."""
     nothing = shapely.Polygon()
     off = every = 0.0
     for colour in theirs.keys() | ours.keys():

@@ -22,7 +22,7 @@ BRISTLES = (
 )  # from where to where across a brush, in half widths, and how many times as long paint lasts there
 POSES = 260  # at least, per stroke once it is cut for the stepping: every 0.3 mm or so
 CLOSE = (
-    420  # once more where the footprint turns: no point of it goes farther than 0.5 mm from one to the next
+    420  # once more where the footprint turns: no point of it goes further than 0.5 mm from one to the next
 )
 
 

@@ -212,7 +212,7 @@ def with_lag(brush, coefficients):
     keep=1,
 )
 def test_a_word_is_predicted_better(name, drops, own_outlines, tmp_path, capsys):
-    """By a brush of the same lag and of the true widths, whose outlines are drops: so far right, and no farther. How
+    """By a brush of the same lag and of the true widths, whose outlines are drops: so far right, and no further. How
     far a lopsided dab is to the side is known to 0.03 mm."""
     _, _, _, path = calibrated(tmp_path, capsys, photographed(name))
     before, own = with_lag(assumed(), LAG), with_lag(find_brush(path), LAG)

@@ -154,7 +154,7 @@ def test_light_paint_on_dark_paper_is_read_however_much_of_it_is_bare(margin_mm)
 
 @pytest.mark.parametrize("at_mm", [(12, 10), (150, 10), (12, 150), (150, 140)])
 def test_a_small_sheet_is_found_anywhere_on_a_large_glass(at_mm):
-    """Shifts farther than half of what the match repeats over are no shifts back."""
+    """Shifts further than half of what the match repeats over are no shifts back."""
     ways = [np.array(points, float) for points in ([(0, 0), (38, 0), (38, 30)], [(5, 22), (20, 22)])]
     paint = np.zeros((600, 600), np.uint8)
     for way in ways:

@@ -210,7 +210,7 @@ def test_rigid_pen_follows_the_tcp():
 
 @pytest.mark.parametrize("tolerance", [0.2, 0.02, 0.002])
 def test_rows_are_as_close_as_the_tolerance_asks(tolerance):
-    """Half way between two rows no point of the footprint is farther from the line between them."""
+    """Half way between two rows no point of the footprint is further from the line between them."""
     rng = np.random.default_rng(11)
     outlines = core.footprint_at
     for name in ("round", "constant"):

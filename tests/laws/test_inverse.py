@@ -515,7 +515,7 @@ def test_compensation_turns_with_the_sheet():
 
 
 def every(poses, step):
-    """Instants of a pass (fractional poses): each pose, and none farther than `step` [mm] from the next."""
+    """Instants of a pass (fractional poses): each pose, and none further than `step` [mm] from the next."""
     counts = np.maximum(1, np.ceil(np.linalg.norm(np.diff(poses, axis=0), axis=1) / step)).astype(int)
     return np.append(np.concatenate([k + np.arange(n) / n for k, n in enumerate(counts)]), len(poses) - 1.0)
 
@@ -815,7 +815,7 @@ def test_a_pointed_end_is_a_pointed_beginning_mirrored(middle, half_width):
 
 
 def cut_bar(half_width, slope):
-    """A bar whose end is cut half a width beyond its path's, and so much farther back on its left."""
+    """A bar whose end is cut half a width beyond its path's, and so much further back on its left."""
     x, displaced = 40 + half_width, slope * half_width
     low, high = 20 - half_width, 20 + half_width
     return [(20.0, low), (x + displaced, low), (x - displaced, high), (20.0, high)]

@@ -94,7 +94,7 @@ def target_mark(name, shape):
 
 def dense_union(poses, shape, lag="round", close_mm=2e-4):
     """Region painted, from the event-driven reference: outlines sampled until half way between two of them
-    no vertex is farther than `close_mm` from the line between, and none moves far. Where the TCP passes
+    no vertex is further than `close_mm` from the line between, and none moves far. Where the TCP passes
     exactly over the patch the heading jumps and nothing is swept."""
     dragged, pressed = BRUSHES[shape]
     poses = np.array(poses, float)  # set down and lifted on the spot where they do not begin and end at z = 0
@@ -179,7 +179,7 @@ def holes_of(region):
 
 
 def test_outline_at_the_default_tolerance():
-    """Chords of rows 0.02 mm off the curve: no edge is farther off than that."""
+    """Chords of rows 0.02 mm off the curve: no edge is further off than that."""
     for name, shape in CASES:
         target = target_mark(name, shape)
         region, _ = region_of(marks_of(PASSES[name], brush_of(shape)).outline_mm)

@@ -48,7 +48,7 @@ class Studio:
         self.grown, self.cut = (
             {},
             {},
-        )  # by stroke: how much farther from the middle its edges are; where its paint ends
+        )  # by stroke: how much further from the middle its edges are; where its paint ends
 
     def plan(self, *flags):
         path = self.folder / "plan.json"
@@ -235,7 +235,7 @@ def test_corrections_are_read_once(tmp_path, capsys):
 
 
 def test_a_corrected_plan_holds_its_corrections_and_the_plan_before(tmp_path, capsys):
-    """Corrected again its strokes go no farther, and it is compared as the drawing with these corrections is."""
+    """Corrected again its strokes go no further, and it is compared as the drawing with these corrections is."""
     studio = Studio(tmp_path, 6)
     found = studio.compared(studio.photographed(studio.plan()))
     photo = studio.photographed(studio.plan("--corrections", found))  # leaves plan.json
@@ -433,7 +433,7 @@ def test_corrections_of_another_cell_are_refused(stretched, capsys):
 
 @pytest.mark.parametrize("by_mm", [-0.4, 0.3])
 def test_a_width_is_corrected_where_it_is(tmp_path, by_mm):
-    """Each edge is so much farther from the middle, by shapely: middle line and ends stay."""
+    """Each edge is so much further from the middle, by shapely: middle line and ends stay."""
     studio = Studio(tmp_path, 13)
     plan = studio.plan()
     before = studio.rings(plan)

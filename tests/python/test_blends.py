@@ -58,7 +58,7 @@ def test_corners_of_circles_are_cut_as_those_of_lines(tolerance):
 
 
 def test_a_circle_that_is_left_at_a_small_angle_is_not_left_far_before_its_end():
-    """The chord of what is left out would be farther from it than the tolerance."""
+    """The chord of what is left out would be further from it than the tolerance."""
     path = TURN_IN_PLACE.copy()
     path[4] = (24, 20, -2)
     radii = blend_radii(path, Blending(0.01), [QUARTER])

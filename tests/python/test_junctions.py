@@ -9,7 +9,7 @@ from brushsvg import _core
 from brushsvg.strokes.skeleton import outline_strokes
 from brushsvg.strokes.swept_areas import region
 
-SEEN_MM = 0.15  # where a shape stays bare deeper in, or paint is farther outside, one sees it
+SEEN_MM = 0.15  # where a shape stays bare deeper in, or paint is further outside, one sees it
 
 EDGE_MM = 0.15
 

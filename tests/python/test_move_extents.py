@@ -116,7 +116,7 @@ def test_ways_that_stay_in_a_place_or_run_along_a_side():
 @given(st.floats(0.05, 3.0), st.floats(5, 200), st.floats(5, 200), st.floats(1e-3, 2))
 @pytest.mark.slow
 def test_a_corner_that_is_cut_stays_within_twice_the_cut(turn_rad, before_mm, after_mm, tolerance_mm):
-    """What the limits allow for: no place of the triangle of a joint is farther from the two moves."""
+    """What the limits allow for: no place of the triangle of a joint is further from the two moves."""
     path = np.array(
         [(-before_mm, 0, 0), (0, 0, 0), (after_mm * math.cos(turn_rad), after_mm * math.sin(turn_rad), 0)]
     )

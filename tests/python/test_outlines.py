@@ -256,7 +256,7 @@ def test_bars_come_before_what_hangs_on_them_and_words_from_left_to_right():
         False,
     ]
     falling, leg = painted(path("M43 8L47 12L7 46L3 42ZM13 33L42 44L40 49L11 37Z"))
-    assert ends(falling)[0][0] > 40, "it begins farther from the upper left than the leg, which hangs on it"
+    assert ends(falling)[0][0] > 40, "it begins further from the upper left than the leg, which hangs on it"
     assert ends(leg)[0][0] < 20
     words = painted("".join(path(f"M{x} 20V40H{x + 5}V20Z").replace('"p"', f'"p{x}"') for x in (50, 10, 30)))
     assert [stroke.id for stroke in words] == ["p50", "p10", "p30"], "elements keep the drawing's order"

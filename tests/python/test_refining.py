@@ -98,7 +98,7 @@ stroke="#000" stroke-linecap="round"><path id="one" d="M20 20 H40 V40" stroke-wi
     ids=["height", "margin"],
 )
 def test_a_refined_stroke_beyond_a_limit_is_left_in_closed_form(tmp_path, limit, d, width):
-    """What closed painted was refused when refined: the tool goes lower, or farther beyond the edge."""
+    """What closed painted was refused when refined: the tool goes lower, or further beyond the edge."""
     text = TWO.format(d=d, width=width)
     closed, refined = works(tmp_path, text)
     poses = [np.vstack([each.poses_mm for each in work.plan.passes]) for work in (closed, refined)]

@@ -315,7 +315,7 @@ def test_check_allows_all_that_convert_writes(seed, tmp_path, capsys):
 
 @pytest.mark.parametrize(("cell", "radius_mm"), [("grbl-servo", 7.5048828125), ("irb120", 7.505615234375)])
 def test_check_allows_marks_that_touch_the_edge_of_the_sheet(cell, radius_mm, tmp_path, capsys):
-    """As large as convert allows: a servo's whole values, or corners that are cut, take the mark 0.01 mm farther."""
+    """As large as convert allows: a servo's whole values, or corners that are cut, take the mark 0.01 mm further."""
     source, program = tmp_path / "a.svg", tmp_path / f"a{'.gcode' if cell == 'grbl-servo' else '.mod'}"
     ring = f'<circle cx="8" cy="8" r="{radius_mm}" fill="none" stroke="black" stroke-width="1"/>'
     source.write_text(

@@ -196,7 +196,7 @@ def test_the_tip_is_where_the_plan_has_it_and_the_brush_held_as_it_says(name):
     frame = Rotation.from_matrix(robot_from_paper(cell)[:3, :3])
     along = frame.inv().apply(turned[on].apply((0.0, 0.0, -1.0)))  # the tool's z points into the paper
     assert along == pytest.approx(leans, abs=2e-5)
-    # the shortest turn from upright: no farther than the axes are apart
+    # the shortest turn from upright: no further than the axes are apart
     upright = frame * Rotation.from_euler("x", 180, degrees=True) * Rotation.from_euler("z", 30, degrees=True)
     tilts_deg = np.degrees(np.arccos(np.clip(leans[:, 2], -1, 1)))
     assert np.degrees((turned[on] * upright.inv()).magnitude()) == pytest.approx(tilts_deg, abs=2e-3)

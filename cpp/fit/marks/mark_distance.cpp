@@ -10,9 +10,9 @@ namespace brushsvg::fit {
 namespace {
 
 // A brush that is pressed on the spot by a machine that leans points along a lever of micrometres, and turns right
-// round where the lean changes by as little: derivatives that hold no farther than that would make the lean as sure.
+// round where the lean changes by as little: derivatives that hold no further than that would make the lean as sure.
 constexpr double kLeverMm = 0.3;
-constexpr double kNearMm = 0.5;     // a brush's hairs: a shorter way out is not improved on, a farther edge not refined
+constexpr double kNearMm = 0.5;     // a brush's hairs: a shorter way out is not improved on, a further edge not refined
 constexpr int kStraighter = 3;      // times that a way out is made square to the edge
 constexpr double kSquare = 0.9999;  // cosine above which it is
 constexpr double kGrazing = 0.3;    // cosine below which an edge that is met aslant says nothing more exact

@@ -20,7 +20,7 @@ namespace {
 constexpr double kDeepestMm = 1000.0;  // deeper is damage, and its powers overflow
 // Of one fit: each is met some hundred times, in a microsecond or so. A sheet of 49 strokes has 22,000 and 8,500.
 constexpr double kMostPlaces = 2e5, kMostPoints = 2e5;
-constexpr double kPlaceMm = 0.15;      // no two places of a prediction are farther apart along the way
+constexpr double kPlaceMm = 0.15;      // no two places of a prediction are further apart along the way
 constexpr double kMostCertain = 1e12;  // of a law's coefficient: 1 over its standard deviation
 constexpr double kLeastWideMm = 0.3;   // a pen's line, of which a picture's edges may err by as much
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -183,7 +183,7 @@ Solved solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::ve
     return out;
 }
 
-/// Strokes that land on a slope from height 0 begin the farther on the lower the paper is, and where they did if it
+/// Strokes that land on a slope from height 0 begin the further on the lower the paper is, and where they did if it
 /// is higher: a height found just below 0 is determined less than its own derivatives say. There it is the mean
 /// of both sides' covariances, by how likely the paper is above: of two halves of normal distributions that meet at 0
 /// the wider one weighs as much more.

@@ -13,7 +13,7 @@ struct Cost {
     double rho, psi, slope;
 };
 
-enum class Loss { cauchy, tukey };  // from afar wild points pull, less the farther it is; in the end not at all
+enum class Loss { cauchy, tukey };  // from afar wild points pull, less the further it is; in the end not at all
 
 inline Cost cost(Loss loss, double z) {
     if (loss == Loss::tukey) {

@@ -107,7 +107,7 @@ MatrixXd pulls(const MarkProblem& at, const std::vector<Seen>& marks, const Matr
     return out;
 }
 
-/// The covariance raised in directions in which groups pull farther apart than their noise makes as many of them.
+/// The covariance raised in directions in which groups pull further apart than their noise makes as many of them.
 MatrixXd raised(const MatrixXd& covariance, const MatrixXd& pulls) {
     const Index g = covariance.rows(), groups = pulls.cols();
     const VectorXd unit = covariance.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();

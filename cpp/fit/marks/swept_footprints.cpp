@@ -11,7 +11,7 @@ namespace brushsvg::fit {
 namespace {
 
 // Where a loose brush is passed by its TCP the footprint turns round within tenths of a mm of the way: between instants
-// farther apart the edge of what it sweeps would be missed, by 0.3 mm on a reversal.
+// further apart the edge of what it sweeps would be missed, by 0.3 mm on a reversal.
 constexpr double kApartMm = 0.25;
 constexpr int kMostParts = 200, kRounds = 4, kTangentRounds = 6;
 // Instants of one pass. Real brushes take less than one a place and 1,500 for the largest footprint that turns round;
@@ -294,7 +294,7 @@ SweptEdge Footprints::swept(const Eigen::Vector2d& x, std::size_t row, const Nea
     SweptEdge best{normal.dot(x - from), normal, own};
     for (const std::size_t other : {row - 1, row + 1}) {
         if (other >= rows_.size()) continue;
-        // farther apart only where the brush was in the air in between
+        // further apart only where the brush was in the air in between
         const double moved = std::abs(gone_[other] - gone_[row]);
         if (!(moved > 1e-9) || moved > 4.0 * apart_) continue;
         const Instant& there = rows_[other];

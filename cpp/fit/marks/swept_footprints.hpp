@@ -118,7 +118,7 @@ class Footprints {
 
     std::vector<Instant> rows_;
     std::vector<InstantBy> by_;
-    /// Round each footprint; gone: no point of the footprint has moved farther than this since the first instant.
+    /// Round each footprint; gone: no point of the footprint has moved further than this since the first instant.
     std::vector<Eigen::Vector2d> middle_;
     std::vector<double> radius_, gone_;
     double reach_ = 0.0;  ///< the greatest depth of the pass, or of the laws

@@ -16,7 +16,7 @@ struct FittedLine {
     std::vector<WidthKnot> half_width;
 };
 
-/// Few cubics with one tangent where they meet, no farther than the tolerance from the line's points: least squares,
+/// Few cubics with one tangent where they meet, no further than the tolerance from the line's points: least squares,
 /// the parameters moved to the nearest points, split at the worst point (P. J. Schneider, "An Algorithm for
 /// Automatically Fitting Digitized Curves", Graphics Gems, 1990). Half widths: as few knots as keep all of them to the
 /// tolerance. closed: the last point is the first again, and the tangent goes through. A line without length gives one

@@ -180,7 +180,7 @@ LagState<T> within_phase(const LawPiece<T>& law, const ArcMove<T>& arc, const La
 /// Carries the state over one arc, phase by phase, as advance() does over a straight move.
 ///
 /// Once the brush has loosened because psi passed 90 degrees, the contact rests r - R from the centre and q comes no
-/// farther than r from it: it stays loose to the arc's end, and the whole circle round.
+/// further than r from it: it stays loose to the arc's end, and the whole circle round.
 template <class T, class PhaseSink>
 void advance(const LagLaw<T>& law, const ArcMove<T>& arc, LagState<T>& state, PhaseSink&& phase) {
     const LawPiece<T>& piece = law.piece(value_of(arc.depth_from));

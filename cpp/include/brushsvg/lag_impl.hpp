@@ -168,7 +168,7 @@ inline double first_loosening(const LawPiece<double>& law, const Move<double>& m
     const double t = first_negative(
         begin, end,
         [&](double a, double b) {
-            // no farther above its chord than a parabola
+            // no further above its chord than a parabola
             const double most = std::max(lengthening(a), lengthening(b)) + bend * (b - a) * (b - a);
             return length * cosine_after(law, move, start, begin, a) - most + noise;
         },

@@ -10,7 +10,7 @@ namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Forward: what the brush does when the TCP follows a pass. Rows stand at every pose, at every event (loosening,
 /// tightening, touching, lifting) and in between as closely as `tolerance_mm` asks: half way between two
-/// rows no point of the footprint is farther than it from the straight line between them. Where a pen turns there are
+/// rows no point of the footprint is further than it from the straight line between them. Where a pen turns there are
 /// two at the same pose: it heads for the next one at once.
 /// A pass that begins or ends below z = 0 is set down or lifted on the spot, with rows of its own: see pose_rows().
 /// Throws Error when a pose is deeper than the brush allows, above the paper (z > 0) or not finite. `for_outlines`

@@ -51,7 +51,7 @@ double half_width_at(const Stroke& stroke, double fraction);
 /// Throws Error when the stroke has no cubic, no width, or a number that is not finite.
 void check(const Stroke& stroke);
 
-/// The middle line as points: no point of the curve is farther than the tolerance [mm] from the polyline.
+/// The middle line as points: no point of the curve is further than the tolerance [mm] from the polyline.
 /// Rows: x, y [mm], arc length [mm], half width [mm]. One row when the line is a single point.
 using MiddlePolyline = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 MiddlePolyline flatten(const Stroke& stroke, double tolerance_mm);

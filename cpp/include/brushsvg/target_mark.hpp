@@ -6,7 +6,7 @@
 namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Rings of the target mark: `wanted_mm` where given, else the union of discs of the stroke's half width along its
-/// middle line (the path with its width, round caps and round joins). No point of the outline is farther than
+/// middle line (the path with its width, round caps and round joins). No point of the outline is further than
 /// `tolerance_mm` from the true one.
 Rings wanted_outline(const Stroke& stroke, double tolerance_mm = 0.005);
 

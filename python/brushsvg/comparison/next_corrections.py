@@ -77,7 +77,7 @@ def displacement_mm(row: Compared, found: Comparison) -> np.ndarray:
 
 
 def farther(found: Comparison, before: dict[str, float]) -> list[Notice]:
-    """before: by stroke its displacement in mm on the sheet before. Returns a notice for each that is farther now."""
+    """before: by stroke its displacement in mm on the sheet before. Returns a notice for each that is further now."""
     notices = []
     for row in found.strokes if found.spread_mm is not None else ():
         now_mm = float(np.hypot(*displacement_mm(row, found)))

@@ -20,13 +20,13 @@ ROUNDS = (
 )
 MOST_GROWN_MM = 1.0  # in one step
 TURN_WEIGHT = 3000.0  # of no turn, against what pixels say: rings and dots show none
-MOST_MM = 8.0  # a step goes no farther: beyond, nothing was found
+MOST_MM = 8.0  # a step goes no further: beyond, nothing was found
 
 
 @dataclass(frozen=True)
 class Placed:
     """The place of a mark relative to its prediction: shift_mm of its middle, turn_rad about it, counter-clockwise,
-    wider_mm: by how much each edge is farther from the middle line. found: whether least squares came to rest within
+    wider_mm: by how much each edge is further from the middle line. found: whether least squares came to rest within
     reach."""
 
     shift_mm: tuple[float, float]

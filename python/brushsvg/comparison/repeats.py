@@ -47,7 +47,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class Approach:
-    """By how much strokes that begin in the positive direction of an axis are farther along it than those that begin
+    """By how much strokes that begin in the positive direction of an axis are further along it than those that begin
     in the negative one, with half its 95 % interval; None where there are too few of either. plus_mm, minus_mm: mean
     place along the axis of each stroke, by that direction."""
 
@@ -260,7 +260,7 @@ def _approach_words(one: Approach) -> str:
         return f"Too few strokes are approached from either side in {one.axis} to show a hysteresis."
     certain = "" if abs(one.value_mm) > one.half_mm else ", which may be chance"
     return (
-        f"Strokes that are approached towards +{one.axis} are {one.value_mm:+.3f} +- {one.half_mm:.3f} mm farther that "
+        f"Strokes that are approached towards +{one.axis} are {one.value_mm:+.3f} +- {one.half_mm:.3f} mm further that "
         f"way than those approached towards -{one.axis}{certain}."
     )
 

@@ -90,7 +90,7 @@ def report(
         fix_first(faults, any_alone),
     ]
     if found.elsewhere_mm2 > LEAST_BLOT_MM2:
-        lines.append(f"Paint farther than {BLOT_MM:g} mm from all marks: {found.elsewhere_mm2:.1f} mm^2.")
+        lines.append(f"Paint further than {BLOT_MM:g} mm from all marks: {found.elsewhere_mm2:.1f} mm^2.")
     details = [
         *table(HEAD, (_row(stroke, ends.get(stroke.stroke, UNSEEN)) for stroke in found.strokes)),
         "",

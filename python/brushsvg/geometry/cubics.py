@@ -24,7 +24,7 @@ def extremes(cubics: np.ndarray) -> np.ndarray:
 
 
 def flattened(cubics: np.ndarray, tolerance: float) -> np.ndarray:
-    """Points (k, 2) of cubics (n, 4, 2), nowhere farther from them than the tolerance: the chord of 1/n of a cubic
+    """Points (k, 2) of cubics (n, 4, 2), nowhere further from them than the tolerance: the chord of 1/n of a cubic
     is off by |B''| / 8 n^2 at most."""
     second = 6 * np.abs(np.diff(cubics, n=2, axis=1)).max(axis=1)
     bend = np.hypot(second[:, 0], second[:, 1])

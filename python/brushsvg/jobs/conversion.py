@@ -277,11 +277,11 @@ class Tried:
 
 
 def _lowered(z_offset_mm: float) -> list[Notice]:
-    """A notice where the tool goes so much farther down than the paper was taught that it may be a slip."""
+    """A notice where the tool goes so much further down than the paper was taught that it may be a slip."""
     if z_offset_mm > -MOST_LOWERED_MM:
         return []
     sentence = (
-        f"the tool goes {-z_offset_mm:g} mm farther down than where the cell has the paper, which the strokes of "
+        f"the tool goes {-z_offset_mm:g} mm further down than where the cell has the paper, which the strokes of "
         "`brushsvg setup height` seldom ask for"
     )
     return [Notice("z_offset", sentence, code="unusual-value", about="z_offset")]

@@ -241,7 +241,7 @@ def dips_without_cell(passes) -> list[list[float]]:
 
 def _begins_at_mm(stroke, part, after_mm: float) -> float:
     """The way along a stroke at which one of its parts begins, its landing counted: by the moves that both share, and
-    that are farther along the stroke than the part before began. Where there is none, by its first pose."""
+    that are further along the stroke than the part before began. Where there is none, by its first pose."""
     line, poses = (chords(np.asarray(each.poses_mm), each.arcs)[:, :2] for each in (stroke, part))
     along, way = lengths(line), lengths(poses)
     start, step = line[:-1], np.diff(line, axis=0)

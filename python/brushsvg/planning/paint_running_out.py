@@ -16,7 +16,7 @@ from ..geometry.polylines import lengths
 SHARE = 2e-3  # of the width, between two knots: straight in between is off by far less
 JUMP = 1e-4  # of a stroke's length, over which it is wide again once paint was fetched
 STEP_MM = 0.5  # of outlines that move out
-# Of what a wider end would reach farther, by which its line is shorter: an end that paint made slim covers most of a
+# Of what a wider end would reach further, by which its line is shorter: an end that paint made slim covers most of a
 # round one if it reaches a little too far; with 0.5 or 1 half as much again of the end is lost
 SHORTER = 0.85
 MOST_SHORTER = 0.9  # of a stroke, at both ends together
@@ -115,7 +115,7 @@ def wider(stroke: _core.Stroke, shares: np.ndarray, most_mm: float) -> _core.Str
 
 
 def _shortened(stroke, first_mm: float, last_mm: float):
-    """Paint takes of the width, not of the length: the rounder ends of a wider stroke are to reach no farther."""
+    """Paint takes of the width, not of the length: the rounder ends of a wider stroke are to reach no further."""
     cubics = np.asarray(stroke.middle_mm).reshape(-1, 4, 2)
     known = arc_length.knots(cubics)
     whole_mm = float(known[:, -1].sum())

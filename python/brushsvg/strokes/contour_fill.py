@@ -1,7 +1,7 @@
 """A shape wider than the brush, filled along its outline.
 
 Discs of the brush's greatest half width h fit into the shape where it is wider, with their centres in the shape moved
-inward by h. The first passes run along that line's rings, so their edge is the outline; further ones farther inside.
+inward by h. The first passes run along that line's rings, so their edge is the outline; further ones further inside.
 Corners, necks and narrow parts are left to the search.
 """
 

@@ -1,4 +1,4 @@
-"""Rings along the outline of a shape and farther inside, and the lines that they are cut into: where the brush would
+"""Rings along the outline of a shape and further inside, and the lines that they are cut into: where the brush would
 turn too sharply."""
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def ring_along(shape, half: float) -> list[np.ndarray]:
 
 
 def rings_inward(shape, half: float) -> list[list[np.ndarray]] | None:
-    """The same, then those farther inside."""
+    """The same, then those further inside."""
     radius = shapely.maximum_inscribed_circle(shape, 0.01 * half).length
     across = radius - half - _INNERMOST * half
     steps = max(int(np.ceil(across / (_STEP * half) - 0.4)), 0)

@@ -10,7 +10,7 @@ from ..read.design import Notice
 from .corners import begun_amid_a_side
 
 MEET_MM = 0.01
-_STRAIGHT_ON_RAD = np.radians(100)  # a line that turns farther is another one
+_STRAIGHT_ON_RAD = np.radians(100)  # a line that turns further is another one
 _SAME_WIDTH = 0.02
 
 

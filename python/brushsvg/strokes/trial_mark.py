@@ -7,7 +7,7 @@ import numpy as np
 from .. import _core
 
 _ANY_SHEET_MM = (1e6, 1e6)
-SEEN_MM = 0.15  # paint farther outside of a shape is a bulge, blank farther inside a notch
+SEEN_MM = 0.15  # paint further outside of a shape is a bulge, blank further inside a notch
 _TOLERANCE_MM = 0.05  # as plans have by default: a coarser one blurs what corners look like
 
 

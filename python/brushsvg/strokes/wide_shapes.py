@@ -13,7 +13,7 @@ WIDE = ("auto", "clamp", "passes", "refuse")
 # Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
 _WORTH_PASSES = 1 / 0.95
 POINT_MM = 1e-3  # half the width of a line where it ends in a point
-UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge is farther from the shape's
+UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge is further from the shape's
 
 
 def within_reach(

@@ -214,7 +214,7 @@ def _round(a_pass) -> tuple[np.ndarray, np.ndarray]:
 
 def follows(found: np.ndarray, reference: np.ndarray, limit_mm: float) -> int | None:
     """None where one can go along both paths (n, 3) and (m, 3) of straight moves at once, from their starts to their
-    ends, never back on either, and never farther from each other than the limit; else the point of found to which the
+    ends, never back on either, and never further from each other than the limit; else the point of found to which the
     first move leads on which that is over.
 
     Decided exactly, after Alt and Godau: a move of each path makes a cell, whose pairs of places within the limit are

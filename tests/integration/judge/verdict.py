@@ -441,7 +441,7 @@ def unlike(way: Way, job: Job, sound: list[np.ndarray] | None = None) -> list[st
 
 
 def off_mm(stroke: np.ndarray, target: np.ndarray, sound: np.ndarray | None) -> float:
-    """OFF_MM at most when both can be walked from end to end, never back, without ever being farther apart (Frechet);
+    """OFF_MM at most when both can be walked from end to end, never back, without ever being further apart (Frechet);
     else how far the one is from the other at the worst place, but more than OFF_MM."""
     near = OFF_MM + STEP_MM / 2
     if sound is not None:  # only where it was changed could it be far
@@ -464,7 +464,7 @@ def off_mm(stroke: np.ndarray, target: np.ndarray, sound: np.ndarray | None) -> 
 
 
 def walkable(one: np.ndarray, other: np.ndarray, near_mm: float) -> bool:
-    """Whether two paths of points can be walked together, neither of them back, never farther apart."""
+    """Whether two paths of points can be walked together, neither of them back, never further apart."""
     if len(one) < len(other):
         one, other = other, one
     if max(np.linalg.norm(one[0] - other[0]), np.linalg.norm(one[-1] - other[-1])) > near_mm:

@@ -1,7 +1,7 @@
 """Dabs: the brush is set down over a place, bent one way while it is pressed, and taken back the same way.
 
 Pressed straight down, a brush bends nobody knows where to. So the tool runs forward by nearly the lag while it goes
-down, and back while it comes up: it is never farther from the patch than the lag is long, the patch rests where it was
+down, and back while it comes up: it is never further from the patch than the lag is long, the patch rests where it was
 set down, and at the depth of the dab the bristles are nearly taut, as while the brush is dragged.
 """
 

@@ -17,7 +17,7 @@ NOT_SAID = (
     "A dab shows all that was touched at its depth and above, by a brush that stands: bristles that are dragged along "
     "are a little closer together.",
 )
-HIDDEN_MM = 0.05  # a front no farther ahead than a shallower dab's may be that one's
+HIDDEN_MM = 0.05  # a front no further ahead than a shallower dab's may be that one's
 FOUND, ASSUMED = "#3f8fd9", "#c0392b"
 
 
@@ -60,7 +60,7 @@ def _hidden_fronts(brush: _core.Brush) -> list[float]:
 def _hidden(depths: list[float]) -> str:
     listed = ", ".join(f"{depth:g}" for depth in depths)
     return (
-        f"At depth {listed} mm the front is no farther ahead than at a lesser depth, on the way to which it was "
+        f"At depth {listed} mm the front is no further ahead than at a lesser depth, on the way to which it was "
         "touched: the footprint there may be shorter."
     )
 

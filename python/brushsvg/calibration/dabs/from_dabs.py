@@ -16,7 +16,7 @@ from .dab_outlines import SMOOTHED_MM, Dab, Outlines, Shape, outlines_of, widths
 
 # a law bends enough if it is so near to the mean of each depth, or so many errors of that mean
 CLOSE_MM, CHANCE = 0.03, 2.0
-AGREE_MM = 0.4  # farther from an outline, and the brush would be refused
+AGREE_MM = 0.4  # further from an outline, and the brush would be refused
 MOST_TERMS = 5
 BROAD = 0.85  # of the greatest width: the part by which dabs are compared
 FALLS_MM = 0.1  # by which deeper dabs may be narrower: more, and paint ran out
@@ -120,7 +120,7 @@ def _seen(law: str, shape: Shape) -> np.ndarray:
         tops = np.array([_top(seen.outline_mm) for seen in shape.seen])
         return np.column_stack([np.full(len(tops), depth), _widest(shape.outline_mm) + tops - tops.mean()])
     if law == "tip_gap":
-        # a dab that is farther ahead has its tip nearer to where it was set down
+        # a dab that is further ahead has its tip nearer to where it was set down
         return np.array([[depth, shape.tip_gap_mm - seen.displacement_mm[0]] for seen in shape.seen])
     spans = np.array([_broadest(seen.outline_mm) for seen in shape.seen])
     return np.column_stack([np.full(len(spans), depth), _half(shape) + (spans - spans.mean()) / 2])

@@ -190,7 +190,7 @@ def grow_outlines(marks: list, edge_mm: float) -> list:
 
 def wetter_where_wider(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
     """Return the marks grown the more the wider a mark is, by edge_mm at the greatest depth: more paint
-    runs farther. The fit would take a common shift of all edges for higher paper; these are wider marks."""
+    runs further. The fit would take a common shift of all edges for higher paper; these are wider marks."""
     half = np.array(fit.laws.half_width)
     shape = len(widest_ratio(fit.laws)) + len(front_ratio(fit.laws))
     moved, end = np.zeros(len(fit.covariance)), height_at(fit) - shape

@@ -28,7 +28,7 @@ NO_PEN = "# leave this line out for a pen lift"
 NO_ARM = "# only for a machine whose motors drive x and y each: leave this line out for an arm or an EBB"
 LEAST_MM = 0.01  # of backlash that a cell undoes
 CERTAIN = (
-    1.6  # half 95 % intervals: none of a field's six numbers is farther from 0 by chance in 99 of 100 fits
+    1.6  # half 95 % intervals: none of a field's six numbers is further from 0 by chance in 99 of 100 fits
 )
 HARDLY = 0.8  # of what a number was known to beforehand: what is known no better, marks say nothing of
 # Where the ways on the paper go one way by more than this (0: all ways alike, 1: one), lean along it is what a longer

@@ -35,7 +35,7 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
     """calibrate_marks() of marks that get narrower from the first stroke of their plan to the last, since paint was
     fetched before the first one only; its brush is the freshly dipped one, and says by how much marks narrow.
 
-    What the marks would be freshly dipped is what the fit is given: each edge as much farther from the middle line as
+    What the marks would be freshly dipped is what the fit is given: each edge as much further from the middle line as
     the paint took. By how much it took is what makes the edges' residuals depend on the way no more. Intervals of the
     laws hold what the other number leaves open. Where the last strokes of the plan are missing or broken, the brush
     says that hairs are wet up to the last whole mark. Marks that seem to widen a little do not narrow. Error where the
@@ -92,7 +92,7 @@ def _kept(one: tuple[float, float], other: tuple[float, float]) -> float:
 
 
 def freshly_dipped(painted: Painted, made: MarkCalibration, rate_per_m: float) -> list:
-    """The marks as a brush would have painted them that was dipped at every place: edges farther from where the widest
+    """The marks as a brush would have painted them that was dipped at every place: edges further from where the widest
     section ran by what the paint took of it."""
     brush, traces = simulated(made, painted.marks)
     fit, turned = made.fit, rotation(made.fit.turn_rad)

@@ -21,7 +21,7 @@ REMEDY = (
 
 @dataclass(frozen=True)
 class SheetScale:
-    """The share by which marks are farther apart than planned, in x, in y and on the whole, each (share, standard
+    """The share by which marks are further apart than planned, in x, in y and on the whole, each (share, standard
     error), with so many degrees of freedom."""
 
     x: tuple[float, float]

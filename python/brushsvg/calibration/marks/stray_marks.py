@@ -9,7 +9,7 @@ import numpy as np
 OUTLYING = 4.7  # standard deviations beyond which a point of an outline is masked by the fit
 # A displacement of so many standard deviations of the others' is none of theirs: one good mark in 10^7
 FARTHEST, LEAST_SPREAD_MM = 6.0, 0.1
-# An outline that is so many times farther off than usual, at so large a part of it, is not paint of this stroke alone
+# An outline that is so many times further off than usual, at so large a part of it, is not paint of this stroke alone
 UNLIKE, LEAST_USUAL_MM, UNLIKE_PART = 4.0, 0.04, 0.03
 MOST = 0.2  # share of all marks: more, and it is the sheet
 

@@ -338,7 +338,7 @@ def _places(values, where: str) -> tuple[tuple[float, ...], ...]:
     found = tuple(json_fields.numbers(place, f"{where}[{i}]", 2) for i, place in enumerate(values))
     for i, place in enumerate(found):
         if max(map(abs, place)) > LONGEST_MM:
-            sentence = f"({place[0]:g}, {place[1]:g}) mm is farther than the {LONGEST_MM:g} mm that are taken for true"
+            sentence = f"({place[0]:g}, {place[1]:g}) mm is further than the {LONGEST_MM:g} mm that are taken for true"
             raise Error(sentence, f"{where}[{i}]", code="out-of-range")
     return found
 

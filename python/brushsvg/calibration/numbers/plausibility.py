@@ -308,7 +308,7 @@ def refuse_brush(brush) -> None:
         )
     if not brush.tip_to_widest.assumed and widest > lag + gap:
         raise Error(
-            f"the widest section is {widest:.3g} mm from the tip at depth {depth:g} mm, farther than the tool, "
+            f"the widest section is {widest:.3g} mm from the tip at depth {depth:g} mm, further than the tool, "
             f"{lag + gap:.3g} mm: measure it from the tip of the footprint, in millimetres",
             "tip_to_widest",
             widest,

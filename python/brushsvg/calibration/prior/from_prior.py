@@ -40,7 +40,7 @@ from .prior import DEPTHS, KnownLaws, known_laws, numbers_of, root_of_inverse
 # Ratio of a law's standard deviations after and before, at some depth: above it, the marks add nothing to the law.
 LEARNED_BELOW = 0.9
 ROUNDS = 20
-LOOSE = 0.25  # of a law, standard deviation: farther off than brushes of one make are
+LOOSE = 0.25  # of a law, standard deviation: further off than brushes of one make are
 LIKELY = 1.645  # normal deviate: a brush as far from its prior is met once in twenty times
 # Of a law, standard deviation: what a polynomial of low degree leaves of it at the depths that were painted. With 0 the
 # marks of shallow strokes would be sure of the depths below: what follows round-6 to 7 mm is 12 % off at 10 mm.
@@ -117,7 +117,7 @@ def update_brush(
 
 
 def _fit_wide_enough(marks: list, known: KnownLaws, options) -> tuple[object, dict[str, float]]:
-    """A law that is farther from its prior than that allows is fitted with a wider one. One that is too narrow for
+    """A law that is further from its prior than that allows is fitted with a wider one. One that is too narrow for
     another brush of the same make would hold the law where it is: edges far from there would count as wild,
     have no say, and leave it sure of itself. So the marks are fitted first with a loose prior."""
     loosened = known.loosened(LOOSE)

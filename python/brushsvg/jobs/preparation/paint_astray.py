@@ -9,7 +9,7 @@ from ...model.confidence import unseen_mm
 from ...read.design import Notice
 
 MIN_OVERSPILL = (
-    0.5  # of half the width: paint farther outside of what was drawn is seen as a bulge or a thorn
+    0.5  # of half the width: paint further outside of what was drawn is seen as a bulge or a thorn
 )
 _SWEPT_MM = 0.05
 

@@ -57,7 +57,7 @@ FANUC_CONFIGURATION = "N U T, 0, 0, 0"
 ROS_FRAMES = "base_link", "tool0"  # as ROS-Industrial names them
 MOST_TILT_DEG = 30.0  # of a plan.json
 TURN_DEG_S = (
-    45.0  # a quarter of what most joints of arms turn by in a second: some turn farther than the tool does
+    45.0  # a quarter of what most joints of arms turn by in a second: some turn further than the tool does
 )
 
 
@@ -415,7 +415,7 @@ LEAST_SPEED_MM_S = {
 LEAST_SERVO_SPEED_MM_S = 1 / 60  # grbl runs a lower feed at this one
 UNITS_MM = {"hpgl": 0.025}  # of places in languages that know no fractions
 ARCS_IN_SEGMENTS = ("marlin", "klipper")  # whose firmware makes lines of circles, where it knows any
-RADII_MM = {"fluidnc": 0.005}  # a circle's ends may be so much farther from its centre than each other
+RADII_MM = {"fluidnc": 0.005}  # a circle's ends may be so much further from its centre than each other
 MOST_POINTS = {"fanuc": 1000}  # of one program: longer jobs are parted between strokes
 MOST_LINES = {"urscript": 1000, "krl": 2500}  # the same; a stroke that has more is a program by itself
 RELOADS = ("length", "stroke", "layer")

@@ -10,7 +10,7 @@ import numpy as np
 from ... import _core
 from .retimed import on_way
 
-# a chord turns by no more, and is no farther from its circle: what the mark's edge shows of a polygon is less
+# a chord turns by no more, and is no further from its circle: what the mark's edge shows of a polygon is less
 TURN_RAD = 0.12
 OFF_MM = 0.01
 

@@ -74,7 +74,7 @@ def blends(poses_mm: np.ndarray, blending: Blending, arcs=()) -> tuple[np.ndarra
     turns = all_turns[1:-1]
     quarter = np.tan(turns / 4)
     most = np.divide(blending.tolerance_mm, quarter, out=np.full_like(quarter, np.inf), where=quarter > 0)
-    if len(arcs):  # on a circle no farther than its tangent shows the way
+    if len(arcs):  # on a circle no further than its tangent shows the way
         bends = np.abs(moves.bends)
         bend = np.maximum(bends[:-1], bends[1:])
         least = np.divide(blending.tolerance_mm, bend, out=np.full_like(bend, np.inf), where=bend > 0)
@@ -88,7 +88,7 @@ def blends(poses_mm: np.ndarray, blending: Blending, arcs=()) -> tuple[np.ndarra
 
 
 def on_the_spot(steps_mm: np.ndarray, sideways_mm: float = ON_THE_SPOT_MM) -> np.ndarray:
-    """(n,) which steps (n, 3) go straight up or down: less than so far sideways, and farther than that."""
+    """(n,) which steps (n, 3) go straight up or down: less than so far sideways, and further than that."""
     sideways = np.abs(steps_mm[:, :2]).max(axis=1, initial=0.0)
     return (sideways < sideways_mm) & (np.abs(steps_mm[:, 2]) > sideways_mm)
 

@@ -125,7 +125,7 @@ def follow(
 
     tcp_mm: (n, 2), n >= 1, places of the handle in the frame of the paper. depth_mm: (n,) or one for all, linear
     between them, in [0, 1000]. law: the lag, a Profile (brush.lag) or a number [mm]. contact_mm: (2,), where the
-    patch is at first, no farther than the lag; None: the brush is set down there. The print separates loose from taut
+    patch is at first, no further than the lag; None: the brush is set down there. The print separates loose from taut
     by an epsilon of 0.01 mm, which fine steps never reach; here the moments are roots.
 
     Raises Error for other shapes and numbers, and a lag that is negative, or 0 in part, at the depths passed.

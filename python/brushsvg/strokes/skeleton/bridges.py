@@ -19,7 +19,7 @@ FORK = 0.04
 # less, as in an n with a hump, which narrows towards its top. Above, a straight stem would have to be a wedge.
 WHOLE, IN_HUMP = 0.95, 0.5
 # Offsets from the middle of a bar, in its half widths, where the extent of the shape is measured: the outer two in the
-# stem that it meets, so far from its sides and with its far side no more slanted than that. And how much farther the
+# stem that it meets, so far from its sides and with its far side no more slanted than that. And how much further the
 # shape has to go on amid the bar, how much at most, and on all of its width. FLAT: cosine of the angle with the stem,
 # at most.
 _ACROSS = np.array([-1.6, -0.7, 0.0, 0.7, 1.6])
@@ -45,8 +45,8 @@ _AROUND, _FINELY_AROUND = _grid(17), _grid(41)
 _MOST_QUERIES = 200_000_000
 
 
-# A belly: a disc so much wider than both arms where they leave it, whose middle is no farther from the straight
-# way between them than so much of its radius. No bend of a line has such a disc, and a knob at one side is farther off.
+# A belly: a disc so much wider than both arms where they leave it, whose middle is no further from the straight
+# way between them than so much of its radius. No bend of a line has such a disc, and a knob at one side is further off.
 BELLY, AMID = 1.25, 0.25
 
 

@@ -14,7 +14,7 @@ from ...geometry.polylines import length
 CROSSING_REACH = 0.9
 # Lines that turn by less, in all, where they cross others are one line.
 STRAIGHTEST_RAD = np.radians(60)
-# A neck is where an arm leaves narrower than so much of the widest disc and is wider farther on. Two arms between which
+# A neck is where an arm leaves narrower than so much of the widest disc and is wider further on. Two arms between which
 # all others have one are one line up to a greater turn: the stem of an a and its foot, next to which the bowl joins.
 NECK, STRAIGHTEST_THICK_RAD = 0.6, np.radians(120)
 # What a dropped branch adds, in squares of the radius: the outer corner of a line that turns by less has 0.05, one of

@@ -137,7 +137,7 @@ def _stroke(chain, wanted_mm: list[np.ndarray], area: list[np.ndarray]) -> Outli
 
 
 def _is_covered(line: np.ndarray, rings: list[np.ndarray]) -> bool:
-    """Return whether ahead of the end of a line (k, 3) the outline is farther off than a cap of its own, in enough of
+    """Return whether ahead of the end of a line (k, 3) the outline is further off than a cap of its own, in enough of
     all directions: other strokes paint there."""
     x, y, half = line[-1]
     is_back = np.hypot(*(line[:, :2] - (x, y)).T) > half
