@@ -500,6 +500,18 @@ def test_every_command_with_a_drawing_explains():
     assert offers >= {"simulate-photo", "chart", "setup height", "setup first-run"}
 
 
+def test_settings_of_a_project_are_named_unless_quiet(desk, capsys):
+    project('cell = "ur5e"\n[defaults]\nz-offset = 0.5')
+    capsys.readouterr()
+    assert main(["convert", "d.svg", "-o", "o.script"]) == 0
+    (line,) = [line for line in capsys.readouterr().err.splitlines() if NAME in line]
+    assert str(desk / NAME) in line and gives(line, "cell", "z-offset")
+    assert main(["convert", "d.svg", "-o", "o.script", "--cell", "ur5e", "--z-offset", "0.5"]) == 0
+    assert NAME not in capsys.readouterr().err
+    assert main(["convert", "d.svg", "-o", "o.script", "--quiet"]) == 0
+    assert NAME not in capsys.readouterr().err
+
+
 # --- init
 
 

@@ -45,6 +45,10 @@ def use_project(args, argv: list[str] | None) -> None:
     )
     if args.explain:
         _explain(args, project, typed)
+    elif filled and args.messages == "text" and not getattr(args, "quiet", False):
+        # a file in a parent folder must not change a program unseen
+        flags = ", ".join(_flag(offered[name]) for name in filled)
+        say(path or "", f"settings used: {flags}; --explain lists where each comes from")
 
 
 def _writes_plan(args) -> bool:
