@@ -18,6 +18,9 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
 export CCACHE_BASEDIR := $(CURDIR)
 export CCACHE_NOHASHDIR := 1
+# A header is compared with its comments: without them ccache returned a precompiled header whose files gcc then read twice.
+export CCACHE_DEPEND := 1
+export CCACHE_NAMESPACE := brushsvg-depend
 export CCACHE_SLOPPINESS := pch_defines,time_macros,include_file_mtime,include_file_ctime
 endif
 # .ci/run sets this to ON. Elsewhere a newer compiler's new warning must not break `make demo`.
