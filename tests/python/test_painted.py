@@ -117,6 +117,12 @@ def bent(mark, **changes):
             "marks[1]",
             "stroke-unknown 'x'",
         ),
+        (
+            plan(),
+            [*scaled([1, 1])[:1], {"stroke": "x" * 5000, "outline_mm": []}],
+            "marks[1]",
+            f"stroke-unknown '{'x' * 60}'",
+        ),
         (plan(), marks() + marks()[:1], "marks[4]", "stroke-twice"),
         (plan(), bent(1, outline_mm=[]), "marks[1]", "mark-empty"),
         (plan(), bent(1, outline_mm=[[[0, 0], [1, 1]]]), "marks[1].outline_mm[0]", "wrong-type"),

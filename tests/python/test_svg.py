@@ -439,6 +439,7 @@ def test_a_given_sheet_replaces_the_size_and_keeps_scale_and_upper_left_corner()
         ('viewBox="0 0 nan 5"', "viewbox-invalid"),
         ('viewBox="0 0 0 5"', "viewbox-invalid"),
         ('width="0" height="5"', "out-of-range width 0 '(0, 1000000] mm'"),
+        ('width="0" viewBox="0 0 9 9"', "out-of-range width 0"),
         ('width="5" height="-1mm"', "out-of-range height -1"),
         ('width="5" height="1e9mm"', "out-of-range height 1e+09"),
         ('width="5 furlongs" height="5"', "not-a-length width '5 furlongs'"),

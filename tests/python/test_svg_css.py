@@ -288,3 +288,9 @@ def test_style_sheets_without_end_are_refused(monkeypatch):
     monkeypatch.setattr(style_sheets, "TEXT_LIMIT", 1000)
     with refused("css-too-complex 1300 1000"):
         read(f"<style>{'.a{top:1;red}' * 50}</style><style>{'.a{top:1;red}' * 50}</style>{P}")
+
+
+@pytest.mark.parametrize("style", ["transform:rotate({}deg)", "transform:scale({})", "rotate:{}deg"])
+def test_a_number_that_no_machine_holds_is_reported(style):
+    (notice,) = read(f'<path id="p" style="{style.format("1" * 400)}" d="M0 0H5"/>').notices
+    assert notice.damaged and agrees(notice, "transform-unread", "p")

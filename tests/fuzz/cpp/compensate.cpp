@@ -28,7 +28,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         fuzz::require(std::isfinite(made.tracking_error.largest_mm) &&
                           made.tracking_error.mean_mm <= made.tracking_error.largest_mm + 1e-9,
                       "the tracking error is finite", made.tracking_error.mean_mm);
-        const TrackingError seen = tracking_error_of(made.pass, stroke, brush, options.tolerance_mm);
+        Stroke drawn = stroke;
+        drawn.settings = made.pass.settings;  // a point that the options chose is judged as a point
+        const TrackingError seen = tracking_error_of(made.pass, drawn, brush, options.tolerance_mm);
         fuzz::require(std::abs(seen.largest_mm - made.tracking_error.largest_mm) <= 1e-9,
                       "the reported tracking error is that of the simulation",
                       seen.largest_mm - made.tracking_error.largest_mm);

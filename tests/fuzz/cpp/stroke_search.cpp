@@ -65,7 +65,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             fuzz::require(!added.mark_mm.empty(), "an added stroke paints");
         }
         const double all_mm2 = area(shape.target_mm);
-        for (const UncoveredArea& bare : uncovered_areas({shape}, brush, 0.01).front())
+        const auto uncovered = uncovered_areas({shape}, brush, 0.01);
+        for (const UncoveredArea& bare : uncovered.front())
             fuzz::require(bare.mm2 >= 0.01 * all_mm2 && bare.place_mm.allFinite(),
                           "a bare area is as large as requested", bare.mm2);
         if (!twice) return;

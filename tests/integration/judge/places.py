@@ -89,6 +89,15 @@ def paper_height(commanded: np.ndarray, machine: dict) -> np.ndarray:
     return machine.get("height_mm", 0.0) + commanded[:, 0] * tilts[0] + commanded[:, 1] * tilts[1] + on
 
 
+def highest_paper(x: float, y: float, machine: dict | None) -> float:
+    """The most by which paper around a place may be higher than it was taught: travel is as much higher."""
+    if not machine:
+        return 0.0
+    flat = {key: value for key, value in machine.items() if key != "map_mm"}
+    plane = float(paper_height(np.array([[x, y, 0.0]]), flat)[0])
+    return max(0.0, plane + max((row[2] for row in machine.get("map_mm", ())), default=0.0))
+
+
 def bent(place, machine: dict) -> np.ndarray:
     """(2,) by how much the machine's field displaces the tool: for x and for y half a quadratic form's value."""
     if "field_mm" not in machine:

@@ -119,18 +119,19 @@ class Job:
         ways = []
         for station in self.cell.get("stations", ()):
             x, y = station["place_mm"]
+            high = safe + places.highest_paper(x, y, self.machine)
             bottom = station.get("surface_mm", 0.0) - station.get("depth_mm", 0.0)
             wipes = [tuple(point) for point in station.get("wipe_mm", ())]
             end = wipes[-1][:2] if wipes else (x, y)
             way = [
-                (x, y, safe),
+                (x, y, high),
                 (x, y, bottom),
                 (x, y, station.get("rim_mm", 0.0) + clear),
                 *wipes,
-                (*end, safe),
+                (*end, high),
             ]
             if station.get("by_hand"):
-                way = [(x, y, safe), (x, y, safe)]
+                way = [(x, y, high), (x, y, high)]
             # commanded as it stands in the cell, on a machine that may lean: bent where it meets the paper
             ways.append(places.true_of(_sampled(np.array(way, dtype=float)), self.machine))
         return ways

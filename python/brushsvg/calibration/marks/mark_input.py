@@ -66,13 +66,15 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
         where = f"marks[{i}]"
         if stroke not in passes:
             raise Error(
-                f"there is no stroke {stroke!r} in the plan; it has {_some(list(passes))}",
+                f"there is no stroke {stroke[:60]!r} in the plan; it has {_some(list(passes))}",
                 where,
                 code="stroke-unknown",
             )
         if stroke in seen:
             raise Error(
-                f"stroke {stroke!r} has two marks: join their outlines to one", where, code="stroke-twice"
+                f"stroke {stroke[:60]!r} has two marks: join their outlines to one",
+                where,
+                code="stroke-twice",
             )
         seen.add(stroke)
         rings = [_ring(ring, f"{where}.outline_mm[{k}]") for k, ring in enumerate(outline)]

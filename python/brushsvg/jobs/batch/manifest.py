@@ -206,7 +206,10 @@ class Manifest:
 
     def _is_there(self, row: Row) -> bool:
         names = row.files or ([row.path] if row.path else [])
-        return any((self.folder / name).exists() for name in names)
+        try:
+            return any((self.folder / name).exists() for name in names)
+        except OSError:  # a name of a damaged file may be longer than names can be
+            return False
 
     def close(self) -> None:
         self._file.close()

@@ -108,7 +108,10 @@ def read_page(
         else:
             lacking = "width" if width is None else "height"
             reason = f"no {lacking} in absolute units: it follows from the viewBox"
-            width, height = width or height * box[2] / box[3], height or width * box[3] / box[2]
+            if width is None:
+                width = height * box[2] / box[3]
+            else:
+                height = width * box[3] / box[2]
         notices.append(
             Notice("svg", f"the drawing has {reason}, {width:.6g} x {height:.6g} mm", code="size-assumed")
         )

@@ -63,8 +63,7 @@ def css_transform(text: str, box: Callable[[], ReferenceBox], em_px: float) -> M
                 f"transform is not read from character {at + 1} on: found {snippet(text, at)}",
                 code="transform-unread",
             )
-        values = [_value(word, kind, box, em_px) for word, kind in zip(words, kinds, strict=False)]
-        matrix = multiply(matrix, _MAKE[name](*values))
+        matrix = multiply(matrix, _MAKE[name](*_values(words, kinds, box, em_px)))
         at = call.end()
     return matrix
 
@@ -77,7 +76,7 @@ def individual_transform(name: str, text: str, box: Callable[[], ReferenceBox], 
     kinds = _KINDS[name]
     if not 1 <= len(words) <= len(kinds):
         raise Error(f"{name} {text[:40]!r} is not read", code="transform-unread")
-    return _MAKE[name](*(_value(word, kind, box, em_px) for word, kind in zip(words, kinds, strict=False)))
+    return _MAKE[name](*_values(words, kinds, box, em_px))
 
 
 def origin(text: str, is_css: bool, box: Callable[[], ReferenceBox], em_px: float) -> tuple[float, float]:
@@ -105,6 +104,16 @@ def about(point: tuple[float, float], matrix: Matrix) -> Matrix:
     """A matrix as it acts about a point."""
     x, y = point
     return multiply(multiply((1.0, 0.0, 0.0, 1.0, x, y), matrix), (1.0, 0.0, 0.0, 1.0, -x, -y))
+
+
+def _values(
+    words: list[str], kinds: tuple[str, ...], box: Callable[[], ReferenceBox], em_px: float
+) -> list[float]:
+    values = [_value(word, kind, box, em_px) for word, kind in zip(words, kinds, strict=False)]
+    for word, value in zip(words, values, strict=False):
+        if not math.isfinite(value):
+            raise Error(f"transform: {word[:24]!r} is too large", code="transform-unread")
+    return values
 
 
 def _value(word: str, kind: str, box: Callable[[], ReferenceBox], em_px: float) -> float:
