@@ -492,11 +492,13 @@ def test_a_manifest_of_others_names_no_file_outside_of_its_folder(desk, way):
 
 def test_a_damaged_manifest_may_name_a_file_that_no_folder_can_hold(desk):
     Path("out").mkdir()
-    row = run.Row("other", "in/other.svg", "", None, "", files={"a" * 300 + ".ngc": "0"})
+    row = run.Row("other", "in/other.svg", "", None, "", files={"a" * 300 + ".ngc": "0", "kept.ngc": "0"})
+    Path("out/kept.ngc").write_text("")
     Path("out/manifest.jsonl").write_text(json.dumps(FORMAT) + "\n" + as_line(row))
     with threads() as executor:
         done = brushsvg.batch(["in/1.svg"], "out", executor=executor, tolerance=0.1)
     assert [each.name for each in done.rows] == ["1"] and not done.refused
+    assert as_line(row) in Path("out/manifest.jsonl").read_text(), "its other file exists"
 
 
 def test_what_is_a_mistake_of_ours_is_a_row_too(desk, monkeypatch):

@@ -189,7 +189,9 @@ def _oriented(rings: list[np.ndarray]) -> list[np.ndarray]:
 
 
 def _some(names: list[str]) -> str:
-    return ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
+    return ", ".join(name[:60] for name in names[:5]) + (
+        f" and {len(names) - 5} more" if len(names) > 5 else ""
+    )
 
 
 def middle(points: np.ndarray) -> np.ndarray:

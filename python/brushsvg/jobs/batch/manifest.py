@@ -206,10 +206,8 @@ class Manifest:
 
     def _is_there(self, row: Row) -> bool:
         names = row.files or ([row.path] if row.path else [])
-        try:
-            return any((self.folder / name).exists() for name in names)
-        except OSError:  # a name of a damaged file may be longer than names can be
-            return False
+        # not Path.exists, which raises for a name of a damaged file that is longer than names can be
+        return any(os.path.exists(self.folder / name) for name in names)
 
     def close(self) -> None:
         self._file.close()
