@@ -10,8 +10,6 @@ namespace {
 using Eigen::Index;
 using Eigen::RowVector2d;
 
-constexpr float kHalf = 0.5f;
-
 /// Marching squares: between the middles of four pixels, with blank ones round the picture. A crossing is between two
 /// of them, to the right of one (even) or below it (odd), and lines keep what is painted to their left.
 class Squares {
@@ -56,8 +54,8 @@ class Squares {
                                            share(row, column)};  // counter-clockwise from the lower left
         const std::array<Index, 4> sides{right_of(row + 1, column), below(row, column + 1), right_of(row, column),
                                          below(row, column)};  // each after its corner
-        const auto inside = [&](std::size_t k) { return corners[k % 4] > kHalf; };
-        const bool middle = corners[0] + corners[1] + corners[2] + corners[3] > 4.0f * kHalf;
+        const auto inside = [&](std::size_t k) { return corners[k % 4] > kHalfPainted; };
+        const bool middle = corners[0] + corners[1] + corners[2] + corners[3] > 4.0f * kHalfPainted;
         for (std::size_t k = 0; k < 4; ++k) {
             if (!inside(k) || inside(k + 1)) continue;
             // round what is blank where the middle is painted, else round what is painted
@@ -70,7 +68,7 @@ class Squares {
         const Index row = crossing / 2 / columns_, column = crossing / 2 % columns_;
         const bool across = crossing % 2 == 0;
         const float a = share(row, column), b = across ? share(row, column + 1) : share(row + 1, column);
-        const double t = double((kHalf - a) / (b - a));
+        const double t = double((kHalfPainted - a) / (b - a));
         return {double(column - 1) + (across ? t : 0.0), double(row - 1) + (across ? 0.0 : t)};
     }
 

@@ -390,7 +390,8 @@ class Search {
         } catch (const Error&) {
             return std::nullopt;
         }
-        if (trial.tile.box.is_empty()) return std::nullopt;
+        // a mark finer than a pixel everywhere has no outline
+        if (trial.tile.box.is_empty() || trial.tile.share.maxCoeff() <= kHalfPainted) return std::nullopt;
         const PixelBox& box = trial.tile.box;
         const Coverage before = paint_.block(box.row, box.column, box.rows, box.columns);
         trial.won_mm2 =

@@ -76,6 +76,22 @@ TEST_CASE("a stroke that sticks out of its shape is moved back") {
     CHECK(!left_alone[0].changed[0]);
 }
 
+TEST_CASE("an added stroke has an outline, even of a pen that is hardly wider than a pixel of the search") {
+    // found by the fuzzer
+    const Brush pen = io::read_brush(R"({"format": "brushsvg/brush", "version": 1, "name": "fine", "kind": "pen",
+        "depth_range_mm": [0, 2.313725490196078], "max_speed_mm_s": 25, "paint_depth_mm": 0.46274509803921565,
+        "lag": {"coefficients": [0]}, "tip_gap": {"coefficients": [0, 0.53]},
+        "tip_to_widest": {"coefficients": [0, 0.53]}, "half_width": {"coefficients": [0.1]},
+        "footprints": {"dragged": [{"depth_mm": 2.3, "outline_mm":
+                           [[0, 0], [1.23, -0.1], [1.33, -0.05], [1.33, 0.05], [1.23, 0.1]]}],
+                       "pressed": [{"depth_mm": 2.3, "outline_mm":
+                           [[0, 0], [1.23, -0.1], [1.49, -0.05], [1.49, 0.05], [1.23, 0.1]]}]}})");
+    Ring triangle(3, 2);
+    triangle << 40.25, 42.5, 30, 30, 32.5, 30;
+    const auto found = search_strokes({{{triangle}, {}, {}}}, pen, weights_for(Detail::normal));
+    for (const AddedStroke& each : found[0].added) CHECK(!each.mark_mm.empty());
+}
+
 TEST_CASE("the result is the same for shapes that are searched together and alone") {
     const Brush brush = shipped("round-6");
     std::vector<PaintedShape> shapes;
