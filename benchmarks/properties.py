@@ -1,6 +1,6 @@
 """Random drawings x brush files of every kind x cells x options: nothing that is written may break what must hold.
 
-    properties.py [--first 0] [--count 100000] [--hours 1] [--jobs 2] [--results FILE]
+    properties.py [--first 0] [--count 100000] [--hours 1] [--jobs 2] [--dialect NAME ...] [--results FILE]
 
 What holds is judged by the tests' own interpreters of each robot language and their own stepping simulator: no pose
 deeper than the brush allows, no mark off the sheet, nothing outside the workspace along the way, nothing fast while
@@ -38,14 +38,15 @@ ROOT = Path(__file__).parents[1]
 PART = 50  # cases that one process does before it says so; their drawings are one batch as well
 
 
-def part(first: int, shelf: Path) -> list[dict]:
+def part(first: int, shelf: Path, dialects: list[str]) -> list[dict]:
     """The cases from `first` on."""
     found = []
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stderr(io.StringIO()):
         work = Path(folder)
         with quick_check() as check:
             found += [
-                asdict(one(number, work / str(number), shelf, check)) for number in range(first, first + PART)
+                asdict(one(number, work / str(number), shelf, check, dialects))
+                for number in range(first, first + PART)
             ]
         drawings = sorted(work.glob("*/drawing.svg"), key=lambda path: int(path.parent.name))[:6]
         sources = [shutil.copy(path, work / f"d{path.parent.name}.svg") for path in drawings]
@@ -82,6 +83,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=100_000)
     parser.add_argument("--hours", type=float, default=1.0)
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--dialect", nargs="*", default=[], help="only these")
     parser.add_argument("--results", type=Path, default=ROOT / "build" / "properties.jsonl")
     args = parser.parse_args()
     args.results.parent.mkdir(parents=True, exist_ok=True)
@@ -101,7 +103,8 @@ def main() -> None:
         for some in (firsts[k : k + args.jobs] for k in range(0, len(firsts), args.jobs)):
             if time.monotonic() > until:
                 break
-            for cases in pool.map(part, some, [made_shelf(Path(shelf), k) for k in range(len(some))]):
+            shelves = [made_shelf(Path(shelf), k) for k in range(len(some))]
+            for cases in pool.map(part, some, shelves, [args.dialect] * len(some)):
                 for case in cases:
                     out.write(json.dumps(case) + "\n")
                     if case["wrong"]:

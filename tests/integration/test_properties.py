@@ -9,7 +9,8 @@ from judge.properties import one
 CASES, PART = 300, 25
 # cases of benchmarks/properties.py that were wrong once: steep ways of servos, a short lift of a ROS 2 trajectory, and
 # two faults of the judge
-WERE_WRONG = (200183, 200741, 200762, 201322, 202112, 202271, 202292, 203699, 204656, 205507)
+WERE_WRONG = (200183, 200741, 200762, 201322, 202112, 202271, 202292, 203699, 204656, 205507, 910284, 910531)
+WERE_WRONG_OF_EBB = (1000261, 1000459)  # with --dialect ebb
 
 
 @pytest.mark.parametrize("first", range(0, CASES, PART))
@@ -20,7 +21,10 @@ def test_what_is_written_holds_what_it_must(first, tmp_path, capsys):
     assert sum(not case.refused for case in cases) > PART / 5, "many are written"
 
 
-@pytest.mark.parametrize("number", WERE_WRONG)
-def test_what_was_wrong_once_is_not_again(number, tmp_path, capsys):
+@pytest.mark.parametrize(
+    ("number", "dialects"),
+    [*((each, ()) for each in WERE_WRONG), *((each, ("ebb",)) for each in WERE_WRONG_OF_EBB)],
+)
+def test_what_was_wrong_once_is_not_again(number, dialects, tmp_path, capsys):
     with quick_check() as check:
-        assert one(number, tmp_path / str(number), tmp_path, check).wrong == ()
+        assert one(number, tmp_path / str(number), tmp_path, check, dialects).wrong == ()

@@ -8,7 +8,15 @@ import math
 import numpy as np
 
 from ..errors import Error, Notice
-from ..machine.cells.cell import Cell, least_move_mm, servo_parts, servo_stands, unit_mm, value_mm
+from ..machine.cells.cell import (
+    Cell,
+    ends_rounded_mm,
+    least_move_mm,
+    servo_parts,
+    servo_stands,
+    unit_mm,
+    value_mm,
+)
 from ..machine.paint_reload import PlanInLoads, visits
 from ..machine.posts.text import spelled
 from ..machine.realised.rounding import steep_ways_lifted
@@ -112,10 +120,12 @@ def _strayed(a_pass, lines: np.ndarray, planned, cell: Cell) -> Problems:
 
 
 def _step_mm(a_pass, cell: Cell) -> float:
-    """The most that a servo's height changes by in one part of a way: a steep one has no room for more parts."""
+    """The most that a servo's height changes by in one part of a way: a steep one has no room for more parts, and one
+    whose ends were rounded to whole units may have room for fewer."""
     ways = np.diff(np.asarray(a_pass.poses_mm, dtype=float), axis=0)
     ways = ways[~servo_stands(ways, cell)]
-    return max(cell.servo.step_mm, float((np.abs(ways[:, 2]) / servo_parts(ways, cell)).max(initial=0.0)))
+    parts = servo_parts(ways, cell, -ends_rounded_mm(cell))
+    return max(cell.servo.step_mm, float((np.abs(ways[:, 2]) / parts).max(initial=0.0)))
 
 
 HELD_DEG = 0.5  # off the planned direction: a brush's mark does not show it

@@ -9,6 +9,7 @@ import numpy as np
 from ..errors import Notice
 from ..machine.motion import Program
 from ..machine.posts import POSTS
+from ..machine.posts.gcode_servo import height_at
 from ..machine.writer import text_of
 from .readback import Act, Readback, read_program
 
@@ -43,7 +44,8 @@ def stops(read: Readback, program: Program) -> list[Notice]:
         most_s = np.interp(at_mm[1:] + off_mm, expected_mm, expected_s) - np.interp(
             at_mm[:-1] - off_mm, expected_mm, expected_s
         )
-        most_s = np.maximum(most_s, _as_next_to_it(np.diff(at_mm), least_s))
+        if program.cell.servo and language == "ebb":
+            most_s = np.maximum(most_s, _with_lift_s(ours, np.diff(along), program))
         late_s = took_s - slower * most_s
         if late_s[worst := int(late_s.argmax())] > STANDS_S:
             sentence = (
@@ -53,15 +55,15 @@ def stops(read: Readback, program: Program) -> list[Notice]:
     return []
 
 
-def _as_next_to_it(ways_mm: np.ndarray, least_s: np.ndarray) -> np.ndarray:
-    """The time [s] of each part at the pace of the slower of its neighbours that are as long: two parts of a servo's
-    way share a step of its height, and which of them has it is a matter of rounding."""
-    most_s = np.zeros(len(ways_mm))
-    for a, b in ((slice(1, None), slice(None, -1)), (slice(None, -1), slice(1, None))):
-        is_as_long = (ways_mm[b] > 0) & (ways_mm[b] > 0.9 * ways_mm[a])
-        pace = np.divide(least_s[b], ways_mm[b], out=np.zeros(len(ways_mm[b])), where=is_as_long)
-        most_s[a] = np.maximum(most_s[a], pace * ways_mm[a])
-    return most_s
+def _with_lift_s(acts: list[Act], ways_mm: np.ndarray, program: Program) -> np.ndarray:
+    """The time [s] of each part along which the servo lifts or lowers the brush as much as its program may mean.
+
+    A part has one value of the servo, that of its middle. How far the height changes along it is not in the program:
+    at most from the middle of the part before to that of the next. Over this way the tip is as fast as it may be.
+    """
+    heights_mm = np.array([height_at(program.cell.servo, act.same[0]) for act in acts])
+    steps_mm = np.abs(np.diff(heights_mm, append=heights_mm[-1]))
+    return np.hypot(ways_mm, steps_mm[:-1] + steps_mm[1:]) / program.touching_mm_s
 
 
 def _strokes(acts: list[Act], touching_mm_s: float) -> list[tuple[str, list[Act]]]:

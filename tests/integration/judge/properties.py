@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -161,10 +161,11 @@ def more_flags(random, kind: str) -> tuple[str, ...]:
 # one case -------------------------------------------------------------------------------------------------------------
 
 
-def one(number: int, folder: Path, shelf: Path, check: Callable) -> Case:
-    """check: of `checked.quick_check`; shelf: a folder in which brush files are kept. All depends on the number."""
+def one(number: int, folder: Path, shelf: Path, check: Callable, dialects: Sequence[str] = ()) -> Case:
+    """check: of `checked.quick_check`; shelf: a folder in which brush files are kept; dialects: by default all of them.
+    All depends on the number and the dialects."""
     random = np.random.default_rng([number, 53])
-    dialect, kind = str(random.choice(list(CELLS))), _kind(random)
+    dialect, kind = str(random.choice(list(dialects or CELLS))), _kind(random)
     cell = random_cell(random, dialect)
     brush, name = _brush(random, dialect, folder, shelf)
     if dialect in PENS and kind == "plan":  # it presses a brush

@@ -490,12 +490,17 @@ def servo_stands(steps_mm: np.ndarray, cell: Cell) -> np.ndarray:
     return np.hypot(steps_mm[:, 0], steps_mm[:, 1]) < 0.5 * unit_mm(cell)
 
 
-def servo_parts(ways_mm: np.ndarray, cell: Cell) -> np.ndarray:
+def servo_parts(ways_mm: np.ndarray, cell: Cell, longer_mm: float = 0.0) -> np.ndarray:
     """(n,) how many parts a servo's straight ways (n, 3) have: one for each step of height, as long as rounding leaves
-    each a move."""
+    each a move. longer_mm: of each way seen from above, by which the rounding of its ends may change the number."""
     steps = np.ceil(np.abs(ways_mm[:, 2]) / cell.servo.step_mm - 1e-9)
-    lengths_mm = np.hypot(ways_mm[:, 0], ways_mm[:, 1])
+    lengths_mm = np.hypot(ways_mm[:, 0], ways_mm[:, 1]) + longer_mm
     return np.maximum(1, np.minimum(lengths_mm // least_part_mm(cell), steps)).astype(int)
+
+
+def ends_rounded_mm(cell: Cell) -> float:
+    """By how much the rounding of both ends may change the length of a way."""
+    return 2**0.5 * unit_mm(cell)
 
 
 def servo_is_outrun(
@@ -507,12 +512,14 @@ def servo_is_outrun(
     program has them, which may be steeper than what was planned, by as much."""
     rises_mm = np.abs(ways_mm[:, 2])
     flat_mm, length_mm = np.hypot(ways_mm[:, 0], ways_mm[:, 1]), np.linalg.norm(ways_mm, axis=1)
+    # as many parts as are written at least; of what is read, at most
+    parts = servo_parts(ways_mm, cell, ends_rounded_mm(cell) if are_rounded else -ends_rounded_mm(cell))
     if are_rounded:
-        rises_mm, flat_mm = np.maximum(rises_mm - value_mm(cell), 0.0), flat_mm + 2**0.5 * unit_mm(cell)
+        rises_mm, flat_mm = np.maximum(rises_mm - value_mm(cell), 0.0), flat_mm + ends_rounded_mm(cell)
         length_mm = np.hypot(flat_mm, rises_mm)
     least_mm_s = LEAST_SPEED_MM_S.get(cell.language, LEAST_SERVO_SPEED_MM_S)
     step_mm = max(cell.servo.step_mm, value_mm(cell))
-    has_few_parts = rises_mm > 2 * step_mm * servo_parts(ways_mm, cell)
+    has_few_parts = rises_mm > 2 * step_mm * parts
     is_steep = rises_mm > STEEP * flat_mm
     is_slow = speed_mm_s * flat_mm < least_mm_s * length_mm
     return (rises_mm > step_mm + 1e-9) & (has_few_parts | is_steep | is_slow) & ~servo_stands(ways_mm, cell)
