@@ -118,7 +118,7 @@ def test_a_ur5e_learns_its_brush_from_a_job(user):
     user.saves("studio.toml", f"{STUDIO}[brush]\nlag = 1.15\n")
 
     # The paper is taught at its corner and along two edges.
-    taught = "--taught=-150,-650,20 --taught=150,-650,20 --taught=-150,-450,20.2"
+    taught = "--taught=-150,-650,20 --taught=140,-650,20 --taught=-150,-450,20.2"
     user.types(f"cell new -o arm.toml --like ur5e {taught}")
     user.types("cell check arm.toml")
     user.types("setup first-run arm.toml -o first.script")
