@@ -62,7 +62,7 @@ def _check_convert(args) -> None:
     check_job(args)
     if args.per_colour and (args.colour or args.from_stroke != 1):
         args.parser.error(
-            "--per-colour writes all strokes of each colour: leave --colour and --from-stroke out"
+            "--per-colour writes a whole program for each colour: for a part of them, leave it out and add --colour"
         )
     if args.per_colour and args.margin_strokes == "on":
         args.parser.error("--margin-strokes on does not go with --per-colour: leave one of them out")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from .... import _core
+from ....errors import Notice
 from ....jobs.conversion import time_written_s
 from ....jobs.options import DEFAULT_BRUSH
 from ....machine import preflight, writer
@@ -14,6 +17,11 @@ from ...arguments.values import EDGE_NOISE_MM
 from ...console import RefusedError, about, print_text, stage
 from ...steps.options import brush_of, exact_cell, settled, typed, warn_of_cell
 from ...steps.output_places import check_places, suffix_of, write
+
+
+def _with_sheet(problem: Notice) -> Notice:
+    is_too_large = problem.code in ("out-of-box", "tool-off-sheet") and problem.about != "z"
+    return replace(problem, advice="--sheet WxH makes a smaller chart") if is_too_large else problem
 
 
 def chart_file(args) -> None:
@@ -39,7 +47,7 @@ def chart_file(args) -> None:
         tolerance_mm = preflight.DEFAULT_TOLERANCE_MM
         walk = preflight.look(loads, brush, marks, painting, tolerance_mm, Job(args.z_offset))
         if walk.problems:
-            raise RefusedError(args.output, summarized(walk.problems))
+            raise RefusedError(args.output, summarized([_with_sheet(each) for each in walk.problems]))
         title = f"{'dabs' if args.dabs else 'calibration chart'} of brush {brush.name}"
         files = writer.in_files(args.output, writer.encoded(suffix, made.plan, walk, brush, title))
     if args.page:
