@@ -31,7 +31,8 @@ def main(drawing: Path, directory: Path) -> None:
     warn(str(drawing), work.notices)
 
     totals = {
-        how: report.measure(each.plan, marks[how], each.brush, each.strokes)[1] for how, each in works.items()
+        how: report.measure(report.PaintedPlan(each.plan, marks[how], each.brush, each.strokes))[1]
+        for how, each in works.items()
     }
     names = {
         "none": "none",

@@ -79,7 +79,7 @@ def check_figures(strokes, compensation, brush_name="round-6"):
     brush = find_brush(brush_name)
     done = _core.compensate(strokes, brush, (300.0, 300.0), compensation)
     marks = _core.simulate(done.plan, brush)
-    rows, total = report.measure(done.plan, marks, brush, strokes)
+    rows, total = report.measure(report.PaintedPlan(done.plan, marks, brush, strokes))
     groups = report.groups(marks, brush, strokes)
 
     plan = json.loads(_core.write_plan(done.plan))

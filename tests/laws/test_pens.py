@@ -52,4 +52,4 @@ def test_a_pen_paints_all_of_its_line(compensation, name, line):
     rings = [shapely.Polygon(ring) for ring in marks.passes[0].outline_mm]
     predicted = functools.reduce(shapely.symmetric_difference, rings)  # of holes and what is round them
     assert share(predicted, painted) > 0.98
-    assert report.measure(plan, marks, brush, [stroke])[1].overlap > 0.95
+    assert report.measure(report.PaintedPlan(plan, marks, brush, [stroke]))[1].overlap > 0.95

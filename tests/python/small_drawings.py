@@ -44,7 +44,7 @@ def small_drawing(random, number: int) -> list:
 def overlaps(strokes, brush, method: str) -> np.ndarray:
     """Of single strokes, as the report has them."""
     plan = _core.compensate(strokes, brush, SHEET_MM, method).plan
-    rows, _ = report.measure(plan, _core.simulate(plan, brush), brush, strokes)
+    rows, _ = report.measure(report.PaintedPlan(plan, _core.simulate(plan, brush), brush, strokes))
     return np.array([row.overlap for row in rows])
 
 

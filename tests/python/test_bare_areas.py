@@ -147,7 +147,7 @@ def test_it_begins_under_paint_and_stays_in_the_shape(tmp_path):
 def test_each_stroke_is_held_against_what_it_shall_paint(tmp_path):
     """The target of the stem still held its flag, and that of the flag its covered beginning."""
     work = prepared(tmp_path, FLAG)
-    rows, _ = report.measure(work.plan, predict(work), work.brush, work.strokes)
+    rows, _ = report.measure(report.PaintedPlan(work.plan, predict(work), work.brush, work.strokes))
     assert all(row.overlap > 0.9 for row in rows)
     stem, limb = (region(stroke.wanted_mm) for stroke in work.strokes)
     shape = shape_of(FLAG)

@@ -32,7 +32,9 @@ def drawing(tmp_path):
 
 
 def total(work):
-    return report.measure(work.plan, prediction.predict(work), work.brush, work.strokes)[1]
+    return report.measure(report.PaintedPlan(work.plan, prediction.predict(work), work.brush, work.strokes))[
+        1
+    ]
 
 
 def test_the_best_constant_lag_is_the_best_of_all(drawing):

@@ -32,7 +32,9 @@ def found(target, how="closed", name="round-6", tolerance_mm=0.05):
     brush = find_brush(name)
     painted, target, _ = within_reach([target], brush, "clamp")
     plan = compensate(painted, brush, (120, 120), how, tolerance_mm).plan
-    rows, _ = report.measure(plan, simulate(plan, brush), brush, target, tolerance_mm, compensation=how)
+    rows, _ = report.measure(
+        report.PaintedPlan(plan, simulate(plan, brush), brush, target, tolerance_mm, compensation=how)
+    )
     return rows[0].worst
 
 

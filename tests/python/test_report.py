@@ -16,6 +16,7 @@ from brushsvg.show.evaluation.places import Place
 from brushsvg.show.evaluation.report import (
     Figures,
     Group,
+    PaintedPlan,
     Report,
     Worst,
     as_text,
@@ -43,7 +44,7 @@ def two_strokes():
     for how in ("none", "closed"):
         plan = compensate(strokes, brush, (90, 60), how).plan
         marks = simulate(plan, brush)
-        found[how] = measure(plan, marks, brush, strokes)
+        found[how] = measure(PaintedPlan(plan, marks, brush, strokes))
     return found
 
 
@@ -131,7 +132,7 @@ def test_strokes_that_touch_are_judged_together():
     marks = simulate(plan, brush)
     (letter,) = groups(marks, brush, strokes)
     assert letter.strokes == ("down", "across")
-    rows, total = measure(plan, marks, brush, strokes)
+    rows, total = measure(PaintedPlan(plan, marks, brush, strokes))
     assert max(rows[0].overlap, rows[2].overlap) - 0.03 < letter.overlap
     assert groups(marks, brush, None) == ()
     text = to_text(Report("T", "round-6", "closed", 0.05, rows, total, 5, groups=(letter,)), details=True)
@@ -143,7 +144,7 @@ def test_a_stroke_painted_twice_is_no_worse_as_a_letter():
     strokes = [straight("a", (20, 20), (60, 20), 2.0), straight("b", (60, 20), (20, 20), 2.0)]
     plan = compensate(strokes, brush, (90, 80)).plan
     marks = simulate(plan, brush)
-    rows, _ = measure(plan, marks, brush, strokes)
+    rows, _ = measure(PaintedPlan(plan, marks, brush, strokes))
     (letter,) = groups(marks, brush, strokes)
     assert letter.overlap > max(row.overlap for row in rows) + 0.01  # each covers the other's pointed start
 
@@ -233,12 +234,12 @@ def test_the_worst_place_is_where_the_lag_is_not_compensated():
     )
     plan = compensate([straight_on, bend], brush, (90, 90), "none").plan
     marks = simulate(plan, brush)
-    places = worst_places(plan, marks, brush, [straight_on, bend], compensation="none")
+    places = worst_places(PaintedPlan(plan, marks, brush, [straight_on, bend], compensation="none"))
     assert places[0].stroke == "bend" and [place.number for place in places] == [*range(1, len(places) + 1)]
     assert places[0].code == "lag-not-compensated" and places[0].remedy
     assert places[0].missing_mm2 + places[0].outside_mm2 > 10
     good = compensate([straight_on, bend], brush, (90, 90)).plan
-    places = worst_places(good, simulate(good, brush), brush, [straight_on, bend])
+    places = worst_places(PaintedPlan(good, simulate(good, brush), brush, [straight_on, bend]))
     assert {place.code for place in places} <= {"stroke-start", "stroke-end"}, "plain ends are pointed"
 
 
@@ -247,7 +248,7 @@ def test_paint_of_another_stroke_is_no_difference():
     strokes = [straight("down", (40, 60), (40, 20), 2.0), straight("across", (25, 41), (60, 41), 2.0)]
     plan = compensate(strokes, brush, (90, 80)).plan
     marks = simulate(plan, brush)
-    both = worst_places(plan, marks, brush, strokes)
-    one = worst_places(plan, marks, brush, [strokes[0], None], drawn=strokes[:1])
+    both = worst_places(PaintedPlan(plan, marks, brush, strokes))
+    one = worst_places(PaintedPlan(plan, marks, brush, [strokes[0], None], drawn=strokes[:1]))
     assert max(place.outside_mm2 for place in both) < 1 < 40 < one[0].outside_mm2
     assert {place.stroke for place in one} == {"down"}

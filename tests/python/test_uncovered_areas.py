@@ -96,7 +96,9 @@ def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path)
     assert all(piece.is_rim for piece in work.unreached)  # its stroke runs amid it
     rim = prepared(tmp_path, "M20 5H31V45H20Z", wide="clamp")
     assert agrees(*notices(rim.unreached), "unreached", "p")
-    (row, *_), _ = report.measure(rim.plan, predict(rim), rim.brush, rim.strokes, unreached=rim.unreached)
+    (row, *_), _ = report.measure(
+        report.PaintedPlan(rim.plan, predict(rim), rim.brush, rim.strokes, unreached=rim.unreached)
+    )
     assert row.worst.code == "wider-than-brush"
     filled = prepared(tmp_path, WIDE, wide="passes")
     assert filled.unreached == ()
@@ -146,7 +148,7 @@ def test_the_report_gives_it_as_the_reason(tmp_path):
     marks = _core.simulate(plan, brush)
 
     def worst(unreached):
-        return report.measure(plan, marks, brush, target, unreached=unreached)[0][0].worst
+        return report.measure(report.PaintedPlan(plan, marks, brush, target, unreached=unreached))[0][0].worst
 
     assert worst(()).is_missing
     assert worst(()).code != "wider-than-brush"
@@ -159,5 +161,5 @@ def test_the_report_gives_it_as_the_reason(tmp_path):
 def test_what_discs_leave_of_a_corner_is_no_tracking_error(tmp_path):
     """Of the corners of a bar that is cut aslant the report said: tracking error up to 0.012 mm."""
     work = prepared(tmp_path, "M10 10H50L45 16H15Z")
-    (row, *_), _ = report.measure(work.plan, predict(work), work.brush, work.strokes)
+    (row, *_), _ = report.measure(report.PaintedPlan(work.plan, predict(work), work.brush, work.strokes))
     assert row.worst.code == "shape-corner"

@@ -153,7 +153,7 @@ def reported(
     work, marks, as_run = without_margin_strokes(work, marks, as_run)
     leans = any(map(is_tilted, work.plan.passes))
     is_drawing = work.strokes is not None
-    looked_at = (
+    painted = report.PaintedPlan(
         work.plan,
         marks,
         work.brush,
@@ -163,7 +163,7 @@ def reported(
         work.options.compensation,
         work.unreached,
     )
-    rows, total = report.measure(*looked_at)
+    rows, total = report.measure(painted)
     return report.Report(
         title=work.title,
         brush=work.plan.brush,
@@ -180,7 +180,7 @@ def reported(
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,
         assumed=assumed(work.brush),
-        places=report.worst_places(*looked_at) if is_drawing else (),
+        places=report.worst_places(painted) if is_drawing else (),
     )
 
 

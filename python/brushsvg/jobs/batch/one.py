@@ -115,14 +115,16 @@ def _made(task: Task) -> Made:
         for name, pieces in one.encoded().items()
     }
     _, total = report.measure(
-        one.work.plan,
-        one.marks,
-        work.brush,
-        one.work.strokes,
-        work.options.tolerance_mm,
-        None,
-        work.options.compensation,
-        work.unreached,
+        report.PaintedPlan(
+            one.work.plan,
+            one.marks,
+            work.brush,
+            one.work.strokes,
+            work.options.tolerance_mm,
+            None,
+            work.options.compensation,
+            work.unreached,
+        )
     )
     of_machine = conversion.of_cell(one.cell) if one.is_program else []
     notices = (*one.work.notices, *one.remarks(), *of_machine)

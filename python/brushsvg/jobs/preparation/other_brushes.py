@@ -33,7 +33,9 @@ def suits(path: str | os.PathLike[str], options: Options, brushes, stage=lambda 
         marks = predict(work, outlines=False, stage=stage)
         drawn = [*work.strokes, *work.left_out]
         rows, total = report.measure(
-            work.plan, marks, brush, work.strokes, options.tolerance_mm, drawn, options.compensation
+            report.PaintedPlan(
+                work.plan, marks, brush, work.strokes, options.tolerance_mm, drawn, options.compensation
+            )
         )
         found.append(suit(brush.name, rows, total.overlap if rows else 0.0, work.refused))
     return best_first(found)

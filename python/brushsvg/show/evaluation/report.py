@@ -124,47 +124,51 @@ def target_rings(strokes: Iterable[_core.Stroke]) -> list[np.ndarray]:
     return _core.unite([ring for s in strokes for ring in _core.wanted_outline(s, RING_TOLERANCE_MM)])
 
 
-def measure(
-    plan: _core.Plan,
-    marks: _core.Marks,
-    brush: _core.Brush,
-    strokes: Sequence[_core.Stroke] | None = None,
-    tolerance_mm: float = 0.05,
-    drawn: Sequence[_core.Stroke] | None = None,
-    compensation: str = "closed",
-    unreached: Iterable[Bare] = (),
-) -> tuple[tuple[Figures, ...], Figures]:
-    """Figures for each pass and for all. strokes: one per pass, None if unknown, or None for a pass that is a part of a
-    stroke: then drawn is all that was drawn, the strokes themselves where it is None; unreached: pieces of shapes that
-    no stroke reaches."""
+@dataclass(frozen=True)
+class PaintedPlan:
+    """A plan with what it paints, and what was drawn.
+
+    strokes: one per pass, None if unknown, or None for a pass that is a part of a stroke; drawn: then all that was
+    drawn, the strokes themselves where it is None; unreached: pieces of shapes that no stroke reaches.
+    """
+
+    plan: _core.Plan
+    marks: _core.Marks
+    brush: _core.Brush
+    strokes: Sequence[_core.Stroke | None] | None = None
+    tolerance_mm: float = 0.05
+    drawn: Sequence[_core.Stroke] | None = None
+    compensation: str = "closed"
+    unreached: Iterable[Bare] = ()
+
+
+def measure(painted: PaintedPlan) -> tuple[tuple[Figures, ...], Figures]:
+    """Figures for each pass and for all."""
+    plan, strokes, brush = painted.plan, painted.strokes, painted.brush
     if strokes is None:
         rows = tuple(_bare_figures(a_pass) for a_pass in plan.passes)
         return rows, _in_all(rows, None)
-    runs, traces = plan.passes, marks.passes
+    runs, traces = plan.passes, painted.marks.passes
     known = [k for k, stroke in enumerate(strokes) if stroke is not None]
     alone = [strokes[k] for k in known]
     verdicts = _core.verdicts([traces[k] for k in known], alone, brush)
-    tracking_errors = _core.tracking_errors_of([runs[k] for k in known], alone, brush, tolerance_mm)
+    tracking_errors = _core.tracking_errors_of([runs[k] for k in known], alone, brush, painted.tolerance_mm)
     found = iter(zip(verdicts, tracking_errors, strict=True))
     rows = tuple(
-        _bare_figures(a_pass)
-        if stroke is None
-        else _figures(a_pass, stroke, *next(found), brush, tolerance_mm, compensation, unreached)
+        _bare_figures(a_pass) if stroke is None else _figures(painted, a_pass, stroke, *next(found))
         for a_pass, stroke in zip(runs, strokes, strict=True)
     )
-    target = alone if drawn is None else list(drawn)
+    target = alone if painted.drawn is None else list(painted.drawn)
     overlap = _core.common_area(traces, target, brush).overlap if rows else None
     return rows, _in_all(rows, overlap)
 
 
-def _figures(
-    a_pass, stroke, verdict, tracking_error, brush, tolerance_mm, compensation: str, unreached
-) -> Figures:
+def _figures(painted: PaintedPlan, a_pass, stroke, verdict, tracking_error) -> Figures:
     line = _core.flatten(stroke, RING_TOLERANCE_MM)
     worst, place = None, verdict.worst
     if place.area_mm2 >= SMALL_MM2:
         size_mm = _square_mm(line)
-        why = _why(stroke, line, brush, place, size_mm, tracking_error, tolerance_mm, compensation, unreached)
+        why = _why(painted, stroke, line, place, size_mm, tracking_error)
         worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why.words, why.code)
     return replace(
         _bare_figures(a_pass),
@@ -173,57 +177,58 @@ def _figures(
         centre_largest_mm=tracking_error.largest_mm,
         width_error_mm=verdict.width_error_mm,
         excess_turning=verdict.excess_turning,
-        widths_out_of_reach=_out_of_reach(stroke, brush),
+        widths_out_of_reach=_out_of_reach(stroke, painted.brush),
         drawn_mm=float(line[-1, 2]),
         worst=worst,
     )
 
 
-def worst_places(
-    plan: _core.Plan,
-    marks: _core.Marks,
-    brush: _core.Brush,
-    strokes: Sequence[_core.Stroke] | None = None,
-    tolerance_mm: float = 0.05,
-    drawn: Sequence[_core.Stroke] | None = None,
-    compensation: str = "closed",
-    unreached: Iterable[Bare] = (),
-) -> tuple[Place, ...]:
-    """Where all paint differs most from all that was drawn, the largest first. Arguments: see measure."""
-    pairs = zip(plan.passes, strokes or (), strict=bool(strokes))
+def worst_places(painted: PaintedPlan) -> tuple[Place, ...]:
+    """Where all paint differs most from all that was drawn, the largest first."""
+    pairs = zip(painted.plan.passes, painted.strokes or (), strict=bool(painted.strokes))
     whole = {stroke.id: (run, stroke) for run, stroke in pairs if stroke is not None}
 
     def why(name: str, area) -> tuple[Cause, float | None]:
         if name not in whole:
             return Cause("", ""), None
         run, stroke = whole[name]
-        (error,) = _core.tracking_errors_of([run], [stroke], brush, tolerance_mm)
+        (error,) = _core.tracking_errors_of([run], [stroke], painted.brush, painted.tolerance_mm)
         line = _core.flatten(stroke, RING_TOLERANCE_MM)
         size_mm = max(_square_mm(line), area.area_mm2**0.5)
-        found = _why(stroke, line, brush, area, size_mm, error, tolerance_mm, compensation, unreached)
+        found = _why(painted, stroke, line, area, size_mm, error)
         is_off = not (stroke.wanted_mm or error.within_tolerance or "tracking error" in found.words)
         return found, error.largest_mm if is_off else None
 
-    targets = drawn if drawn is not None else [stroke for _, stroke in whole.values()]
-    return find_places(marks, brush, list(targets), why)
+    targets = painted.drawn if painted.drawn is not None else [stroke for _, stroke in whole.values()]
+    return find_places(painted.marks, painted.brush, list(targets), why)
 
 
 def _square_mm(line: np.ndarray) -> float:
     return max(_LEAST_SQUARE_MM, float(np.median(line[:, 3])))
 
 
-def _why(stroke, line, brush, place, size_mm, tracking_error, tolerance_mm, compensation, unreached) -> Cause:
+def _why(painted: PaintedPlan, stroke, line, place, size_mm, tracking_error) -> Cause:
     """Why paint differs at a place. size_mm: side of the square around it that is looked at."""
     here = [
         piece
-        for piece in unreached
+        for piece in painted.unreached
         if piece.element == stroke.origin.element and _is_in(place.at_mm, piece.rings, size_mm / 2)
     ]
     is_bare = place.is_missing and any(not piece.is_rim for piece in here)
     is_rim = place.is_missing and bool(here)
     is_corner = place.is_missing and _outside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
     where = "bare" if is_bare else "rim" if is_rim else "corner" if is_corner else ""
-    return cause(stroke, line, brush, place, size_mm, where, tracking_error, tolerance_mm, compensation)
+    return cause(
+        stroke,
+        line,
+        painted.brush,
+        place,
+        size_mm,
+        where,
+        tracking_error,
+        painted.tolerance_mm,
+        painted.compensation,
+    )
 
 
 def _is_in(place_mm, rings, reach_mm: float) -> bool:

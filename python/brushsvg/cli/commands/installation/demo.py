@@ -26,7 +26,8 @@ def demo_picture(args) -> None:
     works = {how: preparation.prepare(WORD, Options(compensation=how)) for how in TITLES}
     marks = {how: prediction.predict(work) for how, work in works.items()}
     totals = {
-        how: report.measure(work.plan, marks[how], work.brush, work.strokes)[1] for how, work in works.items()
+        how: report.measure(report.PaintedPlan(work.plan, marks[how], work.brush, work.strokes))[1]
+        for how, work in works.items()
     }
     made = comparison_png(works, marks, totals)
     write(args, {args.output: made}, len(works["closed"].strokes or ()), overlap=totals["closed"].overlap)
