@@ -20,7 +20,7 @@ from ...steps.output_places import check_places, suffix_of, write
 
 
 def _with_sheet(problem: Notice) -> Notice:
-    is_too_large = problem.code in ("out-of-box", "tool-off-sheet") and problem.about != "z"
+    is_too_large = problem.code == "out-of-box" and problem.about != "z"
     return replace(problem, advice="--sheet WxH makes a smaller chart") if is_too_large else problem
 
 
