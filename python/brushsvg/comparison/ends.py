@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,10 +23,17 @@ LEVEL = 0.5
 @dataclass(frozen=True)
 class Ends:
     """By how many mm later on its way than the target the paint of a stroke begins and ends; below 0: earlier. None
-    where it runs into other paint, or none is found."""
+    where it runs into other paint, or none is found. first_mm, last_mm: the ends (x, y) of its middle line."""
 
     began_mm: float | None
     ended_mm: float | None
+    first_mm: tuple[float, float] = (0.0, 0.0)
+    last_mm: tuple[float, float] = (0.0, 0.0)
+
+    def near(self, place_mm: tuple[float, float]) -> dict[str, float]:
+        """Those of "began" and "ended" that are known and within reach of a place."""
+        ends = (("began", self.began_mm, self.first_mm), ("ended", self.ended_mm, self.last_mm))
+        return {what: mm for what, mm, at in ends if mm is not None and math.dist(at, place_mm) <= REACH_MM}
 
 
 UNSEEN = Ends(None, None)
@@ -48,7 +56,8 @@ def ends_of(found: Comparison, strokes: list[TargetStroke], drawn) -> dict[str, 
         target = area(stroke.target)
         away = (_beyond(found, _ray(way), target, others) for way in (lines_mm[name][::-1], lines_mm[name]))
         before, behind = away if name in seen else (None, None)
-        made[name] = Ends(None if before is None else -before, behind)
+        first, last = (tuple(lines_mm[name][k, :2].tolist()) for k in (0, -1))
+        made[name] = Ends(None if before is None else -before, behind, first, last)
     return made
 
 

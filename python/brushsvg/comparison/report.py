@@ -124,8 +124,8 @@ def _why(row: Compared | None, area: WorstArea, ends: Ends) -> str:
             (off, "the stroke is displaced by"),
             (abs(wider), f"each edge is too {'far out' if wider > 0 else 'far in'}, by"),
         ]
-    for what, mm in (("began", ends.began_mm), ("ended", ends.ended_mm)):
-        causes += [(abs(mm), f"it {what} too {'late' if mm > 0 else 'early'}, by")] if mm is not None else []
+    for what, mm in ends.near(area.at_mm).items():
+        causes += [(abs(mm), f"it {what} too {'late' if mm > 0 else 'early'}, by")]
     most, words = max(causes, default=(0.0, ""))
     return f"{words} {most:.2f} mm" if most > SEEN_MM else ""
 

@@ -170,8 +170,8 @@ def _departing(made) -> list[str]:
     if not departing:
         return []
     return [
-        f"these marks do not speak for the usual laws: {', '.join(departing)} have more coefficients, and the "
-        "intervals hold by how much they may still be of another form"
+        f"these marks need more coefficients than usual for {', '.join(departing)}; the intervals include how much "
+        "the laws may still differ in form"
     ]
 
 
