@@ -24,6 +24,7 @@ from ..calibration.chart.layout import (
 
 TICK_MM = 4.0
 LINE_MM = 0.3
+BY_TICK_MM = 1.5
 LEAST_LABEL_MM = 25.0
 
 
@@ -57,10 +58,12 @@ def job_page(plan, title: str = "") -> JobPage:
         for k, (x, y) in _places(page, side)
     )
     bar = _bar(page, side)
-    x, y = bar.at_mm
+    y = bar.at_mm[1]
+    x = frame + BY_TICK_MM  # the lower left tick ends above the bar
+    room_mm = bar.at_mm[0] + bar.length_mm - x
     labels = (
-        Label(f"brushsvg job {mark}", (x, y - 5.0), bar.length_mm),
-        Label(f"bar: {bar.length_mm:g} mm, print at 100 %", (x, y + 2.0), bar.length_mm),
+        Label(f"brushsvg job {mark}", (x, y - 5.0), room_mm),
+        Label(f"bar: {bar.length_mm:g} mm, print at 100 %", (x, y + 2.0), room_mm),
         Label(title or "untitled", (page[0] / 2 + side, y), page[0] / 2 - 3 * side),
     )
     labels = tuple(
