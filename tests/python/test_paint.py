@@ -29,7 +29,7 @@ from brushsvg.machine.paint_reload import (
 from brushsvg.machine.preflight import look
 from brushsvg.machine.program import visit, walked
 from brushsvg.model.library import find_brush
-from brushsvg.show.evaluation.report import measure
+from brushsvg.show.evaluation.report import PaintedPlan, measure
 
 BLACK = Station(
     "black", (-20.0, 10.0), ("#000000",), surface_mm=-2.0, depth_mm=7.0, rim_mm=4.0, hold_s=0.5, drip_s=2.0
@@ -418,7 +418,7 @@ def test_loads_are_no_plan():
     """What was cut is not cut again, nor reported as if each load were a stroke."""
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 120.0, 6.0))
     loads = in_loads(long_plan(brush), brush, cell)
-    for taken in (lambda: in_loads(loads, brush, cell), lambda: measure(loads, None, brush, None)):
+    for taken in (lambda: in_loads(loads, brush, cell), lambda: measure(PaintedPlan(loads, None, brush))):
         with pytest.raises(AttributeError, match="passes"):
             taken()
     with pytest.raises(AttributeError, match="loads"):
