@@ -30,7 +30,7 @@ PYTHON = (".py", ".pyi")
 CPP = (".cpp", ".hpp", ".h", ".cc")
 QUOTATION = re.compile(r"(?<![\w\\])\"[^\"\n]*\"(?!\w)|`[^`\n]*`")
 CPP_TEXT = re.compile(
-    r"//(?P<line>.*)|/\*(?P<block>[\s\S]*?)\*/|\"(?P<string>(?:\\.|[^\"\\\n])*)\"|'(?:\\.|[^'\\\n])+'"
+    r"//(?P<line>.*)|/\*(?P<block>[\s\S]*?)\*/|\bR\"(?P<mark>\w*)\((?P<raw>[\s\S]*?)\)(?P=mark)\"|\"(?P<string>(?:\\.|[^\"\\\n])*)\"|'(?:\\.|[^'\\\n])+'"
 )
 KEPT_NAMES = (  # of the core's interface, and `tell` of files
     *("wanted_mm", "wanted_outline", "wanted_coverage", "wanted_pieces", "left_aside", "thin_out", "tell"),
@@ -59,7 +59,7 @@ def python_text(source: str) -> Iterator[tuple[int, str]]:
 def cpp_text(source: str) -> Iterator[tuple[int, str]]:
     """Yield the first line and the text of each comment and each string with a space."""
     for match in CPP_TEXT.finditer(source):
-        text = match["line"] or match["block"] or match["string"] or ""
+        text = match["line"] or match["block"] or match["raw"] or match["string"] or ""
         if " " in text:
             yield source.count("\n", 0, match.start()) + 1, QUOTATION.sub("", text)
 

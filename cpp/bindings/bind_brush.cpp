@@ -79,7 +79,7 @@ save_brush, simulate, compensate and convert refuse what no brush can be.)");
         .def("__repr__", [](const Brush& b) {
             const auto& [least, greatest] = b.depth_range_mm;
             const auto span = [](double from, double to) {
-                return from == to ? told(from) : told(from) + " to " + told(to);
+                return from == to ? in_digits(from) : in_digits(from) + " to " + in_digits(to);
             };
             return "<Brush " + quoted(b.name) + ": " + (b.kind.empty() ? "" : b.kind + ", ") + "depth " +
                    span(least, greatest) + " mm, lag " + span(b.lag(least), b.lag(greatest)) + " mm, lines " +

@@ -68,8 +68,8 @@ too sharp for the lever.)");
         .def_readonly("within_tolerance", &TrackingError::within_tolerance)
         .def_readonly("has_turn_in_place", &TrackingError::has_turn_in_place)
         .def("__repr__", [](const TrackingError& e) {
-            return "<TrackingError of " + told(e.largest_mm) + " mm at (" + told(e.at_mm[0]) + ", " + told(e.at_mm[1]) +
-                   ") mm, " + told(e.mean_mm) + " mm on average" +
+            return "<TrackingError of " + in_digits(e.largest_mm) + " mm at (" + in_digits(e.at_mm[0]) + ", " +
+                   in_digits(e.at_mm[1]) + ") mm, " + in_digits(e.mean_mm) + " mm on average" +
                    (e.within_tolerance ? ", within the tolerance>" : ">");
         });
     as_fixed_value(error);
@@ -108,7 +108,7 @@ too sharp for the lever.)");
         .def("__repr__", [](const Compensated& done) {
             double largest = 0.0;
             for (const TrackingError& each : done.tracking_errors) largest = std::max(largest, each.largest_mm);
-            return "<Compensated: " + counted(done.plan.passes.size(), "pass") + ", at most " + told(largest) +
+            return "<Compensated: " + counted(done.plan.passes.size(), "pass") + ", at most " + in_digits(largest) +
                    " mm off the middle line, " + counted(done.warnings.size(), "warning") + ">";
         });
     as_value(type);
@@ -153,7 +153,7 @@ too sharp for the lever.)");
 
 sheet_mm: (w, h), kept in the plan; None: of no sheet, to look at. method: "none", the TCP on the line; "constant",
 ahead by lag_mm (None: the lag at each stroke's median depth); "closed", the inverse of the brush's law; "refined", from there on by least squares until
-the outline of the mark lies best on the wanted one, kept where it overlaps better. tolerance_mm: how far the widest
+the outline of the mark fits the target best, kept where it overlaps better. tolerance_mm: how far the widest
 point of the mark may be off the middle line once the brush is taut, between poses too; each pass is simulated and its
 tracking error returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most
 the brush's. progress: called with (strokes done, strokes). few_poses: closed only, no more poses than the tolerance

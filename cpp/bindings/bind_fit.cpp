@@ -28,8 +28,8 @@ void bind_fit(py::module_& m) {
              py::arg("floor") = -std::numeric_limits<double>::infinity(),
              py::arg_v("norm", Norm::squares, "Norm.squares"), py::arg("smoothing") = 0.0)
         .def("__repr__", [](const LawShape& v) {
-            return "<LawShape of degree " + std::to_string(v.degree) + " at " + told(v.range_mm[0]) + " to " +
-                   told(v.range_mm[1]) + " mm>";
+            return "<LawShape of degree " + std::to_string(v.degree) + " at " + in_digits(v.range_mm[0]) + " to " +
+                   in_digits(v.range_mm[1]) + " mm>";
         });
     as_fixed_value(law_shape);
     py::class_<LawFit> law_fit(m, "LawFit", "A fitted law, how sure it is, and what it leaves.");
@@ -47,8 +47,8 @@ void bind_fit(py::module_& m) {
         .def_readonly("degrees_of_freedom", &LawFit::degrees_of_freedom)
         .def_readonly("held", &LawFit::held)
         .def("__repr__", [](const LawFit& v) {
-            return "<LawFit: " + repr_of(v.law) + ", R^2 " + told(v.r_squared) + ", " + told(v.degrees_of_freedom) +
-                   " degrees of freedom>";
+            return "<LawFit: " + repr_of(v.law) + ", R^2 " + in_digits(v.r_squared) + ", " +
+                   in_digits(v.degrees_of_freedom) + " degrees of freedom>";
         });
     as_fixed_value(law_fit);
     m.def("fit_law", &fit_law, py::arg("depth_mm"), py::arg("value_mm"), py::arg("shape"),

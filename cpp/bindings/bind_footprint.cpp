@@ -16,9 +16,9 @@ towards the TCP.)");
             std::string size;
             if (f.outline_mm.rows() > 0) {
                 const Eigen::RowVector2d span = f.outline_mm.colwise().maxCoeff() - f.outline_mm.colwise().minCoeff();
-                size = ", " + told(span.x()) + " mm long and " + told(span.y()) + " mm wide";
+                size = ", " + in_digits(span.x()) + " mm long and " + in_digits(span.y()) + " mm wide";
             }
-            return "<Footprint at depth " + told(f.depth_mm) +
+            return "<Footprint at depth " + in_digits(f.depth_mm) +
                    " mm: " + counted(std::size_t(f.outline_mm.rows()), "point") + size + ">";
         });
     as_fixed_value(one);
@@ -37,8 +37,8 @@ between which outlines of other depths are blended one by one.)");
         .def("__repr__", [](const FootprintTable& t) {
             std::string depths;
             if (!t.dragged.empty())
-                depths =
-                    " at depths " + told(t.dragged.front().depth_mm) + " to " + told(t.dragged.back().depth_mm) + " mm";
+                depths = " at depths " + in_digits(t.dragged.front().depth_mm) + " to " +
+                         in_digits(t.dragged.back().depth_mm) + " mm";
             return "<FootprintTable: " + std::to_string(t.dragged.size()) + " dragged" + depths + ", " +
                    std::to_string(t.pressed.size()) + " pressed>";
         });

@@ -86,7 +86,8 @@ the pass, followed on their circles.)");
              py::arg("sigma"))
         .def_readwrite("value", &Prior::value)
         .def_readwrite("sigma", &Prior::sigma)
-        .def("__repr__", [](const Prior& v) { return "Prior(" + told(v.value) + ", " + told(v.sigma) + ")"; });
+        .def("__repr__",
+             [](const Prior& v) { return "Prior(" + in_digits(v.value) + ", " + in_digits(v.sigma) + ")"; });
     as_value(prior);
     py::class_<MarkLaws> mark_laws(m, "MarkLaws",
                                    "Laws as coefficients (ascending powers of depth), and a drop's shape.");
@@ -125,11 +126,11 @@ widest_per_half, gives a standard normal number of what they differ from it.)");
              py::arg("laws"), py::arg("rows"))
         .def("__repr__", [](const LawPrior& v) { return "<LawPrior: " + counted(v.rows.size(), "row") + ">"; });
     as_fixed_value(law_prior);
-    py::class_<Machine> machine(m, "Machine", R"(How a machine takes the tool elsewhere than it was told.
+    py::class_<Machine> machine(m, "Machine", R"(How a machine takes the tool elsewhere than it was commanded.
 
-Told (x, y) from MarkFit.centre_mm and depth d it goes to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d,
+Commanded to (x, y) from MarkFit.centre_mm and depth d it goes to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d,
 is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlash. A smooth field takes it elsewhere
-still: field_mm (2, 3), a, b and c of a u^2 + b u v + c v^2 for x and for y, u and v how far it was told to go from
+still: field_mm (2, 3), a, b and c of a u^2 + b u v + c v^2 for x and for y, u and v how far it was commanded to go from
 field_middle_mm, over field_reach_mm.)");
     machine.def_property_readonly("lean_mm_per_mm", frozen_copy(&Machine::lean_mm_per_mm))
         .def_property_readonly("scale", frozen_copy(&Machine::scale))
@@ -140,8 +141,9 @@ field_middle_mm, over field_reach_mm.)");
         .def_property_readonly("field_middle_mm", frozen_copy(&Machine::field_middle_mm))
         .def_property_readonly("field_reach_mm", frozen_copy(&Machine::field_reach_mm))
         .def("__repr__", [](const Machine& v) {
-            return "<Machine: scale " + told(v.scale[0]) + " and " + told(v.scale[1]) + ", skew " + told(v.skew) +
-                   ", backlash " + told(v.backlash_mm[0]) + " and " + told(v.backlash_mm[1]) + " mm>";
+            return "<Machine: scale " + in_digits(v.scale[0]) + " and " + in_digits(v.scale[1]) + ", skew " +
+                   in_digits(v.skew) + ", backlash " + in_digits(v.backlash_mm[0]) + " and " +
+                   in_digits(v.backlash_mm[1]) + " mm>";
         });
     as_fixed_value(machine);
     py::class_<MarkOptions> mark_options(m, "MarkOptions", R"(How marks are fitted; lengths in mm.
@@ -149,7 +151,7 @@ field_middle_mm, over field_reach_mm.)");
 deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
 widest_per_half, front_per_half, height_mm: Prior; laws: LawPrior or None. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
 and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm, field_mm:
-sigmas of the machine's numbers; 0: it does as it is told. departing: laws get more numbers if the marks ask for it. noise_mm: fit
+sigmas of the machine's numbers; 0: it has no such error. departing: laws get more numbers if the marks ask for it. noise_mm: fit
 nothing, say what to expect of such edges.)");
     mark_options.def(py::init<>())
         .def_readwrite("deepest_mm", &MarkOptions::deepest_mm)
@@ -177,7 +179,8 @@ nothing, say what to expect of such edges.)");
         .def_readwrite("noise_length_mm", &MarkOptions::noise_length_mm)
         .def_readwrite("most_iterations", &MarkOptions::most_iterations)
         .def("__repr__", [](const MarkOptions& v) {
-            return "<MarkOptions: to depth " + told(v.deepest_mm) + " mm, a point every " + told(v.spacing_mm) + " mm>";
+            return "<MarkOptions: to depth " + in_digits(v.deepest_mm) + " mm, a point every " +
+                   in_digits(v.spacing_mm) + " mm>";
         });
     as_value(mark_options);
     py::class_<MarkResidual> mark_miss(m, "MarkResidual", "One painted mark against its prediction.");
@@ -188,14 +191,15 @@ nothing, say what to expect of such edges.)");
         .def_readonly("rms_mm", &MarkResidual::rms_mm)
         .def_readonly("outlier", &MarkResidual::outlier)
         .def("__repr__", [](const MarkResidual& v) {
-            return "<MarkResidual: rms " + told(v.rms_mm) + " mm over " + counted(v.distance_mm.size(), "point") + ">";
+            return "<MarkResidual: rms " + in_digits(v.rms_mm) + " mm over " + counted(v.distance_mm.size(), "point") +
+                   ">";
         });
     as_fixed_value(mark_miss);
     py::class_<MarkFit> mark_fit(m, "MarkFit", R"(A brush fitted to marks.
 
 covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
 front_per_half (of widest_by_depth and front_by_depth, where the ratios change with depth), height, shift x and y, turn;
-where any of the machine was asked for lean x and y, scale x and y, skew, tilt x and y, backlash x and y and the field's six.)");
+where any of the machine was requested lean x and y, scale x and y, skew, tilt x and y, backlash x and y and the field's six.)");
     mark_fit.def_readonly("laws", &MarkFit::laws)
         .def_property_readonly("covariance", frozen_copy(&MarkFit::covariance))
         .def_readonly("height_mm", &MarkFit::height_mm)
@@ -213,7 +217,7 @@ where any of the machine was asked for lean x and y, scale x and y, skew, tilt x
         .def_readonly("iterations", &MarkFit::iterations)
         .def_readonly("converged", &MarkFit::converged)
         .def("__repr__", [](const MarkFit& v) {
-            return "<MarkFit to " + counted(v.marks.size(), "mark") + ": edges within " + told(v.noise_mm) +
+            return "<MarkFit to " + counted(v.marks.size(), "mark") + ": edges within " + in_digits(v.noise_mm) +
                    " mm (1 sigma)" + (v.converged ? ">" : ", not converged>");
         });
     as_fixed_value(mark_fit);

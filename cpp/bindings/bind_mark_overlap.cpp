@@ -10,7 +10,7 @@ void bind_mark_overlap(py::module_& m) {
         .def_readonly("together_mm2", &CommonArea::together_mm2)
         .def_property_readonly("overlap", &CommonArea::overlap)
         .def("__repr__", [](const CommonArea& a) {
-            return "<CommonArea: " + told(a.common_mm2) + " of " + told(a.together_mm2) + " mm^2>";
+            return "<CommonArea: " + in_digits(a.common_mm2) + " of " + in_digits(a.together_mm2) + " mm^2>";
         });
     as_fixed_value(type);
     m.def(

@@ -58,7 +58,7 @@ lean_mm_per_mm (n, 2): how far the axis of a tilted brush goes sideways for each
             double deepest = 0.0;
             for (const double depth : p.depth_mm) deepest = std::max(deepest, depth);
             return "<PassMarks " + quoted(p.stroke) + ": " + counted(p.pose.size(), "row") + ", at most " +
-                   told(deepest) + " mm deep, " + counted(p.outline_mm.size(), "ring") + ">";
+                   in_digits(deepest) + " mm deep, " + counted(p.outline_mm.size(), "ring") + ">";
         });
     as_value(one);
     py::class_<Marks> marks(m, "Marks",
@@ -76,7 +76,7 @@ ones counter-clockwise, holes clockwise, unclosed.)");
             return "<Marks of " + counted(m.passes.size(), "pass") + ": " +
                    (m.outline_mm.empty()
                         ? "no outline>"
-                        : counted(m.outline_mm.size(), "ring") + ", " + told(area_mm2) + " mm^2 painted>");
+                        : counted(m.outline_mm.size(), "ring") + ", " + in_digits(area_mm2) + " mm^2 painted>");
         });
     as_value(marks);
 }

@@ -35,5 +35,5 @@ void bind_medial_axis(py::module_& m) {
 [squares of that distance], and branches between them, each with start, end (node numbers), line (k, 3) and part (rings).
 
 rings: as `fill` returns them. least_share: what a branch must add to the disc it leaves, in squares of the radius; it
-stays, too, if what lies beyond some place on it adds as much to the disc there, and least_limb to the disc it leaves.)");
+stays, too, if what is beyond some place on it adds as much to the disc there, and least_limb to the disc it leaves.)");
 }

@@ -45,8 +45,8 @@ one made.)");
             "way_to_share_mm", &Paint::way_to_share_mm, py::arg("share"),
             "The way [mm] after which the width is that share of a freshly dipped brush's; infinite where it never is.")
         .def("__repr__", [](const Paint& p) {
-            std::string out = "<Paint: width exp(-" + told(p.narrows_per_m) + " way / 1000 mm)";
-            if (p.lasts_mm) out += ", hairs dry after " + told(*p.lasts_mm) + " mm";
+            std::string out = "<Paint: width exp(-" + in_digits(p.narrows_per_m) + " way / 1000 mm)";
+            if (p.lasts_mm) out += ", hairs dry after " + in_digits(*p.lasts_mm) + " mm";
             return out + (p.assumed ? ", assumed>" : ">");
         });
     as_fixed_value(type);

@@ -4,7 +4,7 @@
 void bind_plan(py::module_& m) {
     using namespace brushsvg;
     py::class_<Arc> arc(m, "Arc",
-                        R"(Poses first to last lie on a circle about centre_mm (x, y), at constant depth.
+                        R"(Poses first to last are on a circle about centre_mm (x, y), at constant depth.
 
 direction: 1 counter-clockwise, -1 clockwise; neighbouring poses are less than 180 degrees apart on it.)");
     arc.def(py::init([](std::int64_t first, std::int64_t last, const Eigen::Vector2d& centre_mm, int direction) {
@@ -66,8 +66,8 @@ tilted by at most 30 degrees; empty for a brush that is upright; given, read and
             }
             return "<Pass " + quoted(p.stroke.name()) + ": " + counted(std::size_t(n), "pose") +
                    (p.arcs.empty() ? "" : ", " + counted(p.arcs.size(), "arc")) + (is_tilted(p) ? ", tilted" : "") +
-                   ", " + told(length) + " mm long, at most " + told(deepest) + " mm deep, " + told(p.speed_mm_s) +
-                   " mm/s>";
+                   ", " + in_digits(length) + " mm long, at most " + in_digits(deepest) + " mm deep, " +
+                   in_digits(p.speed_mm_s) + " mm/s>";
         });
     as_value(one);
     py::class_<Plan> plan(m, "Plan",
@@ -91,7 +91,8 @@ order, to be set as a whole; extra: unknown keys of the file, as JSON.)");
             std::size_t poses = 0;
             for (const Pass& each : p.passes) poses += std::size_t(each.poses_mm.rows());
             return "<Plan for brush " + quoted(p.brush) + ": " + counted(p.passes.size(), "pass") + ", " +
-                   counted(poses, "pose") + ", sheet " + told(p.sheet_mm[0]) + " x " + told(p.sheet_mm[1]) + " mm>";
+                   counted(poses, "pose") + ", sheet " + in_digits(p.sheet_mm[0]) + " x " + in_digits(p.sheet_mm[1]) +
+                   " mm>";
         });
     as_value(plan);
     m.def(

@@ -66,13 +66,15 @@ unknown keys of its file, as JSON. A value: it is not changed, but another one m
                 const double c = p.coefficients[i];
                 if (c == 0.0) continue;
                 out += out.empty() ? (c < 0.0 ? "-" : "") : c < 0.0 ? " - " : " + ";
-                out += told(std::abs(c)) + (i == 0 ? "" : i == 1 ? " d" : " d^" + std::to_string(i));
+                out += in_digits(std::abs(c)) + (i == 0 ? "" : i == 1 ? " d" : " d^" + std::to_string(i));
             }
             if (out.empty()) out = "0";
-            if (std::isfinite(p.floor)) out = "max(" + told(p.floor) + " + " + told(p.floor_slope) + " d, " + out + ")";
+            if (std::isfinite(p.floor))
+                out = "max(" + in_digits(p.floor) + " + " + in_digits(p.floor_slope) + " d, " + out + ")";
             out = "<Profile " + out + " mm at depth d mm";
             if (p.calibrated_mm)
-                out += ", measured at " + told((*p.calibrated_mm)[0]) + " to " + told((*p.calibrated_mm)[1]) + " mm";
+                out += ", measured at " + in_digits((*p.calibrated_mm)[0]) + " to " + in_digits((*p.calibrated_mm)[1]) +
+                       " mm";
             return out + (p.assumed ? ", assumed>" : ">");
         });
     as_fixed_value(type);

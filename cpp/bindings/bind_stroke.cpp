@@ -35,7 +35,7 @@ which of the passes that fill a shape wider than the brush; load: which of the l
                             R"(A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
 
 id: its name, made of origin, a StrokeId, and set by a name or one. middle_mm, half_width, wanted_mm, settings: to be
-set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint lies over that end.)");
+set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint covers that end.)");
     type.def(py::init([set_knots](StrokeId id, const Cubics& middle_mm, bool closed, const Knots& half_width,
                                   std::string layer, std::string colour, Settings settings) {
                  Stroke s;
@@ -102,7 +102,7 @@ set as a whole. start_covered, end_covered: where it meets others of its shape, 
 
 width_mm: one for all, or (n,), one at each point and linear in between. tolerance_mm: None for straight lines from
 point to point; else cubics that pass each point within it, smooth but for corners that no smooth line follows; lines
-where the points lie too far apart for it.
+where the points are too far apart for it.
 
 Error, naming the stroke: fewer than two points that differ, a number that is not finite or beyond 1e6 mm, a width that
 is not positive.)")
@@ -122,12 +122,12 @@ is not positive.)")
                 const auto [least, most] = std::minmax_element(
                     s.half_width.begin(), s.half_width.end(),
                     [](const WidthKnot& a, const WidthKnot& b) { return a.half_width_mm < b.half_width_mm; });
-                width = told(2.0 * least->half_width_mm);
-                if (least->half_width_mm != most->half_width_mm) width += " to " + told(2.0 * most->half_width_mm);
+                width = in_digits(2.0 * least->half_width_mm);
+                if (least->half_width_mm != most->half_width_mm) width += " to " + in_digits(2.0 * most->half_width_mm);
                 width += " mm wide";
             }
             return "<Stroke " + quoted(s.id.name()) + ": " + counted(std::size_t(s.middle_mm.rows()), "cubic") + ", " +
-                   told(length) + " mm long, " + width + (s.closed ? ", closed>" : ">");
+                   in_digits(length) + " mm long, " + width + (s.closed ? ", closed>" : ">");
         });
     as_value(type);
     m.def(

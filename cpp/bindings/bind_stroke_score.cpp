@@ -9,8 +9,8 @@ void bind_stroke_score(py::module_& m) {
         .def_readonly("is_missing", &WorstPlace::is_missing)
         .def_readonly("area_mm2", &WorstPlace::area_mm2)
         .def("__repr__", [](const WorstPlace& w) {
-            return "<WorstPlace at (" + told(w.at_mm[0]) + ", " + told(w.at_mm[1]) + ") mm: " + told(w.area_mm2) +
-                   " mm^2 too " + (w.is_missing ? "little>" : "much>");
+            return "<WorstPlace at (" + in_digits(w.at_mm[0]) + ", " + in_digits(w.at_mm[1]) +
+                   ") mm: " + in_digits(w.area_mm2) + " mm^2 too " + (w.is_missing ? "little>" : "much>");
         });
     as_fixed_value(place);
     py::class_<StrokeScore> type(m, "Verdict",
@@ -23,8 +23,8 @@ be measured; excess_turning: of the mark's outline, in full turns; worst: a Wors
         .def_readonly("width_error_mm", &StrokeScore::width_error_mm)
         .def_readonly("worst", &StrokeScore::worst)
         .def("__repr__", [](const StrokeScore& s) {
-            const std::string width = s.width_error_mm ? told(*s.width_error_mm) + " mm off in width" : "no width";
-            return "<Verdict: overlap " + told(s.overlap) + ", " + width + ">";
+            const std::string width = s.width_error_mm ? in_digits(*s.width_error_mm) + " mm off in width" : "no width";
+            return "<Verdict: overlap " + in_digits(s.overlap) + ", " + width + ">";
         });
     as_fixed_value(type);
     m.def(

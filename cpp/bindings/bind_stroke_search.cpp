@@ -38,7 +38,7 @@ void bind_stroke_search(py::module_& m) {
         R"(The strokes by which the mark of each shape costs least: for each (strokes, changed, added).
 
 shapes: (rings of the shape, strokes, the passes that paint them). detail: "draft", "normal" or "fine", how small an area
-gets a stroke of its own. are_free: whether strokes may be led otherwise, and not only added. strokes: for each that was
+gets a stroke of its own. are_free: whether strokes may be moved, cut or left out, and not only added. strokes: for each that was
 given what it is best painted as, [] for not at all; changed: whether that differs; added: (stroke, number of the stroke
 that is nearest, rings of the area that it is for, rings of what it paints).)");
     m.def(

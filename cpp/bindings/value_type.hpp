@@ -160,7 +160,7 @@ void as_fixed_value(py::class_<Value>& type) {
 }
 
 /// A number as repr shows it.
-inline std::string told(double number) {
+inline std::string in_digits(double number) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", number);
     return text;

@@ -152,8 +152,8 @@ namespace {
 /// A pass by poses at all steps of the closed form, as fine as the tolerance asks for, or by few of them. `plain`: what
 /// it is called; `poses_by(step_tolerance, turns)`: the closed form.
 template <class PosesBy>
-CompensatedPass led(const Pass& plain, bool few_poses, const Stroke& stroke, const Brush& brush, double tolerance_mm,
-                    PosesBy&& poses_by) {
+CompensatedPass pass_within_tolerance(const Pass& plain, bool few_poses, const Stroke& stroke, const Brush& brush,
+                                      double tolerance_mm, PosesBy&& poses_by) {
     CompensatedPass result;
     result.pass = plain;
     double step_tolerance = 0.5 * tolerance_mm;
@@ -234,14 +234,15 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
             options.few_poses && (moves.front().line || moves.back().line);  // a disc has none to spare
         if (!is_first && result.tracking_error.within_tolerance) break;
         const auto poses_by = [&](double steps, bool& turns) { return closed_form(moves, brush, steps, turns); };
-        CompensatedPass done = led(plain, few_poses, stroke, brush, options.tolerance_mm, poses_by);
+        CompensatedPass done = pass_within_tolerance(plain, few_poses, stroke, brush, options.tolerance_mm, poses_by);
         if (done.pass.poses_mm.rows() == 0) continue;
         if (!is_first &&
             !(done.tracking_error.largest_mm < result.tracking_error.largest_mm - kHairShare * options.tolerance_mm))
             continue;
         result.pass = std::move(done.pass);
         result.tracking_error = done.tracking_error;
-        if (all_poses) *all_poses = led(plain, false, stroke, brush, options.tolerance_mm, poses_by).pass;
+        if (all_poses)
+            *all_poses = pass_within_tolerance(plain, false, stroke, brush, options.tolerance_mm, poses_by).pass;
     }
     return result;
 }

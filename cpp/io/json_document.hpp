@@ -185,14 +185,14 @@ inline Document parse_versions(const std::string& text, const std::string& forma
                      "the file calls itself " + found.value.dump() + ", where \"" + format + "\" is needed");
     }
     const Field version = fields.take("version");
-    const double told = number(version);
-    if (!(told >= 1.0 && told <= newest && told == std::floor(told))) {
+    const double read = number(version);
+    if (!(read >= 1.0 && read <= newest && read == std::floor(read))) {
         throw Error("version-unknown",
                     "version " + version.value.dump() + " of " + format + " is not known; this program reads version" +
                         (newest == 1 ? " 1" : "s 1 to " + std::to_string(newest)),
-                    version.path, told);
+                    version.path, read);
     }
-    return {std::move(fields), static_cast<int>(told)};
+    return {std::move(fields), static_cast<int>(read)};
 }
 
 /// Of a format that has had one version.

@@ -75,7 +75,7 @@ class Search {
         SearchedShape found;
         for (const Stroke& stroke : strokes) found.strokes.push_back({stroke});
         found.changed.assign(strokes.size(), false);
-        if (are_free) lead_back(found);
+        if (are_free) improve(found);
         for (const std::vector<Stroke>& parts : found.strokes) middles_.push_back(middle_of(parts));
         found.added = add();
         return found;
@@ -83,7 +83,7 @@ class Search {
 
  private:
     /// Strokes that stick out of the shape, the worst first.
-    void lead_back(SearchedShape& found) {
+    void improve(SearchedShape& found) {
         std::vector<std::pair<double, std::size_t>> beyond;
         for (std::size_t k = 0; k < tiles_.size(); ++k)
             if (sticks_out(tiles_[k])) beyond.push_back({-canvas_.bulge_mm2(tiles_[k]), k});
@@ -93,9 +93,9 @@ class Search {
             const Stroke given = found.strokes[k].front();
             if (is_set(given.settings.start) || is_set(given.settings.end)) continue;  // by the artist
             const bool fills = given.start_covered && given.end_covered;
-            Led led{{given}, tiles_[k]};
-            if (!lead_back(led, k, fills, true, fills && k > 0)) continue;
-            found.strokes[k] = std::move(led.strokes);
+            Painting painting{{given}, tiles_[k]};
+            if (!improve_stroke(painting, k, fills, true, fills && k > 0)) continue;
+            found.strokes[k] = std::move(painting.strokes);
             found.changed[k] = true;
         }
     }
@@ -105,35 +105,36 @@ class Search {
     bool sticks_out(const Tile& tile) const { return weights_.bulge * canvas_.bulge_mm2(tile) > kNoiseMm2; }
 
     /// What becomes of a stroke, and what that paints.
-    struct Led {
+    struct Painting {
         std::vector<Stroke> strokes;
         Tile tile;
     };
 
     /// Leads a stroke, of the tile k, so that it costs less; false where nothing does.
-    bool lead_back(Led& led, std::size_t k, bool may_be_reversed, bool may_be_cut, bool may_be_left_out) {
-        const Stroke given = led.strokes.front();
+    bool improve_stroke(Painting& painting, std::size_t k, bool may_be_reversed, bool may_be_cut,
+                        bool may_be_left_out) {
+        const Stroke given = painting.strokes.front();
         const PixelBox box = about(given);
         if (box.is_empty()) return false;
         Coverage rest = Coverage::Zero(box.rows, box.columns);
         for (std::size_t other = 0; other < tiles_.size(); ++other)
             if (other != k) paint_over(rest, box, tiles_[other]);
         // what this leaves bare may be painted by another stroke
-        const auto picture_with = [&](const Led& now) {
+        const auto picture_with = [&](const Painting& now) {
             Coverage both = rest;
             paint_over(both, box, now.tile);
             return both;
         };
-        const auto area_cost = [&](const Led& now, const Coverage& both) {
+        const auto area_cost = [&](const Painting& now, const Coverage& both) {
             return canvas_.cost_mm2(box, both, false) + (double(now.strokes.size()) - 1.0) * stroke_mm2();
         };
         const double own_turns = target_turns(box);
         const auto excess = [&](const Coverage& both) { return std::max(0.0, turns(both, box) - own_turns); };
-        const Coverage given_picture = picture_with(led);
-        double least_area = area_cost(led, given_picture) - kWorthMm2;
+        const Coverage given_picture = picture_with(painting);
+        double least_area = area_cost(painting, given_picture) - kWorthMm2;
         double least = least_area + turn_mm2() * excess(given_picture);
         bool is_changed = false;
-        const auto keep_better = [&](Led other) {
+        const auto keep_better = [&](Painting other) {
             const Coverage both = picture_with(other);
             const double area_mm2 = area_cost(other, both);
             if (area_mm2 >= least_area + turn_mm2()) return false;  // a turn less is more than can be won
@@ -141,7 +142,7 @@ class Search {
             if (cost >= least) return false;
             least = cost;
             least_area = area_mm2;
-            led = std::move(other);
+            painting = std::move(other);
             return is_changed = true;
         };
         Variant best;
@@ -176,7 +177,7 @@ class Search {
         try_each(kNarrower, [](Variant& variant, double width) { variant.width = width; });
         for (const std::size_t end : {0u, 1u})
             if (!given.closed) try_each(kCuts, [&](Variant& variant, double cut) { variant.cut[end] = cut; });
-        const Stroke whole = led.strokes.front();
+        const Stroke whole = painting.strokes.front();
         std::vector<Gap> gaps;
         for (bool is_better = may_be_cut; is_better;) {
             is_better = false;
@@ -196,7 +197,7 @@ class Search {
         }
         if (may_be_left_out) keep_better({{}, Tile{}});
         if (!is_changed) return false;
-        tiles_[k] = led.tile;
+        tiles_[k] = painting.tile;
         paint_.block(box.row, box.column, box.rows, box.columns) = rest;
         paint_over(paint_, canvas_.whole(), tiles_[k]);
         return true;
@@ -425,14 +426,14 @@ class Search {
         const Rings area_mm = bare_rings(pixels_);
         best->stroke.settings.start = "pointed";  // under the paint of others
         best->stroke.settings.end = "round";
-        Led led{{best->stroke}, best->tile};
+        Painting painting{{best->stroke}, best->tile};
         tiles_.push_back(best->tile);
         paint_over(paint_, canvas_.whole(), best->tile);
         if (weights_.bulge * canvas_.bulge_mm2(best->tile) > kWorthMm2)
-            lead_back(led, tiles_.size() - 1, true, false, false);
+            improve_stroke(painting, tiles_.size() - 1, true, false, false);
         AddedStroke added;
-        added.stroke = std::move(led.strokes.front());
-        added.mark_mm = half_painted(led.tile.share, canvas_.window_of(led.tile.box), canvas_.px_per_mm());
+        added.stroke = std::move(painting.strokes.front());
+        added.mark_mm = half_painted(painting.tile.share, canvas_.window_of(painting.tile.box), canvas_.px_per_mm());
         added.neighbour = nearest_middle(area.deepest);
         added.area_mm = area_mm;
         return added;

@@ -495,7 +495,7 @@ class Stroke:
     A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
 
     id: its name, made of origin, a StrokeId, and set by a name or one. middle_mm, half_width, wanted_mm, settings: to be
-    set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint lies over that end.
+    set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint covers that end.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -518,7 +518,7 @@ class Stroke:
 
         width_mm: one for all, or (n,), one at each point and linear in between. tolerance_mm: None for straight lines from
         point to point; else cubics that pass each point within it, smooth but for corners that no smooth line follows; lines
-        where the points lie too far apart for it.
+        where the points are too far apart for it.
 
         Error, naming the stroke: fewer than two points that differ, a number that is not finite or beyond 1e6 mm, a width that
         is not positive.
@@ -568,7 +568,7 @@ class Stroke:
 
 class Arc:
     """
-    Poses first to last lie on a circle about centre_mm (x, y), at constant depth.
+    Poses first to last are on a circle about centre_mm (x, y), at constant depth.
 
     direction: 1 counter-clockwise, -1 clockwise; neighbouring poses are less than 180 degrees apart on it.
     """
@@ -1137,11 +1137,11 @@ class LawPrior:
 
 class Machine:
     """
-    How a machine takes the tool elsewhere than it was told.
+    How a machine takes the tool elsewhere than it was commanded.
 
-    Told (x, y) from MarkFit.centre_mm and depth d it goes to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d,
+    Commanded to (x, y) from MarkFit.centre_mm and depth d it goes to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d,
     is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlash. A smooth field takes it elsewhere
-    still: field_mm (2, 3), a, b and c of a u^2 + b u v + c v^2 for x and for y, u and v how far it was told to go from
+    still: field_mm (2, 3), a, b and c of a u^2 + b u v + c v^2 for x and for y, u and v how far it was commanded to go from
     field_middle_mm, over field_reach_mm.
     """
     def __copy__(self) -> Machine: ...
@@ -1175,7 +1175,7 @@ class MarkOptions:
     deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
     widest_per_half, front_per_half, height_mm: Prior; laws: LawPrior or None. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
     and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm, field_mm:
-    sigmas of the machine's numbers; 0: it does as it is told. departing: laws get more numbers if the marks ask for it. noise_mm: fit
+    sigmas of the machine's numbers; 0: it has no such error. departing: laws get more numbers if the marks ask for it. noise_mm: fit
     nothing, say what to expect of such edges.
     """
 
@@ -1288,7 +1288,7 @@ class MarkFit:
 
     covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
     front_per_half (of widest_by_depth and front_by_depth, where the ratios change with depth), height, shift x and y, turn;
-    where any of the machine was asked for lean x and y, scale x and y, skew, tilt x and y, backlash x and y and the field's six.
+    where any of the machine was requested lean x and y, scale x and y, skew, tilt x and y, backlash x and y and the field's six.
     """
     def __copy__(self) -> MarkFit: ...
     def __deepcopy__(self, memo: dict) -> MarkFit: ...
@@ -1402,7 +1402,7 @@ def compensate(
 
     sheet_mm: (w, h), kept in the plan; None: of no sheet, to look at. method: "none", the TCP on the line; "constant",
     ahead by lag_mm (None: the lag at each stroke's median depth); "closed", the inverse of the brush's law; "refined", from there on by least squares until
-    the outline of the mark lies best on the wanted one, kept where it overlaps better. tolerance_mm: how far the widest
+    the outline of the mark fits the target best, kept where it overlaps better. tolerance_mm: how far the widest
     point of the mark may be off the middle line once the brush is taut, between poses too; each pass is simulated and its
     tracking error returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most
     the brush's. progress: called with (strokes done, strokes). few_poses: closed only, no more poses than the tolerance
@@ -1581,7 +1581,7 @@ def medial_axis(
     [squares of that distance], and branches between them, each with start, end (node numbers), line (k, 3) and part (rings).
 
     rings: as `fill` returns them. least_share: what a branch must add to the disc it leaves, in squares of the radius; it
-    stays, too, if what lies beyond some place on it adds as much to the disc there, and least_limb to the disc it leaves.
+    stays, too, if what is beyond some place on it adds as much to the disc there, and least_limb to the disc it leaves.
     """
 
 def narrow(
@@ -1665,7 +1665,7 @@ def search_strokes(
     The strokes by which the mark of each shape costs least: for each (strokes, changed, added).
 
     shapes: (rings of the shape, strokes, the passes that paint them). detail: "draft", "normal" or "fine", how small an area
-    gets a stroke of its own. are_free: whether strokes may be led otherwise, and not only added. strokes: for each that was
+    gets a stroke of its own. are_free: whether strokes may be moved, cut or left out, and not only added. strokes: for each that was
     given what it is best painted as, [] for not at all; changed: whether that differs; added: (stroke, number of the stroke
     that is nearest, rings of the area that it is for, rings of what it paints).
     """
