@@ -33,6 +33,7 @@ def test_the_code_has_no_findings():
         ("a.cpp", "int x;  // beside y\n"),
         ("a.hpp", "/* what\n   is led */\n"),
         ("a.cpp", 'TEST_CASE("a point lies there") {}\n'),
+        ("a.cpp", 'm.def("f", &f, R"(Where\nit "is", the user is told.)");\n'),
     ],
 )
 def test_a_word_is_found(tmp_path, name, text):
