@@ -83,7 +83,9 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=100_000)
     parser.add_argument("--hours", type=float, default=1.0)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--dialect", nargs="*", default=[], help="only these")
+    parser.add_argument(
+        "--dialect", nargs="*", default=[], help="only these; their results need a file of their own"
+    )
     parser.add_argument("--results", type=Path, default=ROOT / "build" / "properties.jsonl")
     args = parser.parse_args()
     args.results.parent.mkdir(parents=True, exist_ok=True)

@@ -110,7 +110,7 @@ class Search {
         Tile tile;
     };
 
-    /// Leads a stroke, of the tile k, so that it costs less; false where nothing does.
+    /// Changes a stroke, of the tile k, so that it costs less; false where nothing does.
     bool improve_stroke(Painting& painting, std::size_t k, bool may_be_reversed, bool may_be_cut,
                         bool may_be_left_out) {
         const Stroke given = painting.strokes.front();

@@ -33,11 +33,16 @@ def test_the_code_has_no_findings():
         ("a.cpp", "int x;  // beside y\n"),
         ("a.hpp", "/* what\n   is led */\n"),
         ("a.cpp", 'TEST_CASE("a point lies there") {}\n'),
-        ("a.cpp", 'm.def("f", &f, R"(Where\nit "is", the user is told.)");\n'),
     ],
 )
 def test_a_word_is_found(tmp_path, name, text):
     assert found(tmp_path, name, text)
+
+
+def test_a_word_in_a_raw_string_is_found(tmp_path):
+    rows = words_lint.BANNED_WORDS.read_text(encoding="utf-8").splitlines()
+    word = next(row.split(" ->")[0] for row in rows if not row.startswith("#"))
+    assert found(tmp_path, "a.cpp", f'm.def("f", &f, R"(Where\nit "is", the user is {word}.)");\n')
 
 
 @pytest.mark.parametrize(

@@ -50,20 +50,15 @@ def overlap_reasons(
     overlap: float | None, words: str, good: float = GOOD_OVERLAP, usable: float = USABLE_OVERLAP
 ) -> tuple[list[str], list[str]]:
     """What an overlap says against use, and what to know. words: for what coincides, such as "paint and drawing"."""
-    if overlap is None or printed(overlap) >= good:
+    if overlap is None or overlap >= good:
         return [], []
     reason = f"only {percent(overlap)} of {words} coincide"
-    return ([reason], []) if printed(overlap) < usable else ([], [reason])
+    return ([reason], []) if overlap < usable else ([], [reason])
 
 
 def percent(share: float) -> str:
-    """A share in words, rounded down from its three printed decimals: 95 % is never less than 0.950."""
-    return f"{int(100 * printed(share) + 1e-9)} %"
-
-
-def printed(share: float) -> float:
-    """A share as reports print it. What is said of it agrees with what is printed."""
-    return round(share, 3)
+    """A share in words, rounded down: 95 % is never less than 0.95, and 100 % is all."""
+    return f"{int(100 * share + 1e-9)} %"
 
 
 def plural(count: int, noun: str) -> str:

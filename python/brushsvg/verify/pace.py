@@ -44,7 +44,7 @@ def stops(read: Readback, program: Program) -> list[Notice]:
         most_s = np.interp(at_mm[1:] + off_mm, expected_mm, expected_s) - np.interp(
             at_mm[:-1] - off_mm, expected_mm, expected_s
         )
-        if program.cell.servo and language == "ebb":
+        if language == "ebb":
             most_s = np.maximum(most_s, _with_lift_s(ours, np.diff(along), program))
         late_s = took_s - slower * most_s
         if late_s[worst := int(late_s.argmax())] > STANDS_S:

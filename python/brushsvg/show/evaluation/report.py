@@ -139,7 +139,7 @@ class PaintedPlan:
     tolerance_mm: float = 0.05
     drawn: Sequence[_core.Stroke] | None = None
     compensation: str = "closed"
-    unreached: Iterable[Bare] = ()
+    unreached: Sequence[Bare] = ()
 
 
 def measure(painted: PaintedPlan) -> tuple[tuple[Figures, ...], Figures]:
