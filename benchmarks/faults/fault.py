@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
 BUILD = "build/faults"  # in the planted tree
+EXAMPLES = ("01_first_word", "11_custom_post")  # of C++, which write programs
 NUMBER = "@K@"  # stands for the fault's number in the text of an edit
 
 

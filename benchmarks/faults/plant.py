@@ -14,12 +14,12 @@ from pathlib import Path
 
 import cpp_faults
 import python_faults
-from fault import BUILD, Choice, Fault, planted, shares
+from fault import BUILD, EXAMPLES, Choice, Fault, planted, shares
 from safety import part_of
 
 SWITCHES = Path(__file__).parent / "switches"
 PACKAGE = "python/brushsvg"
-TARGETS = ("_core", "brushsvg_tests", "example_01", "example_02")
+TARGETS = ("_core", "brushsvg_tests", *(f"example_{name}" for name in EXAMPLES))
 
 
 def plant(root: Path, work: Path, seed: int, python: int, cpp: int, safety: int = 0) -> list[Fault]:

@@ -18,7 +18,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from fault import BUILD, Fault
+from fault import BUILD, EXAMPLES, Fault
 
 # The suites of `make thorough`, one call of pytest each: markers and folders. .ci/run leaves out tests marked thorough.
 SUITES = (
@@ -144,10 +144,8 @@ class Tree:
         tests = {f"{CPP}{name}": [binary, f"-tc={name.replace(',', chr(92) + ',')}"] for name in names}
         examples = self.root / BUILD / "examples"
         brush = self.root / "python/brushsvg/data/brushes/round-6.json"
-        out = Path(tempfile.gettempdir()) / "faults_example_02.ngc"
-        tests[f"{CPP}example_01"] = [examples / "example_01"]
-        tests[f"{CPP}example_02"] = [examples / "example_02", brush, out]
-        return tests
+        out = Path(tempfile.gettempdir()) / "faults_example.ngc"
+        return tests | {f"{CPP}{name}": [examples / f"example_{name}", brush, out] for name in EXAMPLES}
 
     def collect_tiers(self) -> None:
         """Which tier each test is in, by the markers of the tree."""

@@ -8,7 +8,7 @@ import pytest
 from diagnostics import agrees, are_reported, in_json, is_reported, refused
 
 from brushsvg.cli import main
-from brushsvg.machine.cells.cell import Paper, Reload, Servo, Station, Tool, robot_from_paper
+from brushsvg.machine.cells.cell import Paper, Reload, RoboDK, Servo, Station, Tool, robot_from_paper
 from brushsvg.machine.cells.cell_check import check, out_of_reach, remarks
 from brushsvg.machine.cells.cell_file import (
     SHIPPED,
@@ -104,7 +104,6 @@ FULL = replace(
         taught_mm=((0.0, 0.0, 1.0), (200.0, 0.0, 1.0), (0.0, 150.0, 1.5), (100.0, 100.0, 1.2)),
         flatness_mm=0.4,
     ),
-    servo=Servo(((-30.0, 100.0), (0.0, 500.0), (30.0, 900.0)), 0.2, 0.1),
     reload=Reload("length", 120.0, 4.0, "water", 8.0),
     stations=(
         Station(
@@ -136,7 +135,6 @@ FULL = replace(
             Station("ink", (1.0, 2.0), depth_mm=2.0, wipe_mm=((0.0, 0.0, -3.0),)),
             "cell-station -3 0 20",
         ),
-        (Station("ink", (1.0, 2.0), by_hand=True), "cell-station servo"),
     ],
 )
 def test_a_station_that_the_tool_cannot_visit_is_refused(station, said):
@@ -144,8 +142,15 @@ def test_a_station_that_the_tool_cannot_visit_is_refused(station, said):
         parse_cell(write_cell(replace(FULL, stations=(station,), reload=Reload("stroke"))))
 
 
-def test_what_is_written_is_read_back():
-    assert parse_cell(write_cell(FULL)) == FULL
+def test_a_station_by_hand_is_refused_where_the_brush_would_fall():
+    by_hand = (Station("ink", (1.0, 2.0), by_hand=True),)
+    with refused("cell-station servo"):
+        parse_cell(write_cell(replace(find_cell("grbl-servo"), stations=by_hand, reload=Reload("stroke"))))
+
+
+@pytest.mark.parametrize("cell", [FULL, *map(find_cell, cell_names())])
+def test_what_is_written_is_read_back(cell):
+    assert parse_cell(write_cell(cell)) == cell
 
 
 @pytest.mark.parametrize(
@@ -161,14 +166,6 @@ def test_what_is_written_is_read_back():
             {"stations": (Station("ink", (1.0, 2.0), depth_mm=5.0, rim_mm=19.0),)},
             "station 1",
             "cell-station rim_mm 19 0 18",
-        ),
-        ({"servo": Servo(((0.0, 1.0), (0.0, 2.0)))}, "servo.table", "servo-table"),
-        ({"servo": Servo(((0.0, 1.0), (9.0, 2.0)))}, "servo.table", "servo-table lowest_mm -20 safe_mm 20"),
-        ({"servo": Servo(((-30.0, -1.0), (30.0, 2.0)))}, "servo.table", "servo-table -1 0"),
-        (
-            {"servo": Servo(((-30.0, 0.0), (30.0, 50.0)))},
-            "servo.table",
-            "servo-coarse 1.2 0 0.5",
         ),
         (
             {"stations": (replace(FULL.stations[0], colours=("red",)),)},
@@ -289,6 +286,39 @@ def test_a_language_that_needs_a_table_says_so(language, where):
         return
     with refused(f"key-missing {language}", where):
         parse_cell(text)
+
+
+TABLES = {
+    "servo": find_cell("grbl-servo").servo,
+    "motors": find_cell("axidraw-ebb").motors,
+    "pen": find_cell("hpgl-plotter").pen,
+    "tool": find_cell("ur5e").tool,
+    "robodk": RoboDK("post.py"),
+}
+
+
+@pytest.mark.parametrize("name", cell_names())
+@pytest.mark.parametrize("table", TABLES)
+def test_a_table_that_only_other_languages_use_is_refused(name, table):
+    """A cell for ROS 2 with a servo was accepted, and its programs were then refused by check."""
+    cell = find_cell(name)
+    if getattr(cell, table) is None:
+        with refused(f"key-unused {cell.language}", table):
+            parse_cell(write_cell(replace(cell, **{table: TABLES[table]})))
+
+
+@pytest.mark.parametrize(
+    ("servo", "said"),
+    [
+        (Servo(((0.0, 1.0), (0.0, 2.0))), "servo-table"),
+        (Servo(((0.0, 1.0), (9.0, 2.0))), "servo-table lowest_mm -8 safe_mm 5"),
+        (Servo(((-30.0, -1.0), (30.0, 2.0))), "servo-table -1 0"),
+        (Servo(((-30.0, 0.0), (30.0, 50.0))), "servo-coarse 1.2 0 0.5"),
+    ],
+)
+def test_a_servo_without_a_value_for_each_height_is_refused(servo, said):
+    with refused(said, "servo.table"):
+        parse_cell(write_cell(replace(find_cell("grbl-servo"), servo=servo)))
 
 
 def test_paper_that_was_taught_for_a_servo_is_level_with_it():

@@ -11,6 +11,8 @@ sys.path.append(str(Path(__file__).parents[2] / "benchmarks" / "faults"))
 import fault
 import python_faults
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
 SOURCE = b'''\
 """A module."""
 
@@ -49,6 +51,12 @@ def result(source: bytes, active: int):
         return eval(RUN, names)
     except Exception as problem:
         return repr(problem)
+
+
+def test_the_examples_that_are_built_with_faults_exist():
+    """They were renamed once, and no fault could be planted after that."""
+    for name in fault.EXAMPLES:
+        assert (EXAMPLES / f"{name}.cpp").is_file()
 
 
 def test_planted_code_does_the_same_until_a_fault_is_on():

@@ -396,9 +396,8 @@ NEEDED_BY = {
     "ebb": ("servo", "motors"),
     "hpgl": ("pen",),
     "marlin-servo": ("pen",),
-} | dict.fromkeys(
-    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), ("tool",)
-)
+    "robodk": ("tool", "robodk"),
+} | dict.fromkeys(("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2"), ("tool",))
 CONTACT_BY = {"urscript": "force_n", "xarm": "sensitivity"}  # the key for the contact that ends a program
 OF_JOINTS = "joints of an arm have play of their own"
 NO_BACKLASH = dict.fromkeys(  # and why it is not undone

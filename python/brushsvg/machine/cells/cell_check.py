@@ -51,9 +51,7 @@ def check(cell: Cell) -> None:
             where="heights.clearance_mm",
             code="cell-heights",
         )
-    for table in NEEDED_BY.get(cell.language, ()):
-        if getattr(cell, table) is None:
-            raise Error(f"language {cell.language!r} needs a table {table}", where=table, code="key-missing")
+    _check_tables(cell)
     least = LEAST_ACCELERATION_MM_S2.get(cell.language, 0.0)
     if cell.speeds.acceleration_mm_s2 < least:
         greatest = entries(Speeds)["acceleration_mm_s2"].greatest
@@ -83,6 +81,20 @@ def check(cell: Cell) -> None:
         _check_contact(cell)
     if cell.arm:
         _check_arm(cell)
+
+
+def _check_tables(cell: Cell) -> None:
+    """Error for a table that the language needs and the cell lacks, or that only other languages use."""
+    for table in sorted({table for tables in NEEDED_BY.values() for table in tables}):
+        languages = [language for language, tables in NEEDED_BY.items() if table in tables]
+        is_given = getattr(cell, table) is not None
+        if cell.language in languages and not is_given:
+            raise Error(f"language {cell.language!r} needs a table {table}", where=table, code="key-missing")
+        if is_given and cell.language not in languages:
+            sentence = (
+                f"language {cell.language!r} does not use a table {table}: it is for {', '.join(languages)}"
+            )
+            raise Error(sentence, where=table, code="key-unused")
 
 
 def _check_contact(cell: Cell) -> None:
@@ -145,9 +157,6 @@ def _check_own_keys(cell: Cell) -> None:
             where="arc_segment_mm",
             code="out-of-range",
         )
-    if (cell.language == "robodk") != (cell.robodk is not None):
-        says = "needs a table robodk" if cell.robodk is None else "runs no post of RoboDK's kind"
-        raise Error(f"language {cell.language!r} {says}", where="robodk", code="key-missing")
     if cell.language == "fanuc" and not re.fullmatch(CONFIGURATION, cell.tool.configuration):
         raise Error(
             f"{cell.tool.configuration[:40]!r} is no configuration as the pendant shows it, such as "
@@ -288,16 +297,8 @@ def _distances_mm(corners: np.ndarray) -> tuple[float, float]:
     return nearest, farthest
 
 
-PENS = ("hpgl", "marlin-servo")
-
-
 def _check_pen(cell: Cell) -> None:
     pen = cell.pen
-    if cell.language not in PENS:
-        sentence = (
-            f"language {cell.language!r} has heights: a pen that knows none is for {' and '.join(PENS)}"
-        )
-        raise Error(sentence, where="pen", code="out-of-range")
     if cell.language == "marlin-servo" and len(set(map(round, pen.servo_values))) != 2:
         sentence = (
             "the servo needs two values, whole degrees: one that lifts the pen, another that lets it down"
@@ -329,9 +330,6 @@ MOST_VALUE = 65_535  # of its servo
 
 
 def _check_motors(cell: Cell) -> None:
-    if cell.language != "ebb":
-        sentence = f"language {cell.language!r} has no steps: motors that count them are for ebb"
-        raise Error(sentence, where="motors", code="out-of-range")
     rows = np.array(cell.motors.steps_per_mm)
     if np.linalg.cond(rows) > 1e3:
         sentence = "both motors turn for the same way: no place can be reached by them"
@@ -353,7 +351,7 @@ def _check_motors(cell: Cell) -> None:
 def _check_servo(cell: Cell) -> None:
     frame = robot_from_paper(cell)
     is_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
-    if "servo" in NEEDED_BY.get(cell.language, ()) and not is_level:
+    if not is_level:
         raise Error(
             "a servo's heights are those over the paper: it must be level, at z 0",
             where="paper",

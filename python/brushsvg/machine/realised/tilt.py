@@ -10,7 +10,6 @@ from ..cells.cell import MOST_TILT_DEG, Cell
 from ..tool_axes import axes_of, between_deg, tilts_deg, unit
 from .retimed import on_way
 
-LEAST_AXES = 5
 # What a move is cut into, so that a robot between two poses keeps to what is predicted. Between two axes at most so far
 # apart a robot, which turns the tool evenly about one line in space, holds it within 0.03 degrees as predicted.
 STEP_DEG = 2.0
@@ -22,12 +21,7 @@ ON_THE_SPOT_MM = 1e-6  # as simulate has it
 def refuse_where_upright(passes, cell: Cell) -> None:
     """Error for a tilted brush where the cell cannot tilt it."""
     if cell.tool is None:
-        why = f"cell {cell.name} has no axes to tilt the brush with"
-    elif cell.arm is not None and len(cell.arm.dh) < LEAST_AXES:
-        why = f"the arm of cell {cell.name} has {len(cell.arm.dh)} joints, too few to tilt the brush"
-    else:
-        return
-    _core.refuse_tilted(passes, why)
+        _core.refuse_tilted(passes, f"cell {cell.name} has no axes to tilt the brush with")
 
 
 def in_steps(a_pass):
