@@ -1,10 +1,10 @@
 """Brushes fitted to strokes that robots painted, and how well they predict strokes they have not seen.
 
-    real_paint.py FOLDER [--sets NAME ...] [--pictures DIR] [--machine lean,axes] [--ceilings] [--tilt]
+    real_paint.py FOLDER [--sets NAME ...] [--pictures DIR] [--machine lean,axes] [--ceilings]
 
 A set is a file NAME.npz of FOLDER, all of them unless --sets says which. Its arrays: `intensity` (strokes, rows,
 columns), pixels that are paint above 70, `z_range_m`, and either `ctrl` (strokes, 4, 3 or more), control points of a
-cubic with x, y [m], depth [shares of z_range_m] and tilt [rad], with `poses` (how many places the robot went
+cubic with x, y [m], depth [shares of z_range_m], with `poses` (how many places the robot went
 through, else 10), `x_range`, `y_range` [m] and `grid_m`; or `path` (strokes, 4, 3 or more), places that a spline goes
 through, with `canvas_w_m` and `canvas_h_m`.
 
@@ -18,19 +18,11 @@ with the same laws to the largest mean of `fixed` and `shift`, with footprints h
 speak against it. Numbers: lag 2, tip gap 1, half width 2, the footprint's shape 2, height of the paper 1, the set's
 displacement 2 (at one depth lag 1, half width 1, no height); `edges` also a shift for each fitted stroke. --machine:
 for `edges` as well, lean 2, axes 3. What `overlap` changes is chosen by fitted strokes that are left out in turn:
-nothing; a dragged disc; laws (at one depth lag 2); those with lean, 2 (none at one depth), and a map of the ways, 4;
-those with a lever of the file's tilt, 2. Then a field over the sheets that strokes were painted on, as far as their
-order in the file shows it, if fifths of the fitted strokes that are left out gain by it: `calibrate` does not ask for
-it.
+nothing; a dragged disc; laws (at one depth lag 2); those with lean, 2 (none at one depth), and a map of the ways, 4.
 
 First comes what can be had at all. Two strokes of nearly equal commands overlap less than 1: they are carried on to
 equal commands along a straight line in the way's and the depth's distance. What each misses to the other is between
 both; a model that is right about the mean of many such strokes misses 1/sqrt(2) of it. --ceilings prints no more.
-
---tilt: the same brush with the tool tilted as the file says, once `overlap` is fitted, without its lever. Which way a
-positive tilt leans the file does not say: all four are tried, as a tilted plan is simulated. Then a lever of two
-numbers, found on the strokes fitted: the mark is lever tan(tilt) elsewhere, as in a tool that turns about another
-point than its tip.
 """
 
 from __future__ import annotations
@@ -38,7 +30,7 @@ from __future__ import annotations
 import argparse
 import time
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -51,7 +43,7 @@ from scipy.optimize import minimize
 from brushsvg import _core
 from brushsvg.calibration.marks import machine_found
 from brushsvg.calibration.marks.from_marks import brush_of
-from brushsvg.calibration.overlap.by_overlap_report import chosen_in_words, describe_displacement
+from brushsvg.calibration.overlap.by_overlap_report import chosen_in_words
 from brushsvg.calibration.overlap.overlap_choice import best_predicting
 from brushsvg.calibration.overlap.overlap_search import (
     Begin,
@@ -85,16 +77,11 @@ class Stroke:
     paint: np.ndarray
     window: tuple  # x y width height, mm
     px: float
-    tilt_rad: float = 0.0
-    number: int = 0  # in the file, which has them in the order of painting
 
 
 def load(folder: Path, name: str) -> list[Stroke]:
     data = np.load(folder / f"{name}.npz")
-    strokes = _loops(data) if "path" in data else _beziers(data)
-    for number, stroke in enumerate(strokes):
-        stroke.number = number
-    return strokes
+    return _loops(data) if "path" in data else _beziers(data)
 
 
 def _beziers(data) -> list[Stroke]:
@@ -110,7 +97,6 @@ def _beziers(data) -> list[Stroke]:
         depth = np.interp(t, np.linspace(0, 1, 4), ctrl[:, 2]) * deep if deep else np.ones(count)
         poses = np.column_stack([xy, -np.maximum(depth, 0)])
         out.append(_stroke(poses, paint, (x0, y0, x1 - x0, y1 - y0), px))
-        out[-1].tilt_rad = float(ctrl[:, 3].mean()) if ctrl.shape[1] > 3 else 0.0
     return out
 
 
@@ -310,10 +296,9 @@ def by_overlap(strokes, fit, options):
     options = copy(options)
     machine_found.ask_for(options, ("lean", "axes"))
     begin = Begin(fit.laws, fit.height_mm, fit.shift_mm)
-    order = np.array([stroke.number for stroke in strokes])
-    found = best_predicting(marks, targets, begin, options, order=order)
+    found = best_predicting(marks, targets, begin, options)
     changed = {name: getattr(found, name) for name in ("laws", "height_mm", "shift_mm", "offsets")}
-    return _like(fit, **changed, field=found.displacement.field if found.displacement else None), found
+    return _like(fit, **changed), found
 
 
 def _like(fit, **changed):
@@ -344,7 +329,7 @@ def _coarse(stroke: Stroke) -> tuple[np.ndarray, tuple]:
 
 def _target(stroke: Stroke, fit) -> Target:
     paint, window = _coarse(stroke)
-    return Target(_as_run(stroke, fit), paint, window, 0.5 / stroke.px, np.tan(stroke.tilt_rad))
+    return Target(_as_run(stroke, fit), paint, window, 0.5 / stroke.px)
 
 
 def brush_for(strokes, fit, options) -> _core.Brush:
@@ -359,11 +344,7 @@ def _as_run(stroke: Stroke, fit) -> np.ndarray:
     at, depth = poses[:, :2] - fit.centre_mm, np.maximum(fit.height_mm - poses[:, 2:], 0.0)
     poses[:, :2] += np.column_stack([axes[0] * at[:, 0] + axes[2] * at[:, 1], axes[1] * at[:, 1]])
     poses[:, :2] += depth * lean
-    if getattr(fit, "field", None):
-        poses[:, :2] += fit.field.at([stroke.number])
-    return (
-        fit.offsets.way(poses, fit.height_mm, np.tan(stroke.tilt_rad)) if hasattr(fit, "offsets") else poses
-    )
+    return fit.offsets.way(poses, fit.height_mm) if hasattr(fit, "offsets") else poses
 
 
 def _moved(stroke: Stroke, fit) -> _core.Pass:
@@ -371,56 +352,14 @@ def _moved(stroke: Stroke, fit) -> _core.Pass:
     return _core.Pass("stroke", on_paper(_as_run(stroke, fit), fit.height_mm, fit.shift_mm))
 
 
-def our_marks(strokes, fit, options, moved=_moved) -> list[np.ndarray]:
+def our_marks(strokes, fit, options) -> list[np.ndarray]:
     brush = brush_for(strokes, fit, options)
     plan, out = _core.Plan("fitted", "", (1.0, 1.0), []), []
     for stroke in strokes:
-        plan.passes = [moved(stroke, fit)]
+        plan.passes = [_moved(stroke, fit)]
         marks = _core.simulate(plan, brush)
         out.append(_core.coverage(marks, brush, stroke.window, 1 / stroke.px) > 0.5)
     return out
-
-
-def tilt_words(seen, unseen, fit, options):
-    fit = _like(fit, offsets=replace(fit.offsets, lever_mm=np.zeros(2)))
-
-    def leant(towards):
-        def moved(stroke, fit):
-            one = _moved(stroke, fit)
-            axis = [*(np.sin(stroke.tilt_rad) * np.array(towards)), np.cos(stroke.tilt_rad)]
-            one.tool_axes = np.tile(axis, (len(one.poses_mm), 1))
-            return one
-
-        return moved
-
-    def moved_by(lever_mm):
-        def moved(stroke, fit):
-            one = _moved(stroke, fit)
-            one.poses_mm = one.poses_mm + np.tan(stroke.tilt_rad) * np.array([*lever_mm, 0.0])
-            return one
-
-        return moved
-
-    def score(strokes, moved) -> float:
-        return float(scores(strokes, our_marks(strokes, fit, options, moved))[0].mean())
-
-    def line(what, moved):
-        return (
-            f"{what:22s} fixed {score(unseen, moved):.4f}  ({score(seen, moved):.4f} on the strokes fitted)"
-        )
-
-    yield line("upright", _moved)
-    for what, towards in (("+x", (1, 0)), ("-x", (-1, 0)), ("+y", (0, 1)), ("-y", (0, -1))):
-        yield line(f"tilted towards {what}", leant(towards))
-    found = minimize(
-        lambda lever: -score(seen, moved_by(lever)),
-        np.zeros(2),
-        method="Nelder-Mead",
-        options={"initial_simplex": [[0, 0], [8, 0], [0, 8]], "maxfev": 50, "xatol": 0.2, "fatol": 1e-4},
-    )
-    x, y = found.x
-    yield line(f"lever {x:.1f}, {y:.1f} mm", moved_by(found.x))
-    yield line("the same, other sign", moved_by(-found.x))
 
 
 def picture(strokes, predicted, shifts, score, path: Path) -> None:
@@ -471,8 +410,7 @@ def laws_in_words(fit) -> str:
         f"{fit.height_mm:+.2f} mm; shift {fit.shift_mm[0]:+.2f} {fit.shift_mm[1]:+.2f} mm; lean {lean[0]:+.3f} "
         f"{lean[1]:+.3f} mm/mm; scale {1 + axes[0]:.4f} {1 + axes[1]:.4f}, skew {axes[2]:+.4f}"
         + (
-            f"; next to it {np.round(fit.offsets.lean_mm_per_mm, 3)}, {np.round(fit.offsets.map, 4)}, "
-            f"lever {np.round(fit.offsets.lever_mm, 1)}"
+            f"; next to it {np.round(fit.offsets.lean_mm_per_mm, 3)}, {np.round(fit.offsets.map, 4)}"
             if hasattr(fit, "offsets")
             else ""
         )
@@ -534,7 +472,6 @@ def main():
     arguments.add_argument("--ceilings", action="store_true")
     arguments.add_argument("--pictures", type=Path)
     arguments.add_argument("--no-peers", action="store_true")
-    arguments.add_argument("--tilt", action="store_true")
     arguments.add_argument("--machine", metavar="PARTS", type=_parts, default=(), help="lean,axes")
     args = arguments.parse_args()
     for name in args.sets or sorted(path.stem for path in args.folder.glob("*.npz")):
@@ -574,11 +511,6 @@ def main():
             flush=True,
         )
         print(f"    {chosen_in_words(found)}")
-        if found.displacement:
-            print(f"    {describe_displacement(found.displacement)}")
-        if args.tilt and any(stroke.tilt_rad for stroke in strokes):
-            for line in tilt_words(seen, unseen, best, options):
-                print(f"    {line}", flush=True)
         for what, one in (("edges", fit), ("overlap", best)):
             print(f"    {what}: {laws_in_words(one)}")
         for line in [*residual_words(unseen, best, options), *fit.remarks]:

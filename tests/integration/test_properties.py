@@ -7,9 +7,23 @@ from judge.checked import quick_check
 from judge.properties import one
 
 CASES, PART = 300, 25
-# cases of benchmarks/properties.py that were wrong once: steep ways of servos, a short lift of a ROS 2 trajectory, and
-# two faults of the judge
-WERE_WRONG = (200183, 200741, 200762, 201322, 202112, 202271, 202292, 203699, 204656, 205507, 910284, 910531)
+# cases of benchmarks/properties.py that were wrong once: steep ways of servos, a short lift of a ROS 2 trajectory, a
+# plan refused for a way that its program does not take, and two faults of the judge
+WERE_WRONG = (
+    200183,
+    200741,
+    200762,
+    201322,
+    202112,
+    202271,
+    202292,
+    203699,
+    204656,
+    205507,
+    900168,
+    910284,
+    910531,
+)
 WERE_WRONG_OF_EBB = (1000261, 1000459)  # with --dialect ebb
 
 

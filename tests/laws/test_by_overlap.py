@@ -16,8 +16,8 @@ if not hasattr(core, "fit_marks"):
 
 import brushsvg  # noqa: E402
 from brushsvg.calibration.marks import machine_found  # noqa: E402
-from brushsvg.calibration.overlap import by_overlap, overlap_choice, overlap_field  # noqa: E402
-from brushsvg.calibration.overlap.by_overlap_report import chosen_in_words, describe_displacement, report  # noqa: E402
+from brushsvg.calibration.overlap import by_overlap, overlap_choice  # noqa: E402
+from brushsvg.calibration.overlap.by_overlap_report import chosen_in_words, report  # noqa: E402
 from brushsvg.calibration.overlap.overlap_search import Begin, Target  # noqa: E402
 
 pytestmark = pytest.mark.long
@@ -143,7 +143,7 @@ def test_edges_that_know_the_machine_predict_best_and_keep_their_intervals():
     assert re.search(r"\+- \d", report(made).text(True))
 
 
-def targets_of(strokes, brush, displaced=lambda k: np.zeros(2), leant=lambda k: 0.0):
+def targets_of(strokes, brush, displaced=lambda k: np.zeros(2)):
     """What the brush paints, each mark moved, without faults of edges."""
     faults = painter.Faults(0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
     sheet = painter.paint(np.random.default_rng(1), brush, strokes, faults, painter.swept)
@@ -153,7 +153,7 @@ def targets_of(strokes, brush, displaced=lambda k: np.zeros(2), leant=lambda k: 
         seen = np.vstack([poses[:, :2], *moved])
         corner, size = seen.min(axis=0) - 12.0, np.ceil(2 * np.ptp(seen, axis=0) + 48.0) / 2
         window = (*corner.tolist(), *size.tolist())
-        out.append(Target(np.asarray(poses), core.coverage(moved, window, 2.0), window, 2.0, leant(k)))
+        out.append(Target(np.asarray(poses), core.coverage(moved, window, 2.0), window, 2.0))
     return out
 
 
@@ -194,17 +194,6 @@ def by_one_depth(brush):
 
 
 @pytest.mark.thorough
-def test_the_lever_of_a_tilted_tool_comes_back():
-    brush, lever = round_brush([1.0, 1.0]), np.array([12.0, -7.0])
-    strokes = painter.chart_strokes(brush.deepest, 2)
-    leant = 0.1 * np.random.default_rng(2).standard_normal(len(strokes))
-    targets = targets_of(strokes, brush, lambda k: leant[k] * lever, lambda k: leant[k])
-    found = overlap_choice.largest_overlap(targets, Begin(laws(brush, [1.0, 1.0]), 0.0), reported(brush))
-    assert found.kind == "lever"
-    assert found.offsets.lever_mm == pytest.approx(lever, abs=1.5)
-
-
-@pytest.mark.thorough
 def test_what_is_changed_is_what_predicts_marks_that_had_no_part_and_the_report_says_so():
     # lean that the fit by edges holds at 0: laws alone cannot make up for it on marks left out
     brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 3)
@@ -236,37 +225,6 @@ def outlines(target):
     left, bottom, _, height = target.window_mm
     paint = np.uint8(np.round(255 * target.paint))
     return mask_outlines(paint, 127, 1 / target.px_per_mm, (left, bottom + height))
-
-
-def displacement_of(strokes, brush, displaced):
-    """The field found for marks displaced by these (n, 2), taught every second stroke."""
-    targets = targets_of(strokes, brush, lambda k: displaced[k])
-    begin, order = Begin(laws(brush, [1.0, 1.0]), 0.0), 2 * np.arange(len(strokes))
-    search = overlap_choice.Search(begin, reported(brush), targets, np.zeros(2))
-    found = overlap_choice._predicting(search, "laws", search.begin, targets, lambda: None, order)
-    return found, found.displacement.field.at(order) if found.displacement.field else np.zeros_like(displaced)
-
-
-@pytest.mark.thorough
-def test_marks_displaced_by_their_place_on_the_sheet_are_predicted_there_and_no_wider(monkeypatch):
-    monkeypatch.setattr(overlap_field, "FEWEST", 10)
-    brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 3)
-    row = 2 * np.arange(len(strokes)) // 5 % 6
-    displaced = np.column_stack([np.zeros(len(row)), 3.0 - 1.2 * row])
-    found, found_displaced = displacement_of(strokes, brush, displaced)
-    left = displaced - displaced.mean(axis=0) - found_displaced
-    assert found.displacement.won > 3 * found.displacement.error
-    assert (left**2).sum() < 0.1 * ((displaced - displaced.mean(axis=0)) ** 2).sum()
-    assert found.overlap > 0.85
-    assert np.polynomial.Polynomial(found.laws.half_width)(4.0) == pytest.approx(0.6 * 4.0, rel=0.05)
-    assert describe_displacement(found.displacement)
-
-
-def test_few_marks_show_no_field():
-    brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 1)
-    found, _ = displacement_of(strokes, brush, np.zeros((len(strokes), 2)))
-    assert found.displacement.field is None
-    assert describe_displacement(found.displacement)
 
 
 def test_of_few_marks_it_is_not_known_what_predicts():

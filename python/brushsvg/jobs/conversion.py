@@ -320,7 +320,6 @@ def tried(
     """rings: trace the marks' outlines; marks: of the same work in the same order, where they are known; path: of the
     program, for errors about its format."""
     cell, brush, tolerance_mm = work.options.cell, work.brush, work.options.tolerance_mm
-    cell = writer.painting_cell(suffix, cell)
     notes = outputs.notes(work)
     if order == "nearest":
         work, notes = nearest_first(work), (*notes, "order: nearest first")

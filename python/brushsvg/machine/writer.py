@@ -128,11 +128,6 @@ def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str
     return found
 
 
-def painting_cell(suffix: str, cell: Cell) -> Cell:
-    """Return the cell whose limits apply to an output: a plan.json has whole strokes, and fetches no paint."""
-    return replace(cell, reload=None) if suffix == ".json" else cell
-
-
 def text_of(post: Post, made: Program, suffix: str = "") -> Iterator[str]:
     """The program in a robot's language, in pieces, as files of an extension have it."""
     made = undone(in_robot_frame(made)) if post.in_robot_frame else made
@@ -170,7 +165,7 @@ def write_program(
     # a cell made by hand must be one that a file may hold: each key within its range
     cell = parse_cell(write_cell(cell)) if cell else find_cell()
     suffix = Path(path).suffix.lower()
-    cell = painting_cell(suffix, as_exact_as(cell, DEFAULT_TOLERANCE_MM))
+    cell = as_exact_as(cell, DEFAULT_TOLERANCE_MM)
     marks, loads = _core.simulate(plan, brush), in_loads(plan, brush, cell)
     walk = look(loads, brush, marks, cell, DEFAULT_TOLERANCE_MM)
     write_files(in_files(path, encoded(suffix, plan, walk, brush, title)))

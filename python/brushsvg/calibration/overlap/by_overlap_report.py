@@ -51,7 +51,6 @@ KINDS = {
     "disc": "a dragged disc",
     "laws": "laws and footprint",
     "machine": "laws, footprint and machine",
-    "lever": "those and the lever of a tilted tool",
 }
 
 
@@ -67,23 +66,6 @@ def chosen_in_words(found) -> str:
         f"chosen: {KINDS[found.kind]}, since so marks that had no part in the fit overlap most, each of {found.parts} "
         f"parts predicted by the others (mean of the overlaps in place and with each mark moved): {listed}"
     )
-
-
-MOST_LAYOUTS = 3
-
-
-def describe_displacement(displaced) -> str:
-    """Describe how marks are displaced depending on their place: displaced is overlap_field.FoundField."""
-    if displaced.won is None:
-        return "no field over the sheets: the marks are too few"
-    won = (
-        f"marks that had no part in it overlap by {displaced.won:+.3f} +- {displaced.error:.3f} more with it"
-    )
-    if displaced.field is None:
-        return f"no field over the sheets, since {won}"
-    likely = sorted(displaced.field.layouts, key=lambda one: -one[1])[:MOST_LAYOUTS]
-    listed = ", ".join(f"{one.rows} rows of {one.columns} ({weight:.2f})" for one, weight, _ in likely)
-    return f"a field over the sheets, since {won}; sheets are averaged over by their probability: {listed}"
 
 
 def _machine(edges, offsets) -> list[str]:

@@ -18,7 +18,6 @@ from ... import _core
 from ...errors import Error
 from ..marks.from_marks import ROUND_TAIL
 from ..marks.machine_found import PARTS
-from .overlap_field import FoundField, found_field, moved
 from .overlap_search import (
     Begin,
     MachineOffsets,
@@ -42,8 +41,7 @@ class Predicting:
     machine does in addition; the overlap by edges and now, and how many numbers were changed.
 
     kind: one of KINDS; parts: into how many the marks were parted to choose it, 0 where they are too few; left_out: of
-    each kind the overlaps of marks left out, at their places and where each may move. displacement: by the place on a
-    sheet where marks were painted, where their order is known.
+    each kind the overlaps of marks left out, at their places and where each may move.
     """
 
     laws: _core.MarkLaws
@@ -56,7 +54,6 @@ class Predicting:
     kind: str
     parts: int
     left_out: dict[str, tuple[float, float]]
-    displacement: FoundField | None = None
 
 
 def best_predicting(
@@ -65,11 +62,9 @@ def best_predicting(
     begin: Begin,
     options: _core.MarkOptions,
     progress: Callable[[int], object] = lambda looks: None,
-    order: np.ndarray | None = None,
 ) -> Predicting:
-    """marks: in the frame of the targets, which they are; begin: the fit of all of them by edges; order: as in
-    sheet_field(), where that shows on which part of a sheet they were painted. progress: receives how many overlaps
-    were looked at."""
+    """marks: in the frame of the targets, which they are; begin: the fit of all of them by edges. progress: receives
+    how many overlaps were looked at."""
     looks = 0
 
     def look() -> None:
@@ -89,7 +84,7 @@ def best_predicting(
         x = best_from(search, kind, starts, few_of(targets), look)
     else:  # fewer marks determine fewer numbers of a law
         kind, x = _searched(search, targets, look, kind)
-    found = _predicting(search, kind, x, targets, look, order)
+    found = _predicting(search, kind, x, targets, look)
     means = {one: (float(in_place), float(moved)) for one, (in_place, moved) in left_out.items()}
     return replace(found, parts=len(tried["edges"]), left_out=means)
 
@@ -114,16 +109,10 @@ def _searched(search: Search, targets: list[Target], look, last: str | None = No
     return kind, x
 
 
-def _predicting(search: Search, kind: str, x, targets: list[Target], look, order=None) -> Predicting:
-    x, displacement = polished(search, kind, x, targets, look), None
-    if order is not None:
-        displacement = found_field(search, x, targets, order)
-        if displacement.field is not None:
-            targets = moved(targets, displacement.field.at(order))
-            # along the way a place is what a lag is, too
-            x = polished(search, kind, x, targets, look, ("lag",))
+def _predicting(search: Search, kind: str, x, targets: list[Target], look) -> Predicting:
+    x = polished(search, kind, x, targets, look)
     before, now = (float(search.overlaps(each, targets)[:, 0].mean()) for each in (search.begin, x))
-    return Predicting(*search.read(x), before, now, search.changed(kind), kind, 0, {}, displacement)
+    return Predicting(*search.read(x), before, now, search.changed(kind), kind, 0, {})
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
 """Search for the brush whose marks overlap most with painted ones, in few numbers on top of the fit by edges.
 
 Changed are lag (as values at depths), tip gap, half width, the footprint's two lengths, the height of the paper and the
-displacement of the sheet; on request lean and a map of the ways; where tools are tilted a lever. By a
-simplex of Nelder and Mead, on a part of the marks first.
+displacement of the sheet; on request lean and a map of the ways. By a simplex of Nelder and Mead, on a part of the
+marks first.
 
 Where marks are displaced by chance, a wider brush overlaps more than the true one: its mark reaches all places at which
 paint may be. So half of the aim is the overlap where each mark may move by what displacements are expected to be: there
@@ -53,48 +53,43 @@ STEPS = {
     "shift": 0.4,
     "lean": 0.2,
     "map": MAP,
-    "lever": 8.0,
 }
-LEVER_MM = 30.0  # from the tip to what a tilted tool turns about; standard deviation beforehand
-# Overlaps looked at: by a disc; from each start on few marks, then from the better one, and on all; by a lever alone
-DISC, FIRST, BETTER, LAST, LEVER = 120, 100, 160, 200, 60
+# Overlaps looked at: by a disc; from each start on few marks, then from the better one, and on all
+DISC, FIRST, BETTER, LAST = 120, 100, 160, 200
 # With the machine's numbers pictures are registered first: blurs, steps at each, differences as shares of STEPS
 BLURS_PX, ROUNDS, NEAR = (6, 2), 6, 0.1
 HIGHEST_MM, WIDEST_MM, LEAST_LAG_MM, LEAST_SHAPE = 6.0, 20.0, 0.02, 0.1  # outside: no brush, no paper
-MACHINE = ("lean", "map", "lever")
-# What may be changed: nothing; a dragged disc; laws and footprint; those and the machine; a tilted tool's lever, too
-KINDS = ("edges", "disc", "laws", "machine", "lever")
-HELD = {"disc": ("tip_gap", "shape", *MACHINE), "laws": MACHINE, "machine": ("lever",), "lever": ()}
+MACHINE = ("lean", "map")
+# What may be changed: nothing; a dragged disc; laws and footprint; those and the machine
+KINDS = ("edges", "disc", "laws", "machine")
+HELD = {"disc": ("tip_gap", "shape", *MACHINE), "laws": MACHINE, "machine": ()}
 
 
 @dataclass(frozen=True, eq=False)
 class Target:
     """A mark to be predicted. poses_mm: of the TCP on the plan; paint: share of each pixel that is painted, row 0 at
-    the top; window_mm: lower left corner and size; leant: tangent of what the tool leans, whichever way that is."""
+    the top; window_mm: lower left corner and size."""
 
     poses_mm: np.ndarray
     paint: np.ndarray
     window_mm: tuple[float, float, float, float]
     px_per_mm: float
-    leant: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class MachineOffsets:
-    """Displacement of a machine's ways in addition to the fit by edges: by lean_mm_per_mm (2,) of depth, by map (2, 2)
-    times the way from centre_mm (2,), mm per mm, and by lever_mm (2,) times the tangent of what the tool leans."""
+    """Displacement of a machine's ways in addition to the fit by edges: by lean_mm_per_mm (2,) of depth, and by map
+    (2, 2) times the way from centre_mm (2,), mm per mm."""
 
     lean_mm_per_mm: np.ndarray
     map: np.ndarray
     centre_mm: np.ndarray
-    lever_mm: np.ndarray
 
-    def way(self, poses_mm: np.ndarray, height_mm: float, leant: float = 0.0) -> np.ndarray:
+    def way(self, poses_mm: np.ndarray, height_mm: float) -> np.ndarray:
         """poses_mm (n, 3) as it runs them over paper of this height."""
         poses = np.array(poses_mm)
         depth = np.maximum(height_mm - poses[:, 2:], 0.0)
         poses[:, :2] += (poses[:, :2] - self.centre_mm) @ self.map.T + depth * self.lean_mm_per_mm
-        poses[:, :2] += leant * self.lever_mm
         return poses
 
 
@@ -131,7 +126,6 @@ class Search:
         # lean is a shift where all depths are one
         parts["lean"] = np.zeros(2 if options.lean_mm_per_mm > 0 and self.has_height else 0)
         parts["map"] = np.zeros(4 if options.axes > 0 else 0)
-        parts["lever"] = np.zeros(2 if any(target.leant for target in targets) else 0)
         self.begin = np.concatenate([np.asarray(each, float) for each in parts.values()])
         ends = np.cumsum([len(each) for each in parts.values()])
         self.at = {
@@ -182,12 +176,11 @@ class Search:
             _added(old.front_by_depth, [front]) if old.front_by_depth else [],
         )
         height = float(x[self.at["height"]][0]) if self.has_height else self.height_mm
-        lean, by_map, lever = (x[self.at[name]] for name in MACHINE)
+        lean, by_map = (x[self.at[name]] for name in MACHINE)
         machine = MachineOffsets(
             lean if len(lean) else np.zeros(2),
             by_map.reshape(2, 2) if len(by_map) else np.zeros((2, 2)),
             self.centre_mm,
-            lever if len(lever) else np.zeros(2),
         )
         return laws, height, x[self.at["shift"]], machine
 
@@ -235,7 +228,7 @@ class Search:
             friction = 0.0  # drops hold no disc
         off = np.array([behind - self.usual_shape[0], front - self.usual_shape[1], friction]) / ROUND
         lean, by_map = x[self.at["lean"]] / (self.lean_sigma or 1.0), x[self.at["map"]] / MAP
-        return np.sqrt(SCATTER / 2) * np.concatenate([off, lean, by_map, x[self.at["lever"]] / LEVER_MM])
+        return np.sqrt(SCATTER / 2) * np.concatenate([off, lean, by_map])
 
     def _impossible(self, x, laws, height: float) -> bool:
         """Laws that no brush has: a lag below 0, a width that falls, on all depths that the paper's height makes; a lag
@@ -281,10 +274,6 @@ def each_kind(
         machine = search.without(*HELD["machine"])
         x = _best_of(loss, [_registered(search, search.begin, machine, few, look), x], 0.4 * steps, machine)
         yield "machine", x
-    if len(search.begin[search.at["lever"]]):
-        leant = search.without("lag", "tip_gap", "half_width", "shape", "height", "lean", "map")
-        x = _simplex(loss, x, steps, leant, LEVER).all_x
-        yield "lever", _simplex(loss, x, 0.4 * steps, search.without(*HELD["lever"]), BETTER).all_x
 
 
 def _best_of(loss, starts: list[np.ndarray], steps, free) -> np.ndarray:
@@ -294,10 +283,8 @@ def _best_of(loss, starts: list[np.ndarray], steps, free) -> np.ndarray:
     return _simplex(loss, best.all_x, steps, free, BETTER, best.final_simplex[0]).all_x
 
 
-def polished(
-    search: Search, kind: str, x, targets: list[Target], look: Callable[[], None], held: tuple[str, ...] = ()
-) -> np.ndarray:
-    """Continue the search of few marks with all; held: names of numbers that stay."""
+def polished(search: Search, kind: str, x, targets: list[Target], look: Callable[[], None]) -> np.ndarray:
+    """Continue the search of few marks with all."""
     if kind == "edges":
         return x
 
@@ -305,7 +292,7 @@ def polished(
         look()
         return search.loss(search.as_disc(x) if kind == "disc" else x, targets)
 
-    found = _simplex(loss, x, 0.4 * search.steps, search.without(*HELD[kind], *held), LAST).all_x
+    found = _simplex(loss, x, 0.4 * search.steps, search.without(*HELD[kind]), LAST).all_x
     return search.as_disc(found) if kind == "disc" else found
 
 
@@ -332,16 +319,10 @@ def few_of(targets: list[Target]) -> list[Target]:
     return targets[:: max(1, len(targets) // FEW)]
 
 
-def apply_to_moved(search: Search, x, targets: list[Target], what: Callable) -> list:
-    """what(target, picture) of what the numbers x paint of each target."""
-    laws, height, shift, machine = search.read(x)
-    return of_predicted(what, _move_targets(targets, machine, height), laws, height, shift, search.deepest_mm)
-
-
 def _move_targets(targets: list[Target], machine: MachineOffsets, height_mm: float) -> list[Target]:
-    if not (machine.lean_mm_per_mm.any() or machine.map.any() or machine.lever_mm.any()):
+    if not (machine.lean_mm_per_mm.any() or machine.map.any()):
         return targets
-    return [replace(one, poses_mm=machine.way(one.poses_mm, height_mm, one.leant)) for one in targets]
+    return [replace(one, poses_mm=machine.way(one.poses_mm, height_mm)) for one in targets]
 
 
 def _registered(search: Search, x, free, targets: list[Target], look: Callable[[], None]) -> np.ndarray:

@@ -42,10 +42,9 @@ def chart_file(args) -> None:
             writer.post_for(suffix, cell)
         stage("laying out the chart")
         made = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm, args.dabs, args.paint)
-        painting = writer.painting_cell(suffix, cell)
-        loads, marks = in_loads(made.plan, brush, painting), _core.simulate(made.plan, brush)
+        loads, marks = in_loads(made.plan, brush, cell), _core.simulate(made.plan, brush)
         tolerance_mm = preflight.DEFAULT_TOLERANCE_MM
-        walk = preflight.look(loads, brush, marks, painting, tolerance_mm, Job(args.z_offset))
+        walk = preflight.look(loads, brush, marks, cell, tolerance_mm, Job(args.z_offset))
         if walk.problems:
             raise RefusedError(args.output, summarized([_with_sheet(each) for each in walk.problems]))
         title = f"{'dabs' if args.dabs else 'calibration chart'} of brush {brush.name}"
