@@ -19,13 +19,6 @@ void bind_coverage(py::module_& m) {
         py::arg("rings"), py::arg("window_mm"), py::arg("px_per_mm"), unlocked,
         "The same for filled rings, non-zero winding.");
     m.def(
-        "coverage_of_pieces",
-        [](const Rings& convex, const std::array<double, 4>& w, double px_per_mm) {
-            return coverage_of_pieces(convex, Window{w[0], w[1], w[2], w[3]}, px_per_mm);
-        },
-        py::arg("convex_rings"), py::arg("window_mm"), py::arg("px_per_mm"), unlocked,
-        "The same for the union of convex counter-clockwise rings, which may overlap.");
-    m.def(
         "trace_outlines",
         [](Marks& marks, const Brush& brush, const py::object& progress) {
             Rings all;

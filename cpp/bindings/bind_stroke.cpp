@@ -138,9 +138,6 @@ is not positive.)")
         },
         py::arg("stroke"), py::arg("tolerance_mm") = 0.005,
         "Middle line as (n, 4): x, y, arc length, half width [mm].");
-    m.def("wanted_pieces", &wanted_pieces, py::arg("stroke"), py::arg("tolerance_mm") = 0.005,
-          py::call_guard<Unlocked>(),
-          "Convex rings whose union is the path with its width and round caps; no wanted_mm is looked at.");
     m.def(
         "wanted_outline",
         [](const Stroke& stroke, double tolerance_mm) {

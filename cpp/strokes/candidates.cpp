@@ -110,6 +110,36 @@ Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>&
     return out;
 }
 
+Candidates along_middles(const BareArea& area, const std::vector<MiddlePolyline>& former,
+                         const std::array<double, 2>& half_mm) {
+    const std::vector<Vector2d> places = some_of(area.places);
+    Candidates out;
+    for (const MiddlePolyline& line : former) {
+        Index first = line.rows(), last = -1;
+        for (const Vector2d& place : places) {
+            Index nearest = 0;
+            const double off = (line.leftCols<2>().rowwise() - place.transpose()).rowwise().norm().minCoeff(&nearest);
+            if (off > line(nearest, 3)) continue;
+            first = std::min(first, nearest);
+            last = std::max(last, nearest);
+        }
+        if (first >= last) continue;
+        // Its ends are under paint, and no wider than where they leave the area.
+        const double half_at_first = line(first, 3), half_at_last = line(last, 3);
+        const auto landing_mm = [&](double half) { return kLanding * std::max(half, kWidths[0] * half_mm[1]); };
+        Index from = first, to = last;
+        while (from > 0 && line(first, 2) - line(from - 1, 2) <= landing_mm(half_at_first)) --from;
+        while (to + 1 < line.rows() && line(to + 1, 2) - line(last, 2) <= landing_mm(half_at_last)) ++to;
+        WideLine wide(to - from + 1, 3);
+        for (Index i = from; i <= to; ++i) {
+            const double half = std::min(line(i, 3), i < first ? half_at_first : i > last ? half_at_last : line(i, 3));
+            wide.row(i - from) << line.block<1, 2>(i, 0), std::clamp(half, half_mm[0], half_mm[1]);
+        }
+        if (wide.rows() > 3) add_both_ways(wide, out);
+    }
+    return out;
+}
+
 Candidates along_edges(const BareArea& area, Outline& outline, const std::array<double, 2>& half_mm) {
     struct Side {
         double first = std::numeric_limits<double>::infinity(), last = -first, deep = 0.0;

@@ -43,6 +43,11 @@ using Candidates = std::vector<WideLine>;
 Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>& middles, Outline& outline,
                         const std::array<double, 2>& half_mm);
 
+/// Along the middle lines of strokes that were given another path: the stretch that meets the area, as wide as it was,
+/// both ways.
+Candidates along_middles(const BareArea& area, const std::vector<MiddlePolyline>& former,
+                         const std::array<double, 2>& half_mm);
+
 /// Along each stretch of the outline that the area touches, both ways, in several widths.
 Candidates along_edges(const BareArea& area, Outline& outline, const std::array<double, 2>& half_mm);
 

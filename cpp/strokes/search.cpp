@@ -76,7 +76,10 @@ class Search {
         for (const Stroke& stroke : strokes) found.strokes.push_back({stroke});
         found.changed.assign(strokes.size(), false);
         if (are_free) improve(found);
-        for (const std::vector<Stroke>& parts : found.strokes) middles_.push_back(middle_of(parts));
+        for (std::size_t k = 0; k < strokes.size(); ++k) {
+            middles_.push_back(middle_of(found.strokes[k]));
+            if (found.changed[k]) former_.push_back(middle_of({strokes[k]}));
+        }
         found.added = add();
         return found;
     }
@@ -94,7 +97,7 @@ class Search {
             if (is_set(given.settings.start) || is_set(given.settings.end)) continue;  // by the artist
             const bool fills = given.start_covered && given.end_covered;
             Painting painting{{given}, tiles_[k]};
-            if (!improve_stroke(painting, k, fills, true, fills && k > 0)) continue;
+            if (!improve_stroke(painting, k, {fills, true, fills && k > 0, false})) continue;
             found.strokes[k] = std::move(painting.strokes);
             found.changed[k] = true;
         }
@@ -110,23 +113,27 @@ class Search {
         Tile tile;
     };
 
+    /// What improve_stroke may do with a stroke. is_last: no stroke is added after it, so that it also pays for the
+    /// bare areas that it leaves.
+    struct Allowed {
+        bool reversed, cut, left_out, is_last;
+    };
+
     /// Changes a stroke, of the tile k, so that it costs less; false where nothing does.
-    bool improve_stroke(Painting& painting, std::size_t k, bool may_be_reversed, bool may_be_cut,
-                        bool may_be_left_out) {
+    bool improve_stroke(Painting& painting, std::size_t k, const Allowed& may) {
         const Stroke given = painting.strokes.front();
         const PixelBox box = about(given);
         if (box.is_empty()) return false;
         Coverage rest = Coverage::Zero(box.rows, box.columns);
         for (std::size_t other = 0; other < tiles_.size(); ++other)
             if (other != k) paint_over(rest, box, tiles_[other]);
-        // what this leaves bare may be painted by another stroke
         const auto picture_with = [&](const Painting& now) {
             Coverage both = rest;
             paint_over(both, box, now.tile);
             return both;
         };
         const auto area_cost = [&](const Painting& now, const Coverage& both) {
-            return canvas_.cost_mm2(box, both, false) + (double(now.strokes.size()) - 1.0) * stroke_mm2();
+            return canvas_.cost_mm2(box, both, may.is_last) + (double(now.strokes.size()) - 1.0) * stroke_mm2();
         };
         const double own_turns = target_turns(box);
         const auto excess = [&](const Coverage& both) { return std::max(0.0, turns(both, box) - own_turns); };
@@ -154,7 +161,7 @@ class Search {
         };
         // one choice after the other: each way round, what its ends look like, how wide, how short
         for (const bool reversed : {false, true}) {
-            if (reversed && !may_be_reversed) break;
+            if (reversed && !may.reversed) break;
             Variant from;
             from.is_reversed = reversed;
             if (reversed) look(from);
@@ -179,7 +186,7 @@ class Search {
             if (!given.closed) try_each(kCuts, [&](Variant& variant, double cut) { variant.cut[end] = cut; });
         const Stroke whole = painting.strokes.front();
         std::vector<Gap> gaps;
-        for (bool is_better = may_be_cut; is_better;) {
+        for (bool is_better = may.cut; is_better;) {
             is_better = false;
             std::vector<Gap> best_gaps;
             for (const Gap& gap : gaps_of(whole)) {
@@ -195,7 +202,7 @@ class Search {
             }
             if (is_better) gaps = best_gaps;
         }
-        if (may_be_left_out) keep_better({{}, Tile{}});
+        if (may.left_out) keep_better({{}, Tile{}});
         if (!is_changed) return false;
         tiles_[k] = painting.tile;
         paint_.block(box.row, box.column, box.rows, box.columns) = rest;
@@ -359,6 +366,7 @@ class Search {
     Candidates candidates_into(const BareArea& area) {
         Candidates all = straight_out(area, middles_, outline_, half_mm_);
         const auto take = [&](Candidates&& more) { all.insert(all.end(), more.begin(), more.end()); };
+        take(along_middles(area, former_, half_mm_));
         take(along_edges(area, outline_, half_mm_));
         take(from_corners(area, outline_, half_mm_));
         double edge_mm = std::numeric_limits<double>::infinity();
@@ -430,7 +438,7 @@ class Search {
         tiles_.push_back(best->tile);
         paint_over(paint_, canvas_.whole(), best->tile);
         if (weights_.bulge * canvas_.bulge_mm2(best->tile) > kWorthMm2)
-            improve_stroke(painting, tiles_.size() - 1, true, false, false);
+            improve_stroke(painting, tiles_.size() - 1, {true, false, false, true});
         AddedStroke added;
         added.stroke = std::move(painting.strokes.front());
         added.mark_mm = half_painted(painting.tile.share, canvas_.window_of(painting.tile.box), canvas_.px_per_mm());
@@ -490,7 +498,8 @@ class Search {
     Mask refused_;
     std::vector<Tile> tiles_;  ///< of the given strokes, with their current paths
     std::vector<MiddlePolyline> middles_;
-    mutable Pixels pixels_;  ///< of the area that is looked at
+    std::vector<MiddlePolyline> former_;  ///< of the given strokes that have another path now
+    mutable Pixels pixels_;               ///< of the area that is looked at
 };
 
 }  // namespace

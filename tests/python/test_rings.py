@@ -54,7 +54,6 @@ def test_rings_that_run_clockwise_are_refused_not_lost():
         lambda: overlap([turned], [turned]),
         lambda: unite([turned]),
         lambda: _core.intersect([turned], [SQUARE]),
-        lambda: _core.coverage_of_pieces([turned], (0, 0, 4, 4), 1.0),
     ):
         with pytest.raises(Error) as refused:
             call()

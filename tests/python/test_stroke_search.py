@@ -51,6 +51,26 @@ def test_nothing_that_one_sees_is_missing_or_sticks_out(tmp_path, d):
     assert shape.intersection(mark).area / shape.union(mark).area > 0.965
 
 
+HAIRLINES = {  # heavy diagonals with hairlines: the letters z and k
+    "z": "M20 6H41.99L29.83 27.4C33.99 27.4 39.22 25.02 40.49 19.28H41.49V28.02H20"
+    "L32.16 6.61C28 6.61 22.77 9 21.5 14.73H20.5Z",
+    "a low z": "M20 6H41.18L29.6 28.33C33.18 28.33 38.53 25.91 39.68 22.53H40.68V28.91H20"
+    "L31.58 6.58C28 6.58 22.65 9 21.5 12.38H20.5Z",
+    "k": "M19.5 6H28.75V27.61L39.75 20.38H36.75V19.82H44.75V20.38H41.05L35.14 24.01L45.49 36.91H46.99V37.47H36.5V36.91"
+    "H38L29.75 28.97L28.75 29.17V36.91H30.75V37.47H19.5V36.91H22V6.56H19.5Z",
+}
+
+
+@pytest.mark.parametrize("d", HAIRLINES.values(), ids=HAIRLINES)
+def test_hairlines_hold_a_letter_together_in_few_strokes(tmp_path, d):
+    """An added stroke was cut short of the area that it was for, and added again up to 200 times. And where a stroke
+    was cut in parts, no candidate ran along its middle line, so that the hairline between the parts stayed bare."""
+    shape, mark, plan = painted(tmp_path, d)
+    assert len(plan.passes) < 25
+    assert len(shapely.get_parts(mark)) == 1
+    assert shape.intersection(mark).area / shape.union(mark).area > 0.95
+
+
 def test_the_arms_of_a_k_stay_on_its_stem(tmp_path):
     """Each stroke was within its own limb, and a gap of 0.24 mm was left between them, without a word."""
     shape, mark, _ = painted(
