@@ -128,7 +128,7 @@ class Walk {
     struct Step {
         Vector3d to;  ///< x, y, depth
         LagState<double> state;
-        std::optional<Circle> circle;  ///< none: straight
+        std::optional<Circle> circle;  ///< none for a straight move
         Edges edges;                   ///< at the end of the move; unknown if the mark is not near
         bool near = false;             ///< the mark is where it was
         double corner = 0.0;           ///< corner of the edges, as a share of the largest one allowed
@@ -314,7 +314,7 @@ class Walk {
     Index first_ = 0, last_ = 0;
     LagState<double> state_;
     Vector3d at_, way_;  ///< where the walk is, and the move that reached it
-    Edges edges_;        ///< of the mark at that place
+    Edges edges_;        ///< edges of the mark at that place
 };
 
 Pass thinned(const Pass& pass, const Brush& brush, const LagLaw<double>& law, const TracedPass& was,

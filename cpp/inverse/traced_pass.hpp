@@ -31,7 +31,7 @@ struct TracedPass {
     std::vector<double> depth, along;  ///< along: length of the TCP's path [mm]
     double deepest = 0.0;
     std::vector<Eigen::Vector2d> contact, heading;
-    std::vector<bool> taut;           ///< at the pose
+    std::vector<bool> taut;           ///< whether the brush is taut at the pose
     std::vector<bool> dragged;        ///< from the pose to the next: taut all the way, in a straight move
     std::vector<Eigen::Index> level;  ///< the last pose up to which this depth is kept
     /// Before and after the pose; where the path only bends, both are the mean direction.

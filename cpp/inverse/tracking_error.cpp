@@ -19,8 +19,8 @@ constexpr double kLookEveryMm = 0.1;
 
 namespace {
 
-/// A disc about a place where the brush turns round, or about a butt end. The mark is judged there and not its middle,
-/// which swings in corners.
+/// A disc about a place where the brush turns round, or about a butt end. There the middle of the mark does not count,
+/// because it swings in corners.
 struct Disc {
     Eigen::Vector2d middle_mm;
     double radius_mm;

@@ -19,8 +19,8 @@ constexpr double kSamePose = 1e-9;   ///< rounding of shares of a move
 /// The TCP's motion for walk_pass(), with the rows of marks as its poses.
 struct RowMotion {
     const PassMarks& marks;
-    std::vector<Arc> arcs;         ///< one from a row to the next
-    std::vector<double> turn_rad;  ///< from each row to the next
+    std::vector<Arc> arcs;         ///< one for each move from a row to the next along an arc
+    std::vector<double> turn_rad;  ///< turn of the TCP's path from each row to the next
 
     RowMotion(const Pass& pass, const PassMarks& of) : marks(of), turn_rad(of.pose.size(), 0.0) {
         if (pass.arcs.empty()) return;

@@ -243,7 +243,7 @@ std::vector<std::vector<std::size_t>> touching(const std::vector<Stroke>& wanted
             if (a != b && one.box.meets(other.box) && touch(one, other)) group[b] = a;
         }
     std::map<std::size_t, std::vector<std::size_t>> by_root;
-    std::vector<std::size_t> roots;  // in the order of their first strokes
+    std::vector<std::size_t> roots;  // roots in the order of their first strokes
     for (std::size_t k = 0; k < drawn.size(); ++k) {
         auto& members = by_root[root(k)];
         if (members.empty()) roots.push_back(root(k));

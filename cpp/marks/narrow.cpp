@@ -13,7 +13,7 @@ namespace brushsvg {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-// share of the width between two rows: linear interpolation is then off by 0.03 % of the width
+// Share of the width between two rows: linear interpolation is then off by 0.03 % of the width.
 constexpr double kFinest = 0.05;
 
 /// Rows of marks, collected one by one.

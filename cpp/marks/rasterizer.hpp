@@ -18,8 +18,8 @@ class Rasterizer {
  public:
     Rasterizer(const Window& window, double px_per_mm);
 
-    /// Return whether a box, from its lower left to its upper right corner, is on one side of the picture, so that none
-    /// of it shows.
+    /// Return whether a box is on one side of the picture, so that none of it shows. The box is given by its lower left
+    /// and its upper right corner.
     bool is_beside(const Eigen::RowVector2d& low, const Eigen::RowVector2d& high) const;
 
     /// Add the hull of two convex counter-clockwise rings. Pass one ring twice to add it alone.
@@ -41,7 +41,7 @@ class Rasterizer {
     struct Span {
         int line;
         float lo, hi;
-        float height = 1.0f;  ///< of the band
+        float height = 1.0f;  ///< share of the band's height
         bool hangs = false;   ///< for a part of a band: it begins at the band's upper side
     };
     struct Point {

@@ -173,12 +173,14 @@ class Tracer {
     }
 
     /// The footprint at one instant. Its corners are used to follow its motion.
-    using Columns = Eigen::Array<double, Eigen::Dynamic, 2>;  // read along x and y, once for each normal
+    // stored by columns: x and y are read once for each normal
+    using Columns = Eigen::Array<double, Eigen::Dynamic, 2>;
     struct Instant {
         LagState<double> state;
         double depth, pull;
-        Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity();  ///< of a tilted brush, about the contact
-        Eigen::Matrix<double, 2, 5> corners;  ///< of its bounding box, and the widest section's centre
+        /// Stretch of a tilted brush's footprint, about the contact.
+        Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity();
+        Eigen::Matrix<double, 2, 5> corners;  ///< corners of its bounding box, and the widest section's centre
         /// Filled in when needed: both halves of a motion use the outline at their common end.
         mutable Columns outline;
     };
@@ -359,7 +361,7 @@ class Tracer {
 
     const Brush& brush_;
     const Window* window_;  ///< outside of it only the rows at ends are kept; none: keep all rows
-    const Ring& lean_;      ///< per pose; empty: upright
+    const Ring& lean_;      ///< lean at each pose; empty for an upright brush
     LagLaw<double> law_;
     Extents extents_;
     std::vector<double> kinks_;

@@ -20,8 +20,8 @@ constexpr double kRingMm = 0.01;
 constexpr double kLeastSquareMm = 0.5;   // least size of the square in which paint and drawing differ most
 constexpr int kBlocks = 5;               // the square is moved in steps of a fifth of its size
 constexpr double kEveryMm = 0.5;         // spacing of the places where widths are measured
-constexpr double kMostWidths = 20000.0;  // of a line of many metres
-constexpr double kMostReach = 1e5;       // pixels; no picture has more across
+constexpr double kMostWidths = 20000.0;  // most of these places, on a line of many metres
+constexpr double kMostReach = 1e5;       // longest reach in pixels; no picture has more across
 
 /// Sums of values over all squares of a number of blocks, from sums over blocks.
 class Squares {
@@ -47,7 +47,7 @@ class Squares {
     }
 
  private:
-    // walked along its rows
+    // row by row, as it is read
     using Sums = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Sums up_;
 };

@@ -140,7 +140,8 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
     std::optional<OutlineBoxes> boxes;
     if (leaves_out) boxes.emplace(brush.footprints);
     using P = Eigen::RowVector2d;
-    const auto box_of = [&](std::size_t i, P& low, P& high) {  // of the footprint at a row, slightly enlarged
+    // box of the footprint at a row, slightly enlarged
+    const auto box_of = [&](std::size_t i, P& low, P& high) {
         const double d = marks.depth_mm[i], pull = marks.pull[i], hair = 1e-6;
         if (!(pull >= 0.0 && pull <= 1.0)) {
             constexpr double inf = std::numeric_limits<double>::infinity();
@@ -156,7 +157,7 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
         high = (back.cwiseMax(front) + side).array() + hair;
     };
     Ring before;           // empty if it was skipped
-    bool is_down = false;  // in the row before
+    bool is_down = false;  // whether the brush was on the paper in the row before
     [[maybe_unused]] P low_before, high_before;
     for (std::size_t i = 0; i < marks.pose.size(); ++i) {
         if (marks.depth_mm[i] < 0.0) {  // lifted

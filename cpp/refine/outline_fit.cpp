@@ -112,8 +112,8 @@ class Outlines {
             add(near_[j], near_[j].distance_mm, places_.at[j]);
         }
         of_places_ = pulls_.size();
-        // no place of the target outline is near a tail that runs far out of it, so the first and the last footprint
-        // are pulled in as well
+        // no place of the target outline is near a tail that runs far out of it: the first and the last footprint are
+        // pulled in as well
         for (const std::size_t i : {std::size_t(0), samples_.size() - 1})
             for (Index k = 0; k < edge_.corners(); ++k) {
                 EdgePoint corner;

@@ -11,7 +11,7 @@ namespace brushsvg::fit {
 
 /// Position of a point relative to rings, or to the area that a brush paints on its way.
 struct EdgePoint {
-    std::size_t sample = 0;    ///< whose footprint is nearest, or holds the point deepest
+    std::size_t sample = 0;    ///< the sample whose footprint is nearest, or holds the point deepest
     Eigen::Index edge = 0;     ///< nearest edge of that footprint's outline
     double t = 0.0;            ///< position on the edge, in [0, 1]
     double distance_mm = 0.0;  ///< distance to the edge, negative inside

@@ -42,7 +42,7 @@ PatchPath::Splines PatchPath::splines_at(double t, int controls) {
     const int k = std::clamp(int(t * spans), 0, spans - 1);
     const auto knot = [&](int i) { return double(std::clamp(i - 3, 0, spans)) / spans; };
     Splines out{k, {1.0, 0.0, 0.0, 0.0}};
-    for (int degree = 1; degree <= 3; ++degree) {  // Cox and de Boor
+    for (int degree = 1; degree <= 3; ++degree) {  // algorithm of Cox and de Boor
         double saved = 0.0;
         for (int r = 0; r < degree; ++r) {
             const double right = knot(k + 3 + r + 1) - t, left = t - knot(k + 3 + 1 - degree + r);
@@ -113,7 +113,7 @@ MatrixXd PatchPath::curvature(const PatchSamples& samples, const std::vector<Eig
     contact(0, 0) = contact(1, 1) = 1.0;
     half.topLeftCorner<2, 2>() = 0.5 * (behind[0] + by_samples[0].topLeftCorner<2, 2>());
     Index reached = 2;  // end of the turns' unknowns that move the contact
-    // adds X_i^T v to the column of an unknown
+    // add X_i^T v to the column of an unknown
     const auto add = [&](Index unknown, const Vector2d& v) {
         half.col(unknown).head(reached) += contact.topRows(reached) * v;
         half.col(unknown).segment(longer, reached - turns) += contact.middleRows(longer, reached - turns) * v;
@@ -197,7 +197,7 @@ PatchSamples patch_path(const Pass& pass, const Brush& brush, double step_mm, st
     const PassMarks marks = simulate(pass, brush, 0.02, false);
     std::size_t begin = 0, end = marks.taut.size();
     while (begin < end && !marks.taut[begin]) ++begin;
-    // the landing ends at a pose where the brush is about to be taut
+    // the landing ends at a pose after which the brush becomes taut
     if (begin > 0 && begin < end && marks.pose[begin - 1] == std::floor(marks.pose[begin - 1])) --begin;
     while (end > begin && !marks.taut[end - 1]) --end;
     if (begin == end) return {};

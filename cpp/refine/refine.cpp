@@ -40,7 +40,7 @@ constexpr double kTrust = 1e4, kLessTrust = 3e2, kMissed = 0.01;
 // Shares of the tolerance: for the tool's chords, and for how much fewer poses may change the mark. Twice the second
 // share saves a tenth of the poses. The overlap then loses as much again (0.0025 on characters) as before (0.0006).
 constexpr double kChords = 0.2, kThinned = 0.5;
-constexpr double kRingTolerance = 0.01;  // as in the report
+constexpr double kRingTolerance = 0.01;  // tolerance of outlines [mm], as in the report
 // Pixels of the trial marks: on half the width of the mark, and in all. The report's pixels are elsewhere, and their
 // overlap may differ by kPixelsErr.
 constexpr double kAcrossPx = 6.0, kMostPx = 4e6, kPixelsErr = 0.005;
@@ -126,7 +126,7 @@ struct Tried {
         const Rings mark = outline(marks, brush);
         overlap = target.overlap_with(mark);
         turning = excess_turning(mark, target.outline);
-        // the start that was requested as pointed has one thorn
+        // do not count the point of a start that was requested as pointed
         thorns = std::max(0, brushsvg::thorns(mark, target.outline) - (start == Terminal::pointed ? 1 : 0));
     }
     /// Return the overlap less the cost of turning and thorns. Negative turning counts as well. The pieces of a letter
@@ -165,7 +165,7 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
         return beyond(box, options.sheet_mm) <= std::max(reach, beyond(before, options.sheet_mm));
     };
     const bool anywhere = options.sheet_mm == std::array<double, 2>{0.0, 0.0};
-    // the brush already turns round
+    // the turned ends are round already
     if (!turned_round(simulate(dense, brush, 0.02, false)).empty()) return closed;
     const Terminal end = stroke.settings.end ? terminal_named(*stroke.settings.end, stroke.id) : options.end;
     if (end == Terminal::pointed) return closed;  // the fit would fill it as far as the drawing goes

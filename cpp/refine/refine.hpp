@@ -10,14 +10,15 @@
 namespace brushsvg::fit {
 
 struct RefineOptions {
-    double tolerance_mm = 0.05;  ///< of the closed form, and of the TCP's chords
+    double tolerance_mm = 0.05;  ///< tolerance of the closed form, and of the TCP's chords
     double speed_mm_s = 20.0;    ///< capped by the brush's own limit
     /// Width and height. No paint leaves the sheet. The TCP goes at most 30 mm beyond it, or as far as in the closed
     /// form. Zero: no limits.
     std::array<double, 2> sheet_mm{0.0, 0.0};
-    Terminal start = Terminal::pointed;  ///< of the closed form; the fit keeps how a stroke begins
-    Terminal end = Terminal::round;      ///< and how it ends
-    int iterations = 12;  ///< of the solver: forty win 0.0005 of overlap more and take half as long again
+    Terminal start = Terminal::pointed;  ///< start of the closed form; the fit does not change its style
+    Terminal end = Terminal::round;      ///< end of the closed form; the fit does not change its style
+    /// Iterations of the solver: forty win 0.0005 of overlap more and take half as long again.
+    int iterations = 12;
 };
 
 struct RefinedPass {

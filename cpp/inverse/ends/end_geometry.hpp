@@ -32,14 +32,16 @@ struct EndTuning {
     /// Share of the radius of a front or a disc that hides a pointed rear. A larger value shows thorns, a smaller one a
     /// waist.
     double hiding = 0.8;
-    double narrowing_step = 1.0 / 12.0;  ///< in lengths of the footprint's rear
+    /// Step between the knots of a narrowing, in lengths of the footprint's rear.
+    double narrowing_step = 1.0 / 12.0;
     /// Largest distance from a line's start to the middle of the ball in which it begins.
     double ball_within = 2.0;
     /// Where marks narrow faster, the brush is pressed deeper: a disc would be a knob.
     double wet_narrows_per_m = 1e-3;
 
-    double cap_off = 0.2;                            ///< largest distance of a path's end from the middle of its cap
-    double cut_straight = 0.12, cut_farthest = 2.5;  ///< how far a cut may stray from its chord, and be ahead
+    double cap_off = 0.2;  ///< largest distance of a path's end from the middle of its cap
+    /// How far a cut may stray from its chord, and how far ahead it may be.
+    double cut_straight = 0.12, cut_farthest = 2.5;
     /// Least and greatest half width of the mark along a cut. Its corners are as round as it is wide; a finer mark
     /// leaves a hole.
     double narrowest = 0.27, widest_narrow = 0.6;
@@ -93,7 +95,7 @@ class StrokePath {
 
     Cubics middle_mm_{0, 8};
     Eigen::Vector2d here_mm_;
-    std::vector<std::pair<double, double>> half_mm_;  // by arc length [mm]
+    std::vector<std::pair<double, double>> half_mm_;  // half widths by arc length [mm]
 };
 
 /// Return the stroke with its widths limited to those that the brush can paint.
@@ -128,7 +130,7 @@ Stroke up_to_drawn_end(const Stroke& stroke, const Brush& brush);
 /// Return the least value for which `holds` is true, between one where it is not and one where it is.
 template <class Holds>
 double bisect(double lo, double hi, Holds&& holds) {
-    for (int i = 0; i < 50; ++i) {  // to rounding
+    for (int i = 0; i < 50; ++i) {  // enough for double precision
         const double middle = 0.5 * (lo + hi);
         (holds(middle) ? hi : lo) = middle;
     }

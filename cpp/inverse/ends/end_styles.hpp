@@ -25,7 +25,7 @@ struct TurnRound {
 struct BrushMove {
     std::optional<TurnRound> turn;
     std::optional<Stroke> line;
-    double from_mm = 0.0, latest_mm = 0.0, to_mm = 0.0;  ///< arc lengths
+    double from_mm = 0.0, latest_mm = 0.0, to_mm = 0.0;  ///< arc lengths along the line [mm]
 };
 using BrushMoves = std::vector<BrushMove>;
 
@@ -45,7 +45,7 @@ struct EndStyle {
     Terminal name;  ///< automatic: round, and not taken where a round end is requested
     std::optional<EndedStroke> (*ended)(const Stroke& stroke, const Brush& brush, Caps caps);
 };
-extern const std::array<StartStyle, 5> kStartStyles;  ///< the plainest first
+extern const std::array<StartStyle, 5> kStartStyles;  ///< the plainest style first
 extern const std::array<StartStyle, 3> kDotStyles;    ///< for a stroke that is a dot: it has no end of its own
 extern const std::array<EndStyle, 4> kEndStyles;
 
