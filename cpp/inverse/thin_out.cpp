@@ -31,7 +31,7 @@ constexpr double kLeastMoveMm = 1e-6;
 /// have to stop. Bends this tight slow it down anyway: 0.6 needs 8 % more poses and takes as long.
 constexpr double kMostTurnRad = 1.0;
 /// How far off the path a move may end, in second differences over half its length: a third for an even curve. More
-/// values win less than 1 % of the poses; the third alone loses a tenth.
+/// values win less than 1 % of the poses; a third alone loses a tenth.
 constexpr double kBeside[] = {1.0 / 3.0, 0.25, 0.45, 0.15, 0.0};
 /// Share of that offset that is applied to the depth, which the brush does not smooth. It is half the sagitta at a
 /// third.

@@ -19,7 +19,8 @@ namespace {
 
 using Eigen::Index;
 
-// Spacing of samples along the patch's path, in half widths of the mark. With more, waists show between the footprints.
+// Spacing of samples along the patch's path, in half widths of the mark. With a wider spacing, waists show between the
+// footprints.
 constexpr double kStep = 0.3, kWidestStep = 0.6;
 constexpr std::size_t kMostSamples = 1000;
 // Spacing of the splines' controls along the path, in half widths. At twice the spacing, ends and corners keep their
@@ -27,7 +28,7 @@ constexpr std::size_t kMostSamples = 1000;
 // with its cube.
 constexpr double kControl = 1.5;
 constexpr int kMostControls = 60;
-// Least depth [mm]: with less, the brush paints nothing that would not dry on the way.
+// Least depth [mm]: with less depth, the paint would dry on the way.
 constexpr double kLeastDepthMm = 0.2;
 // How far the TCP may go beyond the sheet [mm], if the machine does not specify it.
 constexpr double kBeyondSheetMm = 30.0;
@@ -45,9 +46,9 @@ constexpr double kRingTolerance = 0.01;  // tolerance of outlines [mm], as in th
 // overlap may differ by kPixelsErr.
 constexpr double kAcrossPx = 6.0, kMostPx = 4e6, kPixelsErr = 0.005;
 constexpr std::array<double, 2> kPxPerMm{8.0, 40.0};
-// Overlap that a full turn of the mark's outline, and a thorn, must be worth. Curls and thorns cover more, and the eye
-// sees them first. At 0.15 and 0.03, strokes of characters lose 0.003 of overlap. At half the values, marks of letters
-// turn more than in closed form. Letters as a whole are checked in Python (planning/touching_strokes.py).
+// Overlap that a full turn of the mark's outline costs, and a thorn. Curls and thorns cover more, and the eye sees them
+// first. At 0.15 and 0.03, strokes of characters lose 0.003 of overlap. At half the values, marks of letters turn more
+// than in closed form. Letters as a whole are checked in Python (planning/touching_strokes.py).
 constexpr double kCalm = 0.1, kThorn = 0.02;
 // Parts of the step that are tried where the whole step is not calm. Without them, strokes of letters overlap by 0.002
 // less, those of characters by 0.003.
