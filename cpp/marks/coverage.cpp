@@ -49,10 +49,8 @@ Coverage coverage(const Rings& rings, const Window& window, double px_per_mm) {
     const Eigen::Index width = size[0], height = size[1];
     require_finite(rings);
     // exact: each edge adds the area to its right to each pixel that it crosses, and its height to all pixels beyond
-    // area and height of the edges; one column per pixel row
-    Eigen::MatrixXd edge = Eigen::MatrixXd::Zero(width + 2, height);
-    // adds a part of an edge within one pixel row
-    const auto add = [&](double x0, double y0, double x1, double y1, double sign) {
+    Eigen::MatrixXd edge = Eigen::MatrixXd::Zero(width + 2, height);                 // one column per pixel row
+    const auto add = [&](double x0, double y0, double x1, double y1, double sign) {  // within one pixel row
         const auto row = Eigen::Index(std::floor(0.5 * (y0 + y1)));
         if (row < 0 || row >= height) return;
         if (x0 > x1) std::swap(x0, x1);
