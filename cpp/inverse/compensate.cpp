@@ -130,8 +130,7 @@ constexpr double kThinShare = 0.9, kSurely = 0.9;
 /// errors elsewhere.
 constexpr double kHairShare = 0.1;
 
-/// Replace pass and error by those of a simplified pass if its tracking error is within the limit. Return whether it
-/// is.
+/// Use a simplified pass and its tracking error if that error is within the limit. Return whether it is.
 bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& stroke, const Brush& brush,
               double tolerance_mm, Pass& pass, TrackingError& error) {
     const Pass fewer = thin_out_after_turn(from, brush, share * tolerance_mm);

@@ -53,8 +53,8 @@ using SampleSlope = Eigen::Vector4d;
 /// The area that the brush paints on its way, as footprints side by side, with the signed distance from their union.
 ///
 /// A union's distance is the least of its parts' distances (exact outside, and inside near its edge). Its derivative is
-/// that of the nearest part alone. Which part is nearest changes with the unknowns, but where it changes both are
-/// equally near (envelope theorem).
+/// the derivative of the nearest part alone. Which part is nearest changes with the unknowns, but where it changes both
+/// are equally near (envelope theorem).
 class PaintedEdge {
  public:
     /// `tolerance_mm`: how far the simplified footprint outlines may be off.

@@ -51,7 +51,7 @@ constexpr std::array<double, 2> kPxPerMm{8.0, 40.0};
 // than in closed form. Letters as a whole are checked in Python (planning/touching_strokes.py).
 constexpr double kCalm = 0.1, kThorn = 0.02;
 // Parts of the step that are tried where the whole step is not calm. Without them, strokes of letters overlap by 0.002
-// less, those of characters by 0.003.
+// less, strokes of characters by 0.003.
 constexpr std::array<double, 4> kParts{1.0, 0.75, 0.5, 0.25};
 
 double mean_half_width(const Stroke& stroke, const Brush& brush) {
@@ -61,8 +61,8 @@ double mean_half_width(const Stroke& stroke, const Brush& brush) {
     return sum / 101.0;
 }
 
-/// Return the depths that were measured for the brush, extended to those that the stroke needs anyway. This adds no
-/// warning.
+/// Return the depths that were measured for the brush, extended to the depths that the stroke needs anyway. This adds
+/// no warning.
 std::array<double, 2> depths_for(const PatchSamples& samples, const Brush& brush) {
     double least = samples[0].depth_mm, greatest = least;
     for (const PatchSample& sample : samples) {

@@ -444,7 +444,7 @@ Rings pieces_between(const Rings& chain) {
     if (chain.size() < 2) return chain;
     using Numbers = std::vector<Eigen::Index>;
     Rings pairs;                 // F_i and F_i+1
-    std::vector<Numbers> hulls;  // hulls of the pairs; corners of F_i+1 are numbered after those of F_i
+    std::vector<Numbers> hulls;  // hulls of the pairs; corners of F_i+1 are numbered after the corners of F_i
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
         checkpoint(10);
         pairs.push_back(both(chain[i], chain[i + 1]));

@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 constexpr double kPxPerMm = 6.0;   // coarser pixels miss visible details of 0.15 mm, finer ones take longer
-constexpr double kMostSide = 2e3;  // pixels: those of a shape of half a metre are coarser
+constexpr double kMostSide = 2e3;  // pixels: a shape of half a metre has coarser pixels
 // Length of the parts into which long edges are split: each part handles the pixels about it.
 constexpr double kStepMm = 2.0;
 constexpr double kRowsMm = 0.05;  // tolerance of the rows of marks: a third of a pixel

@@ -98,7 +98,7 @@ class StrokePath {
     std::vector<std::pair<double, double>> half_mm_;  // half widths by arc length [mm]
 };
 
-/// Return the stroke with its widths limited to those that the brush can paint.
+/// Return the stroke with its widths limited to the range that the brush can paint.
 Stroke as_wide_as_painted(const Stroke& stroke, const Brush& brush);
 
 /// Return how far ahead of the end a ray first leaves the outline, at a distance to the left of the end [mm]. Infinite

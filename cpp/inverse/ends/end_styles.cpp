@@ -26,9 +26,9 @@ std::optional<double> depth_of_turn(const Stroke& stroke, const Brush& brush, do
     return depth;
 }
 
-/// Return the depth of a disc amid a round cap, which is less than the stroke's own depth. None if marks narrow as
-/// paint runs out. A patch that is pressed deeper to correct for that still paints a disc as large as a wet one does: a
-/// knob.
+/// Return the depth of a disc in the middle of a round cap, which is less than the stroke's own depth. None if marks
+/// narrow as paint runs out. A patch that is pressed deeper to correct for that still paints a disc as large as a wet
+/// one does: a knob.
 std::optional<double> depth_in_cap(const Stroke& stroke, const Brush& brush, double at) {
     const double full = depth_of(stroke, brush, at);
     if (!(brush.lever_to_widest(full) > 0.0)) return {};
@@ -141,7 +141,8 @@ std::optional<BrushMoves> turned_in_cap(const Stroke& stroke, const Brush& brush
                       depth);
 }
 
-/// Set down and turn round where the line is widest near its start, as amid the ball of an f, or in a comma.
+/// Set down and turn round where the line is widest near its start, as in the middle of the ball of an f, or in a
+/// comma.
 std::optional<BrushMoves> turned_in_ball(const Stroke& stroke, const Brush& brush, Caps) {
     const Line line(stroke, brush);
     const double length_mm = line.length();
