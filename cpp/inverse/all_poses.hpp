@@ -4,7 +4,7 @@
 
 namespace brushsvg {
 
-/// What compensate() returns, and the pass that it would return with all poses, begun and ended alike.
+/// The result of compensate(), and the pass with all poses that it would return. Both have equal starts and ends.
 struct WithAllPoses {
     CompensatedPass plan;
     Pass all_poses;

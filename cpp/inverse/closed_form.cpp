@@ -14,9 +14,10 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Chords of the circle about the contact from one heading to the other. Inscribed chords leave the lever loose, so the
-/// patch rests; tangent ones would drag it. Noted as an arc too, of radius r and not a hair less: a radius too large by
-/// some rounding lets the patch creep by (1 + turn^2 / 2) times that, 0.6 um for 1e-4 mm and half a turn.
+/// Turn in place along chords of the circle about the contact, from one heading to another. Inscribed chords leave the
+/// lever loose, so the patch rests; tangent chords would drag the patch. The caller notes the poses as an arc of
+/// exactly radius r. A radius that is too large by a rounding error lets the patch creep by (1 + turn^2 / 2) times that
+/// error: 0.6 um for 1e-4 mm and half a turn.
 void turn_in_place(const Sample& from, const Sample& to, const Brush& brush, PoseList& out) {
     const double angle = angle_between(from.heading, to.heading);
     const int n = int(std::ceil(std::abs(angle) / kTurnChordRad));
@@ -26,12 +27,13 @@ void turn_in_place(const Sample& from, const Sample& to, const Brush& brush, Pos
     }
 }
 
-/// A mark no longer than a footprint: one landing that leaves the widest section at the path's end.
+/// Return the sample for a mark no longer than a footprint: one landing that leaves the widest section at the path's
+/// end.
 Samples dab(const Stroke& stroke, const Line& line) {
     Sample sample = line.at(line.length());
     const Vector2d across =
         point_at(stroke.middle_mm, {stroke.middle_mm.rows() - 1, 1.0}) - point_at(stroke.middle_mm, {0, 0.0});
-    // a point has no direction: left to right, as one writes
+    // a point has no direction: use left to right, as in writing
     sample.heading = line.length() > 0.0 ? line.tangent(sample) : Vector2d(1.0, 0.0);
     if (across.norm() > 0.5 * line.length() && line.length() > 0.0) sample.heading = across.normalized();
     return {sample};
@@ -39,7 +41,7 @@ Samples dab(const Stroke& stroke, const Line& line) {
 
 Stance stance_of(const Sample& sample) { return {sample.contact, sample.heading, sample.depth}; }
 
-/// Along the samples, from where the brush is taut at the first.
+/// Follow the samples, from where the brush is taut at the first one.
 void lead(const Samples& samples, const Brush& brush, PoseList& out, bool& turns) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
         turns = turns || !samples[i].taut;
@@ -57,8 +59,8 @@ void lead(const Samples& samples, const Brush& brush, PoseList& out, bool& turns
     }
 }
 
-/// Turns the brush round on the spot, from the heading in which it comes, or so that it ends in that in which it goes
-/// on.
+/// Turn the brush round on the spot. The turn starts from the heading of the move before it, or ends in the heading of
+/// the move after it.
 void turn_round(const TurnRound& turn, const Samples& then, std::optional<Stance>& now, const Brush& brush,
                 PoseList& out) {
     const Vector2d heading = now ? now->heading : then.empty() ? turn.ends_heading : then.front().heading;
@@ -77,7 +79,8 @@ void turn_round(const TurnRound& turn, const Samples& then, std::optional<Stance
     now = Stance{turn.at_mm, direction(first_rad + kTurnRad), turn.depth_mm};
 }
 
-/// Arc length where the widest section is as far from the resting P as its lever. None where that is nowhere.
+/// Return the arc length where the distance of the widest section from the resting P equals its lever. None if there is
+/// no such place.
 std::optional<double> goes_on_mm(const BrushMove& move, const Brush& brush, const Line& line, const Vector2d& rests) {
     const auto is_beyond = [&](double s) {
         return (line.at(s).middle - rests).norm() >
@@ -87,7 +90,7 @@ std::optional<double> goes_on_mm(const BrushMove& move, const Brush& brush, cons
     return bisect(move.from_mm, move.latest_mm, is_beyond);
 }
 
-/// The way of the brush along a move's line, which goes on from where P rests. None where it cannot.
+/// Return the samples of the brush along a move's line, continuing from where P rests. Empty if it cannot continue.
 Samples led_along(const BrushMove& move, const Brush& brush, const std::optional<Vector2d>& rests,
                   double step_tolerance) {
     const Line line(*move.line, brush);

@@ -9,13 +9,14 @@
 
 namespace brushsvg {
 
-/// Arc lengths [mm] where the depth passes one of these [mm], or the width has a knot: samples must stand there.
+/// Return the arc lengths [mm] where the depth passes one of the given depths [mm], or the width has a knot. Samples
+/// must be placed there.
 std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, double length,
                                      const std::vector<double>& depths);
 
-/// Poses that make the moves of a brush one after the other: set down for the first, turned over between them, and
-/// lifted after the last. `turns` where a line bends too sharply for the lever and the brush turns in place. None where
-/// a line cannot go on from where P rests.
+/// Return poses that make the moves of a brush one after the other. The brush is set down for the first, turned over
+/// between moves, and lifted after the last. `turns` is set where a line bends too sharply for the lever and the brush
+/// turns in place. None if a line cannot continue from the resting P.
 std::optional<PoseList> closed_form(const BrushMoves& moves, const Brush& brush, double step_tolerance, bool& turns);
 
 }  // namespace brushsvg

@@ -27,7 +27,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// TCP at m + r0 T: r0 = 0 is no compensation.
+/// Place the TCP at m + r0 T. No compensation if r0 = 0.
 PoseList offset(const Stroke& stroke, const Brush& brush, const Line& line, double r0, double step_tolerance) {
     Samples samples;
     if (line.length() > 0.0)
@@ -74,7 +74,7 @@ double median_depth(const Stroke& stroke, const Brush& brush) {
     return depths[100];
 }
 
-/// From the least depth to the greatest.
+/// The least and the greatest depth [mm].
 using Depths = std::array<double, 2>;
 
 Depths depths_of_widths(const Stroke& stroke, const Brush& brush) {
@@ -101,8 +101,8 @@ void warn(const Depths& depths, const std::string& stroke, const Brush& brush, s
     warnings.push_back(Warning{"depth-not-measured", stroke, text + brush.name + " was measured"});
 }
 
-/// Depths at which the brush is turned on the spot, where a stroke begins with that alone: a dot. Its other moves may
-/// be lines, which have no turn.
+/// Return the depths at which the brush is turned on the spot, for a stroke that begins with only a turn: a dot. Its
+/// other moves may be lines, which have no turn.
 std::optional<Depths> depths_of_turns(const BrushMoves& moves) {
     if (moves.front().line) return {};
     Depths found{std::numeric_limits<double>::infinity(), 0.0};
@@ -111,24 +111,26 @@ std::optional<Depths> depths_of_turns(const BrushMoves& moves) {
     return found;
 }
 
-constexpr double kLongestLagMm = 1000.0;  // no brush is longer
+constexpr double kLongestLagMm = 1000.0;  // no brush has a longer lag
 
-/// What the steps along the line use up of the tolerance where the path is simplified afterwards: more leaves too
-/// little of it for that, less costs time, and poses where the brush is loose, which stay as they are.
+/// Share of the tolerance that the steps along the line use up if the path is simplified afterwards. A larger value
+/// leaves too little of the tolerance for the simplification. A smaller one costs time, and poses where the brush is
+/// loose, which are not simplified.
 constexpr double kStepShare = 0.35;
-/// And no more of it than of the default one: the steps' own corners would show, and from the same steps a coarser
-/// tolerance has no more poses left than a finer one.
+/// Upper limit of that step tolerance [mm], derived from the default tolerance. With larger steps their own corners
+/// would show. From equal steps, a coarser tolerance never leaves more poses than a finer one.
 constexpr double kMostStepToleranceMm = 0.00875;
-/// Below a tolerance those that are tried as well.
+/// Finer tolerances [mm] that are tried in addition to a coarser one.
 constexpr double kFinerTolerancesMm[] = {0.5, 0.2, 0.1, 0.05};
-/// Shares of the tolerance: what simplification may use up, and the tracking error that is accepted then. Rows of the
-/// check are a little off the truth between them: at 0.95 a mark was 0.0002 mm off too far.
+/// Shares of the tolerance: how much simplification may use up, and the tracking error that is then accepted. Between
+/// its rows the check is slightly off: at 0.95 the error of a mark was 0.0002 mm too large.
 constexpr double kThinShare = 0.9, kSurely = 0.9;
-/// And what fewer poses may add to a tracking error that is larger anyway: with none a cusp's poses were all kept for
-/// 1e-4 mm. A plainer beginning has to win more, for what is missed elsewhere is none of its.
+/// Share of the tolerance that fewer poses may add to a tracking error that already exceeds the tolerance. With none,
+/// all poses of a cusp were kept for 1e-4 mm. A plainer start must win more than this share, because it does not change
+/// errors elsewhere.
 constexpr double kHairShare = 0.1;
 
-/// Replaces pass and error where fewer poses miss the line by no more than the larger of the limit and of that error.
+/// Use a simplified pass and its tracking error if that error is within the limit. Return whether it is.
 bool thin_out(const Pass& from, double share, double limit_mm, const Stroke& stroke, const Brush& brush,
               double tolerance_mm, Pass& pass, TrackingError& error) {
     const Pass fewer = thin_out_after_turn(from, brush, share * tolerance_mm);
@@ -149,21 +151,22 @@ Terminal terminal_named(const std::string& name, const std::string& where) {
 
 namespace {
 
-/// A pass by poses at all steps of the closed form, as fine as the tolerance asks for, or by few of them. `plain`: what
-/// it is called; `poses_by(step_tolerance, turns)`: the closed form.
+/// Make a pass with poses at all steps of the closed form, as fine as the tolerance requires, or with few of them.
+/// `plain`: the pass without poses. `poses_by(step_tolerance, turns)`: the closed form.
 template <class PosesBy>
 CompensatedPass pass_within_tolerance(const Pass& plain, bool few_poses, const Stroke& stroke, const Brush& brush,
                                       double tolerance_mm, PosesBy&& poses_by) {
     CompensatedPass result;
     result.pass = plain;
     double step_tolerance = 0.5 * tolerance_mm;
-    // the plan is simulated before it is handed over; finer steps as long as they help
+    // the plan is simulated before it is returned, and its steps get finer as long as that helps
     if (few_poses) step_tolerance = std::min(kStepShare * step_tolerance, kMostStepToleranceMm);
     for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {
         bool turns = false;
         Pass trial = plain;
         auto poses = poses_by(step_tolerance, turns);
-        if (!poses) poses = poses_by(0.5 * tolerance_mm, turns);  // as it was tried
+        // the step tolerance with which the ends were selected
+        if (!poses) poses = poses_by(0.5 * tolerance_mm, turns);
         if (!poses) return result;
         poses->into(trial);
         if (few_poses && thin_out(trial, kThinShare, kSurely * tolerance_mm, stroke, brush, tolerance_mm, result.pass,
@@ -178,13 +181,13 @@ CompensatedPass pass_within_tolerance(const Pass& plain, bool few_poses, const S
             result.tracking_error = error;
             result.pass = trial;
         }
-        // rows of the check are a little off the truth between them; fewer poses need more to spare
+        // between its rows the check is slightly off, so a margin is needed; fewer poses need more of it
         const bool sure = !few_poses && error.largest_mm <= 0.9 * tolerance_mm;
         if (sure || ((turns || (few_poses && result.tracking_error.within_tolerance)) && !better) ||
             trial.poses_mm.rows() >= Index(kMostSamples))
             break;
     }
-    // a line that cannot be followed to the tolerance: as well as with all poses, then, but for a hair
+    // if the line cannot be followed within the tolerance, fewer poses must do as well as all poses, but for a hair
     const bool turns = result.tracking_error.has_turn_in_place;
     const double missed_mm = result.tracking_error.largest_mm;
     const double limit_mm = missed_mm <= tolerance_mm ? tolerance_mm : missed_mm + kHairShare * tolerance_mm;
@@ -194,7 +197,7 @@ CompensatedPass pass_within_tolerance(const Pass& plain, bool few_poses, const S
     return result;
 }
 
-/// `all_poses`: where to, if it is requested.
+/// `all_poses`: receives the pass with all poses, if given.
 CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const CompensateOptions& options,
                                  Pass* all_poses = nullptr) {
     check(stroke);
@@ -207,7 +210,7 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
         throw Error("out-of-range", "the speed must be finite and greater than 0 mm/s", stroke.id, options.speed_mm_s);
     const Line line(stroke, brush);
     CompensatedPass result;
-    const Depths depths = depths_of_widths(stroke, brush);  // refuses a width that the brush cannot paint
+    const Depths depths = depths_of_widths(stroke, brush);  // throws if the brush cannot paint a width
     Pass& pass = result.pass;
     pass.stroke = stroke.id;
     pass.speed_mm_s = std::min(options.speed_mm_s, brush.max_speed_mm_s);
@@ -231,7 +234,7 @@ CompensatedPass at_its_tolerance(const Stroke& stroke, const Brush& brush, const
     for (const BrushMoves& moves : ways) {
         const bool is_first = &moves == &ways.front();
         const bool few_poses =
-            options.few_poses && (moves.front().line || moves.back().line);  // a disc has none to spare
+            options.few_poses && (moves.front().line || moves.back().line);  // a disc has no poses to spare
         if (!is_first && result.tracking_error.within_tolerance) break;
         const auto poses_by = [&](double steps, bool& turns) { return closed_form(moves, brush, steps, turns); };
         CompensatedPass done = pass_within_tolerance(plain, few_poses, stroke, brush, options.tolerance_mm, poses_by);
@@ -251,17 +254,17 @@ CompensatedPass compensated(const Stroke& given, const Brush& brush, const Compe
                             Pass* all_poses) {
     Stroke stroke = given;
     if (options.method == Compensation::closed && !stroke.settings.end && options.end == Terminal::pointed)
-        stroke.settings.end = "pointed";  // its tracking error is that of a point
+        stroke.settings.end = "pointed";  // its tracking error is measured against a pointed end
     CompensatedPass result = at_its_tolerance(stroke, brush, options, all_poses);
     if (options.method != Compensation::closed || !options.few_poses) return result;
-    // who goes as far as he may in each move does not always get there in the fewest
+    // going as far as possible in each move does not always give the fewest moves
     for (const double finer_mm : kFinerTolerancesMm) {
         if (finer_mm >= options.tolerance_mm) continue;
         CompensateOptions finely = options;
         finely.tolerance_mm = finer_mm;
         CompensatedPass finer = at_its_tolerance(stroke, brush, finely);
         if (finer.pass.poses_mm.rows() >= result.pass.poses_mm.rows()) continue;
-        // measured as the plan that it would replace
+        // measure it with the tolerance of the plan that it would replace
         const bool turns = finer.tracking_error.has_turn_in_place;
         finer.tracking_error = tracking_error_of(finer.pass, stroke, brush, options.tolerance_mm);
         finer.tracking_error.has_turn_in_place = turns;

@@ -9,22 +9,23 @@
 
 namespace brushsvg {
 
-/// q = m + (r - e) u with P dragged by m on the lever e (article's law read backwards).
+/// The article's lag law read backwards: q = m + (r - e) u, where m drags P on the lever e.
 class InverseLag {
  public:
     InverseLag(const Line& line, const Brush& brush);
-    /// Depths where the widest section stands over the centre of friction.
+    /// Return the depths at which the widest section is over the centre of friction.
     const std::vector<double>& crossings() const { return crossings_; }
 
-    /// `first`: the heading at the first sample; none: along the line.
+    /// Fill in contact, heading and TCP of all samples. `first`: heading at the first sample; none: along the line.
     void operator()(Samples& samples, const std::optional<Eigen::Vector2d>& first = {}) const;
 
  private:
     int sign_of(const Samples& samples, std::size_t i) const;
     void follow_tangent(Samples& samples, std::size_t begin, std::size_t end) const;
-    /// The widest section leads: the forward law with lever e, from the stretch's beginning.
+    /// Solve a stretch where the widest section is ahead: apply the forward law with lever e, from the stretch's
+    /// beginning.
     void forwards(Samples& samples, std::size_t begin, std::size_t end, const Eigen::Vector2d& heading) const;
-    /// The widest section trails: unstable forwards, stable from the stretch's end to its beginning.
+    /// Solve a stretch where the widest section trails: unstable forwards, but stable from the end to the beginning.
     void backwards(Samples& samples, std::size_t begin, std::size_t end) const;
     void start(Samples& samples, std::size_t i, const LagLaw<double>& law, double sign, LagState<double>& state) const;
     void step(Samples& samples, std::size_t from, std::size_t to, const LagLaw<double>& law, double sign,

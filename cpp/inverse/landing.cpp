@@ -11,14 +11,15 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// How far inside q = P + r u a lift stays: 0 slips on straight moves (0.25 mm from depth 10), much more lets the patch
-/// relax towards its pressed shape.
+/// How far inside q = P + r u a lift stays [mm]. With 0 the patch slips on straight moves (0.25 mm from depth 10). With
+/// much more the patch relaxes towards its pressed shape.
 constexpr double kLiftSlackMm = 0.05;
-/// How far from there straight moves may stray: not so far that the patch slips, or relaxes.
+/// How far straight moves may stray from that offset [mm]. With more the patch slips or relaxes.
 constexpr double kLiftBandMm = 0.8 * kLiftSlackMm;
-/// Steps of the depth, 128 in all, in which a lift comes as far inside: sooner it would need a move of its own.
+/// Number of depth steps, of 128 in all, over which a lift moves inside. Fewer would need an extra move.
 constexpr double kLiftEases = 8.0;
-/// While the TCP runs up from P to P + r u the patch rests as long as r(d)/d falls with depth; else press down first.
+/// Return whether the patch rests while the TCP runs up from P to P + r u and presses. It does as long as r(d)/d falls
+/// with depth; otherwise the brush must be pressed down first.
 bool may_press_while_running(const Brush& brush, double from, double depth) {
     const double reach = brush.lag(depth);
     for (int i = 1; i < 64; ++i) {
@@ -45,8 +46,8 @@ void lift(const Stance& last, const Brush& brush, PoseList& out, double until_mm
         out.add(last.contact_mm + std::max(0.0, reach_mm) * last.heading, depth);
     };
     const auto reach = [&](double depth) { return brush.lag(depth) - kLiftSlackMm; };
-    // straight moves that stay inside the curve, but not far: each as long as some straight line does; the first begins
-    // where the brush is taut, and comes inside on its way
+    // straight moves that stay inside the curve, but not far: each is as long as one straight line can be; the first
+    // begins where the brush is taut, and comes inside on its way
     constexpr int n = 128;
     const auto depth_at = [&](int k) { return until_mm + (last.depth_mm - until_mm) * (n - k) / n; };
     int from = 0;

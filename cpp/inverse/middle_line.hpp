@@ -10,20 +10,21 @@
 
 namespace brushsvg {
 
-/// Between two samples the heading turns by at most this angle, so that it is never far from what they say.
+/// Largest turn of the heading between two samples [rad]. It keeps the heading between them close to theirs.
 constexpr double kTurnStepRad = 0.2;
-/// A chord of a turn in place. The patch rests for any of them; much more lets the bristles relax half way, by its
-/// cosine.
+/// Largest turn per chord of a turn in place [rad]. The patch rests at any value. With a much larger one the bristles
+/// relax half way along the chord, by its cosine.
 constexpr double kTurnChordRad = 0.4;
-/// Beyond those it begins with. Where a line asks for more (a taper far too steep for the lever), finer steps no longer
-/// help: the tracking error is reported.
+/// Most samples that are added to the initial ones. Where a line needs more (a taper far too steep for the lever),
+/// finer steps no longer help. The tracking error is reported then.
 constexpr std::size_t kMostSamples = 20000;
 
-/// Of a cubic's parameter between two samples. At a cusp the lengths of a cubic's parts do not add up to its own, by
-/// more than the least step, and there two samples would never come close enough: each round would split the same step.
+/// Least step of a cubic's parameter between two samples. At a cusp, the lengths of a cubic's parts do not add up to
+/// its own length. The difference exceeds the least step, so two samples there would never come close enough, and each
+/// round would split the same step.
 constexpr double kLeastParameterStep = 1e-9;
 
-/// A place on the middle line and what the inverse finds there.
+/// A place on the middle line, and the solution of the inverse there.
 struct Sample {
     Place place;
     double s;                ///< arc length from the start [mm]
@@ -32,15 +33,16 @@ struct Sample {
     Eigen::Vector2d contact;  ///< P
     Eigen::Vector2d heading;  ///< u
     Eigen::Vector2d tcp;      ///< q
-    bool taut = true;         ///< the lever from P to m; loose where the line turns too sharply for it
+    bool taut = true;         ///< the lever from P to m is taut; it is loose where the line turns too sharply for it
     bool settled = false;     ///< the chord to the next sample is close enough
 };
 using Samples = std::vector<Sample>;
 
-/// Press depth [mm] at a fraction of the stroke's arc length. Error when the brush cannot paint the width there.
+/// Return the press depth [mm] at a fraction of the stroke's arc length. Throws an error if the brush cannot paint the
+/// width there.
 double depth_of(const Stroke& stroke, const Brush& brush, double fraction);
 
-/// Signed angle from one direction to another.
+/// Return the signed angle from one direction to another.
 double angle_between(const Eigen::Vector2d& from, const Eigen::Vector2d& to);
 
 /// The middle line with its arc length, and the depth along it.
@@ -75,8 +77,8 @@ class Line {
     }
     Eigen::Vector2d tangent(const Sample& sample) const { return tangent_at(stroke_.middle_mm, sample.place); }
 
-    /// Samples at both ends of every cubic and at the given arc lengths, between s0 and s1. Neighbours share a cubic,
-    /// or stand on the same point where one cubic ends and the next begins.
+    /// Return samples at both ends of every cubic and at the given arc lengths, between s0 and s1. Neighbours share a
+    /// cubic, or are on the same point where one cubic ends and the next begins.
     Samples coarse(double s0, double s1, std::vector<double> extra) const {
         extra.push_back(s0);
         extra.push_back(s1);
@@ -110,12 +112,12 @@ class Line {
     std::vector<double> start_;
 };
 
-/// How far a sample's TCP is from the chord between two others, in mm, a depth off the chord's counted half.
+/// Return how far a sample's TCP is from the chord between two others [mm]. A difference in depth counts half.
 double off_chord(const Sample& a, const Sample& b, const Sample& between);
 
-/// Splits the steps along the line until no chord of the TCP's path is further than `tolerance` from it, depth
-/// included. Looks at both thirds of a step: the middle of an S is on its chord. `solve` fills contact, heading and
-/// tcp of all samples.
+/// Split the steps along the line until all chords are within `tolerance` of the TCP's path, depth included. Both
+/// thirds of a step are checked, because the middle of an S is on its chord. `solve` fills in contact, heading and tcp
+/// of all samples.
 template <class Solve>
 void refine_steps(const Line& line, Samples& samples, double tolerance, Solve&& solve) {
     const double least = std::min(1e-3, 0.1 * tolerance);

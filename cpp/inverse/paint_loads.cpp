@@ -16,25 +16,25 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// A brush that hardly touches has no patch to land in.
+/// Least depth [mm] for a landing. A brush that hardly touches has no patch to land in.
 constexpr double kLeastDepthMm = 0.05;
 
-/// Places on long straight moves, whose ends alone would not do: so many for one load of paint. Fewer would leave more
-/// of it unused, more only cost time.
+/// Number of possible cuts per load of paint on long straight moves, whose ends alone are too far apart. Fewer would
+/// leave more paint unused, more only cost time.
 constexpr double kPlacesPerLoad = 200.0;
 
-constexpr double kMostLoads = 1000.0;  // of one stroke; with more the brush would only travel
+constexpr double kMostLoads = 1000.0;  // most loads of one stroke; with more the brush would only travel
 
-/// A brush that turns in place keeps its patch about so near to the arc's centre.
+/// Largest distance [mm] of the patch from the arc's centre while the brush turns in place.
 constexpr double kRestsMm = 0.01;
 
-/// The pass with more poses along its moves. own[i]: whether it is one of the pass's.
+/// The pass with more poses along its moves. own[i]: whether pose i belongs to the original pass.
 struct Fine {
     Pass pass;
     std::vector<bool> own;
 };
 
-/// The arc on which the pass goes on from a pose.
+/// Return the arc on which the pass continues from a pose.
 const Arc* arc_of(const Pass& pass, Index pose) {
     for (const Arc& arc : pass.arcs)
         if (arc.first <= pose && pose < arc.last) return &arc;
@@ -52,7 +52,7 @@ Eigen::RowVector3d on_arc(const Arc& arc, const Pass& pass, Index pose, double s
 Fine refined(const Pass& pass, double between_mm) {
     const Index count = pass.poses_mm.rows();
     Fine out{pass, {}};
-    out.pass.tool_axes.resize(0, 3);  // upright, as are all that are parted
+    out.pass.tool_axes.resize(0, 3);  // upright, as are all passes that are split
     std::vector<Eigen::RowVector3d> poses;
     std::vector<Index> at;
     for (Index i = 0; i < count; ++i) {
@@ -78,10 +78,10 @@ Fine refined(const Pass& pass, double between_mm) {
     return out;
 }
 
-/// Where the pass may be cut: poses that the brush passes taut and pressed, and not while it turns in place.
+/// A place where the pass may be cut: the brush is taut and pressed there, and does not turn in place.
 struct Place {
     Index pose;
-    double along_mm;  ///< path of the TCP up to it
+    double along_mm;  ///< length of the TCP's path up to the place
     Stance stance;
 };
 
@@ -107,14 +107,15 @@ std::vector<Place> places(const Pass& pass, const Brush& brush, const std::vecto
             continue;
         const Vector2d contact = marks.contact_mm.row(Index(row)).transpose();
         if (i == 0 || i + 1 >= pass.poses_mm.rows() || turns_in_place(pass, i, contact)) continue;
-        if (!out.empty() && out.back().pose == i) out.pop_back();  // the last row of a pose is what goes on
+        // a later row of a pose replaces an earlier one
+        if (!out.empty() && out.back().pose == i) out.pop_back();
         const double u = marks.heading_rad[row];
         out.push_back({i, along[i], {contact, {std::cos(u), std::sin(u)}, marks.depth_mm[row]}});
     }
     return out;
 }
 
-/// Poses of the pass from one to another with its arcs, between a landing and a lift.
+/// Return the poses of the pass from one place to another with their arcs, between a landing and a lift.
 Pass part(const Fine& fine, const Brush& brush, const Place* from, const Place* to, int number) {
     const Pass& pass = fine.pass;
     PoseList list;
@@ -164,7 +165,8 @@ std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const PaintL
     while (along.back() > lasts_to) {
         checkpoint(int(all.size()));
         refuse_often(double(parts.size()) + 1.0);
-        // the last place that the paint reaches, else the first after it; in both cases one that gets on
+        // cut at the last place that the paint reaches, else at the first after it; each cut must be beyond the last
+        // one
         const double least = from ? from->along_mm + options.backtrack_mm : 0.0;
         const Place *cut = nullptr, *back = nullptr;
         for (const Place& place : all) {
@@ -174,7 +176,8 @@ std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const PaintL
         }
         if (!cut) break;
         for (const Place& place : all) {
-            if (place.pose >= cut->pose || (from && place.pose <= from->pose)) continue;  // a part must get on
+            // a part must advance
+            if (place.pose >= cut->pose || (from && place.pose <= from->pose)) continue;
             if (!back || place.along_mm <= cut->along_mm - options.backtrack_mm) back = &place;
         }
         if (!back) back = cut;

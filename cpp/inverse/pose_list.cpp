@@ -8,10 +8,10 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// An arc turns the heading by no less: of a lag of 20 mm its chord is 0.001 mm off, and three rounded points of a
-/// smaller one may be on one line.
+/// Least turn of an arc [rad]. For a lag of 20 mm, the chord of an arc this short is 0.001 mm off. Three rounded points
+/// of a shorter arc may be on one line.
 constexpr double kLeastArcRad = 0.02;
-/// Poses nearer than this are one: the way between them is rounding, and points anywhere.
+/// Poses nearer than this [mm] are merged: the way between them is only rounding, and its direction is random.
 constexpr double kSamePoseMm = 1e-3;
 
 }  // namespace

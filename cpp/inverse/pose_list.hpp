@@ -8,14 +8,15 @@
 
 namespace brushsvg {
 
-/// What counts as one circle: far more than rounding, far less than is written to a file.
+/// Tolerance for points on one circle [mm]: far more than rounding, far less than the resolution of a file.
 inline constexpr double kSameCircleMm = 1e-8;
 
-/// Poses of a pass as they are found, and the circles through some of them.
+/// The poses of a pass while it is built, and the arcs through some of them.
 class PoseList {
  public:
     void add(const Eigen::Vector2d& tcp_mm, double depth_mm);
-    /// The poses from `first` on go round a centre; one arc with the one before where that goes on.
+    /// Note that the poses from `first` on are on an arc about a centre. It is merged with the arc before it if it
+    /// continues that one.
     void arc(std::int64_t first, const Eigen::Vector2d& centre_mm, double angle_rad);
     std::int64_t last() const { return std::int64_t(poses_.size()) - 1; }
     void into(Pass& pass) const;

@@ -20,60 +20,63 @@ using Eigen::Index;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Places of a move that are looked at, at most: more find the same error, fewer miss a kink of the path.
+/// About how many of the original poses a new move is checked at. More find the same error; with fewer a kink of the
+/// path can be missed.
 constexpr Index kLooks = 10;
-/// Less is not pressed any more.
+/// A depth [mm] below this is not pressed any more.
 constexpr double kLeastDepthMm = 1e-3;
-/// A move shorter than this has no direction to speak of.
+/// A move shorter than this [mm] has no meaningful direction.
 constexpr double kLeastMoveMm = 1e-6;
-/// From one move to the next the tool turns by no more, up and down counted: or it would have to stop there. Bends this
-/// tight slow it down anyway: 0.6 needs 8 % more poses and takes as long.
+/// Largest turn of the tool from one move to the next [rad], up and down included. With a sharper turn the tool would
+/// have to stop. Bends this tight slow it down anyway: 0.6 needs 8 % more poses and takes as long.
 constexpr double kMostTurnRad = 1.0;
 /// How far off the path a move may end, in second differences over half its length: a third for an even curve. More
-/// of them win less than 1 % of the poses, none but the third loses a tenth.
+/// values win less than 1 % of the poses; a third alone loses a tenth.
 constexpr double kBeside[] = {1.0 / 3.0, 0.25, 0.45, 0.15, 0.0};
-/// And how much of that in depth, which the brush does not smooth: half the sagitta at a third.
+/// Share of that offset that is applied to the depth, which the brush does not smooth. It is half the sagitta at a
+/// third.
 constexpr double kDeeper = 0.75;
-/// The mark's middle may be so many tolerances ahead of or behind where it was after the same share of the way. Where
-/// poses are far apart, on straight lines, a mark next to the line would be next to something else: other sides of a
-/// triangle, a there with no back.
+/// By how many tolerances the middle of the mark may run ahead of or behind its place after the same share of the move.
+/// This matters on straight lines, where poses are far apart. There a mark close to the path could be close to a
+/// different part: another side of a triangle, or a way there without the way back.
 constexpr double kSlipShare = 10.0;
-/// The edges of the mark turn by no more where two moves meet, eight degrees less a margin for what is rounded; and at
-/// the end of each they go where they went by so much: with less of it there is less left for the next one, with more
-/// that one cannot be as long.
+/// Largest turn of the mark's edges where two moves meet [rad]: eight degrees, less a margin for rounding. At the end
+/// of each move the edges may differ from their original direction by kMostOffRad. A smaller value leaves less for the
+/// next move; with a larger one the next move cannot be as long.
 constexpr double kMostCornerRad = 0.125, kMostOffRad = 0.07;
-/// Of the tolerance, what a move may use up where it ends: with nothing left the next one could only jump back.
+/// Share of the tolerance that a move may use up at its end. If nothing were left, the next move could only jump back.
 constexpr double kEndShare = 0.5;
-/// Steps that are tried where none keeps its direction.
+/// Number of steps that are tried where none keeps its direction.
 constexpr Index kTries = 6;
-/// Arcs: flatter ones are lines, and what is nearly a whole circle is determined by no two places; far centres hold too
-/// few digits in a program. Between two of its poses an arc turns by no more, for who only knows the chords.
+/// Limits of arcs. Flatter arcs are lines, and two places do not determine an arc that is nearly a whole circle. A
+/// program holds too few digits of a far centre. kArcStepRad limits the turn between two poses of an arc, for machines
+/// that know only its chords.
 constexpr double kLeastTurnRad = 0.05, kMostArcRad = 5.0, kArcStepRad = 0.4;
 constexpr double kLeastRadiusMm = 2.0 * kArcRadiusMm[0], kMostRadiusMm = 1000.0;
 constexpr double kSameDepthMm = 1e-9;
 constexpr double kPi = 3.14159265358979323846;
-/// The footprint's tip may be off by so many tolerances: it is inside the mark, its sides are what shows.
+/// By how many tolerances the footprint's tip may be off. The tip is inside the mark; only the sides show.
 constexpr double kTipShare = 3.0;
 
-/// Poses that continue, and the circles through some of them.
+/// Poses that continue a pass, and the arcs through some of them.
 struct Way {
     std::vector<Vector3d> poses;
     std::vector<Arc> arcs;
 };
 
-/// A circle from one place to another, about a centre.
+/// An arc of a circle: its centre, radius, and signed turn [rad].
 struct Circle {
     Vector2d centre;
     double radius, turn;
 
-    /// Through three places; none where they are on a line, or where no plan has such a circle.
+    /// Return the circle through three places. None if they are on a line, or if a plan cannot hold the circle.
     static std::optional<Circle> through(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
         const Vector2d ab = b - a, ac = c - a;
         const double cross = ab.x() * ac.y() - ab.y() * ac.x();
         if (!(std::abs(cross) > 1e-9 * ac.squaredNorm())) return {};
         const double s = ab.squaredNorm() / (2.0 * cross), t = ac.squaredNorm() / (2.0 * cross);
         const Vector2d out(s * ac.y() - t * ab.y(), t * ab.x() - s * ac.x());
-        // the angle at the middle one is that of the inscribed triangle
+        // by the inscribed angle theorem, half the turn is pi less the angle at the middle place
         const Vector2d ba = a - b, bc = c - b;
         const double within = std::atan2(std::abs(ba.x() * bc.y() - ba.y() * bc.x()), ba.dot(bc));
         const Circle found{a + out, out.norm(), std::copysign(2.0 * (kPi - within), cross)};
@@ -85,17 +88,17 @@ struct Circle {
         const Vector2d spoke = (at - centre) / radius;
         return turn > 0.0 ? Vector2d(-spoke.y(), spoke.x()) : Vector2d(spoke.y(), -spoke.x());
     }
-    /// Poses on it, after the one that it begins at: a robot gets a pose on its way.
+    /// Return how many poses the arc has after its first. With at least two, a robot gets a pose on its way.
     int poses() const { return std::max(2, int(std::ceil(std::abs(turn) / kArcStepRad))); }
 };
 
-/// One stretch of dragged moves, walked from its beginning: as far as possible in each move.
+/// Simplifies one stretch of dragged moves from its beginning. Each new move goes as far as possible.
 class Walk {
  public:
     Walk(const TracedPass& was, const Brush& brush, const LagLaw<double>& law, double tolerance_mm)
         : was_(was), brush_(brush), law_(law), tolerance_(tolerance_mm) {}
 
-    /// Poses that lead from pose `first` to pose `last`, that one included.
+    /// Return the new poses after pose `first`, up to and including pose `last`.
     Way operator()(Index first, Index last) {
         first_ = first;
         last_ = last;
@@ -125,10 +128,10 @@ class Walk {
     struct Step {
         Vector3d to;  ///< x, y, depth
         LagState<double> state;
-        std::optional<Circle> circle;  ///< none: straight
-        Edges edges;                   ///< at its end; of one that is not near, nothing is known
+        std::optional<Circle> circle;  ///< none for a straight move
+        Edges edges;                   ///< at the end of the move; unknown if the mark is not near
         bool near = false;             ///< the mark is where it was
-        double corner = 0.0;           ///< of the edges, as a share of what it may be
+        double corner = 0.0;           ///< corner of the edges, as a share of the largest one allowed
 
         bool good() const { return near && corner <= 1.0; }
     };
@@ -154,9 +157,9 @@ class Walk {
         edges_ = step.edges;
     }
 
-    /// How far one move goes: to a pose, or off it. Chords are inside a curve, and the brush follows their mean. Out
-    /// by q'' L^2 / 12 their error has none, and what is left goes back and forth too quickly for the brush. Where the
-    /// curve changes on the way, more or less than that is better.
+    /// Find how far one straight move can go: to a pose, or to a place near one. Chords are inside a curve, and the
+    /// brush follows their mean. With ends moved out by q'' L^2 / 12 the mean error is zero. The remaining error
+    /// alternates too quickly for the brush. Where the curve changes on the way, a larger or smaller offset is better.
     std::pair<Index, Step> farthest(Index i, Index stride) const {
         Index good = i;
         Step best;
@@ -165,7 +168,7 @@ class Walk {
             search(i, last_, good == i ? stride : 1, trial, good, best);
         }
         if (good > i) return {good, best};
-        // none keeps its direction: the one that bends least
+        // no step keeps the direction: take the step that bends least
         good = i + 1;
         best = straight(i, good, was_.pose(good));
         for (Index j = i + 1; j <= std::min(i + kTries, last_); ++j)
@@ -177,7 +180,7 @@ class Walk {
             }
         return {good, best};
     }
-    /// How far one arc goes, through three places of the path.
+    /// Find how far one arc can go, through three places of the path.
     std::pair<Index, Step> farthest_round(Index i, Index straight_to) const {
         Index good = i;
         Step best;
@@ -188,8 +191,8 @@ class Walk {
         return {good, best};
     }
 
-    /// The farthest good step beyond the one known, ever more at a time, and between the last good and the first bad
-    /// one by halves.
+    /// Find the farthest good step beyond the known one: double the stride while steps are good, then bisect between
+    /// the last good and the first bad step.
     template <class Trial>
     void search(Index i, Index last, Index step, Trial&& trial, Index& good, Step& best) const {
         Index bad = last + 1;
@@ -243,7 +246,7 @@ class Walk {
     }
     double turn_to(const Vector3d& along) const { return std::atan2(way_.cross(along).norm(), way_.dot(along)); }
 
-    /// What the brush does in a move in place of those from pose i to pose j.
+    /// Simulate the brush on a move that replaces the moves from pose i to pose j.
     template <class Motion>
     void follow(const Motion& move, Index i, Index j, double deeper, Step& step) const {
         checkpoint(10);
@@ -284,7 +287,7 @@ class Walk {
         return state;
     }
 
-    /// Whether the footprint is where it was about pose k, to the tolerance.
+    /// Return whether the footprint is where it was near pose k, within the tolerance.
     bool is_near(const LagState<double>& now, double depth, Index k, double tolerance_mm) const {
         const Vector2d middle = now.contact + brush_.lever_to_widest(depth) * now.heading;
         const double most_slip = kSlipShare * tolerance_;
@@ -310,21 +313,21 @@ class Walk {
     double tolerance_;
     Index first_ = 0, last_ = 0;
     LagState<double> state_;
-    Vector3d at_, way_;  ///< where the walk is, and the way to there
-    Edges edges_;        ///< of the mark there
+    Vector3d at_, way_;  ///< where the walk is, and the move that reached it
+    Edges edges_;        ///< edges of the mark at that place
 };
 
 Pass thinned(const Pass& pass, const Brush& brush, const LagLaw<double>& law, const TracedPass& was,
              double tolerance_mm) {
     const Index n = pass.poses_mm.rows();
     std::vector<Vector3d> poses;
-    std::vector<Index> now(n, 0);  // where the poses that stay are
+    std::vector<Index> now(n, 0);  // new indices of the poses that stay
     const auto keep = [&](Index i) {
         now[i] = Index(poses.size());
         poses.push_back(pass.poses_mm.row(i).transpose());
     };
     Pass out = pass;
-    out.tool_axes.resize(0, 3);  // upright, as are all that are simplified
+    out.tool_axes.resize(0, 3);  // upright, as are all passes that are simplified
     out.arcs.clear();
     Walk walk(was, brush, law, tolerance_mm);
     for (Index i = 0; i < n;) {
@@ -356,8 +359,8 @@ Pass thinned(const Pass& pass, const Brush& brush, const LagLaw<double>& law, co
     return out;
 }
 
-/// Farthest that the middle of a mark, its widest points, is from that of another, from the first taut row to the
-/// last.
+/// Return the largest distance of the widest points of a mark from the middle of another mark. Only rows from the first
+/// taut row to the last count.
 double apart(const PassMarks& marks, const Ring& widest, const Ring& middle) {
     Nearest<Ring> nearest(middle);
     const Index n = Index(marks.taut.size());
@@ -381,12 +384,13 @@ Pass thin_out(const Pass& pass, const Brush& brush, double tolerance_mm) {
     const Ring middle = widest_points(marks, brush);
     const LagLaw<double> law = make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
     const TracedPass was(pass, brush, law, marks, middle);
-    // what is found move by move adds up over a bend and at the ends; smaller steps where it was too much
+    // errors of single moves add up over a bend and at the ends, so smaller shares are tried where the sum is too large
     for (const double share : {0.95, 0.7, 0.4, 0.2, 0.1}) {
         const Pass trial = thinned(pass, brush, law, was, share * tolerance_mm);
         const PassMarks now = simulate(trial, brush, exact_mm, false);
         const Ring there = widest_points(now, brush);
-        // both ways: a mark that lacks a part is nowhere next to what it should be
+        // check both ways: a mark that lacks a part is never far from the original mark, but the original is far from
+        // it
         if (apart(now, there, middle) <= tolerance_mm && apart(marks, middle, there) <= tolerance_mm) return trial;
     }
     return pass;

@@ -10,15 +10,16 @@ namespace brushsvg {
 
 constexpr double kCoarseMm = 1.0;
 
-/// thin_out() of what follows the last time that the brush turns over: where P rests then, fewer poses would put the
-/// brush down next to it.
+/// Simplify the part of a pass after the brush turns over for the last time. P rests while the brush turns over, and
+/// fewer poses would put the brush down next to P.
 inline Pass thin_out_after_turn(const Pass& pass, const Brush& brush, double tolerance_mm) {
     using Eigen::Index;
-    // where the brush is loose there are rows however coarse they are
+    // where the brush is loose, the simulation has rows at any step width
     const PassMarks marks = simulate(pass, brush, kCoarseMm, false);
     const std::vector<TurnOver> turns = turns_over(marks);
     if (turns.empty()) return thin_out(pass, brush, tolerance_mm);
-    Index kept = Index(std::ceil(marks.pose[turns.back().first]));  // the last pose where it is pressed least
+    // the last pose where the brush is pressed least
+    Index kept = Index(std::ceil(marks.pose[turns.back().first]));
     for (Index i = kept; double(i) < marks.pose[turns.back().last]; ++i)
         if (pass.poses_mm(i, 2) >= pass.poses_mm(kept, 2)) kept = i;
     Pass rest = pass;

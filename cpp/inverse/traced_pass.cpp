@@ -13,13 +13,14 @@ using Eigen::Index;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// A move shorter than this has no direction to speak of.
+/// A move shorter than this [mm] has no meaningful direction.
 constexpr double kLeastMoveMm = 1e-6;
-/// An edge that gets on by less, per mm of the TCP's way, is about to turn back: where it does it is inside the mark.
+/// Least advance of an edge that shows, per mm of the TCP's way. An edge that advances less is about to turn back, and
+/// where it does it is inside the mark.
 constexpr double kLeastAhead = 0.01;
-/// A chord's corner on a bend; a larger one was drawn, or is one of the brush's own.
+/// Largest corner between chords of a bend [rad]. A larger corner was drawn, or is made by the brush.
 constexpr double kBendRad = 0.14;
-/// Half the step of a law's slope [mm].
+/// Half the step of a numerical derivative by depth [mm].
 constexpr double kSlopeStepMm = 1e-4;
 
 template <class Of>
@@ -93,7 +94,7 @@ void TracedPass::trace(const PassMarks& marks, const Ring& widest) {
         const double pose = marks.pose[row];
         const Index i = Index(std::floor(pose));
         const bool is_pose = pose == double(i);
-        if (!marks.taut[row]) {  // on the way to this pose and from it on
+        if (!marks.taut[row]) {  // both the move that reaches this pose and the move that leaves it
             if (i < n) dragged[i] = false;
             if (is_pose && i > 0) dragged[i - 1] = false;
         }

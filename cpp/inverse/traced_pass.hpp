@@ -10,37 +10,39 @@
 
 namespace brushsvg {
 
-/// How the edges of a mark go on at one instant: the ways of both ends of the widest section, left and right of the
-/// heading, per mm of the TCP's.
+/// Directions in which the edges of a mark continue at one instant: the ways of both ends of the widest section, left
+/// and right of the heading, per mm of the TCP's way.
 struct Edges {
     std::array<Eigen::Vector2d, 2> way{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
-    std::array<bool, 2> shows{};  ///< goes ahead; an inner edge that turns back paints over its own mark
+    /// The edge moves ahead; an inner edge that turns back paints over its own mark.
+    std::array<bool, 2> shows{};
 };
 
-/// Of a taut brush whose TCP goes along a direction, deeper by so much per mm.
+/// Return the edges of a taut brush whose TCP moves along a direction and gets deeper by `deeper` per mm.
 Edges edges_of(const Brush& brush, const LagLaw<double>& law, const LagState<double>& state,
                const Eigen::Vector2d& along, double depth_mm, double deeper);
 
-/// Greatest angle between two ways of an edge that shows [rad].
+/// Return the greatest angle between the two ways of an edge that shows [rad].
 double corner_between(const Edges& before, const Edges& after);
 
-/// What the brush does at every pose of a pass as it is.
+/// State of the brush at every pose of the original pass.
 struct TracedPass {
     Ring tcp, middle;
-    std::vector<double> depth, along;  ///< along: path of the TCP [mm]
+    std::vector<double> depth, along;  ///< along: length of the TCP's path [mm]
     double deepest = 0.0;
     std::vector<Eigen::Vector2d> contact, heading;
-    std::vector<bool> taut;                ///< at the pose
-    std::vector<bool> dragged;             ///< from the pose to the next: taut all the way, in a straight move
-    std::vector<Eigen::Index> level;       ///< the last pose that is reached at this depth
-    std::vector<Edges> reaching, leaving;  ///< at the pose; both half way between where the path only bends
+    std::vector<bool> taut;           ///< whether the brush is taut at the pose
+    std::vector<bool> dragged;        ///< from the pose to the next: taut all the way, in a straight move
+    std::vector<Eigen::Index> level;  ///< the last pose up to which this depth is kept
+    /// Before and after the pose; where the path only bends, both are the mean direction.
+    std::vector<Edges> reaching, leaving;
 
-    /// widest: widest_points() of the marks.
+    /// `widest`: the result of widest_points() for the marks.
     TracedPass(const Pass& pass, const Brush& brush, const LagLaw<double>& law, const PassMarks& marks,
                const Ring& widest);
 
     Eigen::Vector3d pose(Eigen::Index i) const { return {tcp(i, 0), tcp(i, 1), depth[i]}; }
-    /// Where the TCP was after a way: x, y, depth. `near`: a pose to look from.
+    /// Return x, y and depth of the TCP after a path length. `near`: a pose at which the search starts.
     Eigen::Vector3d at(double s, Eigen::Index near) const;
 
  private:

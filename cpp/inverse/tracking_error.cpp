@@ -13,14 +13,14 @@ namespace brushsvg {
 
 using Eigen::Index;
 
-/// Where the mark is looked at between rows: it passes a corner of the line within 0.2 mm, and at 0.5 a fifth of the
-/// miss there slipped through.
+/// Largest distance between checked points of the mark [mm]. The mark passes a corner of the line within 0.2 mm. At
+/// 0.5, a fifth of the error at the corner was not seen.
 constexpr double kLookEveryMm = 0.1;
 
 namespace {
 
-/// Discs round which the brush is turned, and places about a butt end: there the mark is judged and not its middle,
-/// which swings in corners.
+/// A disc about a place where the brush turns round, or about a butt end. There the middle of the mark does not count,
+/// because it swings in corners.
 struct Disc {
     Eigen::Vector2d middle_mm;
     double radius_mm;
@@ -29,16 +29,16 @@ struct Disc {
     }
 };
 
-/// The direction in which a path begins, and not that of its first chord: half a width before it those are 0.05 mm
-/// apart on an arc of 10 mm.
+/// Return the tangent at the start of a path, not the direction of the first chord. Half a width before the start,
+/// these two are 0.05 mm apart on an arc of 10 mm.
 Eigen::RowVector2d begins_along(const Cubics& middle_mm) {
     Place first{0, 0.0};
     while (first.cubic + 1 < middle_mm.rows() && tangent_at(middle_mm, first).isZero()) ++first.cubic;
     return tangent_at(middle_mm, first).transpose();
 }
 
-/// Whether a mark comes near the place where the way of a butt end goes back along the side. A mark on the path is
-/// as far from it as the path is.
+/// Return whether a mark comes near the place where a butt end's way back along the side ends. A mark on the path is as
+/// far from that place as the path is.
 bool is_butt(const Ring& widest, const ButtEnd& end) {
     constexpr double kThere = 0.25;
     const double off_path_mm = std::abs(end.end.left.dot(end.back_mm - end.end.at_mm));
@@ -48,18 +48,18 @@ bool is_butt(const Ring& widest, const ButtEnd& end) {
 TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, const Stroke& stroke, double tolerance_mm,
                                 const std::vector<Disc>& discs) {
     const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
-    // on its way back to a round beginning a blunt front goes beyond the path's
+    // on its way back to a round start, a blunt front goes beyond the start of the path
     MiddlePolyline longer(line.rows() + 1, 4);
     longer << line.row(0), line;
     longer.row(0).head<2>() -= line(0, 3) * begins_along(stroke.middle_mm);
     Nearest nearest(line), before_turn(longer);
-    // from the first taut row to the last: the landing and a slack lift do not count, a turn in place does, and where
-    // the brush turns over it hardly touches
+    // check from the first taut row to the last: the landing and a slack lift do not count, a turn in place does, and
+    // where the brush turns over it hardly touches
     std::size_t begin = 0, end = marks.taut.size();
     while (begin < end && !marks.taut[begin]) ++begin;
     while (end > begin && !marks.taut[end - 1]) --end;
     TrackingError error;
-    double before = 0.0, travelled = 0.0;  // by length and not by rows, which are closer where a tolerance needs it
+    double before = 0.0, travelled = 0.0;  // weighted by length: rows are closer where a tolerance needs it
     const auto look = [&](std::size_t from, std::size_t to, auto& path) {
         std::optional<Eigen::Vector2d> last;
         along(widest, Index(from), Index(to), kLookEveryMm, [&](const Eigen::Vector2d& point) {
@@ -92,7 +92,8 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     check(stroke);
     require_tolerance(tolerance_mm, stroke.id);
     const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm), false);
-    const std::vector<Turned> all_turned = turned_round(marks);  // a dot, or a stroke that begins or ends with one
+    // a dot, or a stroke that begins or ends with a turn
+    const std::vector<Turned> all_turned = turned_round(marks);
     const auto is_taut_within = [&](std::size_t from, std::size_t to) {
         return std::any_of(marks.taut.begin() + Index(from), marks.taut.begin() + Index(to),
                            [](bool taut) { return taut; });
@@ -109,7 +110,8 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
                                                                        depth + Index(turned.last) + 1))});
         }
     const Stroke painted = as_wide_as_painted(stroke, brush);
-    Stroke whole = up_to_drawn_end(painted, brush);  // a blunt front goes beyond the path's end, and so does a point
+    // a blunt front goes beyond the path's end, and so does a point
+    Stroke whole = up_to_drawn_end(painted, brush);
     if (stroke.settings.end == "pointed")
         if (auto pointed = pointed_end(painted, brush, Caps::round)) whole = std::move(pointed->stroke);
     const TrackingError error = tracking_error_of(marks, widest, whole, tolerance_mm, discs);

@@ -15,8 +15,8 @@
 namespace brushsvg {
 namespace {
 
-constexpr std::size_t kPassesAtOnce = 32;  // of one processor, at least: fewer are not worth a thread
-constexpr double kLeastArea = 1e-6;        // mm^2: what rounding leaves of a piece may turn over
+constexpr std::size_t kPassesAtOnce = 32;  // least number for one processor: fewer are not worth a thread
+constexpr double kLeastArea = 1e-6;        // mm^2: a piece may turn over by this much because of rounding
 
 void require_finite(const Rings& rings) {
     for (const Ring& ring : rings)
@@ -45,9 +45,10 @@ Coverage coverage(const Marks& marks, const Brush& brush, const Window& window, 
 
 Coverage coverage(const Rings& rings, const Window& window, double px_per_mm) {
     const std::array<Eigen::Index, 2> size = picture_size(window, px_per_mm);
-    const Eigen::Index width = size[0], height = size[1];  // names of their own: clang 14 captures no bindings
+    // separate names: clang 14 cannot capture structured bindings
+    const Eigen::Index width = size[0], height = size[1];
     require_finite(rings);
-    // exact: every edge leaves in each pixel it crosses the area to its right, and its height in all pixels beyond
+    // exact: each edge adds the area to its right to each pixel that it crosses, and its height to all pixels beyond
     Eigen::MatrixXd edge = Eigen::MatrixXd::Zero(width + 2, height);                 // one column per pixel row
     const auto add = [&](double x0, double y0, double x1, double y1, double sign) {  // within one pixel row
         const auto row = Eigen::Index(std::floor(0.5 * (y0 + y1)));
@@ -84,7 +85,7 @@ Coverage coverage(const Rings& rings, const Window& window, double px_per_mm) {
             for (double y = top; y < bottom;) {
                 checkpoint();
                 const double until = std::min(bottom, std::floor(y) + 1.0);
-                // a clipped row in x may bend the edge at the window's side: beyond it nothing shows
+                // clipping in x may bend the edge at the window's side, beyond which nothing shows
                 add(x0 + (y - y0) * slope, y, x0 + (until - y0) * slope, until, sign);
                 y = until;
             }
@@ -140,7 +141,7 @@ std::array<double, 4> painted_bounds(const PassMarks& marks, const Brush& brush)
         box = {std::min(box[0], ring.col(0).minCoeff()), std::min(box[1], ring.col(1).minCoeff()),
                std::max(box[2], ring.col(0).maxCoeff()), std::max(box[3], ring.col(1).maxCoeff())};
     };
-    // an area inside of the known one adds nothing
+    // an area inside of the known box adds nothing
     sweep(
         marks, brush, [&](const Ring&, const Ring& b) { include(b); }, include, [](const Ring&) {},
         [&](const auto& low, const auto& high) {

@@ -13,14 +13,14 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kRoundedMm = 1e-9;  ///< depths may be rounded by this much
-constexpr double kSamePose = 1e-9;   ///< and shares of a move
+constexpr double kRoundedMm = 1e-9;  ///< rounding of depths
+constexpr double kSamePose = 1e-9;   ///< rounding of shares of a move
 
-/// The TCP's motion with the rows of marks as its poses, as walk_pass() reads it.
+/// The TCP's motion for walk_pass(), with the rows of marks as its poses.
 struct RowMotion {
     const PassMarks& marks;
-    std::vector<Arc> arcs;         ///< one from a row to the next
-    std::vector<double> turn_rad;  ///< from each row to the next
+    std::vector<Arc> arcs;         ///< one for each move from a row to the next along an arc
+    std::vector<double> turn_rad;  ///< turn of the TCP's path from each row to the next
 
     RowMotion(const Pass& pass, const PassMarks& of) : marks(of), turn_rad(of.pose.size(), 0.0) {
         if (pass.arcs.empty()) return;
@@ -45,7 +45,7 @@ struct RowMotion {
     double turn(const Arc&, Index i) const { return turn_rad[std::size_t(i)]; }
 };
 
-/// Carries the patch along; walk_pass() calls it.
+/// Moves the patch along a path; walk_pass() calls it.
 class Follower {
  public:
     Follower(const LagLaw<double>& law, Index rows) : law_(law), out_{Ring(rows, 2), Ring(rows, 2)} {}
@@ -87,7 +87,7 @@ class Follower {
     const LagLaw<double>& law_;
     FollowedRows out_;
     LagState<double> state_;
-    Index first_waiting_ = 0;  ///< the first of the rows that wait for a heading
+    Index first_waiting_ = 0;  ///< first of the rows that wait for a heading
     bool moved_ = false, moved_once_ = false;
 };
 

@@ -6,7 +6,7 @@
 
 namespace brushsvg {
 
-/// Where a patch is at the rows of a pass's marks.
+/// Position and heading of a patch at the rows of a pass's marks.
 struct FollowedRows {
     Ring contact_mm;  ///< p; in the air the TCP
     Ring heading;     ///< u, unit vectors
@@ -14,9 +14,9 @@ struct FollowedRows {
 
 /// Follow the TCP of a pass with another lag, from row to row of its marks, so that lags can be compared row by row.
 ///
-/// marks: what simulate() returns for this pass and an upright brush. Exact at each row, by the closed form. Headings
-/// wait for the first motion as those of simulate() do. Throws Error when the marks are not those of the pass, when it
-/// is tilted, or when it is deeper than the lag is known.
+/// `marks`: the result of simulate() for this pass and an upright brush. The result is exact at each row, by the closed
+/// form. As in simulate(), headings wait for the first motion. Throws Error if the marks do not belong to the pass.
+/// Throws Error if the pass is tilted, or deeper than the lag is known.
 FollowedRows follow_lag(const Pass& pass, const PassMarks& marks, const LagLaw<double>& lag);
 
 }  // namespace brushsvg

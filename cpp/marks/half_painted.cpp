@@ -10,8 +10,8 @@ namespace {
 using Eigen::Index;
 using Eigen::RowVector2d;
 
-/// Marching squares: between the middles of four pixels, with blank ones round the picture. A crossing is between two
-/// of them, to the right of one (even) or below it (odd), and lines keep what is painted to their left.
+/// Marching squares between the middles of four pixels, with blank pixels round the picture. A crossing is between two
+/// pixels, to the right of one (even index) or below it (odd). Lines keep the painted side to their left.
 class Squares {
  public:
     explicit Squares(const Coverage& picture)
@@ -21,7 +21,7 @@ class Squares {
         for (Index row = 0; row <= picture.rows(); ++row)
             for (Index column = 0; column <= picture.cols(); ++column) cross(row, column);
     }
-    /// Rings of places (x, y) in pixels, y down, from the middle of the upper left pixel of the picture.
+    /// Return rings of places (x, y) in pixels, y down, from the middle of the upper left pixel of the picture.
     Rings rings() {
         Rings out;
         for (Index first = 0; first < Index(next_.size()); ++first) {
@@ -48,7 +48,7 @@ class Squares {
     Index right_of(Index row, Index column) const { return 2 * (row * columns_ + column); }
     Index below(Index row, Index column) const { return right_of(row, column) + 1; }
 
-    /// The lines through the square whose upper left corner that is.
+    /// Add the lines through a square, given its upper left corner.
     void cross(Index row, Index column) {
         const std::array<float, 4> corners{share(row + 1, column), share(row + 1, column + 1), share(row, column + 1),
                                            share(row, column)};  // counter-clockwise from the lower left
@@ -58,7 +58,7 @@ class Squares {
         const bool middle = corners[0] + corners[1] + corners[2] + corners[3] > 4.0f * kHalfPainted;
         for (std::size_t k = 0; k < 4; ++k) {
             if (!inside(k) || inside(k + 1)) continue;
-            // round what is blank where the middle is painted, else round what is painted
+            // go round the blank corners where the middle is painted, else round the painted corners
             std::size_t to = k + (middle ? 1 : 3);
             while (inside(to) || !inside(to + 1)) to += middle ? 1 : 3;
             next_[std::size_t(sides[k])] = sides[to % 4];

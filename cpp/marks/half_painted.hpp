@@ -4,11 +4,11 @@
 
 namespace brushsvg {
 
-/// Share of a pixel above which it is inside of these rings.
+/// Share of a painted pixel above which it is inside these rings.
 inline constexpr float kHalfPainted = 0.5f;
 
-/// Rings [mm] along which half of the pixels is painted, outer ones counter-clockwise, holes clockwise. Beyond its
-/// window a picture is blank.
+/// Return the rings [mm] along which half of a pixel is painted: outer ones counter-clockwise, holes clockwise. A
+/// picture counts as blank beyond its window.
 Rings half_painted(const Coverage& picture, const Window& window, double px_per_mm);
 
 }  // namespace brushsvg

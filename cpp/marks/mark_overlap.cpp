@@ -15,14 +15,15 @@ namespace brushsvg {
 namespace {
 
 constexpr double kLeastPxPerMm = 8.0, kMostPxPerMm = 40.0;
-constexpr double kAcrossPx = 6.0;      // of the thinnest half width, where that many can be had
-constexpr double kMostPx = 4e6;        // of one picture: bounds the memory
-constexpr double kSheetPxPerMm = 5.0;  // of tiles: overlaps to 1e-3 still
-constexpr double kMostSheetPx = 6e7;   // of all of them: bounds the time
+constexpr double kAcrossPx = 6.0;      // on the thinnest half width, if there can be that many
+constexpr double kMostPx = 4e6;        // of one picture: limits the memory
+constexpr double kSheetPxPerMm = 5.0;  // of tiles: overlaps are still exact to 1e-3
+constexpr double kMostSheetPx = 6e7;   // of all tiles together: limits the time
 constexpr double kTilePx = 1000.0;
 constexpr double kOutlineMm = 0.01;
-constexpr double kBesideMm = 0.3;  // round the box: paint on its edge is seen whole
-// Shares of two strokes in one pixel that count as touching: the parts of a letter's outline meet at their borders.
+constexpr double kBesideMm = 0.3;  // margin round the box: paint on its edge is seen whole
+// Sum of two strokes' shares in one pixel above which they count as touching. The parts of a letter's outline meet at
+// their borders.
 constexpr float kTouching = 0.8f;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -55,8 +56,8 @@ Window with_paper(const Box& box) {
             box.top - box.bottom + 2.0 * kBesideMm};
 }
 
-/// Half width of a stroke where it is thinnest; of an outline, whose thin places have no length, in the mean: area over
-/// half of the way round it.
+/// Return the half width of a stroke where it is thinnest. The thin places of an outline have no length, so its mean
+/// half width is returned: area over perimeter.
 double finest_mm(const Stroke& stroke) {
     double finest = kInf;
     if (stroke.wanted_mm.empty()) {
@@ -72,7 +73,7 @@ double finest_mm(const Stroke& stroke) {
     return inside > 0.0 ? inside / around : finest;
 }
 
-/// A stroke as it was drawn: its outline where it has one, else convex pieces of its path with its width.
+/// A stroke as it was drawn: its outline if it has one, else convex pieces of its path with its width.
 struct Meant {
     bool is_outline = false;
     Rings parts;
@@ -80,7 +81,7 @@ struct Meant {
     Box box;
 
     Meant() = default;
-    /// window: of what shows in a part of the paper alone.
+    /// `window`: if given, only the pieces that show in this part of the paper are made.
     explicit Meant(const Stroke& stroke, const Window* window = nullptr) : is_outline(!stroke.wanted_mm.empty()) {
         parts = is_outline ? stroke.wanted_mm
                 : window   ? wanted_pieces_near(stroke, *window, kOutlineMm)
@@ -154,7 +155,8 @@ CommonArea common_area(const MarkOverlap& seen) {
         throw Error("sizes-differ", "paint and drawing are pictures of different sizes");
     const double mm2 = 1.0 / (seen.px_per_mm * seen.px_per_mm);
     double common = 0.0, together = 0.0;
-    for (Eigen::Index row = 0; row < seen.wanted.rows(); ++row) {  // a row's sum is exact enough in single precision
+    // a row's sum is exact enough in single precision
+    for (Eigen::Index row = 0; row < seen.wanted.rows(); ++row) {
         common += seen.wanted.row(row).cwiseMin(seen.painted.row(row)).sum();
         together += seen.wanted.row(row).cwiseMax(seen.painted.row(row)).sum();
     }
@@ -241,7 +243,7 @@ std::vector<std::vector<std::size_t>> touching(const std::vector<Stroke>& wanted
             if (a != b && one.box.meets(other.box) && touch(one, other)) group[b] = a;
         }
     std::map<std::size_t, std::vector<std::size_t>> by_root;
-    std::vector<std::size_t> roots;  // in the order of their first strokes
+    std::vector<std::size_t> roots;  // roots in the order of their first strokes
     for (std::size_t k = 0; k < drawn.size(); ++k) {
         auto& members = by_root[root(k)];
         if (members.empty()) roots.push_back(root(k));

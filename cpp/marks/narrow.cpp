@@ -13,7 +13,8 @@ namespace brushsvg {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kFinest = 0.05;  // of the width between two rows: straight in between is off by 0.03 % of it
+// Share of the width between two rows: linear interpolation is then off by 0.03 % of the width.
+constexpr double kFinest = 0.05;
 
 /// Rows of marks, collected one by one.
 struct Rows {
@@ -21,7 +22,8 @@ struct Rows {
     PassMarks to;
     std::vector<Eigen::RowVector2d> tcp, contact, lean;
 
-    /// The row at a share of the way from row i - 1 to row i; straight in between, as the outline is.
+    /// Add the row at a share of the way from row i - 1 to row i. Values between rows are interpolated linearly, like
+    /// the outline.
     void add(std::size_t i, double t, double share) {
         const std::size_t b = t < 1.0 ? i - 1 : i;
         const auto between = [&](const std::vector<double>& values) {
@@ -55,7 +57,8 @@ struct Rows {
     }
 };
 
-/// The way since the last dip at the pass's end [mm]; `before_mm` at its beginning.
+/// Narrow a pass and return the way since the last dip at its end [mm]. `before_mm`: the way since the last dip at its
+/// beginning.
 double narrow_pass(PassMarks& marks, const Paint& paint, const std::vector<double>& dips_mm, double before_mm) {
     require_usable(marks);
     if (std::size_t(marks.tcp_mm.rows()) != marks.pose.size())
@@ -75,7 +78,8 @@ double narrow_pass(PassMarks& marks, const Paint& paint, const std::vector<doubl
         for (int k = 1; k <= parts; ++k) {
             checkpoint();
             const double to = way + step * k / parts;
-            for (; dip < dips_mm.size() && dips_mm[dip] <= to; ++dip) {  // wide from here on, narrow up to here
+            // narrow up to the dip, wide from there on
+            for (; dip < dips_mm.size() && dips_mm[dip] <= to; ++dip) {
                 const double at = std::max(dips_mm[dip], way), t = step > 0.0 ? (at - way) / step : 1.0;
                 if (i > 0 && t > 0.0 && t < 1.0) {
                     rows.add(i, t, paint.width_share(at - dipped_at));

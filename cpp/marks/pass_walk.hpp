@@ -9,14 +9,14 @@
 
 namespace brushsvg {
 
-/// A stretch of the TCP's way, straight, part of the way above the paper: depths below 0 are heights.
+/// A straight stretch of the TCP's path, part of it above the paper. Depths below 0 are heights.
 template <class T>
 struct AboveStretch {
     Vec2<T> from, to;
     T depth_from, depth_to;
 };
 
-/// The TCP's way as it stands in a pass. deeper_mm: how much deeper than -z the brush is pressed.
+/// The TCP's path as it is commanded in a pass. deeper_mm: how much deeper than -z the brush is pressed.
 template <class T>
 struct CommandedWay {
     const Poses& poses;
@@ -26,23 +26,23 @@ struct CommandedWay {
     Eigen::Index count() const { return poses.rows(); }
     Vec2<T> tcp(Eigen::Index i) const { return poses.row(i).head<2>().transpose().template cast<T>(); }
     T depth(Eigen::Index i) const { return T(deeper_mm - poses(i, 2)); }
-    /// By how much the tool turns on this arc from pose i to the next.
+    /// Return by how much the tool turns on this arc from pose i to the next [rad].
     T turn(const Arc& arc, Eigen::Index i) const {
         return T(turn_between(arc, poses.row(i).head<2>().transpose(), poses.row(i + 1).head<2>().transpose()));
     }
 };
 
-/// The TCP's way in a pass, stretch by stretch, on any scalar: where it is above the paper, meets it and draws on it.
-/// Way: a CommandedWay, or another type with places, depths and arcs. Called, with i the pose before and shares of the
-/// move from there to the next one:
+/// Walk along the TCP's path of a pass, stretch by stretch, with any scalar type: above the paper, set down, or on the
+/// paper. Way: a CommandedWay, or another type with places, depths and arcs. `i` is the pose before a stretch. Shares
+/// refer to the move from there to the next pose. These functions are called:
 ///
-///     to.above(i, stretch, end, touches)  above the paper, up to `end` of the move, where it is set down or not
+///     to.above(i, stretch, end, touches)  above the paper, up to `end` of the move; whether it is set down there
 ///     to.touch(i, at, tcp)                set down
 ///     to.move(motion, i, begin, end)      on the paper: a Move, or an ArcMove
 ///     to.is_done()                        whether to stop
 ///
-/// A pass that begins below the paper's surface is set down on the spot, and one that ends there is lifted on the
-/// spot: moves from 0 to 0 of what follows the pose.
+/// A pass that begins below the paper's surface is set down on the spot, and a pass that ends there is lifted on the
+/// spot. These moves have shares from 0 to 0.
 template <class T, class Way, class To>
 void walk_pass(const Way& way, To& to) {
     using Index = Eigen::Index;

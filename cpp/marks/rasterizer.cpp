@@ -14,12 +14,12 @@
 namespace brushsvg {
 namespace {
 
-// a picture of more would not fit into most memories; finer pixels show nothing of paint
+// a larger picture would not fit into most memories; finer pixels show no more of the paint
 constexpr double kMostPixels = 4e8;
 constexpr std::array<double, 2> kPxPerMm{1e-6, 1e6};
-// what is left of sums in single precision where nothing is painted
+// rounding error of sums in single precision where nothing is painted
 constexpr float kRounding = 1e-6f;
-constexpr Eigen::Index kPixelsAtOnce = 1 << 18;  // of a part of a picture, which one processor makes
+constexpr Eigen::Index kPixelsAtOnce = 1 << 18;  // size of a part of a picture that one processor makes
 
 }  // namespace
 
@@ -261,8 +261,8 @@ void Rasterizer::chains(const Ring& a, const Ring* b) {
     if (b) split(*b, left_b_, right_b_);
     side(left_a_, left_b_, 1.0, left_);
     side(right_a_, right_b_, -1.0, right_);
-    // bands covered over their whole height count by their middle line, the two cut by the top and the bottom of
-    // the shape by the part covered: without them a horizontal edge would be off by half a band
+    // bands that are covered over their whole height count by their middle line; the bands at the top and the bottom of
+    // the shape count by the covered part: otherwise a horizontal edge would be off by half a band
     const double top = std::clamp(left_.front().y, -1.0, double(lines()) + 1.0);
     const double bottom = std::clamp(left_.back().y, -1.0, double(lines()) + 1.0);
     const int full = int(std::ceil(top)), cut = int(std::floor(bottom));

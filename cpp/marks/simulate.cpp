@@ -15,10 +15,10 @@
 namespace brushsvg {
 namespace {
 
-/// Rows of a pass, at most: real ones have one to twenty a pose, landings some hundred.
+/// Most rows of a pass. Real passes have one to twenty rows per pose; landings have some hundred.
 constexpr std::size_t kMostRows = 1000000, kMostRowsPerPose = 100;
 
-/// The footprint's bounding box about the contact, for the sampling: how far back, forward and to the sides it reaches.
+/// Extents of the footprint by depth, for the sampling: how far it reaches forward and to the sides.
 struct Extents {
     std::vector<double> depth, front, half_width;
 
@@ -45,18 +45,18 @@ struct Extents {
     }
 };
 
-/// Poses nearer to each other than this on the paper are one place; files are rounded to 1e-7 mm.
+/// Poses nearer to each other on the paper than this [mm] are one place. Files are rounded to 1e-7 mm.
 constexpr double kOnTheSpotMm = 1e-6;
 
-/// Rows at a pose have its index, up to the rounding of shares of a move.
+/// Tolerance of a pose index: rows at a pose have its index, up to the rounding of shares of a move.
 constexpr double kSamePose = 1e-9;
 
-/// The way of the place where the brush's axis meets the paper, q + d s, which the patch trails: straight from pose to
-/// pose. An upright brush's axis is over its tip, and its way is that of the poses.
+/// The path of the place where the brush's axis meets the paper, q + d s. The patch trails this place, which moves
+/// straight from pose to pose. An upright brush's axis is over its tip, so its path is that of the poses.
 ///
 /// While its tip goes straight down on the paper, or up from it, a leaning brush's axis wanders over the paper. The
-/// patch trails it from where it is at the deepest: bristles that are pressed down would else fall the way that the
-/// brush leans however little it does, and real strokes (benchmarks/real_paint.py --tilt) fit worse so.
+/// patch trails the axis from where it is at the deepest. Otherwise bristles that are pressed down would fall the way
+/// that the brush leans, even if it leans only a little. Real strokes (benchmarks/real_paint.py --tilt) fit worse so.
 struct AxisWay {
     Ring lean{0, 2};  ///< per pose, s = (a_x, a_y) / a_z of the tool axis a; empty: upright
     Poses poses_mm;
@@ -68,7 +68,7 @@ struct AxisWay {
         lean = pass.tool_axes.leftCols<2>().array().colwise() / pass.tool_axes.col(2).array();
         const Ring axis = tip.leftCols<2>().array() - lean.array().colwise() * tip.col(2).array();
         poses_mm.leftCols<2>() = axis;
-        // from pose i to the next one on the spot: 1 up, -1 down, 0 elsewhere or not at all
+        // direction from pose i to the next one: 1 up on the spot, -1 down on the spot, 0 otherwise
         const auto goes = [&](Eigen::Index i) {
             const Eigen::RowVector3d way = tip.row(i + 1) - tip.row(i);
             return way.head<2>().norm() > kOnTheSpotMm ? 0 : (way.z() > 0.0) - (way.z() < 0.0);
@@ -125,7 +125,8 @@ class Tracer {
         place(double(i) + at, 0.0);
         state_ = touch_down<double>(q);
         state_.heading = last_heading_;
-        if (moved_once_) first_row_ = out_.pose.size();  // before any motion the first rows wait for a heading too
+        // before any motion the first rows wait for a heading too
+        if (moved_once_) first_row_ = out_.pose.size();
         moved_ = false;
         row(q, 0.0, state_, 0.0);
     }
@@ -143,14 +144,15 @@ class Tracer {
         out_.contact_mm = Eigen::Map<const Ring>(contact_.data(), n, 2);
         if (lean_.rows() == 0) return;
         out_.lean_mm_per_mm.resize(n, 2);
-        for (Eigen::Index i = 0; i < n; ++i) {  // what was followed was the axis on the paper, not the tip
+        // the path followed is that of the axis on the paper, not of the tip
+        for (Eigen::Index i = 0; i < n; ++i) {
             out_.tcp_mm.row(i) = between_poses(poses_mm_.leftCols<2>(), out_.pose[std::size_t(i)]);
             out_.lean_mm_per_mm.row(i) = between_poses(lean_, out_.pose[std::size_t(i)]);
         }
     }
 
  private:
-    /// Poses index and fractions of the following rows: pose + scale * t.
+    /// Set the pose indices of the following rows, with fractions: pose + scale * t.
     void place(double pose, double scale) {
         pose_ = pose;
         scale_ = scale;
@@ -162,7 +164,7 @@ class Tracer {
         add(t, q, -z, away, 0.0);
     }
 
-    /// Rows of one table per pose, at an index with fractions.
+    /// Interpolate a table with one row per pose, at an index with fractions.
     template <class Table>
     static Eigen::RowVector2d between_poses(const Table& table, double pose) {
         const auto i = std::min(Eigen::Index(pose), table.rows() - 1), next = std::min(i + 1, table.rows() - 1);
@@ -170,14 +172,17 @@ class Tracer {
         return (1.0 - share) * table.row(i) + share * table.row(next);
     }
 
-    /// What the footprint looks like at one instant; its corners stand for its motion.
-    using Columns = Eigen::Array<double, Eigen::Dynamic, 2>;  // read along x and y, once for each normal
+    /// The footprint at one instant. Its corners are used to follow its motion.
+    // stored by columns: x and y are read once for each normal
+    using Columns = Eigen::Array<double, Eigen::Dynamic, 2>;
     struct Instant {
         LagState<double> state;
         double depth, pull;
-        Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity();  ///< of a tilted brush, about the contact
-        Eigen::Matrix<double, 2, 5> corners;  ///< of its bounding box, and the widest section's centre
-        mutable Columns outline;              ///< once it was needed: both parts of a way need their common end's
+        /// Stretch of a tilted brush's footprint, about the contact.
+        Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity();
+        Eigen::Matrix<double, 2, 5> corners;  ///< corners of its bounding box, and the widest section's centre
+        /// Filled in when needed: both halves of a motion use the outline at their common end.
+        mutable Columns outline;
     };
 
     template <class Piece, class Motion>
@@ -209,13 +214,14 @@ class Tracer {
     template <class Piece, class Motion>
     void sample(const Piece& piece, const Motion& m, const LagState<double>& start, double begin, double end) {
         if (law_.rigid && !moved_) take_heading(start);
-        // the event that begins this phase; a pen's turn
+        // a row for the event that begins this phase, or for a pen's turn
         if (begin > 0.0 || tightens_at_once(start) || turns_at_once(start, m.depth(begin)))
             row(m.tcp(begin), m.depth(begin), start, begin);
-        // straight out from the contact the heading is the direction of motion from the first instant
+        // if the brush moves straight away from the contact, the heading is the direction of motion from the first
+        // instant
         LagState<double> from = start;
         if (!from.taut && !from.heading_known && m.length > 0.0) from.heading = m.direction(begin);
-        // outlines are blended between measured depths and laws have kinks: between two rows there must be none
+        // outlines are blended between measured depths, and laws have kinks: there must be none between two rows
         std::vector<double> ends{end};
         for (double depth : kinks_) {
             const double t = (depth - m.depth_from) / m.depth_by;
@@ -233,8 +239,8 @@ class Tracer {
         }
     }
 
-    /// Whether a footprint on its way from one instant to the next is on one side of the window. Both of them are
-    /// within their corners; on the way none is off by more than twice the length of the way.
+    /// Return whether a footprint stays on one side of the window on its way from one instant to the next. At both
+    /// instants it is within its corners. In between, no corner is off by more than twice the length of the way.
     template <class Motion>
     bool is_beside(const Instant& a, const Instant& b, const Motion& m) const {
         if (!window_ || !moved_) return false;
@@ -245,12 +251,13 @@ class Tracer {
                high.y() + about < window_->y_mm || low.y() - about > window_->y_mm + window_->height_mm + tolerance_;
     }
 
-    /// A landing can end with the lever drawn out to a rounding error: it is dragged from there, not from the next
-    /// pose.
+    /// Return whether the lever is taut at once. A landing can end with the lever drawn out up to a rounding error.
+    /// Then the brush is dragged from there, not from the next pose.
     bool tightens_at_once(const LagState<double>& start) const {
         return start.taut && start.heading_known && !law_.rigid && !out_.taut.back();
     }
-    /// A pen heads along the next move at once: with no second row there the turn would be spread over that move.
+    /// Return whether a pen turns here. It heads along the next move at once. Without a second row, the turn would be
+    /// spread over that move.
     bool turns_at_once(const LagState<double>& start, double depth) const {
         if (!law_.rigid || !moved_) return false;
         const auto [front, half] = extents_.at(depth);
@@ -264,27 +271,27 @@ class Tracer {
         const double tm = 0.5 * (ta + tb);
         const Instant c = instant(piece, m, start, begin, tm);
         const double bend = (c.corners - 0.5 * (a.corners + b.corners)).colwise().norm().maxCoeff();
-        // a chord of the motion says nothing of a wide turn
+        // a chord of the motion does not show a wide turn
         const bool turned = a.state.heading.dot(b.state.heading) < 0.8;
-        const bool pressed = std::abs(a.depth - b.depth) > 0.5;  // nor of laws that bend twice
+        const bool pressed = std::abs(a.depth - b.depth) > 0.5;  // nor does it show laws that bend twice
         if (bend <= tolerance_ && !((turned || pressed) && level < 24) && !(level < 12 && shape_bends(a, b, c))) return;
         split(piece, m, start, begin, ta, a, tm, c, level + 1);
         row(m.tcp(tm), m.depth(tm), c.state, tm);
         split(piece, m, start, begin, tm, c, tb, b, level + 1);
     }
 
-    /// Whether the outline half way is further than the tolerance from the mean of the outlines at both ends, as
-    /// support functions h(n) = max n.v (Hausdorff distance of convex shapes): the hull of both ends is what they sweep
-    /// only where it is not.
+    /// Return whether the outline half way differs by more than the tolerance from the mean of the outlines at both
+    /// ends. Outlines are compared by their support functions h(n) = max n.v (Hausdorff distance of convex shapes).
+    /// Only where they agree is the hull of both ends the area that they sweep.
     bool shape_bends(const Instant& a, const Instant& b, const Instant& c) const {
         if (!for_outlines_) return false;
         const bool grows = std::abs(a.depth - b.depth) > 0.1 || std::abs(a.pull - b.pull) > 0.05 ||
                            (a.stretch - b.stretch).cwiseAbs().maxCoeff() > 0.01;
-        // turning about a point of its flank a footprint leaves a waist that no hull has; while it is dragged forwards
-        // the widest section has painted there before
+        // a footprint that turns about a point of its flank leaves a waist that no hull has; while it is dragged
+        // forwards the widest section has painted there before
         const bool turns_in_place = !a.state.taut && a.state.heading.dot(b.state.heading) < 1.0 - 1e-8;
         if (!grows && !turns_in_place) return false;
-        // along the normals of the middle outline's edges: long flanks show it, and only there
+        // compare along the normals of the middle outline's edges: only long flanks show a difference
         const Columns &from = outline_of(a), &to = outline_of(b), &between = outline_of(c);
         const auto reach = [](const Columns& outline, const Vec2<double>& normal) {
             return (outline.col(0) * normal.x() + outline.col(1) * normal.y()).maxCoeff();
@@ -314,14 +321,14 @@ class Tracer {
         return ((upright.rowwise() - contact) * now.stretch).rowwise() + contact;
     }
 
-    /// r'/r, 1 when taut.
+    /// Return r'/r, which is 1 when taut.
     double pull_of(const LagState<double>& state, const Vec2<double>& q, double depth) const {
         const double r = law_.at(depth);
         return state.taut || law_.rigid || r <= 0.0 ? 1.0 : std::min(1.0, (q - state.contact).norm() / r);
     }
 
-    /// Rows since touch-down, or since the pass began, take the first heading there is. A pen is taut before it has
-    /// one.
+    /// Give the first known heading to all rows since touch-down, or since the pass began. A pen is taut before it has
+    /// a heading.
     void take_heading(const LagState<double>& state) {
         if (!moved_ && (state.heading_known || (state.taut && !law_.rigid))) {
             std::fill(out_.heading_rad.begin() + first_row_, out_.heading_rad.end(),
@@ -353,8 +360,8 @@ class Tracer {
     }
 
     const Brush& brush_;
-    const Window* window_;  ///< outside of which only the rows of ends are kept; none: there is no such place
-    const Ring& lean_;      ///< per pose; empty: upright
+    const Window* window_;  ///< outside of it only the rows at ends are kept; none: keep all rows
+    const Ring& lean_;      ///< lean at each pose; empty for an upright brush
     LagLaw<double> law_;
     Extents extents_;
     std::vector<double> kinks_;
@@ -367,7 +374,7 @@ class Tracer {
     std::vector<double> tcp_, contact_;
     double pose_ = 0.0, scale_ = 1.0;
     Vec2<double> last_heading_ = Vec2<double>(1.0, 0.0);
-    std::size_t first_row_ = 0;  ///< of those that wait for a heading
+    std::size_t first_row_ = 0;  ///< first of the rows that wait for a heading
     bool moved_ = false, moved_once_ = false;
 };
 
@@ -406,7 +413,8 @@ void refuse_bad_poses(const Pass& pass, const Brush& brush, bool may_rise) {
         throw Error("above-paper", text, pass.stroke, z,
                     std::array<double, 2>{-std::numeric_limits<double>::infinity(), 0.0});
     }
-    if (lowest > 0.0) {  // all of it: a wrong sign, for a way above the paper paints nothing
+    // all poses are above the paper: probably a wrong sign, because such a pass paints nothing
+    if (lowest > 0.0) {
         char text[200];
         std::snprintf(text, sizeof text,
                       "the brush never touches the paper: its lowest pose is %.3g mm above it; z is the negative depth",
@@ -463,7 +471,7 @@ std::vector<std::size_t> pose_rows(const PassMarks& marks) {
     };
     for (std::size_t row = 0; row < marks.pose.size(); ++row)
         if (is_at(row, rows.size())) rows.push_back(row);
-    // set down on the spot the brush is at its first pose when it has its depth
+    // if it is set down on the spot, the brush is at its first pose when it has reached its depth
     while (!rows.empty() && rows[0] + 1 < marks.pose.size() && is_at(rows[0] + 1, 0) &&
            marks.depth_mm[rows[0] + 1] > marks.depth_mm[rows[0]])
         ++rows[0];

@@ -17,13 +17,13 @@ using Eigen::Vector2d;
 
 constexpr double kLineMm = 0.01;
 constexpr double kRingMm = 0.01;
-constexpr double kLeastSquareMm = 0.5;   // in which paint and drawing differ most
-constexpr int kBlocks = 5;               // the worst place is looked for in steps of a fifth of its size
-constexpr double kEveryMm = 0.5;         // where widths are measured
-constexpr double kMostWidths = 20000.0;  // of a line of many metres
-constexpr double kMostReach = 1e5;       // pixels; no picture has more across
+constexpr double kLeastSquareMm = 0.5;   // least size of the square in which paint and drawing differ most
+constexpr int kBlocks = 5;               // the square is moved in steps of a fifth of its size
+constexpr double kEveryMm = 0.5;         // spacing of the places where widths are measured
+constexpr double kMostWidths = 20000.0;  // most of these places, on a line of many metres
+constexpr double kMostReach = 1e5;       // longest reach in pixels; no picture has more across
 
-/// Sums of values over all squares of so many blocks, from sums over blocks.
+/// Sums of values over all squares of a number of blocks, from sums over blocks.
 class Squares {
  public:
     Squares(Index rows, Index columns) : up_(Sums::Zero(rows + 1, columns + 1)) {}
@@ -32,7 +32,7 @@ class Squares {
         for (Index r = 1; r < up_.rows(); ++r)
             for (Index c = 1; c < up_.cols(); ++c) up_(r, c) += up_(r - 1, c) + up_(r, c - 1) - up_(r - 1, c - 1);
     }
-    /// The largest, and where its first block is.
+    /// Return the largest sum, and where the first block of its square is.
     double largest(Index size, Index& row, Index& column) const {
         double most = -1.0;
         for (Index r = 0; r + size < up_.rows(); ++r)
@@ -47,11 +47,12 @@ class Squares {
     }
 
  private:
-    using Sums = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;  // walked along its rows
+    // row by row, as it is read
+    using Sums = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Sums up_;
 };
 
-/// Share at a place between the middles of pixels, linear in both directions; 0 outside.
+/// Interpolate the share at a place between the middles of pixels, linear in both directions; 0 outside.
 double share_at(const Coverage& shares, const MarkOverlap& seen, const Vector2d& at_mm) {
     const double x = (at_mm.x() - seen.window.x_mm) * seen.px_per_mm - 0.5;
     const double y = (seen.window.y_mm + seen.window.height_mm - at_mm.y()) * seen.px_per_mm - 0.5;
@@ -79,7 +80,7 @@ WorstPlace worst_place(const MarkOverlap& seen, double size_mm) {
     if (!(size_mm * seen.px_per_mm >= 0.0 && size_mm * seen.px_per_mm <= 1e15))
         throw Error("out-of-range", "the square in which the worst place is looked for has no size", "", size_mm);
     const Index block = std::clamp(Index(std::lround(size_mm * seen.px_per_mm / kBlocks)), Index(1),
-                                   std::min(height, width));  // what is left over at the edges is paper
+                                   std::min(height, width));  // the remainder at the edges is paper
     const Index rows = height / block, columns = width / block;
     const Index size =
         std::clamp(Index(std::lround(size_mm * seen.px_per_mm / double(block))), Index(1), std::min(rows, columns));

@@ -15,8 +15,8 @@
 
 namespace brushsvg {
 
-/// What a segment from a to b sweeps on its way to d, c: convex pieces, counter-clockwise. A segment that turns about a
-/// point of its own sweeps two triangles.
+/// Find the area that a segment from a to b sweeps on its way to d, c, as convex counter-clockwise pieces. A segment
+/// that turns about one of its own points sweeps two triangles.
 template <class Piece>
 void swept_by_edge(const Eigen::RowVector2d& a, const Eigen::RowVector2d& b, const Eigen::RowVector2d& c,
                    const Eigen::RowVector2d& d, Piece&& piece) {
@@ -29,7 +29,7 @@ void swept_by_edge(const Eigen::RowVector2d& a, const Eigen::RowVector2d& b, con
         triangle << p, (twice > 0.0 ? q : r), (twice > 0.0 ? r : q);
         piece(triangle);
     };
-    // where segments p0 p1 and q0 q1 cross, if they do
+    // find where segments p0 p1 and q0 q1 cross, and return whether they do
     const auto crossing = [&](const P& p0, const P& p1, const P& q0, const P& q1, P& x) {
         const double side = cross(p1 - p0, q1 - q0);
         if (side == 0.0) return false;
@@ -39,12 +39,13 @@ void swept_by_edge(const Eigen::RowVector2d& a, const Eigen::RowVector2d& b, con
     };
     P x;
     if (crossing(a, b, d, c, x)) {
-        // a little into the shapes (to the left of both edges): rounded, it would else leave a gap next to them
+        // move it a little into the shapes (to the left of both edges): otherwise rounding would leave a gap next to
+        // them
         const P inwards(-(b - a).y(), (b - a).x());
         x += 5e-5 * inwards.normalized();
         emit(a, x, d);
         emit(b, c, x);
-    } else if (crossing(b, c, a, d, x)) {  // turned over on its way: rare and small, all of its hull
+    } else if (crossing(b, c, a, d, x)) {  // turned over on its way: rare and small, so take the whole hull
         emit(a, b, c);
         emit(a, c, d);
         emit(a, b, d);
@@ -58,10 +59,10 @@ void swept_by_edge(const Eigen::RowVector2d& a, const Eigen::RowVector2d& b, con
     }
 }
 
-/// The argument of sweep() for all of it.
+/// Default argument of sweep(): leave nothing out.
 struct Everywhere {};
 
-/// A box about an outline, its tip at (0, 0) and its axis +x.
+/// A box about an outline whose tip is at (0, 0) and whose axis is +x.
 struct OutlineBox {
     double back = 0.0, front = 0.0, side = 0.0;
 
@@ -71,7 +72,7 @@ struct OutlineBox {
     }
 };
 
-/// Such boxes of a whole table, blended as footprint_at() blends the outlines.
+/// The outline boxes of a whole table, blended as footprint_at() blends the outlines.
 class OutlineBoxes {
  public:
     explicit OutlineBoxes(const FootprintTable& table) : dragged_(all(table.dragged)), pressed_(all(table.pressed)) {}
@@ -82,7 +83,7 @@ class OutlineBoxes {
     }
 
  private:
-    using Boxes = std::vector<std::pair<double, OutlineBox>>;  // from depth 0 on, where there is none
+    using Boxes = std::vector<std::pair<double, OutlineBox>>;  // from depth 0 on, where the box is empty
 
     static Boxes all(const std::vector<Footprint>& shapes) {
         Boxes boxes{{0.0, {}}};
@@ -103,10 +104,11 @@ class OutlineBoxes {
     Boxes dragged_, pressed_;
 };
 
-/// The painted area of a pass as simple polygons, counter-clockwise: for every two neighbouring rows what the footprint
-/// sweeps between them. `convex(a, b)` is called with the footprint at both rows when every outline is convex (the
-/// swept area is their hull), else `polygon(ring)` for the footprint and `piece(ring)`, convex, for each edge's sweep.
-/// Convex ones of which `is_beside(low, high)` says that their box is outside are not made.
+/// Find the painted area of a pass as simple counter-clockwise polygons: for every two neighbouring rows the area that
+/// the footprint sweeps between them. If every outline is convex, `convex(a, b)` is called with the footprint at both
+/// rows: the swept area is their hull. Otherwise `polygon(ring)` is called for the footprint, and `piece(ring)`,
+/// convex, for the sweep of each edge. Convex footprints are skipped if `is_beside(low, high)` returns true for their
+/// box.
 template <class Convex, class Polygon, class Piece, class IsBeside = Everywhere>
 void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&& polygon, Piece&& piece,
            [[maybe_unused]] IsBeside&& is_beside = {}) {
@@ -138,7 +140,8 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
     std::optional<OutlineBoxes> boxes;
     if (leaves_out) boxes.emplace(brush.footprints);
     using P = Eigen::RowVector2d;
-    const auto box_of = [&](std::size_t i, P& low, P& high) {  // of the footprint at a row, and a hair more
+    // box of the footprint at a row, slightly enlarged
+    const auto box_of = [&](std::size_t i, P& low, P& high) {
         const double d = marks.depth_mm[i], pull = marks.pull[i], hair = 1e-6;
         if (!(pull >= 0.0 && pull <= 1.0)) {
             constexpr double inf = std::numeric_limits<double>::infinity();
@@ -153,8 +156,8 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
         low = (back.cwiseMin(front) - side).array() - hair;
         high = (back.cwiseMax(front) + side).array() + hair;
     };
-    Ring before;           // none where it was left out
-    bool is_down = false;  // in the row before
+    Ring before;           // empty if it was skipped
+    bool is_down = false;  // whether the brush was on the paper in the row before
     [[maybe_unused]] P low_before, high_before;
     for (std::size_t i = 0; i < marks.pose.size(); ++i) {
         if (marks.depth_mm[i] < 0.0) {  // lifted
@@ -162,7 +165,7 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
             continue;
         }
         checkpoint(5);
-        // where the heading flips over at once (the TCP passing over the patch) nothing is swept in between
+        // where the heading flips over at once (the TCP passes over the patch), nothing is swept in between
         const bool flipped = is_down && std::cos(marks.heading_rad[i] - marks.heading_rad[i - 1]) < 0.8;
         if constexpr (!is_everywhere) {
             if (leaves_out) {

@@ -12,8 +12,9 @@ constexpr double kPi = 3.14159265358979323846;
 
 double grown(int n) { return std::sqrt(2.0 * kPi / n / std::sin(2.0 * kPi / n)); }
 
-/// Hull of two discs as a ring: polygons of n sides (a multiple of 4) whose vertices across the segment are on the
-/// circle, so that the flanks are exact, and whose others are a little outside, so that the caps have the disc's area.
+/// Return the hull of two discs as a ring. The discs are polygons of n sides (a multiple of 4). Their vertices across
+/// the segment are on the circle, so that the flanks are exact. The other vertices are slightly outside, so that the
+/// caps have the disc's area.
 Ring hull_of_discs(const Eigen::Vector2d& a, double ra, const Eigen::Vector2d& b, double rb, int n) {
     const double grow = grown(n);
     const double along = std::atan2(b.y() - a.y(), b.x() - a.x());
@@ -28,8 +29,8 @@ Ring hull_of_discs(const Eigen::Vector2d& a, double ra, const Eigen::Vector2d& b
     return convex_hull(points);
 }
 
-/// Hulls of neighbouring discs; where `is_beside` says of a box, left, bottom, right and top, that it does not show,
-/// none.
+/// Return the hulls of neighbouring discs. A hull is left out if `is_beside` returns true for its box: left, bottom,
+/// right and top.
 template <class IsBeside>
 Rings pieces(const Stroke& stroke, double tolerance_mm, IsBeside&& is_beside) {
     const MiddlePolyline line = flatten(stroke, tolerance_mm);

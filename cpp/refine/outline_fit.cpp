@@ -15,26 +15,27 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-// Shares of the mark's width. Places along the target outline, and at most so many: at twice the distance corners slip
-// through and the worst strokes lose 0.02 of overlap, at half of it nothing is won in twice the time.
+// Lengths are shares of the mark's width. Spacing of places along the target outline, and the most places. At twice the
+// spacing corners slip through and the worst strokes lose 0.02 of overlap. At half of it nothing is won in twice the
+// time.
 constexpr double kSpacing = 0.12;
 constexpr double kMostPlaces = 1500.0;
-// How far an outline of fewer corners may be off: at twice as much the worst strokes lose 0.02.
+// How far a simplified outline may be off. At twice the value the worst strokes lose 0.02.
 constexpr double kCornersOff = 0.01;
-// Up to here a distance counts squared, beyond by itself: else what no footprint can reach, like a square corner,
-// would outweigh what it can. Twice and half of it do as well.
+// Distances below this count squared, larger ones linearly. Otherwise parts that no footprint can reach, like a square
+// corner, would outweigh the reachable parts. Half and twice the value do as well.
 constexpr double kSquared = 0.06;
 
-// Weights that keep an unknown where the outline says nothing of it: of its bends along the way, of turns, of longer
-// steps. At half of them some strokes end in a place they cannot leave, at twice as much nothing changes.
+// Weights that keep an unknown where the outline does not determine it: of bends along the path, of turns, of longer
+// steps. At half the values some strokes get stuck in a bad place; at twice the values nothing changes.
 constexpr double kBends = 0.1, kTurns = 0.05, kLonger = 0.1;
 
-// Steps by Levenberg and Marquardt, damped as Ceres does it (Madsen, Nielsen, Tingleff, Methods for non-linear least
-// squares problems, 2004, 3.2): which share of what was promised a step must win, and which
-// gain cannot be seen. Ceres itself knows nothing of how a control shifts all that is behind it.
+// Levenberg-Marquardt steps, damped as in Ceres (Madsen, Nielsen, Tingleff, Methods for non-linear least squares
+// problems, 2004, 3.2). kLeastKept: share of the predicted gain that a step must reach. kSeen: share of the value below
+// which a change is too small to see. Ceres itself cannot use that a control shifts the whole path behind it.
 constexpr double kLeastKept = 1e-3, kSeen = 1e-4;
 
-/// Places along rings, evenly spaced.
+/// Evenly spaced places along rings.
 struct Places {
     std::vector<Vector2d> at;
     double spacing_mm;
@@ -58,7 +59,8 @@ Places places_along(const Rings& rings, double spacing_mm) {
     return out;
 }
 
-/// f(d) with f^2 near |d|, so that a sum of squares is a sum of distances; smooth: d / (d^2 + c^2)^(1/4).
+/// Value and slope of f(d) = d / (d^2 + c^2)^(1/4). f is smooth and f^2 is near |d|, so a sum of squares is a sum of
+/// distances.
 struct Root {
     double value, slope;
 };
@@ -67,13 +69,13 @@ Root root(double d, double c) {
     return {d * over, over * (1.0 - 0.5 * d * d / s)};
 }
 
-/// A sum of squares near some unknowns: f + g^T d + d^T H d / 2.
+/// Quadratic model of a sum of squares near some unknowns: f + g^T d + d^T H d / 2.
 struct Near {
     VectorXd slope;
-    MatrixXd curvature;  ///< J^T J (Gauss, Newton)
+    MatrixXd curvature;  ///< J^T J (Gauss-Newton)
 };
 
-/// Half the sum of squares of what is to be least.
+/// Half the sum of squares that is minimised.
 class Outlines {
  public:
     Outlines(const PatchPath& path, const Brush& brush, const Rings& wanted, double width)
@@ -110,7 +112,8 @@ class Outlines {
             add(near_[j], near_[j].distance_mm, places_.at[j]);
         }
         of_places_ = pulls_.size();
-        // the target outline sees no tail that runs far out of it: the first and the last footprint must not
+        // no place of the target outline is near a tail that runs far out of it: the first and the last footprint are
+        // pulled in as well
         for (const std::size_t i : {std::size_t(0), samples_.size() - 1})
             for (Index k = 0; k < edge_.corners(); ++k) {
                 EdgePoint corner;
@@ -123,7 +126,7 @@ class Outlines {
         return 0.5 * (sum + x.dot(keeping_ * x));
     }
 
-    /// About the unknowns of which the value was computed last.
+    /// Return the model about the unknowns for which value() was called last.
     Near near(const VectorXd& x) const {
         std::vector<SampleSlope> slopes(samples_.size(), SampleSlope::Zero());
         std::vector<Eigen::Matrix4d> squares(samples_.size(), Eigen::Matrix4d::Zero());
@@ -143,10 +146,10 @@ class Outlines {
     }
 
  private:
-    /// One of the squares, and how it grows with the distance.
+    /// One of the squares, and its slope by the distance.
     struct Pull {
         EdgePoint where;
-        Vector2d from;  ///< the place whose distance it is; of a corner, the direction that is outwards
+        Vector2d from;  ///< the place whose distance it is; for a corner, the outward direction
         double value, slope;
     };
 
@@ -155,8 +158,8 @@ class Outlines {
     Edges wanted_;
     double squared_;
     Places places_;
-    std::vector<EdgePoint> near_;  ///< what was nearest the last time
-    MatrixXd keeping_;             ///< the squares that keep unknowns where the outline says nothing of them
+    std::vector<EdgePoint> near_;  ///< the nearest point of the last evaluation
+    MatrixXd keeping_;             ///< the squares that keep unknowns where the outline does not determine them
     PatchSamples samples_;
     std::vector<Pull> pulls_;
     std::size_t of_places_ = 0;
@@ -170,7 +173,7 @@ VectorXd fit_outline(const PatchPath& path, const Brush& brush, const Rings& wan
     double value = outlines.value(x);
     Near near = outlines.near(x);
     double distrust = 2.0;
-    const VectorXd scale = (1.0 + near.curvature.diagonal().array().sqrt()).inverse();  // of each unknown
+    const VectorXd scale = (1.0 + near.curvature.diagonal().array().sqrt()).inverse();  // for each unknown
     for (int iteration = 0; iteration < iterations; ++iteration) {
         const VectorXd diagonal =
             (near.curvature.diagonal().array() * scale.array().square()).max(1e-6) / (trust * scale.array().square());

@@ -8,9 +8,10 @@
 
 namespace brushsvg::fit {
 
-/// Unknowns of the path with which the outline of its mark fits rings best: the sum of the distances of the rings'
-/// points to it is least, and with it about the area that only one of both holds. `width_mm`: of the mark, about;
-/// `x`: where to begin; `trust`: how large the first step may be, one over its damping.
+/// Fit the path so that the outline of its mark matches the given rings. Returns the unknowns with the least sum of
+/// distances of the rings' points from that outline. This about minimises the area that only one of both covers.
+/// `width_mm`: approximate width of the mark. `x`: initial unknowns. `trust`: how large the first step may be, one over
+/// its damping.
 Eigen::VectorXd fit_outline(const PatchPath& path, const Brush& brush, const Rings& wanted_mm, double width_mm,
                             int iterations, Eigen::VectorXd x, double trust);
 

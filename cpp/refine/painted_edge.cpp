@@ -11,10 +11,10 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 constexpr double kPi = 3.14159265358979323846;
-/// What is rounded where a box is held against an edge [mm].
+/// Rounding error allowed for when a box is compared with an edge [mm].
 constexpr double kRounding = 1e-9;
 
-/// Corners that a polyline cannot do without: the others are no further from it than the tolerance (Douglas, Peucker).
+/// Mark the corners that a polyline needs. The others are no further from it than the tolerance (Douglas, Peucker).
 void keep_corners(const Ring& ring, Index first, Index last, double tolerance, std::vector<bool>& keep) {
     double most = tolerance;
     Index worst = -1;
@@ -41,11 +41,11 @@ Ring outline_about_contact(const FootprintTable& table, const Brush& brush, doub
     return ring;
 }
 
-/// Edges that are looked at as one where they are far away, and footprints.
+/// Number of edges, and of footprints, that are skipped together where they are far away.
 constexpr Index kEdgesTogether = 16;
 constexpr std::size_t kSamplesTogether = 8;
 
-/// Unit vectors, half a turn in even steps: heading and across first.
+/// Return unit vectors in even steps over half a turn: heading and across first.
 template <int n>
 std::array<Vector2d, n> even_axes() {
     std::array<Vector2d, n> axes;
@@ -112,7 +112,7 @@ EdgePoint Edges::nearest(const Vector2d& p) const {
     for (const Some& part : parts_) {
         const double beside_x = std::max({part.left - p.x(), p.x() - part.right, 0.0});
         const double beside_y = std::max({part.bottom - p.y(), p.y() - part.top, 0.0});
-        // not nearer, and nothing that a ray from the point to the right meets
+        // skip edges that are not nearer, unless a ray from the point to the right may meet them
         if (beside_x * beside_x + beside_y * beside_y > best && (beside_y > 0.0 || p.x() > part.right)) continue;
         for (Index k = part.first; k < part.last; ++k) {
             const double px = p.x() - ax_[k], py = p.y() - ay_[k], bx = bx_[k], by = by_[k];

@@ -9,15 +9,15 @@
 
 namespace brushsvg::fit {
 
-/// Where a point is relative to rings, or to what a brush paints on its way.
+/// Position of a point relative to rings, or to the area that a brush paints on its way.
 struct EdgePoint {
-    std::size_t sample = 0;    ///< whose footprint is nearest, or holds the point deepest
-    Eigen::Index edge = 0;     ///< of that footprint's outline, the nearest one,
-    double t = 0.0;            ///< and where on it, in [0, 1]
-    double distance_mm = 0.0;  ///< to it, negative inside
+    std::size_t sample = 0;    ///< the sample whose footprint is nearest, or holds the point deepest
+    Eigen::Index edge = 0;     ///< nearest edge of that footprint's outline
+    double t = 0.0;            ///< position on the edge, in [0, 1]
+    double distance_mm = 0.0;  ///< distance to the edge, negative inside
 };
 
-/// Filled rings, edge by edge, as columns that are worked on at once.
+/// Filled rings, stored edge by edge in columns for vectorised code.
 class Edges {
  public:
     Edges() = default;
@@ -29,11 +29,11 @@ class Edges {
     Eigen::Vector2d place(Eigen::Index edge, double t) const {
         return {ax_[edge] + t * bx_[edge], ay_[edge] + t * by_[edge]};
     }
-    /// Unit vector from the inside to the outside where a point was found.
+    /// Return the unit vector from the inside to the outside where a point was found.
     Eigen::Vector2d outwards(const Eigen::Vector2d& point_mm, const EdgePoint& found) const;
 
  private:
-    /// Some edges in a row, within a box.
+    /// Some consecutive edges, within a box.
     struct Some {
         Eigen::Index first, last;
         double left, bottom, right, top;
@@ -47,38 +47,38 @@ class Edges {
     std::vector<Some> parts_;
 };
 
-/// The part of a sum that grows with a sample's x, y, heading and depth: per mm, per rad.
+/// Derivatives of a sum by a sample's x, y, heading and depth: per mm, per rad.
 using SampleSlope = Eigen::Vector4d;
 
-/// What the brush paints on its way, as footprints side by side: the signed distance from their union.
+/// The area that the brush paints on its way, as footprints side by side, with the signed distance from their union.
 ///
-/// A union's distance is the least of its parts' (outside exactly, inside near its edge), and its derivative is that of
-/// the part alone: which part it is changes with the unknowns, but where it changes both are equally near (envelope
-/// theorem).
+/// A union's distance is the least of its parts' distances (exact outside, and inside near its edge). Its derivative is
+/// the derivative of the nearest part alone. Which part is nearest changes with the unknowns, but where it changes both
+/// are equally near (envelope theorem).
 class PaintedEdge {
  public:
-    /// Outlines are used with fewer corners, at most `tolerance_mm` off.
+    /// `tolerance_mm`: how far the simplified footprint outlines may be off.
     PaintedEdge(const Brush& brush, double tolerance_mm);
 
     void place(const PatchSamples& samples);
-    /// `near`: a sample to begin with, the nearest known.
+    /// Find the nearest edge to a point. `near`: sample with which the search begins, the nearest known one.
     EdgePoint nearest(const Eigen::Vector2d& point_mm, std::size_t near) const;
-    /// How the distance of a point that was found grows.
+    /// Return the derivatives of the distance of a point that was found.
     SampleSlope slope(const Eigen::Vector2d& point_mm, const EdgePoint& found) const;
-    /// How far a place on a footprint's outline moves in a direction.
+    /// Return the derivatives of how far a place on a footprint's outline moves in a direction.
     SampleSlope moves(const EdgePoint& place, const Eigen::Vector2d& direction) const;
     Eigen::Vector2d place_of(const EdgePoint& place) const;
     Eigen::Index corners() const { return few_.vertex_count(); }
 
  private:
     static constexpr int kAxes = 8;
-    /// A footprint about its contact, heading along +x, and how far it reaches along axes and against them.
+    /// A footprint about its contact, heading along +x, and its extent along axes in both directions.
     struct Placed {
         Eigen::Vector2d contact, heading;
         Edges outline;
         std::array<double, kAxes> ahead, behind;
         double depth, reach;
-        mutable Ring by_depth;  ///< how the outline grows, once it was needed
+        mutable Ring by_depth;  ///< derivative of the outline by depth, computed when first needed
 
         Eigen::Vector2d seen_from(const Eigen::Vector2d& p) const {
             const Eigen::Vector2d from = p - contact;
@@ -87,10 +87,11 @@ class PaintedEdge {
         Eigen::Vector2d on_paper(const Eigen::Vector2d& v) const {
             return {heading.x() * v.x() - heading.y() * v.y(), heading.y() * v.x() + heading.x() * v.y()};
         }
-        /// No place of the footprint is nearer to the point; where that is inside, none of its edge deeper.
+        /// Return a lower bound of the point's signed distance: no place of the footprint is nearer, and no edge is
+        /// deeper.
         double at_least_mm(const Eigen::Vector2d& seen) const;
     };
-    /// Neighbours, within a circle.
+    /// Neighbouring footprints, within a circle.
     struct Together {
         std::size_t first, last;
         Eigen::Vector2d middle;

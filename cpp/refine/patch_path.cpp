@@ -17,12 +17,12 @@ using Eigen::Vector2d;
 using Eigen::VectorXd;
 
 constexpr double kPi = 3.14159265358979323846;
-/// A turn in place counts as so much way per radian: it needs samples and controls of its own.
+/// Path length that a turn in place counts for [mm per rad]: it needs samples and controls of its own.
 constexpr double kWayPerRadian = 1.0;
-/// Neighbours with the patch at rest in one place and headings more than 120 degrees apart are those before and after
-/// the brush turns over: samples of a turn in place are closer.
+/// Limits that detect a turning over: the patch rests in one place and the headings of neighbours are more than 120
+/// degrees apart. Samples of a turn in place are closer.
 constexpr double kTurnedOver = -0.5, kRestsMm = 0.01;
-/// A dab is given some way, or no factor could make it a stroke.
+/// Path length that a dab gets [mm]. Without a length no factor could make it a stroke.
 constexpr double kLeastWayMm = 1.0;
 
 double unwrapped(double angle, double near) { return angle - 2.0 * kPi * std::round((angle - near) / (2.0 * kPi)); }
@@ -42,7 +42,7 @@ PatchPath::Splines PatchPath::splines_at(double t, int controls) {
     const int k = std::clamp(int(t * spans), 0, spans - 1);
     const auto knot = [&](int i) { return double(std::clamp(i - 3, 0, spans)) / spans; };
     Splines out{k, {1.0, 0.0, 0.0, 0.0}};
-    for (int degree = 1; degree <= 3; ++degree) {  // Cox and de Boor
+    for (int degree = 1; degree <= 3; ++degree) {  // algorithm of Cox and de Boor
         double saved = 0.0;
         for (int r = 0; r < degree; ++r) {
             const double right = knot(k + 3 + r + 1) - t, left = t - knot(k + 3 + 1 - degree + r);
@@ -83,7 +83,7 @@ PatchSamples PatchPath::at(const VectorXd& x) const {
 VectorXd PatchPath::slope(const PatchSamples& samples, const std::vector<Eigen::Vector4d>& by_samples) const {
     const Index turns = 2, longer = turns + controls_, deeper = longer + controls_;
     VectorXd out = VectorXd::Zero(unknowns());
-    Vector2d behind = Vector2d::Zero();  // by the contacts of all samples behind a step
+    Vector2d behind = Vector2d::Zero();  // derivatives by the contacts of all samples behind a step
     for (std::size_t i = samples.size(); i-- > 0;) {
         if (i + 1 < samples.size()) {
             const Vector2d step = samples[i + 1].contact_mm - samples[i].contact_mm;
@@ -101,18 +101,19 @@ VectorXd PatchPath::slope(const PatchSamples& samples, const std::vector<Eigen::
 }
 
 MatrixXd PatchPath::curvature(const PatchSamples& samples, const std::vector<Eigen::Matrix4d>& by_samples) const {
-    // A contact's slopes are X_i = X_0 + D_0 + .. + D_(i-1), by the steps up to it. With C_l = P_(l+1) + .. of the
-    // contacts' blocks P, sum X_i^T P_i X_i = X_0^T C_(-1) X_0 + sum X_l^T C_l D_l + its transpose + D_l^T C_l D_l.
+    // A contact's derivatives are X_i = X_0 + D_0 + .. + D_(i-1), by the steps up to it. Let P be the contacts' blocks
+    // and C_l = P_(l+1) + .. their sums. Then sum X_i^T P_i X_i = X_0^T C_(-1) X_0 + sum X_l^T C_l D_l + its transpose
+    // + D_l^T C_l D_l.
     const Index turns = 2, longer = turns + controls_, deeper = longer + controls_, n = unknowns();
     std::vector<Eigen::Matrix2d> behind(samples.size(), Eigen::Matrix2d::Zero());
     for (std::size_t i = samples.size() - 1; i-- > 0;)
         behind[i] = behind[i + 1] + by_samples[i + 1].topLeftCorner<2, 2>();
-    MatrixXd half = MatrixXd::Zero(n, n);     // what its transpose is to be added to
+    MatrixXd half = MatrixXd::Zero(n, n);     // the result is this matrix plus its transpose
     MatrixXd contact = MatrixXd::Zero(n, 2);  // X_i, a column for x and one for y
     contact(0, 0) = contact(1, 1) = 1.0;
     half.topLeftCorner<2, 2>() = 0.5 * (behind[0] + by_samples[0].topLeftCorner<2, 2>());
-    Index reached = 2;  // of the turns' unknowns, those that the contact knows
-    // adds X_i^T v to the column of an unknown
+    Index reached = 2;  // end of the turns' unknowns that move the contact
+    // add X_i^T v to the column of an unknown
     const auto add = [&](Index unknown, const Vector2d& v) {
         half.col(unknown).head(reached) += contact.topRows(reached) * v;
         half.col(unknown).segment(longer, reached - turns) += contact.middleRows(longer, reached - turns) * v;
@@ -158,7 +159,7 @@ double way_of(const PatchSamples& samples) {
 
 namespace {
 
-/// Rows of a trace as samples, those left out where nothing moves, and the way up to each.
+/// Rows of a trace as samples, without those where nothing moves, and the path length up to each.
 struct Rows {
     PatchSamples samples;
     std::vector<double> way;
@@ -177,7 +178,7 @@ struct Rows {
             samples.push_back(row);
         }
     }
-    /// Evenly resampled: at least so many.
+    /// Append the samples, evenly resampled to between `least` and `most`.
     void into(PatchSamples& out, double step_mm, std::size_t least, std::size_t most) const {
         const std::size_t n = std::clamp(std::size_t(std::ceil(way.back() / step_mm)) + 1, least, most);
         std::size_t j = 0;
@@ -196,13 +197,14 @@ PatchSamples patch_path(const Pass& pass, const Brush& brush, double step_mm, st
     const PassMarks marks = simulate(pass, brush, 0.02, false);
     std::size_t begin = 0, end = marks.taut.size();
     while (begin < end && !marks.taut[begin]) ++begin;
-    // the landing ends at a pose where the brush is about to be taut
+    // the landing ends at a pose after which the brush becomes taut
     if (begin > 0 && begin < end && marks.pose[begin - 1] == std::floor(marks.pose[begin - 1])) --begin;
     while (end > begin && !marks.taut[end - 1]) --end;
     if (begin == end) return {};
     PatchSamples out;
     double heading = marks.heading_rad[begin];
-    for (const TurnOver& turn : turns_over(marks)) {  // P rests there: the part between both ends is not painted
+    // P rests there: the part between both ends is not painted
+    for (const TurnOver& turn : turns_over(marks)) {
         const Rows rows(marks, begin, turn.first, heading);
         if (rows.samples.size() > 1) rows.into(out, step_mm, 2, most);
         begin = turn.last;
@@ -224,7 +226,8 @@ bool turns_over(const PatchSample& a, const PatchSample& b) {
 
 namespace {
 
-/// The way with as many samples more as turns ask for: the heading between poses is never far from what it says.
+/// Return the path with additional samples in turns. They keep the heading between poses close to the samples'
+/// headings.
 PatchSamples turns_in_steps(const PatchSamples& samples) {
     PatchSamples out{samples[0]};
     for (std::size_t i = 1; i < samples.size(); ++i) {
@@ -249,7 +252,7 @@ Poses poses_along(const PatchSamples& coarse, const Brush& brush, double toleran
     PoseList list;
     land(stance(samples.front()), brush, list);
     std::size_t from = 0;
-    // as long a chord as the samples between allow
+    // as long a chord as the samples between its ends allow
     const auto fits = [&](std::size_t a, std::size_t b) {
         if (std::abs(samples[b].heading_rad - samples[a].heading_rad) > kTurnStepRad) return false;
         const Vector2d q = tcp(samples[a]), by = tcp(samples[b]) - q;

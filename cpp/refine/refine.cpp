@@ -19,37 +19,39 @@ namespace {
 
 using Eigen::Index;
 
-// Samples of the patch's way, in half widths of the mark: further apart the footprints leave waists between them.
+// Spacing of samples along the patch's path, in half widths of the mark. With a wider spacing, waists show between the
+// footprints.
 constexpr double kStep = 0.3, kWidestStep = 0.6;
 constexpr std::size_t kMostSamples = 1000;
-// Controls of the splines along the way, in half widths: twice as far apart ends and corners keep what they miss (0.002
-// of overlap), closer nothing is won. At most so many, since the effort grows with their cube.
+// Spacing of the splines' controls along the path, in half widths. At twice the spacing, ends and corners keep their
+// errors (0.002 of overlap); a smaller spacing wins nothing. The number of controls is limited because the effort grows
+// with its cube.
 constexpr double kControl = 1.5;
 constexpr int kMostControls = 60;
-// Less paints nothing that would not dry on the way.
+// Least depth [mm]: with less depth, the paint would dry on the way.
 constexpr double kLeastDepthMm = 0.2;
-// Reach of the TCP beyond the sheet, that of a machine which says nothing else.
+// How far the TCP may go beyond the sheet [mm], if the machine does not specify it.
 constexpr double kBeyondSheetMm = 30.0;
-// A blunt beginning needs a patch that comes in from the side, which no small step finds: where the overlap stays below
-// what is good, the way is turned at its beginning by so much [rad] and tried again.
+// A blunt start needs a patch that comes in from the side, which no small step finds. Where the overlap stays below
+// kGood, the path is turned at its start by kFirstTurn [rad] and fitted again.
 constexpr double kFirstTurn = 1.2, kGood = 0.93;
-// How large the first step may be. Where so much more of overlap was seen, but in no mark that is calm enough, smaller
-// steps find another: without, a bar of 12 mm keeps its pointed beginning.
+// How large the first step may be. If a mark had kMissed more overlap but no such mark is calm enough, smaller steps
+// find another one. Without them, a bar of 12 mm keeps its pointed start.
 constexpr double kTrust = 1e4, kLessTrust = 3e2, kMissed = 0.01;
-// Shares of the tolerance: of the tool's chords, and of what fewer poses may change of the mark. At twice as much of
-// the latter a tenth of them is saved, and the overlap loses as much again (0.0025 on characters) as it did (0.0006).
+// Shares of the tolerance: for the tool's chords, and for how much fewer poses may change the mark. Twice the second
+// share saves a tenth of the poses. The overlap then loses as much again (0.0025 on characters) as before (0.0006).
 constexpr double kChords = 0.2, kThinned = 0.5;
-constexpr double kRingTolerance = 0.01;  // as in the report
-// Pixels of what is tried: on half the width of the mark, for each mm, and in all. The report's are elsewhere, and may
-// count so much more or less of overlap.
+constexpr double kRingTolerance = 0.01;  // tolerance of outlines [mm], as in the report
+// Pixels of the trial marks: on half the width of the mark, and in all. The report's pixels are elsewhere, and their
+// overlap may differ by kPixelsErr.
 constexpr double kAcrossPx = 6.0, kMostPx = 4e6, kPixelsErr = 0.005;
 constexpr std::array<double, 2> kPxPerMm{8.0, 40.0};
-// Of overlap, what a full turn of the mark's outline and what a thorn is worth: curls and thorns cover more, and the
-// eye sees them first. At 0.15 and 0.03 strokes of characters lose 0.003 of overlap, at half of these marks of letters
-// turn more than in closed form. Letters as a whole are looked at in Python (planning/touching_strokes.py).
+// Overlap that a full turn of the mark's outline costs, and a thorn. Curls and thorns cover more, and the eye sees them
+// first. At 0.15 and 0.03, strokes of characters lose 0.003 of overlap. At half the values, marks of letters turn more
+// than in closed form. Letters as a whole are checked in Python (planning/touching_strokes.py).
 constexpr double kCalm = 0.1, kThorn = 0.02;
-// Where the whole step is not calm, such parts of it are tried: without, strokes of letters overlap by 0.002 less,
-// those of characters by 0.003.
+// Parts of the step that are tried where the whole step is not calm. Without them, strokes of letters overlap by 0.002
+// less, strokes of characters by 0.003.
 constexpr std::array<double, 4> kParts{1.0, 0.75, 0.5, 0.25};
 
 double mean_half_width(const Stroke& stroke, const Brush& brush) {
@@ -59,7 +61,8 @@ double mean_half_width(const Stroke& stroke, const Brush& brush) {
     return sum / 101.0;
 }
 
-/// Depths that the brush was measured at, and those that the stroke needs anyway: no warning comes on top.
+/// Return the depths that were measured for the brush, extended to the depths that the stroke needs anyway. This adds
+/// no warning.
 std::array<double, 2> depths_for(const PatchSamples& samples, const Brush& brush) {
     double least = samples[0].depth_mm, greatest = least;
     for (const PatchSample& sample : samples) {
@@ -76,7 +79,7 @@ std::array<double, 2> depths_for(const PatchSamples& samples, const Brush& brush
     return {std::min(lo, least), std::max(hi, greatest)};
 }
 
-/// How far a box reaches beyond the sheet [mm].
+/// Return how far a box reaches beyond the sheet [mm].
 double beyond(const std::array<double, 4>& box, const std::array<double, 2>& sheet) {
     return std::max({-box[0], -box[1], box[2] - sheet[0], box[3] - sheet[1]});
 }
@@ -84,7 +87,7 @@ std::array<double, 4> box_of(const Poses& poses) {
     return {poses.col(0).minCoeff(), poses.col(1).minCoeff(), poses.col(0).maxCoeff(), poses.col(1).maxCoeff()};
 }
 
-/// The target of a stroke, in pixels as well: made once for all that is tried.
+/// The target of a stroke as an outline and in pixels, made once for all trials.
 struct Target {
     Rings outline;
     Window window{};
@@ -115,7 +118,7 @@ struct Target {
 /// A pass and how well it paints its stroke.
 struct Tried {
     std::array<double, 4> painted_bounds, tool_bounds;
-    double overlap, turning;  ///< the latter of the mark's outline beyond the target [full turns]
+    double overlap, turning;  ///< turning: of the mark's outline, more than of the target [full turns]
     int thorns;
     Tried(const Pass& pass, const Target& target, const Brush& brush, Terminal start) {
         const PassMarks marks = simulate(pass, brush);
@@ -124,16 +127,16 @@ struct Tried {
         const Rings mark = outline(marks, brush);
         overlap = target.overlap_with(mark);
         turning = excess_turning(mark, target.outline);
-        // the point of a beginning that was requested as pointed
+        // do not count the point of a start that was requested as pointed
         thorns = std::max(0, brushsvg::thorns(mark, target.outline) - (start == Terminal::pointed ? 1 : 0));
     }
-    /// Turning counts below none as well: the pieces of a letter that strokes are to paint are ragged where others were
-    /// cut from them, so that every mark turns less.
+    /// Return the overlap less the cost of turning and thorns. Negative turning counts as well. The pieces of a letter
+    /// that strokes paint are ragged where other pieces were cut from them, so every mark turns less.
     double aim() const { return overlap - kCalm * turning - kThorn * thorns; }
     bool is_as_calm_as(const Tried& other) const { return turning <= other.turning && thorns <= other.thorns; }
 };
 
-/// As the report counts it.
+/// Return the overlap as the report computes it.
 double reported_overlap(const Pass& pass, const Stroke& stroke, const Brush& brush) {
     return common_area(mark_overlap({simulate(pass, brush)}, {stroke}, brush)).overlap();
 }
@@ -147,13 +150,15 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
     how.end = options.end;
     WithAllPoses made = compensate_with_all_poses(stroke, brush, how);
     closed.plan = std::move(made.plan);
-    const Pass& dense = made.all_poses;  // of few poses those off the path would be taken for its bends
+    // poses next to the path would be mistaken for its bends if there were few
+    const Pass& dense = made.all_poses;
     const double half_width = mean_half_width(stroke, brush);
     const PatchSamples base = patch_path(dense, brush, kStep * half_width, kMostSamples);
     const Rings wanted = wanted_outline(stroke, kRingTolerance);
     if (base.size() < 2 || brush.is_rigid() || wanted.empty()) return closed;
     const double way = way_of(base);
-    if (way > kWidestStep * half_width * double(base.size())) return closed;  // a thread: no footprint shows in it
+    // a thread: no footprint shows in it
+    if (way > kWidestStep * half_width * double(base.size())) return closed;
 
     const int controls = std::clamp(int(std::lround(way / (kControl * half_width))) + 3, 5, kMostControls);
     const PatchPath path(base, controls, depths_for(base, brush));
@@ -161,9 +166,10 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
         return beyond(box, options.sheet_mm) <= std::max(reach, beyond(before, options.sheet_mm));
     };
     const bool anywhere = options.sheet_mm == std::array<double, 2>{0.0, 0.0};
-    if (!turned_round(simulate(dense, brush, 0.02, false)).empty()) return closed;  // round already
+    // the turned ends are round already
+    if (!turned_round(simulate(dense, brush, 0.02, false)).empty()) return closed;
     const Terminal end = stroke.settings.end ? terminal_named(*stroke.settings.end, stroke.id) : options.end;
-    if (end == Terminal::pointed) return closed;  // it would be filled as far as the drawing goes
+    if (end == Terminal::pointed) return closed;  // the fit would fill it as far as the drawing goes
     const Target target(wanted, half_width);
     const Tried before(closed.plan.pass, target, brush, options.start);
     closed.overlap = closed.overlap_closed = before.overlap;
@@ -200,7 +206,7 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
     for (const double turn : {kFirstTurn, -kFirstTurn})
         if (most < kGood) go(turn, kTrust);
     if (best.poses_mm.rows() == 0) return closed;
-    // nothing is kept that the report finds worse: its pixels are elsewhere
+    // keep nothing that the report finds worse: its pixels are elsewhere
     if (overlap < before.overlap + kPixelsErr &&
         !(reported_overlap(best, stroke, brush) > reported_overlap(closed.plan.pass, stroke, brush)))
         return closed;

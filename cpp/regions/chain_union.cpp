@@ -22,9 +22,9 @@ struct Corner {
 };
 using Corners = std::vector<Corner>;
 
-constexpr double kFarthest = 5e8;  // units: products of two lengths are exact
+constexpr double kFarthest = 5e8;  // units: up to here, products of two lengths are exact
 constexpr double kLeastMm2 = 1e-6;
-constexpr std::size_t kMostPairs = 1 << 22;  // of edges: beyond, a sweep is quicker
+constexpr std::size_t kMostPairs = 1 << 22;  // most pairs of edges: with more, a sweep is quicker
 
 Unit cross(const Corner& a, const Corner& b) { return a.x * b.y - a.y * b.x; }
 int sign(Unit value) { return (value > 0) - (value < 0); }
@@ -41,22 +41,23 @@ Corners corners_of(const Ring& ring, double units_per_mm) {
     return corners;
 }
 
-/// On which side of the edge from `from` to `to` a corner of the second shape is, 1 left, -1 right. No corner is on
-/// an edge of the other shape: the second one counts as shifted by (e, e^2) for an e that is less than any length.
+/// Return on which side of the edge from `from` to `to` a corner of the second shape is: 1 left, -1 right. No corner
+/// counts as on an edge of the other shape. The second shape counts as shifted by (e, e^2), for an e that is less than
+/// any length.
 int side_of_second(const Corner& from, const Corner& to, const Corner& corner) {
     const Corner edge = to - from;
     const Unit twice = cross(edge, corner - from);
     return twice != 0 ? sign(twice) : edge.y != 0 ? -sign(edge.y) : sign(edge.x);
 }
-/// The same of a corner of the first shape relative to an edge of the second.
+/// Return on which side of an edge of the second shape a corner of the first shape is, with the shift of the second.
 int side_of_first(const Corner& from, const Corner& to, const Corner& corner) {
     const Corner edge = to - from;
     const Unit twice = cross(edge, corner - from);
     return twice != 0 ? sign(twice) : edge.y != 0 ? sign(edge.y) : -sign(edge.x);
 }
 
-/// Where an edge of the first shape crosses one of the second: their numbers, and how far along them, as exact
-/// fractions with the slant of both. `ways`: of the first shape's edge and of the second's.
+/// A crossing of an edge of the first shape and an edge of the second. It has the numbers of both edges. The positions
+/// along them are exact fractions with the common denominator `slant`. `ways`: vectors of both edges.
 struct Crossing {
     std::size_t edge[2];
     Corner ways[2];
@@ -64,13 +65,14 @@ struct Crossing {
     bool first_enters;
     Corner place;
 
-    /// Whether it comes before another one on the same edge of a shape; where they are at one place the shift decides.
+    /// Return whether it comes before another crossing on the same edge of a shape. If both are at one place, the shift
+    /// decides.
     bool comes_before(const Crossing& other, int of) const {
         __extension__ using Exact = __int128;
         const Exact mine = Exact(along[of]) * other.slant, others = Exact(other.along[of]) * slant;
         const int order = sign(slant) * sign(other.slant);
         if (mine != others) return (mine < others) == (order > 0);
-        // the shift moves it along: by e y - e^2 x of the other edge, over the slant
+        // the shift moves a crossing along by e y - e^2 x of the other edge, over the slant
         const Corner &way = ways[1 - of], &way_there = other.ways[1 - of];
         const auto farther = [&](Unit here, Unit there) {
             return order * sign(Unit((Exact(there) * slant > Exact(here) * other.slant) -
@@ -110,7 +112,7 @@ std::vector<Edge> edges_in(const Corners& corners, const Box& window) {
     return edges;
 }
 
-/// All of them; nothing where too many edges would have to be held against each other.
+/// Find all crossings. None if too many pairs of edges would have to be compared.
 std::optional<std::vector<Crossing>> crossings(const Corners& first, const Corners& second) {
     const Box of_second = box_of(second), of_first = box_of(first);
     const Box window{std::max(of_first.left, of_second.left), std::max(of_first.bottom, of_second.bottom),
@@ -140,7 +142,7 @@ std::optional<std::vector<Crossing>> crossings(const Corners& first, const Corne
                 {edge.number, other->number}, {along, across}, {cross(between, across), cross(between, along)},
                 cross(along, across),         before < 0,      {}};
             const double share = double(crossing.along[0]) / double(crossing.slant);
-            crossing.place = {a.x + Unit(std::floor(share * double(along.x))),  // down, as `region` has it
+            crossing.place = {a.x + Unit(std::floor(share * double(along.x))),  // rounded down, as in `region`
                               a.y + Unit(std::floor(share * double(along.y)))};
             found.push_back(crossing);
         }
@@ -148,8 +150,8 @@ std::optional<std::vector<Crossing>> crossings(const Corners& first, const Corne
     return found;
 }
 
-/// Crossings in the order in which an outline meets them. False where it does not enter and leave by turns, which
-/// shapes that cross themselves do not.
+/// Sort the crossings into the order in which an outline meets them. Return false if the outline does not enter and
+/// leave alternately. Only shapes that cross themselves do that.
 bool in_turn(const std::vector<Crossing>& all, int of, std::vector<std::size_t>& order) {
     order.resize(all.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
@@ -162,7 +164,7 @@ bool in_turn(const std::vector<Crossing>& all, int of, std::vector<std::size_t>&
     return order.size() % 2 == 0;
 }
 
-/// 1 where a place is inside of an outline, -1 outside, 0 on it.
+/// Return 1 if a place is inside of an outline, -1 if it is outside, 0 if it is on it.
 int depth_in(const Corners& corners, const Corner& place) {
     bool inside = false;
     for (std::size_t i = 0, n = corners.size(); i < n; ++i) {
@@ -175,8 +177,9 @@ int depth_in(const Corners& corners, const Corner& place) {
     return inside ? 1 : -1;
 }
 
-/// Whether the first corner of an outline's part that is on neither side of the other one by chance is where its
-/// crossings say: they are wrong where rounding has made a shape cross itself.
+/// Return whether a part of an outline is on the side of the other outline that its crossings imply. The first corner
+/// of the part that is not exactly on the other outline decides. Crossings are wrong where rounding has made a shape
+/// cross itself.
 bool lies(const Corners& corners, std::size_t after, std::size_t last, int depth, const Corners& other) {
     for (std::size_t i = after, n = corners.size(); i != last;) {
         i = i + 1 == n ? 0 : i + 1;
@@ -202,7 +205,7 @@ double length_around(const Corners& corners) {
 
 bool is_straight(const Corner& a, const Corner& b, const Corner& c) { return cross(b - a, c - b) == 0; }
 
-/// Without corners where nothing turns, and without ways there and back.
+/// Remove corners where nothing turns, and ways there and back.
 void straighten(Corners& corners) {
     Corners kept;
     for (const Corner& corner : corners) {
@@ -226,7 +229,7 @@ bool touches_itself(Corners corners) {
     return std::adjacent_find(corners.begin(), corners.end()) != corners.end();
 }
 
-/// The outline of both together if it is one ring: `first` becomes it.
+/// Unite two shapes if the outline of both is one ring, which replaces `first`. Return whether it is one ring.
 bool grow(Corners& first, const Corners& second, double least_area) {
     const std::optional<std::vector<Crossing>> found = crossings(first, second);
     if (!found) return false;
@@ -249,7 +252,8 @@ bool grow(Corners& first, const Corners& second, double least_area) {
             at[of][order[of][k]] = k;
         }
     }
-    // From where the first shape comes out of the second along it, until it enters: there the second comes out.
+    // Follow the first shape from where it leaves the second until it enters the second again. There the second shape
+    // leaves the first.
     std::vector<bool> is_done(all.size(), false);
     Corners outline, cycle;
     for (std::size_t begin = 0; begin < all.size(); ++begin) {
@@ -275,7 +279,7 @@ bool grow(Corners& first, const Corners& second, double least_area) {
         } while (!is_done[k]);
         if (k != begin) return false;
         const double area = area_of(cycle);
-        if (std::abs(area) <= std::max(least_area, length_around(cycle))) continue;  // what rounding leaves
+        if (std::abs(area) <= std::max(least_area, length_around(cycle))) continue;  // left over by rounding
         if (area < 0.0 || !outline.empty()) return false;
         outline = cycle;
     }
@@ -296,7 +300,8 @@ std::optional<Rings> united_in_chain(const Rings& rings, double units_per_mm) {
             return std::nullopt;
         if (Corners corners = corners_of(ring, units_per_mm); corners.size() > 2) level.push_back(std::move(corners));
     }
-    for (std::size_t before = 0; before != level.size();) {  // by halves: each corner is looked at a few times
+    // by halves, so that each corner is visited only a few times
+    for (std::size_t before = 0; before != level.size();) {
         before = level.size();
         std::vector<Corners> next;
         for (std::size_t k = 0; k < before; ++k) {

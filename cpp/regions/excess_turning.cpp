@@ -15,15 +15,16 @@ using Line = bg::model::linestring<Point>;
 using Shape = bg::model::multi_polygon<bg::model::polygon<Point, false, false>>;
 
 constexpr double kToleranceMm = 0.1;
-// Smaller rings are pinholes between footprints side by side, which paint closes and nobody sees: each would count a
-// whole turn. The finest line of round-6 leaves rings a hundred times as large.
+// Smaller rings are pinholes between footprints side by side. Paint closes them and nobody sees them, but each would
+// count as a whole turn. The finest line of round-6 leaves rings a hundred times as large.
 constexpr double kPinholeMm2 = 0.01;
 constexpr double kTwoPi = 6.28318530717958648;
-// What is more than a waver of the edge, and a bend of it rather than a curve.
+// Limits of a thorn: it is more than a waver of the edge, turns more sharply than a curve, and is outside of the
+// target.
 constexpr double kThornToleranceMm = 0.05, kThornRad = kTwoPi * 20.0 / 360.0, kOutsideMm = 0.3;
 
-/// The corners of a ring with few. From its first point to the farthest and back, so that what is left of a small ring
-/// is no single line.
+/// Return the corners of a simplified ring. The ring is simplified from its first point to the farthest one and back.
+/// So a small ring is not reduced to a single line.
 std::vector<Point> few_corners(const Ring& ring, double tolerance_mm) {
     const Eigen::Index n = ring.rows();
     if (n < 3) return {};
@@ -40,7 +41,7 @@ std::vector<Point> few_corners(const Ring& ring, double tolerance_mm) {
     return corners;
 }
 
-/// Visits each corner with the angle by which the outline turns there, to the left [rad].
+/// Call `visit` with each corner and the angle by which the outline turns there, to the left [rad].
 template <class Visit>
 void each_turn(const std::vector<Point>& corners, Visit&& visit) {
     const std::size_t count = corners.size();
@@ -51,7 +52,7 @@ void each_turn(const std::vector<Point>& corners, Visit&& visit) {
     }
 }
 
-/// Sum of the absolute angles at its corners: one turn where it is convex.
+/// Return the sum of the absolute angles at a ring's corners, in full turns: 1 if the ring is convex.
 double turns(const Ring& ring) {
     double sum = 0.0;
     each_turn(few_corners(ring, kToleranceMm), [&](const Point&, double angle) { sum += std::abs(angle); });

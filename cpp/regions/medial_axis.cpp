@@ -19,20 +19,21 @@ Ring ring_of(const std::vector<Vector2d>& points) {
     return ring;
 }
 
-/// The part of the shape nearest to the branch whose first and last half edges are given: the outline along its right
-/// side forward, along its left side back, round its free ends.
+/// Return the part of the shape nearest to the branch with the given first and last half edges. It follows the outline
+/// along the branch's right side forward, along its left side back, and round its free ends.
 Rings part_of(const VoronoiAxis& axis, const Outline& outline, std::size_t first, std::size_t last) {
     const auto is_free = [&](std::size_t p) { return axis.out[p].size() == 1; };
     const std::size_t a = axis.from[first], b = axis.to(last);
     if (is_free(a) && !is_free(b)) return part_of(axis, outline, last ^ 1, first ^ 1);
     const Foot right = axis.begin(first), left = axis.foot(first);
-    if ((is_free(a) && is_free(b)) || (a == b && axis.out[a].size() == 2)) {  // all there is: whole rings
+    // the branch is the whole axis: return whole rings
+    if ((is_free(a) && is_free(b)) || (a == b && axis.out[a].size() == 2)) {
         Rings rings{outline.ring(right.edge)};
         if (!outline.same_ring(left, right)) rings.push_back(outline.ring(left.edge));
         if (signed_area(rings[0]) < 0.0) std::reverse(rings.begin(), rings.end());
         return rings;
     }
-    // a side that ends where it began has gone round a hole, unless it never left the place
+    // a side that ends where it began has gone round a hole, unless it never left that place
     const auto moves = [&](std::size_t h, std::size_t end) {
         for (const Vector2d start = outline.at(axis.foot(h));; h = axis.next[h]) {
             if ((outline.at(axis.foot(h)) - start).norm() > Outline::kNothing) return true;
@@ -94,7 +95,8 @@ MedialAxis axis_of(const Rings& rings, double least_share, double least_limb) {
     return collected(axis, outline, branches);
 }
 
-// The diagram asks while it is made, but not while its builder sorts: of a million edges for seconds.
+// The diagram checks for cancellation while it is made, but not while its builder sorts, which takes seconds for a
+// million edges.
 constexpr Index kManyCorners = 20000;
 
 }  // namespace

@@ -10,11 +10,11 @@
 
 namespace brushsvg {
 
-/// Points that are visited between the rows of one polyline, at most: kilometres of it are looked at less closely.
+/// Most points that are visited between the rows of one polyline: kilometres of it are visited less densely.
 constexpr double kMostBetween = 2e5;
 
-/// Visits the points of rows `begin` to `end` of a polyline and points between them, so that no two are further apart
-/// than the step: what curves away between two rows must not be missed.
+/// Call `visit` with the points of rows `begin` to `end` of a polyline, and with points between them. No two points are
+/// further apart than the step, so that a curve between two rows is not missed.
 template <class Points, class Visit>
 void along(const Points& rows, Eigen::Index begin, Eigen::Index end, double step_mm, Visit&& visit) {
     double length = 0.0;
@@ -32,8 +32,8 @@ void along(const Points& rows, Eigen::Index begin, Eigen::Index end, double step
     }
 }
 
-/// Distance to a polyline (columns x, y and any others) in a tree of boxes about its pieces; successive queries are
-/// close to each other.
+/// Distance to a polyline (columns x, y and any others), found in a tree of boxes about its pieces. Fast if successive
+/// queries are close to each other.
 template <class Polyline>
 class Nearest {
  public:
@@ -58,7 +58,7 @@ class Nearest {
             levels_.push_back(std::move(next));
         }
     }
-    /// Or `at_most`, where that is less. Infinite for a line without points.
+    /// Return the distance of a point, or `at_most` if that is less. Infinite for a line without points.
     double distance(const Eigen::Vector2d& p, double at_most = std::numeric_limits<double>::infinity()) {
         double best = at_most;
         if (!levels_[0].empty()) look(0, last_, p, best);
@@ -73,7 +73,7 @@ class Nearest {
 
         double distance(const Eigen::Vector2d& p) const { return (lo - p).cwiseMax(p - hi).cwiseMax(0.0).norm(); }
     };
-    /// Of one block, side by side: vector instructions look at several at once.
+    /// Numbers of one block, side by side: vector instructions process several at once.
     using Numbers = Eigen::Array<double, kFan, 1>;
     struct Pieces {
         Numbers x, y, dx, dy, squared;
@@ -98,7 +98,8 @@ class Nearest {
         return std::sqrt(
             std::min(x[0] * x[0] + y[0] * y[0], ((x - t * all.dx).square() + (y - t * all.dy).square()).minCoeff()));
     }
-    /// Of `n` points from one on. Behind the last piece, and where one has no length, there are points.
+    /// Return the pieces between `n` points from `first` on. Pieces without a length, and those after the last one, are
+    /// points.
     Pieces pieces_from(Eigen::Index first, Eigen::Index n) const {
         Pieces out;
         for (Eigen::Index k = 0; k < kFan; ++k) {
@@ -115,7 +116,8 @@ class Nearest {
     }
     const Polyline& line_;
     std::vector<Pieces> pieces_;
-    std::vector<std::vector<Block>> levels_;  ///< boxes of kFan segments, then of kFan boxes of the level before
+    /// Boxes of kFan segments, then of kFan boxes of the level before.
+    std::vector<std::vector<Block>> levels_;
     std::size_t last_ = 0;
 };
 

@@ -18,8 +18,8 @@ bool is_behind(const Foot& from, const Foot& to) {
     return to.edge < from.edge || (to.edge == from.edge && to.at < from.at);
 }
 
-/// How far corners at one place are moved apart: beyond what counts as nothing, and far below what is seen. Less, this
-/// share of the way, where another edge is near: edges that cross have no diagram.
+/// How far corners at one place are moved apart: more than kNothing, and far less than is visible. If another edge is
+/// near, they are moved by kShareOfWay of the distance to it. Edges that cross have no diagram.
 constexpr double kApart = 40.0, kShareOfWay = 0.4;  // units
 
 double distance(const Vector2d& point, const Vector2d& a, const Vector2d& b) {
@@ -28,13 +28,13 @@ double distance(const Vector2d& point, const Vector2d& a, const Vector2d& b) {
     return (point - a - at * along).norm();
 }
 
-/// Whether a direction is in the smaller of the angles between two others.
+/// Return whether a direction is in the smaller of the angles between two others.
 bool is_between(const Vector2d& a, const Vector2d& b, const Vector2d& direction) {
     const double turn = cross(a, b);
     return cross(a, direction) * turn > 0.0 && cross(direction, b) * turn > 0.0;
 }
 
-/// Where a corner that touches another one goes: into the smaller of its two angles.
+/// Return where a corner that touches another one is moved: into the smaller of its two angles.
 Vector2i apart(const Vector2d& before, const Vector2d& at, const Vector2d& after, double way) {
     const Vector2d in = (before - at).normalized(), out = (after - at).normalized();
     Vector2d into = in + out;
@@ -75,7 +75,7 @@ void Outline::move_apart() {
     std::sort(order.begin(), order.end(), is_before);
     const std::vector<Vector2i> as_given = starts_;
     const auto place = [&](std::size_t k) -> Vector2d { return as_given[k].cast<double>(); };
-    // A corner in whose smaller angle there is another one stays where it is: that one moves away from it.
+    // A corner with another corner inside its smaller angle stays where it is. The other corner moves away from it.
     const auto has_another_inside = [&](std::size_t k, std::size_t first, std::size_t last) {
         const Vector2d in = place(before(k)) - place(k), out = place(after(k)) - place(k);
         return std::any_of(order.begin() + Index(first), order.begin() + Index(last), [&](std::size_t j) {
@@ -91,7 +91,7 @@ void Outline::move_apart() {
             if (!has_another_inside(order[i], first, last)) touching.push_back(order[i]);
     }
     if (touching.empty()) return;
-    // the distance of an edge to those that share no end with it, as far as one is nearer than `room`
+    // return the distance of an edge from edges that share no end with it, or `room` if none is nearer
     const auto room_beside = [&](std::size_t k, double room) {
         const Vector2d a = place(k), b = place(after(k));
         const Eigen::Array2d low = a.cwiseMin(b).array() - room, high = a.cwiseMax(b).array() + room;
@@ -123,7 +123,7 @@ double Outline::twice_area(const Foot& from, const Foot& to) const {
 
 void Outline::walk(const Foot& from, const Foot& to, bool round, std::vector<Vector2d>& out) const {
     out.push_back(at(from));
-    // the two ends of nothing may come in the wrong order, by rounding
+    // the ends of an empty walk may be in the wrong order because of rounding
     const bool is_near = (at(from) - at(to)).norm() < kNothing;
     const bool is_far = is_near ? round : from.edge != to.edge || is_behind(from, to);
     if (same_ring(from, to) && is_far) {

@@ -9,11 +9,11 @@
 
 namespace brushsvg {
 
-constexpr double kUnitsPerMm = 1e5;  // as region's: its rings are whole numbers of it
+constexpr double kUnitsPerMm = 1e5;  // as in region.cpp, whose rings have whole numbers of these units
 
 inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// A place on the outline: edge number and fraction of it.
+/// A place on the outline: the number of an edge and a fraction of it.
 struct Foot {
     std::size_t edge = 0;
     double at = 0.0;
@@ -22,10 +22,10 @@ struct Foot {
 /// A shape's edges in whole units, ring after ring, the shape to the left of each.
 class Outline {
  public:
-    static constexpr double kNothing = 10.0;  // units: nearer places may be one, rounded
+    static constexpr double kNothing = 10.0;  // units: nearer places may be one place, because of rounding
 
-    /// Rings of less than three points are left out. Where rings touch in a corner they are moved apart by less than a
-    /// micrometre: through it a middle line would have no width. Error beyond 20 m.
+    /// Rings of less than three points are left out. Rings that touch in a corner are moved apart by less than a
+    /// micrometre: a middle line through the corner would have no width. Throws Error beyond 20 m.
     explicit Outline(const Rings& rings);
 
     std::size_t edges() const { return starts_.size(); }
@@ -40,11 +40,12 @@ class Outline {
     bool same_ring(const Foot& a, const Foot& b) const { return ring_of_[a.edge] == ring_of_[b.edge]; }
     Eigen::Vector2d at(const Foot& f) const { return start(f.edge) + f.at * (end(f.edge) - start(f.edge)); }
 
-    /// Twice the area that the origin sees of the outline from one place forward to another; of no walk: 0.
+    /// Return twice the area between the origin and the outline from one place forward to another; 0 for an empty walk.
     double twice_area(const Foot& from, const Foot& to) const;
-    /// Points of the outline from one place forward to another; round: from a place to itself is the whole ring.
+    /// Append the points of the outline from one place forward to another. round: the way from a place to itself is the
+    /// whole ring.
     void walk(const Foot& from, const Foot& to, bool round, std::vector<Eigen::Vector2d>& out) const;
-    /// The whole ring of an edge [mm].
+    /// Return the whole ring of an edge [mm].
     Ring ring(std::size_t k) const;
 
  private:
@@ -53,10 +54,10 @@ class Outline {
     };
     void move_apart();
 
-    std::vector<Eigen::Vector2i> starts_;  // of each edge
-    std::vector<std::size_t> ring_of_;     // each edge
+    std::vector<Eigen::Vector2i> starts_;  // start of each edge
+    std::vector<std::size_t> ring_of_;     // ring of each edge
     std::vector<Span> rings_;
-    std::vector<double> twice_area_;  // before each edge
+    std::vector<double> twice_area_;  // twice the area, summed up to each edge
 };
 
 }  // namespace brushsvg

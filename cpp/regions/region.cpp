@@ -27,14 +27,16 @@ using Polygon = bp::polygon_data<int>;
 using PolygonWithHoles = bp::polygon_with_holes_data<int>;
 using Set = bp::polygon_set_data<int>;
 
-// 32-bit coordinates at 1e-5 mm reach 21 m; coarser and the area of fine hatching drifts, finer and a page overflows
+// 32-bit coordinates at 1e-5 mm reach 21 m. With coarser units the area of fine hatching drifts, with finer ones a page
+// overflows.
 constexpr double kUnitsPerMm = 1e5;
-// slivers that rounding leaves between shapes that only touch: of no area, or narrower than two units
+// Largest area [mm^2] of slivers that rounding leaves between touching shapes. Slivers narrower than two units are
+// removed as well.
 constexpr double kLeastArea = 1e-6;
-// Boost works in one piece and asks nobody. A thousand corners are its work of a hundredth of a second, but of a second
-// where each edge crosses all others; a thread costs less than the work of a hundred.
+// Boost works in one piece and cannot be cancelled. A thousand corners take it a hundredth of a second, or a second if
+// each edge crosses all others. A thread costs less than the work on a hundred corners.
 constexpr Eigen::Index kManyCorners = 300;
-// half the width [mm] below which a piece of a hull is not worth its corners: a hundred times what rounding moves them
+// Half the width [mm] below which a piece of a hull is not worth its corners: a hundred times the rounding error.
 constexpr double kThinnest = 2e-3;
 
 Polygon to_polygon(const Ring& ring) {
@@ -78,7 +80,8 @@ Rings to_rings(const Set& set) {
     return rings;
 }
 
-/// Clockwise rings alone are holes in nothing: a shape read with y down, say, would vanish without a word.
+/// Refuse rings that are clockwise in total. They are holes in nothing: a shape that is read with y down would vanish
+/// silently.
 void require_outer_rings(const Rings& rings) {
     const double sum = area(rings);
     if (sum < -kLeastArea)
@@ -86,7 +89,7 @@ void require_outer_rings(const Rings& rings) {
                     "", sum);
 }
 
-/// Rings that are already disjoint, holes included.
+/// Return the set of rings that are already disjoint, including holes.
 Set to_set(const Rings& rings) {
     Set set;
     for (const Ring& ring : rings) {
@@ -109,8 +112,8 @@ void require_finite(const Ring& ring) {
     if (!ring.allFinite()) throw Error("not-finite", "a ring has a coordinate that is not finite");
 }
 
-/// Numbers of the points from left to right, from below where one is above the other. Corners of convex rings, which
-/// points mostly are, run there and back: such runs are merged.
+/// Return the indices of the points from left to right, and from below where one is above the other. Most points are
+/// corners of convex rings, which run there and back: such runs are merged.
 std::vector<Eigen::Index> from_left_to_right(const Ring& points) {
     const Eigen::Index n = points.rows();
     const auto is_before = [&](Eigen::Index a, Eigen::Index b) {
@@ -144,7 +147,7 @@ std::vector<Eigen::Index> from_left_to_right(const Ring& points) {
     return order;
 }
 
-/// Numbers of the points that are corners of their convex hull, counter-clockwise.
+/// Return the indices of the points that are corners of their convex hull, counter-clockwise.
 std::vector<Eigen::Index> hull_order(const Ring& points) {
     std::vector<Eigen::Index> order = from_left_to_right(points);
     std::vector<Eigen::Index> hull;
@@ -179,7 +182,7 @@ Ring both(const Ring& a, const Ring& b) {
     return points;
 }
 
-/// work(rings ...), so that it can be given up at any step of Boost.
+/// Run work(rings ...) so that it can be cancelled at any step of Boost.
 template <class Work, class... Shapes>
 auto heard(const Work& work, const Shapes&... shapes) {
     Eigen::Index corners = 0;
@@ -191,7 +194,7 @@ auto heard(const Work& work, const Shapes&... shapes) {
 
 Rings united(const Rings& rings) {
     require_outer_rings(rings);
-    // a tree of small unions: neighbours overlap most, and a sweep over all of them at once meets every crossing twice
+    // unite in a tree: neighbours overlap most, and one sweep over all rings would meet every crossing twice
     std::vector<Set> level;
     level.reserve(rings.size());
     for (const Ring& ring : rings) {
@@ -215,12 +218,12 @@ Rings united(const Rings& rings) {
     return to_rings(level.front());
 }
 
-// Each turn costs a sweep over everything. Letters turn twice; nested contours are cheaper one by one; one ring that
-// winds more than the most is a star or a spiral of a hundred points, no lettering.
+// Each turn costs a sweep over everything. Letters turn twice. Nested contours are cheaper one by one. A single ring
+// that winds more than kMostTurns is a star or a spiral of a hundred points, not lettering.
 constexpr int kFewTurns = 3, kMostTurns = 32;
 
-/// Where the outlines run counter-clockwise `turns` times or more round a point; reversed: clockwise. The sweep keeps
-/// what is counted once or more, so a frame about everything takes turns - 1 away.
+/// Return where the outlines run counter-clockwise `turns` times or more round a point; reversed: clockwise. The sweep
+/// keeps areas that count once or more, so a frame about everything subtracts turns - 1.
 Set wound(const Rings& outlines, int turns, bool reversed) {
     const auto insert = [reversed](Set& set, const Ring& ring, bool once) {
         const Polygon polygon = to_polygon(ring);
@@ -248,7 +251,8 @@ Set wound(const Rings& outlines, int turns, bool reversed) {
     return set;
 }
 
-/// Where the outlines run round a point an odd number of times, if none does so more than `most` times.
+/// Return where the outlines run round a point an odd number of times. None if they do so more than `most` times
+/// anywhere.
 std::optional<Set> wound_oddly(const Rings& outlines, int most) {
     Set filled;
     for (bool reversed : {false, true}) {
@@ -263,7 +267,8 @@ std::optional<Set> wound_oddly(const Rings& outlines, int most) {
     return filled;
 }
 
-/// The same of outlines however often nested: each by itself, then what an odd number of them fills, in a tree.
+/// Return where the outlines run round a point an odd number of times, however often they are nested. Each outline is
+/// filled by itself. Then the fills are combined in a tree.
 Set in_an_odd_number(const Rings& outlines) {
     using namespace bp::operators;
     std::vector<Set> level;
@@ -297,14 +302,14 @@ Rings filled_by(const Rings& outlines, FillRule rule) {
     return to_rings(filled);
 }
 
-/// Which of the four sides of a window a corner is beyond, a bit each.
+/// Return the sides of a window that a corner is beyond, one bit for each of the four sides.
 int beyond_sides(const Eigen::RowVector2d& corner, const Eigen::AlignedBox2d& window) {
     return (corner.x() < window.min().x()) | (corner.x() > window.max().x()) << 1 |
            (corner.y() < window.min().y()) << 2 | (corner.y() > window.max().y()) << 3;
 }
 
-/// The ring without corners between two others beyond the same side of a window: in the window nothing
-/// changes.
+/// Return the ring without corners between two others beyond the same side of a window. Nothing changes inside the
+/// window.
 Ring seen_in(const Ring& ring, const Eigen::AlignedBox2d& window) {
     std::vector<Eigen::Index> kept;
     int last = 0;
@@ -318,11 +323,11 @@ Ring seen_in(const Ring& ring, const Eigen::AlignedBox2d& window) {
     if (kept.size() == std::size_t(ring.rows())) return ring;
     Ring out(Eigen::Index(kept.size()), 2);
     for (Eigen::Index k = 0; k < out.rows(); ++k) out.row(k) = ring.row(kept[std::size_t(k)]);
-    // far outside it may cross itself, and run the other way round all in all
+    // far outside of the window the ring may cross itself, so that its total orientation is reversed
     return (signed_area(out) < 0.0) == (signed_area(ring) < 0.0) ? out : ring;
 }
 
-/// Of some rings what can meet others: a box is often held against a whole letter.
+/// Return the parts of some rings that can meet others. A box is often compared with a whole letter.
 Rings seen_near(const Rings& rings, const Rings& others) {
     Eigen::AlignedBox2d window;
     for (const Ring& ring : others)
@@ -439,14 +444,15 @@ Rings pieces_between(const Rings& chain) {
     if (chain.size() < 2) return chain;
     using Numbers = std::vector<Eigen::Index>;
     Rings pairs;                 // F_i and F_i+1
-    std::vector<Numbers> hulls;  // of these; corners of F_i+1 are numbered behind those of F_i
+    std::vector<Numbers> hulls;  // hulls of the pairs; corners of F_i+1 are numbered after the corners of F_i
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
         checkpoint(10);
         pairs.push_back(both(chain[i], chain[i + 1]));
         hulls.push_back(hull_order(pairs.back()));
     }
-    // Between two corners of F_i that stay, others of F_i can go: what they enclose is in F_i, so in the hull before.
-    // So can corners of F_i+1 that are none of the next hull: what they enclose is in that, and is not what it loses.
+    // Between two corners of F_i that stay, others of F_i can go: the area that they enclose is in F_i, so in the hull
+    // before. Corners of F_i+1 that are not in the next hull can go as well. The area that they enclose is in the next
+    // hull, and the next hull does not lose it.
     Rings pieces;
     std::vector<bool> in_next;
     for (std::size_t i = 0; i < hulls.size(); ++i) {
@@ -462,7 +468,7 @@ Rings pieces_between(const Rings& chain) {
                             std::all_of(hull.begin(), hull.end(), [&](auto k) { return k >= n; });
         Numbers kept;
         const std::size_t m = hull.size();
-        // corners of the same shape next to each, before and behind it: twice around, for the ends meet
+        // number of neighbours of the same shape before and behind each corner; go round twice because the ends meet
         std::vector<std::size_t> before(m, 0), behind(m, 0);
         for (std::size_t k = 1, b = 0, d = m - 1; !is_one && k < 2 * m; ++k) {
             const std::size_t a = b, c = d;
@@ -473,12 +479,13 @@ Rings pieces_between(const Rings& chain) {
         }
         for (std::size_t k = 0; k < m; ++k) {
             const bool front = hull[k] >= n;
-            // the middle one as well: pieces must overlap, for where they only meet rounding would leave cracks
+            // keep the middle corner as well: pieces must overlap, because rounding would leave cracks where they only
+            // meet
             const bool rear_stays = is_first || before[k] == behind[k] || before[k] == behind[k] + 1;
             if (is_one || before[k] == 0 || behind[k] == 0 || (front ? in_next[std::size_t(hull[k] - n)] : rear_stays))
                 kept.push_back(hull[k]);
         }
-        // a shape that grows or turns in place leaves strips so thin that rounding would fray the outline
+        // a shape that grows or turns in place leaves strips that are so thin that rounding would fray the outline
         Ring piece = rows_of(pairs[i], kept);
         if (kept.size() < 3 || signed_area(piece) < kThinnest * length_around(piece)) piece = rows_of(pairs[i], hull);
         pieces.push_back(std::move(piece));

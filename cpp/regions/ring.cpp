@@ -6,7 +6,7 @@ double signed_area(const Ring& ring) {
     double twice = 0.0;
     for (Eigen::Index i = 0, n = ring.rows(); i < n; ++i) {
         const Eigen::Index j = i + 1 == n ? 0 : i + 1;
-        // relative to the first vertex: no cancellation far from the origin
+        // relative to the first vertex, to avoid cancellation far from the origin
         twice += (ring(i, 0) - ring(0, 0)) * (ring(j, 1) - ring(0, 1)) -
                  (ring(j, 0) - ring(0, 0)) * (ring(i, 1) - ring(0, 1));
     }

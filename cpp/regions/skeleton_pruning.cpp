@@ -8,15 +8,15 @@
 namespace brushsvg {
 namespace {
 
-// area over r^2 that an outer corner leaves of a disc in it: tan(a/2) - a/2 for a turn by a, here 45 degrees
+// Least area over r^2 that an outer corner adds to a disc in it: tan(a/2) - a/2 for a turn by a, here 45 degrees.
 constexpr double kLeastCorner = 0.02;
-// A corner that adds as much to the disc at a line's end, one of 68 degrees, is where the line ends, if no other adds
-// nearly as much. Lines to corners that are blunter end in hooks, of which the eye sees more than of what is left
-// blank.
+// A line ends in a corner that adds kLeastEnd to the disc at the line's end, if no other corner adds nearly as much.
+// Such a corner turns by 68 degrees or more. Lines to blunter corners end in hooks, which are more visible than the
+// area that is left blank.
 constexpr double kLeastEnd = 0.5, kEndStandsOut = 1.4;
-// What the end of a stem adds, next to or beyond what leaves it there, over what any branch must: its two corners
-// together, 0.43 if they are right-angled, are too much to be left blank, and a line to where they part leaves little
-// of them.
+// Area that the end of a stem must add if other branches leave the stem there, as a share of least_share. The stem's
+// two corners add 0.43 together if they are right-angled: too much to be left blank. A line to where the corners part
+// leaves little of them blank.
 constexpr double kStemEnd = 0.5;
 
 bool stands_out(double share, double other) { return share > kLeastEnd && share > kEndStandsOut * other; }
@@ -51,7 +51,8 @@ void KeptBranches::drop(double least_share, double least_limb) {
     for (std::size_t p = 0; p < looked_at.size(); ++p) looked_at[p] = p;
     while (!looked_at.empty()) {
         checkpoint(int(looked_at.size()));
-        std::vector<Drop> drops = judged(looked_at, least_share, least_limb);  // all before any goes
+        // judge all branches before any is dropped
+        std::vector<Drop> drops = judged(looked_at, least_share, least_limb);
         keep_ends(drops);
         std::vector<std::size_t> junctions;
         for (const Drop& each : drops) {
@@ -72,8 +73,9 @@ void KeptBranches::drop(double least_share, double least_limb) {
         if (axis_.out[p].size() == 1) drop_late_corner(p, least_share, least_limb);
 }
 
-/// A corner whose sides bend is left by branches of its own, which go first. Meanwhile the other corner of the cut may
-/// have gone, and the way to this one counts as the line's.
+/// Drop a corner near a line's end that could not be dropped before. A corner with bent sides has branches of its own,
+/// which are dropped first. Meanwhile the other corner of the cut may have been dropped. Then the way to this corner
+/// counts as part of the line.
 void KeptBranches::drop_late_corner(std::size_t end, double least_share, double least_limb) {
     for (std::size_t h = axis_.out[end][0]; h != VoronoiAxis::none; h = axis_.next[h]) {
         const std::size_t p = axis_.to(h), back = h ^ 1;
@@ -101,7 +103,8 @@ std::vector<KeptBranches::Drop> KeptBranches::judged(const std::vector<std::size
     return drops;
 }
 
-/// Whether a corner was dropped at the end of a branch: of both of a square end, or of the one that stands out less.
+/// Return whether a corner was dropped at the end of a branch: both corners of a square end, or the one that stands out
+/// less.
 bool KeptBranches::is_blunt(std::size_t half) const {
     for (std::size_t h = half; h != VoronoiAxis::none; h = axis_.next[h]) {
         const std::size_t p = axis_.to(h);
@@ -110,14 +113,14 @@ bool KeptBranches::is_blunt(std::size_t half) const {
     return false;
 }
 
-/// A corner looks the same from all places on its branch; a bar on a thick stem adds little to the stem's disc, but
-/// much to one of its own width.
+/// Return whether a branch is a limb. A corner looks the same from all places on its branch. A bar on a thick stem adds
+/// little to the stem's disc, but much to a disc of its own width.
 bool KeptBranches::is_limb(std::size_t half, double least_share, double least_limb) const {
     if (axis_.share(half) < least_limb) return false;
     const double least_area = least_limb * axis_.radius(half) * axis_.radius(half);
     for (std::size_t h = axis_.next[half]; h != VoronoiAxis::none; h = axis_.next[h]) {
         const double share = axis_.share(h), area = share * axis_.radius(h) * axis_.radius(h);
-        if (area < least_area) return false;  // it only falls
+        if (area < least_area) return false;  // the area only decreases along the branch
         if (share >= least_share) return true;
     }
     return false;

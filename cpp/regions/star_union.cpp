@@ -17,12 +17,12 @@ using Eigen::Vector2d;
 /// Corners as seen from a point, counter-clockwise: by angle from the x axis.
 using Star = std::vector<Vector2d>;
 
-/// Rings united at once, at most: brushes leave a place within so many pieces.
+/// Most rings that are united at once: a brush leaves a place within that many pieces.
 constexpr std::size_t kMostRings = 64;
-/// Nearer edges count as one [mm]: half of what coordinates are kept to.
+/// Edges nearer than this count as one [mm]: half the resolution of coordinates.
 constexpr double kSameMm = 5e-6;
-/// No edge passes the point nearer than this share of its own distance: seen along an edge, an angle says little about
-/// where on it.
+/// Least distance at which the line of an edge passes the point, as a share of the edge's distance. Seen along an edge,
+/// an angle hardly determines a place on the edge.
 constexpr double kLeastSlant = 0.02;
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -31,7 +31,8 @@ bool comes_before(const Vector2d& a, const Vector2d& b) {
     return is_below(a) != is_below(b) ? is_below(b) : cross(a, b) > 0.0;
 }
 
-/// The ring from its corner of the least angle on; false where the point does not see all of it, once around.
+/// Fill `star` with the ring, from its corner of the least angle on. Return false if the point does not see all of it,
+/// once around.
 bool seen_from(const Vector2d& point, const Ring& ring, Star& star) {
     const Index n = ring.rows();
     if (n < 3) return false;
@@ -52,7 +53,7 @@ bool seen_from(const Vector2d& point, const Ring& ring, Star& star) {
     return true;
 }
 
-/// How far a place is beyond the line through an edge, as seen from the point.
+/// Return how far a place is beyond the line through an edge, as seen from the point.
 double beyond(const Vector2d& from, const Vector2d& to, const Vector2d& place) {
     const Vector2d edge = to - from;
     return -cross(edge, place - from) / edge.norm();
@@ -62,13 +63,13 @@ double beyond(const Vector2d& from, const Vector2d& to, const Vector2d& place) {
 struct Edges {
     Vector2d a0, a1, b0, b1;
 
-    /// Which one reaches further in the direction of a corner of one of them: 1 a, -1 b, else `before`.
+    /// Return which one reaches further in the direction of a corner of one of them: 1 a, -1 b, else `before`.
     int outer_at(const Vector2d& corner, bool is_of_a, int before) const {
         const double by = is_of_a ? beyond(b0, b1, corner) : -beyond(a0, a1, corner);
         return by > kSameMm ? 1 : by < -kSameMm ? -1 : before;
     }
-    /// Where they cross between two directions; where rounding says that they do elsewhere, where the one that is
-    /// the outer one then begins: so near to the other that they count as one there.
+    /// Return where they cross between two directions. If rounding puts the crossing elsewhere, return a place on the
+    /// edge that is then the outer one, in the direction `from`. The edges are so near there that they count as one.
     Vector2d crossing(const Vector2d& from, const Vector2d& to, bool is_a_then) const {
         const Vector2d along = a1 - a0, other = b1 - b0;
         const double slant = cross(along, other);
@@ -82,7 +83,7 @@ struct Edges {
     }
 };
 
-/// The outer one of two stars at each angle.
+/// Find the outer one of two stars at each angle.
 void outer(const Star& a, const Star& b, Star& out) {
     out.clear();
     const auto add = [&](const Vector2d& corner) {
@@ -111,7 +112,8 @@ void outer(const Star& a, const Star& b, Star& out) {
             edges.b1 = b[++j == b.size() ? 0 : j];
         }
     }
-    const bool is_of_a = !comes_before(b.front(), a.front());  // the first one again: they may cross on the way there
+    // the first one again: they may cross on the way there
+    const bool is_of_a = !comes_before(b.front(), a.front());
     reach(is_of_a ? a.front() : b.front(), is_of_a);
     while (out.size() > 1 && (out.front() - out.back()).squaredNorm() <= kSameMm * kSameMm) out.pop_back();
     if (comes_before(out.back(), out.front())) std::rotate(out.begin(), out.end() - 1, out.end());
@@ -123,7 +125,7 @@ Ring ring_of(const Star& star, const Vector2d& point) {
     return ring;
 }
 
-/// Neighbours overlap most, so by halves.
+/// Return the outer edge of all stars. Neighbours overlap most, so stars are united by halves.
 Star outermost(std::vector<Star> stars) {
     while (stars.size() > 1) {
         std::vector<Star> next((stars.size() + 1) / 2);

@@ -12,7 +12,7 @@ namespace {
 
 namespace bp = boost::polygon;
 using Eigen::Vector2d;
-/// Asks on its way whether to go on.
+/// A Voronoi diagram that checks for cancellation while it is built.
 class Diagram : public bp::voronoi_diagram<double> {
  public:
     template <class Event>
@@ -45,14 +45,14 @@ Site site_of(const Diagram::cell_type& cell, const Outline& outline) {
     return {is_end ? outline.after(k) : k, cell.contains_point()};
 }
 
-/// Whether the edge between two sites, from p to q, is in the shape.
+/// Return whether the edge between two sites, from p to q, is in the shape.
 bool is_inside(const Site& a, const Site& b, const Vector2d& p, const Vector2d& q, const Outline& outline) {
     for (const Site& site : {a, b}) {
         if (site.is_corner) continue;
         const Vector2d start = outline.start(site.edge), d = outline.end(site.edge) - start;
         return cross(d, p - start) + cross(d, q - start) > 0.0;
     }
-    // between two corners: within the angle of one of them
+    // between two corners: check whether the edge is within the angle of one of them
     const Vector2d corner = outline.start(a.edge), in = corner - outline.start(outline.before(a.edge));
     const Vector2d go = outline.end(a.edge) - corner, off = 0.5 * (p + q) - corner;
     const bool left_of_in = cross(in, off) > 0.0, left_of_go = cross(go, off) > 0.0;
@@ -61,7 +61,7 @@ bool is_inside(const Site& a, const Site& b, const Vector2d& p, const Vector2d& 
 
 AxisPoint in_mm(const Vector2d& p, double r) { return {p.x() / kUnitsPerMm, p.y() / kUnitsPerMm, r / kUnitsPerMm}; }
 
-/// So many that none is much longer than a fifth of the radius.
+/// Return a number of pieces so that none is much longer than a fifth of the radius.
 int pieces(double length, double radius) {
     return radius > 0.0 ? int(std::clamp(length / (0.2 * radius), 0.0, 200.0)) + 1 : 1;
 }

@@ -11,16 +11,18 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-// Half widths, in those of the brush: as narrow as at square ends, and wider next to deeper areas.
+// Half widths, as shares of the brush's half width: as narrow as at square ends, and wider next to deeper areas.
 constexpr std::array<double, 4> kWidths{0.27, 0.45, 0.7, 1.0};
-constexpr double kOfDepth = 0.7;       // and in how deep the area reaches from its edge
-constexpr double kLanding = 2.5;       // half widths that a line is longer than the area at either end, on paint
-constexpr double kRoom = 0.9;          // of its half width that a line has on either side
-constexpr double kEvenMm = 0.2;        // between places on a line
-constexpr std::size_t kLookedAt = 60;  // places of an area that are looked at
-constexpr double kTouching = 0.4;      // half widths of the brush: so near to a corner an area is in it
-constexpr double kTip = 0.03;          // half width of a line where it begins in a corner, in those of the brush
-constexpr double kRound = -0.85;  // half width won per length where a limb ends round or square: there its line ends
+constexpr double kOfDepth = 0.7;  // another half width, as a share of the area's depth from its edge
+// Half widths by which a line is longer than the area at either end, on paint.
+constexpr double kLanding = 2.5;
+constexpr double kRoom = 0.9;          // least room on either side of a line, in its half widths
+constexpr double kEvenMm = 0.2;        // spacing of the places on a line
+constexpr std::size_t kLookedAt = 60;  // most places of an area that are checked
+constexpr double kTouching = 0.4;      // half widths of the brush: an area this near to a corner is in the corner
+constexpr double kTip = 0.03;          // half width of a line where it begins in a corner, as a share of the brush's
+// Change of half width per length where a limb ends round or square: a line stops there.
+constexpr double kRound = -0.85;
 
 std::vector<Vector2d> some_of(const std::vector<Vector2d>& places) {
     std::vector<Vector2d> out;
@@ -42,7 +44,7 @@ void add_both_ways(const WideLine& line, Candidates& out) {
 
 }  // namespace
 
-Outline::Outline(const Rings& rings, const Canvas& canvas) : canvas_(canvas), edges_(edge_runs(rings)) {
+ShapeOutline::ShapeOutline(const Rings& rings, const Canvas& canvas) : canvas_(canvas), edges_(edge_runs(rings)) {
     for (const Ring& ring : rings) {
         if (ring.rows() == 0) continue;
         Ring closed(ring.rows() + 1, 2);
@@ -52,15 +54,15 @@ Outline::Outline(const Rings& rings, const Canvas& canvas) : canvas_(canvas), ed
     nearest_ = std::vector<Nearest<Ring>>(closed_.begin(), closed_.end());
 }
 
-double Outline::edge_mm(const Vector2d& at_mm) {
+double ShapeOutline::edge_mm(const Vector2d& at_mm) {
     double least = std::numeric_limits<double>::infinity();
     for (auto& ring : nearest_) least = std::min(least, ring.distance(at_mm, least));
     return least;
 }
 
-double Outline::room_mm(const Vector2d& at_mm) { return canvas_.is_inside(at_mm) ? edge_mm(at_mm) : 0.0; }
+double ShapeOutline::room_mm(const Vector2d& at_mm) { return canvas_.is_inside(at_mm) ? edge_mm(at_mm) : 0.0; }
 
-Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>& middles, Outline& outline,
+Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>& middles, ShapeOutline& outline,
                         const std::array<double, 2>& half_mm) {
     const auto root_of = [&](const Vector2d& place) {
         Vector2d best(0.0, 0.0);
@@ -88,7 +90,7 @@ Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>&
     Candidates out;
     for (const Vector2d& place : {area.deepest, farthest}) {
         const auto [root, away] = root_of(place);
-        if (away < kEvenMm) continue;  // a stroke runs there, and its mark leaves it
+        if (away < kEvenMm) continue;  // a stroke runs there, and its mark leaves the place bare
         const Vector2d onward = (place - root) / away;
         const double there = (area.deepest - root).norm();
         double reach = 0.0;
@@ -140,10 +142,10 @@ Candidates along_middles(const BareArea& area, const std::vector<MiddlePolyline>
     return out;
 }
 
-Candidates along_edges(const BareArea& area, Outline& outline, const std::array<double, 2>& half_mm) {
+Candidates along_edges(const BareArea& area, ShapeOutline& outline, const std::array<double, 2>& half_mm) {
     struct Side {
         double first = std::numeric_limits<double>::infinity(), last = -first, deep = 0.0;
-        double before = first, behind = -first;  // of a ring: in its second half, in its first
+        double before = first, behind = -first;  // for a ring: in its second half, in its first half
         std::size_t count = 0;
     };
     const std::vector<EdgeRun>& runs = outline.edges().runs;
@@ -175,7 +177,8 @@ Candidates along_edges(const BareArea& area, Outline& outline, const std::array<
         const EdgeRun& run = runs[k];
         Side side = sides[k];
         if (side.count == 0) continue;
-        if (run.is_ring && side.last - side.first > run.length_mm() / 2.0) {  // across where the ring begins
+        // the area crosses the place where the ring begins
+        if (run.is_ring && side.last - side.first > run.length_mm() / 2.0) {
             side.first = side.before;
             side.last = side.behind + run.length_mm();
         }
@@ -186,7 +189,7 @@ Candidates along_edges(const BareArea& area, Outline& outline, const std::array<
             double first = side.first - kLanding * width, last = side.last + kLanding * width;
             if (!run.is_ring) {
                 // a line ends before an outer corner, so that its mark stays in the shape, and runs on past an inner
-                // one
+                // corner
                 const auto short_of = [&](double turn) {
                     return turn < 0.0 ? -kLanding * width : width * std::tan(turn / 2.0);
                 };
@@ -217,7 +220,7 @@ Candidates along_edges(const BareArea& area, Outline& outline, const std::array<
     return out;
 }
 
-Candidates from_corners(const BareArea& area, Outline& outline, const std::array<double, 2>& half_mm) {
+Candidates from_corners(const BareArea& area, ShapeOutline& outline, const std::array<double, 2>& half_mm) {
     Candidates out;
     for (const OuterCorner& corner : outline.edges().corners) {
         double least = std::numeric_limits<double>::infinity();
@@ -228,7 +231,7 @@ Candidates from_corners(const BareArea& area, Outline& outline, const std::array
             if (width < thin) continue;
             std::vector<Vector2d> places;
             std::vector<double> halves;
-            double wide_mm = -1.0;  // where it is as wide as that
+            double wide_mm = -1.0;  // where the line reaches that width; negative: not yet
             for (double at = kEvenMm; at < 4.0 * half_mm[1]; at += kEvenMm) {
                 const Vector2d here = corner.at_mm + at * corner.inwards;
                 const double room = outline.room_mm(here);
@@ -247,7 +250,7 @@ Candidates from_corners(const BareArea& area, Outline& outline, const std::array
     return out;
 }
 
-Candidates across(const BareArea& area, Outline& outline, const std::array<double, 2>& half_mm) {
+Candidates across(const BareArea& area, ShapeOutline& outline, const std::array<double, 2>& half_mm) {
     Eigen::Matrix2Xd places(2, Index(area.places.size()));
     for (Index i = 0; i < places.cols(); ++i) places.col(i) = area.places[std::size_t(i)];
     const Vector2d centre = (places.rowwise().minCoeff() + places.rowwise().maxCoeff()) / 2.0;

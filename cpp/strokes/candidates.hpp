@@ -11,21 +11,21 @@
 
 namespace brushsvg {
 
-/// A connected area of a shape without paint, as deep as it is seen. places: the middles of its pixels.
+/// A connected unpainted area of a shape, without a rim as wide as `seen_mm`. places: the middles of its pixels.
 struct BareArea {
     std::vector<Eigen::Vector2d> places;
-    Eigen::Vector2d deepest;  ///< farthest from its own edge
+    Eigen::Vector2d deepest;  ///< the place farthest from the area's edge
 };
 
-/// A shape as candidates see it.
-class Outline {
+/// The outline of a shape, with the distances that candidates need.
+class ShapeOutline {
  public:
-    Outline(const Rings& rings, const Canvas& canvas);
+    ShapeOutline(const Rings& rings, const Canvas& canvas);
 
     const OutlineEdges& edges() const { return edges_; }
-    /// Distance from the outline; 0 outside of the shape.
+    /// Return the distance from the outline; 0 outside of the shape.
     double room_mm(const Eigen::Vector2d& at_mm);
-    /// Distance from the outline, on whichever side.
+    /// Return the distance from the outline, inside and outside of the shape.
     double edge_mm(const Eigen::Vector2d& at_mm);
 
  private:
@@ -35,26 +35,26 @@ class Outline {
     OutlineEdges edges_;
 };
 
-/// Lines with half widths [mm] that may paint a bare area: none decides whether it does.
+/// Lines with half widths [mm] that may paint a bare area. The search decides whether they do.
 using Candidates = std::vector<WideLine>;
 
-/// Straight out from the nearest place on a middle line to the middle of the area, and to its farthest place, as wide
-/// as the shape has room. half_mm: the brush's least and greatest.
-Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>& middles, Outline& outline,
+/// Return lines straight out from the nearest place on a middle line, to the middle of the area and to its farthest
+/// place. They are as wide as the shape has room. half_mm: the brush's least and greatest half width.
+Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>& middles, ShapeOutline& outline,
                         const std::array<double, 2>& half_mm);
 
-/// Along the middle lines of strokes that were given another path: the stretch that meets the area, as wide as it was,
-/// both ways.
+/// Return lines along the middle lines of strokes that have another path now: the stretch that meets the area, as wide
+/// as the stroke was there, in both directions.
 Candidates along_middles(const BareArea& area, const std::vector<MiddlePolyline>& former,
                          const std::array<double, 2>& half_mm);
 
-/// Along each stretch of the outline that the area touches, both ways, in several widths.
-Candidates along_edges(const BareArea& area, Outline& outline, const std::array<double, 2>& half_mm);
+/// Return lines along each stretch of the outline that the area touches, in both directions and in several widths.
+Candidates along_edges(const BareArea& area, ShapeOutline& outline, const std::array<double, 2>& half_mm);
 
-/// From each corner that the area touches inwards, as wide as the shape has room up to a width.
-Candidates from_corners(const BareArea& area, Outline& outline, const std::array<double, 2>& half_mm);
+/// Return lines inwards from each corner that the area touches. They are as wide as the shape has room, up to a width.
+Candidates from_corners(const BareArea& area, ShapeOutline& outline, const std::array<double, 2>& half_mm);
 
-/// Along and across an area amid paint.
-Candidates across(const BareArea& area, Outline& outline, const std::array<double, 2>& half_mm);
+/// Return lines along and across an area that is surrounded by paint.
+Candidates across(const BareArea& area, ShapeOutline& outline, const std::array<double, 2>& half_mm);
 
 }  // namespace brushsvg

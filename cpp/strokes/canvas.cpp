@@ -13,12 +13,13 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr double kPxPerMm = 6.0;   // coarser ones miss what is seen, 0.15 mm, finer ones take longer
-constexpr double kMostSide = 2e3;  // pixels: of a shape of half a metre they are coarser
-constexpr double kStepMm = 2.0;    // in which long edges are looked at, each with the pixels about it
-constexpr double kRowsMm = 0.05;   // of marks: a third of a pixel
+constexpr double kPxPerMm = 6.0;   // coarser pixels miss visible details of 0.15 mm, finer ones take longer
+constexpr double kMostSide = 2e3;  // pixels: a shape of half a metre has coarser pixels
+// Length of the parts into which long edges are split: each part handles the pixels about it.
+constexpr double kStepMm = 2.0;
+constexpr double kRowsMm = 0.05;  // tolerance of the rows of marks: a third of a pixel
 
-/// Distance [mm] of each pixel near an outline from it; those further than the reach are far.
+/// Return the distance [mm] of each pixel from an outline. Pixels further away than the reach get the largest value.
 Coverage distances(const Rings& rings, const Canvas& canvas, Index rows, Index columns, double reach_mm) {
     Coverage out = Coverage::Constant(rows, columns, std::numeric_limits<float>::max());
     const auto near = [&](const Vector2d& a, const Vector2d& b) {

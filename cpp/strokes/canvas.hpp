@@ -17,35 +17,36 @@ struct PixelBox {
     bool is_empty() const { return rows <= 0 || columns <= 0; }
 };
 
-/// What one pass paints: shares of the pixels of a box.
+/// The paint of one pass: shares of the pixels of a box.
 struct Tile {
     PixelBox box;
     Coverage share;
 };
 
-/// A shape in pixels, its cost in paint, and the places of its pixels. Row 0 is the top.
+/// A shape in pixels, the cost of paint on it, and the places of its pixels. Row 0 is the top.
 class Canvas {
  public:
-    /// beside_mm: how far round the shape paint is looked at.
+    /// beside_mm: margin round the shape in which paint counts.
     Canvas(const Rings& target_mm, const ObjectiveWeights& weights, double beside_mm);
 
     double px_per_mm() const { return px_per_mm_; }
     PixelBox whole() const { return {0, 0, target_.rows(), target_.cols()}; }
     Window window_of(const PixelBox& box) const;
-    /// The pixels about a rectangle of the paper, none beyond the canvas.
+    /// Return the pixels about a rectangle of the paper, limited to the canvas.
     PixelBox box_of(const Eigen::Vector2d& low_mm, const Eigen::Vector2d& high_mm) const;
     Eigen::Vector2d place(Eigen::Index row, Eigen::Index column) const;
-    /// Whether the middle of the pixel there is in the shape.
+    /// Return whether at least half of the pixel at a place is in the shape.
     bool is_inside(const Eigen::Vector2d& at_mm) const;
 
-    /// What a pass paints. Error where it cannot be simulated.
+    /// Return the paint of a pass. Throws Error if the pass cannot be simulated.
     Tile paint(const Pass& pass, const Brush& brush) const;
     const Coverage& target() const { return target_; }
-    /// How much of each pixel the shape covers that is smaller all round by what is seen.
+    /// Return how much of each pixel is in the shape without a rim as wide as `seen_mm`.
     const Coverage& inner() const { return inner_; }
-    /// Area of paint that is seen out of the shape [mm^2].
+    /// Return the area of paint that is visible outside of the shape [mm^2].
     double bulge_mm2(const Tile& tile) const;
-    /// The cost of pixels, of a box [mm^2]. is_last: else what is bare may be painted yet, and is not counted twice.
+    /// Return the cost of the pixels of a box [mm^2]. is_last: false if other strokes may still paint bare parts, which
+    /// then do not count twice.
     double cost_mm2(const PixelBox& box, const Coverage& painted, bool is_last = true) const;
 
  private:
@@ -55,7 +56,7 @@ class Canvas {
     Coverage target_, inner_, outer_;
 };
 
-/// Adds a tile to a picture of a box: the larger share of each pixel that both have.
+/// Add a tile to a picture of a box. Each pixel in both gets the larger share.
 void paint_over(Coverage& picture, const PixelBox& box, const Tile& tile);
 
 }  // namespace brushsvg

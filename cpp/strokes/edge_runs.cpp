@@ -14,10 +14,10 @@ namespace bg = boost::geometry;
 using Point = bg::model::d2::point_xy<double>;
 
 constexpr double kCornerRad = 30.0 / 180.0 * 3.14159265358979323846;
-constexpr double kFlatMm = 0.02;  // edges that bend by less are straight, as outlines are flattened
-constexpr double kChordMm = 0.1;  // over which a direction is measured, both ways
+constexpr double kFlatMm = 0.02;  // bends of edges that are smaller are ignored, as in flattened outlines
+constexpr double kChordMm = 0.1;  // length in both directions over which a direction is measured
 
-/// A ring with fewer points, no further than kFlatMm from it.
+/// Return a ring with fewer points, at most kFlatMm away from the original.
 Ring simpler(const Ring& ring) {
     const Index n = ring.rows();
     Index farthest = 0;

@@ -25,23 +25,27 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr std::size_t kMostAreas = 200;  // of one shape that are looked at: bounds the work
-constexpr double kStepMm = 0.01;         // of the poses of a trial: coarser ones paint thorns that plans have not
-constexpr double kSmoothed = 0.03;       // of its half width, how far a line may be off its curve
-constexpr double kBesideHalves =
-    2.0;                           // of the brush's greatest half width round a shape: no paint that counts is further
-constexpr double kMiddleMm = 0.1;  // of middle lines, to which the nearest place is looked for
-// Of strokes with another path: narrower by so much, cut so many half widths short.
+constexpr std::size_t kMostAreas = 200;  // bare areas of one shape that are tried at most: limits the work
+// Tolerance of a trial's steps: coarser ones paint thorns that plans do not have.
+constexpr double kStepMm = 0.01;
+constexpr double kSmoothed = 0.03;  // how far a curve may be off its line, in half widths of the line
+// Margin round a shape, in the brush's greatest half widths: no paint further away counts.
+constexpr double kBesideHalves = 2.0;
+constexpr double kMiddleMm = 0.1;  // tolerance of flattened middle lines, used to find the nearest place
+// Changes of a stroke's path that are tried: shares of its width, and half widths by which it is cut short.
 constexpr std::array<double, 2> kNarrower{0.95, 0.88};
 constexpr std::array<double, 4> kCuts{0.1, 0.4, 0.8, 1.5};
-constexpr double kNoiseMm2 = 0.4;         // what sticks out of a shape, as it is counted: less is a pixel's noise
-constexpr double kWorthMm2 = 0.05;        // won by another way: less is not worth to differ from the request
-constexpr double kBesideStroke = 3.0;     // half widths of a stroke: no way to lead it paints further out
-constexpr std::size_t kMostLedBack = 40;  // of one shape
-constexpr float kBare = 0.4f;  // share of a pixel without paint from which it is bare: of strips, at their edges
-constexpr int kTurnedPx = 3;   // round a change, in which the outline's turning is compared
+constexpr double kNoiseMm2 = 0.4;  // weighted area of paint outside of a shape: less is a pixel's noise
+// Least gain of another way to paint a stroke: less is not worth differing from the request.
+constexpr double kWorthMm2 = 0.05;
+// Margin round a stroke, in its half widths: no variant of it paints further away.
+constexpr double kBesideStroke = 3.0;
+constexpr std::size_t kMostLedBack = 40;  // strokes of one shape that are changed at most
+// Share of a pixel without paint above which it is bare, as at the edges of strips.
+constexpr float kBare = 0.4f;
+constexpr int kTurnedPx = 3;  // margin round a change, in which the outline's turning is compared
 
-/// The search for strokes into what the others leave of one shape.
+/// The search for strokes that paint the bare parts of one shape.
 class Search {
  public:
     Search(const PaintedShape& shape, const Brush& brush, const ObjectiveWeights& weights)
@@ -57,7 +61,7 @@ class Search {
         for (const Tile& tile : tiles_) paint_over(paint_, canvas_.whole(), tile);
     }
 
-    /// What the strokes leave bare, areas from a share of the shape on.
+    /// Return the areas that the strokes leave bare, from `least_mm2` on, the largest first.
     std::vector<UncoveredArea> uncovered(double least_mm2) const {
         std::vector<UncoveredArea> found;
         each_bare([&](Pixels&& pixels, std::size_t) {
@@ -70,7 +74,7 @@ class Search {
         return found;
     }
 
-    /// are_free: whether strokes may get another path, and not only added.
+    /// are_free: whether strokes may get another path. Otherwise strokes are only added.
     SearchedShape run(const std::vector<Stroke>& strokes, bool are_free) {
         SearchedShape found;
         for (const Stroke& stroke : strokes) found.strokes.push_back({stroke});
@@ -85,7 +89,7 @@ class Search {
     }
 
  private:
-    /// Strokes that stick out of the shape, the worst first.
+    /// Improve the strokes that stick out of the shape, the worst first.
     void improve(SearchedShape& found) {
         std::vector<std::pair<double, std::size_t>> beyond;
         for (std::size_t k = 0; k < tiles_.size(); ++k)
@@ -94,7 +98,7 @@ class Search {
         if (beyond.size() > kMostLedBack) beyond.resize(kMostLedBack);
         for (const auto& [mm2, k] : beyond) {
             const Stroke given = found.strokes[k].front();
-            if (is_set(given.settings.start) || is_set(given.settings.end)) continue;  // by the artist
+            if (is_set(given.settings.start) || is_set(given.settings.end)) continue;  // set by the artist
             const bool fills = given.start_covered && given.end_covered;
             Painting painting{{given}, tiles_[k]};
             if (!improve_stroke(painting, k, {fills, true, fills && k > 0, false})) continue;
@@ -107,19 +111,19 @@ class Search {
 
     bool sticks_out(const Tile& tile) const { return weights_.bulge * canvas_.bulge_mm2(tile) > kNoiseMm2; }
 
-    /// What becomes of a stroke, and what that paints.
+    /// The strokes that replace a stroke, and their paint.
     struct Painting {
         std::vector<Stroke> strokes;
         Tile tile;
     };
 
-    /// What improve_stroke may do with a stroke. is_last: no stroke is added after it, so that it also pays for the
-    /// bare areas that it leaves.
+    /// The changes that improve_stroke may make. is_last: no stroke is added after this one, so that the areas which it
+    /// leaves bare count in full.
     struct Allowed {
         bool reversed, cut, left_out, is_last;
     };
 
-    /// Changes a stroke, of the tile k, so that it costs less; false where nothing does.
+    /// Change a stroke, of the tile k, so that it costs less. Return false if no change does.
     bool improve_stroke(Painting& painting, std::size_t k, const Allowed& may) {
         const Stroke given = painting.strokes.front();
         const PixelBox box = about(given);
@@ -144,7 +148,8 @@ class Search {
         const auto keep_better = [&](Painting other) {
             const Coverage both = picture_with(other);
             const double area_mm2 = area_cost(other, both);
-            if (area_mm2 >= least_area + turn_mm2()) return false;  // a turn less is more than can be won
+            // fewer turns win at most the cost of one turn
+            if (area_mm2 >= least_area + turn_mm2()) return false;
             const double cost = area_mm2 + turn_mm2() * excess(both);
             if (cost >= least) return false;
             least = cost;
@@ -159,7 +164,7 @@ class Search {
             const std::optional<Tile> tile = stroke ? painted({*stroke}, box) : std::nullopt;
             if (tile && keep_better({{*stroke}, *tile})) best = variant;
         };
-        // one choice after the other: each way round, what its ends look like, how wide, how short
+        // try one choice after the other: the direction, the ends, the width, the length
         for (const bool reversed : {false, true}) {
             if (reversed && !may.reversed) break;
             Variant from;
@@ -229,7 +234,7 @@ class Search {
         return canvas_.box_of(low, high);
     }
 
-    /// What strokes paint of a box as a plan would; none where one of them cannot be painted.
+    /// Return the paint of strokes in a box, as a plan would paint them. None if one of them cannot be painted.
     std::optional<Tile> painted(const std::vector<Stroke>& strokes, const PixelBox& box) const {
         CompensateOptions options;
         options.start = Terminal::automatic;
@@ -271,12 +276,12 @@ class Search {
     double stroke_mm2() const { return weights_.stroke * half_mm_[1] * half_mm_[1]; }
     double turn_mm2() const { return weights_.turn * half_mm_[1] * half_mm_[1]; }
 
-    /// How much the outlines in a picture of a box turn, in full turns.
+    /// Return how much the outlines in a picture of a box turn, in full turns.
     double turns(const Coverage& picture, const PixelBox& box) const {
         return excess_turning(half_painted(picture, canvas_.window_of(box), canvas_.px_per_mm()), {});
     }
 
-    /// The shape's own turning in a box. What a mark turns less than that is not won.
+    /// Return the shape's own turning in a box. A mark that turns less than the shape gains nothing.
     double target_turns(const PixelBox& box) const {
         return turns(canvas_.target().block(box.row, box.column, box.rows, box.columns), box);
     }
@@ -287,7 +292,7 @@ class Search {
 
     using Pixels = std::vector<std::array<Index, 2>>;
 
-    /// Calls with the pixels of each bare area, and how much of each has an edge.
+    /// Call `visit` with the pixels of each bare area, and with the number of their neighbours that are not bare.
     template <class Visit>
     void each_bare(Visit&& visit) const {
         Mask seen = Mask::Zero(paint_.rows(), paint_.cols());
@@ -315,7 +320,7 @@ class Search {
         }
     }
 
-    /// The largest of the areas that are worth a stroke if one paints all of them.
+    /// Return the bare area that is worth most, if a stroke that paints all of it is worth its cost.
     std::optional<BareArea> largest_bare() const {
         const double px_mm = 1.0 / canvas_.px_per_mm();
         Pixels largest;
@@ -335,7 +340,7 @@ class Search {
         return area;
     }
 
-    /// The place farthest from the edge of an area, by rings of pixels taken off.
+    /// Return the place farthest from the edge of an area, found by removing rings of pixels.
     Vector2d deepest_of(const Pixels& pixels) const {
         Index top = pixels[0][0], left = pixels[0][1], bottom = top, right = left;
         for (const auto& [row, column] : pixels) {
@@ -399,7 +404,7 @@ class Search {
         } catch (const Error&) {
             return std::nullopt;
         }
-        // a mark finer than a pixel everywhere has no outline
+        // a mark that is finer than a pixel everywhere has no outline
         if (trial.tile.box.is_empty() || trial.tile.share.maxCoeff() <= kHalfPainted) return std::nullopt;
         const PixelBox& box = trial.tile.box;
         const Coverage before = paint_.block(box.row, box.column, box.rows, box.columns);
@@ -408,7 +413,7 @@ class Search {
         return trial;
     }
 
-    /// How much more the outline of the paint turns with a tile, in full turns.
+    /// Return how much more the outline of the paint turns with a tile, in full turns.
     double turned(const Tile& tile) const {
         PixelBox box{std::max<Index>(tile.box.row - kTurnedPx, 0), std::max<Index>(tile.box.column - kTurnedPx, 0), 0,
                      0};
@@ -432,7 +437,7 @@ class Search {
         }
         if (!best) return std::nullopt;
         const Rings area_mm = bare_rings(pixels_);
-        best->stroke.settings.start = "pointed";  // under the paint of others
+        best->stroke.settings.start = "pointed";  // under the paint of other strokes
         best->stroke.settings.end = "round";
         Painting painting{{best->stroke}, best->tile};
         tiles_.push_back(best->tile);
@@ -459,7 +464,7 @@ class Search {
         return which;
     }
 
-    /// The outline of a bare area, up to the edges of shape and paint.
+    /// Return the outline of a bare area, up to the edges of shape and paint.
     Rings bare_rings(const Pixels& pixels) const {
         const int steps = 1 + int(std::ceil(weights_.seen_mm * canvas_.px_per_mm()));
         Index top = pixels[0][0], left = pixels[0][1], bottom = top, right = left;
@@ -493,13 +498,13 @@ class Search {
     const ObjectiveWeights& weights_;
     std::array<double, 2> half_mm_;
     Canvas canvas_;
-    Outline outline_;
+    ShapeOutline outline_;
     Coverage paint_;
     Mask refused_;
-    std::vector<Tile> tiles_;  ///< of the given strokes, with their current paths
+    std::vector<Tile> tiles_;  ///< paint of all strokes, with their current paths
     std::vector<MiddlePolyline> middles_;
-    std::vector<MiddlePolyline> former_;  ///< of the given strokes that have another path now
-    mutable Pixels pixels_;               ///< of the area that is looked at
+    std::vector<MiddlePolyline> former_;  ///< old middle lines of the strokes that have another path now
+    mutable Pixels pixels_;               ///< pixels of the bare area that is being painted
 };
 
 }  // namespace

@@ -11,19 +11,21 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr double kMiddleMm = 0.1, kRowMm = 0.01;  // to which lines are looked at, for their length and for their bends
-constexpr double kCornerRad = 30.0 / 180.0 * 3.14159265358979323846;  // less is a bend that a brush goes round
-constexpr std::size_t kMostBends = 8;  // of one stroke that it may be cut at: bounds the work
-constexpr double kLeastLeft = 0.8;     // half widths that are left of a stroke that is cut short
+// Tolerances of flattened lines, for their length and for their bends.
+constexpr double kMiddleMm = 0.1, kRowMm = 0.01;
+// A brush can go round a bend that turns less.
+constexpr double kCornerRad = 30.0 / 180.0 * 3.14159265358979323846;
+constexpr std::size_t kMostBends = 8;  // bends at which one stroke may be cut at most: limits the work
+constexpr double kLeastLeft = 0.8;     // least length of a stroke that is cut short, in half widths
 
-/// A cubic between two parameters (de Casteljau).
+/// Return a cubic between two parameters (de Casteljau).
 Eigen::Matrix<double, 1, 8> between(Eigen::Matrix<double, 1, 8> cubic, double t0, double t1) {
     const auto point = [&](Index k) { return cubic.segment<2>(2 * k); };
-    for (Index last = 3; last > 0; --last)  // up to t1
+    for (Index last = 3; last > 0; --last)  // cut off the part after t1
         for (Index k = 3; k > 3 - last; --k)
             cubic.segment<2>(2 * k) = (point(k - 1) + t1 * (point(k) - point(k - 1))).eval();
     const double t = t1 > 0.0 ? t0 / t1 : 0.0;
-    for (Index last = 3; last > 0; --last)  // from there on
+    for (Index last = 3; last > 0; --last)  // cut off the part before t0
         for (Index k = 0; k < last; ++k) cubic.segment<2>(2 * k) = (point(k) + t * (point(k + 1) - point(k))).eval();
     return cubic;
 }
@@ -95,7 +97,7 @@ std::vector<Gap> gaps_of(const Stroke& stroke) {
         const double t = step > 0.0 ? std::clamp((at - line(i, 2)) / step, 0.0, 1.0) : 0.0;
         return (line.block<1, 2>(i, 0) + t * (line.block<1, 2>(i + 1, 0) - line.block<1, 2>(i, 0))).transpose();
     };
-    std::vector<std::pair<double, double>> bends;  // the turn, where
+    std::vector<std::pair<double, double>> bends;  // the turn, and where it is
     for (Index i = 1; i + 1 < line.rows(); ++i) {
         const double at = line(i, 2), reach = std::max(line(i, 3), kMiddleMm);
         if (at < reach || at > length - reach) continue;

@@ -11,26 +11,27 @@ namespace brushsvg {
 /// Another way to paint a stroke.
 struct Variant {
     bool is_reversed = false;
-    bool is_square = true;                ///< its ends go into the corners of its shape, where it has one
+    bool is_square = true;                ///< its ends go into the corners of its shape, if it has one
     bool is_pointed = false;              ///< it begins pointed
-    double width = 1.0;                   ///< as a share of its own
-    std::array<double, 2> cut{0.0, 0.0};  ///< off its ends, in its greatest half width
+    double width = 1.0;                   ///< as a share of its own width
+    std::array<double, 2> cut{0.0, 0.0};  ///< lengths cut off its ends, in its greatest half width
 };
 
-/// A stroke as a variant says, its widths within the brush's half widths; none where too little is left of it.
+/// Return a stroke that is changed by a variant, its widths limited to the brush's half widths. None if too little is
+/// left of it.
 std::optional<Stroke> varied(const Stroke& stroke, const Variant& variant, const std::array<double, 2>& half_mm);
 
-/// The part of a stroke between two arc lengths.
+/// Return the part of a stroke between two arc lengths.
 Stroke stretch(const Stroke& stroke, double from_mm, double to_mm);
 
-/// What is left out between two parts of a stroke [mm along it]: nothing where they meet.
+/// The part that is left out between two parts of a stroke [mm along it]. It is empty where the parts meet.
 using Gap = std::array<double, 2>;
 
-/// Gaps at each sharp bend of a stroke, and from each to the next. A bend is sharp where the chords of half a width
-/// before and behind a place turn by more than 30 degrees.
+/// Return gaps at each sharp bend of a stroke, and from each bend to the next. A bend is sharp if the chords of half a
+/// width before and behind a place turn by more than 30 degrees.
 std::vector<Gap> gaps_of(const Stroke& stroke);
 
-/// A stroke in parts: each later one begins pointed, under the paint of the one before.
+/// Cut a stroke into parts. Each later part begins pointed, under the paint of the one before.
 std::vector<Stroke> cut(const Stroke& stroke, const std::vector<Gap>& gaps);
 
 }  // namespace brushsvg

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// Both parts of a cubic (de Casteljau).
+/// Split a cubic into two parts (de Casteljau).
 std::array<Eigen::Matrix<double, 1, 8>, 2> split(const Cubics& middle_mm, Index cubic, double t) {
     Vector2d p[4];
     for (int i = 0; i < 4; ++i) p[i] = middle_mm.row(cubic).segment<2>(2 * i);
@@ -25,9 +25,9 @@ std::array<Eigen::Matrix<double, 1, 8>, 2> split(const Cubics& middle_mm, Index 
     return out;
 }
 
-/// The path between two places on it, the first before the second.
+/// Return the path between two places on it, the first before the second.
 Cubics part_of(const Cubics& middle_mm, const Place& from, const Place& to) {
-    // up to where a cubic begins is up to where the one before it ends
+    // the start of a cubic is the end of the one before it
     if (to.t == 0.0 && from.cubic < to.cubic) return part_of(middle_mm, from, {to.cubic - 1, 1.0});
     Cubics out = middle_mm.middleRows(from.cubic, to.cubic - from.cubic + 1);
     const Index last = out.rows() - 1;

@@ -11,49 +11,64 @@
 
 namespace brushsvg {
 
-/// What the end styles are tuned by. Lengths are in half widths of the stroke at its end unless a unit is in the name.
+/// Tuning of the end styles. Lengths are in half widths of the stroke at its end unless a unit is in the name.
 struct EndTuning {
-    /// Half a side of the square about an end that trials look at. A pointed footprint reaches back by 2.
+    /// Half the side of the square about an end in which trials are compared. A pointed footprint reaches back by 2.
     double looked_at = 3.0;
-    double flat = 0.1;       ///< a path is flattened so to find what is near the square
-    double footprint = 3.0;  ///< further from the square no footprint paints in it: a pointed one reaches back by 2
-    double pixels = 8.0;     ///< of a trial's picture on one half width
-    /// What a style must win over a plainer one, in squares of the half width. A pointed start lacks 1.5, two blunt
-    /// corners lack 0.4, the shoulders of a blunt front 0.04. More leaves blunt ends, less costs poses that nobody
-    /// sees.
+    double flat = 0.1;  ///< tolerance of the flattened path that shows which parts are near the square
+    /// No footprint further from the square paints in it: a pointed one reaches back by 2.
+    double footprint = 3.0;
+    double pixels = 8.0;  ///< pixels per half width in the picture of a trial
+    /// How much less error a style needs than a plainer one, in squares of the half width. A pointed start lacks 1.5,
+    /// two blunt corners lack 0.4, the shoulders of a blunt front 0.04. A larger value leaves blunt ends, a smaller one
+    /// costs poses that nobody sees.
     double worth = 0.02;
-    double worth_covered = 0.2;  ///< the same where other strokes cover the end: less costs a quarter more poses
-    double short_of_end = 0.05;  ///< what a blunt front may stay short of the drawn end: less costs a pose
+    /// Like `worth`, where other strokes cover the end: less costs a quarter more poses.
+    double worth_covered = 0.2;
+    double short_of_end = 0.05;  ///< how far a blunt front may stop short of the drawn end: less costs a pose
 
-    double longest_dot = 1.4;   ///< a longer line is no dot: turned on the spot it shows a waist
-    double largest_hole = 0.1;  ///< about P, where the whole footprint is ahead of it
-    /// Of a front or a disc, what is wide enough to hide a pointed rear: more shows thorns, less a waist.
+    double longest_dot = 1.4;   ///< length of the longest dot: turned on the spot, a longer line shows a waist
+    double largest_hole = 0.1;  ///< largest hole about P, where the whole footprint is ahead of P
+    /// Share of the radius of a front or a disc that hides a pointed rear. A larger value shows thorns, a smaller one a
+    /// waist.
     double hiding = 0.8;
-    double narrowing_step = 1.0 / 12.0;  ///< in lengths of the footprint's rear
-    double ball_within = 2.0;            ///< where a line begins in a ball, the middle of the ball is so near
-    double wet_narrows_per_m = 1e-3;     ///< paint that runs out faster is pressed deeper: a disc would be a knob
+    /// Step between the knots of a narrowing, in lengths of the footprint's rear.
+    double narrowing_step = 1.0 / 12.0;
+    /// Largest distance from a line's start to the middle of the ball in which it begins.
+    double ball_within = 2.0;
+    /// Where marks narrow faster, the brush is pressed deeper: a disc would be a knob.
+    double wet_narrows_per_m = 1e-3;
 
-    double cap_off = 0.2;  ///< a path that ends further from the middle of its cap ends in no cap
-    double cut_straight = 0.12, cut_farthest = 2.5;  ///< how far a cut may stray from its chord, and be ahead
-    /// Half width of the mark that runs along a cut. Its corners are as round as it is wide; a finer one leaves a hole.
+    double cap_off = 0.2;  ///< largest distance of a path's end from the middle of its cap
+    /// How far a cut may stray from its chord, and how far ahead it may be.
+    double cut_straight = 0.12, cut_farthest = 2.5;
+    /// Least and greatest half width of the mark along a cut. Its corners are as round as it is wide; a finer mark
+    /// leaves a hole.
     double narrowest = 0.27, widest_narrow = 0.6;
-    double least_lever_mm = 0.15;        ///< of that mark: a shorter one hardly pulls P, and the mark swings
-    double leaves_before_cut = 1.15;     ///< later the front sticks out, sooner it leaves a hole
-    double slanted = 0.25;               ///< and so much sooner where a cut is slanted by 45 degrees
-    double straight_back = 0.5;          ///< cosine by which a way back may bend
-    double beside_before_corner = 0.45;  ///< where the narrow mark has come to the edge: later it leaves a step
-    double back = 0.3;                   ///< before the path's end: covers what the front of the full width leaves
-    double joins = 2.2;                  ///< a butt start is on the path again, its rear on what is painted
-    double set_down = 2.6;               ///< and was set down so far inside: less leaves a notch between both
+    /// Least lever of the mark along a cut: a shorter one hardly pulls P, and the mark swings.
+    double least_lever_mm = 0.15;
+    /// Where the path leaves its line, before the cut: later the front sticks out, sooner it leaves a hole.
+    double leaves_before_cut = 1.15;
+    double slanted = 0.25;       ///< how much sooner the path leaves its line where a cut is slanted by 45 degrees
+    double straight_back = 0.5;  ///< least cosine of the bend between the set-down of a butt start and its end
+    /// Before the corner, the narrow mark reaches the edge here: later it leaves a step.
+    double beside_before_corner = 0.45;
+    /// End of the way back, before the path's end: covers the gap left by the front of the full width.
+    double back = 0.3;
+    double joins = 2.2;  ///< where a butt start joins the path again, its rear on painted paper
+    /// Where a butt start is set down, inside the stroke: less leaves a notch between both marks.
+    double set_down = 2.6;
 
-    double corner_sticks_out = 0.1;  ///< of the narrow mark's half width: less is no corner of a dot
-    double on_side = 0.7;            ///< of a dot's side, where the way round begins: in a corner it would swing out
+    /// In half widths of the narrow mark: a corner of a dot sticks out by at least this much.
+    double corner_sticks_out = 0.1;
+    /// Share of a dot's side, where the way round begins: in a corner it would swing out.
+    double on_side = 0.7;
 };
 inline constexpr EndTuning kTuning;
 
 enum class Side { start, end };
 
-/// One end of a path: its place, the direction there out of the stroke and to the left of that, and half the width.
+/// One end of a path: its place, the outward direction there, the direction to the left of that, and half the width.
 struct PathEnd {
     Eigen::Vector2d at_mm, along, left;
     double half_mm;
@@ -66,12 +81,12 @@ class StrokePath {
  public:
     StrokePath() = default;
     StrokePath(const Eigen::Vector2d& from_mm, double half_mm) : here_mm_(from_mm), half_mm_{{0.0, half_mm}} {}
-    /// Appends the part of a stroke between two arc lengths [mm], reversed where the second is the smaller one.
+    /// Append the part of a stroke between two arc lengths [mm], reversed if the second is the smaller one.
     void follow(const Stroke& stroke, const Line& line, double from_mm, double to_mm);
-    /// Appends a straight line. The half width changes evenly until its end.
+    /// Append a straight line. The half width changes evenly until its end.
     void line_to(const Eigen::Vector2d& to_mm, double half_mm);
     double length_mm() const { return half_mm_.back().first; }
-    /// The path as a stroke with all other properties of a given one.
+    /// Return the path as a stroke with all other properties of a given one.
     Stroke like(const Stroke& stroke) const;
 
  private:
@@ -80,41 +95,42 @@ class StrokePath {
 
     Cubics middle_mm_{0, 8};
     Eigen::Vector2d here_mm_;
-    std::vector<std::pair<double, double>> half_mm_;  // by arc length [mm]
+    std::vector<std::pair<double, double>> half_mm_;  // half widths by arc length [mm]
 };
 
-/// The stroke as wide as the brush can paint it.
+/// Return the stroke with its widths limited to the range that the brush can paint.
 Stroke as_wide_as_painted(const Stroke& stroke, const Brush& brush);
 
-/// How far ahead of the end the outline is first left, at a distance to its left; infinite where it is not.
+/// Return how far ahead of the end a ray first leaves the outline, at a distance to the left of the end [mm]. Infinite
+/// if it does not.
 double outline_ahead_mm(const Rings& rings, const PathEnd& end, double aside_mm);
 
-/// A straight cut across an end: ahead of the path's end by `ahead_mm - slope * aside`.
+/// A straight cut across an end. It is ahead of the path's end by `ahead_mm - slope * aside`.
 struct Cut {
     double ahead_mm, slope;
 };
-/// How a path with a width alone ends: as strokes with round caps do, or cut straight, half a width beyond its end.
+/// How a path without an outline ends: with a round cap, or cut straight, half a width beyond its end.
 enum class Caps { round, straight };
-/// Find the cut that is drawn across an end, looked at so far to both sides. None where the drawn end is not straight.
+/// Find the cut that is drawn across an end, within a distance to both sides. None if the drawn end is not straight.
 std::optional<Cut> find_cut(const Stroke& stroke, const PathEnd& end, double aside_mm, Caps caps);
 
-/// How far the front of the footprint reaches beyond the drawn end of a mark [mm], which is half a width from its
-/// path's, with the widest section over that. Less than 0 is what is missing. The brush is lifted while P rests, and
-/// the front of a shallower footprint may be further ahead of P, so all depths down to 0 count.
+/// Return how far the front of the footprint reaches beyond the drawn end of a mark [mm]. The drawn end is half a width
+/// beyond the path's end, where the widest section is. A negative value is the gap. The brush is lifted while P rests.
+/// The front of a shallower footprint may be further ahead of P, so all depths down to 0 count.
 double reach_beyond_end_mm(const Brush& brush, double depth, double half_width_mm);
 
-/// Where along the line the widest section starts and stops [mm]: the tip begins the mark and the footprint's front
-/// ends it, half a width beyond the path's ends.
+/// Return where along the line the widest section starts and stops [mm]. The tip begins the mark and the footprint's
+/// front ends it, half a width beyond the path's ends.
 std::array<double, 2> painted_stretch(const Stroke& stroke, const Brush& brush, double length);
 
-/// The stroke up to where the front of the footprint reaches the drawn end, half a width beyond the path's: a blunt one
-/// has to go beyond that itself.
+/// Return the stroke up to where the front of the footprint reaches the drawn end, half a width beyond the path's end.
+/// With a blunt front, the path has to go beyond its own end.
 Stroke up_to_drawn_end(const Stroke& stroke, const Brush& brush);
 
-/// The least value for which `holds` is true, between one where it is not and one where it is.
+/// Return the least value for which `holds` is true, between one where it is not and one where it is.
 template <class Holds>
 double bisect(double lo, double hi, Holds&& holds) {
-    for (int i = 0; i < 50; ++i) {  // to rounding
+    for (int i = 0; i < 50; ++i) {  // enough for double precision
         const double middle = 0.5 * (lo + hi);
         (holds(middle) ? hi : lo) = middle;
     }

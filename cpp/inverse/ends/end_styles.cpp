@@ -14,8 +14,8 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// Press depth at which a footprint that is turned on the spot reaches so far; none where that leaves a hole about P,
-/// or the least depth reaches further already; the greatest depth where none reaches so far.
+/// Return the depth at which a footprint that is turned on the spot reaches a radius, or the greatest depth if none
+/// reaches it. None if a hole would be left about P, or if the least depth already reaches further.
 std::optional<double> depth_of_turn(const Stroke& stroke, const Brush& brush, double radius_mm) {
     if (stroke.closed || brush.is_rigid() || !brush.width_follows_depth()) return {};
     const double least = std::max(brush.depth_range_mm[0], 1e-3), most = brush.depth_range_mm[1];
@@ -26,8 +26,9 @@ std::optional<double> depth_of_turn(const Stroke& stroke, const Brush& brush, do
     return depth;
 }
 
-/// The depth of a disc amid a round cap, less than the stroke's own. None where marks narrow as paint runs out: a patch
-/// that is pressed deeper for it, turned round, paints as large a disc as a wet one, a knob.
+/// Return the depth of a disc in the middle of a round cap, which is less than the stroke's own depth. None if marks
+/// narrow as paint runs out. A patch that is pressed deeper to correct for that still paints a disc as large as a wet
+/// one does: a knob.
 std::optional<double> depth_in_cap(const Stroke& stroke, const Brush& brush, double at) {
     const double full = depth_of(stroke, brush, at);
     if (!(brush.lever_to_widest(full) > 0.0)) return {};
@@ -36,7 +37,8 @@ std::optional<double> depth_in_cap(const Stroke& stroke, const Brush& brush, dou
     return depth && *depth < full ? depth : std::nullopt;
 }
 
-/// The stroke up to the middle of the cap in which it is drawn at one side: a line of a shape may end next to it.
+/// Return the stroke moved to the middle of the cap in which it is drawn at one side. A line of a shape may end next to
+/// that middle.
 Stroke led_to_cap(const Stroke& stroke, const Brush& brush, Side side) {
     const Line line(stroke, brush);
     const PathEnd end = path_end(stroke, line, side);
@@ -56,8 +58,8 @@ Stroke led_to_cap(const Stroke& stroke, const Brush& brush, Side side) {
     return path.like(stroke);
 }
 
-/// A stroke that is narrowed from an arc length on so that the rear of its footprint stays behind another, and from
-/// where on it has all its width. None where no depth does.
+/// A stroke that is narrowed from an arc length on so that the rear of its footprint stays ahead of a limit. It reaches
+/// its full width at `full_from_mm`. None if no depth keeps the rear ahead of the limit.
 struct Narrowed {
     Stroke stroke;
     double full_from_mm;
@@ -83,8 +85,9 @@ std::optional<Narrowed> narrowed(const Stroke& stroke, const Brush& brush, doubl
     return {};
 }
 
-/// Set down heading back along the line, drawn back until the widest section is at an arc length, less than 0 before
-/// the line; there turned over, or round at a depth, and on along the line, the rear of the mark behind a place.
+/// Set the brush down heading back along the line. Draw it back until the widest section is at an arc length, negative
+/// before the line. There turn it over, or turn it round at a depth. Continue along the line with the rear of the mark
+/// ahead of `rear_mm`.
 std::optional<BrushMoves> drawn_back(const Stroke& stroke, const Brush& brush, double until_mm, double rear_mm,
                                      std::optional<double> turn_depth_mm = {}) {
     const Line line(stroke, brush);
@@ -93,7 +96,8 @@ std::optional<BrushMoves> drawn_back(const Stroke& stroke, const Brush& brush, d
     const double last_mm = painted_stretch(stroke, brush, line.length())[1];
     const double lever = brush.lever_to_widest(depth_of(stroke, brush, 0.0));
     const double narrow_lever = brush.lever_to_widest(depth_of(onward->stroke, brush, 0.0));
-    until_mm = std::max(until_mm, -0.999 * (lever + narrow_lever));  // or the line's first point is out of reach of P
+    // otherwise the line's first point is out of reach of P
+    until_mm = std::max(until_mm, -0.999 * (lever + narrow_lever));
     const double from_mm = std::min(std::max(until_mm + 2.0 * lever, onward->full_from_mm), last_mm);
     if (!(from_mm > std::max(until_mm, 0.0))) return {};
     StrokePath path;
@@ -110,18 +114,18 @@ std::optional<BrushMoves> drawn_back(const Stroke& stroke, const Brush& brush, d
                        std::min(until_mm + 4.0 * lever, last_mm), last_mm}};
 }
 
-/// The line with nothing before it.
+/// Return the moves along the line with nothing before it.
 BrushMoves led_from_tip(Stroke stroke, const Brush& brush) {
     const auto [s0, s1] = painted_stretch(stroke, brush, Line(stroke, brush).length());
     return {{{}, std::move(stroke), s0, s0, s1}};
 }
 
-/// Pointed, as a footprint is behind.
+/// Begin pointed, with the shape of the footprint's rear.
 std::optional<BrushMoves> pointed_start(const Stroke& stroke, const Brush& brush, Caps) {
     return led_from_tip(stroke, brush);
 }
 
-/// Drawn back until the round front of the footprint reaches the drawn beginning.
+/// Draw back until the round front of the footprint reaches the drawn start.
 std::optional<BrushMoves> round_start(const Stroke& stroke, const Brush& brush, Caps) {
     const double depth = depth_of(stroke, brush, 0.0), half_mm = half_width_at(stroke, 0.0);
     if (stroke.closed || brush.is_rigid() || !(brush.lever_to_widest(depth) > 0.0)) return {};
@@ -129,7 +133,7 @@ std::optional<BrushMoves> round_start(const Stroke& stroke, const Brush& brush, 
     return drawn_back(stroke, brush, until_mm, until_mm - kTuning.hiding * (until_mm + half_mm));
 }
 
-/// Drawn back at the full width into a round cap, and turned round in it.
+/// Draw back at the full width into a round cap, and turn round in it.
 std::optional<BrushMoves> turned_in_cap(const Stroke& stroke, const Brush& brush, Caps) {
     const auto depth = depth_in_cap(stroke, brush, 0.0);
     if (!depth) return {};
@@ -137,7 +141,8 @@ std::optional<BrushMoves> turned_in_cap(const Stroke& stroke, const Brush& brush
                       depth);
 }
 
-/// Set down and turned round where the line is widest near its beginning, as amid the ball of an f, or in a comma.
+/// Set down and turn round where the line is widest near its start, as in the middle of the ball of an f, or in a
+/// comma.
 std::optional<BrushMoves> turned_in_ball(const Stroke& stroke, const Brush& brush, Caps) {
     const Line line(stroke, brush);
     const double length_mm = line.length();
@@ -162,12 +167,12 @@ std::optional<BrushMoves> butt_start(const Stroke& stroke, const Brush& brush, C
     return {};
 }
 
-/// Lifted while the patch rests: as the footprint is in front.
+/// Lift while the patch rests: the end has the shape of the footprint's front.
 std::optional<EndedStroke> lifted_end(const Stroke& stroke, const Brush& brush, Caps) {
     return EndedStroke{up_to_drawn_end(stroke, brush), {}};
 }
 
-/// Half of how far an outline reaches across at a place along it.
+/// Return half the extent of an outline across its axis, at a place along it.
 double half_across_mm(const Ring& outline, double x) {
     double low = 0.0, high = 0.0;
     for (Index i = 0, n = outline.rows(); i < n; ++i) {
@@ -190,7 +195,7 @@ std::optional<EndedStroke> turned_end(const Stroke& stroke, const Brush& brush, 
     return {};
 }
 
-/// Half the width of the mark that runs along a cut, none where the brush is too coarse for one.
+/// Return half the width of the mark along a cut. None if the brush is too coarse for one.
 std::optional<double> half_along_cut_mm(const Brush& brush, double half_mm) {
     const double least = std::max(kTuning.narrowest * half_mm, brush.half_width_range_mm()[0]),
                  most = std::min(kTuning.widest_narrow * half_mm, brush.half_width_range_mm()[1]);
@@ -203,13 +208,13 @@ std::optional<double> half_along_cut_mm(const Brush& brush, double half_mm) {
 
 Vector2d corner(const Ring& ring, Index i) { return ring.row((i + ring.rows()) % ring.rows()).transpose(); }
 
-/// How far to the left of an edge a place is.
+/// Return how far a place is to the left of an edge.
 double left_of_mm(const Vector2d& from, const Vector2d& to, const Vector2d& at) {
     const Vector2d along = (to - from).normalized();
     return along.x() * (at - from).y() - along.y() * (at - from).x();
 }
 
-/// A convex ring without the corners that stick out by less, the least first.
+/// Return a convex ring without the corners that stick out by less than a limit. The least one is removed first.
 Ring with_few_corners(Ring convex, double least_mm) {
     while (convex.rows() > 3) {
         Index least = 0;
@@ -229,7 +234,7 @@ Ring with_few_corners(Ring convex, double least_mm) {
     return convex;
 }
 
-/// The part of a convex ring, counter-clockwise, that is so far within all its edges.
+/// Return the part of a convex ring, counter-clockwise, that is at least `by_mm` inside all its edges.
 Ring within_edges(const Ring& convex, double by_mm) {
     Ring left = convex;
     for (Index i = 0; i < convex.rows(); ++i) {
@@ -247,7 +252,7 @@ Ring within_edges(const Ring& convex, double by_mm) {
     return left;
 }
 
-/// Whether all corners are within a disc that moves from one place to another.
+/// Return whether all corners are within a disc that moves from one place to another.
 bool covered_by(const Vector2d& from, const Vector2d& to, double radius_mm, const Ring& corners) {
     const Vector2d way = to - from;
     for (Index i = 0; i < corners.rows(); ++i) {
@@ -295,14 +300,14 @@ std::optional<ButtEnd> make_butt_end(const Stroke& stroke, const Brush& brush, C
     if (!narrow || length_mm < kTuning.joins * half_mm) return {};
     const auto cut = find_cut(stroke, end, half_mm - *narrow, caps);
     double from_mm = 0.0;
-    if (at_start) {  // the tip is set down there, and the widest section is as far before it
+    if (at_start) {  // the widest section is set down at set_down_mm, and the tip trails it at tip_mm
         const double tip_mm = set_down_mm + brush.tip_to_widest(depth_of(stroke, brush, set_down_mm / length_mm));
         from_mm = std::max(set_down_mm, tip_mm - half_width_at(stroke, std::min(1.0, tip_mm / length_mm)));
     }
     if (!cut || from_mm > length_mm) return {};
     const Vector2d set_down_along = line.tangent(line.at(from_mm));
     if (at_start && -set_down_along.dot(end.along) < kTuning.straight_back)
-        return {};  // P would be dragged past a corner
+        return {};  // otherwise P would be dragged past a corner
 
     const double slant = std::min(1.0, std::abs(cut->slope)),
                  leaves = kTuning.leaves_before_cut + kTuning.slanted * slant;
@@ -310,7 +315,7 @@ std::optional<ButtEnd> make_butt_end(const Stroke& stroke, const Brush& brush, C
     StrokePath path;
     path.follow(stroke, line, from_mm, at_start ? inside_mm : length_mm - inside_mm);
     if (ahead_mm > 0.0) path.line_to(end.place(ahead_mm, 0.0), half_mm);
-    // the corner that is further ahead first
+    // start with the corner that is further ahead
     const double aside = std::copysign(half_mm - *narrow, -cut->slope);
     const double steep_mm = *narrow * std::hypot(1.0, cut->slope);
     const double first_mm = cut->ahead_mm - cut->slope * aside - steep_mm,
@@ -386,7 +391,7 @@ std::optional<BrushMoves> dot_with_corners(const Stroke& stroke, const Brush& br
     const Ring round = with_few_corners(within_edges(plain, *narrow), least_mm);
     const Vector2d at = dot->back().turn->at_mm;
     const double radius_mm = std::min(half_mm, brush.half_width_range_mm()[1]);
-    // or something stays bare between the disc and the narrow mark
+    // otherwise a gap would stay bare between the disc and the narrow mark
     if (round.rows() < 3 || !covered_by(dot->front().turn->at_mm, at, radius_mm, within_edges(plain, 2.0 * *narrow)))
         return {};
     const auto length_mm = [&](Index i) { return (corner(round, i + 1) - corner(round, i)).norm(); };
@@ -404,7 +409,8 @@ std::optional<BrushMoves> dot_with_corners(const Stroke& stroke, const Brush& br
 }
 
 std::vector<Turned> turned_round(const PassMarks& marks) {
-    constexpr double round_rad = 6.0, rests_mm = 0.1;  // what counts as round, and how far P may creep meanwhile
+    // what counts as a full turn, and how far P may creep meanwhile
+    constexpr double round_rad = 6.0, rests_mm = 0.1;
     std::vector<Turned> found;
     double turned = 0.0, most = 0.0;
     std::size_t from = 0;

@@ -13,7 +13,7 @@
 namespace brushsvg {
 namespace {
 
-/// The surroundings of an end, and how far marks are from the target there.
+/// The surroundings of an end, used to measure how far marks differ from the target there.
 class EndView {
  public:
     EndView(const Stroke& wanted, const Brush& brush, Side side, double step_tolerance)
@@ -28,7 +28,7 @@ class EndView {
         wanted_ = wanted_coverage({wanted}, window_, px_per_mm_);
     }
 
-    /// Paint that is missing or too much, in squares of the half width. None where the moves cannot be made.
+    /// Return the area of missing and excess paint, in squares of the half width. None if the moves cannot be made.
     std::optional<double> score(BrushMoves moves) const {
         leave_out_far_part(moves);
         bool turns = false;
@@ -75,7 +75,7 @@ class EndView {
     Coverage wanted_;
 };
 
-/// Terminals to try together; the next ones where none of them has room.
+/// Groups of terminals to try together. The next group is tried only if none of a group has room.
 using Requests = std::vector<std::vector<Terminal>>;
 
 Requests requested(Side side, Terminal asked) {
@@ -89,8 +89,8 @@ Requests requested(Side side, Terminal asked) {
     return {all};
 }
 
-/// Try the requested styles and keep those that are better than the ones before them, the best first.
-/// `worth`: what each must win. `moves_with`: the moves with a style; none where there is no room.
+/// Try the requested styles and keep those that are better than the ones before them, the best first. `worth`: how much
+/// each must win. `moves_with`: the moves with a style; none if there is no room.
 template <class Styles, class MovesWith>
 std::vector<std::pair<typename Styles::value_type, BrushMoves>> best_styles(const Styles& styles,
                                                                             const Requests& requests,
@@ -130,7 +130,7 @@ std::vector<BrushMoves> select_ends(const Stroke& stroke, const Brush& brush, co
     const Settings& own = stroke.settings;
     const bool is_dot = turned_dot(stroke, brush).has_value();
     Terminal start = own.start ? terminal_named(*own.start, stroke.id) : options.start;
-    if (is_dot && start == Terminal::butt) start = Terminal::automatic;  // where it has corners
+    if (is_dot && start == Terminal::butt) start = Terminal::automatic;  // for a dot with corners
     const Terminal end = own.end ? terminal_named(*own.end, stroke.id) : options.end;
     const Caps start_caps = start == Terminal::butt ? Caps::straight : Caps::round;
     const Caps end_caps = end == Terminal::butt ? Caps::straight : Caps::round;
