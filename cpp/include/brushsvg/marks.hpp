@@ -28,8 +28,8 @@ struct PassMarks {
 
 /// Return the matrix that stretches a leaning brush's footprint about its contact:
 ///     S = I + s s^T / (1 + sqrt(1 + |s|^2)),  |s| = tan t
-/// A plane at an angle t to the brush's cross-section cuts a longer section. In the direction of the lean it is 1 / cos
-/// t as long.
+/// A plane at an angle t to the brush's cross-section cuts a longer section. In the direction of the lean it is
+/// 1 / cos t as long.
 ///
 /// `lean`: s, the sideways distance of the brush's axis per mm up.
 inline Eigen::Matrix2d stretch_of(const Eigen::RowVector2d& lean) {
