@@ -14,7 +14,10 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// How the TCP is offset from the stroke's middle line. q is the TCP, m the middle line and T its unit tangent.
+/// How the TCP is offset from the stroke's middle line.
+///
+/// q is the TCP, m the middle line, T its unit tangent, and u the heading. r is the lag at the depth there, r0 a
+/// constant lag. e is the distance from the contact to the widest section.
 enum class Compensation {
     none,      ///< the TCP is on the middle line; the brush is pressed and lifted on the spot
     constant,  ///< q = m + r0 T, the constant offset of other tools, but with a fair landing

@@ -36,11 +36,11 @@ template <class T>
 struct LawPiece {
     double lo = 0.0, hi = 0.0;
     int degree = 0;
-    std::array<T, kMaxLawDegree + 1> coefficients{};
-    std::vector<std::complex<double>> roots;  ///< all complex roots of the polynomial
-    double clear2 = 0.0;                      ///< squared distance of the nearest root from [lo, hi] [mm^2]
-    double steepest = 0.0;                    ///< upper bound of |dr/dd| on [lo, hi]
-    double most_twisted = 0.0;                ///< upper bound of |d3r/dd3| on [lo, hi]
+    std::array<T, kMaxLawDegree + 1> coefficients{};  ///< in ascending powers of d
+    std::vector<std::complex<double>> roots;          ///< all complex roots of the polynomial
+    double clear2 = 0.0;                              ///< squared distance of the nearest root from [lo, hi] [mm^2]
+    double steepest = 0.0;                            ///< upper bound of |dr/dd| on [lo, hi]
+    double most_twisted = 0.0;                        ///< upper bound of |d3r/dd3| on [lo, hi]
 
     T at(const T& depth) const {
         std::size_t i = std::size_t(degree);
@@ -117,8 +117,10 @@ Vec2<T> drag_heading(const Vec2<T>& heading, const Vec2<T>& along, const T& deca
 /// Return beta of article (11) and (12) [rad].
 ///
 /// beta is the angle from the direction of motion to the tip's displacement. `alpha0`, `alpha1`: angles [rad] from the
-/// direction of motion to the heading, before and after the move. `s`: length of the move [mm]. The lag is constant, 0
-/// < alpha0 <= pi/2, and the result is in (0, pi). Beyond pi/2 the patch rests at first, so neither equation holds.
+/// direction of motion to the heading, before and after the move. `s`: length of the move [mm].
+///
+/// The lag is constant and 0 < alpha0 <= pi/2. The result is in (0, pi). Beyond pi/2 the patch rests at first, so
+/// neither equation holds.
 template <class T>
 T tip_direction(const T& alpha0, const T& alpha1, const T& s, const T& lag_mm, const T& tip_gap_mm) {
     using std::atan2;
@@ -165,12 +167,13 @@ template <class T>
 LagState<T> within_phase(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, const T& begin,
                          const T& t);
 
-/// Advance the state over one move, phase by phase. A phase is a stretch without events, in which one rule holds:
+/// Advance the state over one move, phase by phase.
+///
+/// A phase is a stretch without events, in which one rule holds:
 /// * Taut: the lever drags the patch, which never slips sideways (article (4), (7)). The phase ends where the next step
 ///   would push the patch backwards: g = cos(psi) - dr/ds < 0.
 /// * Loose: the patch rests and the heading points from the patch to the TCP (article 2.2). The phase ends where
 ///   f = |q - p| - r rises through 0.
-///
 ///
 /// `state`: the state at the start of the move; receives the state at its end. `phase(law, move, start, begin, end)` is
 /// called for every phase, with the state at its beginning; `start.taut` shows which rule holds.

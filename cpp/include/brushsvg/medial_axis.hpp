@@ -32,7 +32,7 @@ struct MedialAxis {
 /// Return the medial axis: centres of discs that touch the outline twice or more.
 ///
 /// It is the Voronoi diagram of the outline's edges, inside the shape, and exact for straight edges. `rings`: a shape
-/// as `fill` returns it.
+/// as fill() in region.hpp returns it.
 ///
 /// A branch with a free end is dropped if it adds too little area to the disc where it leaves. `least_share`: the least
 /// area that it must add, in squares of that disc's radius. The rest is then checked again.

@@ -18,7 +18,8 @@ namespace [[gnu::visibility("default")]] brushsvg {
 ///
 /// Long rows are divided, so that the width is linear in between. A dip inside a pass gets two rows.
 ///
-/// Throws Error if the number of passes differs, if places do not ascend, or for marks without a TCP.
+/// Throws Error if there are not as many lists of dips as passes, if a list does not ascend, or for marks without a
+/// TCP.
 void narrow(Marks& marks, const Paint& paint, const std::vector<std::vector<double>>& dips_mm);
 
 }  // namespace brushsvg

@@ -9,8 +9,8 @@ namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Options of interrupted(). Lengths are along the path of the TCP on the paper.
 struct PaintLoadOptions {
-    double first_mm = 0.0;      ///< how long the paint on the brush lasts at the start
-    double every_mm = 0.0;      ///< how long the paint lasts after each refill
+    double first_mm = 0.0;      ///< length that the paint on the brush lasts at the start
+    double every_mm = 0.0;      ///< length that the paint lasts after each refill
     double backtrack_mm = 5.0;  ///< each part begins this far back along the path of the part before
 };
 

@@ -18,8 +18,8 @@ struct Profile {
     std::optional<std::array<double, 2>> calibrated_mm;  ///< least and greatest measured depth; none: not known
     std::string source;                                  ///< where the law comes from, in words
     bool assumed = false;                                ///< true if the law was not measured
-    std::vector<double> half_interval_95;  ///< half of the 95 % interval of each coefficient; empty: not known
-    std::optional<double> rmse_mm;
+    std::vector<double> half_interval_95;      ///< half of the 95 % interval of each coefficient; empty: not known
+    std::optional<double> rmse_mm;             ///< root mean square error of the fit; none: not known
     std::optional<double> degrees_of_freedom;  ///< number of spare values from which the scatter is known
     std::string extra = "{}";                  ///< JSON object of unknown keys, written back as read
     /// Depths that at() accepts: to how deep the brush may be pressed. read_brush() sets them; none: any depth. They

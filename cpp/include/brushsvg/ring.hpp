@@ -5,7 +5,7 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// Points in the plane, one per row: x, y [mm]. An outline is not closed.
+/// Points in the plane, one per row: x, y [mm]. An outline does not repeat its first point.
 using Ring = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
 /// The rings of a shape: outer rings counter-clockwise, holes clockwise.

@@ -25,7 +25,7 @@ struct WidthKnot {
 struct Stroke {
     StrokeId id;
     Cubics middle_mm;
-    bool closed = false;
+    bool closed = false;  ///< whether the middle line ends where it begins
     std::vector<WidthKnot> half_width;
     Rings wanted_mm;  ///< target outline as drawn; empty: the path with its width and round caps
     std::string layer;
@@ -65,6 +65,8 @@ void check(const Stroke& stroke);
 /// Rows: x, y [mm], arc length [mm], half width [mm]. One row if the line is a single point.
 using MiddlePolyline = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 /// Return the middle line of a stroke as a polyline within a tolerance [mm].
+///
+/// Throws Error as check() does, and for a tolerance out of range.
 MiddlePolyline flatten(const Stroke& stroke, double tolerance_mm);
 
 }  // namespace brushsvg

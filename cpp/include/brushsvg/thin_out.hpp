@@ -7,9 +7,9 @@ namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Simplify a pass: paint nearly the same mark with fewer poses.
 ///
-/// Where the brush is taut, longer straight moves replace stretches of the pass. The mark's middle and its edges stay
-/// within the tolerance of where they were. The tolerance is for the mark, not for the tool's path, which the brush
-/// smooths.
+/// Where the brush is taut, longer straight moves and arcs replace stretches of the pass. The mark's middle and its
+/// edges stay within the tolerance of where they were. The tolerance [mm] is for the mark, not for the tool's path,
+/// which the brush smooths.
 ///
 /// Nothing changes where the brush lands, is lifted, goes loose, or turns on an arc. No pose is deeper than the deepest
 /// one was. The result is simulated before it is returned; if nothing is gained, the original pass is returned. Throws
