@@ -3,7 +3,7 @@
 
 namespace {
 
-/// A copy of a law that is defined at the depths of its brush alone, for any origin of the brush.
+/// Return a getter of a law of a brush. The law is a copy that is defined only at the brush's depths.
 auto law_of(brushsvg::Profile brushsvg::Brush::* law) {
     return [law](const brushsvg::Brush& brush) {
         brushsvg::Profile copy = brush.*law;

@@ -13,7 +13,7 @@ namespace {
 
 using Way = std::function<brushsvg::CompensatedPass(const brushsvg::Stroke&)>;
 
-/// One stroke's way to its plan.
+/// Return the function that computes the plan of one stroke by a method.
 Way way_of(const std::string& method, const brushsvg::Brush& brush, brushsvg::CompensateOptions options,
            [[maybe_unused]] const std::array<double, 2>& sheet_mm) {
     using brushsvg::Compensation;
@@ -136,7 +136,7 @@ too sharp for the lever.)");
                 out.warnings.push_back(
                     Warning{"widths-ignored", "", "brush " + brush.name + " has one width: drawn widths are ignored"});
             std::vector<CompensatedPass> done(strokes.size());
-            const std::size_t at_once = method == "refined" ? 8 : 32;  // Ctrl-C and progress wait for so many
+            const std::size_t at_once = method == "refined" ? 8 : 32;  // Ctrl-C and progress wait for this many strokes
             in_parallel_chunks(strokes.size(), at_once, progress, [&](std::size_t i) { done[i] = way(strokes[i]); });
             for (CompensatedPass& one : done) {
                 out.plan.passes.push_back(std::move(one.pass));

@@ -9,7 +9,7 @@ namespace {
 using namespace brushsvg;
 using Eigen::Vector2d;
 
-/// Goes through the pieces of a law that a straight move passes, in the order of travel: visit(piece, t0, t1).
+/// Visit the pieces of a law that a straight move passes, in the order of travel: visit(piece, t0, t1).
 template <class Visit>
 void along_pieces(const LagLaw<double>& law, double depth0, double depth1, Visit&& visit) {
     double from = 0.0;
@@ -22,7 +22,7 @@ void along_pieces(const LagLaw<double>& law, double depth0, double depth1, Visit
     }
 }
 
-/// Article (7), its exponential given.
+/// Return the angle after a drag by article (7), whose exponent is given.
 double alpha_after(double alpha0, double exponent) {
     const Vector2d turned = drag_heading<double>({std::cos(alpha0), std::sin(alpha0)}, {1.0, 0.0}, std::exp(-exponent));
     return std::atan2(turned.y(), turned.x());
@@ -43,7 +43,7 @@ double exponent(double s_mm, double depth0, double depth1, const Profile& profil
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
-/// Taut and loose along straight moves, from touch-down or from a contact.
+/// Follow the brush along straight moves, taut and loose, from touch-down or from a given contact.
 py::dict follow(const Rows& tcp_mm, const std::vector<double>& depth_mm, const Profile& profile,
                 const std::optional<Vector2d>& contact_mm) {
     const auto n = std::size_t(tcp_mm.rows());
@@ -82,7 +82,8 @@ py::dict follow(const Rows& tcp_mm, const std::vector<double>& depth_mm, const P
         if (!state.heading_known) continue;
         if (!first) heading.head(row).setConstant(*(first = heading[row]));
     }
-    for (Eigen::Index k = 0; k < contact.rows(); ++k)  // as far from the TCP as the lag reaches
+    // taut where the contact is as far from the TCP as the lag reaches
+    for (Eigen::Index k = 0; k < contact.rows(); ++k)
         taut[k] = (tcp_mm.row(k) - contact.row(k)).norm() >= law.at(depth_mm[std::size_t(k)]) * (1.0 - 1e-9) - 1e-12;
     py::dict rows;
     rows["contact_mm"] = contact;
@@ -93,7 +94,7 @@ py::dict follow(const Rows& tcp_mm, const std::vector<double>& depth_mm, const P
 
 using Table = py::array_t<double, py::array::c_style>;
 
-/// One table (rows, 2) for each lag, next to each other.
+/// Stack the tables (rows, 2) of all lags along a third axis.
 Table next_to_each_other(const std::vector<FollowedRows>& lags, Ring FollowedRows::* table) {
     const auto rows = lags.empty() ? 0 : (lags[0].*table).rows();
     Table out({rows, Eigen::Index(2), Eigen::Index(lags.size())});

@@ -3,7 +3,7 @@
 
 namespace {
 
-/// What is said, by the names that it has in Python.
+/// Return the settings that are set, under their names in Python.
 py::dict said(const brushsvg::Settings& settings) {
     py::dict out;
     const auto say = [&out](const char* name, const auto& value) {

@@ -40,8 +40,10 @@ void bind_io(py::module_& m);
 void bind_fit(py::module_& m);
 void bind_mark_fit(py::module_& m);
 
-/// Without the interpreter's lock, while Ctrl-C is heard: the main thread asks at checkpoints. Any thread is given up
-/// by PyThreadState_SetAsyncExc, which is seen when a line of Python runs, as here every now and then.
+/// Releases the interpreter's lock while the object lives, but still reacts to Ctrl-C.
+///
+/// The main thread checks for signals at checkpoints. Any thread can be stopped by PyThreadState_SetAsyncExc. Its
+/// exception is raised only when a line of Python runs, so a line is evaluated every now and then.
 class Unlocked {
  public:
     Unlocked()
@@ -57,8 +59,9 @@ class Unlocked {
     brushsvg::CancelWhen listens_;
 };
 
-/// A copy that nobody takes for the original: tuples in place of lists, arrays that are read only. Python changes what
-/// it holds, and a change of a copy would be lost without a word.
+/// Freeze a copy: make lists tuples and arrays read-only.
+///
+/// Otherwise Python code could change the copy by mistake, and the change would be lost without a message.
 inline py::object frozen(const py::object& copy) {
     if (py::isinstance<py::list>(copy) || py::isinstance<py::tuple>(copy)) {
         py::tuple out(py::len(copy));
@@ -70,7 +73,7 @@ inline py::object frozen(const py::object& copy) {
     return copy;
 }
 
-/// What `frozen` makes of it, as type checkers see it.
+/// The type of the result of frozen(), for type checkers.
 template <class Value>
 struct FrozenType {
     using type = Value;
@@ -104,13 +107,13 @@ struct FrozenType<std::optional<Value>> {
     using type = py::typing::Optional<typename FrozenType<Value>::type>;
 };
 
-/// The same object, said to be of a type.
+/// Return the same object, annotated with a type.
 template <class Type>
 Type as_typed(const py::object& value) {
     return py::reinterpret_borrow<Type>(value);
 }
 
-/// What a member holds, as a frozen copy.
+/// Return a getter that returns a frozen copy of a member.
 template <class Owner, class Member>
 auto frozen_copy(Member Owner::* member) {
     return [member](const Owner& owner) {
@@ -119,7 +122,9 @@ auto frozen_copy(Member Owner::* member) {
     };
 }
 
-/// A member's values themselves, in a tuple: their own fields may be set, the tuple cannot be added to.
+/// Return a getter for a vector's elements themselves, in a tuple.
+///
+/// Their fields can be set, but nothing can be added to the tuple.
 template <class Owner, class Value>
 auto parts(std::vector<Value> Owner::* member) {
     return [member](const py::object& owner) {
@@ -129,8 +134,9 @@ auto parts(std::vector<Value> Owner::* member) {
     };
 }
 
-/// Sets a member to which Python may hold references: they stay good until their owner goes, and show what was there
-/// before.
+/// Return a setter for a member to which Python may hold references.
+///
+/// These references stay valid as long as the owner lives, and show the old value.
 template <class Owner, class Value>
 auto replace(Value Owner::* member) {
     return [member](const py::object& owner, Value value) {
@@ -141,14 +147,17 @@ auto replace(Value Owner::* member) {
     };
 }
 
-/// A warning as Python reports it. `about`: alike are only those that are about the same.
+/// Make a Python notice from a warning.
+///
+/// `about`: its subject. Only notices with the same subject can be alike.
 inline py::object notice(const brushsvg::Warning& warning, const std::string& about = "") {
     return py::module_::import("brushsvg.errors")
         .attr("Notice")(warning.where, warning.sentence, py::arg("code") = warning.code, py::arg("about") = about);
 }
 
-/// Runs `work(i)` for i in [0, n) without the interpreter's lock, in chunks between which `progress(done, n)` is called
-/// where one is given.
+/// Run `work(i)` for i in [0, n), in chunks, without the interpreter's lock.
+///
+/// `progress(done, n)`: called after each chunk, if given.
 template <class Work>
 void in_chunks(std::size_t n, std::size_t chunk, const py::object& progress, Work&& work) {
     for (std::size_t begin = 0; begin < n; begin += chunk) {
@@ -161,7 +170,7 @@ void in_chunks(std::size_t n, std::size_t chunk, const py::object& progress, Wor
     }
 }
 
-/// The same, each chunk on all processors.
+/// Run `work(i)` for i in [0, n), in chunks, each chunk on all processors.
 template <class Work>
 void in_parallel_chunks(std::size_t n, std::size_t chunk, const py::object& progress, Work&& work) {
     const py::object in_strokes = progress.is_none() ? progress : py::cpp_function([&](std::size_t now, std::size_t) {

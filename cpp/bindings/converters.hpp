@@ -16,15 +16,15 @@
 
 #include "brushsvg/error.hpp"
 
-// How Python's lists and arrays become ours: as pybind11 does it, but no memory is reserved, and numpy is called for
-// nothing, before it is known how much there is.
+// Converters from Python's lists and arrays to C++ types, like those of pybind11. But they neither reserve memory nor
+// call numpy before they know the number of entries.
 
 namespace py = pybind11;
 
-/// No list is longer that anybody has a use for; the memory for a longer one is not even requested.
+/// Most entries of a list. No useful list is longer, and no memory is requested for a longer one.
 inline constexpr py::ssize_t kMostEntries = 10'000'000;
 
-/// What one argument holds so far: the lists within a list count together, a row of numbers as one entry.
+/// Counts the entries of one argument. Lists within a list are counted together; a row of numbers is one entry.
 class Entries {
  public:
     Entries() {
@@ -34,7 +34,7 @@ class Entries {
     Entries(const Entries&) = delete;
     Entries& operator=(const Entries&) = delete;
 
-    /// Error if there cannot be so many more.
+    /// Throw Error if that many more entries are too many.
     static void expect(py::ssize_t more) {
         const double all = double(so_far_) + double(more);
         if (all > double(kMostEntries))
@@ -53,7 +53,7 @@ class Entries {
     static inline thread_local py::ssize_t so_far_ = 0;
 };
 
-/// Numbers of any shape, one or an array of them, for `py::vectorize`.
+/// A number, or an array of numbers of any shape, for `py::vectorize`.
 struct Numbers {
     py::array_t<double, py::array::forcecast> values;
 };
@@ -62,14 +62,15 @@ namespace pybind11::detail {
 
 using DoubleArray = array_t<double, array::c_style | array::forcecast>;
 
-/// Values that are masked are nan: values below a mask are not data.
+/// Replace masked values by nan: values below a mask are not data.
 inline object unmasked(handle source) {
     if (!isinstance<array>(source) || !hasattr(source, "filled")) return reinterpret_borrow<object>(source);
     return source.attr("astype")("float64").attr("filled")(std::numeric_limits<double>::quiet_NaN());
 }
 
-/// An array of numbers, or null for anything else: complex ones, dates and words would only seem to be numbers, and
-/// None would be nan.
+/// Return an array of numbers, or null for anything else.
+///
+/// Complex numbers, dates and words would only seem to be numbers, and None would become nan.
 inline DoubleArray numbers_of(handle source) {
     const auto found = reinterpret_steal<object>(array::ensure(unmasked(source)).release());
     if (!found || std::string("biuf").find(array(found).dtype().kind()) == std::string::npos)
@@ -79,7 +80,7 @@ inline DoubleArray numbers_of(handle source) {
     return DoubleArray::ensure(values);
 }
 
-/// Whether it is no list but makes an array of itself.
+/// Return whether an object is an array or makes one of itself, unlike a list.
 inline bool is_array(handle source) {
     return isinstance<array>(source) || hasattr(source, "__array__") || PyMemoryView_Check(source.ptr());
 }
@@ -88,7 +89,7 @@ template <class Value>
 struct type_caster<std::vector<Value>> : list_caster<std::vector<Value>, Value> {
     bool load(handle source, bool convert) {
         if (!object_is_convertible_to_std_vector(source)) return false;
-        if (!convert && !isinstance<sequence>(source)) return false;  // a generator can be read once only
+        if (!convert && !isinstance<sequence>(source)) return false;  // a generator can be read only once
         const Entries entries;
         ssize_t claimed = PyObject_LengthHint(source.ptr(), 0);
         if (claimed < 0) {
@@ -99,7 +100,7 @@ struct type_caster<std::vector<Value>> : list_caster<std::vector<Value>, Value> 
         this->value.clear();
         this->value.reserve(std::size_t(claimed));
         for (const handle one : reinterpret_borrow<iterable>(source)) {
-            Entries::add(1);  // it may go on beyond what it claims
+            Entries::add(1);  // it may have more entries than it claims
             make_caster<Value> read;
             if (!read.load(one, convert)) return false;
             this->value.push_back(cast_op<Value&&>(std::move(read)));
@@ -108,7 +109,8 @@ struct type_caster<std::vector<Value>> : list_caster<std::vector<Value>, Value> 
     }
 };
 
-/// Without bytes, which need not be letters: what is kept could not be read again. A whole file is a std::string_view.
+/// Converts only str, not bytes. Bytes need not be text, so a file written with them could not be read again. For the
+/// content of a file, use std::string_view.
 template <>
 struct type_caster<std::string> : string_caster<std::string> {
     bool load(handle source, bool convert) {
@@ -116,7 +118,7 @@ struct type_caster<std::string> : string_caster<std::string> {
     }
 };
 
-/// Without the generators, sets and dicts that pybind11 would make a tuple of.
+/// Converts only sequences, not the generators, sets and dicts that pybind11 would accept.
 template <std::size_t N>
 struct type_caster<std::array<double, N>> : array_caster<std::array<double, N>, double, false, N> {
     bool load(handle source, bool convert) {
@@ -143,7 +145,7 @@ struct type_caster<Numbers> {
     }
 };
 
-/// (n, Columns) numbers: an array, or a list of rows.
+/// Converts (n, Columns) numbers: an array, or a list of rows.
 template <int Columns>
 struct rows_caster {
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Columns, Eigen::RowMajor>;
@@ -185,7 +187,7 @@ struct type_caster<Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>> : 
 template <>
 struct type_caster<Eigen::Matrix<double, Eigen::Dynamic, 8, Eigen::RowMajor>> : rows_caster<8> {};
 
-/// A place or a direction.
+/// Converts a place or a direction, (x, y).
 template <>
 struct type_caster<Eigen::Vector2d> {
     PYBIND11_TYPE_CASTER(Eigen::Vector2d, const_name("tuple[float, float]"));

@@ -8,10 +8,11 @@
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
 
-inline constexpr double kFarthestMm = 1e6;  // a longer way is damage
+inline constexpr double kFarthestMm = 1e6;  // limit of lengths; a longer one is an error in the data
 
-/// A lever that can be followed from the least of these depths to the greatest. Error where it is negative, or 0 in
-/// part: only a rigid pen's is 0 everywhere.
+/// Return the law of a lever between two depths [mm].
+///
+/// Throws Error if the lever is negative, or 0 at some depths. Only the lever of a rigid pen is 0 at all depths.
 inline brushsvg::LagLaw<double> law_between(const brushsvg::Profile& profile, double depth0, double depth1) {
     if (profile.coefficients.empty() || int(profile.coefficients.size()) > brushsvg::kMaxLawDegree + 1)
         throw brushsvg::Error("law-terms", "a lag has 1 to " + std::to_string(brushsvg::kMaxLawDegree + 1) +
@@ -25,7 +26,7 @@ inline brushsvg::LagLaw<double> law_between(const brushsvg::Profile& profile, do
     for (const auto& piece : law.pieces) {
         const std::vector<double> own(piece.coefficients.begin(), piece.coefficients.begin() + piece.degree + 1);
         const std::vector<double> zeros = brushsvg::real_roots(own, piece.lo, piece.hi);
-        const bool falls = !zeros.empty() && !(zeros.size() == 1 && zeros[0] <= 1e-12);  // 0 at touch-down is sound
+        const bool falls = !zeros.empty() && !(zeros.size() == 1 && zeros[0] <= 1e-12);  // 0 at touch-down is valid
         if (falls || piece.at(0.5 * (piece.lo + piece.hi)) < 0.0)
             throw brushsvg::Error("law-negative", "the lag is not positive at all depths from " + std::to_string(lo) +
                                                       " to " + std::to_string(hi) + " mm");

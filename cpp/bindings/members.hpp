@@ -12,10 +12,10 @@
 #include "brushsvg/stroke_score.hpp"
 #include "brushsvg/tracking_error.hpp"
 
-// What a value consists of: two are equal, and a copy is whole, where all of these are. A member that is not named here
-// is lost when a value is pickled.
+// The members that make up a value. They are compared, copied and pickled. A member that is not listed here is lost
+// when a value is pickled.
 
-/// The members of a value type, as a tuple of pointers; a number for anything that is no value type of ours.
+/// The members of a value type, as a tuple of pointers. A number for all other types.
 template <class Value>
 inline constexpr auto members = 0;
 

@@ -1,4 +1,4 @@
-// Table of contents of brushsvg._core: one bind_<stem>.cpp per header.
+// The module brushsvg._core. Each header has a bind_<stem>.cpp.
 #include <cstdlib>
 
 #include "bindings.hpp"
@@ -8,8 +8,10 @@
 #include <glog/logging.h>
 #endif
 
-/// Who asks for what a value holds that __new__ alone has made, or whose constructor refused its arguments, as a
-/// debugger does that shows it, reads a TypeError. pybind11 would hand out memory that nobody has filled.
+/// Raise TypeError when an uninitialised value is read.
+///
+/// A value is uninitialised if only its __new__ was called, or if its constructor refused its arguments. A debugger may
+/// show such a value; pybind11 would give it uninitialised memory.
 static void refuse_what_was_never_made(const py::module_& m) {
     for (const auto& [name, what] : py::cast<py::dict>(m.attr("__dict__"))) {
         if (!py::isinstance<py::type>(what)) continue;
@@ -31,14 +33,14 @@ PYBIND11_MODULE(_core, m) {
         } catch (const brushsvg::Error& e) {
             const py::object type = py::module_::import("brushsvg.errors").attr("Error");
             py::object range = py::none();
-            if (e.range()) range = py::make_tuple((*e.range())[0], (*e.range())[1]);  // as Error documents it
+            if (e.range()) range = py::make_tuple((*e.range())[0], (*e.range())[1]);  // a tuple, as Error documents it
             const py::object error = type(e.what(), py::arg("where") = e.where(), py::arg("value") = e.value(),
                                           py::arg("range") = range, py::arg("code") = e.code());
             PyErr_SetObject(type.ptr(), error.ptr());
         }
     });
 
-#ifdef GOOGLE_STRIP_LOG  // Ceres logs by glog, not by its miniglog: failed searches are reported by our errors
+#ifdef GOOGLE_STRIP_LOG  // Ceres logs with glog, not with its miniglog; our own errors report failed searches
     if (!std::getenv("GLOG_minloglevel")) FLAGS_minloglevel = google::GLOG_ERROR;
 #endif
 

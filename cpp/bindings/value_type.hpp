@@ -14,13 +14,15 @@
 #include "converters.hpp"
 #include "members.hpp"
 
-// What every value type has in Python in addition to its fields: equality, pickle, copy and, where it cannot be
-// changed, a hash.
+// Features of all value types in Python in addition to their fields: equality, pickling and copying, and a hash if they
+// cannot be changed.
 
 template <class Value>
 inline constexpr bool has_members = !std::is_same_v<decltype(members<Value>), const int>;
 
-/// Equal in all members. Not a number equals itself here: a copy is equal to what it was made from.
+/// Return whether two values are equal in all members.
+///
+/// Here nan equals nan, so that a copy is equal to its original.
 inline bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 template <int Rows, int Columns, int Options>
@@ -64,7 +66,7 @@ bool same(const Value& a, const Value& b) {
 }
 
 template <class Value>
-struct State;  // what a value is pickled as
+struct State;  // the pickled form of a value
 
 template <class Value>
 py::object state_of(const Value& value) {
@@ -99,7 +101,7 @@ struct State {
 template <class Value>
 struct State<std::vector<Value>> {
     static py::object of(const std::vector<Value>& values) {
-        if constexpr (std::is_arithmetic_v<Value>)  // thousands of them in marks
+        if constexpr (std::is_arithmetic_v<Value>)  // marks contain thousands of numbers
             return py::array_t<Value>(py::ssize_t(values.size()), values.data());
         else {
             py::tuple out(values.size());
@@ -128,7 +130,7 @@ struct State<std::optional<Value>> {
     }
 };
 
-/// The same as what can be hashed: equal values alike.
+/// Return a hashable form of a state. Equal values have equal forms.
 inline py::object hashable(const py::object& state) {
     if (py::isinstance<py::array>(state)) return hashable(state.attr("tolist")());
     if (py::isinstance<py::float_>(state) && std::isnan(state.cast<double>())) return py::none();
@@ -139,7 +141,9 @@ inline py::object hashable(const py::object& state) {
     return std::move(out);
 }
 
-/// Equality, pickle and copies of a class whose members are named. A copy shares nothing with what it was made from.
+/// Add equality, pickling and copying to a class whose members are listed.
+///
+/// A copy shares nothing with its original.
 template <class Value>
 void as_value(py::class_<Value>& type) {
     static_assert(has_members<Value>);
@@ -152,28 +156,28 @@ void as_value(py::class_<Value>& type) {
                         [](const py::tuple& state) { return State<Value>::from(state); }));
 }
 
-/// The same of a class whose fields cannot be set.
+/// Add equality, pickling, copying and a hash to a class whose fields cannot be set.
 template <class Value>
 void as_fixed_value(py::class_<Value>& type) {
     as_value(type);
     type.def("__hash__", [](const Value& value) { return py::hash(hashable(state_of(value))); });
 }
 
-/// A number as repr shows it.
+/// Format a number for repr.
 inline std::string in_digits(double number) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", number);
     return text;
 }
 
-/// A name in quotes, or the type's own where it has none.
+/// Return a name in quotes, like repr.
 inline std::string quoted(const std::string& name) { return py::repr(py::str(name)).cast<std::string>(); }
 
 inline std::string counted(std::size_t count, const std::string& what) {
     return std::to_string(count) + " " + what + (count == 1 ? "" : what.back() == 's' ? "es" : "s");
 }
 
-/// What a value of ours shows of itself.
+/// Return the repr of a value.
 template <class Value>
 std::string repr_of(const Value& value) {
     return py::repr(py::cast(value)).template cast<std::string>();

@@ -9,14 +9,15 @@ inline double length_around(const brushsvg::Rings& rings) {
     return length;
 }
 
-/// How far the outlines of two shapes are apart in the mean [mm], by unions that know nothing of stars and chains.
+/// Return the mean distance between the outlines of two shapes [mm]. The unions used here do not depend on the code for
+/// stars and chains.
 inline double apart(const brushsvg::Rings& a, const brushsvg::Rings& b) {
     const brushsvg::Rings one = fill(a, brushsvg::FillRule::nonzero), other = fill(b, brushsvg::FillRule::nonzero);
     using brushsvg::area;
     return (area(one) + area(other) - 2.0 * area(brushsvg::intersect(one, other))) / length_around(one);
 }
 
-/// The points of both.
+/// Return the points of both rings.
 inline brushsvg::Ring both(const brushsvg::Ring& a, const brushsvg::Ring& b) {
     brushsvg::Ring points(a.rows() + b.rows(), 2);
     points << a, b;

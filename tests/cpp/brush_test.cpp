@@ -67,7 +67,7 @@ TEST_CASE("a covariance that nothing can have is refused") {
     std::vector<std::vector<double>> good(n, std::vector<double>(n, 0.0));
     good[0][0] = 0.04;
     good[1][1] = 0.01;
-    good[0][1] = good[1][0] = -0.02 * (1.0 + 1e-6);  // wholly correlated, as six digits leave it
+    good[0][1] = good[1][0] = -0.02 * (1.0 + 1e-6);  // fully correlated, up to a rounding to six digits
     const auto changed = [&](auto&& change) {
         brush.covariance = good;
         change(brush.covariance);
@@ -126,13 +126,13 @@ TEST_CASE("a brush with a width at depth 0 presses for its thinnest line") {
         CHECK(std::abs(liner.half_width(depth) - h) < 0.05 + 1e-9);
         before = depth;
     }
-    Brush even = liner;  // so little wider when pressed that all of its widths are alike to the eye
+    Brush even = liner;  // widens so little when pressed that all of its widths look alike
     even.half_width.coefficients = {0.5, 0.002};
     CHECK(even.depth_for_half_width(0.5, "") == doctest::Approx(5.0));
-    Brush lifted = liner;  // its range begins above 0: pressed already
+    Brush lifted = liner;  // its depth range begins above 0, so it is always pressed
     lifted.depth_range_mm = {1.0, 5.0};
     CHECK(lifted.depth_for_half_width(0.6, "") == doctest::Approx(1.0));
-    CHECK(shipped("round-6").depth_for_half_width(1e-3, "") == doctest::Approx(1e-3 / 0.42));  // its widths begin at 0
+    CHECK(shipped("round-6").depth_for_half_width(1e-3, "") == doctest::Approx(1e-3 / 0.42));  // least width: 0
 }
 
 TEST_CASE("a steeper half-width law with a floor inverts too") {
@@ -158,7 +158,7 @@ TEST_CASE("what is odd about a brush is remarked, with its numbers") {
     CHECK(!says(brush, "law-scatters", "tip_gap"));
     brush.lag.coefficients = {8.0, -0.4};
     CHECK(says(brush, "law-falls", "lag", {"4.00", "0.00", "10.00"}));
-    brush.lag.coefficients = {1.0, 6.0, -3.0, 0.4};  // never below where it begins
+    brush.lag.coefficients = {1.0, 6.0, -3.0, 0.4};  // never below its value at depth 0
     CHECK(says(brush, "law-falls", "lag", {"2.24", "1.38", "3.62"}));
     brush.tip_gap.coefficients = {0.0, 1.1};
     CHECK(says(brush, "contact-outside-footprint", "tip_gap", {"1.00", "1.10"}));

@@ -1,4 +1,4 @@
-// Any input of the public functions ends in a result or in Error: no crash, no hang.
+// Every input of the public functions gives a result or Error, without a crash or a hang.
 #include "brushsvg/brushsvg.hpp"
 
 #include <doctest/doctest.h>
@@ -25,7 +25,7 @@ const std::vector<double> kNumbers{0.05, 0.0, -1.0, kNan, kInf, -kInf, 1e-300, 1
 template <class T>
 using Named = std::vector<std::pair<std::string, T>>;
 
-/// A result or Error; everything else fails the test.
+/// Make a call that must give a result or Error. Everything else fails the test.
 template <class Call>
 void ends(Call&& call) {
     try {
@@ -366,6 +366,6 @@ TEST_CASE("any number where one is requested") {
 TEST_CASE("a footprint no brush has is refused when the file is checked") {
     Brush brush = shipped("round-6");
     brush.footprints.dragged.back().outline_mm(4, 0) = 5.5e9;
-    brush.depth_range_mm[1] = 5.0;  // the last outline is beyond, and was looked at by nobody
+    brush.depth_range_mm[1] = 5.0;  // the last outline is beyond this depth and was not checked before
     CHECK_THROWS_AS(check(brush), Error);
 }

@@ -26,13 +26,13 @@ TEST_CASE("neighbours that meet become one, with any shared edges and corners") 
             Ring points(4 + trial % 17, 2);
             for (Eigen::Index k = 0; k < points.rows(); ++k)
                 points.row(k) << x + 1.5 * any(random), y + 1.5 * any(random);
-            if (trial % 3 == 0) points = ((2.0 * points).array().round() / 2.0).matrix().eval();  // on a grid
+            if (trial % 3 == 0) points = ((2.0 * points).array().round() / 2.0).matrix().eval();  // rounded to a grid
             const Ring hull = convex_hull(points);
             if (hull.rows() < 3) continue;
             rings.push_back(hull);
             const std::size_t n = rings.size();
             if (trial % 4 == 0 && n > 1)
-                rings[n - 2] = convex_hull(both(hull, rings[n - 2]));  // neighbours share edges
+                rings[n - 2] = convex_hull(both(hull, rings[n - 2]));  // neighbouring rings share edges
         }
         if (rings.empty()) continue;
         const Rings wanted = fill(rings, FillRule::nonzero), fewer = united_in_chain(rings, 1e5).value();
@@ -43,7 +43,7 @@ TEST_CASE("neighbours that meet become one, with any shared edges and corners") 
         CHECK(found.size() == wanted.size());
         with_holes += wanted.size() > 1 && area({wanted[1]}) < 0.0;
         for (const Ring& ring : fewer) {
-            // it crosses itself nowhere, though it may touch itself
+            // the ring may touch itself, but does not cross itself
             CHECK(area(fill({ring}, FillRule::evenodd)) == doctest::Approx(area({ring})).epsilon(1e-6));
             CHECK(ring.col(0).maxCoeff() == ring(0, 0));
         }

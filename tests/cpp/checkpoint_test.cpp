@@ -19,7 +19,7 @@ using namespace brushsvg;
 
 namespace {
 
-/// Called at every checkpoint that is worth so much work, if the pause of 50 ms is over.
+/// Call checkpoint() once per ms. Each call reports so much work that it calls `is_over` if the pause of 50 ms is over.
 void work_for(int rounds) {
     for (int i = 0; i < rounds; ++i) {
         checkpoint(1000);
@@ -36,7 +36,7 @@ TEST_CASE("what runs is given up on request, and not before") {
     {
         const CancelWhen third([&] { return ++asked == 3; });
         CHECK_THROWS_AS(work_for(100000), Cancelled);
-        CHECK_THROWS_AS(work_for(1), Cancelled);  // and stays so
+        CHECK_THROWS_AS(work_for(1), Cancelled);  // stays cancelled
     }
     CHECK(asked == 3);
     CHECK_NOTHROW(work_for(1));
@@ -67,7 +67,7 @@ TEST_CASE("threads that work for this one end with it, and only this one is poll
 }
 
 TEST_CASE("a stroke is given up inside of itself") {
-    // a wave of 20 m: seconds of work
+    // a wave of 20 m, which needs seconds of work
     std::vector<Eigen::Vector2d> points;
     for (int i = 0; i < 20000; ++i) points.emplace_back(0.7 * i, (i % 2) * 0.7 + 100.0);
     const Stroke stroke = stroke_of(polyline(points), {{0.0, 0.5}, {1.0, 1.5}});

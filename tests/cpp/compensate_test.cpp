@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// The contact at every pose, where first there.
+/// Return the contact at every pose, from the first row at that pose.
 Ring at_poses(const PassMarks& marks) {
     Ring out = Ring::Zero(Eigen::Index(marks.pose.back()) + 1, 2);
     for (std::size_t i = marks.pose.size(); i-- > 0;)
@@ -52,10 +52,10 @@ TEST_CASE("turns up to 90 degrees are exact, beyond them what remains is what ge
 
 TEST_CASE("a turn in place is one arc about the resting contact, with the same mark as its chords") {
     const Brush brush = shipped("round-6");
-    CompensateOptions dense;  // with few poses, bends are arcs as well
+    CompensateOptions dense;  // with few poses, bends would be arcs as well
     dense.few_poses = false;
     for (double degrees : {120.0, 179.0, -150.0})
-        for (double depth : {4.0, 1.0}) {  // the widest section ahead of the contact, and behind it
+        for (double depth : {4.0, 1.0}) {  // the widest section is ahead of the contact, then behind it
             const double a = degrees * kPi / 180;
             const Stroke s =
                 stroke_of(polyline({V(20, 20), V(60, 20), V(60 + 40 * std::cos(a), 20 + 40 * std::sin(a))}),
@@ -70,7 +70,7 @@ TEST_CASE("a turn in place is one arc about the resting contact, with the same m
             CHECK(std::abs(std::remainder(turn_between(arc, from, to) - a, 2 * kPi)) < 1.7);
             const TrackingError exact = tracking_error_of(pass, s, brush, 0.05);
             const Ring with = at_poses(simulate(pass, brush, 1e-3));
-            // rounded to 1e-4 mm, as a program's text has it
+            // rounded to 1e-4 mm, as in the text of a program
             Pass rounded = pass;
             rounded.poses_mm = (pass.poses_mm.array() * 1e4).round() / 1e4;
             rounded.arcs[0].centre_mm = (arc.centre_mm.array() * 1e4).round() / 1e4;
@@ -81,7 +81,7 @@ TEST_CASE("a turn in place is one arc about the resting contact, with the same m
         }
     const Stroke bend = stroke_of(polyline({V(20, 20), V(60, 20), V(60, 60)}), {{0.0, brush.half_width(4.0)}});
     CHECK(compensate(bend, brush, dense).pass.arcs.empty());
-    // a corner at changing depth is none: the circle would not close
+    // a corner at changing depth gets no arc, because the circle would not close
     const Stroke taper = stroke_of(polyline({V(20, 20), V(60, 20), V(30, 40)}), {{0.0, 0.8}, {1.0, 2.0}});
     const Pass tapered = compensate(taper, brush).pass;
     for (std::size_t k = 0; k < tapered.arcs.size(); ++k) CHECK_NOTHROW(check_arc(tapered, k, ""));
@@ -155,7 +155,7 @@ TEST_CASE("none and constant are what they say") {
     CHECK((constant.row(1) - Eigen::RowVector3d(20 + r0, 20, -4)).norm() < 1e-9);
     CHECK((constant.row(2) - Eigen::RowVector3d(60 + r0, 20, -4)).norm() < 1e-9);
     CHECK((constant.row(constant.rows() - 1) - Eigen::RowVector3d(60, 50 + r0, 0)).norm() < 1e-9);
-    for (Eigen::Index i = 2; i < constant.rows() - 2; ++i)  // an arc of r0 about the corner
+    for (Eigen::Index i = 2; i < constant.rows() - 2; ++i)  // on an arc of radius r0 about the corner
         CHECK((constant.row(i).head<2>() - Eigen::RowVector2d(60, 20)).norm() == doctest::Approx(r0));
 }
 
@@ -189,14 +189,14 @@ TEST_CASE("a brush whose lag grows as fast as its depth is pressed before it run
     const PassMarks m = simulate(c.pass, brush, 0.01);
     std::size_t first = 0;
     while (!m.taut[first]) ++first;
-    CHECK((m.contact_mm.row(first) - m.contact_mm.row(0)).norm() < 1e-9);  // rested during the landing
+    CHECK((m.contact_mm.row(first) - m.contact_mm.row(0)).norm() < 1e-9);  // the contact rests during the landing
 }
 
 TEST_CASE("a straight line takes a landing, one move and a lift without a move of its own for coming inside") {
     const Brush brush = shipped("round-6");
     const Poses poses = compensate(stroke_of(polyline({V(20, 20), V(60, 20)}), {{0.0, 1.5}}), brush).pass.poses_mm;
     CHECK(poses.rows() <= 6);
-    CHECK(poses(3, 2) > poses(2, 2));  // lifted from the last pose at full depth on
+    CHECK(poses(3, 2) > poses(2, 2));  // the lift begins at the last pose at full depth
     CHECK(poses(3, 0) < poses(2, 0));
 }
 
@@ -205,7 +205,7 @@ TEST_CASE("random smooth strokes: closed form within tolerance, contact at rest 
     std::mt19937 random(11);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     for (int k = 0; k < 40; ++k) {
-        // heading varies slowly enough for the widest section: radius of curvature above 3 mm
+        // the heading varies slowly enough for the widest section: radius of curvature above 3 mm
         Cubics c(3, 8);
         V p(100, 100);
         double heading = 6.28 * unit(random);
@@ -262,7 +262,7 @@ TEST_CASE("a round beginning turns over where its patch rests") {
     CHECK(std::abs(marks.heading_rad[turns[0].first - 1]) == doctest::Approx(kPi));
     CHECK(std::abs(marks.heading_rad[turns[0].last]) < 1e-6);
     const auto bounds = painted_bounds(marks, brush);
-    CHECK(bounds[0] == doctest::Approx(30.0 - h).epsilon(1e-3));  // the front, where round caps begin
+    CHECK(bounds[0] == doctest::Approx(30.0 - h).epsilon(1e-3));  // the front reaches as far as a round cap
     CHECK(overlap_of(s, begun.pass, brush) > 0.99);
     CHECK(overlap_of(s, compensate(s, brush).pass, brush) < 0.98);
     CHECK(turns_over(simulate(compensate(s, brush).pass, brush)).empty());
@@ -283,7 +283,7 @@ TEST_CASE("what the brush cannot paint is refused, what it was not measured for 
 
 namespace {
 
-/// A dot of this half width, and how deep its plan goes.
+/// Return the plan of a dot of this half width, and its greatest depth [mm].
 std::pair<CompensatedPass, double> dot_of_half_width(double half_width_mm, Terminal start) {
     CompensateOptions options;
     options.start = start;
@@ -309,7 +309,7 @@ TEST_CASE("a dot that is turned on the spot is warned of by its own depth, not b
 
 namespace {
 
-/// A hook: the line runs back in itself at its end, where the lengths of its parts do not add up to its own.
+/// Return a hook whose line runs back on itself at its end. There the lengths of its parts do not add up to its length.
 Stroke hook() {
     Cubics middle(1, 8);
     middle << 23.89, 32.82, 21.99, 29.27, 20.52, 26.64, 21.19, 28.07;
@@ -338,7 +338,7 @@ TEST_CASE("steps round a cusp come to an end, at any requested fineness") {
             }
         });
         CAPTURE(tolerance);
-        CHECK(rounds <= 25);  // each parts a step in three, and a parameter in 1e9
+        CHECK(rounds <= 25);  // each round splits a step in three, down to 1e-9 of the parameter
         CHECK(most < 20000);
     }
 }
@@ -354,7 +354,7 @@ TEST_CASE("an error is reported as it is measured, of plans that were made for a
     curled << 43.75, 41.75, 26.5, 40.5, 45.5, 22.75, 36.75, 50.25,  //
         36.75, 50.25, 33, 36.75, 26, 50.25, 30.75, 56.25,           //
         30.75, 56.25, 49, 48.5, 27.25, 64, 29.25, 70.5;
-    Brush pen;  // of one width, whose tip is as far ahead as it is pressed
+    Brush pen;  // of constant width; the distance of its tip grows with the depth
     pen.name = "pen", pen.kind = "pen";
     pen.depth_range_mm = {0.247, 10.588};
     pen.lag.coefficients = {0.0};

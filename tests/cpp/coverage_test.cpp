@@ -32,7 +32,7 @@ double painted_mm2(const Coverage& c, double px_per_mm) {
     return double(c.cast<double>().sum()) / (px_per_mm * px_per_mm);
 }
 
-/// A crescent that opens towards the TCP; convexity cannot be assumed of it.
+/// Return a brush with a crescent that opens towards the TCP, because footprints need not be convex.
 Brush crescent_brush() {
     Brush brush = shipped("round-6");
     brush.footprints = {};
@@ -113,7 +113,7 @@ TEST_CASE("a picture of a part of the paper is made of what is there, to the las
     for (const Brush& brush : {shipped("round-6"), crescent_brush()}) {
         const Marks all = marks_of(brush, 0.1);
         const auto rows = [](const Marks& marks) { return marks.passes[0].pose.size(); };
-        // what is next to the window cancels out of shapes that are not convex but for rounding
+        // paint next to the window cancels out, for shapes that are not convex only up to a rounding error
         const float hair = is_convex(brush.footprints.dragged[0].outline_mm) ? 0.0f : 1e-5f;
         std::size_t fewest = rows(all);
         for (double x = 10.0; x < 70.0; x += 7.0)

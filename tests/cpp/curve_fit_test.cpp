@@ -99,14 +99,14 @@ TEST_CASE("a point, repeated points and a reversal end") {
 }
 
 TEST_CASE("a stroke along points passes all of them, corners too") {
-    WideLine points(60, 3);  // half of a circle, a corner, and straight on
+    WideLine points(60, 3);  // half a circle, a corner, and a straight line
     for (int i = 0; i < 50; ++i)
         points.row(i) << 20.0 * std::cos(kPi * i / 49.0), 20.0 * std::sin(kPi * i / 49.0), 1.0 + 0.02 * i;
     for (int i = 50; i < 60; ++i) points.row(i) << -20.0 + 3.0 * (i - 49), 0.0, 2.0;
     for (const double tolerance : {0.2, 0.02, 0.002}) {
         const Stroke stroke = stroke_along("s", points, tolerance);
         CHECK_NOTHROW(check(stroke));
-        CHECK(stroke.middle_mm.rows() <= (tolerance > 0.01 ? 30 : 59));  // their chords are 0.01 mm off the circle
+        CHECK(stroke.middle_mm.rows() <= (tolerance > 0.01 ? 30 : 59));  // the chords are 0.01 mm off the circle
         const MiddlePolyline line = flatten(stroke, 1e-5);
         double most = 0.0;
         for (Eigen::Index i = 0; i < points.rows(); ++i) {

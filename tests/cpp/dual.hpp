@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-/// A number with one derivative, as a solver uses it.
+/// A dual number with one derivative, like those of a solver.
 struct Dual {
     double a = 0.0, v = 0.0;
     Dual() = default;

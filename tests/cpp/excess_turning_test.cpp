@@ -8,7 +8,7 @@ using namespace brushsvg;
 
 namespace {
 
-/// A disc of 10 mm with a wave of so many turns along its edge.
+/// Return a disc of radius 10 mm with a number of waves along its edge.
 Ring wavy(double height_mm, int waves, int points = 720) {
     Ring ring(points, 2);
     for (int i = 0; i < points; ++i) {
@@ -56,7 +56,7 @@ TEST_CASE("a pinhole below a hundredth of a square millimetre does not count, a 
     const Rings disc{wavy(0.0, 0)};
     CHECK(excess_turning({disc[0], slit(0.045)}, disc) == 0.0);
     CHECK(excess_turning({disc[0], slit(0.2)}, disc) == doctest::Approx(1.0).epsilon(1e-9));
-    Ring curl(4, 2);  // crooked, so that no tolerance makes it a line
+    Ring curl(4, 2);  // not straight, so that no tolerance reduces it to a line
     curl << 0, 0, 0, 0.3, 0.02, 0.02, 0.3, 0;
     CHECK(std::abs(signed_area(curl)) < 0.01);
     CHECK(excess_turning({disc[0], curl}, disc) == 0.0);
@@ -70,12 +70,12 @@ TEST_CASE("thorns are sharp, point outwards and stick out of the target, or into
     CHECK(thorns(square_with(2.0), square) == 1);
     CHECK(thorns(square_with(0.29), square) == 0);
     CHECK(thorns(square_with(0.31), square) == 1);
-    CHECK(thorns(square_with(-2.0), square) == 0);  // a notch
+    CHECK(thorns(square_with(-2.0), square) == 0);  // a notch, not a thorn
     CHECK(thorns(square_with(2.0), square_with(2.0)) == 0);
     CHECK(thorns(square, {corners({{1, 1}, {9, 1}, {9, 9}, {1, 9}})}) == 4);
     CHECK(thorns(square, {}) == 4);
     CHECK(thorns({}, square) == 0);
-    CHECK(thorns({wavy(0.0, 0)}, {wavy(0.0, 0) / 2.0}) == 0);  // a curve bends by less at a time
+    CHECK(thorns({wavy(0.0, 0)}, {wavy(0.0, 0) / 2.0}) == 0);  // a curve turns by less at each corner
     // a bar from the left that ends within a hole
     const Rings ring{corners({{0, 0}, {10, 0}, {10, 10}, {0, 10}}), corners({{2, 2}, {2, 8}, {8, 8}, {8, 2}})};
     CHECK(thorns({corners({{0, 4}, {5, 4}, {5, 6}, {0, 6}})}, ring) == 2);

@@ -1,4 +1,5 @@
-// A program of its own: it replaces pthread_create, as a container that limits its processes would.
+// A separate program, because it replaces pthread_create. Its version fails after some threads, as in a container that
+// limits its processes.
 #include <dlfcn.h>
 #include <pthread.h>
 
@@ -14,7 +15,7 @@ unsigned std::thread::hardware_concurrency() noexcept { return 8; }
 
 namespace {
 
-std::atomic<int> allowed{0};  // threads that may still be started
+std::atomic<int> allowed{0};  // how many more threads may be started
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Any input of the fits ends in Error or in finite numbers: no crash, no hang.
+// Every input of the fits gives Error or finite numbers, without a crash or a hang.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -44,7 +44,7 @@ struct Drag {
     Lines lines = Lines::total;
 };
 
-/// Corners at three depths, painted by a brush.
+/// Marks of corners at three depths, painted by a brush.
 struct Sheet {
     std::vector<PaintedMark> marks;
     MarkOptions options;
@@ -163,7 +163,7 @@ TEST_CASE("fit_marks refuses what is no sheet") {
         changes.push_back({"spacing", [x](Sheet& s) { s.options.spacing_mm = x; }});
         changes.push_back({"widest", [x](Sheet& s) { s.options.widest_per_half.value = x; }});
         if (is_far) changes.push_back({"height", [x](Sheet& s) { s.options.height_mm.value = x; }});
-        if (x > 0.0) continue;  // nothing known
+        if (x > 0.0) continue;  // a huge sigma is valid: nothing is known
         changes.push_back({"front's sigma", [x](Sheet& s) { s.options.front_per_half.sigma = x; }});
         changes.push_back({"placement", [x](Sheet& s) { s.options.placement_mm = x; }});
         changes.push_back({"turn", [x](Sheet& s) { s.options.turn_rad = x; }});
@@ -203,7 +203,7 @@ TEST_CASE("fits are given up on request, and leave nothing behind") {
         }
         CHECK(asked == 2);
     }
-    Sheet small;  // the buffers that threads keep are as good as new
+    Sheet small;  // the buffers that threads keep must not change the result
     const MarkFit after = fit_marks(small.marks, std::nullopt, small.options);
     CHECK(after.laws.lag == fit_marks(small.marks, std::nullopt, small.options).laws.lag);
 }

@@ -54,7 +54,7 @@ TEST_CASE("values are weighted by their scatter, in any unit, by hand") {
     for (const double unit : {1.0, 1e-3}) {  // sum d v / s^2 over sum d^2 / s^2
         const LawFit fit = fit_law({1, 2, 4}, {1, 1, 6}, shape, {unit, 2 * unit, 4 * unit});
         CHECK(fit.law.coefficients[1] == doctest::Approx((1.0 + 0.5 + 1.5) / 3.0));
-        const double squares = 0.0 + 0.25 + 0.25;  // of residuals over their scatter
+        const double squares = 0.0 + 0.25 + 0.25;  // sum of the squared residuals over their scatter
         CHECK(fit.covariance[1][1] == doctest::Approx(squares / 2.0 / 3.0));
         CHECK(*fit.law.rmse_mm == doctest::Approx(std::sqrt((0.0 + 1.0 + 4.0) / 2.0)));
     }

@@ -13,7 +13,8 @@ using Eigen::Index;
 
 namespace {
 
-/// Set down, a line, a circle's arc, a corner, lifted, down again on the way, lifted on the spot.
+/// Return a pass with a line, a circle's arc and a corner. The brush is set down, lifted, set down on the way, and
+/// lifted on the spot.
 Pass pass_with_arc() {
     Pass pass;
     pass.stroke = "s";

@@ -24,7 +24,7 @@ Ring box(double left, double bottom, double right, double top) {
 TEST_CASE("a picture's rings are those it was drawn from, but for half a pixel at corners") {
     const Rings found = back({box(0.0, 5.0, 6.0, 9.0)});
     REQUIRE(found.size() == 1);
-    CHECK(signed_area(found[0]) == doctest::Approx(24.0).epsilon(0.01));  // counter-clockwise
+    CHECK(signed_area(found[0]) == doctest::Approx(24.0).epsilon(0.01));  // positive: counter-clockwise
     CHECK(found[0].col(0).minCoeff() == doctest::Approx(0.0).epsilon(1e-6));
     CHECK(found[0].col(1).maxCoeff() == doctest::Approx(9.0).epsilon(1e-6));
 }
@@ -43,7 +43,7 @@ TEST_CASE("pixels that touch at a corner are apart, and nothing has no rings") {
     Coverage picture = Coverage::Zero(4, 4);
     picture(1, 1) = picture(2, 2) = 1.0f;
     CHECK(half_painted(picture, {0.0, 0.0, 4.0, 4.0}, 1.0).size() == 2);
-    picture(1, 2) = 0.4f;  // the middle of the four is painted then
+    picture(1, 2) = 0.4f;  // then the point between the four pixels counts as painted
     CHECK(half_painted(picture, {0.0, 0.0, 4.0, 4.0}, 1.0).size() == 1);
     CHECK(half_painted(Coverage::Zero(3, 3), {0.0, 0.0, 3.0, 3.0}, 1.0).empty());
 }

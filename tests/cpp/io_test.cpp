@@ -21,7 +21,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
     return text.replace(at, what.size(), by);
 }
 
-/// What a refused text is refused with; fails the test when it is not.
+/// Return the Error that refuses a text. Fails the test if the text is accepted.
 template <class Act>
 Error refusal_of(Act act) {
     try {
@@ -68,7 +68,7 @@ const std::string kMarks = R"({"format": "brushsvg/marks", "version": 1, "outlin
 
 struct Fault {
     const char *what, *by, *where, *code;
-    std::vector<std::string> parts;  // numbers and names in the sentence
+    std::vector<std::string> parts;  // numbers and names that the sentence must contain
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ LagLaw<double> law_of(std::vector<double> coefficients) { return make_law({{0.0,
 
 V unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
-/// Arc from a point in direction phi.
+/// Return an arc from a point in direction phi.
 ArcMove<double> arc_of(const V& from, double phi, double radius, double turn) {
     return {from, unit(phi), radius, turn, 2.0};
 }
@@ -36,7 +36,7 @@ double psi_of(const ArcMove<double>& arc, double t, const LagState<double>& stat
     return std::atan2(d.x() * state.heading.y() - d.y() * state.heading.x(), state.heading.dot(d));
 }
 
-/// (begin, taut) of each phase.
+/// Return (begin, taut) of each phase.
 std::vector<std::pair<double, bool>> phases(const LagLaw<double>& law, const ArcMove<double>& arc,
                                             LagState<double>& state) {
     std::vector<std::pair<double, bool>> out;
@@ -92,7 +92,7 @@ TEST_CASE("an arc of the TCP: the printed value, straight ahead, and where it se
     CHECK(std::abs(drag_arc(1.2, 0.0, 3.0, 2.0) - 2 * std::atan(std::tan(0.6) * std::exp(-2.0 / 3))) < 1e-14);
     CHECK(std::abs(std::sin(drag_arc(0.3, 0.1, 4.0, 500.0)) + 0.4) < 1e-12);
     CHECK(std::abs(std::sin(drag_arc(0.3, 0.1, 4.0, 1e5)) + 0.4) < 1e-12);  // where a cosh would overflow
-    // |k| r = 1 is the limit of both sides
+    // the value at |k| r = 1 is the limit from both sides
     CHECK(std::abs(drag_arc(0.2, 0.25, 4.0, 3.0) - drag_arc(0.2, 0.25 + 1e-9, 4.0, 3.0)) < 1e-7);
     CHECK(std::abs(drag_arc(0.2, 0.25, 4.0, 3.0) - drag_arc(0.2, 0.25 - 1e-9, 4.0, 3.0)) < 1e-7);
 }
@@ -145,7 +145,7 @@ TEST_CASE("pushed: the patch rests until q is as far from it again, on the other
             CHECK_FALSE(found[0].second);
             CHECK(found[1].second);
             CHECK(std::abs(found[1].first - 1 / 1.001) < 1e-9);
-            // the same in steps that end while it rests
+            // in steps that end while the patch rests
             state = taut({0, 0}, 5.0, psi0);
             LagState<double> whole = state;
             advance(law, arc_of({0, 0}, 0.0, R, 0.4 * turn), state);
@@ -166,7 +166,7 @@ TEST_CASE("a turn in place: the patch rests at |k| r = 1, and a rounded radius s
             for (double turn : {0.3, kPi, 2 * kPi}) {
                 const V p(100, 50);
                 auto state = taut(p + r * unit(0.3), r, 0.3);
-                // straight to the circle that is to be run about p, then round it in steps of 0.2 rad
+                // move straight to the circle about p, then round it in steps of 0.2 rad
                 const int n = int(std::ceil(turn / 0.2));
                 advance(law, Move<double>(p + r * unit(0.3), p + (r + off) * unit(0.3), 2.0, 2.0), state);
                 for (int k = 0; k < n; ++k)
@@ -214,7 +214,7 @@ TEST_CASE("from touch-down the first arc sets the heading, and pulls the lever o
     CHECK_FALSE(found[0].second);
     CHECK(found[1].first * 2.0 == doctest::Approx(2.0 * std::asin(2.5 / 20.0)));  // the chord is r
     state = touch_down<double>({0, 0});
-    CHECK(phases(law, arc_of({0, 0}, 0.0, 2.4, 20.0), state).size() == 1);  // no chord is as long
+    CHECK(phases(law, arc_of({0, 0}, 0.0, 2.4, 20.0), state).size() == 1);  // no chord is that long
     CHECK(state.contact == V(0, 0));
 }
 
@@ -235,7 +235,7 @@ TEST_CASE("dual numbers carry derivatives along arcs, through loosening and tigh
     law.pieces.resize(1);
     law.pieces[0].hi = 10.0;
     law.pieces[0].coefficients[0] = 5.0;
-    // taut, loose on a small circle, then pushed on another and taut again; the derivative by the radius of the first
+    // Taut, loose on a small circle, then pushed on another one and taut again. The derivative is by the first radius.
     const auto path = [](auto scalar, auto radius, const auto& law_) {
         using T = decltype(scalar);
         using W = Vec2<T>;

@@ -49,7 +49,7 @@ TEST_CASE("figure 3: r = 3, b = 1, alpha0 = 90 degrees") {
 TEST_CASE("depth 2 to 8 over 20 mm with the article's quartic") {
     const auto law = law_of({3.1, 0.86, 0.31, -0.05, 0.0021});
     CHECK(std::abs(lag_exponent(law.pieces[0], 2.0, 8.0, 20.0) - 2.138103176) < 1e-9);
-    // article (7) alone: the loose rule would step in, since cos(1.2) < dr/ds
+    // only article (7): the loose rule would apply here, since cos(1.2) < dr/ds
     const auto state = within_phase(law.pieces[0], Move<double>(V(0, 0), V(20, 0), 2.0, 8.0),
                                     taut(V(0, 0), law.at(2.0), 1.2), 0.0, 1.0);
     CHECK(std::abs(std::atan2(state.heading.y(), state.heading.x()) - 0.160941370) < 1e-8);
@@ -72,7 +72,7 @@ TEST_CASE("the quadrature's nodes are chosen by the nearest root: fine against m
             if (fine < 50.0)
                 CHECK(std::abs(x / fine - 1.0) < 1e-11);
             else
-                CHECK(x >= 50.0);  // e^-50: nothing left of the old heading
+                CHECK(x >= 50.0);  // e^-50: nothing remains of the old heading
         }
     }
 }
@@ -111,7 +111,7 @@ TEST_CASE("pressing faster than 0.62 mm per mm loosens a settled drag, inside a 
                 [&](const auto&, const auto&, const LagState<double>& start, double, double) { loose += !start.taut; });
         return loose;
     };
-    // dr/dd is greatest, 1.61, at depth 2.66: there 1 / 1.61 mm per mm is the limit
+    // dr/dd is greatest, 1.61, at depth 2.66: there the limit is 1 / 1.61 mm per mm
     CHECK(press(0.60, 1.0) == 0);
     CHECK(press(0.70, 1.2) > 0);
 }
@@ -139,7 +139,7 @@ TEST_CASE("on a circle smaller than the lag the patch comes to rest at r - R fro
 }
 
 TEST_CASE("both roots inside one move are found: tightening between two loose ends") {
-    // the lever first grows slower, then faster than the TCP runs away
+    // the lever first grows more slowly than the TCP moves away, then faster
     const auto law = law_of({2.0, 0.0, 0.0, 0.02});
     LagState<double> state = touch_down<double>(V(0, 0));
     int phases = 0, taut_phases = 0;
@@ -182,7 +182,7 @@ TEST_CASE("dual numbers carry derivatives through drags and events") {
     for (int i = 0; i <= from.degree; ++i) piece.coefficients[i] = from.coefficients[i];
     piece.roots = from.roots, piece.steepest = from.steepest, piece.most_twisted = from.most_twisted;
 
-    // a run with a reversal: taut, loose, taut again; the derivative by the depth of the second half
+    // A path with a reversal: taut, loose, taut again. The derivative is by the depth of the second half.
     const auto path = [](auto scalar, auto depth, const auto& law_) {
         using T = decltype(scalar);
         using W = Vec2<T>;

@@ -114,12 +114,12 @@ TEST_CASE("a circle must be inside of the sheet's margin where it is run, and no
         plan.passes = {pass};
         return plan;
     };
-    const Plan right = plan_of({115 + c, 30 - s}, {115 + c, 30 + s});  // out to x = 135, its poses inside
+    const Plan right = plan_of({115 + c, 30 - s}, {115 + c, 30 + s});  // reaches x = 135, but its poses are inside
     CHECK_THROWS_AS(posts::linuxcnc(right, round6()), Error);
     posts::FlatCell cell;
     cell.margin_mm = 36.0;
     CHECK(posts::linuxcnc(right, round6(), cell).find("G3") != std::string::npos);
-    const Plan left = plan_of({115 - c, 30 + s}, {115 - c, 30 - s});  // the rest of the same circle
+    const Plan left = plan_of({115 - c, 30 + s}, {115 - c, 30 - s});  // the other part of the circle
     CHECK(posts::linuxcnc(left, round6()).find("G3") != std::string::npos);
 }
 
@@ -136,7 +136,7 @@ TEST_CASE("a long comment is cut, and what no machine reads in it is replaced") 
     plan.passes[0].stroke = StrokeId(std::string(150, 'a'));
     plan.passes[1].stroke = StrokeId(
         "b\x01\x7F\xCD\xAF"
-        "c");  // U+036F: an accent by itself
+        "c");  // U+036F: an accent without a letter
     const std::string text = posts::linuxcnc(plan, round6());
     const std::string begin = "(stroke 1 of 3: ";
     CHECK(text.find(begin + std::string(118 + 1 - begin.size() - 3, 'a') + "...)\n") != std::string::npos);

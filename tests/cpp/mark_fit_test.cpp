@@ -52,7 +52,7 @@ TEST_CASE("the nearest place on a drop's edge is that of its densely sampled out
             if (span.to > span.from)
                 CHECK(nearest_edge(drop, x + 0.6 * span.to, y - 0.8 * span.to).distance ==
                       doctest::Approx(0.0).epsilon(1e-4));
-            // a step along the normal leads straight away
+            // a step along the normal increases the distance by its length
             const NearestEdge out = nearest_edge(drop, found.x + 0.01 * found.nx, found.y + 0.01 * found.ny);
             CHECK(out.distance == doctest::Approx(0.01).epsilon(0.05));
             CHECK(least_distance(drop, found.x, found.y) > -0.02);
@@ -77,7 +77,7 @@ TEST_CASE("along a straight stroke the edge is straight, however narrow, and a s
         laws.lag = {3.0};
         laws.tip_gap = {0.0, 0.5};
         laws.half_width = {0.0, half};
-        for (const double up : {half, half + 0.2, std::max(half - 0.3, -0.1)}) {  // the last: hairlines' sides cross
+        for (const double up : {half, half + 0.2, std::max(half - 0.3, -0.1)}) {  // last: hairlines' sides cross
             Ring ring(4, 2);
             ring << 10, -up, 30, -up, 30, up, 10, up;
             const MarkModel model({PaintedMark{"s", poses, {ring}}}, MarkOptions{});
@@ -168,7 +168,7 @@ TEST_CASE("derivatives of edge distances are those of small steps, events and la
         value += step;
         for (Eigen::Index k = 0; k < at.size(); ++k) {
             const double told = i < x.size() ? by(k, i) : own(k, i - x.size());
-            // derivatives leave out how the touching lines turn; midway between two places of the edge there is a kink
+            // the derivatives neglect how the tangent lines turn; midway between two places of the edge there is a kink
             if (std::abs((up[k] - down[k]) / (2.0 * step) - told) > 0.1 * (1.0 + std::abs(told))) ++wrong;
         }
     }
@@ -176,7 +176,7 @@ TEST_CASE("derivatives of edge distances are those of small steps, events and la
 }
 
 TEST_CASE("where the TCP passes the resting patch the mark's edge moves no faster than the lag grows") {
-    Poses poses(3, 3);  // the footprint turns round at once, by so much more the less the TCP keeps off
+    Poses poses(3, 3);  // the closer the TCP passes, the more suddenly the footprint turns
     poses << 0, 0, -6, 0, 28, -6, 1, 4, -6;
     MarkLaws laws;
     laws.lag = {3.0, 0.5, 0.05, 0.0};
@@ -200,7 +200,7 @@ TEST_CASE("where the TCP passes the resting patch the mark's edge moves no faste
 }
 
 TEST_CASE("an arc is followed on its circle, not on its chords") {
-    // from the left half of a circle's diameter to the right: 4 poses 60 degrees apart, or 181
+    // a half circle from left to right: as 4 poses 60 degrees apart, or as 181 poses
     const auto half_circle = [](Eigen::Index parts) {
         Poses poses(parts + 1, 3);
         for (Eigen::Index k = 0; k <= parts; ++k) {
@@ -257,7 +257,7 @@ TEST_CASE("marks that no brush paints are refused, and one of them is named") {
         return out;
     };
     Ring square(4, 2);
-    square << 0, 0, 40, 0, 40, 40, 0, 40;  // huge footprints overlap, and the work is counted
+    square << 0, 0, 40, 0, 40, 40, 0, 40;  // huge footprints overlap here, and the work is counted
     const std::string sentence = no_brush_paints("this one").what();
     const auto check_refused = [&](const std::function<void()>& does) {
         try {
@@ -272,7 +272,7 @@ TEST_CASE("marks that no brush paints are refused, and one of them is named") {
     const auto check_no_fit = [&](const Poses& stroke, const Ring& ring, const MarkOptions& options = {}) {
         check_refused([&] { fit_marks({{"this one", stroke, {ring}}}, std::nullopt, options); });
     };
-    // where a search ends that nothing fits is chance: the refusal must not depend on it
+    // If nothing fits, it is chance where a search ends. The refusal must not depend on it.
     MarkOptions hasty;
     hasty.most_iterations = 1;
     for (const int points : {12, 16, 20, 24, 28}) {
@@ -282,14 +282,14 @@ TEST_CASE("marks that no brush paints are refused, and one of them is named") {
     }
     check_no_fit(poses, square);
 
-    // and each way to find out, on its own
-    Poses above = poses;  // no lag that is tried predicts a mark
+    // also check each way to detect this on its own
+    Poses above = poses;  // none of the lags that are tried predicts a mark
     above.col(2).setConstant(1.0);
     check_no_fit(above, square);
     MarkProblem fit({{"this one", poses, {square}}}, {});
     fit.begin({{3.0}, {0.0, 0.3}, {0.0, 400.0}});  // laws that predict no mark
     check_refused([&] { weighed(fit); });
-    fit.begin({{3.0}, {0.0, 0.3}, {0.0, 4.0}});  // more work than a brush's mark takes
+    fit.begin({{3.0}, {0.0, 0.3}, {0.0, 4.0}});  // more work than the mark of a brush needs
     REQUIRE(std::isfinite(fit.loss()));
     check_refused([&] {
         for (int i = 0; i < 100000; ++i) fit.loss();
@@ -338,7 +338,7 @@ TEST_CASE("an axis that turns stands still for its whole backlash, and not for l
         const auto behind = behind_by(poses, machine, machine.by);
         const double sign = backlash < 0.0 ? -1.0 : 1.0, all = std::abs(backlash);
         const std::array<double, 6> told{0.0, 10.0, 9.9, 9.7, 9.5, 5.0};
-        double place = told[0] + 0.5 * all;  // come from the right, and pulled along by a slot as wide as the backlash
+        double place = told[0] + 0.5 * all;  // arrived from the right, pulled along by a slot as wide as the backlash
         for (std::size_t i = 0; i < told.size(); ++i) {
             place = std::clamp(place, told[i] - 0.5 * all, told[i] + 0.5 * all);
             CHECK(behind[i].x() == doctest::Approx(sign * (told[i] - place)).epsilon(1e-12));

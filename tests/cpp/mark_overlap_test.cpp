@@ -21,7 +21,7 @@ TEST_CASE("pixels count what rings measure") {
         const MarkOverlap seen = mark_overlap({marks}, {stroke}, brush);
         CHECK(common_area(seen).overlap() ==
               doctest::Approx(overlap(outline(marks, brush), shape.wanted_mm)).epsilon(1e-3));
-        CHECK(seen.wanted.row(0).sum() + seen.painted.row(0).sum() == 0.0f);  // paper all round
+        CHECK(seen.wanted.row(0).sum() + seen.painted.row(0).sum() == 0.0f);  // the border is paper
         CHECK(seen.wanted.col(0).sum() + seen.painted.col(0).sum() == 0.0f);
     }
     CHECK(mark_overlap({marks}, {line}, brush).px_per_mm == doctest::Approx(15.0));  // 6 across the finest half width

@@ -51,7 +51,7 @@ double distance_to(const Rings& rings, const Eigen::Vector2d& p) {
 
 TEST_CASE("a limb that is thin next to what it leaves stays, a corner does not") {
     const Rings t = unite({box(0, 0, 8, 40), box(8, 30, 3, 2)});
-    CHECK(medial_axis(t, kNoCorners).branches.size() == 2);  // the stem, above and below it
+    CHECK(medial_axis(t, kNoCorners).branches.size() == 2);  // the stem, above and below the limb
     CHECK(medial_axis(t, kNoCorners, 0.1).branches.size() == 3);
     CHECK(medial_axis(t, kNoCorners, 0.5).branches.size() == 2);
     CHECK(medial_axis({box(0, 0, 8, 40)}, kNoCorners, 0.1).branches.size() == 1);

@@ -19,7 +19,7 @@ Paint paint_of(double narrows_per_m) {
     return paint;
 }
 
-/// 200 mm along x at a height, set down and lifted on the spot.
+/// Return a line of 200 mm along x at a given y, with the brush set down and lifted on the spot.
 Pass line_at(double y, double depth) {
     Pass pass;
     pass.stroke = "s";
@@ -43,7 +43,8 @@ TEST_CASE("a mark narrows by the way since the dip, from pass to pass until pain
     Marks marks = simulate(plan, brush);
     narrow(marks, paint, {{0.0}, {}, {0.0, 100.0}});
     const double wide = 2.0 * brush.half_width(4.0);
-    // the widest section is behind the TCP by the same way everywhere: at x the TCP has gone x + that
+    // The widest section is behind the TCP by a constant distance. So when it is at x, the TCP has moved x plus that
+    // distance.
     const double behind = brush.lag(4.0) - brush.lever_to_widest(4.0);
     const auto is_wide = [&](double x, double y, double way) {
         CHECK(height_at(marks, brush, x, y) == doctest::Approx(wide * std::exp(-1.5e-3 * way)).epsilon(0.004));

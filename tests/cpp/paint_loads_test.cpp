@@ -13,7 +13,7 @@ using namespace brushsvg;
 
 namespace {
 
-/// A wave, at constant depth or swelling, with a corner in its middle.
+/// Return a wave with a corner in its middle, at constant or increasing depth.
 Pass wave(const Brush& brush, double half_width0, double half_width1) {
     Stroke stroke;
     stroke.id = "wave";
@@ -63,7 +63,7 @@ TEST_CASE("parts are no longer than the paint lasts, named and complete") {
     const Pass whole = wave(brush, 1.5, 1.5);
     const std::vector<Pass> parts = interrupted(whole, brush, {15.0, 40.0, 5.0});
     REQUIRE(parts.size() >= 4);
-    const double lift = 7.5;  // comes back over its own patch
+    const double lift = 7.5;  // length of the lift, which goes back over its own patch
     CHECK(length(parts[0]) < 15.0 + lift);
     for (std::size_t k = 0; k < parts.size(); ++k) {
         if (k > 0) CHECK(parts[k].stroke.name() == "wave+" + std::to_string(k + 1));
@@ -92,7 +92,7 @@ TEST_CASE("a straight line has places to stop at between its few poses") {
     stroke.id = "line";
     stroke.middle_mm.resize(1, 8);
     stroke.middle_mm << 20, 50, 140, 50, 260, 50, 380, 50;
-    for (const double h : {0.2, 1.5}) {  // at the first depth the brush has next to no patch
+    for (const double h : {0.2, 1.5}) {  // at the first depth the patch is tiny
         stroke.half_width = {{0.0, h}, {1.0, h}};
         const Pass whole = compensate(stroke, brush).pass;
         REQUIRE(whole.poses_mm.rows() < 20);
@@ -102,7 +102,7 @@ TEST_CASE("a straight line has places to stop at between its few poses") {
             CHECK(length(part) < 100.0 + 7.0);
             CHECK(part.poses_mm.rows() < 30);
         }
-        for (const Pass& part : parts)  // the way between two poses that are one but for rounding points anywhere
+        for (const Pass& part : parts)  // the direction between two nearly equal poses is arbitrary
             for (Eigen::Index i = 1; i < part.poses_mm.rows(); ++i)
                 CHECK((part.poses_mm.row(i) - part.poses_mm.row(i - 1)).norm() > 1e-6);
         const Rings found = painted(parts, brush);
@@ -191,7 +191,7 @@ TEST_CASE("a brush that turns in place is not interrupted") {
 
 TEST_CASE("a brush that still trails loosely is not interrupted") {
     const Brush brush = shipped("round-6");
-    Pass line;  // pressed on the spot: the patch stays until the lag is taken up
+    Pass line;  // pressed on the spot: the patch rests until the lag is drawn out
     line.poses_mm.resize(4, 3);
     line.poses_mm << 10, 10, 0, 10, 10, -3, 70, 10, -3, 70, 10, 0;
     const std::vector<Pass> parts = interrupted(line, brush, {4.0, 40.0, 0.0});

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Poses at these angles about (100, 50), the arc over all of them.
+/// Return a pass with poses at these angles about (100, 50), and one arc through all of them.
 Pass on_circle(double radius, const std::vector<double>& angles, int direction, double digits_mm = 0.0) {
     Pass pass;
     pass.stroke = "s";
@@ -67,7 +67,7 @@ TEST_CASE("tool axes: one for each pose, of length 1, tilted by at most 30 degre
     pass.tool_axes.resize(2, 3);
     pass.tool_axes << 0.0, 0.0, 1.0, 0.5, 0.0, std::sqrt(0.75) + 1e-9;
     CHECK_NOTHROW(check_tool_axes(pass, ""));
-    pass.tool_axes.row(1) << 0.18, 0.467, 0.866;  // 30 degrees to three decimals
+    pass.tool_axes.row(1) << 0.18, 0.467, 0.866;  // 30 degrees, rounded to three decimals
     CHECK_NOTHROW(check_tool_axes(pass, ""));
     CHECK(is_tilted(pass));
     CHECK_THROWS_AS(refuse_tilted(pass, "a test holds it upright"), Error);

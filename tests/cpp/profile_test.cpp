@@ -30,10 +30,10 @@ TEST_CASE("a floor takes over where the polynomial falls below it, and the piece
 TEST_CASE("a law of a brush refuses depths that the brush cannot have") {
     Profile lag;
     lag.coefficients = {3.0, 1.0};
-    CHECK(lag.at(50.0) == 53.0);  // of no brush yet
+    CHECK(lag.at(50.0) == 53.0);  // a law without a brush accepts any depth
     lag.depth_range_mm = {1.0, 10.0};
     CHECK(lag.at(10.0 + 1e-9) == doctest::Approx(13.0));
-    CHECK(lag.at(0.0) == 3.0);  // passed as the brush is set down
+    CHECK(lag.at(0.0) == 3.0);  // the brush passes this depth when it is set down
     CHECK(lag(50.0) == 53.0);   // not checked
     for (const double depth : {50.0, 10.1, -0.1, double(NAN)}) try {
             lag.at(depth);
@@ -54,7 +54,7 @@ TEST_CASE("difference of laws is split where either changes") {
     double crossing = 0.0;
     for (const auto& part : e)
         for (double root : real_roots(part.coefficients, part.lo, part.hi)) crossing = root;
-    CHECK(crossing == doctest::Approx(1.39).epsilon(0.005));  // below it the widest section trails the contact
+    CHECK(crossing == doctest::Approx(1.39).epsilon(0.005));  // below this depth the widest section trails the contact
 }
 
 TEST_CASE("real roots: none, a pair inside one interval, a double root, the ends") {

@@ -25,7 +25,7 @@ Stroke line() { return stroke_of(polyline({V(20, 20), V(50, 28)}), {{0.0, 1.7}})
 Stroke taper() { return stroke_of(polyline({V(20, 20), V(60, 20)}), {{0.0, 2.6}, {1.0, 0.6}}); }
 Stroke corner() { return stroke_of(polyline({V(20, 50), V(50, 50), V(44, 20)}), {{0.0, 1.7}}); }
 Stroke hook() { return stroke_of(polyline({V(50, 60), V(50, 20), V(41, 28)}), {{0.0, 2.0}, {1.0, 1.0}}); }
-/// A blunt head that is across: the pointed footprint must come in from the side.
+/// Return a blunt head across the line. The pointed footprint must come in from the side.
 Stroke head() {
     Stroke s = stroke_of(polyline({V(39, 38), V(30.5, 30)}), {{0.0, 3.1}, {1.0, 0.6}});
     Ring wanted(9, 2);
@@ -54,7 +54,7 @@ Stroke mirrored(Stroke s) {
     return s;
 }
 
-/// As the report says it.
+/// Return the overlap as the report computes it.
 double overlap_of(const Stroke& stroke, const Pass& pass, const Brush& brush) {
     return overlap(outline(simulate(pass, brush), brush), wanted_outline(stroke, 0.01));
 }
@@ -101,7 +101,7 @@ TEST_CASE("slopes of way and edge are those of differences") {
     for (int trial = 0; trial < 3; ++trial) {
         const Eigen::VectorXd x = 0.3 * anything(path.unknowns(), random);
         const PatchSamples samples = path.at(x);
-        // of one sample's x, y, heading or depth: a row of all slopes
+        // the slopes of one sample's x, y, heading or depth by all unknowns
         const auto row = [&](std::size_t sample, int of) {
             std::vector<Eigen::Vector4d> one(samples.size(), Eigen::Vector4d::Zero());
             one[sample][of] = 1.0;
@@ -228,7 +228,7 @@ TEST_CASE("a line, a taper, a corner, a hook, a curve and a blunt head are paint
     const Brush brush = shipped("round-6");
     struct Case {
         Stroke stroke;
-        double at_least;  // a little below what was reached
+        double at_least;  // slightly below the overlap that was reached
     };
     for (const Case& each : {Case{line(), 0.971},
                              {taper(), 0.965},
@@ -293,14 +293,14 @@ TEST_CASE("dabs, hairlines, closed lines, pens and threads are painted or left a
 
 TEST_CASE("no paint and no tool leaves the sheet for it") {
     const Brush brush = shipped("round-6");
-    // the closed form begins 0.9 mm inside the target mark's end, which is on the sheet's side
+    // the target mark's end is on the edge of the sheet; the closed form begins 0.9 mm inside of it
     const Stroke s = stroke_of(polyline({V(1.7, 20), V(40, 20)}), {{0.0, 1.7}});
     RefineOptions on_sheet;
     on_sheet.sheet_mm = {60.0, 40.0};
     const RefinedPass kept = refine(s, brush, on_sheet);
     CHECK(painted_bounds(simulate(kept.plan.pass, brush), brush)[0] >=
           std::min(0.0, painted_bounds(simulate(compensate(s, brush).pass, brush), brush)[0]));
-    on_sheet.sheet_mm = {60.0, 20.0};  // half of it is beyond: no further than before
+    on_sheet.sheet_mm = {60.0, 20.0};  // half of the mark is outside: no further than before
     const RefinedPass half = refine(s, brush, on_sheet);
     CHECK(painted_bounds(simulate(half.plan.pass, brush), brush)[3] <=
           painted_bounds(simulate(compensate(s, brush).pass, brush), brush)[3] + 1e-9);

@@ -10,7 +10,7 @@
 
 #include "brushsvg/error.hpp"
 
-/// With what something is refused; nothing where it is not.
+/// Return the Error that a call throws; nothing if it throws none.
 inline std::optional<brushsvg::Error> refusal(const std::function<void()>& does) {
     try {
         does();
@@ -20,7 +20,7 @@ inline std::optional<brushsvg::Error> refusal(const std::function<void()>& does)
     return std::nullopt;
 }
 
-/// Whether a number or a name stands in a sentence as a whole: 2 does not stand in 2.5 or 12.
+/// Return whether a sentence contains a number or a name as a whole: 2 is not in 2.5 or 12.
 inline bool stands_in(const std::string& part, const std::string& sentence) {
     const auto joins = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
     const auto at = [&](std::size_t i) { return i < sentence.size() ? sentence[i] : ' '; };
@@ -34,7 +34,8 @@ inline bool stands_in(const std::string& part, const std::string& sentence) {
     return false;
 }
 
-/// Whether it is this code of this element, with these numbers and names in its sentence, whose words may be any.
+/// Return whether an Error has this code and element, and these numbers and names in its sentence. The other words of
+/// the sentence do not matter.
 inline bool agrees(const std::optional<brushsvg::Error>& told, const std::string& code, const std::string& where,
                    const std::vector<std::string>& parts = {}) {
     if (!told) {

@@ -53,11 +53,12 @@ TEST_CASE("clockwise rings are holes in nothing: they are refused, not lost") {
     CHECK_THROWS_AS(intersect({turned}, {square}), Error);
     CHECK_THROWS_AS(unite({turned}), Error);
     CHECK(area(fill({turned}, FillRule::nonzero)) == doctest::Approx(16.0));
-    CHECK(unite({square, turned}).empty());  // a hole as large as the shape
+    CHECK(unite({square, turned}).empty());  // the hole is as large as the shape
 }
 
 TEST_CASE("a box held against a large shape with holes has what is in it, at any place") {
-    // a comb of many corners, folded: its teeth reach past the box on all sides, and it has a hole larger than the box
+    // A folded comb with many corners. Its teeth reach past the box on all sides, and it has a hole larger than the
+    // box.
     Rings shape;
     Ring comb(402, 2);
     for (int k = 0; k < 200; ++k) comb.row(k) << 0.5 * k, (k % 2 ? -3.0 : 0.0);
@@ -70,7 +71,7 @@ TEST_CASE("a box held against a large shape with holes has what is in it, at any
     std::uniform_real_distribution<double> x(-3.0, 101.0), y(-6.0, 54.0), size(0.3, 12.0);
     for (int k = 0; k < 200; ++k) {
         const Ring small = box(x(random), y(random), size(random), size(random));
-        // the share of the box, by another way: what both cover together
+        // the common area, computed differently: from the area of the union
         const double both = area({small}) + area(shape) - area(unite({small, shape[0], shape[1]}));
         const bool is_on_hole = area(intersect({small}, {box(40.0, 20.0, 20.0, 10.0)})) > 0.0;
         if (!is_on_hole) CHECK(std::abs(area(intersect(shape, {small})) - both) < 1e-3);
@@ -97,7 +98,7 @@ TEST_CASE("convex hull") {
 
 namespace {
 
-/// A convex shape of 40 corners, longer than wide, one corner sharper than the others.
+/// Return a convex shape with 40 corners, longer than wide, with one corner sharper than the others.
 Ring leaf(double x, double y, double heading, double size) {
     Ring r(40, 2);
     for (int k = 0; k < 40; ++k) {
@@ -141,7 +142,7 @@ TEST_CASE("pieces between shapes cover what their hulls cover, with few corners 
         double x = 50, y = 50, heading = 0, size = 1;
         Rings chain;
         for (int i = 0; i < 2 + trial; ++i) {
-            if (trial % 7 != 0 || i % 3 == 0) {  // every third only: the others stay where they are
+            if (trial % 7 != 0 || i % 3 == 0) {  // only every third ring moves on
                 x += step * std::cos(heading), y += step * std::sin(heading);
                 heading += turn * any(random);
                 size = std::max(0.0, size + growth * any(random));
@@ -158,7 +159,7 @@ TEST_CASE("pieces between shapes cover what their hulls cover, with few corners 
     CHECK(swept(straight).corners < 100 * 9);
     CHECK(pieces_between({}).empty());
     CHECK(pieces_between({box(0, 0, 1, 1)}).size() == 1);
-    // one in the other, and one that is but a point
+    // a ring inside another one, and a ring that is only a point
     CHECK(area(unite(pieces_between({box(0, 0, 4, 4), box(1, 1, 1, 1), box(0, 0, 4, 4)}))) == doctest::Approx(16.0));
     CHECK(area(unite(pieces_between({leaf(0, 0, 0, 0), leaf(0, 0, 0, 0)}))) == doctest::Approx(0.0));
 }
@@ -188,7 +189,7 @@ TEST_CASE("an odd number of contours is filled, however many") {
         CHECK(area(fill(same, FillRule::evenodd)) == doctest::Approx(n % 2 == 1 ? 100.0 : 0.0));
         CHECK(area(fill(nested, FillRule::evenodd)) == doctest::Approx(rings_area));
     }
-    Ring star(71, 2);  // its lines run 35 times round the middle
+    Ring star(71, 2);  // its outline runs 35 times round the middle
     for (int i = 0; i < 71; ++i) {
         const double a = 35.0 * 2.0 * 3.14159265358979323846 * i / 71;
         star.row(i) << 50.0 * std::cos(a), 50.0 * std::sin(a);
@@ -208,5 +209,5 @@ TEST_CASE("outlines that cross themselves: both lobes of an eight, the heart of 
     }
     const double whole = area(fill({star}, FillRule::nonzero)), rays = area(fill({star}, FillRule::evenodd));
     CHECK(whole == doctest::Approx(112.2570).epsilon(1e-4));        // 10 r^2 sin(36) sin(18) / sin(126)
-    CHECK(whole - rays == doctest::Approx(34.6894).epsilon(1e-4));  // the pentagon within
+    CHECK(whole - rays == doctest::Approx(34.6894).epsilon(1e-4));  // the pentagon inside
 }

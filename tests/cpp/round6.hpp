@@ -10,7 +10,7 @@
 #include "brushsvg/brush.hpp"
 #include "brushsvg/stroke.hpp"
 
-/// The shipped brush of that name.
+/// Return the shipped brush of this name.
 inline brushsvg::Brush shipped(const std::string& name) {
     std::ifstream file(std::string(BRUSHES_DIR) + "/" + name + ".json");
     std::stringstream text;
@@ -18,7 +18,7 @@ inline brushsvg::Brush shipped(const std::string& name) {
     return brushsvg::io::read_brush(text.str());
 }
 
-/// A polyline as cubics.
+/// Return a polyline as cubics.
 inline brushsvg::Cubics polyline(const std::vector<Eigen::Vector2d>& points) {
     brushsvg::Cubics out(Eigen::Index(points.size()) - 1, 8);
     for (Eigen::Index i = 0; i < out.rows(); ++i) {
@@ -28,7 +28,7 @@ inline brushsvg::Cubics polyline(const std::vector<Eigen::Vector2d>& points) {
     return out;
 }
 
-/// The stroke "s" along cubics.
+/// Return the stroke "s" along cubics.
 inline brushsvg::Stroke stroke_of(const brushsvg::Cubics& middle, std::vector<brushsvg::WidthKnot> half_width) {
     brushsvg::Stroke s;
     s.id = "s";

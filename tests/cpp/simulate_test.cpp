@@ -107,7 +107,7 @@ TEST_CASE("each pose has its row, also where a pass ends on the paper") {
     REQUIRE(rows.size() == 3);
     CHECK(m.depth_mm[rows[0]] == doctest::Approx(3.0));
     CHECK(m.depth_mm[rows[2]] == doctest::Approx(5.0));
-    CHECK(rows[2] + 1 < m.pose.size());  // then it is lifted on the spot
+    CHECK(rows[2] + 1 < m.pose.size());  // followed by rows of the lift on the spot
     CHECK(m.contact_mm(Eigen::Index(rows[2]), 0) == doctest::Approx(60.0 - shipped("round-6").lag(5.0)).epsilon(1e-3));
     CHECK(m.contact_mm(m.contact_mm.rows() - 1, 0) > m.contact_mm(Eigen::Index(rows[2]), 0) + 3.0);
 }
@@ -135,9 +135,9 @@ TEST_CASE("an arc is followed on its circle: rows at its poses and between, frac
     }
     CHECK(within > 20);
     for (int k = 0; k < 7; ++k) CHECK(std::count(m.pose.begin(), m.pose.end(), double(k)) >= 1);
-    // up to where the arc begins nothing differs
+    // before the arc begins, nothing differs
     for (std::size_t i = 0; chords.pose[i] <= 2; ++i) CHECK(m.contact_mm.row(i) == chords.contact_mm.row(i));
-    // half way between rows the contact is where their straight line says
+    // between two rows, the contact is on the straight line between them
     const PassMarks fine = simulate(pass, brush, 1e-5);
     std::size_t k = 0;
     for (std::size_t i = 0; i < fine.pose.size(); ++i) {
@@ -173,7 +173,7 @@ TEST_CASE("a pen turns at a corner at once, and heads for its first move from th
         if (m.pose[i] < 2.0) CHECK(degrees == doctest::Approx(90.0));
         if (m.pose[i] > 2.0) CHECK(degrees == doctest::Approx(180.0));
     }
-    CHECK(std::count(m.pose.begin(), m.pose.end(), 2.0) == 2);  // before the turn and after it
+    CHECK(std::count(m.pose.begin(), m.pose.end(), 2.0) == 2);  // one row before the turn, one after it
     CHECK(std::count(m.pose.begin(), m.pose.end(), 3.0) == 1);
 }
 

@@ -25,13 +25,13 @@ TEST_CASE("rings in sight of a point become one, with any shared edges and corne
                 points.row(k) << x + u * std::cos(angle) - v * std::sin(angle),
                     y + u * std::sin(angle) + v * std::cos(angle);
             }
-            if (trial % 3 == 0) points = ((4.0 * points).array().round() / 4.0).matrix().eval();  // on a grid
+            if (trial % 3 == 0) points = ((4.0 * points).array().round() / 4.0).matrix().eval();  // rounded to a grid
             const Ring hull = convex_hull(points);
             if (hull.rows() < 3) continue;
             rings.push_back(hull);
             const std::size_t n = rings.size();
             if (trial % 4 == 0 && n > 1)
-                rings[n - 2] = convex_hull(both(hull, rings[n - 2]));  // neighbours share edges
+                rings[n - 2] = convex_hull(both(hull, rings[n - 2]));  // neighbouring rings share edges
         }
         if (rings.empty()) continue;
         const Rings fewer = united_in_sight(rings).rings;
@@ -56,7 +56,7 @@ TEST_CASE("what sees no common point stays, and so do holes and what they are in
     const Rings with_hole = united_in_sight({box, box, hole, box}).rings;
     CHECK(with_hole.size() == 4);
     CHECK(area({with_hole[2]}) == doctest::Approx(-1.0));
-    Ring twice(8, 2);  // round the same way again: no star, though all of it turns to the left
+    Ring twice(8, 2);  // runs round the box twice: not a star, although every corner turns to the left
     twice << box, box;
     CHECK(united_in_sight({twice, box}).rings.size() == 2);
     const double nan = std::nan("");

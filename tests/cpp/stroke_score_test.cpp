@@ -38,7 +38,7 @@ TEST_CASE("width across a line, in any direction") {
     for (const double turn : {0.0, 0.5, 1.5707963267948966, 3.7})
         for (const Case& each : {Case{{box(0, 3.5, 20, 7)}, 3.5},
                                  {{box(0, 5.5, 20, 7)}, 1.5},                     // next to the line, but within reach
-                                 {{box(0, 9, 20, 12)}, 0.0},                      // too far off to be this line's mark
+                                 {{box(0, 9, 20, 12)}, 0.0},                      // too far away to be this line's mark
                                  {{box(0, 3, 20, 7), hole(1, 4, 19, 6)}, 1.0},    // the line runs in the hole
                                  {{box(0, 3, 20, 7), box(0, 7.5, 20, 30)}, 4.0},  // another mark next to it
                                  {{}, 0.0}}) {
@@ -65,7 +65,7 @@ TEST_CASE("width error is the mean absolute difference, where the width can be m
     CHECK(*width_error_mm(laid(wanted, wanted), line) < 1e-6);
     CHECK(std::abs(*width_error_mm(laid(wanted, {half_right}), line) - 0.25) < 0.01);
     CHECK(std::abs(*width_error_mm(laid(wanted, {}), line) - 4.0) < 0.01);
-    // where the line crosses itself the mark is wider than it: nothing to be learnt there
+    // where the line crosses itself, the mark is wider than the line, so its width cannot be measured
     const MiddlePolyline thin = line_of(V(0, 0), V(40, 0), 1.0);
     const Rings crossing{box(0, -1, 18, 1), box(18, -9, 22, 1), box(22, -1, 40, 1)};
     CHECK(*width_error_mm(laid(crossing, {box(0, -1, 40, 1)}), thin) < 1e-6);
@@ -85,7 +85,7 @@ TEST_CASE("the worst place, missing or too much") {
     CHECK_FALSE(spilt.is_missing);
     CHECK((V(spilt.at_mm[0], spilt.at_mm[1]) - V(5.5, 4.5)).cwiseAbs().maxCoeff() < 0.11);
     CHECK(spilt.area_mm2 == doctest::Approx(1.0).epsilon(0.03));
-    CHECK(worst_place(laid(wanted, wanted), 1e6).area_mm2 == 0.0);  // larger than the picture
+    CHECK(worst_place(laid(wanted, wanted), 1e6).area_mm2 == 0.0);  // a square larger than the picture
 }
 
 TEST_CASE("a verdict has the overlap of the pixels and a place near the stroke") {

@@ -66,7 +66,7 @@ TEST_CASE("a limb without a stroke gets one, and the mark is nearer to the shape
 TEST_CASE("a stroke that sticks out of its shape is moved back") {
     const Brush brush = shipped("round-6");
     const Rings shape{box(10, 10, 17, 40)};
-    const Stroke longer = straight({13.5, 36.5}, {13.5, 10.5}, 3.5);  // half a width too far
+    const Stroke longer = straight({13.5, 36.5}, {13.5, 10.5}, 3.5);  // sticks out by nearly half a width
     const auto found = search_strokes({{shape, {longer}, {pass_of(longer, brush)}}}, brush);
     CHECK(found[0].changed[0]);
     const Rings before = mark_of({longer}, brush), after = mark_of(found[0].strokes[0], brush);
@@ -77,7 +77,7 @@ TEST_CASE("a stroke that sticks out of its shape is moved back") {
 }
 
 TEST_CASE("an added stroke has an outline, even of a pen that is hardly wider than a pixel of the search") {
-    // found by the fuzzer
+    // this pen was found by the fuzzer
     const Brush pen = io::read_brush(R"({"format": "brushsvg/brush", "version": 1, "name": "fine", "kind": "pen",
         "depth_range_mm": [0, 2.313725490196078], "max_speed_mm_s": 25, "paint_depth_mm": 0.46274509803921565,
         "lag": {"coefficients": [0]}, "tip_gap": {"coefficients": [0, 0.53]},

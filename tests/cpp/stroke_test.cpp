@@ -43,7 +43,7 @@ TEST_CASE("the parameter at a length is where the length is, and never before it
         CAPTURE(trial);
         Cubics c(1, 8);
         for (int k = 0; k < 8; ++k) c(0, k) = 20.0 * any(random);
-        if (trial % 5 == 0) c.leftCols(2) = c.middleCols(2, 2);  // a handle of no length
+        if (trial % 5 == 0) c.leftCols(2) = c.middleCols(2, 2);  // a handle of zero length
         if (trial % 7 == 0) c << 0, 0, 10, 10, 0, 10, 10, 0;     // a cusp
         const double whole = arc_length(c, 0, 0.0, 1.0), length = any(random) * whole;
         const double t = parameter_at(c, 0, length);

@@ -23,7 +23,7 @@ double uniform(std::mt19937& random, double lo, double hi) {
     return std::uniform_real_distribution<double>(lo, hi)(random);
 }
 
-/// A chain of cubics: bends, some corners, a width that changes.
+/// Return a chain of cubics with bends, some corners, and a changing width.
 Stroke random_stroke(std::mt19937& random) {
     Stroke stroke;
     stroke.id = "s";
@@ -80,7 +80,7 @@ TEST_CASE("a pass simplified twice stays near itself, and arcs, landings and lif
     const Brush brush = shipped("round-6");
     Stroke stroke;
     stroke.id = "s";
-    stroke.middle_mm = polyline({V(20, 20), V(60, 20), V(25, 45)});  // a corner of 145 degrees: an arc in place
+    stroke.middle_mm = polyline({V(20, 20), V(60, 20), V(25, 45)});  // 145 degrees: an arc in place
     stroke.half_width = {{0.0, 2.0}};
     CompensateOptions options;
     options.few_poses = false;
@@ -115,7 +115,7 @@ TEST_CASE("a pen keeps its corners, and comes back where it should, however few 
                                                {V(10, 20), V(10, 10), V(2, 10), V(2, 20), V(9.99, 20)},
                                                {V(10, 10), V(60, 10), V(20, 10)}};
     for (const std::vector<V>& line : lines) CHECK(kept(line, line));
-    // a spike on a line of many poses, which a brush would smooth out
+    // a spike on a line of many poses; the brush would smooth it out
     std::vector<V> spike{V(0, 10)};
     for (int k = 0; k < 120; ++k) {
         spike.push_back(V(0.5 * k + 0.5, 10));
@@ -131,9 +131,9 @@ TEST_CASE("tight bends and cusps keep no more poses than they need") {
         const double x = 20 + 9 * k;
         bends.row(k) << x, 30, x + 3, 38, x + 6, 22, x + 9, 30;
     }
-    CHECK(compensate(stroke_of(bends, {{0.0, 0.5}}), brush, {}).pass.poses_mm.rows() < 250);  // 443 at first
+    CHECK(compensate(stroke_of(bends, {{0.0, 0.5}}), brush, {}).pass.poses_mm.rows() < 250);  // originally 443
     const Cubics cusps = polyline({V(90, 50), V(100, 90), V(110, 50), V(120, 90), V(130, 50)});
-    CHECK(compensate(stroke_of(cusps, {{0.0, 1.0}}), brush, {}).pass.poses_mm.rows() < 160);  // 189
+    CHECK(compensate(stroke_of(cusps, {{0.0, 1.0}}), brush, {}).pass.poses_mm.rows() < 160);  // originally 189
 }
 
 TEST_CASE("nothing to simplify is no fault") {
@@ -154,7 +154,7 @@ TEST_CASE("nothing to simplify is no fault") {
 }
 
 TEST_CASE("edges of which nothing is known show nothing, for any paint there") {
-    // where no move kept their direction, they were what the memory held: plans differed from run to run
+    // Where no move kept the edges' direction, the edges were uninitialised memory, so plans differed from run to run.
     alignas(Edges) volatile unsigned char memory[sizeof(Edges)];
     for (volatile unsigned char& byte : memory) byte = 0x3f;
     const Edges* edges = new (const_cast<unsigned char*>(memory)) Edges;

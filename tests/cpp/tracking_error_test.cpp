@@ -17,7 +17,7 @@ TEST_CASE("a pass next to its stroke misses by what is between them") {
     const Brush brush = shipped("round-6");
     Stroke stroke;
     stroke.id = "s";
-    stroke.middle_mm = polyline({V(10, 20), V(110, 20)});  // beyond where the lift drags the brush
+    stroke.middle_mm = polyline({V(10, 20), V(110, 20)});  // ends beyond the place to which the lift drags the brush
     stroke.half_width = {{0.0, brush.half_width(4.0)}};
     Pass pass;
     pass.poses_mm.resize(4, 3);
@@ -42,7 +42,7 @@ TEST_CASE("the mean is over the length and not over the rows") {
                         fine = tracking_error_of(pass, stroke, brush, 1e-4);
     CHECK(fine.mean_mm == doctest::Approx(coarse.mean_mm).epsilon(0.01));
     CHECK(fine.mean_mm > 0.1);
-    CHECK(std::abs(fine.at_mm[0] - 60.0) < 5.0);  // at the corner
+    CHECK(std::abs(fine.at_mm[0] - 60.0) < 5.0);  // the largest error is at the corner
 }
 
 TEST_CASE("a turned line is missed by the same mean, where a landing leaves the brush taut but for rounding") {

@@ -6,20 +6,23 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// Thrown out of what was running when it is to be given up.
+/// Thrown by long work when it is cancelled.
 class Cancelled : public std::exception {
  public:
     const char* what() const noexcept override { return "cancelled"; }
 };
 
-/// While one lives, long work of this thread, and of those that it starts for it, asks it several times a second
-/// whether to go on:
+/// Cancels long work on this thread while the object lives.
+///
+/// Threads that the work starts are cancelled as well. The work calls `is_over` several times a second and stops when
+/// it returns true:
 ///
 ///     std::atomic<bool> stop{false};  // set by a button
 ///     const CancelWhen cancel([&] { return stop.load(); });
 ///     compensate(stroke, brush);      // throws Cancelled soon after
 ///
-/// `is_over` is called on this thread only. What it throws itself ends the work, too. The innermost one counts.
+/// `is_over` is called on this thread only. An exception that it throws ends the work as well. If there are several
+/// objects, the innermost one counts.
 class CancelWhen {
  public:
     explicit CancelWhen(std::function<bool()> is_over);
@@ -34,14 +37,16 @@ class CancelWhen {
     Asked* before_;
 };
 
-/// What loops call. `work`: how much was done since the last call, in microseconds or so.
+/// Check whether the work is cancelled, and throw if it is. Long loops call this function.
+///
+/// `work`: how much was done since the last call, roughly in microseconds.
 void checkpoint(int work = 1);
 
-/// Hands this thread's CancelWhen on to threads that work for it.
+/// Passes this thread's CancelWhen on to threads that work for it.
 class SameCancel {
  public:
     SameCancel();
-    /// Called on the other thread, which must end before this thread goes on.
+    /// Use the CancelWhen on the other thread. That thread must end before the first thread goes on.
     void take_over() const;
 
  private:

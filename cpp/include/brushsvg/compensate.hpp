@@ -14,46 +14,59 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
+/// How the TCP is offset from the stroke's middle line.
+///
+/// q is the TCP, m the middle line, T its unit tangent, and u the heading. r is the lag at the depth there, r0 a
+/// constant lag. e is the distance from the contact to the widest section.
 enum class Compensation {
-    none,      ///< TCP on the middle line, pressed and lifted on the spot
-    constant,  ///< q = m + r0 T, what other tools do, with a fair landing
-    closed     ///< q = m + (r - e) u, the article's law read backwards
+    none,      ///< the TCP is on the middle line; the brush is pressed and lifted on the spot
+    constant,  ///< q = m + r0 T, the constant offset of other tools, but with a fair landing
+    closed     ///< q = m + (r - e) u, the inverse of the article's model
 };
 
-/// The shape of an end of a stroke, in closed form. A stroke's own settings `start` and `end` use the same words.
+/// The shape of a stroke's start or end, in closed form. A stroke's settings `start` and `end` use the same words.
 enum class Terminal {
-    pointed,    ///< a start as a footprint is behind; an end narrows as far
-    round,      ///< as a footprint is in front, or turned round on the spot where that is rounder. A start is set down
-                ///< inside of the stroke, goes back to its beginning and turns over there
-    butt,       ///< straight or slanted: a narrower mark goes into one corner, along the cut and into the other
-    automatic,  ///< the one of them whose mark is most like the drawn end, a plainer one where hardly more can be seen
+    pointed,  ///< a start has the shape of the footprint's rear; an end narrows to the mirrored shape
+    round,    ///< has the shape of the footprint's front, or is turned round on the spot if that is rounder. A start is
+              ///< set down inside the stroke, goes back to its beginning and turns over there
+    butt,     ///< straight or slanted: a narrower mark goes into one corner, along the cut, and into the other corner
+    automatic,  ///< the terminal whose mark is most like the drawn end, or a plainer one if hardly any difference is
+                ///< visible
 };
+/// The words for terminals in settings, files and the command line.
 inline constexpr std::array<std::pair<std::string_view, Terminal>, 4> kTerminals{{{"pointed", Terminal::pointed},
                                                                                   {"round", Terminal::round},
                                                                                   {"butt", Terminal::butt},
                                                                                   {"auto", Terminal::automatic}}};
-/// Error for another word.
+/// Return the terminal that a word names. Throws Error for an unknown word.
+///
+/// `where`: the element that the error names.
 Terminal terminal_named(const std::string& name, const std::string& where);
 
+/// Options of compensate().
 struct CompensateOptions {
     Compensation method = Compensation::closed;
-    double tolerance_mm = 0.05;    ///< of the widest point from the middle line, between poses too
-    std::optional<double> lag_mm;  ///< constant only; default the lag at the stroke's median depth
-    double speed_mm_s = 20.0;      ///< capped by the brush's own limit
-    bool few_poses = true;         ///< closed only: no more than the tolerance asks for, see thin_out.hpp
-    /// Closed only. Where there is no cut or no room for a butt terminal it is round, and where there is none for a
-    /// round start or a pointed end they are pointed and round.
+    double tolerance_mm = 0.05;    ///< largest distance of the widest point from the middle line, also between poses
+    std::optional<double> lag_mm;  ///< constant only; default: the lag at the stroke's median depth
+    double speed_mm_s = 20.0;      ///< painting speed; the brush's own limit caps it
+    bool few_poses = true;         ///< closed only: use no more poses than the tolerance needs, see thin_out.hpp
+    /// Closed only: the terminals of strokes that do not set their own. Without a cut, or without room, a butt terminal
+    /// is round. Without room, a round start is pointed and a pointed end is round.
     Terminal start = Terminal::pointed, end = Terminal::round;
 };
 
+/// The result of compensate(): the motion, its tracking error, and warnings.
 struct CompensatedPass {
     Pass pass;
     TrackingError tracking_error;
     std::vector<Warning> warnings;
 };
 
-/// Inverse: where the TCP must go so that the widest section runs along the stroke's middle line.
-/// Throws Error for widths the brush cannot paint.
+/// Compute the motion of the TCP that paints a stroke: the inverse of the brush model.
+///
+/// With it, the widest section of the footprint runs along the stroke's middle line. The pass is simulated before it is
+/// returned, and its tracking error is part of the result. Throws Error, naming the stroke, for widths that the brush
+/// cannot paint.
 CompensatedPass compensate(const Stroke& stroke, const Brush& brush, const CompensateOptions& options = {});
 
 }  // namespace brushsvg

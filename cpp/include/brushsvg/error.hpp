@@ -8,9 +8,10 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// A refusal in one full sentence. `code` says of what kind it is (docs/reference/diagnostics.md), `where` names the
-/// element (a stroke id, a key of a file), `value` and `range` carry the offending number and what is allowed, where
-/// there are such.
+/// An error with its message in one full sentence.
+///
+/// `code`: the kind of error (docs/reference/diagnostics.md). `where`: the element, such as a stroke's id or a key of a
+/// file. `value`, `range`: the offending number and the allowed range, if there are any.
 class Error : public std::runtime_error {
  public:
     Error(std::string code, const std::string& sentence, std::string where = "",
@@ -33,7 +34,8 @@ class Error : public std::runtime_error {
     std::optional<std::array<double, 2>> range_;
 };
 
-/// Something the user should know that stops nothing: of what kind it is, which element, and one sentence.
+/// A warning: something that the user should know but that stops nothing. It has the fields of Error, with the message
+/// in `sentence`.
 struct Warning {
     std::string code;
     std::string where;

@@ -4,15 +4,21 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// How much more the outlines of a mark turn than those of the target, in full turns: waves, curls and thorns, which
-/// overlap does not see. Each outline is looked at as a polygon that is within 0.1 mm of it (Douglas and Peucker), so
-/// that neither pixels nor facets of curves count, and rings below 0.01 mm^2, pinholes, are left out. Negative where
-/// the mark is rounder than what was drawn.
+/// Return how much more a mark's outlines turn than the target's [full turns].
+///
+/// This measures waves, curls and thorns, which the overlap does not show. Negative if the mark is rounder than the
+/// target.
+///
+/// Each outline is replaced by a polygon within 0.1 mm of it (Douglas and Peucker), so that pixels and facets of curves
+/// do not count. Rings smaller than 0.01 mm^2, which are pinholes, are left out.
 double excess_turning(const Rings& mark, const Rings& wanted);
 
-/// How many corners of a mark's outlines beyond 20 degrees, each outline as a polygon within 0.05 mm of it, stick out
-/// of the target by more than 0.3 mm: thorns, and the bends of what bulges out. Outer rings run counter-clockwise,
-/// the clockwise ones behind each are its holes.
+/// Count the corners of a mark that stick out of the target: its thorns.
+///
+/// Counted are corners of more than 20 degrees that are more than 0.3 mm outside the target, also the bends of bulges.
+/// Each outline is replaced by a polygon within 0.05 mm of it.
+///
+/// Outer rings are counter-clockwise; the clockwise rings after an outer ring are its holes.
 int thorns(const Rings& mark, const Rings& wanted);
 
 }  // namespace brushsvg

@@ -11,37 +11,43 @@
 
 #include "brushsvg/profile.hpp"
 
-// How the contact patch trails the handle. Everything is a template on the scalar T: double, or a dual number with
-// the value in a member `a` and derivatives in `v` (a solver's jet). Angles in radians, lengths in mm.
+// The model of the brush's lag: how the contact patch trails the TCP.
+//
+// All functions are templates on the scalar type T. T is double, or a dual number with its value in a member `a` and
+// its derivatives in `v`, such as a solver's jet. Lengths are in mm, angles in radians, positions in the plane of the
+// paper.
 namespace [[gnu::visibility("default")]] brushsvg {
 
 template <class T>
 using Vec2 = Eigen::Matrix<T, 2, 1>;
 
+/// Return the value of a scalar without its derivatives.
 inline double value_of(double x) { return x; }
 template <class Jet>
 auto value_of(const Jet& x) -> decltype(x.a) {
     return x.a;
 }
 
-/// A lever's length against depth on [lo, hi], a polynomial, with what the quadrature of its reciprocal and the
-/// search for events need to know of it.
+/// One polynomial piece of a lever law.
+///
+/// It gives the lever's length r [mm] against the depth d [mm] on [lo, hi]. The other members are needed by the
+/// quadrature of 1/r and by the search for events.
 template <class T>
 struct LawPiece {
     double lo = 0.0, hi = 0.0;
     int degree = 0;
-    std::array<T, kMaxLawDegree + 1> coefficients{};
-    std::vector<std::complex<double>> roots;  ///< of the polynomial, all of them
-    double clear2 = 0.0;                      ///< squared distance of the nearest root from [lo, hi]
-    double steepest = 0.0;                    ///< bound of |dr/dd| on [lo, hi]
-    double most_twisted = 0.0;                ///< bound of |d3r/dd3| on [lo, hi]
+    std::array<T, kMaxLawDegree + 1> coefficients{};  ///< in ascending powers of d
+    std::vector<std::complex<double>> roots;          ///< all complex roots of the polynomial
+    double clear2 = 0.0;                              ///< squared distance of the nearest root from [lo, hi] [mm^2]
+    double steepest = 0.0;                            ///< upper bound of |dr/dd| on [lo, hi]
+    double most_twisted = 0.0;                        ///< upper bound of |d3r/dd3| on [lo, hi]
 
     T at(const T& depth) const {
         std::size_t i = std::size_t(degree);
         T r = coefficients[i];
         if constexpr (std::is_arithmetic_v<T>) {
             while (i-- > 0) r = r * depth + coefficients[i];
-        } else {  // the chain rule once, not at every power
+        } else {  // apply the chain rule once, not at every power
             const double x = value_of(depth);
             double by_depth = 0.0;
             while (i-- > 0) {
@@ -65,11 +71,11 @@ struct LawPiece {
     }
 };
 
-/// A lever r(d) >= 0 over a range of depths.
+/// A lever law r(d) >= 0 [mm] over a range of depths d [mm], in polynomial pieces.
 template <class T>
 struct LagLaw {
     std::vector<LawPiece<T>> pieces;
-    bool rigid = false;  ///< r identically 0
+    bool rigid = false;  ///< true for a pen: r is 0 at all depths
 
     const LawPiece<T>& piece(double depth) const {
         for (std::size_t i = 0; i + 1 < pieces.size(); ++i)
@@ -79,24 +85,42 @@ struct LagLaw {
     T at(const T& depth) const { return piece(value_of(depth)).at(depth); }
 };
 
-/// Law from polynomial pieces; `sign` -1 turns a lever that points the other way.
+/// Make a law from polynomial pieces in ascending order of depth.
+///
+/// `sign`: -1 for a lever that points the other way. Throws Error if there are no pieces, if a coefficient is not
+/// finite, or if a degree exceeds kMaxLawDegree.
 LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign = 1.0);
 
-/// Integral of ds / r over a straight move of `length` [mm] with depth linear along it: length * mean(1/r), the
-/// exponent of article (7). The rule, or a split of the move, is chosen by the distance of the nearest complex root of
-/// r from the depths passed (error of n nodes ~ rho^(-2n) on the Bernstein ellipse), so that it is good to 1e-13.
-/// Grows without bound where r -> 0: from 50 on the heading is the direction of motion, and it stops counting.
+/// Return the exponent of article (7): the integral of ds / r over a straight move.
+///
+/// The depth is linear along the move, so the exponent is length * mean(1/r). `depth0`, `depth1`: depths [mm] at its
+/// ends. `length`: its length on the paper [mm]. `splits_left`: how many more times the move may be split in half.
+///
+/// The distance of the nearest complex root of r from the depths of the move selects the rule, or a split. The error of
+/// n nodes is about rho^(-2n) on the Bernstein ellipse, so the result is accurate to 1e-13.
+///
+/// The exponent grows without bound as r approaches 0. From 50 on, the heading equals the direction of motion, and the
+/// summation stops.
 template <class T>
 T lag_exponent(const LawPiece<T>& law, const T& depth0, const T& depth1, const T& length, int splits_left = 48);
 
-/// Heading after the decay E = exp(-integral ds/r) of a drag in direction `along` (article (7), in vector form):
+/// Return the heading after the patch was dragged straight:
 ///     tan(psi1/2) = E tan(psi0/2),  psi = angle from the direction of motion to the heading.
-/// The result has unit length for any rounding of the given heading.
+/// This is article (7) in vector form.
+///
+/// `heading`: unit vector from the contact to the TCP before the move. `along`: unit direction of motion. `decay`:
+/// E = exp(-integral ds/r), see lag_exponent(). The result has unit length, even if rounding has changed the length of
+/// the given heading.
 template <class T>
 Vec2<T> drag_heading(const Vec2<T>& heading, const Vec2<T>& along, const T& decay);
 
-/// beta, article (11) and (12): direction of the tip's displacement against the direction of motion, for constant lag,
-/// from 0 < alpha0 <= pi/2 to alpha1 over s [mm]: in (0, pi). Beyond pi/2 the patch rests at first: neither holds.
+/// Return beta of article (11) and (12) [rad].
+///
+/// beta is the angle from the direction of motion to the tip's displacement. `alpha0`, `alpha1`: angles [rad] from the
+/// direction of motion to the heading, before and after the move. `s`: length of the move [mm].
+///
+/// The lag is constant and 0 < alpha0 <= pi/2. The result is in (0, pi). Beyond pi/2 the patch rests at first, so
+/// neither equation holds.
 template <class T>
 T tip_direction(const T& alpha0, const T& alpha1, const T& s, const T& lag_mm, const T& tip_gap_mm) {
     using std::atan2;
@@ -106,20 +130,23 @@ T tip_direction(const T& alpha0, const T& alpha1, const T& s, const T& lag_mm, c
     return atan2(reach * (sin(alpha0) - sin(alpha1)), s - reach * (cos(alpha1) - cos(alpha0)));
 }
 
-/// The brush on the paper. The state is (contact, tcp, last heading), never psi alone.
+/// The state of a brush that touches the paper.
+///
+/// With the TCP, which the move provides, the state is (contact, TCP, last heading). The angle psi alone would not be
+/// enough.
 template <class T>
 struct LagState {
-    Vec2<T> contact = Vec2<T>::Zero();          ///< p [mm]
+    Vec2<T> contact = Vec2<T>::Zero();          ///< p, the contact [mm]
     Vec2<T> heading = Vec2<T>(T(1.0), T(0.0));  ///< u, unit vector from p to q
     bool taut = false;
     bool heading_known = false;  ///< false from touch-down to the first motion
 };
 
-/// A straight move of the TCP: position and depth linear in t from 0 to 1. All depths >= 0.
+/// A straight move of the TCP. Position and depth are linear in t from 0 to 1. All depths are >= 0.
 template <class T>
 struct Move {
-    Vec2<T> from, by, along;  ///< start, displacement, unit direction (x axis for a move in place)
-    T length, depth_from, depth_by;
+    Vec2<T> from, by, along;         ///< start [mm], displacement [mm], unit direction (the x axis for a move in place)
+    T length, depth_from, depth_by;  ///< length on the paper, depth at the start and its change along the move [mm]
 
     Move(const Vec2<T>& q0, const Vec2<T>& q1, const T& d0, const T& d1)
         : from(q0), by(q1 - q0), depth_from(d0), depth_by(d1 - d0) {
@@ -133,17 +160,23 @@ struct Move {
     T depth(const T& t) const { return depth_from + depth_by * t; }
 };
 
-/// State at t of an event-free phase that began in state `start` at t = begin.
+/// Return the state at `t` of a phase without events.
+///
+/// `start`: the state at t = `begin`, where the phase begins.
 template <class T>
 LagState<T> within_phase(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, const T& begin,
                          const T& t);
 
-/// Carries the state over one move, phase by phase. `phase(law, move, start, begin, end)` is called for every
-/// event-free stretch with the state at its beginning; `start.taut` shows which rule holds in it.
+/// Advance the state over one move, phase by phase.
 ///
-/// Taut: the lever drags the patch, which never slips sideways (article (4), (7)), until moving on would push it
-/// backwards: g = cos(psi) - dr/ds < 0. Loose: the patch rests and the heading points from it to the TCP (article 2.2),
-/// until f = |q - p| - r comes up through 0.
+/// A phase is a stretch without events, in which one rule holds:
+/// * Taut: the lever drags the patch, which never slips sideways (article (4), (7)). The phase ends where the next step
+///   would push the patch backwards: g = cos(psi) - dr/ds < 0.
+/// * Loose: the patch rests and the heading points from the patch to the TCP (article 2.2). The phase ends where
+///   f = |q - p| - r rises through 0.
+///
+/// `state`: the state at the start of the move; receives the state at its end. `phase(law, move, start, begin, end)` is
+/// called for every phase, with the state at its beginning; `start.taut` shows which rule holds.
 template <class T, class PhaseSink>
 void advance(const LagLaw<T>& law, const Move<T>& move, LagState<T>& state, PhaseSink&& phase);
 
@@ -152,7 +185,9 @@ void advance(const LagLaw<T>& law, const Move<T>& move, LagState<T>& state) {
     advance(law, move, state, [](const auto&, const auto&, const auto&, const T&, const T&) {});
 }
 
-/// The brush meets the paper at q: p = q, nothing drawn out yet.
+/// Return the state of a brush that touches the paper at the TCP q.
+///
+/// p = q, because the lever is not drawn out yet.
 template <class T>
 LagState<T> touch_down(const Vec2<T>& tcp) {
     LagState<T> state;

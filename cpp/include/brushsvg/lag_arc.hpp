@@ -2,8 +2,10 @@
 
 #include "brushsvg/lag.hpp"
 
-// How the contact patch trails the handle on a circular arc at constant depth: the two rules of lag.hpp, each in closed
-// form. With k = 1/R, signed, r the lag and psi the angle from the direction of motion to the heading.
+// The lag on a circular arc at constant depth: both rules of lag.hpp, each in closed form.
+//
+// In the equations, k = 1/R is the signed curvature [1/mm] and r the lag [mm]. psi is the angle from the direction of
+// motion to the heading.
 namespace [[gnu::visibility("default")]] brushsvg {
 
 template <class T>
@@ -14,14 +16,14 @@ Vec2<T> turned_by(const Vec2<T>& v, const T& angle) {
     return Vec2<T>(c * v.x() - s * v.y(), s * v.x() + c * v.y());
 }
 
-/// A move of the TCP along a circular arc, position in t from 0 to 1; depth constant, >= 0. `turn` is the signed angle
-/// by which its direction turns [rad], counter-clockwise > 0, not 0.
+/// A move of the TCP along a circular arc at constant depth. The position runs with t from 0 to 1.
 template <class T>
 struct ArcMove {
-    Vec2<T> from, along;  ///< start and direction there
+    Vec2<T> from, along;  ///< start [mm] and unit direction of motion there
+    /// R [mm], signed angle [rad] (counter-clockwise > 0, not 0), length [mm], depth [mm] (>= 0).
     T radius, turn, length, depth_from;
-    T depth_by = T(0.0);  ///< as in Move
-    double side;          ///< 1 when the centre is to the left, else -1
+    T depth_by = T(0.0);  ///< always 0: the depth does not change
+    double side;          ///< 1 if the centre is to the left, else -1
 
     ArcMove(const Vec2<T>& start, const Vec2<T>& direction, const T& radius_mm, const T& turn_rad, const T& depth)
         : from(start), along(direction), radius(radius_mm), turn(turn_rad), depth_from(depth) {
@@ -29,7 +31,7 @@ struct ArcMove {
         length = radius * (side * turn);
     }
     Vec2<T> direction(const T& t) const { return turned_by(along, T(turn * t)); }
-    Vec2<T> tcp(const T& t) const {  // by the chord, so that a large radius costs no digits
+    Vec2<T> tcp(const T& t) const {  // computed from the chord, so that a large radius loses no digits
         using std::sin;
         const T half = 0.5 * turn * t;
         return from + turned_by(along, half) * (2.0 * radius * sin(half) * side);
@@ -37,8 +39,10 @@ struct ArcMove {
     T depth(const T&) const { return depth_from; }
 };
 
-/// The arc that begins and ends at these two points and turns by less than half a turn: its radius follows from them,
-/// so that positions rounded in a file join without a jump.
+/// Return the arc from one point to another [mm] that turns by less than half a turn.
+///
+/// `turn`: signed angle [rad], counter-clockwise > 0. `depth`: [mm]. The radius follows from the points. So arcs join
+/// without a jump even if a file has rounded the positions.
 template <class T>
 ArcMove<T> arc_between(const Vec2<T>& from, const Vec2<T>& to, const T& turn, const T& depth) {
     using std::sin;
@@ -51,10 +55,14 @@ ArcMove<T> arc_between(const Vec2<T>& from, const Vec2<T>& to, const T& turn, co
 
 namespace detail {
 
-/// d(psi)/ds = -sin(psi)/r - k on the half-angle vector (x, y) = (cos, sin)(psi/2), up to a factor: it goes by
+/// Advance the half-angle vector (x, y) = (cos, sin)(psi/2), up to a factor.
+///
+/// With d(psi)/ds = -sin(psi)/r - k, the vector is multiplied by
 ///     exp(s A) = C I + S 2r A,   A = [[1/(2r), k/2], [-k/2, -1/(2r)]],   w^2 = 1 - (k r)^2,
-/// with C = cosh(w s/(2r)), S = sinh(w s/(2r)) / w; cos and sin where |k| r > 1; 1 and s/(2r) where |k| r = 1.
-/// Divided by the cosh, which overflows on long arcs; kr = k r and s_r = s / r carry no unit.
+/// with C = cosh(w s/(2r)) and S = sinh(w s/(2r)) / w. These become cos and sin where |k| r > 1, and 1 and s/(2r) where
+/// |k| r = 1. Both are divided by the cosh, which overflows on long arcs.
+///
+/// `kr` = k r and `s_r` = s / r have no unit.
 template <class T>
 void carry_half_angle(const T& kr, const T& s_r, T& x, T& y) {
     using std::cos;
@@ -76,19 +84,19 @@ void carry_half_angle(const T& kr, const T& s_r, T& x, T& y) {
     y = c * y0 - s * (kr * x0 + y0);
 }
 
-/// Component of a vector to the left of a direction.
+/// Return the component of a vector to the left of a direction.
 template <class T>
 T across(const Vec2<T>& along, const Vec2<T>& v) {
     return along.x() * v.y() - along.y() * v.x();
 }
 
-/// Carries a taut state from t = begin to t.
+/// Advance a taut state from t = `begin` to `t`.
 template <class T>
 void drag(const LawPiece<T>& law, const ArcMove<T>& arc, const T& begin, const T& t, LagState<T>& state) {
     const T r = law.at(arc.depth_from);
     const Vec2<T> before = arc.direction(begin), now = arc.direction(t);
     const T a = state.heading.dot(before), b = across(before, state.heading);
-    const bool ahead = a >= T(0.0);  // the form of the half-angle vector without cancellation on either side
+    const bool ahead = a >= T(0.0);  // selects the form of the half-angle vector that avoids cancellation
     T x = ahead ? T(T(1.0) + a) : b, y = ahead ? b : T(T(1.0) - a);
     if (r > T(0.0))
         carry_half_angle(T(arc.side * r / arc.radius), T(arc.length * (t - begin) / r), x, y);
@@ -103,13 +111,15 @@ void drag(const LawPiece<T>& law, const ArcMove<T>& arc, const T& begin, const T
     state.contact = arc.tcp(t) - r * state.heading;
 }
 
-/// cos(psi) below this is a brush being pushed, above it rounding of psi = 90 degrees: a turn in place about the
-/// contact runs along that edge.
+/// Limit of cos(psi) below which the brush is being pushed. Values between the limit and 0 are rounding errors of
+/// psi = 90 degrees, the angle of a turn in place about the contact.
 constexpr double kPushedCosine = -1e-13;
 
-/// t where a taut brush goes loose, above 1 when it does not. That is where psi passes 90 degrees on the outer side of
-/// the arc, so only where |k| r > 1. From the zero of x + y (of x - y where k < 0) of the half-angle vector:
-///     tan(w s/(2r)) = w cos(psi) / ((1 - sin(psi)) (k r - 1)),   w^2 = (k r)^2 - 1,   signs of k > 0.
+/// Return the t at which a taut brush goes loose; above 1 if it stays taut.
+///
+/// The brush goes loose where psi passes 90 degrees on the outer side of the arc, so only if |k| r > 1. There x + y of
+/// the half-angle vector is 0 (x - y if k < 0):
+///     tan(w s/(2r)) = w cos(psi) / ((1 - sin(psi)) (k r - 1)),   w^2 = (k r)^2 - 1,   signs for k > 0.
 template <class T>
 T loosening(const T& r, const ArcMove<T>& arc, const LagState<T>& state, const T& begin) {
     using std::atan2;
@@ -124,10 +134,14 @@ T loosening(const T& r, const ArcMove<T>& arc, const LagState<T>& state, const T
     return angle > T(0.0) ? T(begin + 2.0 * angle / w * r / arc.length) : begin;
 }
 
-/// t where a loose brush pulls tight, above 1 when it does not: the resting contact is at D from the arc's centre, q
-/// at R, and beta is the angle from the one to the other, so
+/// Return the t at which a loose brush pulls tight; above 1 if it stays loose.
+///
+/// The resting contact is at distance D from the arc's centre, and q is at distance R. beta is the angle at the centre
+/// from the contact to q. So
 ///     |q - p|^2 = R^2 + D^2 - 2 R D cos(beta) = r^2
-/// is reached at sin^2(beta/2) = sin^2(beta0/2) + (r^2 - |q0 - p|^2) / (4 R D). `pushed`: loose only now, from taut.
+/// holds at sin^2(beta/2) = sin^2(beta0/2) + (r^2 - |q0 - p|^2) / (4 R D).
+///
+/// `pushed`: whether the brush was taut until now.
 template <class T>
 T tightening(const T& r, const ArcMove<T>& arc, const LagState<T>& state, const T& begin, bool pushed) {
     using std::atan2;
@@ -144,13 +158,15 @@ T tightening(const T& r, const ArcMove<T>& arc, const LagState<T>& state, const 
     sine2 = sine2 * sine2 + slack / (4.0 * arc.radius * sqrt(T(ahead * ahead + outward * outward)));
     if (!(sine2 <= T(1.0))) return T(2.0);
     const T later = (2.0 * atan2(T(sqrt(sine2)), T(sqrt(T(1.0 - sine2)))) - beta0) / whole;
-    return later > T(0.0) ? T(begin + later) : begin;  // with next to no slack rounding can leave it negative
+    return later > T(0.0) ? T(begin + later) : begin;  // with almost no slack, a rounding error can make it negative
 }
 
 }  // namespace detail
 
-/// psi after an arc of the TCP of signed curvature k [1/mm] and length s [mm] at constant lag r [mm], in (-pi, pi].
-/// Taut only: valid while |psi| <= 90 degrees.
+/// Return psi [rad] in (-pi, pi] after the TCP has moved along an arc at constant lag.
+///
+/// `psi0`: psi at the start of the arc [rad]. `curvature_per_mm`: signed curvature k [1/mm]. `lag_mm`: r [mm].
+/// `length_mm`: length of the arc s [mm]. Valid only while the brush is taut, |psi| <= 90 degrees.
 template <class T>
 T drag_arc(const T& psi0, const T& curvature_per_mm, const T& lag_mm, const T& length_mm) {
     using std::atan2;
@@ -165,7 +181,9 @@ T drag_arc(const T& psi0, const T& curvature_per_mm, const T& lag_mm, const T& l
     return psi;
 }
 
-/// State at t of an event-free phase that began in state `start` at t = begin.
+/// Return the state at `t` of a phase without events.
+///
+/// `start`: the state at t = `begin`, where the phase begins.
 template <class T>
 LagState<T> within_phase(const LawPiece<T>& law, const ArcMove<T>& arc, const LagState<T>& start, const T& begin,
                          const T& t) {
@@ -177,10 +195,10 @@ LagState<T> within_phase(const LawPiece<T>& law, const ArcMove<T>& arc, const La
     return state;
 }
 
-/// Carries the state over one arc, phase by phase, as advance() does over a straight move.
+/// Advance the state over one arc, phase by phase, like advance() over a straight move.
 ///
-/// Once the brush has loosened because psi passed 90 degrees, the contact rests r - R from the centre and q comes no
-/// further than r from it: it stays loose to the arc's end, and the whole circle round.
+/// A brush that has loosened because psi passed 90 degrees stays loose to the arc's end, even on a whole circle. Its
+/// contact rests at distance r - R from the centre, so q is never further than r from the contact.
 template <class T, class PhaseSink>
 void advance(const LagLaw<T>& law, const ArcMove<T>& arc, LagState<T>& state, PhaseSink&& phase) {
     const LawPiece<T>& piece = law.piece(value_of(arc.depth_from));
@@ -208,7 +226,7 @@ void advance(const LagLaw<T>& law, const ArcMove<T>& arc, LagState<T>& state, Ph
             begin = t;
             state.taut = true;
             state.contact = arc.tcp(begin) - r * state.heading;
-            continue;  // beyond the edge already, by rounding: look once more
+            continue;  // already past the limit because of a rounding error: check again
         }
         break;
     }

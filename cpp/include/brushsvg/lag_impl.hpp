@@ -1,11 +1,12 @@
 #pragma once
 
-// Definitions of the templates declared in lag.hpp; include that one.
+// Definitions of the templates that lag.hpp declares. Include lag.hpp instead of this file.
 #include "brushsvg/lag.hpp"
 
 namespace [[gnu::visibility("default")]] brushsvg {
 namespace detail {
 
+/// Nodes on [-1, 1] and weights of Gauss-Legendre quadrature with N nodes. The weights add up to 1, so a sum is a mean.
 template <int N>
 struct Gauss;
 template <>
@@ -30,7 +31,7 @@ struct Gauss<12> {
                                      0.1015837133615330, 0.0800391642716731, 0.0534696629976592, 0.0235876681932559};
 };
 
-/// Mean of 1/r over [middle - half, middle + half]; nodes in mirrored pairs share a division.
+/// Return the mean of 1/r over the depths [middle - half, middle + half] [mm]. Two mirrored nodes share one division.
 template <int N>
 double mean_reciprocal(const LawPiece<double>& law, double middle, double half) {
     double sum = 0.0;
@@ -42,7 +43,8 @@ double mean_reciprocal(const LawPiece<double>& law, double middle, double half) 
     return sum;
 }
 
-/// The same with derivatives: by the coefficients and the depths in plain numbers, the chain rule once at the end.
+/// Return the mean of 1/r with its derivatives. The derivatives by the coefficients and depths are summed as plain
+/// numbers; the chain rule is applied once at the end.
 template <int N, class T>
 T mean_reciprocal(const LawPiece<T>& law, const T& middle, const T& half) {
     double sum = 0.0, by_middle = 0.0, by_half = 0.0;
@@ -66,7 +68,7 @@ T mean_reciprocal(const LawPiece<T>& law, const T& middle, const T& half) {
     return mean;
 }
 
-/// Without derivatives: what decides about events.
+/// Remove the derivatives. Only the values decide where events are.
 template <class T>
 Vec2<double> values_of(const Vec2<T>& v) {
     return {value_of(v.x()), value_of(v.y())};
@@ -88,11 +90,14 @@ LagState<double> values_of(const LagState<T>& state) {
     return {values_of(state.contact), values_of(state.heading), state.taut, state.heading_known};
 }
 
-/// So often a move is looked at for an event: thousands of times more than any needs whose numbers are finite.
+/// Most intervals of a move that are searched for an event. A move whose numbers are finite needs thousands of times
+/// fewer.
 constexpr int kMostLooks = 100000;
 
-/// Smallest t in [begin, end] from where a function bounded below by `lower(a, b)` on [a, b] is negative; 1 + end when
-/// there is none. `value(t)` is exact.
+/// Return the smallest t in [begin, end] from which a function is negative.
+///
+/// Returns end + 1 if there is none. `lower(a, b)`: a lower bound of the function on [a, b]. `value(t)`: its exact
+/// value.
 template <class Lower, class Value>
 double first_negative(double begin, double end, Lower&& lower, Value&& value) {
     struct Span {
@@ -115,11 +120,13 @@ double first_negative(double begin, double end, Lower&& lower, Value&& value) {
     return end + 1.0;
 }
 
-/// Smallest x in [0, 1] from where the polynomial (ascending coefficients) is positive; 2 when there is none.
-/// Bernstein coefficients bound it on each half, so no pair of roots is overlooked.
+/// Return the smallest x in [0, 1] from which a polynomial is positive.
+///
+/// Returns 2 if there is none. `polynomial`: coefficients in ascending order. Bernstein coefficients bound the
+/// polynomial on each half of an interval, so no pair of roots is overlooked.
 double first_positive(std::vector<double> polynomial);
 
-/// Carries a taut state from t = begin to t.
+/// Advance a taut state from t = `begin` to `t`.
 template <class T>
 void drag(const LawPiece<T>& law, const Move<T>& move, const T& begin, const T& t, LagState<T>& state) {
     using std::exp;
@@ -131,7 +138,8 @@ void drag(const LawPiece<T>& law, const Move<T>& move, const T& begin, const T& 
     state.contact = move.tcp(t) - law.at(depth) * state.heading;  // article (5), (6)
 }
 
-/// Loose bristles point from the contact to the TCP; over it they keep their heading.
+/// Turn the heading of loose bristles from the contact to the TCP. Where the TCP is over the contact, the heading is
+/// kept.
 template <class T>
 void point_at(const Vec2<T>& tcp, LagState<T>& state) {
     using std::sqrt;
@@ -143,7 +151,8 @@ void point_at(const Vec2<T>& tcp, LagState<T>& state) {
     }
 }
 
-/// psi shrinks while taut, so g >= cos(psi0) - max|dr/ds|: most moves need no search for events.
+/// Return whether a taut brush certainly stays taut. psi shrinks while taut, so g >= cos(psi0) - max|dr/ds|. Most moves
+/// pass this test and need no search for events.
 template <class T>
 bool stays_taut(const LawPiece<T>& law, const Move<T>& move, double cosine0) {
     return value_of(move.length) * cosine0 >= std::abs(value_of(move.depth_by)) * law.steepest;
@@ -154,12 +163,12 @@ inline double cosine_after(const LawPiece<double>& law, const Move<double>& move
     return within_phase(law, move, start, begin, t).heading.dot(move.along);
 }
 
-/// t in [begin, 1] where a taut brush goes loose, 2 when it does not.
+/// Return the t in [begin, end] at which a taut brush goes loose; 2 if none.
 inline double first_loosening(const LawPiece<double>& law, const Move<double>& move, const LagState<double>& start,
                               double begin, double end) {
     const double length = move.length, depth_by = move.depth_by;
-    // A dip of g that is shallower moves the patch by its square; to look for less would take no end where g only
-    // touches 0.
+    // A shallower dip of g moves the patch only by the square of that depth. A search for such dips would never end
+    // where g only touches 0.
     const double noise = 1e-10 * (length + std::abs(depth_by) * law.steepest);
     const auto lengthening = [&](double t) { return depth_by * law.slope(move.depth(t)); };
     const auto g = [&](double t) { return length * cosine_after(law, move, start, begin, t) - lengthening(t); };
@@ -168,7 +177,7 @@ inline double first_loosening(const LawPiece<double>& law, const Move<double>& m
     const double t = first_negative(
         begin, end,
         [&](double a, double b) {
-            // no further above its chord than a parabola
+            // on [a, b] the function is at most as far above its chord as a parabola
             const double most = std::max(lengthening(a), lengthening(b)) + bend * (b - a) * (b - a);
             return length * cosine_after(law, move, start, begin, a) - most + noise;
         },
@@ -176,7 +185,7 @@ inline double first_loosening(const LawPiece<double>& law, const Move<double>& m
     return t <= end ? t : 2.0;
 }
 
-/// Coefficients in x of r(d0 + x dd)^2.
+/// Return the coefficients of r(d0 + x dd)^2 in ascending powers of x.
 template <class T>
 std::vector<T> squared_lever(const LawPiece<T>& law, const T& d0, const T& dd) {
     const int n = law.degree;
@@ -197,13 +206,15 @@ template <class T>
 Vec2<T> drag_heading(const Vec2<T>& heading, const Vec2<T>& along, const T& decay) {
     const Vec2<double> u = detail::values_of(heading), v = detail::values_of(along);
     const double e = value_of(decay), a = u.dot(v), b = v.x() * u.y() - v.y() * u.x();
-    // cos(psi/2), sin(psi/2) up to a common factor; the form without cancellation on either side
+    // (x, y) is (cos, sin)(psi/2) up to a common factor; each of the two forms avoids cancellation for its sign of a
     const double x = a >= 0.0 ? 1.0 + a : b, y = e * (a >= 0.0 ? b : 1.0 - a), norm = x * x + y * y;
-    if (!(norm > std::numeric_limits<double>::min())) return along;  // psi = pi and E = 0: no lag left
+    // psi = pi and E = 0: the heading becomes the direction of motion
+    if (!(norm > std::numeric_limits<double>::min())) return along;
     const double c = (x * x - y * y) / norm, s = 2.0 * x * y / norm;
     Vec2<T> out(T(c * v.x() - s * v.y()), T(c * v.y() + s * v.x()));
     if constexpr (!std::is_arithmetic_v<T>) {
-        // of angles, not of components: d psi1 = (E d psi0 + sin(psi0) dE) / (cos^2(psi0/2) + E^2 sin^2(psi0/2))
+        // derivatives of angles, not of components:
+        // d psi1 = (E d psi0 + sin(psi0) dE) / (cos^2(psi0/2) + E^2 sin^2(psi0/2))
         const double share = 2.0 * (1.0 + std::abs(a)) / norm;
         using Slopes = decltype(T::v);
         const Slopes motion = v.x() * along.y().v - v.y() * along.x().v;
@@ -230,12 +241,12 @@ T lag_exponent(const LawPiece<T>& law, const T& depth0, const T& depth1, const T
     if (nearest > 10.0 * 10.0 * h2) return length * detail::mean_reciprocal<5>(law, middle, half);
     if (!(nearest <= 1.9 * 1.9 * h2) || splits_left == 0 || !(h2 < 1e300))
         return length * detail::mean_reciprocal<12>(law, middle, half);
-    // a piece as short as rounding, at a root: halves of it would be the same piece again
+    // a piece as short as a rounding error, at a root: its halves would be the same piece again
     if (std::abs(h) < 1e-13 * (1.0 + std::abs(m))) {
         const T r = law.at(middle);
         return value_of(r) * 50.0 > value_of(length) ? length / r : T(50.0);
     }
-    // the end with the shorter lever first: where it is nearly 0 the sum is soon large enough
+    // begin at the end with the shorter lever: where the lever is nearly 0, the sum is soon large enough
     const T half_length = 0.5 * length;
     const bool first = value_of(law.at(depth0)) < value_of(law.at(depth1));
     const T shorter = lag_exponent(law, first ? depth0 : middle, first ? middle : depth1, half_length, splits_left - 1);
@@ -257,9 +268,13 @@ LagState<T> within_phase(const LawPiece<T>& law, const Move<T>& move, const LagS
 
 namespace detail {
 
+/// How a loose phase began: before this stretch, by a jump of g, or where g crossed 0.
 enum class Loosened { before, by_jump, by_crossing };
 
-/// x in [0, 1] over [begin, end] where the loose brush pulls tight again, 2 when it does not; `polynomial` receives f.
+/// Return where a loose brush pulls tight again; 2 if it stays loose.
+///
+/// The result is x in [0, 1] over [begin, end]. `polynomial`: receives the coefficients of f = |q - p|^2 - r^2 in
+/// ascending powers of x.
 template <class T>
 double first_tightening(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, const T& begin,
                         const T& end, Loosened loosened, std::vector<T>& polynomial) {
@@ -273,7 +288,7 @@ double first_tightening(const LawPiece<T>& law, const Move<T>& move, const LagSt
     polynomial[2] += by.squaredNorm();
     std::vector<double> f(polynomial.size());
     std::transform(polynomial.begin(), polynomial.end(), f.begin(), [](const T& c) { return value_of(c); });
-    // just loosened: f = 0 there (and f' = 0 when g came down through 0), so look at f/x or f/x^2
+    // a brush that has just loosened has f = 0 at x = 0, and also f' = 0 if g crossed 0: search f/x or f/x^2 instead
     if (loosened != Loosened::before) f.erase(f.begin());
     if (loosened == Loosened::by_crossing) f.erase(f.begin());
     return first_positive(std::move(f));
@@ -286,20 +301,21 @@ T polished(const std::vector<T>& f, double x) {
         slope = slope * x + value;
         value = value * x + f[i];
     }
-    // one Newton step: carries the derivatives of a dual number through the event
+    // one Newton step carries the derivatives of a dual number through the event
     const double s = value_of(slope);
     if (!(s > 0.0)) return T(x);
     const T root = T(x) - value / slope;
     return value_of(root) < 0.0 ? T(0.0) : value_of(root) > 1.0 ? T(1.0) : root;
 }
 
+/// A lever shorter than this [mm] counts as no lever.
 constexpr double kNoLeverMm = 1e-9;
 
 template <class T, class PhaseSink>
 void advance_on_piece(const LawPiece<T>& law, const Move<T>& move, LagState<T>& state, T begin, const T& end,
                       PhaseSink&& phase) {
     Loosened loosened = Loosened::before;
-    // a move has at most as many events as its polynomials have roots; the bound only guards against rounding
+    // a move has at most as many events as its polynomials have roots; the limit only guards against rounding errors
     for (int events = 0; events < 64 && value_of(begin) < value_of(end); ++events) {
         if (state.taut) {
             double t = 2.0;
@@ -330,7 +346,8 @@ void advance_on_piece(const LawPiece<T>& law, const Move<T>& move, LagState<T>& 
         if (x > 1.0) return;
         state.taut = true;
         const T lever = law.at(move.depth(until));
-        // from under the TCP a brush without a lag is dragged at once: its way so far, and its heading, are rounding
+        // A brush without a lever is dragged as soon as it moves. The heading from its contact to the TCP would be a
+        // rounding error.
         if (value_of(lever) < kNoLeverMm && move.length > T(0.0)) {
             state.heading = move.along;
             state.heading_known = true;
@@ -372,7 +389,7 @@ void advance(const LagLaw<T>& law, const Move<T>& move, LagState<T>& state, Phas
     }
     double begin = 0.0;
     while (begin < 1.0) {
-        // depths at a joint belong to the piece the move is heading for
+        // the depth at a joint of two pieces belongs to the piece that the move enters
         const double depth = d0 + dd * begin;
         std::size_t i = 0;
         while (i + 1 < law.pieces.size() &&

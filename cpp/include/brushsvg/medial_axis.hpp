@@ -7,36 +7,42 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// Places on the medial axis, one per row: x, y and distance to the outline [mm].
+/// Places on the medial axis, one per row: x, y, distance to the outline [mm].
 using AxisLine = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// Where branches meet or end.
+/// A place where branches meet or end: x, y and the distance to the outline [mm].
 struct AxisNode {
     double x, y, radius_mm;
     double corner = 0.0;  ///< largest area that a branch dropped here would have added, in squares of the radius
 };
 
-/// A stretch of the axis between two nodes.
+/// A stretch of the axis between two nodes, given by their indices.
 struct AxisBranch {
     int from, to;
     AxisLine line;
-    Rings part;  ///< the part of the shape nearest to it, what was dropped along it included
+    Rings part;  ///< the part of the shape nearest to the branch, with all that was dropped along it
 };
 
+/// The medial axis of a shape: a graph of nodes and branches.
 struct MedialAxis {
     std::vector<AxisNode> nodes;
-    std::vector<AxisBranch> branches;  ///< a node without a branch is a part of the shape that is but a dab
+    std::vector<AxisBranch> branches;  ///< a node without a branch is a part of the shape that is only a dab
 };
 
-/// Centres of the discs that touch the outline at two places or more, exact for the rings' straight edges: the Voronoi
-/// diagram of the edges, inside. A branch with a free end is dropped, and what remains looked at again, when it adds
-/// less than `least_share` squares of the radius where it leaves: area that the disc there does not cover.
-/// rings: as `fill` returns them.
+/// Return the medial axis: centres of discs that touch the outline twice or more.
+///
+/// It is the Voronoi diagram of the outline's edges, inside the shape, and exact for straight edges. `rings`: a shape
+/// as fill() in region.hpp returns it.
+///
+/// A branch with a free end is dropped if it adds too little area to the disc where it leaves. `least_share`: the least
+/// area that it must add, in squares of that disc's radius. The rest is then checked again.
 MedialAxis medial_axis(const Rings& rings, double least_share);
 
-/// The same, with limbs kept that are thin relative to what they leave: a branch stays when the part beyond some place
-/// on it adds `least_share` squares of the radius there to the disc there, and at least `least_limb` squares of the
-/// radius where the branch leaves.
+/// Return the medial axis, and keep limbs that are thin relative to the shape.
+///
+/// A branch is also kept if it meets two conditions. The part beyond some place on it adds at least `least_share` to
+/// the disc at that place. And the part adds at least `least_limb` to the disc where the branch leaves. Both areas are
+/// in squares of the disc's radius.
 MedialAxis medial_axis(const Rings& rings, double least_share, double least_limb);
 
 }  // namespace brushsvg

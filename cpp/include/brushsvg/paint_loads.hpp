@@ -7,18 +7,24 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
+/// Options of interrupted(). Lengths are along the path of the TCP on the paper.
 struct PaintLoadOptions {
-    double first_mm = 0.0;      ///< path of the TCP on the paper that the paint on the brush still lasts
-    double every_mm = 0.0;      ///< and that it lasts after each visit to the paint
-    double backtrack_mm = 5.0;  ///< a part begins so far back along the path of the one before
+    double first_mm = 0.0;      ///< length that the paint on the brush lasts at the start
+    double every_mm = 0.0;      ///< length that the paint lasts after each refill
+    double backtrack_mm = 5.0;  ///< each part begins this far back along the path of the part before
 };
 
-/// The pass in parts between which the brush is lifted to fetch paint; one part where the paint lasts. Each part ends
-/// by holding the patch where it is and begins where an earlier patch was, with its heading: from there on the mark is
-/// that of the whole pass, so no gap shows. A cut is made where the brush is taut and pressed, on no arc; where that is
-/// nowhere in time, the part is longer than the paint lasts. Named as the stroke, then stroke+2, stroke+3, ...,
-/// and numbered as loads; one part is the pass as it was.
-/// Throws Error as simulate() does, and for lengths that are not positive or do not reach beyond the backtrack.
+/// Split a pass into parts, between which the brush is lifted to fetch paint.
+///
+/// Each part ends by holding the patch where it is. The next part begins where an earlier patch was, with its heading.
+/// From there on its mark equals the mark of the whole pass, so no gap shows.
+///
+/// Cuts are made only where the brush is taut and pressed, and not where it turns in place. If there is no such place
+/// in time, the part is longer than the paint lasts.
+///
+/// The parts are called stroke, stroke+2, stroke+3, ... and numbered as loads. If the paint lasts, the only part is the
+/// original pass. Throws Error as simulate() does, for a tilted pass, for negative lengths, and if a load does not
+/// last for more than twice the backtrack.
 std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const PaintLoadOptions& options);
 
 }  // namespace brushsvg

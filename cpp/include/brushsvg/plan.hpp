@@ -11,80 +11,93 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// TCP poses, one per row: x, y, z [mm] in the paper frame; z = -depth while painting.
+/// TCP poses in the paper frame, one per row: x, y, z [mm]. On the paper z = -depth.
 using Poses = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// No table is larger: a coordinate beyond it is damage, and squares of it still add up.
+/// Largest absolute coordinate [mm]. No table is larger, so a coordinate beyond this limit is an error. Its square can
+/// still be summed.
 inline constexpr double kLargestMm = 1e6;
 
-/// Poses `first` to `last` are on a circle about a centre, at constant depth, and are passed in this direction.
+/// A stretch of a pass on a circle: the poses `first` to `last`, at constant depth.
 struct Arc {
-    std::int64_t first = 0, last = 0;  ///< indexes of poses
+    std::int64_t first = 0, last = 0;  ///< indices of the first and the last pose
     Eigen::Vector2d centre_mm{0.0, 0.0};
     int direction = 1;  ///< 1 counter-clockwise, -1 clockwise
 };
 
-/// A radius outside this range is refused: below, the arc vanishes in the brush's smallest mark and the rounding of
-/// its poses; above, centre and poses together hold too few digits.
+/// Smallest and largest radius of an arc [mm]. A smaller arc vanishes in the brush's finest mark and in the rounding of
+/// its poses. For a larger one, the coordinates of centre and poses have too few digits.
 inline constexpr std::array<double, 2> kArcRadiusMm{0.1, kLargestMm};
 
-/// How far the poses of an arc may be from one circle: poses and centre rounded to three decimals add up to 0.0028 mm.
-/// The arc between two poses runs through both, so nothing jumps; much more would hide a wrong centre.
+/// Largest distance of an arc's poses from one circle [mm]. Poses and a centre rounded to three decimals add up to
+/// 0.0028 mm. The arc between two poses runs through both, so nothing jumps. A much larger limit would hide a wrong
+/// centre.
 inline constexpr double kOnCircleMm = 3e-3;
 
-/// How far from upright a brush may be tilted: what its laws say of a brush on its side has never been measured,
-/// and at 30 degrees a section of it is 15 % longer already.
+/// Largest tilt of a brush from upright [deg]. Its laws have never been measured for a strongly tilted brush. At 30
+/// degrees its cross-section is already 15 % longer.
 inline constexpr double kMostTiltDeg = 30.0;
 
-/// How far from 1 the length of a tool axis may be: coordinates rounded to three decimals add up to 0.0009.
+/// Largest deviation of a tool axis' length from 1. Coordinates rounded to three decimals add up to 0.0009.
 inline constexpr double kUnitLength = 1e-3;
 
-/// By how much they may tilt an axis of 30 degrees further: 0.05 degrees.
+/// Tolerance of kMostTiltDeg [deg]. Rounded coordinates may tilt an axis of 30 degrees that much further.
 inline constexpr double kRoundedTiltDeg = 0.05;
 
-/// One stroke's motion: straight moves between poses, depth linear along each.
+/// The motion for one stroke: straight moves, with the depth linear along each.
 struct Pass {
-    StrokeId stroke;  ///< the stroke it paints
+    StrokeId stroke;  ///< the stroke that the pass paints
     Poses poses_mm;
-    std::vector<Arc> arcs;  ///< ascending; poses of one are followed on its circle in place of its chords
+    std::vector<Arc> arcs;  ///< ascending; the poses of an arc are followed on its circle, not on the chords
     double speed_mm_s = 20.0;
     std::string layer;
     std::string colour;
     Settings settings;
-    int load = 0;              ///< which of its stroke's loads of paint it is, from 1; 0 for a stroke that is whole
+    int load = 0;              ///< number of the load of paint within the stroke, from 1; 0: the stroke is not split
     std::string extra = "{}";  ///< JSON object of unknown keys, written back as read
-    Poses tool_axes;           ///< of each pose the unit vector from the tip up along the brush; empty: upright
+    Poses tool_axes;           ///< unit vector from the tip up along the brush, per pose, paper frame; empty: upright
 };
 
+/// The TCP poses of all strokes, in painting order. This is the content of plan.json.
 struct Plan {
-    std::string brush;
-    std::string brush_sha256;
-    std::array<double, 2> sheet_mm{0.0, 0.0};
+    std::string brush;                         ///< name of the brush that the plan was made for
+    std::string brush_sha256;                  ///< of the brush's file
+    std::array<double, 2> sheet_mm{0.0, 0.0};  ///< width and height; 0: no sheet
     std::vector<Pass> passes;
     std::string extra = "{}";
 };
 
-/// Throws Error for a sheet that none can be: both sides are greater than 0 and at most 1e6 mm. A plan that is only
-/// simulated needs none.
+/// Throw Error unless both sides of the sheet are greater than 0 and at most 1e6 mm.
+///
+/// A plan that is only simulated needs no sheet.
 void check_sheet(const std::array<double, 2>& sheet_mm);
 
-/// By how much the TCP turns about an arc's centre from one pose on it to the next [rad], signed, in (-pi, pi].
+/// Return the signed angle of the TCP about an arc's centre between two poses.
+///
+/// `from_mm`, `to_mm`: the positions of the poses. The angle [rad] is in (-pi, pi] and positive if the turn is
+/// counter-clockwise.
 double turn_between(const Arc& arc, const Eigen::Vector2d& from_mm, const Eigen::Vector2d& to_mm);
 
-/// Throws Error, with this `where`, when arc k of the pass names poses that do not exist, comes before its
-/// predecessor's end, or when its poses are not on one circle, not at one depth, or do not go round it in the direction
-/// said, each by less than half a turn.
+/// Throw Error if arc `k` of the pass is not valid.
+///
+/// The arc must begin at an existing pose, not before the previous arc's end, and end at a later existing pose. Its
+/// poses must be on one circle and at one depth. They must go round the circle in its direction, each step by less than
+/// half a turn. `where`: the element that the error names.
 void check_arc(const Pass& pass, std::size_t k, const std::string& where);
 
-/// Throws Error, with this `where`, when a pass has tool axes and not one for each pose, or arcs with them, or when
-/// one is not of length 1 or is tilted by more than 30 degrees.
+/// Throw Error if the tool axes of the pass are not valid.
+///
+/// A pass with tool axes needs one for each pose and must have no arcs. Each axis must have length 1 and be tilted by
+/// at most 30 degrees. `where`: the element that the error names.
 void check_tool_axes(const Pass& pass, const std::string& where);
 
-/// Whether the brush is not upright at every pose.
+/// Return whether the brush is tilted at any pose.
 bool is_tilted(const Pass& pass);
 
-/// Throws Error for a tilted pass, where nothing is known of one: a pass that lost its tilt would paint something else.
-/// `upright`: who keeps the brush upright, as the sentence begins.
+/// Throw Error if the pass is tilted. For code that supports only an upright brush: without its tilt, the pass would
+/// paint something else.
+///
+/// `upright`: the beginning of the error's sentence, which says what keeps the brush upright.
 void refuse_tilted(const Pass& pass, const std::string& upright);
 
 }  // namespace brushsvg

@@ -8,29 +8,32 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// One brush parameter [mm] against press depth [mm]:
+/// A law: one brush parameter [mm] against the press depth d [mm].
 ///     value(d) = max(floor + floor_slope d, c0 + c1 d + c2 d^2 + ...)
-/// (article (24) to (27); the floor is the max(0, .) of (24)), with the range of depths it was measured on.
+/// See article (24) to (27). The floor is the max(0, .) of (24).
 struct Profile {
-    std::vector<double> coefficients;  ///< ascending powers of depth
-    double floor = -std::numeric_limits<double>::infinity();
+    std::vector<double> coefficients;                         ///< c0, c1, ..., in ascending powers of depth
+    double floor = -std::numeric_limits<double>::infinity();  ///< [mm]; minus infinity: no floor
     double floor_slope = 0.0;
-    std::optional<std::array<double, 2>> calibrated_mm;
-    std::string source;
-    bool assumed = false;
-    std::vector<double> half_interval_95;  ///< per coefficient, empty when not known
-    std::optional<double> rmse_mm;
-    std::optional<double> degrees_of_freedom;  ///< values to spare, from which its scatter is known
-    std::string extra = "{}";  ///< JSON object of the keys this version does not know; written back as read
-    /// Depths at which at() answers: how deep its brush may be pressed. read_brush() sets it; none: any depth. It is
-    /// no part of the law: laws are equal, and written, without it.
+    std::optional<std::array<double, 2>> calibrated_mm;  ///< least and greatest measured depth; none: not known
+    std::string source;                                  ///< where the law comes from, in words
+    bool assumed = false;                                ///< true if the law was not measured
+    std::vector<double> half_interval_95;      ///< half of the 95 % interval of each coefficient; empty: not known
+    std::optional<double> rmse_mm;             ///< root mean square error of the fit; none: not known
+    std::optional<double> degrees_of_freedom;  ///< number of spare values from which the scatter is known
+    std::string extra = "{}";                  ///< JSON object of unknown keys, written back as read
+    /// Depths that at() accepts: to how deep the brush may be pressed. read_brush() sets them; none: any depth. They
+    /// are not part of the law: comparing and writing laws ignores them.
     std::optional<std::array<double, 2>> depth_range_mm;
 
-    /// Value at a depth [mm] that the brush can have, from touching the paper to the deepest of `depth_range_mm`.
-    /// Throws Error (depth-out-of-range) for any other depth: a polynomial is soon nonsense beyond its measurements.
+    /// Return the value [mm] at a depth [mm] that the brush can have.
+    ///
+    /// These depths go from 0, where the brush touches the paper, to the deepest of `depth_range_mm`. Throws Error
+    /// (depth-out-of-range) for other depths. A polynomial is soon meaningless beyond its measurements.
     double at(double depth_mm) const;
 
-    /// Value at any depth [mm], not checked; any scalar with arithmetic (a solver differentiates it). For inner loops.
+    /// Return the value [mm] at any depth [mm], without a check. For inner loops. T is any scalar with arithmetic, so a
+    /// solver can differentiate the law.
     template <class T>
     T operator()(const T& depth_mm) const {
         T polynomial(0.0);
@@ -41,22 +44,28 @@ struct Profile {
     }
 };
 
-/// Greatest degree of a law that is followed.
+/// Greatest degree of a law's polynomial.
 inline constexpr int kMaxLawDegree = 10;
 
-/// A polynomial that holds on [lo, hi].
+/// A polynomial (ascending coefficients) that holds on [lo, hi].
 struct PolynomialPiece {
     double lo, hi;
     std::vector<double> coefficients;
 };
 
-/// The profile on [lo, hi] as polynomials, split where its floor takes over.
+/// Return the profile as polynomials on the depths [lo, hi] [mm].
+///
+/// It is split where its floor takes over.
 std::vector<PolynomialPiece> pieces(const Profile& profile, double lo, double hi);
 
-/// a - b as polynomials on [lo, hi], split where either changes.
+/// Return the difference a - b as polynomials on the depths [lo, hi] [mm].
+///
+/// It is split where either profile changes.
 std::vector<PolynomialPiece> difference(const Profile& a, const Profile& b, double lo, double hi);
 
-/// Real roots of a polynomial (ascending coefficients) inside [lo, hi], ascending.
+/// Return the real roots of a polynomial in [lo, hi], in ascending order.
+///
+/// `coefficients`: in ascending powers.
 std::vector<double> real_roots(const std::vector<double>& coefficients, double lo, double hi);
 
 }  // namespace brushsvg

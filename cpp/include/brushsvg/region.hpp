@@ -4,38 +4,51 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// Union of shapes: each counter-clockwise ring fills, the clockwise rings behind it are its holes. Coordinates are
-/// kept to 1e-5 mm. Rings may touch and cross; the result's do not cross. Throws Error where clockwise rings outweigh.
+/// Return the union of shapes.
+///
+/// `rings`: each counter-clockwise ring is a filled shape; the clockwise rings after it are its holes. Rings may touch
+/// and cross; the rings of the result do not cross. Coordinates are rounded to 1e-5 mm.
+///
+/// Throws Error if the area of the clockwise rings outweighs the area of the others.
 Rings unite(const Rings& rings);
 
-/// What two shapes have in common, each given as for unite.
+/// Return the intersection of two shapes, each given as for unite().
 Rings intersect(const Rings& a, const Rings& b);
 
-/// How often an outline must run round a point for it to be inside.
+/// The rule that decides from an outline's winding number whether a point is inside.
 enum class FillRule { nonzero, evenodd };
 
-/// The shape that closed outlines fill, as rings that do not cross: outlines may cross themselves and each other, turn
-/// either way and overlap. Coordinates are kept to 1e-5 mm.
+/// Return the shape that closed outlines fill, as rings that do not cross.
+///
+/// The outlines may cross themselves and each other, turn either way, and overlap. Coordinates are rounded to 1e-5 mm.
 Rings fill(const Rings& outlines, FillRule rule);
 
-/// Area [mm^2], clockwise rings, which are holes, taken off: negative where they outweigh.
+/// Return the area [mm^2] of rings, less the area of the clockwise rings.
+///
+/// Clockwise rings are holes. The area is negative if they outweigh the others.
 double area(const Rings& rings);
 
-/// Area of the intersection over area of the union, each given as for unite; 1 when both are empty.
+/// Return the area of the intersection over the area of the union.
+///
+/// Each shape is given as for unite(). 1 if both are empty.
 double overlap(const Rings& a, const Rings& b);
 
-/// Convex pieces whose union is that of the hulls of every two neighbours in a chain of convex counter-clockwise rings:
-/// the hulls without the corners in the pieces next to them. One ring is its own piece.
+/// Return convex pieces that cover the hulls of neighbouring rings in a chain.
+///
+/// `chain`: convex counter-clockwise rings. The union of the pieces is the union of the hulls of every two neighbours.
+/// A piece is a hull without the corners that are in the pieces next to it. A single ring is its own piece.
 Rings pieces_between(const Rings& chain);
 
-/// Convex hull of points, counter-clockwise.
+/// Return the convex hull of points, counter-clockwise.
 Ring convex_hull(const Ring& points);
 
-/// Distance [mm] of each point from the outline, on whichever side of it.
+/// Return the distance [mm] of each point from the outline, on either side of it.
 std::vector<double> clearance(const Rings& rings, const Ring& points);
 
-/// How far ahead [mm] of each place, along the unit vector in its row of ways, an outline is first crossed; infinite
-/// where none is. Error where there are not as many ways as places.
+/// Return how far ahead of each place an outline is first crossed [mm].
+///
+/// `ways`: the unit direction in which to look, for each place. Infinite if no outline is crossed. Throws Error if
+/// there are not as many directions as places.
 std::vector<double> first_crossings(const Rings& rings, const Ring& places, const Ring& ways);
 
 }  // namespace brushsvg

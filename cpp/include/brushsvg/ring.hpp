@@ -5,21 +5,21 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// Points in the plane, one per row [mm]; as an outline unclosed.
+/// Points in the plane, one per row: x, y [mm]. An outline does not repeat its first point.
 using Ring = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
-/// Outer rings counter-clockwise, holes clockwise.
+/// The rings of a shape: outer rings counter-clockwise, holes clockwise.
 using Rings = std::vector<Ring>;
 
-/// Part of the paper that an image shows [mm]: lower left corner and size.
+/// The part of the paper that an image shows: its lower left corner and its size.
 struct Window {
     double x_mm, y_mm, width_mm, height_mm;
 };
 
-/// Area [mm^2], negative for a clockwise ring.
+/// Return the area of a ring [mm^2], negative if it is clockwise.
 double signed_area(const Ring& ring);
 
-/// Length of a ring, from its last point to its first as well [mm].
+/// Return the length of a ring [mm], with the way from its last point to its first.
 double length_around(const Ring& ring);
 
 }  // namespace brushsvg

@@ -5,23 +5,26 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// What a drawing says of an element to brushsvg itself (docs/reference/drawings.md), carried from there to the plan.
-/// What it does not say is empty.
+/// The settings of an element in a drawing (docs/reference/drawings.md).
+///
+/// They are kept up to the plan. Settings that the drawing does not have are empty.
 struct Settings {
-    std::optional<std::string> brush;
-    std::optional<std::string> end;   ///< of the stroke: pointed, round, butt, auto
-    std::optional<std::string> kind;  ///< of a stroke of the calibration chart
-    std::optional<int> order;
-    std::optional<int> passes;  ///< how often it is painted
-    std::optional<bool> reload;
-    std::optional<bool> skip;
-    std::optional<double> speed_mm_s;
-    std::optional<std::string> start;  ///< of the stroke: the same
-    std::optional<double> width_mm;
-    std::string extra = "{}";  ///< JSON object of unknown keys, written back as read
+    std::optional<std::string> brush;  ///< name of the brush that the drawing is for
+    std::optional<std::string> end;    ///< terminal at the stroke's end: pointed, round, butt, auto
+    std::optional<std::string> kind;   ///< kind of a stroke on the calibration chart
+    std::optional<int> order;          ///< elements with smaller numbers are painted first
+    std::optional<int> passes;         ///< how many times the element is painted
+    std::optional<bool> reload;        ///< whether to fetch paint before the stroke; false: do not split the stroke
+    std::optional<bool> skip;          ///< true: do not paint the element
+    std::optional<double> speed_mm_s;  ///< painting speed
+    std::optional<std::string> start;  ///< terminal at the stroke's start: pointed, round, butt, auto
+    std::optional<double> width_mm;    ///< width of the mark
+    std::string extra = "{}";          ///< JSON object of unknown keys, written back as read
 };
 
-/// each(key, value) of all known keys, in the order of the alphabet, in which they are written.
+/// Call each(key, value) for all known keys, in alphabetical order.
+///
+/// Files are written in this order.
 template <class OneSettings, class Each>
 void each_setting(OneSettings& settings, Each&& each) {
     each("brush", settings.brush);

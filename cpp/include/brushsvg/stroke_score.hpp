@@ -7,33 +7,39 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// Where paint and drawing differ most: a square's middle [mm], whether paint is missing there (else there is too
-/// much), and how much of it [mm^2].
+/// The place where paint and drawing differ most.
 struct WorstPlace {
-    std::array<double, 2> at_mm;
-    bool is_missing;
-    double area_mm2;
+    std::array<double, 2> at_mm;  ///< middle of the square (x, y), paper frame
+    bool is_missing;              ///< true if paint is missing there, false if there is too much
+    double area_mm2;              ///< area of missing or excess paint in the square
 };
 
-/// How well a pass paints its stroke.
+/// A score of how well a pass paints its stroke.
 struct StrokeScore {
-    double overlap;
-    /// Mean absolute difference of both marks' widths across the middle line. Places where the target mark is not as
-    /// wide as the line says (its ends, where it crosses or touches itself) do not show the brush's width and are
-    /// left out; nothing left: none.
+    double overlap;  ///< area of the intersection over area of the union
+    /// Mean absolute difference of the widths across the middle line; none: not measurable.
+    ///
+    /// Places where the target mark is not as wide as the line says do not show the brush's width and are left out.
+    /// Examples are its ends, and crossings with itself.
     std::optional<double> width_error_mm;
     double excess_turning;  ///< of the mark's outline beyond the target's [full turns], see excess_turning()
     WorstPlace worst;       ///< in a square half as wide as the stroke, at least 0.5 mm
 };
 
+/// Score how well a pass paints a stroke.
 StrokeScore stroke_score(const PassMarks& painted, const Stroke& wanted, const Brush& brush);
 
-/// The parts of it. `line`: the middle line, flattened.
+/// Find the place where paint and drawing differ most, in a square of a size [mm].
 WorstPlace worst_place(const MarkOverlap& seen, double size_mm);
+/// Return the mean absolute difference of the widths [mm] of mark and target.
+///
+/// `line`: the flattened middle line.
 std::optional<double> width_error_mm(const MarkOverlap& seen, const MiddlePolyline& line);
 
-/// Width [mm] of what pixels show across a line with that direction: of the piece that holds the point, else of the
-/// nearest one that begins within `reach_mm` of it, else 0.
+/// Return the width [mm] of a mark in pixels, across a line.
+///
+/// `at_mm`: a point on the line (x, y). `direction`: of the line there. The width is of the piece that contains the
+/// point, or of the nearest piece that begins within `reach_mm`; 0 if there is none.
 double width_across(const Coverage& shares, const MarkOverlap& seen, const Eigen::Vector2d& at_mm,
                     const Eigen::Vector2d& direction, double reach_mm);
 

@@ -10,45 +10,53 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// A shape, and the strokes and passes that paint it so far.
+/// A shape, with the strokes and passes that paint it so far.
 struct PaintedShape {
     Rings target_mm;
     std::vector<Stroke> strokes;
     std::vector<Pass> passes;
 };
 
-/// A stroke into an area that the others leave without paint.
+/// A stroke added for an area that the other strokes leave without paint.
 struct AddedStroke {
     Stroke stroke;
-    std::size_t neighbour;  ///< which of the shape's strokes, those added before it too, runs nearest to that area
+    std::size_t neighbour;  ///< index of the stroke that runs nearest to the area, also among those added before
     Rings area_mm;          ///< the area, as deep as it is seen
-    Rings mark_mm;          ///< what the stroke paints
+    Rings mark_mm;          ///< outline of the paint of the stroke
 };
 
-/// How a shape is painted better.
+/// The result of search_strokes() for a shape.
 struct SearchedShape {
-    /// What each given stroke is best painted as: itself, another path, in parts between its corners, or not at all.
+    /// The strokes that replace each given stroke: itself, another path, parts, or none.
     std::vector<std::vector<Stroke>> strokes;
-    std::vector<bool> changed;  ///< which of them differ from what was given
+    std::vector<bool> changed;  ///< whether the replacement differs from the given stroke
     std::vector<AddedStroke> added;
 };
 
-/// Looks for the strokes by which the mark of each shape costs least, from the given ones on. A stroke that sticks out
-/// of its shape gets another path: narrower, cut short at an end, or in parts that meet at its corners; one that fills
-/// with others, whose ends those cover, also the other way round, or not at all. Then strokes are added, into the
-/// largest bare area first: from a stroke next to it straight out, along the edge of the shape, from a corner inwards,
-/// or across. The same for any number of threads. are_free: whether strokes may get another path, and not only added.
+/// Search for the strokes with which the mark of each shape costs least.
+///
+/// The search begins with the given strokes. A stroke that sticks out of its shape gets another path: narrower,
+/// shortened at an end, or in parts that meet at its corners. A stroke that fills the shape together with others, whose
+/// paint covers its ends, may also be reversed or left out.
+///
+/// Then strokes are added, for the largest bare area first. They go straight out from a stroke next to the area, along
+/// the edge of the shape, from a corner inwards, or across.
+///
+/// `are_free`: true if strokes may get another path, false if strokes are only added. The result does not depend on the
+/// number of threads.
 std::vector<SearchedShape> search_strokes(const std::vector<PaintedShape>& shapes, const Brush& brush,
                                           const ObjectiveWeights& weights = {}, bool are_free = true);
 
 /// An area of a shape that is left without paint, as deep as it is seen.
 struct UncoveredArea {
     Rings outline_mm;
-    Eigen::Vector2d place_mm;  ///< in it, far from its edge
+    Eigen::Vector2d place_mm;  ///< a place in the area, far from its edge (x, y), paper frame
     double mm2;
 };
 
-/// The areas of each shape that its passes leave without paint, from a share of the shape on, the largest first.
+/// Find the areas of each shape that its passes leave without paint.
+///
+/// `least_share`: the least area, as a share of the shape's area. The largest areas are first.
 std::vector<std::vector<UncoveredArea>> uncovered_areas(const std::vector<PaintedShape>& shapes, const Brush& brush,
                                                         double least_share);
 

@@ -4,11 +4,15 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// Half of a 95 % interval in standard deviations: the quantile of Student's t where the deviation was itself found
-/// from so many spare values, or of the normal distribution where nobody says from how many.
+/// Return half of a 95 % interval, in standard deviations.
+///
+/// It is the quantile of Student's t if the standard deviation was itself estimated, with `degrees_of_freedom` spare
+/// values. If that number is not known, it is the quantile of the normal distribution.
 double deviations_of_95(std::optional<double> degrees_of_freedom);
 
-/// Size of a normal value as unlikely as t with so many degrees of freedom; infinite where no number is so unlikely.
+/// Return the size of a normal value that is as unlikely as a value of Student's t.
+///
+/// Infinite if no number is that unlikely.
 double as_normal(double t, double degrees_of_freedom);
 
 }  // namespace brushsvg

@@ -5,16 +5,22 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// Rings of the target mark: `wanted_mm` where given, else the union of discs of the stroke's half width along its
-/// middle line (the path with its width, round caps and round joins). No point of the outline is further than
-/// `tolerance_mm` from the true one.
+/// Return the outline of the target mark, as rings.
+///
+/// It is `wanted_mm` if given. Otherwise it is the path with its width: the union of discs of the half width along the
+/// middle line, with round caps and joins. No point of the outline is further than `tolerance_mm` from the true
+/// outline.
 Rings wanted_outline(const Stroke& stroke, double tolerance_mm = 0.005);
 
-/// Convex counter-clockwise rings whose union is the path with its width and round caps, whether or not `wanted_mm` is
-/// given: enough for a picture, at a fraction of the outline's cost.
+/// Return convex counter-clockwise rings that cover the path with its width.
+///
+/// Their union has round caps and does not depend on `wanted_mm`. They suffice for a picture, at a fraction of the
+/// outline's cost.
 Rings wanted_pieces(const Stroke& stroke, double tolerance_mm = 0.005);
 
-/// Those of them that may show in a part of the paper, in the same order.
+/// Return the rings of wanted_pieces() that may show in a part of the paper.
+///
+/// They are in the same order.
 Rings wanted_pieces_near(const Stroke& stroke, const Window& window, double tolerance_mm = 0.005);
 
 }  // namespace brushsvg
