@@ -44,8 +44,8 @@ def read(text: str, folder) -> Page:
     file.write_text(text, encoding="utf-8")
     with pytest.MonkeyPatch.context() as patch:  # resvg's tree has whole paths in groups with clips
         patch.setattr(OurPainted, "_clipped", lambda self, node, context, whole: [whole])
-        patch.setattr("brushsvg.read.duplicates.without_duplicates", lambda design: design)
-        patch.setattr("brushsvg.read.svg.on_page", lambda elements, sheet_mm: (tuple(elements), []))
+        patch.setattr("brushsvg.read.duplicates.remove_duplicates", lambda design: design)
+        patch.setattr("brushsvg.read.svg.keep_on_page", lambda elements, sheet_mm: (tuple(elements), []))
         design = brushsvg.read_drawing(file, ReadOptions(background="keep", lenient=True))
     height_mm = design.sheet_mm[1]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .. import AS_DRAWN, ReadOptions
 from ..design import Design, Notice
-from ..empty_drawing import nothing_to_paint
+from ..empty_drawing import empty_drawing_error
 from .entity_walk import Walk
 from .file import open_dxf
 from .linetypes import Dashes
@@ -29,7 +29,7 @@ def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     pieces, far = in_range(walk.pieces if options.sheet_mm else anchored(walk.pieces))
     notices += [*unit_notices, *walk.notices, *far]
     if not pieces:
-        raise nothing_to_paint(notices)
+        raise empty_drawing_error(notices)
     heights = [curve.cubics[..., 2] for piece in pieces for curve in piece.curves]
     lowest, highest = min(z.min() for z in heights), max(z.max() for z in heights)
     if highest - lowest > _FLAT_MM:

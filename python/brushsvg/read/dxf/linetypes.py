@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import Error
 from ...geometry.arc_length import knots
-from ..dashes import dashed
+from ..dashes import cut_into_dashes
 from ..design import Element, Notice, SubPath
 from .pens import Pen
 
@@ -71,12 +71,14 @@ class Dashes:
     def _in_dashes(self, subpath: SubPath, runs, length: np.ndarray, pattern, most: int) -> list[SubPath]:
         """Each run of cubics in dashes of its own, of which two that meet at a corner are one."""
         if len(runs) == 1:
-            return dashed(subpath, pattern, 0.0, most)
+            return cut_into_dashes(subpath, pattern, 0.0, most)
         found: list[np.ndarray] = []
         for run in runs:
             part = SubPath(subpath.cubics[run])
             dashes = (
-                [part] if length[run].sum() < sum(pattern) else dashed(part, pattern, 0.0, most - len(found))
+                [part]
+                if length[run].sum() < sum(pattern)
+                else cut_into_dashes(part, pattern, 0.0, most - len(found))
             )
             pieces = [dash.cubics for dash in dashes]
             if found and pieces and _meet(found[-1], pieces[0]):

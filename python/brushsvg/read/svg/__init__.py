@@ -9,10 +9,10 @@ from contextlib import suppress
 from ...errors import Error
 from ...units import MM_PER
 from .. import AS_DRAWN, ReadOptions
-from ..background import without_background
+from ..background import remove_background
 from ..design import Design, Notice
-from ..empty_drawing import nothing_to_paint
-from ..off_page import on_page
+from ..empty_drawing import empty_drawing_error
+from ..off_page import keep_on_page
 from .context import local, one_line
 from .css.cascade import INITIAL, cascade
 from .selection import selected
@@ -67,8 +67,8 @@ def _read(document: Document, options: ReadOptions) -> Design:
     walk = Walk(root, page, chosen, _outside_the_tree(document, root, page))
     walk.run()
     if not walk.elements:
-        raise nothing_to_paint(walk.notices, walk.left_out)
-    elements, off_page = on_page(walk.elements, page.sheet_mm)
+        raise empty_drawing_error(walk.notices, walk.left_out)
+    elements, off_page = keep_on_page(walk.elements, page.sheet_mm)
     title = root.find(SVG + "title" if root.tag.startswith("{") else "title")
     name = "" if title is None else one_line("".join(title.itertext()))
     design = Design(page.sheet_mm, elements, (*walk.notices, *off_page), name, walk.layers)
@@ -78,7 +78,7 @@ def _read(document: Document, options: ReadOptions) -> Design:
     if options.sheet_mm is not None:
         with suppress(Error):  # a drawing without a size of its own has the sheet's
             own_mm = read_page(root.attrib, None, style).sheet_mm
-    return without_background(design, own_mm)
+    return remove_background(design, own_mm)
 
 
 def _outside_the_tree(document: Document, root: ET.Element, page: Page) -> list[Notice]:

@@ -144,7 +144,7 @@ class ClipPaths:
         self, node: ET.Element, context: Context, parent: Style, depth: int, rule: str
     ) -> Iterator[tuple[Style, shapely.Geometry]]:
         """The shapes in a clip path ("clip-rule") or, with those of its groups, in a mask ("fill-rule")."""
-        from ..clipping import outlines_of, region_of
+        from ..clipping import fill_region, flatten_subpaths
 
         for child in node:
             tag = local(child)
@@ -176,7 +176,7 @@ class ClipPaths:
                 except shapes.DamageError as damage:
                     commands = damage.commands
                 line = trace(commands, matrix, scales(matrix)[0])
-                region = region_of(outlines_of(line.subpaths), style.inherited[rule])
+                region = fill_region(flatten_subpaths(line.subpaths), style.inherited[rule])
                 yield style, self._own(style, here, region, depth)
             elif tag in ("image", "svg", "symbol", "switch", "foreignObject") and rule == "fill-rule":
                 raise ClipPathError(_MASK_UNREAD, code="clipping-unread")

@@ -121,9 +121,9 @@ class Painted:
         self.elements += elements
 
     def _clipped(self, node: ET.Element, context: Context, element: Element) -> list[Element]:
-        from ..clipping import clipped
+        from ..clipping import clip_element
 
-        found = clipped(element, context.clip)
+        found = clip_element(element, context.clip)
         if not found:
             sentence = "it is outside the clip path, mask or viewport that would show it: left out"
             self.notes.add(node, context, sentence, code="clipped-away")
@@ -216,7 +216,7 @@ class Painted:
         properties = context.style.inherited
         if properties["stroke-dasharray"] == "none" or not subpaths:
             return subpaths
-        from ..dashes import dashed
+        from ..dashes import cut_into_dashes
 
         words = [word for part in properties["stroke-dasharray"].split(",") for word in part.split() or [""]]
         try:
@@ -244,7 +244,7 @@ class Painted:
         pieces: list[SubPath] = []
         try:
             for subpath in subpaths:
-                pieces += dashed(subpath, pattern, offset, self.dashes_left - len(pieces))
+                pieces += cut_into_dashes(subpath, pattern, offset, self.dashes_left - len(pieces))
         except Error as error:
             raise Error(str(error), where=self.notes.label(node), code=error.code) from None
         self.dashes_left -= len(pieces)
