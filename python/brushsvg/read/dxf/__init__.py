@@ -1,4 +1,7 @@
-"""DXF to Design: the model space, in millimetres. How it is read: docs/reference/drawings.md."""
+"""Reader from the model space of a DXF to a Design.
+
+The rules are in docs/reference/drawings.md.
+"""
 
 from __future__ import annotations
 
@@ -12,15 +15,17 @@ from .pieces_to_elements import anew, chained, element_of
 from .placement import anchored, extents, in_range, with_margin
 from .units import large_for_its_unit, unit_of
 
-_FLAT_MM = 1e-3
+_FLAT_MM = 1e-3  # a larger range of heights is reported
 
 
 def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
-    """The model space, its strokes in the order drawn, in mm.
+    """Read the model space of a DXF, with its strokes in the order drawn, in mm.
 
-    The sheet is what is drawn and 20 mm around it. A sheet given has the drawing's origin at its lower left.
+    Without options.sheet_mm, the sheet is the bounding box of the drawing plus a margin of 20 mm. A given sheet has
+    the origin of the drawing at its lower left corner.
 
-    Error if it is no DXF, says no unit where options name none either, or has nothing to paint.
+    Raises Error if the data is not a DXF or has nothing to paint, or if neither the drawing nor the options give a
+    unit.
     """
     document, notices = open_dxf(data)
     mm_per_unit, unit_notices = unit_of(document, options.units)

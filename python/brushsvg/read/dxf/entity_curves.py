@@ -1,4 +1,7 @@
-"""A DXF entity to cubics, in its own world and drawing units: exact where cubics can be, else to a tolerance."""
+"""Convert a DXF entity to cubics, in its own world and in drawing units.
+
+The cubics are exact where this is possible, otherwise they keep a tolerance.
+"""
 
 from __future__ import annotations
 
@@ -18,10 +21,13 @@ _FLAT = ezdxf.math.OCS()
 
 @dataclass(frozen=True)
 class Curve:
-    """One line: cubics (n, 4, 3) end to end; widths: (n, 2), at the start and end of each, None if none are drawn.
+    """One line of an entity.
 
-    A width of 0 is drawn with the entity's line weight. anew: (n,) where a line type's pattern begins anew, None if it
-    runs on from end to end.
+    cubics: (n, 4, 3), end to end.
+    closed: whether the line ends where it begins.
+    widths: (n, 2), at the start and end of each cubic; None if the entity has no widths. A width of 0 is drawn with
+    the line weight of the entity.
+    anew: (n,), whether the pattern of a line type restarts at each cubic; None if it continues along the whole line.
     """
 
     cubics: np.ndarray
@@ -31,16 +37,18 @@ class Curve:
 
 
 def curves(entity, tolerance: float) -> list[Curve] | None:
-    """The lines of an entity, of a FILLED one its outlines; [] if it has no geometry, None if it is not read.
+    """Return the lines of an entity, or the outlines of a filled entity.
 
-    tolerance: in drawing units. Raises the errors of ezdxf if the entity is broken.
+    The result is [] if the entity has no geometry, and None if entities of its type are not read.
+
+    tolerance: in drawing units. Raises the errors of ezdxf if the entity is damaged.
     """
     draw = _DRAWN.get(entity.dxftype())
     return None if draw is None else draw(entity, tolerance)
 
 
 def straight(points) -> np.ndarray:
-    """Cubics through points (n, d): (n - 1, 4, d)."""
+    """Return the straight lines through points (n, d) as cubics (n - 1, 4, d)."""
     points = np.asarray(points, dtype=float)
     a, b = points[:-1, None], points[1:, None]
     return a + (b - a) * (np.arange(4) / 3)[:, None]
@@ -86,7 +94,7 @@ def _elliptical(tool, tolerance: float) -> list[Curve]:
 
 def _lwpolyline(entity, tolerance: float) -> list[Curve]:
     rows = np.array(entity.get_points("xybse"), dtype=float).reshape(-1, 5)
-    if entity.dxf.hasattr("const_width") and not rows[:, 3:].any():  # widths of its own go first
+    if entity.dxf.hasattr("const_width") and not rows[:, 3:].any():  # widths of the vertices take precedence
         rows[:, 3:] = entity.dxf.const_width
     runs_on = bool(entity.dxf.flags & _PLINEGEN)
     return _polyline_2d(rows, entity.closed, entity.ocs(), entity.dxf.elevation, tolerance, runs_on)
@@ -123,13 +131,17 @@ def _polyline(entity, tolerance: float) -> list[Curve] | None:
     return _polyline_2d(np.array(rows), entity.is_closed, entity.ocs(), elevation, tolerance, runs_on)
 
 
-_PLINEGEN = 128  # of a polyline's flags: dashes run on over its vertices
+_PLINEGEN = 128  # polyline flag: dashes continue over the vertices
 
 
 def _polyline_2d(
     rows: np.ndarray, closed: bool, ocs, elevation: float, tolerance: float, runs_on: bool = True
 ) -> list[Curve]:
-    """rows: x, y, bulge, start and end width of each vertex; those of the last one count if it is closed."""
+    """Return the curve of a plane polyline.
+
+    rows: (n, 5), x, y, bulge, start and end width of each vertex. The bulge and widths of the last vertex count only
+    if the polyline is closed.
+    """
     if not len(rows):
         return []
     if len(rows) == 1:
@@ -138,7 +150,7 @@ def _polyline_2d(
     q = np.roll(p, -1)
     count = len(rows) if closed else len(rows) - 1
     pieces = list((p[:count, None] + (q - p)[:count, None] * np.arange(4) / 3)[:, None])
-    # How far an arc leaves its chord: from there on it is one.
+    # A bulge counts as an arc if the arc leaves its chord by more than 1e-3 tolerances.
     for k in np.flatnonzero(~(np.abs(rows[:count, 2] * (q - p)[:count]) / 2 <= 1e-3 * tolerance)):
         pieces[k] = _bulge(p[k], q[k], rows[k, 2], tolerance)
     flat = np.concatenate(pieces)
@@ -148,13 +160,16 @@ def _polyline_2d(
         return [Curve(joined(cubics), closed, anew=anew)]
     drawn = []
     for piece, ends in zip(pieces, rows[:count, 3:], strict=True):
-        at = np.linspace(*ends, len(piece) + 1)
-        drawn.append(np.column_stack((at[:-1], at[1:])))
+        steps = np.linspace(*ends, len(piece) + 1)
+        drawn.append(np.column_stack((steps[:-1], steps[1:])))
     return [Curve(joined(cubics), closed, np.concatenate(drawn), anew)]
 
 
 def _bulge(p: complex, q: complex, bulge: float, tolerance: float) -> np.ndarray:
-    """Cubics (n, 4) of an arc from p to q, in complex numbers. bulge: tangent of a quarter of its angle, left > 0."""
+    """Return the arc from p to q as cubics (n, 4), in complex numbers.
+
+    bulge: tangent of a quarter of the angle of the arc, positive for a left turn.
+    """
     turn = 4 * math.atan(bulge)
     chord = 2 * math.sin(turn / 2)
     count = arc_count(abs(turn), abs((q - p) / chord), tolerance)
@@ -217,7 +232,7 @@ def _hatch(entity, tolerance: float) -> list[Curve]:
 
 
 def _edge(edge, tolerance: float) -> list[Curve]:
-    """Of a hatch, in its plane."""
+    """Return the lines of an edge of a hatch, in the plane of the hatch."""
     match edge.EDGE_TYPE:
         case "LineEdge":
             return [Curve(straight([(*edge.start, 0.0), (*edge.end, 0.0)]))]
@@ -237,7 +252,7 @@ def _edge(edge, tolerance: float) -> list[Curve]:
 
 
 def _outline(pieces: list[np.ndarray]) -> np.ndarray:
-    """Edges, each of which may have been drawn from its end to its start, as one closed line."""
+    """Join edges to one closed line. Each edge may be drawn in either direction."""
     first = pieces[0]
     if len(pieces) > 1 and _distance(first[0, 0], pieces[1]) < _distance(first[-1, 3], pieces[1]):
         first = reversed_cubics(first)
@@ -247,9 +262,8 @@ def _outline(pieces: list[np.ndarray]) -> np.ndarray:
         if math.dist(end, piece[-1, 3]) < math.dist(end, piece[0, 0]):
             piece = reversed_cubics(piece)
         line += [straight([end, piece[0, 0]]), piece]
-    line.append(
-        straight([line[-1][-1, 3], first[0, 0]])
-    )  # lines without length are taken out later, as all are
+    # This line may have no length. Later all cubics without length are removed.
+    line.append(straight([line[-1][-1, 3], first[0, 0]]))
     return np.concatenate(line)
 
 

@@ -1,4 +1,7 @@
-"""The walk over a DXF's model space: blocks unfolded, entities to lines on paper in the order they were drawn."""
+"""Walk over the model space of a DXF and collect its lines on paper.
+
+Blocks are unfolded. The lines keep the order in which they were drawn.
+"""
 
 from __future__ import annotations
 
@@ -22,10 +25,11 @@ from .pens import Pen, Pens
 from .text_entities import Letters
 
 _TOLERANCE_MM = 1e-4
-_MOST_ENTITIES = 100_000  # a brush paints some thousand strokes a day; what unfolds to more was made to
+# A brush paints some thousand strokes a day. Only a malicious drawing unfolds to more entities.
+_MOST_ENTITIES = 100_000
 _MOST_CUBICS = 1_000_000
-_FARTHEST_MM = 1e11  # from the origin: beyond it a number of 64 bits does not know hundredths of a hair
-_DEEPEST = 50  # blocks in blocks
+_FARTHEST_MM = 1e11  # distance from the origin; beyond it the precision of 64 bits is too low
+_DEEPEST = 50  # nesting depth of blocks
 _JOINABLE = frozenset(("LINE", "ARC", "ELLIPSE", "SPLINE"))
 _SILENT = frozenset(("VIEWPORT", "SEQEND"))
 _TEXT = frozenset(("TEXT", "ATTRIB", "ATTDEF"))
@@ -35,10 +39,13 @@ _ENDLESS = frozenset(("RAY", "XLINE"))
 
 @dataclass(frozen=True)
 class Piece:
-    """What one entity paints. curves: cubics (n, 4, 3) on paper [mm], z up to the caller; widths in mm.
+    """The lines or the filled shape that one entity paints.
 
-    block: the block reference it comes from, "" for the drawing itself; fill_rule: "" for lines; joinable: may be
-    part of a longer line.
+    id: name of the entity, with the names of the block references around it.
+    block: the block reference that contains the entity, "" for the drawing itself.
+    curves: cubics (n, 4, 3) on paper [mm], with z left to the caller; widths in mm.
+    fill_rule: "" for lines.
+    joinable: whether the piece may be part of a longer line.
     """
 
     id: str
@@ -51,7 +58,11 @@ class Piece:
 
 @dataclass(frozen=True)
 class _Place:
-    """Where a block's entities go. mm_from_block: (4, 4), from the right: row vectors."""
+    """The place of the entities of a block.
+
+    mm_from_block: (4, 4), maps row vectors, so it stands to the right of a point.
+    pen: the pen of the block reference; name: its name; blocks: the blocks around it, to find blocks in themselves.
+    """
 
     mm_from_block: np.ndarray
     pen: Pen | None = None
@@ -60,42 +71,45 @@ class _Place:
 
     @cached_property
     def stretch(self) -> float:
-        """Greatest length on paper of a unit [mm]."""
+        """Greatest length on paper of one unit [mm]."""
         return float(np.linalg.norm(self.mm_from_block[:3, :3], 2))
 
     def widths_mm(self, line: Curve, normal) -> np.ndarray:
-        """Return the vector across the line on paper, from the plane of a polyline's normal: blocks can be squeezed."""
+        """Return the widths (n, 2) of a line on paper [mm].
+
+        A block can be squeezed, so a width depends on the direction across the line, in the plane of the polyline.
+        """
         mean = math.sqrt(abs(float(np.linalg.det(self.mm_from_block[:2, :2]))))
         along = line.cubics[:, (1, 3)] - line.cubics[:, (0, 2)]  # at the start and end of each
         along /= np.linalg.norm(along, axis=2, keepdims=True)
         across = np.cross(np.asarray(normal, dtype=float), along)
         (tx, ty), (nx, ny) = (
-            (each @ self.mm_from_block[:3, :2]).transpose(2, 0, 1) for each in (along, across)
+            (vectors @ self.mm_from_block[:3, :2]).transpose(2, 0, 1) for vectors in (along, across)
         )
         squeezed = np.abs(tx * ny - ty * nx) / np.hypot(tx, ty) / mean
-        # Rounded, for one width is to stay one; where a piece has no length, it has no direction.
+        # Rounding keeps equal widths equal. A piece without length has no direction, so its factor is 1.
         return line.widths * mean * np.where(np.isfinite(squeezed), squeezed.round(9), 1.0)
 
 
 def _shift(by) -> np.ndarray:
-    """(4, 4) of rows, as ezdxf's matrices: a point (1, 4) stands on its left."""
+    """Return the (4, 4) matrix of a translation for row vectors, as ezdxf has them."""
     matrix = np.eye(4)
     matrix[3, :3] = by
     return matrix
 
 
 def _top(name: str) -> str:
-    """A place in the drawing itself: names of blocks in blocks can be of any length."""
+    """Return the first part of a name: names of blocks in blocks can have any length."""
     return name.partition("/")[0]
 
 
 def _lines_of(attribute):
-    """What shows an attribute: newer ones can have several lines."""
+    """Return the entity with the text of an attribute: newer attributes can have several lines."""
     return attribute.virtual_mtext_entity() if attribute.has_embedded_mtext_entity else attribute
 
 
 class Walk:
-    """pieces and notices of the model space, once run."""
+    """The walk over the model space of a document. Call run, then use pieces and notices."""
 
     def __init__(self, document: ezdxf.document.Drawing, mm_per_unit: float):
         self.document = document
@@ -145,7 +159,7 @@ class Walk:
                     self._leave_out(kind, not_read(kind), code="dxf-entity-unread")
                     continue
                 if kind == "ATTDEF" and place.blocks and not (entity.is_const and not entity.is_invisible):
-                    continue  # what stands in its place is an ATTRIB of the INSERT
+                    continue  # an ATTRIB of the INSERT takes the place of the definition
                 pen = self.pens.pen(entity, place.pen)
                 layer = pen.layer
                 self._entity(entity, kind, name, pen, place)
@@ -177,7 +191,7 @@ class Walk:
             self._piece(entity, kind, name, pen, place, lines)
         elif kind == "MTEXT":
             parts = self.letters.parts(entity, name, pen.layer)
-            # its letters know their colour: "by block" is the block that the whole text is in
+            # The letters have their own colours, where "by block" refers to the block around the whole text.
             self._parts(parts, name, place.pen, place)
         elif kind in _ENDLESS:
             self._leave_out(kind, f"{kind} has no ends", code="line-without-ends")
@@ -196,7 +210,11 @@ class Walk:
         self._walk(parts, _Place(place.mm_from_block, pen, name, (*place.blocks, name)))
 
     def _curves(self, entity, stretch: float) -> list[Curve] | None:
-        """Kept for the next time its block is inserted at about that size: unfolding must not cost more than once."""
+        """Return the curves of an entity from a cache.
+
+        A block can be inserted many times. Its entities are converted once for each size, rounded up to a power
+        of 2.
+        """
         stretch = 2.0 ** math.ceil(math.log2(stretch))
         key = entity.dxf.handle, stretch
         if key not in self._known or key[0] is None:
@@ -242,7 +260,10 @@ class Walk:
             self._walk(block, _Place(inner, pen, name + suffix, (*place.blocks, key)))
 
     def _array(self, insert, name: str):
-        """(Suffix of the name, shift in the world of the insert) of each place of a block in rows and columns."""
+        """Return (name suffix, shift) of each cell if a block is inserted in rows and columns.
+
+        The shift is in the world of the insert.
+        """
         dxf = insert.dxf
         rows = dxf.get("row_count", 1) if dxf.get("row_spacing", 0.0) else 1
         columns = dxf.get("column_count", 1) if dxf.get("column_spacing", 0.0) else 1

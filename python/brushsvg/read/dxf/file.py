@@ -1,4 +1,4 @@
-"""Bytes to an ezdxf document, as far as they can be repaired, and what was repaired."""
+"""Load an ezdxf document from bytes, repair it if possible, and report the repairs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _MOST_NOTICES = 5
 _NUMBER = ezdxf.audit.AuditError.INVALID_FLOATING_POINT_VALUE
 
 
-_UNSEEN = {  # repairs of what ties the parts of a file together, and of what is not painted
+_UNSEEN = {  # repairs of links between the parts of a file, and of parts that are not painted
     ezdxf.audit.AuditError[name]
     for name in """CREATED_MISSING_OBJECT GROUP_ENTITIES_IN_DIFFERENT_LAYOUTS INVALID_CREASE_VALUE_COUNT
     INVALID_DICTIONARY_ENTRY INVALID_DIMSTYLE INVALID_ENTITY_HANDLE INVALID_GROUP_ENTITIES INVALID_OWNER_HANDLE
@@ -27,17 +27,20 @@ _UNSEEN = {  # repairs of what ties the parts of a file together, and of what is
 
 class _Auditor(ezdxf.audit.Auditor):
     def check_block_reference_cycles(self) -> None:
-        """Left out: it walks every path through nested blocks. We count while we unfold them."""
+        """Do nothing: this check walks every path through nested blocks.
+
+        The walk over the entities limits the number of blocks in its own way.
+        """
 
     def trash(self, entity) -> None:
-        """What is drawn is kept even if it is broken, so that the walk can name it."""
+        """Keep drawn entities even if they are damaged, so that the walk can name them."""
         if not isinstance(entity, ezdxf.entities.DXFGraphic):
             super().trash(entity)
-        elif self.fixes and str(entity) in self.fixes[-1].message:  # "removed"
+        elif self.fixes and str(entity) in self.fixes[-1].message:  # this fix reports the removal
             self.fixes.pop()
 
     def repairs(self) -> list[Notice]:
-        """Return a notice for each repair that may change the painting; repairs of one kind share a notice."""
+        """Return a notice for each repair that may change the painting."""
         return [
             Notice(
                 str(fix.entity or "file"),
@@ -51,7 +54,10 @@ class _Auditor(ezdxf.audit.Auditor):
 
 
 def open_dxf(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
-    """The document and a few notices on its damage. Error if it is no DXF, or damaged beyond repair."""
+    """Load a document, and notices about its damage.
+
+    Raises Error if the data is not a DXF or is damaged beyond repair.
+    """
     if data[:4] == b"AC10" and data[4:6].isdigit():
         raise Error(
             "the file is a DWG, not a DXF: save it as DXF in the program that made it", code="dxf-damaged"
@@ -84,7 +90,7 @@ def _text(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
     try:
         document, recovered = _loaded(data, entities)
         bad_numbers = any(code == _NUMBER for code, _ in recovered.errors)
-    except Exception:  # as above; the walk reports the problem entity by entity
+    except Exception:  # ezdxf raises anything; the strict filter below reports the damaged entities
         bad_numbers = True
     if bad_numbers:
         entities = Entities(is_strict=True)
@@ -103,7 +109,7 @@ def _text(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
 
 
 def _loaded(data: bytes, entities: Entities) -> tuple[ezdxf.document.Drawing, ezdxf.recover.Recover]:
-    """As ezdxf.recover.read() does, but without its audit."""
+    """Load a document as ezdxf.recover.read() does, but without the audit."""
     recovered = ezdxf.recover.Recover.run(io.BytesIO(data), loader=entities.tags)
     document = ezdxf.document.Drawing()
     document._load_section_dict(recovered.section_dict)
@@ -111,7 +117,7 @@ def _loaded(data: bytes, entities: Entities) -> tuple[ezdxf.document.Drawing, ez
 
 
 def _up_to_the_last_entity(data: bytes) -> bytes:
-    """Of a file that was cut short: what follows a last group code 0 may be half an entity."""
+    """Return a file that was cut short without its last entity, which may be incomplete."""
     lines = data.split(b"\n")
     codes = range(0, len(lines), 2)
     last = next((k for k in reversed(codes) if lines[k].strip() == b"0"), 0)
@@ -119,17 +125,17 @@ def _up_to_the_last_entity(data: bytes) -> bytes:
 
 
 def not_read(kind: str) -> str:
-    """The beginning of the sentence on entities of a kind that nobody here reads."""
+    """Return the beginning of a sentence about entities of a type that is not read."""
     return f"{kind} is not read" + (", what it covers is painted" if kind == "WIPEOUT" else "")
 
 
 def reason(problem: Exception) -> str:
-    """What ezdxf says of a problem, as the end of a sentence."""
+    """Return the message of an exception of ezdxf, as the end of a sentence."""
     return shown(str(problem)).rstrip(".") or type(problem).__name__
 
 
 def shown(text: str, most: int = 120) -> str:
-    """Text of a file as it can stand in a sentence: one line, nothing that does not print."""
+    """Return text of a file for use in a sentence: one line, printable, shortened."""
     text = " ".join("".join(c if c.isprintable() or c.isspace() else "?" for c in text).split())
     return text if len(text) <= most else text[: most - 3] + "..."
 

@@ -1,5 +1,7 @@
-"""Find fonts of this machine for the text of a DXF: files are found by their names, and opened only when a text needs
-them."""
+"""Find the fonts of this machine for the text of a DXF.
+
+Font files are found by their names, and opened only if a text needs them.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +18,8 @@ from .file import shown
 _fonts = ezdxf.fonts.fonts
 _found = ezdxf.fonts.font_manager
 
-_MOST_FILES = 50_000  # looked at; beyond, what is not found yet counts as missing
-# Endings of file names, without hyphens and blanks, by (bold, italic); the short ones are Windows'.
+_MOST_FILES = 50_000  # files that are searched; a font beyond them counts as missing
+# Endings of file names, without hyphens and blanks, by (bold, italic). Windows uses the short endings.
 _ENDINGS = {
     (False, False): ("", "regular", "book", "roman"),
     (True, False): ("bold", "bd", "b"),
@@ -27,38 +29,42 @@ _ENDINGS = {
 
 
 class NoFontError(Exception):
-    """This machine has no font."""
+    """The machine has no usable font."""
 
 
 @dataclass(frozen=True)
 class Font:
-    """name: for people; path: of its file; why: it replaces another one, "" if it is the requested font."""
+    """A font file.
+
+    name: the name for messages; path: of the file; why: the reason why it replaces the requested font, "" if it is
+    the requested font.
+    """
 
     name: str
     path: Path
     why: str = ""
 
     def drawn_at(self, cap_height: float, width_factor: float = 1.0):
-        """ezdxf's AbstractFont."""
+        """Return the font as an AbstractFont of ezdxf."""
         font = _fonts.sideload_ttf(self.path, cap_height)
         font.width_factor = width_factor
         return font
 
     def missing(self, text: str) -> list[str]:
-        """Characters it has no glyph for."""
+        """Return the characters of a text for which the font has no glyph."""
         known = self.drawn_at(1.0).glyph_cache.cmap
         return [c for c in dict.fromkeys(text) if not c.isspace() and ord(c) not in known]
 
 
 class Fonts:
-    """The fonts of text styles, or what stands for them."""
+    """The fonts of text styles, or the fonts that replace them."""
 
     def __init__(self, styles):
         self._styles = styles
         self._known: dict[tuple, Font] = {}
 
     def face(self, style_name: str):
-        """What a text style asks for, an ezdxf FontFace."""
+        """Return the FontFace of ezdxf that a text style asks for."""
         known = style_name in self._styles
         style = self._styles.get(style_name) if known else ezdxf.entities.Textstyle()
         family, italic, bold = style.get_extended_font_data()
@@ -66,7 +72,7 @@ class Fonts:
         return _fonts.FontFace(style.dxf.font, family, slant, weight)
 
     def font(self, face) -> Font:
-        """NoFontError if there is none at all."""
+        """Return the font for a FontFace. Raises NoFontError if the machine has no font."""
         key = face.filename, face.family, face.is_bold, face.is_italic
         if key not in self._known:
             self._known[key] = self._opened(face)
@@ -90,7 +96,10 @@ class Fonts:
 
     @cached_property
     def _files(self) -> dict[str, Path]:
-        """By file name in lower case; of two, the first in ezdxf's order of folders."""
+        """Font files by name in lower case.
+
+        If two files have the same name, the first in ezdxf's order of folders counts.
+        """
         folders = _found.FONT_DIRECTORIES.get(platform.system(), _found.LINUX_FONT_DIRS)
         files = (path for folder in folders for path in _files_in(os.path.expanduser(folder)))
         found: dict[str, Path] = {}
@@ -105,7 +114,7 @@ class Fonts:
 
     @cached_property
     def _stand_in(self) -> Font | None:
-        """One that looks like Arial, or any upright sans serif."""
+        """A font that looks like Arial, or any upright sans serif font."""
         names = [name.lower() for name in _found.DEFAULT_FONTS]
         names += [
             name for name in sorted(self._files) if _plain(Path(name).stem).endswith(("sans", "sansregular"))
@@ -126,7 +135,7 @@ def _usable(path: Path) -> Font | None:
         names = font.glyph_cache.font["name"]
         name = names.getBestFullName() or names.getBestFamilyName() or path.stem
         return Font(shown(name, 40), path)
-    except Exception:  # fontTools raises anything on a file that is no font
+    except Exception:  # fontTools raises anything on a file that is not a font
         return None
 
 

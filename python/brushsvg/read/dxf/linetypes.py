@@ -1,4 +1,4 @@
-"""Lines of a DXF cut into the dashes of their line type."""
+"""Cut lines of a DXF into the dashes of their line type."""
 
 from __future__ import annotations
 
@@ -14,19 +14,25 @@ from ..design import Element, Notice, SubPath
 from .pens import Pen
 
 _MOST_DASHES = 100_000
-_MEETS_MM = 1e-6  # what rounding leaves between the end of a line and that of its last dash
+_MEETS_MM = 1e-6  # rounding error between the end of a line and the end of its last dash
 
 
 class Dashes:
-    """notices: on all that was cut so far, and on what was not."""
+    """Cuts the elements of a drawing into dashes, up to a common limit.
+
+    notices: about the elements that were cut, and about line types that are not read.
+    """
 
     def __init__(self):
         self.notices: list[Notice] = []
         self._left = _MOST_DASHES
 
     def cut(self, element: Element, pen: Pen, anew: list[np.ndarray]) -> Element:
-        """The element with each dash a sub-path. anew: for each sub-path the cubics with which, next to the first, the
-        pattern begins. Error if there are too many."""
+        """Return the element with each dash as a sub-path.
+
+        anew: for each sub-path, the indices of the cubics at which the pattern restarts, without the first cubic.
+        Raises Error if there are too many dashes.
+        """
         if pen.line_type is None or element.fill_rule:
             return element
         pattern = [length * pen.line_scale for length in pen.line_type.pattern_mm]
@@ -55,7 +61,9 @@ class Dashes:
         pieces: list[SubPath] = []
         for subpath, begins, length in zip(element.subpaths, anew, lengths, strict=True):
             runs = np.split(np.arange(len(length)), begins)
-            if all(length[run].sum() < sum(pattern) for run in runs):  # CAD programs draw it unbroken
+            if all(
+                length[run].sum() < sum(pattern) for run in runs
+            ):  # CAD programs draw short lines unbroken
                 pieces.append(subpath)
                 continue
             try:
@@ -69,7 +77,7 @@ class Dashes:
         return replace(element, subpaths=tuple(pieces))
 
     def _in_dashes(self, subpath: SubPath, runs, length: np.ndarray, pattern, most: int) -> list[SubPath]:
-        """Each run of cubics in dashes of its own, of which two that meet at a corner are one."""
+        """Cut each run of cubics into its own dashes, and join two dashes that meet at a corner."""
         if len(runs) == 1:
             return cut_into_dashes(subpath, pattern, 0.0, most)
         found: list[np.ndarray] = []
@@ -90,6 +98,6 @@ class Dashes:
 
 
 def _meet(first: np.ndarray, second: np.ndarray) -> bool:
-    """Whether one dash, which is no dot, goes on in another one."""
+    """Whether a dash continues in another dash. A dot does not continue."""
     is_long = all(np.abs(cubics - cubics[:1, :1]).max() > _MEETS_MM for cubics in (first, second))
     return is_long and math.dist(first[-1, 3], second[0, 0]) <= _MEETS_MM

@@ -1,4 +1,4 @@
-"""What a DXF entity is drawn with: layer, colour and line weight, inherited from layers and blocks."""
+"""Pens of DXF entities: layer, colour and line weight, inherited from layers and blocks."""
 
 from __future__ import annotations
 
@@ -7,16 +7,19 @@ from dataclasses import dataclass, replace
 from .ezdxf_import import ezdxf
 from .file import shown
 
-_BYBLOCK, _BYLAYER = 0, 256  # as colours
+_BYBLOCK, _BYLAYER = 0, 256  # colour numbers
 _WEIGHT_BYLAYER, _WEIGHT_BYBLOCK = -1, -2
 _OWN_TRANSPARENCY, _TRANSPARENCY_BYBLOCK = 0x02000000, 0x01000000
-_DEFAULT_WIDTH_MM = 0.25  # what CAD programs draw line weight "default" with; DXF itself does not say
+_DEFAULT_WIDTH_MM = 0.25  # width of line weight "default" in CAD programs; the DXF format does not define it
 _BLACK = "#000000"
 
 
 @dataclass(frozen=True)
 class LineType:
-    """pattern_mm: dash, gap, dash, gap ...; () if it has letters or shapes, or is broken itself."""
+    """A line type.
+
+    pattern_mm: lengths of dash, gap, dash, gap ...; () if the line type has letters or shapes, or is damaged.
+    """
 
     name: str
     pattern_mm: tuple[float, ...]
@@ -24,10 +27,14 @@ class LineType:
 
 @dataclass(frozen=True)
 class Pen:
-    """layer: its name, for people and to look it up; hidden: why nothing of it is painted, "" if it is.
+    """The properties with which an entity is drawn.
 
-    line_type: None if unbroken; line_scale: of its pattern; frozen: blocks inserted on this layer are hidden with all
-    they hold; see_through: paint cannot be.
+    layer: name of the layer, for messages; key: name of the layer, for look-ups.
+    width_mm: line width.
+    line_type: None if unbroken; line_scale: factor of its pattern.
+    hidden: the reason why the layer is not painted, "" if it is painted.
+    frozen: whether blocks inserted on this layer are hidden with all that they contain.
+    see_through: whether it is transparent, which paint cannot be.
     """
 
     layer: str = "0"
@@ -42,7 +49,7 @@ class Pen:
 
 
 class Pens:
-    """The layers of a document, and what they make of its entities."""
+    """The pens of a document: its layers, and the pens of its entities."""
 
     def __init__(self, document: ezdxf.document.Drawing, mm_per_unit: float):
         scale = document.header.get("$LTSCALE", 1.0) * mm_per_unit
@@ -51,11 +58,14 @@ class Pens:
         self._layers = {_key(layer.dxf.name): self._of_layer(layer) for layer in document.layers}
 
     def hidden(self) -> dict[str, str]:
-        """Why each layer is not painted, "" if it is."""
+        """Return for each layer the reason why it is not painted, "" if it is painted."""
         return {pen.layer: pen.hidden for pen in self._layers.values()}
 
     def pen(self, entity, outer: Pen | None) -> Pen:
-        """outer: the pen of the block reference the entity is in, None outside of blocks."""
+        """Return the pen of an entity.
+
+        outer: the pen of the block reference that contains the entity, None outside of blocks.
+        """
         dxf, block = entity.dxf, outer or Pen()
         name, key = shown(dxf.layer), _key(dxf.layer)
         if key == "0":
@@ -76,7 +86,7 @@ class Pens:
         )
 
     def filling(self, entity, pen: Pen, outer: Pen | None) -> Pen:
-        """What an MPOLYGON is filled with: its own pen draws its border."""
+        """Return the pen that fills an MPOLYGON. The pen of the entity itself draws the border."""
         layer = self._layers.get(pen.key) or Pen()
         number = entity.dxf.get("fill_color", _BYLAYER)
         return replace(pen, colour=self._numbered(number, layer, outer or Pen()))
@@ -122,7 +132,10 @@ class Pens:
 
     @staticmethod
     def _width_mm(weight: int, layer: Pen, block: Pen) -> float:
-        """weight: in 1/100 mm. 0 is "as thin as can be", which a brush takes for the default."""
+        """Return the line width.
+
+        weight: in 1/100 mm. The weight 0 means "as thin as possible". A brush uses the default width instead.
+        """
         if weight == _WEIGHT_BYLAYER:
             return layer.width_mm
         if weight == _WEIGHT_BYBLOCK:
@@ -141,9 +154,11 @@ def _line_type(line, scale: float) -> LineType | None:
 
 
 def _cyclic(elements: list[float]) -> list[float]:
-    """Lengths of dash, gap, dash, gap ... of a line type, [] without a dash; elements: its dashes, its gaps below 0.
+    """Return the lengths of dash, gap, dash, gap ... of a line type, [] if it has no dash.
 
-    It starts with a whole dash, as CAD programs start lines.
+    The pattern starts with a whole dash, because CAD programs start lines with one.
+
+    elements: lengths of the line type; gaps are negative.
     """
     first = next((k for k, element in enumerate(elements) if not element < 0), len(elements))
     pattern: list[float] = []
@@ -158,7 +173,10 @@ def _cyclic(elements: list[float]) -> list[float]:
 
 
 def _rgb(true_colour: tuple[int, int, int] | None, number: int) -> str:
-    """White is what CAD programs show on black paper in place of black: number 7 is either."""
+    """Return a colour as "#rrggbb", with black in place of white.
+
+    CAD programs show black as white on a black background. Colour number 7 stands for both.
+    """
     if true_colour is None:
         true_colour = ezdxf.colors.aci2rgb(number) if 0 < number < 256 and number != 7 else (0, 0, 0)
     colour = "#{:02x}{:02x}{:02x}".format(*true_colour)

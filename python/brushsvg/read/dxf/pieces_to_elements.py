@@ -1,4 +1,7 @@
-"""What DXF entities paint, as elements of a Design: lines that meet joined, widths along the arc length."""
+"""Convert the pieces of a DXF to elements of a Design.
+
+Lines that meet are joined. Widths are given along the arc length.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +16,15 @@ from .entity_curves import Curve, reversed_cubics, straight
 from .entity_walk import Piece
 from .splines import joined
 
-_GAP_MM = 1e-4  # ends nearer than this meet
-_NOTHING_MM = 1e-6  # cubics below it have a direction made of rounding errors
+_GAP_MM = 1e-4  # ends within this distance meet
+_NOTHING_MM = 1e-6  # size of a cubic below which its direction consists of rounding errors
 
 
 def chained(pieces: list[Piece]) -> list[Piece]:
-    """Lines that were drawn one after the other and meet, as one: the brush is not lifted between them."""
+    """Join lines that were drawn one after the other and meet.
+
+    The brush is not lifted between the lines of a chain.
+    """
     chains: list[list[Piece]] = []
     ends = None  # of the last chain: start and end
     for piece in pieces:
@@ -70,8 +76,10 @@ def element_of(piece: Piece) -> Element:
 
 
 def anew(piece: Piece) -> list[np.ndarray]:
-    """For each sub-path of the piece's element the cubics, but for the first, with which a line type's pattern begins
-    anew."""
+    """Find the cubics at which the pattern of a line type restarts.
+
+    Returns an array of indices for each sub-path of the piece's element, without the first cubic.
+    """
     found = []
     for curve in piece.curves:
         cubics, _ = _with_its_end(curve)
@@ -83,7 +91,10 @@ def anew(piece: Piece) -> list[np.ndarray]:
 
 
 def _with_its_end(curve: Curve) -> tuple[np.ndarray, float]:
-    """Its cubics, closed if it is, and how far its ends are apart as drawn."""
+    """Return the cubics of a curve (n, 4, 2) and the distance of its ends as drawn.
+
+    If the curve is closed and its ends do not meet, a last cubic connects them.
+    """
     cubics = curve.cubics[..., :2]
     gap = math.dist(cubics[0, 0], cubics[-1, 3])
     if curve.closed and gap > _GAP_MM:
@@ -106,7 +117,7 @@ def _subpath(curve: Curve, default_mm: float) -> SubPath:
         point = np.repeat(cubics[:1, :1], 4, axis=1)
         return SubPath(point, widths=None if widths is None else np.array([[0.0, widths.max()]]))
     cubics, widths = joined(cubics[real]), None if widths is None else widths[real]
-    # As drawn if it has widths: one that tapers off where it began is not a ring.
+    # A line with widths is closed only if drawn so: a line that tapers off where it began is not a ring.
     closed = curve.closed or (gap <= _GAP_MM and widths is None)
     if closed:
         cubics[-1, 3] = cubics[0, 0]
@@ -114,7 +125,10 @@ def _subpath(curve: Curve, default_mm: float) -> SubPath:
 
 
 def _along(cubics: np.ndarray, widths: np.ndarray) -> np.ndarray:
-    """(k, 2): fraction of the arc length and width there; two rows at one fraction where the width jumps."""
+    """Return rows (k, 2) of a fraction of the arc length and the width there.
+
+    Where the width jumps, two rows have the same fraction.
+    """
     at = np.cumsum([0.0, *knots(cubics)[:, -1]])
     at = at / at[-1]
     rows = np.column_stack((np.column_stack((at[:-1], at[1:])).ravel(), widths.ravel()))

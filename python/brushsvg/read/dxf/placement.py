@@ -1,4 +1,7 @@
-"""Place a DXF's lines on the sheet: model space has no page, and its origin can be anywhere on earth."""
+"""Place the lines of a DXF on the sheet.
+
+Model space has no page, and its origin can be far away, as in maps.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +18,10 @@ MARGIN_MM = 20.0
 
 
 def anchored(pieces: list[Piece]) -> list[Piece]:
-    """Return the pieces, moved to the origin if most of them are beyond 1e6 mm from it, as in the coordinates of
-    maps."""
+    """Move the pieces to the origin if most of them are more than 1e6 mm away from it.
+
+    The coordinates of maps are that large.
+    """
     if not pieces:
         return pieces
     starts = np.array([piece.curves[0].cubics[0, 0, :2] for piece in pieces])
@@ -45,7 +50,10 @@ def in_range(pieces: list[Piece]) -> tuple[list[Piece], list[Notice]]:
 
 
 def with_margin(elements: list[Element]) -> tuple[tuple[float, float], tuple[Element, ...]]:
-    """The sheet that holds all that is drawn, widths included, and 20 mm around it; the elements moved onto it."""
+    """Return a sheet (width, height) [mm] for the elements, and the elements moved onto it.
+
+    The sheet is the bounding box of the elements with their widths, plus a margin of 20 mm.
+    """
     least, greatest = extents(elements)
     shift = MARGIN_MM - least
     width, height = (greatest + shift + MARGIN_MM).tolist()
@@ -53,7 +61,7 @@ def with_margin(elements: list[Element]) -> tuple[tuple[float, float], tuple[Ele
 
 
 def extents(elements: list[Element]) -> tuple[np.ndarray, np.ndarray]:
-    """Lower left and upper right corner of what is drawn, half the widths included."""
+    """Return the lower left and upper right corner of the elements, half the widths included."""
     cubics, halves = [], []
     for element in elements:
         for subpath in element.subpaths:

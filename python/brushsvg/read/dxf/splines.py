@@ -1,4 +1,7 @@
-"""B-splines to cubics: exact up to degree 3 with even weights, else to a tolerance."""
+"""Convert B-splines to cubics.
+
+The cubics are exact up to degree 3 with equal weights, otherwise they keep a tolerance.
+"""
 
 from __future__ import annotations
 
@@ -6,23 +9,27 @@ import numpy as np
 
 from .ezdxf_import import ezdxf
 
-_LARGEST_DEGREE = 32  # CAD programs stop at 25; the work grows with its square
-_MOST_FIT_POINTS = 2000  # ezdxf solves a full system of equations for them
-_MOST_HALVINGS = 12  # a piece 4096 times shorter that still does not fit has no tangent
+_LARGEST_DEGREE = 32  # CAD programs stop at 25; the work grows with the square of the degree
+_MOST_FIT_POINTS = 2000  # ezdxf solves a full system of equations for the fit points
+_MOST_HALVINGS = 12  # a piece that is 4096 times shorter and still does not fit has no tangent
 _MOST_PIECES = 100_000
-_JUMPS = 100  # tolerances: by less the digits of a file are off, and no brush is lifted for it
+_JUMPS = (
+    100  # in tolerances; smaller gaps come from the digits of a file, and the brush is not lifted for them
+)
 
 
 def joined(cubics: np.ndarray) -> np.ndarray:
-    """Cubics (n, 4, d) of which each starts exactly where the one before it ends."""
+    """Return cubics (n, 4, d), each moved to start exactly where the one before it ends."""
     cubics = cubics.copy()
     cubics[1:, 0] = cubics[:-1, 3]
     return cubics
 
 
 def interpolated(fit_points, tangents, tolerance: float) -> list[np.ndarray]:
-    """Return cubics (n, 4, 3) through fit points, as CAD programs draw them; tangents: at the start and end, or
-    None."""
+    """Return lines of cubics (n, 4, 3) through fit points, as CAD programs draw them.
+
+    tangents: (start, end), None where unknown. Raises ValueError if there are too many fit points.
+    """
     if len(fit_points) > _MOST_FIT_POINTS:
         raise ValueError(f"{len(fit_points)} fit points without control points, {_MOST_FIT_POINTS} are read")
     places = [tuple(point) for point in fit_points]
@@ -34,10 +41,13 @@ def interpolated(fit_points, tangents, tolerance: float) -> list[np.ndarray]:
 
 
 def b_spline(degree: int, knots, points, weights, tolerance: float) -> list[np.ndarray]:
-    """Lines of cubics (n, 4, 3): one, unless the curve jumps at a knot that stands there degree + 1 times. points:
-    (n, 3); no knots: evenly spaced ones, clamped; no weights: all alike.
+    """Return a B-spline as lines of cubics (n, 4, 3).
 
-    ValueError if they do not go together.
+    There is one line, unless the curve jumps at a knot of multiplicity degree + 1.
+
+    knots: if empty, evenly spaced and clamped; points: (n, 3); weights: if empty, all equal.
+
+    Raises ValueError if degree, knots, points and weights do not fit together.
     """
     points = np.array(points, dtype=float).reshape(-1, 3)
     knots, weights = np.array(knots, dtype=float), np.array(weights, dtype=float)
@@ -65,7 +75,10 @@ def b_spline(degree: int, knots, points, weights, tolerance: float) -> list[np.n
 
 
 def _beziers(points: np.ndarray, knots: np.ndarray, degree: int) -> np.ndarray:
-    """Control points (spans, degree + 1, 4) of each span that is not empty: its polar forms, by de Boor's scheme."""
+    """Return the Bezier control points (spans, degree + 1, 4) of each span that is not empty.
+
+    The control points are polar forms, evaluated by de Boor's scheme.
+    """
     tiny = 1e-10 * (knots[-1] - knots[0])
     spans = np.array([k for k in range(degree, len(points)) if knots[k + 1] - knots[k] > tiny], dtype=int)
     if not len(spans):
@@ -93,12 +106,16 @@ def _elevated(pieces: np.ndarray) -> np.ndarray:
 
 
 def _fitted(pieces: np.ndarray, tolerance: float) -> np.ndarray:
-    """Cubics in place of rational Bezier curves (n, degree + 1, 4): those that do not fit are halved."""
+    """Return cubics in place of rational Bezier curves (n, degree + 1, 4).
+
+    Curves that a cubic does not fit are halved until it fits.
+    """
     begin, length = np.arange(len(pieces), dtype=float), 1.0
     begins, found = [], []
     for halvings in range(_MOST_HALVINGS + 1):
         cubics, off = _hermite(pieces)
-        rough = (off > 0.5 * tolerance) & (halvings < _MOST_HALVINGS)  # not nan: caught where all geometry is
+        # False for nan, which the check of all geometry finds later.
+        rough = (off > 0.5 * tolerance) & (halvings < _MOST_HALVINGS)
         begins.append(begin[~rough])
         found.append(cubics[~rough])
         if not rough.any():
@@ -112,7 +129,10 @@ def _fitted(pieces: np.ndarray, tolerance: float) -> np.ndarray:
 
 
 def _hermite(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cubics with the ends and end tangents of rational curves, and how far they are off at three parameters."""
+    """Return cubics with the ends and end tangents of rational curves, and their errors.
+
+    The error (n,) is the greatest deviation at three parameters.
+    """
     degree = pieces.shape[1] - 1
     weights = pieces[..., 3:]
     p = pieces[..., :3] / weights
@@ -127,7 +147,7 @@ def _hermite(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _halves(points: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
-    """de Casteljau: the control points (n, degree + 1, d) left and right of t."""
+    """Split curves at t by de Casteljau: control points (n, degree + 1, d) left and right."""
     left, right = [points[:, 0]], [points[:, -1]]
     while points.shape[1] > 1:
         points = (1 - t) * points[:, :-1] + t * points[:, 1:]

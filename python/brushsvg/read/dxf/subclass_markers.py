@@ -1,6 +1,7 @@
-"""Newer entities as minimal exporters write them, marked as ezdxf wants them.
+"""Add the subclass markers that ezdxf needs to entities of minimal exporters.
 
-Such files have no header, or call themselves R12, or leave the markers of subclasses (group code 100) out.
+Files of minimal exporters have newer entities, but no header, or the version R12, or no markers of subclasses (group
+code 100).
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ SUBCLASS = {
 OF_ALL = b"AcDbEntity"
 MARKED = b"AC1012"  # the first version with markers
 _MARKER = 100
-_HEAD = frozenset((0, 5, 102, 330, 360))  # type, handles
-_GRAPHIC = frozenset((6, 8, 48, 60, 62, 67, 370, 410, 420, 430, 440))  # layer, line type, colour ...
+_HEAD = frozenset((0, 5, 102, 330, 360))  # group codes of type and handles
+_GRAPHIC = frozenset((6, 8, 48, 60, 62, 67, 370, 410, 420, 430, 440))  # codes of layer, line type, colour ...
 
 Tag = ezdxf.lldxf.types.DXFTag
 
@@ -32,7 +33,7 @@ def is_marked(entity: list[Tag]) -> bool:
 
 
 def with_markers(entity: list[Tag], subclass: bytes) -> list[Tag]:
-    """An entity as ezdxf reads it; one that is marked stays as it is."""
+    """Return an entity with its subclass markers. A marked entity stays as it is."""
     markers = [tag.value.strip() for tag in entity if tag.code == _MARKER]
     if markers[:2] == [OF_ALL, subclass]:
         return entity

@@ -1,7 +1,8 @@
-"""Which entities of a text DXF are let through, before ezdxf builds anything of them; entity_curves draws them.
+"""Filter the entities of a text DXF before ezdxf builds them.
 
-ezdxf refuses a whole file over one entity that it cannot build, and drops others without a word. So what nobody here
-reads is taken out beforehand and counted, and, where the file cannot be loaded without, what is broken.
+ezdxf refuses a whole file because of one entity that it cannot build, and drops others without a message. So this
+filter removes and counts the entities that brushsvg does not read. If a file cannot be loaded otherwise, it also
+removes damaged entities. entity_curves converts the rest.
 """
 
 from __future__ import annotations
@@ -16,12 +17,12 @@ from .subclass_markers import MARKED, SUBCLASS, Tag, is_marked, with_markers
 
 _R12 = "ARC ATTDEF ATTRIB BLOCK CIRCLE DIMENSION ENDBLK INSERT LINE POINT POLYLINE SEQEND SOLID TEXT TRACE VERTEX"
 _OLD = frozenset([*_R12.encode().split(), b"3DFACE"])
-_BARE = frozenset((b"ELLIPSE", b"RAY", b"XLINE"))  # read without markers, too
+_BARE = frozenset((b"ELLIPSE", b"RAY", b"XLINE"))  # ezdxf also reads these without markers
 _ONLY_MARKED = frozenset(
     b"ACAD_PROXY_ENTITY ARC_DIMENSION HELIX LARGE_RADIAL_DIMENSION MLEADER MULTILEADER".split()
 )
 _NEW = _BARE | _ONLY_MARKED | SUBCLASS.keys()
-_PARTS = frozenset((b"ATTRIB", b"SEQEND", b"VERTEX"))  # of the entity before them
+_PARTS = frozenset((b"ATTRIB", b"SEQEND", b"VERTEX"))  # these belong to the entity before them
 _SILENT = frozenset((b"VIEWPORT",))
 _FLOATS = frozenset((*range(10, 60), *range(140, 150), *range(210, 240)))
 _END = Tag(0, b"EOF")
@@ -29,8 +30,11 @@ _END = Tag(0, b"EOF")
 
 @dataclass
 class Entities:
-    """A loader for ezdxf.recover.Recover. left_out: by type, what is not read; broken: (name, why) of what was taken
-    out for it, if is_strict.
+    """A loader for ezdxf.recover.Recover that filters entities.
+
+    is_strict: remove damaged entities, too.
+    left_out: number of removed entities by type, because the type is not read.
+    broken: (name, reason) of the removed damaged entities.
     """
 
     is_strict: bool = False
@@ -46,7 +50,7 @@ class Entities:
         yield from _versioned(tags[: starts[0]] if starts else tags, kept) if has_new else _flat(kept)
 
     def _readable(self, tags: list[Tag], starts: list[int]) -> Iterator[list[list[Tag]]]:
-        """What stands between group codes 0; entities with all their parts."""
+        """Yield the tags between group codes 0, and each entity together with its parts."""
         section, whole = b"", []
         for begin, end in zip(starts, [*starts[1:], len(tags)], strict=True):
             part, kind = tags[begin:end], tags[begin].value.strip()
@@ -87,7 +91,7 @@ def _flat(parts: list[list[Tag]]) -> Iterator[Tag]:
 
 
 def _versioned(before: list[Tag], parts: list[list[Tag]]) -> Iterator[Tag]:
-    """The tags of a file with newer entities, which then is no R12."""
+    """Yield the tags of a file with newer entities, with a version that allows them."""
     tags = [*before, *_flat(parts)]
     versions = [k + 1 for k, tag in enumerate(tags[:-1]) if tag == (9, b"$ACADVER")]
     for k in versions:
@@ -100,7 +104,7 @@ def _versioned(before: list[Tag], parts: list[list[Tag]]) -> Iterator[Tag]:
 
 
 def _fault(whole: list[list[Tag]]) -> str:
-    """Why ezdxf cannot build an entity of its tags as they are, "" if it can."""
+    """Return the reason why ezdxf cannot build an entity from its tags, "" if it can."""
     for part in whole:
         for code, value in part:
             if code in _FLOATS and not _is_number(value):

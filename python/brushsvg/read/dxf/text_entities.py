@@ -1,4 +1,7 @@
-"""Text of a DXF as outlines: TEXT and ATTRIB as one shape, MTEXT taken apart into such and lines."""
+"""Convert text of a DXF to outlines.
+
+TEXT and ATTRIB become one shape each. MTEXT is exploded into TEXT and LINE entities.
+"""
 
 from __future__ import annotations
 
@@ -17,25 +20,28 @@ from .fonts import Font, Fonts
 
 _tools, _boxes = ezdxf.tools.text, ezdxf.tools.text_layout
 
-_MOST_LETTERS = 50_000  # a brush paints some hundred a day
-_WIDEST = 10_000.0  # columns of MTEXT, in letters: ezdxf makes a tab stop for every fourth
+_MOST_LETTERS = 50_000  # a brush paints a few hundred letters a day
+_WIDEST = 10_000.0  # width of MTEXT columns in letter heights; ezdxf makes a tab stop every 4 heights
 _MOST_COLUMNS = 1000
-_TAB = 4.0  # heights between the tab stops that ezdxf makes where a text has none of its own
-_FRAME = 16  # of MTEXT's bg_fill; the others are paint behind the letters
-_EXACTLY = 2  # of MTEXT's line_spacing_style
-_VERTICALLY = 3  # of MTEXT's flow_direction
-_UPRIGHT_STACK = 4  # of a style's flags: letters one below the other
-_CHARACTER = re.compile(r"(?<!%)%%(\d{3})")  # by its number, in TEXT
-_STROKES = re.compile(r"(?<!%)%%[kou]", re.IGNORECASE)  # lines along TEXT
+_TAB = 4.0  # distance in letter heights of the tab stops that ezdxf makes if a text has no tab stops
+_FRAME = 16  # bit of MTEXT's bg_fill for a frame; the other bits are paint behind the letters
+_EXACTLY = 2  # value of MTEXT's line_spacing_style
+_VERTICALLY = 3  # value of MTEXT's flow_direction
+_UPRIGHT_STACK = 4  # bit of a style's flags: letters one below the other
+_CHARACTER = re.compile(r"(?<!%)%%(\d{3})")  # a character of TEXT by its number
+_STROKES = re.compile(r"(?<!%)%%[kou]", re.IGNORECASE)  # codes for lines along TEXT
 
 
 class Letters:
-    """notices: the fonts of the text so far, once its outlines or parts were requested."""
+    """Converts the text entities of a document.
+
+    notices: the fonts of all text that outlines and parts have converted so far, and unread parts of the text.
+    """
 
     def __init__(self, document: ezdxf.document.Drawing):
         self._document = document
         self._fonts = Fonts(document.styles)
-        self._faces: dict[str, object] = {}  # of the styles MTEXT is taken apart into
+        self._faces: dict[str, object] = {}  # font faces of the styles that exploded MTEXT uses
         self._left = _MOST_LETTERS
         self._drawn: dict[tuple[Font, str], tuple[str, str]] = {}
         self._count: Counter[tuple[Font, str]] = Counter()
@@ -71,12 +77,15 @@ class Letters:
         return found
 
     def outlines(self, entity, name: str, layer: str) -> list[Curve]:
-        """Of a TEXT or ATTRIB, in its own world. NoFontError if this machine has no font."""
+        """Return the outlines of a TEXT or ATTRIB, in its own world.
+
+        Raises NoFontError if the machine has no font.
+        """
         dxf = entity.dxf
         _check_height(dxf.get("height"))
         written = _CHARACTER.sub(lambda found: chr(int(found[1])), dxf.text)
         text = " ".join(_tools.plain_text(written).splitlines())
-        if dxf.style not in self._faces:  # the letters of MTEXT were counted as such
+        if dxf.style not in self._faces:  # the letters of exploded MTEXT are counted already
             self._count_letters(text, name)
         if not text.strip():
             return []
@@ -95,7 +104,7 @@ class Letters:
             self._not_read(name, "its lines along the letters (%%u, %%o, %%k) are not read: left out", layer)
         if self._is_stacked(dxf.style):
             self._not_read(name, _SET_IN_A_LINE, layer)
-        length = drawn.text_width_ex(text, cap_height=dxf.height)  # blanks at its ends take their place, too
+        length = drawn.text_width_ex(text, cap_height=dxf.height)  # includes blanks at the ends
         placed = ezdxf.addons.text2path.alignment_transformation(
             drawn.measurements.scale_from_baseline(dxf.height),
             ezdxf.math.BoundingBox([(0, 0), (length, dxf.height)]),
@@ -106,7 +115,10 @@ class Letters:
         return [Curve(_cubics(outline), True) for outline in path.sub_paths() if len(outline)]
 
     def parts(self, mtext, name: str, layer: str) -> list:
-        """An MTEXT as TEXT and LINE, in its own world. NoFontError if this machine has no font."""
+        """Explode an MTEXT into TEXT and LINE entities, in its own world.
+
+        Raises NoFontError if the machine has no font.
+        """
         mtext = mtext.copy()
         mtext.doc = self._document
         self._count_letters(mtext.all_columns_raw_content(), name)
@@ -165,15 +177,16 @@ def _check_height(height: float | None) -> float:
     return height
 
 
-# "^" between the two numbers of a stack, as CAD programs write it: ezdxf takes it and the letter behind it for a
-# control character, unless that is a blank
+# CAD programs write "^" between the two numbers of a stack. ezdxf reads "^" and the next letter as a control
+# character, unless this letter is a blank.
 _STACK = re.compile(r"((?<!\\)(?:\\\\)*\\S[^;^]*)\^(?! )")
 
 
 class _Apart(ezdxf.addons.mtxpl.MTextExplode):
-    """With fonts of ours, in styles that no document needs to know.
+    """Explodes MTEXT with our fonts, in styles that the document does not contain.
 
-    uneven: its letters have several heights; spread: their distance is not the font's.
+    uneven: whether the letters have several heights; spread: whether the distance of the letters differs from the
+    font's distance.
     """
 
     def __init__(self, layout, document, fonts: Fonts, faces: dict[str, object]):
@@ -203,7 +216,7 @@ class _Apart(ezdxf.addons.mtxpl.MTextExplode):
 
     def fraction(self, data: tuple, ctx):
         cell = super().fraction(data, ctx)
-        if isinstance(cell, _boxes.Fraction):  # its line is of the colour of its numbers
+        if isinstance(cell, _boxes.Fraction):  # the line of a fraction has the colour of its numbers
             attributes = self.current_base_attribs | ezdxf.addons.mtxpl.get_color_attribs(ctx)
             cell.renderer = ezdxf.addons.mtxpl.FrameRenderer(attributes, self.layout)
         return cell
@@ -221,7 +234,7 @@ class _Apart(ezdxf.addons.mtxpl.MTextExplode):
         return self._fonts.font(ctx.font_face).drawn_at(ctx.cap_height, ctx.width_factor)
 
     def unbroken_width(self, mtext) -> float:
-        """Of its longest paragraph in one line; with tabs an upper bound."""
+        """Return the width of the longest paragraph in one line; an upper bound if it has tabs."""
         context = self.make_mtext_context(mtext)
         height = context.cap_height
         widest = line = 0.0
@@ -238,7 +251,7 @@ class _Apart(ezdxf.addons.mtxpl.MTextExplode):
             elif kind in (_tools.TokenType.SPACE, _tools.TokenType.NBSP):
                 line += self.space_width(context)
             shape = context.paragraph
-            indents = sum(max(0.0, each) for each in (shape.indent, shape.left, shape.right)) * height
+            indents = sum(max(0.0, indent) for indent in (shape.indent, shape.left, shape.right)) * height
             widest = max(widest, line + indents)
         return max((1 + 1e-9) * widest, height)
 
@@ -252,7 +265,10 @@ class _Apart(ezdxf.addons.mtxpl.MTextExplode):
 
 
 def _stand_on_one_line(line) -> None:
-    """Letters of several heights in one word: ezdxf hangs them from one line, unless it can break between them."""
+    """Put letters of several heights in one word on one baseline.
+
+    ezdxf aligns their tops, unless it can break the line between them.
+    """
     for group in line.cells():
         if isinstance(group, _boxes.RigidConnection):
             for cell in group:
@@ -262,7 +278,7 @@ def _stand_on_one_line(line) -> None:
 
 
 def _cubics(path) -> np.ndarray:
-    """(n, 4, 3) of an ezdxf Path without gaps."""
+    """Return a Path of ezdxf without gaps as cubics (n, 4, 3)."""
     begin, found = path.start, []
     for command in path.commands():
         end = command.end
