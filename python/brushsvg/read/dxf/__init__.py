@@ -10,12 +10,12 @@ from ..design import Design, Notice
 from ..empty_drawing import empty_drawing_error
 from .entity_walk import Walk
 from .file import open_dxf
-from .linetypes import Dashes
-from .pieces_to_elements import anew, chained, element_of
-from .placement import anchored, extents, in_range, with_margin
-from .units import large_for_its_unit, unit_of
+from .linetypes import DashCutter
+from .pieces_to_elements import find_pattern_restarts, join_pieces, piece_to_element
+from .placement import drawn_extents, keep_in_range, move_to_origin, place_with_margin
+from .units import find_unit, report_large_unit
 
-_FLAT_MM = 1e-3  # a larger range of heights is reported
+_MAX_FLAT_RANGE_MM = 1e-3  # a larger range of heights is reported
 
 
 def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
@@ -28,23 +28,28 @@ def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     unit.
     """
     document, notices = open_dxf(data)
-    mm_per_unit, unit_notices = unit_of(document, options.units)
+    mm_per_unit, unit_notices = find_unit(document, options.units)
     walk = Walk(document, mm_per_unit)
     walk.run()
-    pieces, far = in_range(walk.pieces if options.sheet_mm else anchored(walk.pieces))
-    notices += [*unit_notices, *walk.notices, *far]
+    pieces, far_notices = keep_in_range(walk.pieces if options.sheet_mm else move_to_origin(walk.pieces))
+    notices += [*unit_notices, *walk.notices, *far_notices]
     if not pieces:
         raise empty_drawing_error(notices)
     heights = [curve.cubics[..., 2] for piece in pieces for curve in piece.curves]
     lowest, highest = min(z.min() for z in heights), max(z.max() for z in heights)
-    if highest - lowest > _FLAT_MM:
+    if highest - lowest > _MAX_FLAT_RANGE_MM:
         sentence = f"the drawing is not flat: heights from {lowest:.6g} to {highest:.6g} mm are left out"
         notices.append(Notice("z", sentence, code="dxf-not-flat"))
-    dashes = Dashes()
-    elements = [dashes.cut(element_of(piece), piece.pen, anew(piece)) for piece in chained(pieces)]
+    dashes = DashCutter()
+    elements = [
+        dashes.cut(piece_to_element(piece), piece.pen, find_pattern_restarts(piece))
+        for piece in join_pieces(pieces)
+    ]
     notices += dashes.notices
     if options.units is None:
-        least, greatest = extents(elements)
-        notices += large_for_its_unit(document, float((greatest - least).max()))
-    sheet_mm, placed = (options.sheet_mm, tuple(elements)) if options.sheet_mm else with_margin(elements)
+        lower, upper = drawn_extents(elements)
+        notices += report_large_unit(document, float((upper - lower).max()))
+    sheet_mm, placed = (
+        (options.sheet_mm, tuple(elements)) if options.sheet_mm else place_with_margin(elements)
+    )
     return Design(sheet_mm, placed, tuple(notices), layers=walk.pens.hidden())

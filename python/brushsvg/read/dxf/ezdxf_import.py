@@ -1,4 +1,4 @@
-"""Import ezdxf without a scan of the fonts and without a cache in the user's home.
+"""Import ezdxf without a scan of all fonts or a cache in the user's home.
 
 On import, ezdxf reads all fonts of the machine unless it finds its font cache. This takes seconds, and the results
 depend on the machine. Here it finds an empty cache in a temporary folder. A program that also draws text with ezdxf

@@ -17,10 +17,10 @@ from .entity_walk import Piece
 MARGIN_MM = 20.0
 
 
-def anchored(pieces: list[Piece]) -> list[Piece]:
-    """Move the pieces to the origin if most of them are more than 1e6 mm away from it.
+def move_to_origin(pieces: list[Piece]) -> list[Piece]:
+    """Move the pieces to the origin if most of them are more than 1e6 mm from it.
 
-    The coordinates of maps are that large.
+    Coordinates in maps are that large.
     """
     if not pieces:
         return pieces
@@ -35,7 +35,7 @@ def anchored(pieces: list[Piece]) -> list[Piece]:
     ]
 
 
-def in_range(pieces: list[Piece]) -> tuple[list[Piece], list[Notice]]:
+def keep_in_range(pieces: list[Piece]) -> tuple[list[Piece], list[Notice]]:
     """Return the pieces within 1e6 mm, and the notices about the others."""
     kept, notices = [], []
     for piece in pieces:
@@ -49,19 +49,19 @@ def in_range(pieces: list[Piece]) -> tuple[list[Piece], list[Notice]]:
     return kept, notices
 
 
-def with_margin(elements: list[Element]) -> tuple[tuple[float, float], tuple[Element, ...]]:
-    """Return a sheet (width, height) [mm] for the elements, and the elements moved onto it.
+def place_with_margin(elements: list[Element]) -> tuple[tuple[float, float], tuple[Element, ...]]:
+    """Return a sheet for the elements, and the elements moved onto it.
 
-    The sheet is the bounding box of the elements with their widths, plus a margin of 20 mm.
+    The sheet, (width, height) [mm], is the bounding box of the elements with their widths, plus a margin of 20 mm.
     """
-    least, greatest = extents(elements)
-    shift = MARGIN_MM - least
-    width, height = (greatest + shift + MARGIN_MM).tolist()
-    return (width, height), tuple(_moved(element, shift) for element in elements)
+    lower, upper = drawn_extents(elements)
+    shift = MARGIN_MM - lower
+    width, height = (upper + shift + MARGIN_MM).tolist()
+    return (width, height), tuple(_shift_element(element, shift) for element in elements)
 
 
-def extents(elements: list[Element]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lower left and upper right corner of the elements, half the widths included."""
+def drawn_extents(elements: list[Element]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lower left and upper right corner of elements with their widths."""
     cubics, halves = [], []
     for element in elements:
         for subpath in element.subpaths:
@@ -73,6 +73,6 @@ def extents(elements: list[Element]) -> tuple[np.ndarray, np.ndarray]:
     return (points - half).min(axis=(0, 1)), (points + half).max(axis=(0, 1))
 
 
-def _moved(element: Element, shift: np.ndarray) -> Element:
+def _shift_element(element: Element, shift: np.ndarray) -> Element:
     subpaths = tuple(replace(subpath, cubics=subpath.cubics + shift) for subpath in element.subpaths)
     return replace(element, subpaths=subpaths)
