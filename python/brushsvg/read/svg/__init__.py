@@ -1,4 +1,7 @@
-"""SVG to Design. What is not read is named in a notice. How it is read: docs/reference/drawings.md."""
+"""Reader from SVG to a Design.
+
+Notices name the parts that are not read. The rules are in docs/reference/drawings.md.
+"""
 
 from __future__ import annotations
 
@@ -25,11 +28,12 @@ _INKSCAPE_VERSION = "{http://www.inkscape.org/namespaces/inkscape}version"
 
 
 def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
-    """The drawing, its elements in document order, in mm with y up.
+    """Read an SVG document, with its elements in document order, in mm with y up.
 
-    A sheet given replaces the viewport's size; the drawing keeps its scale and its upper left corner.
+    options.sheet_mm replaces the size of the page. The drawing keeps its scale and its upper left corner.
 
-    Error if it is not SVG, has no size, has nothing to paint, or copies itself beyond all bounds.
+    Raises Error if the data is not SVG, if the drawing has no size or nothing to paint, or if it copies itself too
+    often.
     """
     try:
         return _read(parse_xml(data), options)
@@ -38,9 +42,12 @@ def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
 
 
 def settings_of(data: bytes, alone: bool = False) -> dict:
-    """Return the root's settings for the whole job; {} for a damaged file, which read_svg reports.
+    """Return the settings of the root element for the whole job.
 
-    alone: read_svg is not called, so the problems are reported here."""
+    The result is {} for a damaged file, which read_svg reports.
+
+    alone: whether read_svg is not called for this file, so that its problems are reported here.
+    """
     is_plain = not data.startswith((b"\x1f\x8b", b"\xff\xfe", b"\xfe\xff"))  # neither compressed nor UTF-16
     if is_plain and PREFIX.encode() not in data and not alone:
         return {}
@@ -76,13 +83,13 @@ def _read(document: Document, options: ReadOptions) -> Design:
         return design
     own_mm = page.sheet_mm
     if options.sheet_mm is not None:
-        with suppress(Error):  # a drawing without a size of its own has the sheet's
+        with suppress(Error):  # a drawing without its own size has the size of the sheet
             own_mm = read_page(root.attrib, None, style).sheet_mm
     return remove_background(design, own_mm)
 
 
 def _outside_the_tree(document: Document, root: ET.Element, page: Page) -> list[Notice]:
-    """Return the notices about text next to the tree."""
+    """Return notices about content outside of the tree, for example linked style sheets."""
     notices = []
     if "xml-stylesheet" in document.instructions:
         sentence = "CSS in another file is not read: what it says is missing"
@@ -94,11 +101,13 @@ def _outside_the_tree(document: Document, root: ET.Element, page: Page) -> list[
 
 
 def _other_pixels(document: Document, root: ET.Element) -> tuple[str, int] | None:
-    """The program that wrote the drawing and its pixels per inch, where these are not 96.
+    """Return the program that wrote the drawing, and its pixels per inch.
 
-    Illustrator's "Save as" leaves a comment, its "Export as" a data-name on the root; "enable-background: new" is its
-    own, and stays where tools have taken the comment away. Inkscape counted 90 px until 0.91 (wiki.inkscape.org,
-    "Release notes/0.92").
+    The result is None if the program counts 96 pixels per inch or is unknown.
+
+    Illustrator counts 72 px to the inch. Its "Save as" writes a comment, its "Export as" writes a data-name on the
+    root. Only Illustrator writes "enable-background: new", which remains if a tool has removed the comment. Inkscape
+    counted 90 px until 0.91 (wiki.inkscape.org, "Release notes/0.92").
     """
     is_its_style = "enable-background" in root.get("style", "") or "enable-background" in root.attrib
     if (

@@ -1,4 +1,4 @@
-"""Clip paths and masks of SVG: the region, on paper, that they leave of an element (CSS Masking 1)."""
+"""Clip paths and masks of SVG: the visible region of an element (CSS Masking 1)."""
 
 from __future__ import annotations
 
@@ -23,25 +23,36 @@ if TYPE_CHECKING:
     import shapely
 
 _CSS_TRANSFORMS = frozenset(("transform", "translate", "rotate", "scale"))
-MASK_PAGE = {"x": "-10%", "y": "-10%", "width": "120%", "height": "120%"}  # where a mask does not give it
-_DEEPEST = 20  # clip paths and uses in each other
+MASK_PAGE = {
+    "x": "-10%",
+    "y": "-10%",
+    "width": "120%",
+    "height": "120%",
+}  # rectangle of a mask without its own
+_DEEPEST = 20  # nesting depth of clip paths and uses
 _TOO_DEEP = "its clip paths or masks refer to each other, or are nested too deep: painted whole"
 _MASK_UNREAD = "its mask is not made of filled white and black shapes alone, which is not read: painted whole"
 
 
 class ClipPathError(Error):
-    """A clip path that cannot be read: the element is painted whole."""
+    """A clip path or mask that cannot be read. The element is painted whole."""
 
 
 def _refuse_css_transform(style: Style) -> None:
-    """Attributes are read; a transform that CSS says would be passed over, and the clip path be elsewhere."""
+    """Raise ClipPathError if CSS transforms a clip path.
+
+    Only transform attributes are read here. Without this check the clip path would be in the wrong place.
+    """
     if not _CSS_TRANSFORMS.isdisjoint(style.geometry):
         sentence = "its clip path has a transform in CSS, which is not read: painted whole"
         raise ClipPathError(sentence, code="clipping-unread")
 
 
 class ClipPaths:
-    """The clip paths and masks of a drawing. by_id: its elements; rules: its style sheets."""
+    """The clip paths and masks of a drawing.
+
+    by_id: the elements of the drawing; rules: its style sheets.
+    """
 
     def __init__(self, root: ET.Element, by_id: dict[str, ET.Element], rules: Rules):
         self._root = root
@@ -53,7 +64,7 @@ class ClipPaths:
         return {child: parent for parent in self._root.iter() for child in parent}
 
     def _style_of(self, node: ET.Element, diagonal: float) -> Style:
-        """The style of an element by all elements that it is in."""
+        """Return the style of an element, inherited from all elements around it."""
         parent = self._parents.get(node)
         above = INITIAL if parent is None else self._style_of(parent, diagonal)
         return cascade(above, node.attrib, self._rules.of(node), diagonal)[0]
@@ -61,8 +72,13 @@ class ClipPaths:
     def region(
         self, value: str, context: Context, bounds: Callable[[], tuple[float, float, float, float] | None]
     ) -> shapely.Geometry | None:
-        """The region of a clip-path property in the context's user units, on paper; None where it refers to nothing,
-        which clips nothing. bounds: (x, y, width, height) of the element. ClipPathError for what is not read."""
+        """Return the region of a clip-path property on paper.
+
+        The result is None if the property refers to nothing, which clips nothing.
+
+        context: its matrix maps user units to paper; bounds: returns (x, y, width, height) of the element.
+        Raises ClipPathError if the clip path cannot be read.
+        """
         found = URL.match(value)
         if not found:
             raise ClipPathError("clip-path: only url(#...) is read: painted whole", code="clipping-unread")
@@ -90,7 +106,10 @@ class ClipPaths:
     def mask_region(
         self, value: str, context: Context, bounds: Callable[[], tuple[float, float, float, float] | None]
     ) -> shapely.Geometry | None:
-        """The region that a mask of white and black shapes leaves; otherwise as `region`."""
+        """Return the visible region of a mask of white and black shapes.
+
+        The parameters, None and ClipPathError are as for region.
+        """
         import shapely
 
         found = URL.match(value)
@@ -113,8 +132,10 @@ class ClipPaths:
         return self._own(style, context, left, 0)
 
     def _mask_page(self, mask: ET.Element, context: Context, bounds) -> shapely.Geometry | None:
-        """The rectangle outside of which a mask hides everything; None for the default one of a group, which is
-        larger than what is masked."""
+        """Return the rectangle outside of which a mask hides everything.
+
+        The result is None for the default rectangle of a group, which is larger than the group.
+        """
         import shapely
 
         given = {name: mask.get(name, default).strip() for name, default in MASK_PAGE.items()}
@@ -132,7 +153,7 @@ class ClipPaths:
         return shapely.Polygon(corners_of(matrix, tuple(rectangle)))
 
     def _own(self, style: Style, context: Context, region, depth: int) -> shapely.Geometry:
-        """The region as far as the clip path of its own leaves it."""
+        """Return the part of a region inside the clip path of its own style."""
         if (value := style.own["clip-path"]) == "none" or not (found := URL.match(value)):
             return region
         target = referred(found[1].strip().strip("\"'"), self._by_id)
@@ -143,7 +164,10 @@ class ClipPaths:
     def _shapes(
         self, node: ET.Element, context: Context, parent: Style, depth: int, rule: str
     ) -> Iterator[tuple[Style, shapely.Geometry]]:
-        """The shapes in a clip path ("clip-rule") or, with those of its groups, in a mask ("fill-rule")."""
+        """Yield the shapes in a clip path or mask, with their style.
+
+        rule: "clip-rule" for a clip path, "fill-rule" for a mask. Groups are read in masks only.
+        """
         from ..clipping import fill_region, flatten_subpaths
 
         for child in node:
@@ -200,7 +224,7 @@ class ClipPaths:
 
 
 def _in_bounds(box: tuple[float, float, float, float] | None) -> Matrix:
-    """From fractions of an element's bounds (x, y, width, height) to its user units."""
+    """Return the matrix from fractions of bounds (x, y, width, height) to user units."""
     if box is None:
         sentence = "its clip path or mask counts in the size of a group, which is not read: painted whole"
         raise ClipPathError(sentence, code="clipping-unread")
@@ -208,14 +232,20 @@ def _in_bounds(box: tuple[float, float, float, float] | None) -> Matrix:
 
 
 def _refuse_effects(style: Style) -> None:
-    """In a mask what is half transparent is grey, and so may be what has a filter or a mask of its own."""
+    """Raise ClipPathError for effects that can make a shape of a mask grey.
+
+    Such effects are opacity, a filter, or a mask inside the mask.
+    """
     own = style.own
     if own["opacity"] != "1" or own["mask"] != "none" or own["filter"] != "none":
         raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
 
 
 def _is_white(style: Style) -> bool:
-    """Whether a shape of a mask shows what is under it. ClipPathError for one that is neither white nor black."""
+    """Whether a shape of a mask is white, so that the element is visible there.
+
+    Raises ClipPathError for a shape that is neither white nor black.
+    """
     _refuse_effects(style)
     fill, is_opaque = style.inherited["fill"] or "#000000", style.inherited["fill-opacity"] == "1"
     if fill == "currentcolor":

@@ -1,4 +1,4 @@
-"""One shape of an SVG file to an Element: what it is painted with, its geometry on paper, its dashes."""
+"""Convert a shape of an SVG file to an Element: its paint, geometry on paper and dashes."""
 
 from __future__ import annotations
 
@@ -25,15 +25,19 @@ from .paths.power_stroke import PowerStroke, drawn_line, with_widths
 from .transform import IDENTITY, scales
 
 _WITH_MARKERS = frozenset(("path", "line", "polyline", "polygon"))
-_UNEVEN = 1.05  # below it, the width along and across differs by less than a brush's own scatter
-# A page of text has a hundredth of each.
+_UNEVEN = 1.05  # ratio of the scales; below it the width differs by less than the scatter of a brush
 _FLAT_MM = 0.05
+# A page of text has a hundredth of these numbers of dashes and of characters of path data.
 _MOST_DASHES = 100_000
-_MOST_DATA = 10_000_000  # characters of path data
+_MOST_DATA = 10_000_000
 
 
 class Painted:
-    """elements: those of the drawing in the order painted. bent: elements in path effects of groups."""
+    """Collects the painted elements of a drawing.
+
+    elements: the converted elements, in the order in which they are painted.
+    bent: the elements that path effects of groups change.
+    """
 
     def __init__(self, by_id: dict[str, ET.Element], notes: Notes, paints: Paints, bent: set[ET.Element]):
         self.elements: list[Element] = []
@@ -45,7 +49,7 @@ class Painted:
         self.dashes_left = _MOST_DASHES
 
     def add(self, node: ET.Element, tag: str, context: Context) -> None:
-        """Take a shape in, as far as it is sound."""
+        """Convert the undamaged part of a shape and add it to the elements."""
         properties = context.style.inherited
         stroke, of_stroke = self.paints.of(properties, "stroke")
         fill, of_fill = self.paints.of(properties, "fill") if tag != "line" else ("none", [])
@@ -67,7 +71,7 @@ class Painted:
             fill = "none"
         if "width_mm" in context.settings:
             width_mm, power = context.settings["width_mm"], None
-            if stroke == "none" and fill == "none":  # a shape stays a shape
+            if stroke == "none" and fill == "none":  # a filled shape gets no stroke
                 stroke = properties["color"][:7]
         if power is None and width_mm == 0:
             stroke = "none"
@@ -88,15 +92,15 @@ class Painted:
         if stroke != "none" and greatest > _UNEVEN * least and not is_even:
             sentence = f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
             self.notes.add(node, context, sentence, code="stretched-unevenly")
-        for each in unread + of_fill * (fill != "none") + of_stroke * (stroke != "none"):
-            self.notes.add(node, context, each.sentence, code=each.code, about=each.about)
+        for notice in unread + of_fill * (fill != "none") + of_stroke * (stroke != "none"):
+            self.notes.add(node, context, notice.sentence, code=notice.code, about=notice.about)
         if any(is_light(colour) for colour in (fill, stroke) if colour.startswith("#")):
             sentence = (
                 "it is white or nearly white, and painted like any colour: what it hides in the drawing is painted, "
                 'too; data-brushsvg-skip="yes" on it leaves it out'
             )
             self.notes.add(node, context, sentence, code="white-paint")
-        # a black fill that nobody chose is rarely intended next to a stroke of another colour
+        # A black fill by default is rarely intended next to a stroke of another colour.
         is_two = properties["fill"] and "none" not in (fill, stroke) and fill != stroke
         if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
             self.notes.add(node, context, "markers are not read: left out", code="markers-unread")
@@ -111,13 +115,12 @@ class Painted:
             fill_colour=fill if is_two else "",
         )
         elements = [element]
-        if (
-            element.fill_rule and subpaths is not outline and _encloses(outline, width_mm)
-        ):  # its dashes do not
+        # The dashes do not enclose the filled area, so the fill keeps the outline without dashes.
+        if element.fill_rule and subpaths is not outline and _encloses(outline, width_mm):
             shape, line = replace(element, fill_colour=element.fill_colour or element.colour).by_colour()
             elements = [replace(shape, subpaths=outline), line]
         if context.clip is not None:
-            elements = [piece for each in elements for piece in self._clipped(node, context, each)]
+            elements = [piece for whole in elements for piece in self._clipped(node, context, whole)]
         self.elements += elements
 
     def _clipped(self, node: ET.Element, context: Context, element: Element) -> list[Element]:
@@ -130,7 +133,7 @@ class Painted:
         return found
 
     def _why_unpainted(self, properties: dict[str, str], tag: str, width_mm: float) -> str:
-        """Return the reason why a stroke or fill of the drawing paints nothing."""
+        """Return the reason why an element has neither stroke nor fill."""
         kinds = [
             name
             for name in ("stroke", "fill")
@@ -145,7 +148,10 @@ class Painted:
         return " and ".join(causes) or "it has neither stroke nor fill"
 
     def bounds(self, node: ET.Element, context: Context) -> tuple[float, float, float, float] | None:
-        """(x, y, width, height) of a shape's geometry in its own user units, None if it has none that is sound."""
+        """Return the bounds (x, y, width, height) of a shape in its own user units.
+
+        The result is None if the shape has no geometry or damaged geometry.
+        """
         attributes = {**node.attrib, **context.style.geometry}
         try:
             commands = shapes.commands_of(local(node), attributes, context.viewport, context.em_px)
@@ -159,7 +165,10 @@ class Painted:
         return x, y, width, height
 
     def _named(self, node: ET.Element, context: Context, first: int) -> str:
-        """Return a painted element's name; notices about one without an id are renamed as well."""
+        """Return the name of a painted element.
+
+        An element without an id gets a name, which its notices, from index first on, use as well.
+        """
         if name := context.name(node):
             return name
         self.nameless += 1
@@ -173,7 +182,7 @@ class Painted:
     def _outline(
         self, node, tag: str, attributes, context: Context, power: PowerStroke | None
     ) -> tuple[SubPath, ...]:
-        """An element's geometry on paper, without dashes."""
+        """Return the geometry of an element on paper, without dashes."""
         greatest, least = scales(context.matrix)
         subpaths = self._sound(node, tag, attributes, context, greatest)
         return with_widths(power, subpaths, math.sqrt(greatest * least)) if power else subpaths
@@ -252,7 +261,10 @@ class Painted:
         return tuple(pieces)
 
     def _path_scale(self, node, context: Context, subpaths, mm_per_unit: float) -> float:
-        """How long a unit of the dashes is, of mm_per_unit: pathLength may say how many the path has."""
+        """Return the length of a dash unit as a multiple of mm_per_unit.
+
+        pathLength can define how many units the path has. Without it the result is 1.
+        """
         text = (node.get("pathLength") or "").strip()
         if not text:
             return 1.0
@@ -270,7 +282,7 @@ class Painted:
 
 
 def _encloses(subpaths: tuple[SubPath, ...], width_mm: float) -> bool:
-    """Whether there is more inside of an outline than a line of this width along it hides."""
+    """Whether an outline encloses more area than a line of this width along it covers."""
     rings = [flattened(subpath.cubics, _FLAT_MM) for subpath in subpaths]
     return sum(abs(signed_area(ring)) for ring in rings) > sum(map(length, rings)) * width_mm / 2
 

@@ -1,8 +1,8 @@
-"""Which groups of an SVG file are layers, and what they are called, by the habits of the programs that write them.
+"""Find the groups of an SVG file that are layers, and their names.
 
-Inkscape marks layers. Elsewhere they are the outermost groups with a name: an id, in which Illustrator and CorelDRAW
-escape what an id cannot hold, or, next to it, Affinity's serif:id or Illustrator's data-name. Where such a group holds
-the whole drawing, as a page or an artboard does, the groups in it are layers, too.
+Inkscape marks layers. In files of other programs, the outermost groups with a name are layers. The name is an id, in
+which Illustrator and CorelDRAW escape special characters, or Affinity's serif:id or Illustrator's data-name next to
+the id. If such a group contains the whole drawing, as a page or an artboard does, the groups inside are layers, too.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from .paths.power_stroke import INKSCAPE
 
 _SERIF = "{http://www.serif.com/}"
 _ESCAPE = re.compile("_x([0-9A-Fa-f]{2,6})_")
-_AROUND = frozenset(("svg", "switch", "a"))  # what stands around layers without being one
-_DEEPEST = 100  # layers in layers with names of their own: nobody clicks deeper
+_AROUND = frozenset(("svg", "switch", "a"))  # elements that can contain layers and are not layers
+_DEEPEST = 100  # nesting depth of layers that get their own names; no user needs more
 _NOT_DRAWN = frozenset("title desc metadata defs style script foreignObject namedview".split())
 
 
 def layer_names(root: ET.Element) -> dict[ET.Element, str]:
-    """Return the name of each group that is a layer, with those of the layers around it: "Ink/Fine"."""
+    """Return the name of each layer, with the names of the layers around it: "Ink/Fine"."""
     own = {
         node: one_line(node.get(INKSCAPE + "label") or node.get("id", ""))
         for node in root.iter()
@@ -47,8 +47,11 @@ def layer_names(root: ET.Element) -> dict[ET.Element, str]:
 
 
 def is_documentation(path: str) -> bool:
-    """Whether a layer holds notes for people: AxiDraw's software never plots layers whose names start with %
-    (wiki.evilmadscientist.com, "AxiDraw Layer Control")."""
+    """Whether a layer contains notes that are not plotted.
+
+    AxiDraw's software never plots layers whose names start with % (wiki.evilmadscientist.com, "AxiDraw Layer
+    Control").
+    """
     return path.rpartition("/")[2].startswith("%")
 
 
@@ -64,7 +67,7 @@ def _by_convention(root: ET.Element) -> dict[ET.Element, str]:
 
 
 def _outermost(parent: ET.Element) -> Iterator[tuple[ET.Element, str]]:
-    """Return the outermost named groups and, with "", everything painted outside of them."""
+    """Yield the outermost named groups and, with "", all painted elements outside of them."""
     waiting = [iter(parent)]
     while waiting:
         node = next(waiting[-1], None)

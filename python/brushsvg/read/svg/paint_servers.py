@@ -1,4 +1,7 @@
-"""What stroke and fill paint with: a colour, nothing, or what is not read and counts as a colour."""
+"""The paint of stroke and fill: a colour, nothing, or an unread paint server.
+
+An unread paint server counts as a colour.
+"""
 
 from __future__ import annotations
 
@@ -13,23 +16,28 @@ from .css.declarations import Declaration, declarations
 from .references import href, referred
 
 URL = re.compile(r"url\(([^)]*+)\)(.*)", re.DOTALL)
-UNSEEN = 1 / 512  # an opacity below half a step of 8 bits shows nothing
+UNSEEN = 1 / 512  # an opacity below half a step of 8 bits is invisible
 _GRADIENTS = frozenset(("linearGradient", "radialGradient"))
 _NOT_IN_BROWSERS = frozenset("meshgradient mesh hatch solidcolor solidColor".split())
 
 
 class Paints:
-    """The paint servers of a drawing. by_id: its elements; rules: the declarations of its style sheets for one."""
+    """The paint servers of a drawing.
+
+    by_id: the elements of the drawing; rules: returns the declarations of its style sheets for an element.
+    """
 
     def __init__(self, by_id: dict[str, ET.Element], rules: Callable[[ET.Element], list[Declaration]]):
         self._by_id = by_id
         self._rules = rules
-        self._known: dict[
-            tuple[str, str], tuple[str, list[Notice]]
-        ] = {}  # thousands of shapes share a long gradient
+        # A cache, because thousands of shapes can share a long gradient.
+        self._known: dict[tuple[str, str], tuple[str, list[Notice]]] = {}
 
     def of(self, properties: dict[str, str], name: str) -> tuple[str, list[Notice]]:
-        """Return the paint of "stroke" or "fill", "#rrggbb" or "none", and the notices about unread parts."""
+        """Return the paint, "#rrggbb" or "none", and notices about unread parts.
+
+        properties: of the element; name: "stroke" or "fill".
+        """
         key = properties[name] or "#000000", name
         if key not in self._known:
             self._known[key] = self._colour(*key)
@@ -53,14 +61,18 @@ class Paints:
         return colour[:7], notices
 
     def why_none(self, properties: dict[str, str], name: str) -> str:
-        """Return why a stroke or fill of the drawing paints nothing."""
+        """Return the reason why a stroke or fill of the drawing paints nothing."""
         found = URL.match(properties[name])
         if found and self._colour(properties[name], name)[0] == "none":
             return f"the {name}'s paint {found[1].strip()[:40]} is nowhere in the drawing or paints nothing"
         return f"its {name} is fully transparent"
 
     def _colour(self, value: str, name: str) -> tuple[str, list[Notice]]:
-        """A reference to nothing, or to what is no paint, counts as its fallback, as SVG asks."""
+        """Return the colour of a paint value, and notices.
+
+        A reference to nothing, or to an element that is not a paint server, counts as its fallback, as SVG
+        prescribes.
+        """
         found = URL.match(value)
         if not found:
             return value, []
@@ -82,7 +94,7 @@ class Paints:
         return colour, [Notice("", sentence, code="paint-unread", about=name)]
 
     def _stop(self, stop: ET.Element) -> str | None:
-        """The colour of a gradient's stop, None if it is not said plainly."""
+        """Return the colour of a stop of a gradient, None if it cannot be read."""
         said = {name: stop.get(name) for name in ("stop-color", "stop-opacity") if name in stop.attrib}
         said |= {name: value for name, value, _ in (*self._rules(stop), *declarations(stop.get("style", "")))}
         colour = parse_colour(said.get("stop-color", "#000000").strip())
@@ -96,9 +108,9 @@ class Paints:
         return colour[:7] if alpha >= 254.5 else f"{colour[:7]}{round(alpha):02x}"
 
     def _tiles(self, pattern: ET.Element) -> bool:
-        """Whether a pattern has a size and something in it; what it cannot say is taken to be there."""
+        """Whether a pattern has a size and content. A size that cannot be read counts as present."""
         for name in ("width", "height"):
-            said = next((each.get(name) for each in self._chain(pattern) if name in each.attrib), "0")
+            said = next((server.get(name) for server in self._chain(pattern) if name in server.attrib), "0")
             try:
                 if length_px(said or "0", 100.0) <= 0:
                     return False
@@ -107,8 +119,11 @@ class Paints:
         return bool(self._content(pattern))
 
     def _content(self, server: ET.Element) -> list[ET.Element]:
-        """What a gradient or a pattern holds, or the first of those it refers to that holds anything."""
-        return next((list(each) for each in self._chain(server) if len(each)), [])
+        """Return the children of a gradient or pattern.
+
+        Without children, the first server in the chain of references that has children counts.
+        """
+        return next((list(node) for node in self._chain(server) if len(node)), [])
 
     def _chain(self, server: ET.Element):
         seen: set[ET.Element] = set()

@@ -1,4 +1,7 @@
-"""What a drawing says to brushsvg itself: data-brushsvg-* on paths, groups and layers, inherited, and on its root."""
+"""Settings for brushsvg in a drawing: the attributes data-brushsvg-*.
+
+They are on paths, groups and layers, which inherit them, and on the root element.
+"""
 
 from __future__ import annotations
 
@@ -13,15 +16,20 @@ PREFIX = "data-brushsvg-"
 
 
 def own_settings(attributes: dict[str, str], is_root: bool = False) -> tuple[dict, list[str]]:
-    """Return the settings of an element, as docs/reference/drawings.md lists them, and notices about invalid ones."""
+    """Return the settings of an element, and sentences about invalid settings.
+
+    docs/reference/drawings.md lists the settings.
+    """
     settings, problems = _read(attributes, _KNOWN | _OF_THE_DOCUMENT if is_root else _KNOWN)
     of_job = _OF_THE_DOCUMENT.keys() | (_OF_JOB_ON_ROOT if is_root else set())
     return {key: value for key, value in settings.items() if key not in of_job}, problems
 
 
 def document_settings(attributes: dict[str, str]) -> dict:
-    """What the root element says of the whole job, as far as it is valid: brush, start and end, and what concerns the
-    document."""
+    """Return the valid settings of the root element that concern the whole job.
+
+    These are the brush, the start and end of strokes, and the settings of the document.
+    """
     settings, _ = _read(
         attributes, _OF_THE_DOCUMENT | {name: _KNOWN[name] for name in ("brush", *_OF_JOB_ON_ROOT)}
     )
@@ -63,7 +71,7 @@ def _speed_mm_s(text: str) -> float:
 
 def _whole(least: int, greatest: int):
     def read(text: str) -> int:
-        if not re.fullmatch("[+-]?[0-9]{1,18}", text):  # int() reads other alphabets' digits, too
+        if not re.fullmatch("[+-]?[0-9]{1,18}", text):  # int() also accepts digits of other alphabets
             raise Error(f"{text[:24]!r} is not a whole number", code="setting-invalid")
         return _in_range(int(text), least, greatest)
 
@@ -118,10 +126,11 @@ _KNOWN = {
     "end": ("end", _TERMINAL),
     "script": ("script", _one_of(*SCRIPTS)),
 }
-_OF_THE_DOCUMENT = {  # keys are named like the attributes, and like the flags
+_OF_THE_DOCUMENT = {  # keys have the names of the attributes and of the flags
     "cell": ("cell", _name),
     "compensation": ("compensation", _one_of("none", "constant", "closed", "refined")),
     "tolerance": ("tolerance", _tolerance_mm),
     "wide": ("wide", _one_of("auto", "clamp", "passes", "refuse")),
 }
-_OF_JOB_ON_ROOT = {"terminals", "start", "end"}  # of a stroke elsewhere; here a flag counts more
+# Settings of a stroke that concern the whole job if they are on the root. There a flag takes precedence.
+_OF_JOB_ON_ROOT = {"terminals", "start", "end"}

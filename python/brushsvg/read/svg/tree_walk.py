@@ -1,4 +1,7 @@
-"""The walk over an SVG tree in document order: what is painted, where, with which style. No recursion: files nest."""
+"""Walk over an SVG tree in document order and collect the painted elements.
+
+The walk does not use recursion, because files can be nested deeply.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,7 @@ from .transform import IDENTITY, Matrix, multiply, parse_transform
 from .viewport import Page, corners_of, nested_viewport
 
 SVG = "{http://www.w3.org/2000/svg}"
-# Never painted by themselves.
+# Elements that are never painted themselves.
 _DEFINITIONS = "defs symbol marker mask pattern clipPath filter linearGradient radialGradient"
 _DESCRIPTIONS = "title desc metadata view font font-face color-profile style script"
 _ANIMATIONS = frozenset("animate set animateTransform animateMotion animateColor".split())
@@ -39,11 +42,15 @@ _ELSEWHERE = (
     "read as browsers do"
 )
 _TRANSFORMS = frozenset(("transform", "translate", "rotate", "scale"))
-_MOST_USED = 100_000  # elements that use may copy: a page of text has a hundredth
+_MOST_USED = 100_000  # elements that use may copy; a page of text has a hundredth of this
 
 
 class Walk:
-    """elements, notices and layers (name -> why it is not painted, "" if it is) of the drawing, once run."""
+    """The walk over a drawing. Call run, then use elements, notices, layers and left_out.
+
+    layers: for each layer name the reason why the layer is not painted, "" if it is painted.
+    left_out: number of elements that were left out without a notice, by reason.
+    """
 
     def __init__(self, root: ET.Element, page: Page, chosen: set[ET.Element] | None, notices: list[Notice]):
         self.root = root
@@ -65,7 +72,7 @@ class Walk:
         self.painted = Painted(self.by_id, self.notes, paints, in_effects_of_groups(root))
         self.layer_names = layer_names(root)
         self.layers = dict.fromkeys(self.layer_names.values(), "it is hidden in the drawing")
-        self.left_out: dict[str, int] = {}  # without a notice, by reason
+        self.left_out: dict[str, int] = {}
         self.waiting: list[tuple[ET.Element, Iterator[ET.Element], Context]] = []
         self.entered: set[ET.Element] = set()
         self.copies = 0
@@ -129,7 +136,8 @@ class Walk:
         if style.own["display"] == "none" or (style.own["display"] == "contents" and tag in shapes.TAGS):
             self._leave_out("hidden")
             return
-        if self.chosen is not None and node in self.chosen and context.copied is None:  # a copy is its use's
+        # A copy belongs to its use: it is chosen if the use is chosen.
+        if self.chosen is not None and node in self.chosen and context.copied is None:
             context = context._replace(chosen=True)
         inner = self._inside(node, context, style, problems)
         if inner is None:
@@ -174,14 +182,16 @@ class Walk:
         self.left_out[why] = self.left_out.get(why, 0) + 1
 
     def _inside(self, node: ET.Element, context: Context, style: Style, problems) -> Context | None:
-        """What a node hands to what it holds; None if nothing of it can be painted."""
+        """Return the context for the content of a node, None if nothing of it can be painted."""
         settings, invalid = own_settings(node.attrib, node is self.root)
         context = context._replace(style=style, settings={**context.settings, **settings}, size=None)
         if float(style.own["opacity"]) < UNSEEN:
             self.notes.add(node, context, "it is fully transparent: left out", code="transparent")
             return None
-        for each in problems:
-            self.notes.add(node, context, each.sentence, each.damaged, code=each.code, about=each.about)
+        for problem in problems:
+            self.notes.add(
+                node, context, problem.sentence, problem.damaged, code=problem.code, about=problem.about
+            )
         for sentence in invalid:
             self.notes.add(node, context, sentence, damaged=True, code="setting-invalid")
         for name, sentence in unread_own(style.own):
@@ -204,7 +214,7 @@ class Walk:
         return context
 
     def _clip(self, node: ET.Element, context: Context, region_of: Callable, value: str) -> Context:
-        """The context with the region that a clip path or mask of the node leaves."""
+        """Return the context with the visible region of a clip path or mask of the node."""
         is_shape = local(node) in shapes.TAGS
         try:
             inner = context
@@ -220,7 +230,10 @@ class Walk:
         return context._replace(clip=region if context.clip is None else context.clip.intersection(region))
 
     def _transform(self, node: ET.Element, context: Context) -> Matrix | None:
-        """Of its properties as far as they make sense, else of its attribute; about its transform-origin."""
+        """Return the transform of a node about its transform-origin, None without a transform.
+
+        The CSS properties count as far as they are valid, otherwise the attribute.
+        """
         said, em_px = context.style.geometry, context.em_px
         written = (node.get("transform") or "").strip()
         if not written and _TRANSFORMS.isdisjoint(said):
@@ -231,7 +244,7 @@ class Walk:
             self.notes.add(node, context, sentence, damaged=True, code="transform-unread")
             return None
 
-        @cache  # one transform can ask for it a thousand times
+        @cache  # one transform can need the box a thousand times
         def box() -> ReferenceBox:
             return self._reference_box(node, context)
 
@@ -254,7 +267,7 @@ class Walk:
         return about(point or box()[:2], matrix)
 
     def _sound(self, node: ET.Element, context: Context, read: Callable, *words):
-        """What a reader makes of words, None if it refuses them."""
+        """Return the result of a reader function, None with a notice if it raises Error."""
         try:
             return read(*words)
         except Error as error:
@@ -264,7 +277,7 @@ class Walk:
             return None
 
     def _reference_box(self, node: ET.Element, context: Context) -> ReferenceBox:
-        """Of what transform-box says: the viewport, or the shape itself."""
+        """Return the reference box of transform-box: the viewport, or the bounds of the shape."""
         kind = context.style.geometry.get("transform-box", "view-box").lower()
         if kind not in ("fill-box", "content-box", "stroke-box", "border-box"):
             return (0.0, 0.0, *context.viewport)
@@ -276,7 +289,7 @@ class Walk:
         return bounds
 
     def _viewport(self, node: ET.Element, context: Context) -> None:
-        """An svg inside the drawing, or a symbol that is used."""
+        """Enter an svg inside the drawing, or a symbol that is used."""
         attributes = {**node.attrib, **context.style.geometry}
         try:
             found = nested_viewport(attributes, context.viewport, context.size or (None, None), context.em_px)
@@ -331,7 +344,10 @@ class Walk:
 
 
 def _matrix_of_use(attributes: dict[str, str], context: Context) -> Matrix:
-    """The context's matrix, moved by x and y of a use. What clips the use moves along."""
+    """Return the context's matrix, moved by x and y of a use.
+
+    A clip path of the use moves along.
+    """
     x, y = (
         context.length(attributes.get(name, "").strip() or "0", context.viewport[axis])
         for axis, name in enumerate(("x", "y"))
@@ -341,7 +357,7 @@ def _matrix_of_use(attributes: dict[str, str], context: Context) -> Matrix:
 
 def _within(clip, corners: list[tuple[float, float]]):
     """Return the part of a region within a quadrilateral."""
-    import shapely  # loaded for drawings that cut something
+    import shapely  # imported here because only drawings with clipping need it
 
     window = shapely.Polygon(corners)
     return window if clip is None else clip.intersection(window)
@@ -354,7 +370,7 @@ def _why_nothing(reference: str, by_id: dict[str, ET.Element]) -> str:
 
 
 def _applies(node: ET.Element) -> bool:
-    """Conditional processing: no extension is known, English is spoken."""
+    """Whether conditional processing shows a node: no extensions, and language English."""
     if "requiredExtensions" in node.attrib:
         return False
     languages = node.get("systemLanguage")

@@ -18,8 +18,13 @@ from .transform import IDENTITY, Matrix, multiply
 
 @dataclass(frozen=True)
 class Page:
-    """sheet_mm: (w, h); paper_from_user: user units to mm, y up; viewport: (w, h) in user units; in_px: whether its
-    size was said in px, or not at all.
+    """The page of a drawing.
+
+    sheet_mm: (width, height).
+    paper_from_user: matrix from user units to mm with y up.
+    viewport: (width, height) in user units.
+    notices: about the size of the page.
+    in_px: whether the size is given in px, or not at all.
     """
 
     sheet_mm: tuple[float, float]
@@ -35,10 +40,14 @@ def nested_viewport(
     size: tuple[str | None, str | None] = (None, None),
     em_px: float = FONT_PX,
 ) -> tuple[Matrix, tuple[float, float], tuple[float, float, float, float], list[Notice]] | None:
-    """Of an svg or symbol inside a drawing: matrix of its content, its viewport (w, h) in units of its content, its
-    place (x, y, w, h) in the outer ones; None if it has no area. size: what a use asks for, as written.
+    """Read the viewport of an svg or symbol inside a drawing.
 
-    Error if a length or the viewBox makes no sense.
+    outer: (width, height) of the viewport around it; size: (width, height) of a use, as written.
+
+    Returns the matrix of the content, the viewport (width, height) in units of the content, the rectangle
+    (x, y, width, height) in outer units, and notices. The result is None if the rectangle has no area.
+
+    Raises Error if a length or the viewBox is invalid.
     """
     given = dict(zip(("width", "height"), size, strict=True))
     x, y, width, height = (
@@ -66,12 +75,13 @@ def read_page(
     sheet_mm: tuple[float, float] | None = None,
     style: Mapping[str, str] = MappingProxyType({}),
 ) -> Page:
-    """The page of a root element. A given sheet replaces the drawing's; the upper left corners stay together.
+    """Read the page of a root element.
 
-    style: the width and height of its CSS. Browsers go by it and Inkscape by the attributes: so it counts where
-    these are missing, and a notice reports a difference.
+    sheet_mm: replaces the size of the drawing; the upper left corners stay together.
+    style: the width and height of the CSS of the root. Browsers use the CSS and Inkscape uses the attributes. So the
+    CSS counts if attributes are missing, and a notice reports a difference.
 
-    Error if neither the drawing nor the caller says how large it is.
+    Raises Error if neither the drawing nor the caller gives a size.
     """
     notices: list[Notice] = []
     box = _view_box(attributes.get("viewBox"))
@@ -149,7 +159,7 @@ def _view_box(text: str | None) -> tuple[float, float, float, float] | None:
 
 
 def _is_length(text: str | None) -> bool:
-    """Whether CSS says a length, and not auto, a percentage or what hangs on a window."""
+    """Whether a CSS value is an absolute length, and not auto or relative to a window."""
     return (
         text is not None and re.fullmatch(r"\s*\d*\.?\d+(?:px|mm|cm|in|pt|pc|q)\s*", text, re.I) is not None
     )
@@ -159,8 +169,11 @@ _OF_FONT = re.compile(r".*[0-9.]\s*(?:em|ex|rem|ch)\s*", re.I)
 
 
 def _extent(text: str | None, name: str, has_box: bool) -> float | None:
-    """A side of the page in mm, None where it depends on something else: a window, or a font where a viewBox says how
-    large the drawing is (icons are 1em high)."""
+    """Return a side of the page in mm, None if it depends on something else.
+
+    A side can depend on a window. If a viewBox gives the size of the drawing, it can also depend on a font: icons are
+    1em high.
+    """
     if text is None or text.strip() in ("", "auto") or text.strip().endswith("%"):
         return None
     try:
@@ -197,7 +210,7 @@ def _fit(box, width: float, height: float, text: str | None, notices: list[Notic
 
 
 def corners_of(matrix: Matrix, rectangle: tuple[float, float, float, float]) -> list[tuple[float, float]]:
-    """Corners [mm] of a rectangle (x, y, width, height) in user units, one after the other."""
+    """Return the corners [mm], in order, of a rectangle (x, y, width, height) in user units."""
     a, b, c, d, e, f = matrix
     x, y, width, height = rectangle
     places = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]

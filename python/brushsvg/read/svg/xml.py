@@ -1,8 +1,8 @@
-"""Bytes to an element tree, with nothing fetched and nothing inflated.
+"""Parse XML safely: nothing is fetched, and nothing can inflate itself.
 
-An entity bomb is stopped before it grows: entities built from entities are refused, and what the rest can
-grow to is bounded beforehand by (number of references) x (longest entity); attribute defaults likewise.
-Nesting costs no recursion, here or in the walk over the tree.
+An entity bomb is stopped before it grows. Entities that contain entities are refused, and the size of the others is
+bounded beforehand by (number of references) x (longest entity). Attribute defaults are bounded in the same way.
+Nested elements need no recursion, here or in the walk over the tree.
 """
 
 from __future__ import annotations
@@ -15,22 +15,26 @@ from xml.parsers import expat
 
 from ...errors import Error
 
-# Drawing programs declare a dozen short entities and use each once per element: far below a megabyte.
+# Characters that entities may add. Drawing programs declare a dozen short entities and use each once per element,
+# which is far below a megabyte.
 EXPANSION_LIMIT = 10_000_000
-_MOST_ELEMENTS = 1_000_000  # ten times what may be painted
-_LARGEST_UNPACKED = 64_000_000  # characters; path data may have 10 million
+_MOST_ELEMENTS = 1_000_000  # ten times the number of elements that can be painted
+_LARGEST_UNPACKED = 64_000_000  # bytes; path data may have 10 million characters
 
 
 @dataclass(frozen=True)
 class Document:
-    """root: tags as "{namespace}name"; instructions: names of the processing instructions; comments: the first few."""
+    """A parsed document.
+
+    root: tags are "{namespace}name"; instructions: names of the processing instructions; comments: the first 10.
+    """
 
     root: ET.Element
     instructions: list[str]
     comments: list[str]
 
 
-# How files begin that users pass as drawings, under any name; Illustrator's .ai is a PDF.
+# First bytes of other files that users pass as drawings. Illustrator's .ai is a PDF.
 _OTHERS = {
     b"%PDF": "a PDF",
     b"%!PS": "a PostScript file",
@@ -42,9 +46,9 @@ _OTHERS = {
 
 
 def parse_xml(data: bytes) -> Document:
-    """Return the document's tree and the processing instructions next to it.
+    """Parse a document, which may be compressed (SVGZ).
 
-    Error, with the line where there is one, for what is not XML, reads other files or inflates itself.
+    Raises Error, with the line if it is known, if the data is not XML, reads other files or inflates itself.
     """
     if not data.strip():
         raise Error("the file is empty", code="file-empty")
@@ -124,7 +128,7 @@ def parse_xml(data: bytes) -> Document:
     return Document(builder.close(), instructions, comments)
 
 
-# What expat cannot decode, by its label and the codec that browsers read it with (WHATWG Encoding Standard).
+# Encodings that expat cannot decode: the label, and the codec that browsers use (WHATWG Encoding Standard).
 _MULTI_BYTE = {
     "gb2312": "gb18030",
     "gbk": "gb18030",
@@ -140,7 +144,10 @@ _DECLARED = re.compile(rb"""\s*<\?xml\s[^>]*?encoding\s*=\s*["']([A-Za-z0-9._-]+
 
 
 def _decoded(data: bytes) -> tuple[bytes, str | None]:
-    """The document in UTF-8 and that name, where it is in an encoding of several bytes a character; else as it is."""
+    """Convert a document from an encoding with several bytes per character to UTF-8.
+
+    Returns the data and "utf-8", or the unchanged data and None for other encodings.
+    """
     declared = _DECLARED.match(data[:200])
     codec = _MULTI_BYTE.get(declared[1].decode().lower()) if declared else None
     if codec is None:
@@ -153,7 +160,7 @@ def _decoded(data: bytes) -> tuple[bytes, str | None]:
 
 
 def _unpacked(data: bytes) -> bytes:
-    """What a compressed file (SVGZ) holds."""
+    """Return the content of a compressed file (SVGZ)."""
     unpacking = zlib.decompressobj(wbits=31)
     try:
         plain = unpacking.decompress(data, _LARGEST_UNPACKED + 1)

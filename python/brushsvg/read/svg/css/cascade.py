@@ -1,4 +1,7 @@
-"""Which SVG properties an element has: attributes, CSS rules, style="", inheritance, in the order CSS prescribes."""
+"""The CSS cascade: the properties of an element.
+
+They come from attributes, CSS rules, style="" and inheritance, in the order that CSS prescribes.
+"""
 
 from __future__ import annotations
 
@@ -13,13 +16,13 @@ from .math import computed_length
 from .values import computed, path_text, problem_of, substituted
 
 INHERITED = {
-    "font-size": f"{FONT_PX:g}",  # in px
+    "font-size": f"{FONT_PX:g}",  # px
     "stroke": "none",
     "stroke-width": "1",
     "stroke-opacity": "1",
     "stroke-dasharray": "none",
     "stroke-dashoffset": "0",
-    "fill": "",  # SVG's default, black, which the drawing does not set
+    "fill": "",  # not set by the drawing; the default of SVG is black
     "fill-opacity": "1",
     "fill-rule": "nonzero",
     "clip-rule": "nonzero",
@@ -38,7 +41,7 @@ OWN = {
     "filter": "none",
     "overflow": "",
 }
-# What CSS alone says and nobody here reads, with the value that changes nothing.
+# Properties that exist in CSS only and are not read, with the value that has no effect.
 _CSS_ALONE = {
     "mask-image": "none",
     "mix-blend-mode": "normal",
@@ -51,28 +54,32 @@ _CSS_ALONE = {
 }
 _UNREAD = ("filter", *_CSS_ALONE)
 OWN |= _CSS_ALONE
-# Attributes that CSS may set as well; CSS wins.
+# Attributes that CSS can also set. CSS takes precedence.
 _GEOMETRY = frozenset(
     "transform transform-origin transform-box translate rotate scale d x y width height cx cy r rx ry".split()
 )
 _LENGTHS = frozenset("x y width height cx cy r rx ry".split())
 _COMPUTED = ("font-size", "stroke-width", "stroke-dashoffset")
-_BARE_NUMBER = re.compile(NUMBER)  # a length in an attribute, and in CSS none unless it is 0
-_OLD_PREFIX = "-webkit-"  # still means the same where nothing else does
+_BARE_NUMBER = re.compile(NUMBER)  # a valid length in an attribute; in CSS only 0 is valid without a unit
+_OLD_PREFIX = "-webkit-"  # browsers still accept some properties with this prefix
 _PREFIXED = frozenset(
     "transform transform-origin clip-path mask mask-image filter animation animation-name".split()
 )
-_PRESENTED = tuple(name for name in (*INHERITED, *OWN) if name not in _CSS_ALONE)  # as attributes
+# Properties that can be attributes.
+_PRESENTED = tuple(name for name in (*INHERITED, *OWN) if name not in _CSS_ALONE)
 _READ = frozenset((*INHERITED, *OWN)) | _GEOMETRY
 MARKERS = ("marker-start", "marker-mid", "marker-end")
 
 
 @dataclass(frozen=True)
 class Style:
-    """Computed values. Colours are "#rrggbb", "#rrggbbaa", "none", "currentcolor" or url(...), widths as written.
+    """The computed values of an element.
 
-    inherited: what children start from, custom properties among them; own: what they do not; geometry:
-    attributes that CSS replaces.
+    Colours are "#rrggbb", "#rrggbbaa", "none", "currentcolor" or url(...). Widths are as written.
+
+    inherited: properties that children inherit, including custom properties.
+    own: properties that children do not inherit.
+    geometry: attributes that CSS replaces.
     """
 
     inherited: dict[str, str]
@@ -86,9 +93,12 @@ INITIAL = Style(INHERITED, OWN, {})
 def cascade(
     parent: Style, attributes: dict[str, str], rules: list[Declaration], diagonal: float
 ) -> tuple[Style, list[Notice]]:
-    """An element's style, and what was wrong with it: what is not valid falls back to the parent's, as CSS asks.
+    """Return the style of an element, and notices about invalid values.
 
-    rules: declarations of the style sheets, the strongest last; diagonal: of the viewport [px], base of percentages.
+    An invalid value falls back to a weaker declaration or to the parent's value, as CSS prescribes.
+
+    parent: style of the parent; attributes: of the element; rules: declarations of the style sheets, the strongest
+    last; diagonal: of the viewport [px], the base of percentages.
     """
     inline = declarations(attributes["style"]) if "style" in attributes else ()
     said: dict[str, list[str]] = {
@@ -99,20 +109,20 @@ def cascade(
     for name, value, _ in sorted((*rules, *inline), key=itemgetter(2)):
         if name.startswith(_OLD_PREFIX) and name.removeprefix(_OLD_PREFIX) in _PREFIXED:
             name = name.removeprefix(_OLD_PREFIX)
-        for each in MARKERS if name == "marker" else (name,):
-            if each in _READ or each.startswith("--"):
-                said.setdefault(each, []).append(value)
+        for longhand in MARKERS if name == "marker" else (name,):
+            if longhand in _READ or longhand.startswith("--"):
+                said.setdefault(longhand, []).append(value)
     inherited, own, geometry = dict(parent.inherited), dict(OWN), {}
     inherited.update((name, said.pop(name)[-1]) for name in list(said) if name.startswith("--"))
-    if "font-size" in said:  # others count in it
+    if "font-size" in said:  # first, because other lengths depend on it
         said = {"font-size": said["font-size"], **said}
     problems: list[Notice] = []
     for name, values in said.items():
-        for text in reversed(values):  # the strongest that is valid
+        for text in reversed(values):  # the strongest valid declaration counts
             value = text.strip()
             if "var(" in value.lower():
                 value, problem = substituted(value, inherited)
-                if problem:  # CSS does not fall back to a weaker declaration here
+                if problem:  # here CSS does not fall back to a weaker declaration
                     sentence = f"{name} {text[:40]!r} {problem}: it counts as not given"
                     if name != "font-size":
                         is_damage = name == "stroke-width" or name in _GEOMETRY
@@ -152,7 +162,10 @@ def cascade(
 
 
 def unread_own(own: dict[str, str]) -> list[tuple[str, str]]:
-    """(property, sentence) for those of an element or group that apply to all it holds and are not read."""
+    """Return (property, sentence) for unread properties of an element or group.
+
+    These properties affect all that the element or group contains.
+    """
     effects = [name for name in _UNREAD if own[name] != OWN[name]]
     unread = [(name, f"{name} is not read: it counts as {OWN[name] or 'not given'}") for name in effects]
     if own["display"] == "contents":

@@ -1,4 +1,4 @@
-"""Lengths that CSS computes: calc(), min(), max() and clamp(), where what comes out is one length."""
+"""Compute the lengths of calc(), min(), max() and clamp() in CSS."""
 
 from __future__ import annotations
 
@@ -10,13 +10,16 @@ import tinycss2
 from ....errors import Error
 from ....units import length_px
 
-DEEPEST = 20  # functions and brackets in each other
-_RELATIVE = ("%", "em", "rem", "ex")  # come to px where an element is known
-Amount = tuple[float, str]  # of a unit: "" for a number, "px", or one of _RELATIVE
+DEEPEST = 20  # nesting depth of functions and brackets
+_RELATIVE = ("%", "em", "rem", "ex")  # units that depend on an element
+Amount = tuple[float, str]  # value and unit: "" for a number, "px", or a unit of _RELATIVE
 
 
 def computed_length(value: str) -> str:
-    """Return the one length of a function; the value itself where it holds none, or percent together with px."""
+    """Return the length that a CSS function computes.
+
+    The value is returned as it is if it is not a function, or if the function mixes units such as % and px.
+    """
     tokens = _without_spaces(tinycss2.parse_component_value_list(value))
     if len(tokens) != 1 or tokens[0].type != "function":
         return value
@@ -25,7 +28,7 @@ def computed_length(value: str) -> str:
 
 
 def _without_spaces(tokens: list) -> list:
-    return [each for each in tokens if each.type != "comment"]
+    return [token for token in tokens if token.type != "comment"]
 
 
 def _amount(token, depth: int) -> Amount | None:
@@ -47,11 +50,11 @@ def _amount(token, depth: int) -> Amount | None:
     if token.type != "function":
         return None
     parts: list[list] = [[]]
-    for each in _without_spaces(token.arguments):
-        if each == ",":
+    for argument in _without_spaces(token.arguments):
+        if argument == ",":
             parts.append([])
         else:
-            parts[-1].append(each)
+            parts[-1].append(argument)
     amounts = [_sum(part, depth + 1) for part in parts]
     if None in amounts or len({unit for _, unit in amounts}) != 1:
         return None
@@ -66,8 +69,8 @@ def _amount(token, depth: int) -> Amount | None:
 
 
 def _sum(tokens: list, depth: int) -> Amount | None:
-    """Of products; + and - stand between blanks."""
-    ends = [k for k, each in enumerate(tokens) if each in ("+", "-")]
+    """Return a sum of products. CSS requires blanks around + and -."""
+    ends = [k for k, token in enumerate(tokens) if token in ("+", "-")]
     blanks = [
         tokens[k + side].type == "whitespace" for k in ends for side in (-1, 1) if 0 <= k + side < len(tokens)
     ]
@@ -81,10 +84,10 @@ def _sum(tokens: list, depth: int) -> Amount | None:
 
 
 def _product(tokens: list, depth: int) -> Amount | None:
-    words = [each for each in tokens if each.type != "whitespace"]
-    if len(words) % 2 == 0 or any(each not in ("*", "/") for each in words[1::2]):
+    words = [token for token in tokens if token.type != "whitespace"]
+    if len(words) % 2 == 0 or any(sign not in ("*", "/") for sign in words[1::2]):
         return None
-    amounts = [_amount(each, depth) for each in words[::2]]
+    amounts = [_amount(token, depth) for token in words[::2]]
     if None in amounts:
         return None
     value, unit = amounts[0]

@@ -1,4 +1,4 @@
-"""The style sheets of an SVG document: which declarations reach which element, by tinycss2 and cssselect2."""
+"""The style sheets of an SVG document, parsed with tinycss2 and cssselect2."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ...design import Notice
 from .declarations import Declaration, declarations
 from .selectors import Tree
 
-TEXT_LIMIT = 1_000_000  # characters of style sheets: drawing programs write a hundredth of it
+TEXT_LIMIT = 1_000_000  # characters of all style sheets; drawing programs write a hundredth of this
 
 _SVG = "http://www.w3.org/2000/svg"
 _ROOT = re.compile(r":(?:root|scope)\b", re.IGNORECASE)
@@ -22,13 +22,16 @@ _STYLES = (f"{{{_SVG}}}style", "{http://www.w3.org/1999/xhtml}style", "style")
 
 
 class Rules:
-    """Return the document's style sheets, in order. notices: receives the parts that are not read."""
+    """The style sheets of a document, in order.
+
+    notices: about the parts that are not read.
+    """
 
     def __init__(self, root: ET.Element):
         self.notices: list[Notice] = []
         self._matcher, self._in_copies = Matcher(), Matcher()
         self._copies: dict[ET.Element, Tree] = {}
-        self._of_type = 0  # rules that count siblings of a type
+        self._of_type = 0  # number of rules that count siblings of a type
         sheets = [node for node in root.iter() if node.tag in _STYLES and self._counts(node)]
         self._tree = Tree(root) if sheets else None
         texts = ["".join(sheet.itertext()) for sheet in sheets]
@@ -42,8 +45,13 @@ class Rules:
             self._add(tinycss2.parse_stylesheet(text, True, True))
 
     def of(self, node: ET.Element, copied: ET.Element | None = None) -> list[Declaration]:
-        """An element's declarations, from the weakest to the strongest among those of equal importance. copied: what
-        a `use` copies and this is of: selectors see nothing but what is copied, as SVG 2 (5.6.3) asks."""
+        """Return the declarations for an element.
+
+        Among declarations of equal importance, the strongest is last.
+
+        copied: for an element inside a copy, the element that a `use` copies. Selectors then see the copied element
+        and its content only, as SVG 2 (5.6.3) prescribes.
+        """
         if self._tree is None:
             return []
         self._tree.budget.spend(self._matcher.order // 10)
@@ -69,7 +77,7 @@ class Rules:
             elif rule.type == "at-rule" and rule.lower_at_keyword == "import":
                 self._note("@import names another file, which is not read", about="@import")
             elif rule.type == "at-rule" and rule.lower_at_keyword == "namespace":
-                if not any(each.type in ("url", "string") and each.value == _SVG for each in rule.prelude):
+                if not any(token.type in ("url", "string") and token.value == _SVG for token in rule.prelude):
                     self._note("@namespace is not read: its rules count for all elements", about="@namespace")
             elif rule.type == "at-rule" and rule.lower_at_keyword not in _NO_STROKES:
                 name = f"@{rule.at_keyword[:40]}"
@@ -97,7 +105,7 @@ class Rules:
             self._note(f"selector {selector!r} is not read", about="selector")
         for selector in selectors or ():
             self._matcher.add_selector(selector, declared)
-        # the root of a copy is none of a document's
+        # The root of a copy is not the root of a document, so :root must not match it.
         text = tinycss2.serialize(rule.prelude)
         self._of_type += "-of-type" in text
         for selector in (selectors and compile_selector_list(_ROOT.sub(":host", text))) or ():
@@ -108,7 +116,10 @@ class Rules:
         return style.get("type", "").strip().lower() in ("", "text/css") and self._for_screens(media)
 
     def _for_screens(self, media) -> bool:
-        """Return whether a media query holds on a screen in daylight, or there is none; reports an open case."""
+        """Whether a media query matches a screen with a light colour scheme.
+
+        An empty query matches. A query that is not known is reported.
+        """
         queries = [" ".join(query.split()) for query in tinycss2.serialize(media).lower().split(",")]
         known = [_MEDIA.get(query.removeprefix("only ")) for query in queries]
         if True not in known and None in known:
@@ -122,10 +133,10 @@ class Rules:
         self.notices.append(Notice("style", sentence, code=code, about=about))
 
 
-# What media queries say, as far as it is known beforehand.
+# Results of the media queries that are known.
 _MEDIA = {"": True, "all": True, "screen": True, "not print": True, "(prefers-color-scheme: light)": True}
 _MEDIA |= {"print": False, "speech": False, "not all": False, "not screen": False}
 _MEDIA |= {"(prefers-color-scheme: dark)": False, "(prefers-color-scheme:dark)": False}
 _MEDIA |= {"(prefers-color-scheme:light)": True}
-# At-rules that say nothing about strokes.
+# At-rules that do not affect strokes, or are read elsewhere.
 _NO_STROKES = frozenset("media font-face charset keyframes -webkit-keyframes page".split())

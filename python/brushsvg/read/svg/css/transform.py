@@ -1,7 +1,7 @@
-"""Transforms as CSS writes them, and the point that a transform leaves where it is.
+"""Parse the transforms of CSS, and the origin of a transform.
 
-CSS is stricter than SVG's attribute: lengths and angles have units, numbers have commas between them. What browsers
-do not accept is not guessed here either.
+CSS is stricter than the attribute of SVG: lengths and angles have units, and commas separate numbers. A value that
+browsers do not accept is not accepted here either.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _DEGREES = {"deg": 1.0, "rad": 180 / math.pi, "grad": 0.9, "turn": 360.0}
 _SHARE = re.compile(rf"({NUMBER})(%?)")
 _BARE = re.compile(NUMBER)
 
-# Of each function: what its arguments are. "x" and "y": lengths or percentages of that side of the box.
+# The kinds of the arguments of each function. "x" and "y" are lengths or percentages of this side of the box.
 _KINDS = {
     "matrix": ("number",) * 6,
     "translate": ("x", "y"),
@@ -49,7 +49,10 @@ _NOTHING = ("none", "initial", "unset", "revert")
 
 
 def css_transform(text: str, box: Callable[[], ReferenceBox], em_px: float) -> Matrix:
-    """The matrix of the property `transform`. box: of which percentages are. Error if it is not CSS, or in space."""
+    """Return the matrix of the property `transform`.
+
+    box: returns the reference box of percentages. Raises Error if the text is not CSS, or a transform in 3D.
+    """
     matrix, at = IDENTITY, 0
     if text.strip().lower() in _NOTHING:
         return matrix
@@ -69,7 +72,10 @@ def css_transform(text: str, box: Callable[[], ReferenceBox], em_px: float) -> M
 
 
 def individual_transform(name: str, text: str, box: Callable[[], ReferenceBox], em_px: float) -> Matrix:
-    """The matrix of one of the properties `translate`, `rotate` and `scale`. Error if it is not CSS, or in space."""
+    """Return the matrix of the property `translate`, `rotate` or `scale`.
+
+    Raises Error if the text is not CSS, or a transform in 3D.
+    """
     words = text.split()
     if text.strip().lower() in _NOTHING:
         return IDENTITY
@@ -80,11 +86,14 @@ def individual_transform(name: str, text: str, box: Callable[[], ReferenceBox], 
 
 
 def origin(text: str, is_css: bool, box: Callable[[], ReferenceBox], em_px: float) -> tuple[float, float]:
-    """The point that `transform-origin` names. is_css: whether lengths need units. Error if it is not CSS."""
+    """Return the point (x, y) of `transform-origin`.
+
+    is_css: whether lengths need units, as in CSS. Raises Error if the text is invalid.
+    """
     words = text.lower().split()
     if not 1 <= len(words) <= 3:
         raise Error(f"transform-origin {text[:40]!r} is not read", code="transform-unread")
-    if len(words) == 3:  # above the paper
+    if len(words) == 3:  # the third number is the depth, which has no effect
         if (depth := words.pop()).endswith("%"):
             raise Error(f"transform-origin {text[:40]!r} is not read", code="transform-unread")
         _length(depth, 0.0, is_css, em_px)
@@ -101,7 +110,7 @@ def origin(text: str, is_css: bool, box: Callable[[], ReferenceBox], em_px: floa
 
 
 def about(point: tuple[float, float], matrix: Matrix) -> Matrix:
-    """A matrix as it acts about a point."""
+    """Return a matrix that applies another matrix about a point."""
     x, y = point
     return multiply(multiply((1.0, 0.0, 0.0, 1.0, x, y), matrix), (1.0, 0.0, 0.0, 1.0, -x, -y))
 

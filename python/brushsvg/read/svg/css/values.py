@@ -1,4 +1,4 @@
-"""Whether a value is one of its CSS property, what it comes to, and what var() puts into it."""
+"""Check and compute the values of CSS properties, and substitute var()."""
 
 from __future__ import annotations
 
@@ -25,11 +25,14 @@ _FONT_SIZES = {
     "x-large": 24.0,
     "xx-large": 32.0,
 }
-_LONGEST_VALUE = 10_000  # of custom properties put into each other
+_LONGEST_VALUE = 10_000  # characters of a value after the substitution of custom properties
 
 
 def problem_of(name: str, value: str, diagonal: float) -> Notice | None:
-    """Why a value is not one of its property, as far as it matters."""
+    """Return a notice if a value is not valid for its property, otherwise None.
+
+    Only properties whose invalid values matter are checked.
+    """
     if name in ("stroke", "fill", "color"):
         if not URL.match(value) and parse_colour(value) is None:
             return Notice(
@@ -70,7 +73,7 @@ def computed(name: str, value: str, inherited: dict[str, str]) -> str:
         return "evenodd" if value.lower() == "evenodd" else "nonzero"
     if name == "font-size":
         return _font_size(value.lower(), inherited["font-size"])
-    if name in _LENGTHS:  # what is said in em is handed down in px
+    if name in _LENGTHS:  # children inherit em values in px
         return _OF_FONT.sub(
             lambda found: f"{length_px(found[0], 0.0, float(inherited['font-size'])):.15g}", value
         )
@@ -89,10 +92,13 @@ def _font_size(value: str, parents: str) -> str:
 
 
 def substituted(value: str, inherited: dict[str, str]) -> tuple[str, str]:
-    """A value with its var(--name, fallback) replaced, and why that leads nowhere, "" if it does not."""
+    """Return a value with var(--name, fallback) substituted, and a problem.
+
+    The problem is a phrase that says why the substitution fails, "" if it works.
+    """
     problem = ""
 
-    @cache  # or variables that name two others each would take for ever
+    @cache  # without the cache, variables that each use two others would take exponential time
     def at(depth: int, value: str) -> str:
         nonlocal problem
         parts = []
@@ -116,11 +122,11 @@ def substituted(value: str, inherited: dict[str, str]) -> tuple[str, str]:
 
 
 def path_text(value: str) -> str | None:
-    """The text in d: path("..."), "" for none; None if it is neither."""
+    """Return the path data in a value of d: path("..."), "" for none, else None."""
     if value.lower() == "none":
         return ""
     token, *others = tinycss2.parse_component_value_list(value, skip_comments=True)
     if others or token.type != "function" or token.lower_name != "path":
         return None
-    given = [each for each in token.arguments if each.type not in ("whitespace", "comment")]
+    given = [argument for argument in token.arguments if argument.type not in ("whitespace", "comment")]
     return given[0].value if len(given) == 1 and given[0].type == "string" else None

@@ -1,4 +1,7 @@
-"""Path commands to cubics on paper: drawn in user units, mapped by one matrix, cut where out of range."""
+"""Convert path commands to cubics on paper.
+
+The commands are drawn in user units and mapped by one matrix. A path ends where it leaves the range.
+"""
 
 from __future__ import annotations
 
@@ -12,14 +15,20 @@ from ....geometry.arc_to_cubics import arc_count
 from ...design import SubPath
 from .path_data import Command
 
-LARGEST_MM = 1e6  # a number beyond it is damage: no table is that large
-_TOLERANCE_MM = 1e-4  # of arcs: far below a brush hair, yet two cubics a quarter serve up to 23 mm radius
-_NOTHING_MM = 1e-6  # segments below it have a direction made of rounding errors
+LARGEST_MM = 1e6  # a larger coordinate is damage, because no table is that large
+# Tolerance of arcs, far below a brush hair. Up to a radius of 23 mm, two cubics per quarter are enough.
+_TOLERANCE_MM = 1e-4
+_NOTHING_MM = 1e-6  # size of a segment below which its direction consists of rounding errors
 
 
 @dataclass(frozen=True)
 class Line:
-    """What commands draw; beyond: where in the text a number left the range and drawing stopped, or None."""
+    """The result of path commands.
+
+    subpaths: in mm on paper.
+    lone_movetos: number of movetos without a line.
+    beyond: the position in the text at which the path left the range and ended, or None.
+    """
 
     subpaths: tuple[SubPath, ...]
     lone_movetos: int
@@ -27,7 +36,10 @@ class Line:
 
 
 def trace(commands: list[Command], paper_from_user: tuple[float, ...], scale: float) -> Line:
-    """Sub-paths on paper [mm]. scale: greatest stretch of the matrix, mm per user unit."""
+    """Draw commands on paper [mm].
+
+    paper_from_user: matrix from user units to mm; scale: greatest stretch of the matrix [mm per user unit].
+    """
     a, b, c, d, e, f = paper_from_user
     subpaths: list[SubPath] = []
     lone_movetos = 0
@@ -35,7 +47,7 @@ def trace(commands: list[Command], paper_from_user: tuple[float, ...], scale: fl
         if not segments:
             lone_movetos += 1
             continue
-        # Most paths are short: number by number is faster than by matrix product, and alike on every machine.
+        # Most paths are short. Plain numbers are then faster than a matrix product, and equal on every machine.
         points = [
             (
                 *(a * x0 + c * y0 + e, b * x0 + d * y0 + f, a * x1 + c * y1 + e, b * x1 + d * y1 + f),
@@ -72,7 +84,10 @@ def _tidy(cubics: np.ndarray, closed: bool) -> SubPath:
 
 
 def _user_subpaths(commands: list[Command], scale: float) -> Iterator[tuple[list, list[int], bool]]:
-    """(Segments of eight numbers, where each stands in the text, closed); no segments: a lone moveto."""
+    """Yield sub-paths in user units: segments, positions, closed.
+
+    A segment has eight numbers, and its position is an index into the text. A lone moveto has no segments.
+    """
     segments: list[tuple[float, ...]] = []
     places: list[int] = []
     x = y = start_x = start_y = handle_x = handle_y = 0.0
@@ -133,7 +148,7 @@ def _user_subpaths(commands: list[Command], scale: float) -> Iterator[tuple[list
 def _close(segments, places, place, x, y, start_x, start_y, scale: float) -> None:
     gap = max(abs(x - start_x), abs(y - start_y)) * scale
     if segments and gap <= _TOLERANCE_MM:
-        # Relative commands rarely come back to the last digit; a hair of a line would be a corner of its own.
+        # Relative commands rarely come back exactly. A tiny closing line would add a corner.
         segments[-1] = (*segments[-1][:6], start_x, start_y)
         return
     dx, dy = (start_x - x) / 3, (start_y - y) / 3
@@ -142,7 +157,10 @@ def _close(segments, places, place, x, y, start_x, start_y, scale: float) -> Non
 
 
 def _arc(x, y, rx, ry, turn_deg, large, sweep, ex, ey, scale: float) -> list[tuple[float, ...]]:
-    """Cubics of an elliptical arc, SVG 2 appendix B.2.4 and B.2.5 (centre from end points)."""
+    """Return the cubics of an elliptical arc, by SVG 2 appendix B.2.4 and B.2.5.
+
+    The appendix computes the centre from the end points.
+    """
     rx, ry = abs(rx), abs(ry)
     if not max(rx, ry, abs(x), abs(y), abs(ex), abs(ey)) * scale <= LARGEST_MM or not math.isfinite(turn_deg):
         return [(x, y, x, y, math.nan, math.nan, ex, ey)]
@@ -150,7 +168,7 @@ def _arc(x, y, rx, ry, turn_deg, large, sweep, ex, ey, scale: float) -> list[tup
     if rx * scale < _NOTHING_MM or ry * scale < _NOTHING_MM:
         return [straight]
     cos, sin = math.cos(math.radians(turn_deg)), math.sin(math.radians(turn_deg))
-    # Half the chord in the frame where the ellipse is the unit circle.
+    # Half the chord, in the frame in which the ellipse is the unit circle.
     px = (cos * (x - ex) + sin * (y - ey)) / 2 / rx
     py = (-sin * (x - ex) + cos * (y - ey)) / 2 / ry
     half_chord = math.hypot(px, py)

@@ -1,8 +1,8 @@
-"""Inkscape's path effects: the line that was drawn and its width, where only an outline of both is left in d.
+"""Read Inkscape's PowerStroke: the drawn line and its width, in place of the outline in d.
 
-Where other effects shape the line as well, as Spiro does, the outline counts: it is what Inkscape shows.
-PowerStroke keeps offset_points, (place, half width): the place counts the line's segments, its fraction is the
-parameter within one.
+If other effects, such as Spiro, also shape the line, the outline counts, because Inkscape shows the outline.
+PowerStroke stores offset_points, (place, half width). A place is the number of a segment of the line plus the
+parameter within this segment.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from ..references import referred
 from .path_data import numbers
 
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
-_CAPS = ("round", "butt", "zerowidth")  # the first two end as the brush does
+_CAPS = ("round", "butt", "zerowidth")  # the brush makes the ends of the first two
 _PER_SEGMENT = 16  # knots of the width profile on each segment
-# Effects whose result is a line again: d holds it.
+# Effects whose result is a line, which d contains.
 _LINES = frozenset(
     "spiro bspline fillet_chamfer simplify roughen interpolate_points lattice2 envelope".split()
 )
@@ -32,8 +32,14 @@ _LINES = frozenset(
 
 @dataclass(frozen=True)
 class PowerStroke:
-    """A line with a width along it. d: as drawn; offsets: (k, 2), place and half width [user units]; tapers: whether
-    the width begins and ends at 0 (cap "zero width"), rather than with that of the nearest offset."""
+    """A line with a varying width.
+
+    d: path data of the drawn line.
+    offsets: (k, 2), place and half width [user units].
+    interpolator: Inkscape's name of the interpolation of the width; beta: its smoothness.
+    tapers: whether the width is 0 at the start and at the end (cap "zero width"); otherwise it is the width of the
+    nearest offset.
+    """
 
     d: str
     offsets: np.ndarray
@@ -43,7 +49,7 @@ class PowerStroke:
 
 
 def in_effects_of_groups(root: ET.Element) -> set[ET.Element]:
-    """Return the elements of groups that have path effects: these work on the elements' outlines."""
+    """Return the elements of groups with path effects, which change the elements' outlines."""
     found: set[ET.Element] = set()
     for node in root.iter():
         if (
@@ -58,9 +64,11 @@ def in_effects_of_groups(root: ET.Element) -> set[ET.Element]:
 def drawn_line(
     node: ET.Element, by_id: dict[str, ET.Element], in_group: bool
 ) -> tuple[PowerStroke | None, list[Notice]]:
-    """Return the line under a PowerStroke, None if there is none, and the notices about its unread effects.
+    """Return the line of a PowerStroke, None if there is none, and notices.
 
-    in_group: whether a group around it has path effects.
+    The notices are about effects that are not read.
+
+    in_group: whether a group around the element has path effects.
     """
     original = node.get(INKSCAPE + "original-d")
     if not original:
@@ -84,7 +92,7 @@ def drawn_line(
     (said,) = power
     pairs = [numbers(pair.strip()) for pair in said.get("offset_points", "").split("|")]
     scales = (numbers(said.get(name, "1").strip()) for name in ("scale_width", "interpolator_beta"))
-    numbered = [*pairs, *(each and [*each, 0.0] for each in scales)]
+    numbered = [*pairs, *(values and [*values, 0.0] for values in scales)]
     if not all(pair and len(pair) == 2 and all(map(math.isfinite, pair)) for pair in numbered):
         return None, [_unread("its PowerStroke has no offset points that can be read: its outline counts")]
     scale = numbers(said.get("scale_width", "1").strip()) or [1.0]
@@ -113,7 +121,10 @@ def _unread(sentence: str) -> Notice:
 
 
 def with_widths(power: PowerStroke, subpaths: tuple[SubPath, ...], mm_per_user: float) -> tuple[SubPath, ...]:
-    """The sub-paths with the PowerStroke's widths along them; places count on over all sub-paths."""
+    """Return the sub-paths with the widths of a PowerStroke.
+
+    Places are counted through over all sub-paths.
+    """
     result, first = [], 0
     for subpath in subpaths:
         known = knots(subpath.cubics)
@@ -129,7 +140,8 @@ def with_widths(power: PowerStroke, subpaths: tuple[SubPath, ...], mm_per_user: 
         if total == 0:
             result.append(SubPath(subpath.cubics, subpath.closed, np.array([[0.0, widths.max()]])))
             continue
-        # a parameter's place along the line: exact at the table's parameters, which are denser than the knots need
+        # The fraction of the arc length at each place. It is exact at the parameters of the table, which are denser
+        # than the knots.
         table = np.linspace(0.0, 1.0, known.shape[1])
         ends = np.concatenate([[0.0], np.cumsum(known[:, -1])])
         k = np.minimum(place.astype(int), count - 1)
@@ -166,7 +178,10 @@ def _linear(points: np.ndarray, place: np.ndarray, _beta: float) -> np.ndarray:
 
 
 def _cubic(points: np.ndarray, place: np.ndarray, handles: np.ndarray) -> np.ndarray:
-    """Cubic Bezier pieces between points in the plane of place and half width; handles: (k - 1, 2, 2)."""
+    """Interpolate by cubic Bezier pieces in the plane of place and half width.
+
+    points: (k, 2); handles: (k - 1, 2, 2), the inner control points of each piece.
+    """
     t = np.linspace(0.0, 1.0, 65)[:, None]
     curve = [cubics.at(t, p, h[0], h[1], q) for p, q, h in zip(points[:-1], points[1:], handles, strict=True)]
     curve = np.concatenate(curve)
@@ -174,14 +189,19 @@ def _cubic(points: np.ndarray, place: np.ndarray, handles: np.ndarray) -> np.nda
 
 
 def johan(points: np.ndarray, place: np.ndarray, beta: float) -> np.ndarray:
-    """Half widths at places between sorted points (k, 2): level at each point, the more suddenly the smaller beta."""
+    """Interpolate half widths as Inkscape's CubicBezierJohan does.
+
+    points: (k, 2), sorted. The profile is level at each point. The smaller beta is, the shorter is its level part.
+    """
     along = np.diff(points, axis=0) * [beta, 0.0]
     return _cubic(points, place, np.stack([points[:-1] + along, points[1:] - along], axis=1))
 
 
 def _centripetal(points: np.ndarray, place: np.ndarray, _beta: float) -> np.ndarray:
-    """Catmull-Rom, its ends count twice. Inkscape calls it centripetal; the fourth root of the distance is what
-    agrees with its outlines, within 0.03 mm of 5 mm of width, where the square root is three times as far off.
+    """Interpolate half widths by a Catmull-Rom spline with doubled end points.
+
+    Inkscape calls it centripetal, but the fourth root of the distance agrees with its outlines: within 0.03 mm at a
+    width of 5 mm. The error of the square root is three times as large.
     """
     around = np.concatenate([points[:1], points, points[-1:]])
     gap = np.linalg.norm(np.diff(around, axis=0), axis=1) ** 0.25

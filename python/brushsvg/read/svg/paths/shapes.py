@@ -1,4 +1,4 @@
-"""SVG's basic shapes as path commands, with the starting points and directions SVG prescribes."""
+"""Convert SVG's basic shapes to path commands, with the start and direction of SVG."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .path_data import MOST_COMMANDS, Command, parse_path, parse_points, snippet
 
 
 class DamageError(Exception):
-    """Broken geometry: what could be drawn up to the error, and a sentence."""
+    """Damaged geometry: a sentence about it, and the commands up to the error."""
 
     def __init__(self, sentence: str, commands: list[Command]):
         super().__init__(sentence)
@@ -20,7 +20,10 @@ class DamageError(Exception):
 def commands_of(
     tag: str, attributes: dict[str, str], viewport: tuple[float, float], em_px: float = FONT_PX
 ) -> list[Command]:
-    """Commands in user units, [] for a shape SVG does not render. viewport: (w, h), base of percentages."""
+    """Return the path commands of a shape in user units, [] if SVG does not render it.
+
+    viewport: (width, height), the base of percentages. Raises DamageError if the geometry is damaged.
+    """
     return _SHAPES[tag](attributes, _Lengths(attributes, viewport, em_px))
 
 
