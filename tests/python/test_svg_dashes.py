@@ -124,7 +124,7 @@ def test_each_dash_is_on_the_line():
 
 
 def test_dashes_too_many_to_paint_are_refused(monkeypatch):
-    monkeypatch.setattr(element, "_MOST_DASHES", 300)
+    monkeypatch.setattr(element, "_MAX_DASHES", 300)
     line = '<path id="p" d="M0 0H20" stroke-dasharray="0.05"/>'
     assert len(read(line).elements[0].subpaths) == 200
     with refused("drawing-too-large 200 100"):

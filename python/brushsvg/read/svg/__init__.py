@@ -18,7 +18,7 @@ from ..empty_drawing import empty_drawing_error
 from ..off_page import keep_on_page
 from .context import local, one_line
 from .css.cascade import INITIAL, cascade
-from .selection import selected
+from .selection import select_elements
 from .settings import PREFIX, document_settings
 from .tree_walk import SVG, Walk
 from .viewport import Page, read_page
@@ -52,14 +52,14 @@ def settings_of(data: bytes, alone: bool = False) -> dict:
     if is_plain and PREFIX.encode() not in data and not alone:
         return {}
     try:
-        return document_settings(_root_of(parse_xml(data)).attrib)
+        return document_settings(_checked_root(parse_xml(data)).attrib)
     except Error:
         if alone:
             raise
         return {}
 
 
-def _root_of(document: Document) -> ET.Element:
+def _checked_root(document: Document) -> ET.Element:
     root = document.root
     if root.tag not in (SVG + "svg", "svg"):
         raise Error(f"the root element is <{local(root)[:40]}>, not <svg>", code="not-svg")
@@ -67,11 +67,11 @@ def _root_of(document: Document) -> ET.Element:
 
 
 def _read(document: Document, options: ReadOptions) -> Design:
-    root = _root_of(document)
+    root = _checked_root(document)
     style = cascade(INITIAL, root.attrib, [], 0.0)[0].geometry
     page = read_page(root.attrib, options.sheet_mm, style)
-    chosen = selected(root, options.select) if options.select else None
-    walk = Walk(root, page, chosen, _outside_the_tree(document, root, page))
+    selected = select_elements(root, options.select) if options.select else None
+    walk = Walk(root, page, selected, _notices_outside_tree(document, root, page))
     walk.run()
     if not walk.elements:
         raise empty_drawing_error(walk.notices, walk.left_out)
@@ -88,19 +88,19 @@ def _read(document: Document, options: ReadOptions) -> Design:
     return remove_background(design, own_mm)
 
 
-def _outside_the_tree(document: Document, root: ET.Element, page: Page) -> list[Notice]:
-    """Return notices about content outside of the tree, for example linked style sheets."""
+def _notices_outside_tree(document: Document, root: ET.Element, page: Page) -> list[Notice]:
+    """Return notices about content outside of the tree: style sheets and comments."""
     notices = []
     if "xml-stylesheet" in document.instructions:
         sentence = "CSS in another file is not read: what it says is missing"
         notices.append(Notice("xml-stylesheet", sentence, code="css-unread"))
-    if page.in_px and (found := _other_pixels(document, root)):
+    if page.in_px and (found := _find_other_pixel_size(document, root)):
         own = page if root.get("viewBox") is None else read_page(root.attrib)  # for any requested sheet
-        notices.append(_probable_size(*found, own.sheet_mm, root.get("viewBox") is not None))
+        notices.append(_probable_size_notice(*found, own.sheet_mm, root.get("viewBox") is not None))
     return notices
 
 
-def _other_pixels(document: Document, root: ET.Element) -> tuple[str, int] | None:
+def _find_other_pixel_size(document: Document, root: ET.Element) -> tuple[str, int] | None:
     """Return the program that wrote the drawing, and its pixels per inch.
 
     The result is None if the program counts 96 pixels per inch or is unknown.
@@ -120,7 +120,7 @@ def _other_pixels(document: Document, root: ET.Element) -> tuple[str, int] | Non
     return (f"Inkscape {version[0]}", 90) if version and int(version[1]) < 92 else None
 
 
-def _probable_size(program: str, per_inch: int, read_mm: tuple[float, float], has_box: bool) -> Notice:
+def _probable_size_notice(program: str, per_inch: int, read_mm: tuple[float, float], has_box: bool) -> Notice:
     w, h = (side * 96 / per_inch for side in read_mm)
     sentence = f"written by {program}, which counts {per_inch} px to the inch, so it was probably drawn as "
     advice = f'give its svg width="{w:.6g}mm" height="{h:.6g}mm"'

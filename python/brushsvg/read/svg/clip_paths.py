@@ -15,7 +15,7 @@ from .css.style_sheets import Rules
 from .paint_servers import URL
 from .paths import shapes
 from .paths.path_to_cubics import trace
-from .references import href, referred
+from .references import find_referenced, href
 from .transform import Matrix, multiply, parse_transform, scales
 from .viewport import corners_of
 
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     import shapely
 
 _CSS_TRANSFORMS = frozenset(("transform", "translate", "rotate", "scale"))
-MASK_PAGE = {
+DEFAULT_MASK_RECTANGLE = {
     "x": "-10%",
     "y": "-10%",
     "width": "120%",
     "height": "120%",
 }  # rectangle of a mask without its own
-_DEEPEST = 20  # nesting depth of clip paths and uses
+_MAX_DEPTH = 20  # nesting depth of clip paths and uses
 _TOO_DEEP = "its clip paths or masks refer to each other, or are nested too deep: painted whole"
 _MASK_UNREAD = "its mask is not made of filled white and black shapes alone, which is not read: painted whole"
 
@@ -82,7 +82,7 @@ class ClipPaths:
         found = URL.match(value)
         if not found:
             raise ClipPathError("clip-path: only url(#...) is read: painted whole", code="clipping-unread")
-        target = referred(found[1].strip().strip("\"'"), self._by_id)
+        target = find_referenced(found[1].strip().strip("\"'"), self._by_id)
         if target is None or local(target) != "clipPath":
             return None
         return self._region(target, context, bounds, 0)
@@ -90,18 +90,18 @@ class ClipPaths:
     def _region(self, node: ET.Element, context: Context, bounds, depth: int) -> shapely.Geometry:
         import shapely
 
-        if depth > _DEEPEST:
+        if depth > _MAX_DEPTH:
             raise ClipPathError(_TOO_DEEP, code="clipping-unread")
         matrix = context.matrix
         if node.get("transform"):
             matrix = multiply(matrix, parse_transform(node.get("transform", "")))
         if node.get("clipPathUnits") == "objectBoundingBox":
-            matrix = multiply(matrix, _in_bounds(bounds()))
+            matrix = multiply(matrix, _matrix_from_bounds(bounds()))
         style = self._style_of(node, context.diagonal)
         _refuse_css_transform(style)
         parts = self._shapes(node, context._replace(matrix=matrix), style, depth, "clip-rule")
         region = shapely.union_all([region for _, region in parts])
-        return self._own(style, context, region, depth)
+        return self._clip_by_own_path(style, context, region, depth)
 
     def mask_region(
         self, value: str, context: Context, bounds: Callable[[], tuple[float, float, float, float] | None]
@@ -113,50 +113,50 @@ class ClipPaths:
         import shapely
 
         found = URL.match(value)
-        target = referred(found[1].strip().strip("\"'"), self._by_id) if found else None
+        target = find_referenced(found[1].strip().strip("\"'"), self._by_id) if found else None
         if found and (target is None or local(target) != "mask"):
             return None
         if not found or "mask-type" in target.attrib or "mask-type" in target.get("style", ""):
             raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
         matrix = context.matrix
         if target.get("maskContentUnits") == "objectBoundingBox":
-            matrix = multiply(matrix, _in_bounds(bounds()))
-        page = self._mask_page(target, context, bounds)
-        left = shapely.Polygon()
+            matrix = multiply(matrix, _matrix_from_bounds(bounds()))
+        rectangle_region = self._mask_rectangle(target, context, bounds)
+        visible = shapely.Polygon()
         inner = context._replace(matrix=matrix)
         style = self._style_of(target, context.diagonal)
-        for shown, region in self._shapes(target, inner, style, 0, "fill-rule"):
-            left = left.union(region) if _is_white(shown) else left.difference(region)
-        if page is not None:
-            left = left.intersection(page)
-        return self._own(style, context, left, 0)
+        for shape_style, region in self._shapes(target, inner, style, 0, "fill-rule"):
+            visible = visible.union(region) if _is_white(shape_style) else visible.difference(region)
+        if rectangle_region is not None:
+            visible = visible.intersection(rectangle_region)
+        return self._clip_by_own_path(style, context, visible, 0)
 
-    def _mask_page(self, mask: ET.Element, context: Context, bounds) -> shapely.Geometry | None:
+    def _mask_rectangle(self, mask: ET.Element, context: Context, bounds) -> shapely.Geometry | None:
         """Return the rectangle outside of which a mask hides everything.
 
         The result is None for the default rectangle of a group, which is larger than the group.
         """
         import shapely
 
-        given = {name: mask.get(name, default).strip() for name, default in MASK_PAGE.items()}
+        sides = {name: mask.get(name, default).strip() for name, default in DEFAULT_MASK_RECTANGLE.items()}
         if mask.get("maskUnits") == "userSpaceOnUse":
             matrix = context.matrix
             rectangle = [
                 context.length(text, context.viewport[name in ("y", "height")])
-                for name, text in given.items()
+                for name, text in sides.items()
             ]
         else:
-            if (box := bounds()) is None and given == MASK_PAGE:
+            if (box := bounds()) is None and sides == DEFAULT_MASK_RECTANGLE:
                 return None
-            matrix = multiply(context.matrix, _in_bounds(box))
-            rectangle = [length_px(text, 1.0, context.em_px) for text in given.values()]
+            matrix = multiply(context.matrix, _matrix_from_bounds(box))
+            rectangle = [length_px(text, 1.0, context.em_px) for text in sides.values()]
         return shapely.Polygon(corners_of(matrix, tuple(rectangle)))
 
-    def _own(self, style: Style, context: Context, region, depth: int) -> shapely.Geometry:
+    def _clip_by_own_path(self, style: Style, context: Context, region, depth: int) -> shapely.Geometry:
         """Return the part of a region inside the clip path of its own style."""
         if (value := style.own["clip-path"]) == "none" or not (found := URL.match(value)):
             return region
-        target = referred(found[1].strip().strip("\"'"), self._by_id)
+        target = find_referenced(found[1].strip().strip("\"'"), self._by_id)
         if target is None:
             return region
         return region.intersection(self._region(target, context, lambda: None, depth + 1))
@@ -184,11 +184,13 @@ class ClipPaths:
             if tag == "use" or is_group:
                 if rule == "fill-rule":
                     _refuse_effects(style)
-                if depth > _DEEPEST:
+                if depth > _MAX_DEPTH:
                     raise ClipPathError(_TOO_DEEP, code="clipping-unread")
                 inside = self._shapes(child, here, style, depth + 1, rule)
-                for shown, region in inside if is_group else self._used(child, here, style, depth, rule):
-                    yield shown, self._own(style, here, region, depth)
+                for shape_style, region in (
+                    inside if is_group else self._use_shapes(child, here, style, depth, rule)
+                ):
+                    yield shape_style, self._clip_by_own_path(style, here, region, depth)
             elif tag == "text":
                 raise ClipPathError(
                     "its clip path is text, which is not read: painted whole", code="clipping-unread"
@@ -201,29 +203,29 @@ class ClipPaths:
                     commands = damage.commands
                 line = trace(commands, matrix, scales(matrix)[0])
                 region = fill_region(flatten_subpaths(line.subpaths), style.inherited[rule])
-                yield style, self._own(style, here, region, depth)
+                yield style, self._clip_by_own_path(style, here, region, depth)
             elif tag in ("image", "svg", "symbol", "switch", "foreignObject") and rule == "fill-rule":
                 raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
 
-    def _used(
+    def _use_shapes(
         self, use: ET.Element, context: Context, style: Style, depth: int, rule: str
     ) -> Iterator[tuple[Style, shapely.Geometry]]:
-        target = referred(href(use), self._by_id)
+        target = find_referenced(href(use), self._by_id)
         if target is None:
             return
-        if depth > _DEEPEST:
+        if depth > _MAX_DEPTH:
             raise ClipPathError(_TOO_DEEP, code="clipping-unread")
         x, y = (
             context.length(use.get(name, "").strip() or "0", context.viewport[k])
             for k, name in enumerate("xy")
         )
         moved = context._replace(matrix=multiply(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)))
-        alone = ET.Element("clipPath")
-        alone.append(target)
-        yield from self._shapes(alone, moved, style, depth + 1, rule)
+        wrapper = ET.Element("clipPath")
+        wrapper.append(target)
+        yield from self._shapes(wrapper, moved, style, depth + 1, rule)
 
 
-def _in_bounds(box: tuple[float, float, float, float] | None) -> Matrix:
+def _matrix_from_bounds(box: tuple[float, float, float, float] | None) -> Matrix:
     """Return the matrix from fractions of bounds (x, y, width, height) to user units."""
     if box is None:
         sentence = "its clip path or mask counts in the size of a group, which is not read: painted whole"

@@ -1,4 +1,4 @@
-"""Convert a shape of an SVG file to an Element: its paint, geometry on paper and dashes."""
+"""Convert a shape of an SVG file to an Element: paint, geometry and dashes."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from .css.cascade import MARKERS
 from .paint_servers import Paints
 from .paths import shapes
 from .paths.path_to_cubics import LARGEST_MM, trace
-from .paths.power_stroke import PowerStroke, drawn_line, with_widths
+from .paths.power_stroke import PowerStroke, add_widths, read_power_stroke
 from .transform import IDENTITY, scales
 
 _WITH_MARKERS = frozenset(("path", "line", "polyline", "polygon"))
-_UNEVEN = 1.05  # ratio of the scales; below it the width differs by less than the scatter of a brush
-_FLAT_MM = 0.05
+_MAX_EVEN_RATIO = 1.05  # ratio of the scales; below it the width differs by less than the scatter of a brush
+_FLATTENING_TOLERANCE_MM = 0.05
 # A page of text has a hundredth of these numbers of dashes and of characters of path data.
-_MOST_DASHES = 100_000
-_MOST_DATA = 10_000_000
+_MAX_DASHES = 100_000
+_MAX_PATH_DATA = 10_000_000
 
 
 class Painted:
@@ -39,22 +39,28 @@ class Painted:
     bent: the elements that path effects of groups change.
     """
 
-    def __init__(self, by_id: dict[str, ET.Element], notes: Notes, paints: Paints, bent: set[ET.Element]):
+    def __init__(
+        self, by_id: dict[str, ET.Element], notes: Notes, paints: Paints, in_group_effects: set[ET.Element]
+    ):
         self.elements: list[Element] = []
         self.by_id = by_id
         self.paints = paints
-        self.bent = bent
+        self.in_group_effects = in_group_effects
         self.notes = notes
-        self.nameless = self.data = 0
-        self.dashes_left = _MOST_DASHES
+        self.unnamed = self.path_data_length = 0
+        self.dashes_left = _MAX_DASHES
 
     def add(self, node: ET.Element, tag: str, context: Context) -> None:
         """Convert the undamaged part of a shape and add it to the elements."""
         properties = context.style.inherited
-        stroke, of_stroke = self.paints.of(properties, "stroke")
-        fill, of_fill = self.paints.of(properties, "fill") if tag != "line" else ("none", [])
+        stroke, stroke_notices = self.paints.of(properties, "stroke")
+        fill, fill_notices = self.paints.of(properties, "fill") if tag != "line" else ("none", [])
         attributes = {**node.attrib, **context.style.geometry} if context.style.geometry else node.attrib
-        power, unread = drawn_line(node, self.by_id, node in self.bent) if tag == "path" else (None, [])
+        power, unread = (
+            read_power_stroke(node, self.by_id, node in self.in_group_effects)
+            if tag == "path"
+            else (None, [])
+        )
         greatest, least = scales(context.matrix)
         if least <= 1e-12 * greatest:
             self.notes.add(
@@ -67,7 +73,7 @@ class Painted:
             width_mm *= MM_PER["px"] / mm_per_user
         if power:
             attributes = {**attributes, "d": power.d}
-            stroke, of_stroke = (fill, of_fill) if fill != "none" else (stroke, of_stroke)
+            stroke, stroke_notices = (fill, fill_notices) if fill != "none" else (stroke, stroke_notices)
             fill = "none"
         if "width_mm" in context.settings:
             width_mm, power = context.settings["width_mm"], None
@@ -84,15 +90,15 @@ class Painted:
             self.notes.add(node, context, sentence, damaged=True, code="geometry-out-of-range")
             return
         before = len(self.notes.notices)
-        outline = self._outline(node, tag, attributes, context, power)
+        outline = self._outline_on_paper(node, tag, attributes, context, power)
         subpaths = self._with_dashes(node, context, outline) if stroke != "none" else outline
         if not subpaths:
             return
-        is_even = "width_mm" in context.settings or (context.is_of_screen and power is None)
-        if stroke != "none" and greatest > _UNEVEN * least and not is_even:
+        has_even_width = "width_mm" in context.settings or (context.is_of_screen and power is None)
+        if stroke != "none" and greatest > _MAX_EVEN_RATIO * least and not has_even_width:
             sentence = f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
             self.notes.add(node, context, sentence, code="stretched-unevenly")
-        for notice in unread + of_fill * (fill != "none") + of_stroke * (stroke != "none"):
+        for notice in unread + fill_notices * (fill != "none") + stroke_notices * (stroke != "none"):
             self.notes.add(node, context, notice.sentence, code=notice.code, about=notice.about)
         if any(is_light(colour) for colour in (fill, stroke) if colour.startswith("#")):
             sentence = (
@@ -105,7 +111,7 @@ class Painted:
         if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
             self.notes.add(node, context, "markers are not read: left out", code="markers-unread")
         element = Element(
-            id=self._named(node, context, before),
+            id=self._name_element(node, context, before),
             subpaths=subpaths,
             stroke_width_mm=0.0 if stroke == "none" else width_mm,
             colour=fill if stroke == "none" else stroke,
@@ -164,39 +170,41 @@ class Painted:
         (x, y), (width, height) = points.min(axis=0).tolist(), np.ptp(points, axis=0).tolist()
         return x, y, width, height
 
-    def _named(self, node: ET.Element, context: Context, first: int) -> str:
+    def _name_element(self, node: ET.Element, context: Context, first: int) -> str:
         """Return the name of a painted element.
 
         An element without an id gets a name, which its notices, from index first on, use as well.
         """
         if name := context.name(node):
             return name
-        self.nameless += 1
-        name = f"stroke{self.nameless}"
+        self.unnamed += 1
+        name = f"stroke{self.unnamed}"
         notices = self.notes.notices
         if len(notices) > first:
             label = f"{name} ({self.notes.label(node)})"
             notices[first:] = [replace(notice, where=label) for notice in notices[first:]]
         return name
 
-    def _outline(
+    def _outline_on_paper(
         self, node, tag: str, attributes, context: Context, power: PowerStroke | None
     ) -> tuple[SubPath, ...]:
         """Return the geometry of an element on paper, without dashes."""
         greatest, least = scales(context.matrix)
-        subpaths = self._sound(node, tag, attributes, context, greatest)
-        return with_widths(power, subpaths, math.sqrt(greatest * least)) if power else subpaths
+        subpaths = self._trace_geometry(node, tag, attributes, context, greatest)
+        return add_widths(power, subpaths, math.sqrt(greatest * least)) if power else subpaths
 
     def _with_dashes(self, node, context: Context, subpaths: tuple[SubPath, ...]) -> tuple[SubPath, ...]:
         greatest, least = scales(context.matrix)
         mm_per_unit = MM_PER["px"] if context.is_of_screen else math.sqrt(greatest * least)
-        return self._dashed(node, context, subpaths, mm_per_unit)
+        return self._cut_dashes(node, context, subpaths, mm_per_unit)
 
-    def _sound(self, node, tag: str, attributes, context: Context, greatest: float) -> tuple[SubPath, ...]:
-        self.data += len(attributes.get("d", "")) + len(attributes.get("points", ""))
-        if self.data > _MOST_DATA:
+    def _trace_geometry(
+        self, node, tag: str, attributes, context: Context, greatest: float
+    ) -> tuple[SubPath, ...]:
+        self.path_data_length += len(attributes.get("d", "")) + len(attributes.get("points", ""))
+        if self.path_data_length > _MAX_PATH_DATA:
             raise Error(
-                f"the drawing has more than {_MOST_DATA} characters of path data",
+                f"the drawing has more than {_MAX_PATH_DATA} characters of path data",
                 self.notes.label(node),
                 code="drawing-too-large",
             )
@@ -212,7 +220,7 @@ class Painted:
             self.notes.add(
                 node,
                 context,
-                _beyond(attributes, tag, line.beyond),
+                _out_of_range_sentence(attributes, tag, line.beyond),
                 damaged=True,
                 code="geometry-out-of-range",
             )
@@ -221,7 +229,7 @@ class Painted:
             self.notes.add(node, context, f"{count} without a line to follow: skipped", code="moveto-alone")
         return line.subpaths
 
-    def _dashed(self, node, context: Context, subpaths, mm_per_unit: float) -> tuple[SubPath, ...]:
+    def _cut_dashes(self, node, context: Context, subpaths, mm_per_unit: float) -> tuple[SubPath, ...]:
         properties = context.style.inherited
         if properties["stroke-dasharray"] == "none" or not subpaths:
             return subpaths
@@ -229,7 +237,7 @@ class Painted:
 
         words = [word for part in properties["stroke-dasharray"].split(",") for word in part.split() or [""]]
         try:
-            scale = mm_per_unit * self._path_scale(node, context, subpaths, mm_per_unit)
+            scale = mm_per_unit * self._dash_unit_scale(node, context, subpaths, mm_per_unit)
             pattern = [context.length(word, context.diagonal) * scale for word in words]
             offset = context.length(properties["stroke-dashoffset"], context.diagonal) * scale
         except Error as error:
@@ -260,7 +268,7 @@ class Painted:
         self.notes.add(node, context, f"it is dashed: {len(pieces)} dashes, each a stroke", code="dashed")
         return tuple(pieces)
 
-    def _path_scale(self, node, context: Context, subpaths, mm_per_unit: float) -> float:
+    def _dash_unit_scale(self, node, context: Context, subpaths, mm_per_unit: float) -> float:
         """Return the length of a dash unit as a multiple of mm_per_unit.
 
         pathLength can define how many units the path has. Without it the result is 1.
@@ -269,25 +277,25 @@ class Painted:
         if not text:
             return 1.0
         try:
-            said = number(text)
+            path_length = number(text)
         except Error as error:
             self.notes.add(
                 node, context, f"pathLength: {error}; it counts as not given", code="path-length-unread"
             )
             return 1.0
-        if said < 0:
+        if path_length < 0:
             return 1.0
         length_mm = sum(float(knots(subpath.cubics)[:, -1].sum()) for subpath in subpaths)
-        return length_mm / mm_per_unit / said if said else math.inf
+        return length_mm / mm_per_unit / path_length if path_length else math.inf
 
 
 def _encloses(subpaths: tuple[SubPath, ...], width_mm: float) -> bool:
-    """Whether an outline encloses more area than a line of this width along it covers."""
-    rings = [flattened(subpath.cubics, _FLAT_MM) for subpath in subpaths]
+    """Whether an outline encloses more area than a line along it covers."""
+    rings = [flattened(subpath.cubics, _FLATTENING_TOLERANCE_MM) for subpath in subpaths]
     return sum(abs(signed_area(ring)) for ring in rings) > sum(map(length, rings)) * width_mm / 2
 
 
-def _beyond(attributes, tag: str, place: int) -> str:
+def _out_of_range_sentence(attributes, tag: str, place: int) -> str:
     name = {"path": "d", "polyline": "points", "polygon": "points"}.get(tag)
     if name is None:
         return "its geometry is beyond 1e6 mm: left out"

@@ -16,33 +16,33 @@ from .paths.power_stroke import INKSCAPE
 
 _SERIF = "{http://www.serif.com/}"
 _ESCAPE = re.compile("_x([0-9A-Fa-f]{2,6})_")
-_AROUND = frozenset(("svg", "switch", "a"))  # elements that can contain layers and are not layers
-_DEEPEST = 100  # nesting depth of layers that get their own names; no user needs more
+_CONTAINERS = frozenset(("svg", "switch", "a"))  # elements that can contain layers and are not layers
+_MAX_LAYER_DEPTH = 100  # nesting depth of layers that get their own names; no user needs more
 _NOT_DRAWN = frozenset("title desc metadata defs style script foreignObject namedview".split())
 
 
 def layer_names(root: ET.Element) -> dict[ET.Element, str]:
-    """Return the name of each layer, with the names of the layers around it: "Ink/Fine"."""
+    """Return the name of each layer, prefixed by the layers around it: "Ink/Fine"."""
     own = {
         node: one_line(node.get(INKSCAPE + "label") or node.get("id", ""))
         for node in root.iter()
         if node.get(INKSCAPE + "groupmode") == "layer"
     }
-    own = own or _by_convention(root)
+    own = own or _names_by_convention(root)
     names: dict[ET.Element, str] = {}
-    waiting = [("", 0, iter(root))] if own else []
-    while waiting:
-        path, depth, nodes = waiting[-1]
+    stack = [("", 0, iter(root))] if own else []
+    while stack:
+        path, depth, nodes = stack[-1]
         node = next(nodes, None)
         if node is None:
-            waiting.pop()
+            stack.pop()
             continue
         if node in own:
-            if depth < _DEEPEST:
+            if depth < _MAX_LAYER_DEPTH:
                 path, depth = "/".join(filter(None, (path, own[node]))), depth + 1
             names[node] = path
         if len(node):
-            waiting.append((path, depth, iter(node)))
+            stack.append((path, depth, iter(node)))
     return names
 
 
@@ -55,37 +55,40 @@ def is_documentation(path: str) -> bool:
     return path.rpartition("/")[2].startswith("%")
 
 
-def _by_convention(root: ET.Element) -> dict[ET.Element, str]:
+def _names_by_convention(root: ET.Element) -> dict[ET.Element, str]:
     names: dict[ET.Element, str] = {}
     inside: ET.Element | None = root
     while inside is not None:
-        found = list(_outermost(inside))
+        found = list(_outermost_groups(inside))
         groups = {node: name for node, name in found if name}
         names.update(groups)
         inside = found[0][0] if len(found) == len(groups) == 1 else None
     return names
 
 
-def _outermost(parent: ET.Element) -> Iterator[tuple[ET.Element, str]]:
-    """Yield the outermost named groups and, with "", all painted elements outside of them."""
-    waiting = [iter(parent)]
-    while waiting:
-        node = next(waiting[-1], None)
+def _outermost_groups(parent: ET.Element) -> Iterator[tuple[ET.Element, str]]:
+    """Yield (element, name) for the outermost named groups.
+
+    Painted elements outside of these groups have the name "".
+    """
+    stack = [iter(parent)]
+    while stack:
+        node = next(stack[-1], None)
         if node is None:
-            waiting.pop()
-        elif local(node) == "g" and (name := _name(node)):
+            stack.pop()
+        elif local(node) == "g" and (name := _group_name(node)):
             yield node, name
-        elif local(node) in _AROUND or local(node) == "g":
-            waiting.append(iter(node))
+        elif local(node) in _CONTAINERS or local(node) == "g":
+            stack.append(iter(node))
         elif local(node) not in _NOT_DRAWN:
             yield node, ""
 
 
-def _name(node: ET.Element) -> str:
-    said = node.get(_SERIF + "id") or node.get("data-name")
-    return one_line(said or _ESCAPE.sub(_character, node.get("id", "")))
+def _group_name(node: ET.Element) -> str:
+    given_name = node.get(_SERIF + "id") or node.get("data-name")
+    return one_line(given_name or _ESCAPE.sub(_unescape, node.get("id", "")))
 
 
-def _character(escape: re.Match) -> str:
+def _unescape(escape: re.Match) -> str:
     number = int(escape[1], 16)
     return chr(number) if number < 0x110000 and chr(number).isprintable() else escape[0]

@@ -13,12 +13,12 @@ from ...errors import Error, Notice
 from ...units import length_px
 from .colour import parse_colour
 from .css.declarations import Declaration, declarations
-from .references import href, referred
+from .references import find_referenced, href
 
 URL = re.compile(r"url\(([^)]*+)\)(.*)", re.DOTALL)
-UNSEEN = 1 / 512  # an opacity below half a step of 8 bits is invisible
+INVISIBLE_OPACITY = 1 / 512  # an opacity below half a step of 8 bits is invisible
 _GRADIENTS = frozenset(("linearGradient", "radialGradient"))
-_NOT_IN_BROWSERS = frozenset("meshgradient mesh hatch solidcolor solidColor".split())
+_UNSUPPORTED_SERVERS = frozenset("meshgradient mesh hatch solidcolor solidColor".split())
 
 
 class Paints:
@@ -31,7 +31,7 @@ class Paints:
         self._by_id = by_id
         self._rules = rules
         # A cache, because thousands of shapes can share a long gradient.
-        self._known: dict[tuple[str, str], tuple[str, list[Notice]]] = {}
+        self._paint_cache: dict[tuple[str, str], tuple[str, list[Notice]]] = {}
 
     def of(self, properties: dict[str, str], name: str) -> tuple[str, list[Notice]]:
         """Return the paint, "#rrggbb" or "none", and notices about unread parts.
@@ -39,14 +39,14 @@ class Paints:
         properties: of the element; name: "stroke" or "fill".
         """
         key = properties[name] or "#000000", name
-        if key not in self._known:
-            self._known[key] = self._colour(*key)
-        colour, notices = self._known[key]
+        if key not in self._paint_cache:
+            self._paint_cache[key] = self._colour(*key)
+        colour, notices = self._paint_cache[key]
         notices = [*notices]
         colour = properties["color"] if colour == "currentcolor" else colour
         opacity = float(properties[f"{name}-opacity"])
         alpha = int(colour[7:], 16) / 255 if len(colour) == 9 else 1.0
-        if colour == "none" or alpha * opacity < UNSEEN:
+        if colour == "none" or alpha * opacity < INVISIBLE_OPACITY:
             return "none", []
         if alpha < 1:
             notices.append(
@@ -77,29 +77,31 @@ class Paints:
         if not found:
             return value, []
         reference, fallback = found[1].strip(" \"'"), found[2].strip()
-        spare = (parse_colour(fallback) or "none") if fallback else "none"
-        server = referred(reference, self._by_id)
+        fallback_colour = (parse_colour(fallback) or "none") if fallback else "none"
+        server = find_referenced(reference, self._by_id)
         tag = "" if server is None else server.tag.rpartition("}")[2]
         if tag in _GRADIENTS:
-            stops = [self._stop(stop) for stop in self._content(server) if _is(stop, "stop")]
+            stops = [self._stop(stop) for stop in self._content(server) if _has_tag(stop, "stop")]
             if len(set(stops)) <= 1 and None not in stops:
                 return stops[0] if stops else "none", []
         elif tag == "pattern":
-            if not self._tiles(server):
-                return spare, []
-        elif tag not in _NOT_IN_BROWSERS:
-            return spare, []
-        colour = spare[:7] if spare.startswith("#") else "#000000"
+            if not self._paints_something(server):
+                return fallback_colour, []
+        elif tag not in _UNSUPPORTED_SERVERS:
+            return fallback_colour, []
+        colour = fallback_colour[:7] if fallback_colour.startswith("#") else "#000000"
         sentence = f"the {name}'s paint {reference[:40]} is not read: it counts as {colour}"
         return colour, [Notice("", sentence, code="paint-unread", about=name)]
 
     def _stop(self, stop: ET.Element) -> str | None:
         """Return the colour of a stop of a gradient, None if it cannot be read."""
-        said = {name: stop.get(name) for name in ("stop-color", "stop-opacity") if name in stop.attrib}
-        said |= {name: value for name, value, _ in (*self._rules(stop), *declarations(stop.get("style", "")))}
-        colour = parse_colour(said.get("stop-color", "#000000").strip())
+        declared = {name: stop.get(name) for name in ("stop-color", "stop-opacity") if name in stop.attrib}
+        declared |= {
+            name: value for name, value, _ in (*self._rules(stop), *declarations(stop.get("style", "")))
+        }
+        colour = parse_colour(declared.get("stop-color", "#000000").strip())
         try:
-            opacity = min(1.0, max(0.0, length_px(said.get("stop-opacity", "1"), 1.0)))
+            opacity = min(1.0, max(0.0, length_px(declared.get("stop-opacity", "1"), 1.0)))
         except Error:
             return None
         if colour is None or not colour.startswith("#"):
@@ -107,12 +109,17 @@ class Paints:
         alpha = opacity * (int(colour[7:], 16) if len(colour) == 9 else 255)
         return colour[:7] if alpha >= 254.5 else f"{colour[:7]}{round(alpha):02x}"
 
-    def _tiles(self, pattern: ET.Element) -> bool:
-        """Whether a pattern has a size and content. A size that cannot be read counts as present."""
+    def _paints_something(self, pattern: ET.Element) -> bool:
+        """Whether a pattern has a size and content.
+
+        A size that cannot be read counts as present.
+        """
         for name in ("width", "height"):
-            said = next((server.get(name) for server in self._chain(pattern) if name in server.attrib), "0")
+            declared = next(
+                (server.get(name) for server in self._chain(pattern) if name in server.attrib), "0"
+            )
             try:
-                if length_px(said or "0", 100.0) <= 0:
+                if length_px(declared or "0", 100.0) <= 0:
                     return False
             except Error:
                 continue
@@ -130,8 +137,8 @@ class Paints:
         while server is not None and server not in seen:
             yield server
             seen.add(server)
-            server = referred(href(server).strip(), self._by_id)
+            server = find_referenced(href(server).strip(), self._by_id)
 
 
-def _is(node: ET.Element, tag: str) -> bool:
+def _has_tag(node: ET.Element, tag: str) -> bool:
     return isinstance(node.tag, str) and node.tag.rpartition("}")[2] == tag

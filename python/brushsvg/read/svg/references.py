@@ -13,7 +13,7 @@ def href(node: ET.Element) -> str:
     return node.get("href", node.get(_XLINK_HREF, ""))
 
 
-def referred(reference: str, by_id: dict[str, ET.Element]) -> ET.Element | None:
+def find_referenced(reference: str, by_id: dict[str, ET.Element]) -> ET.Element | None:
     """Return the element that a reference names in the same drawing, or None.
 
     The id is used as written or, because URLs quote letters beyond ASCII, unquoted.

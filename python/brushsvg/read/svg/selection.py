@@ -10,13 +10,13 @@ from ...errors import Error
 from .css.selectors import Tree
 
 
-def selected(root: ET.Element, text: str) -> set[ET.Element]:
+def select_elements(root: ET.Element, text: str) -> set[ET.Element]:
     """Return the elements that a CSS selector matches.
 
     Raises Error if the text is not a selector, or matches nothing.
     """
     tree = Tree(root)
-    selectors = tree.compiled(tinycss2.parse_component_value_list(text))
+    selectors = tree.compile_selectors(tinycss2.parse_component_value_list(text))
     if not selectors:
         raise Error(
             f"{text[:60]!r} is not a CSS selector; write for example #signature or g.ink path",

@@ -49,14 +49,14 @@ def nested_viewport(
 
     Raises Error if a length or the viewBox is invalid.
     """
-    given = dict(zip(("width", "height"), size, strict=True))
+    use_size = dict(zip(("width", "height"), size, strict=True))
     x, y, width, height = (
         length_px(text if text and text.strip() not in ("", "auto") else default, outer[axis], em_px)
         for text, default, axis in (
             (attributes.get("x"), "0", 0),
             (attributes.get("y"), "0", 1),
-            (given["width"] or attributes.get("width"), "100%", 0),
-            (given["height"] or attributes.get("height"), "100%", 1),
+            (use_size["width"] or attributes.get("width"), "100%", 0),
+            (use_size["height"] or attributes.get("height"), "100%", 1),
         )
     )
     if not (width > 0 and height > 0):
@@ -64,7 +64,9 @@ def nested_viewport(
     notices: list[Notice] = []
     box = _view_box(attributes.get("viewBox"))
     inner = (
-        IDENTITY if box is None else _fit(box, width, height, attributes.get("preserveAspectRatio"), notices)
+        IDENTITY
+        if box is None
+        else _fit_view_box(box, width, height, attributes.get("preserveAspectRatio"), notices)
     )
     matrix = multiply((1.0, 0.0, 0.0, 1.0, x, y), inner)
     return matrix, (width, height) if box is None else box[2:], (x, y, width, height), notices
@@ -88,20 +90,20 @@ def read_page(
     in_px = all(
         attributes.get(name, "").strip("0123456789.+- ") in ("", "px", "%") for name in ("width", "height")
     )
-    width, height = (_extent(attributes.get(name), name, bool(box)) for name in ("width", "height"))
+    width, height = (_side_mm(attributes.get(name), name, bool(box)) for name in ("width", "height"))
     styled = [
-        _extent(style.get(name), name, bool(box)) if _is_length(style.get(name)) else None
+        _side_mm(style.get(name), name, bool(box)) if _is_length(style.get(name)) else None
         for name in ("width", "height")
     ]
-    for name, own, other in zip(("width", "height"), (width, height), styled, strict=True):
-        if own and other and abs(own - other) > 1e-3 * own and sheet_mm is None:
+    for name, own, css_mm in zip(("width", "height"), (width, height), styled, strict=True):
+        if own and css_mm and abs(own - css_mm) > 1e-3 * own and sheet_mm is None:
             sentence = (
-                f"its {name} is {own:.6g} mm, as Inkscape shows it, and {other:.6g} mm by its style, as browsers do: "
+                f"its {name} is {own:.6g} mm, as Inkscape shows it, and {css_mm:.6g} mm by its style, as browsers do: "
                 f"it is read as {own:.6g} mm"
             )
             notices.append(Notice("svg", sentence, code="size-assumed"))
     width, height = (
-        own if own is not None else other for own, other in zip((width, height), styled, strict=True)
+        own if own is not None else css_mm for own, css_mm in zip((width, height), styled, strict=True)
     )
     if box is None and sheet_mm is not None:
         width, height = width or sheet_mm[0], height or sheet_mm[1]
@@ -116,8 +118,8 @@ def read_page(
             width, height = box[2] * MM_PER["px"], box[3] * MM_PER["px"]
             reason = "no width and height in absolute units: its viewBox is read in px at 96 to the inch"
         else:
-            lacking = "width" if width is None else "height"
-            reason = f"no {lacking} in absolute units: it follows from the viewBox"
+            missing_side = "width" if width is None else "height"
+            reason = f"no {missing_side} in absolute units: it follows from the viewBox"
             if width is None:
                 width = height * box[2] / box[3]
             else:
@@ -138,7 +140,7 @@ def read_page(
         px = MM_PER["px"]
         page_from_user, viewport = (px, 0.0, 0.0, px, 0.0, 0.0), (width / px, height / px)
     else:
-        page_from_user = _fit(box, width, height, attributes.get("preserveAspectRatio"), notices)
+        page_from_user = _fit_view_box(box, width, height, attributes.get("preserveAspectRatio"), notices)
         viewport = box[2:]
     sheet = sheet_mm or (width, height)
     flip = (1.0, 0.0, 0.0, -1.0, 0.0, sheet[1])
@@ -159,16 +161,16 @@ def _view_box(text: str | None) -> tuple[float, float, float, float] | None:
 
 
 def _is_length(text: str | None) -> bool:
-    """Whether a CSS value is an absolute length, and not auto or relative to a window."""
+    """Whether a CSS value is an absolute length, not auto or a percentage."""
     return (
         text is not None and re.fullmatch(r"\s*\d*\.?\d+(?:px|mm|cm|in|pt|pc|q)\s*", text, re.I) is not None
     )
 
 
-_OF_FONT = re.compile(r".*[0-9.]\s*(?:em|ex|rem|ch)\s*", re.I)
+_FONT_RELATIVE = re.compile(r".*[0-9.]\s*(?:em|ex|rem|ch)\s*", re.I)
 
 
-def _extent(text: str | None, name: str, has_box: bool) -> float | None:
+def _side_mm(text: str | None, name: str, has_box: bool) -> float | None:
     """Return a side of the page in mm, None if it depends on something else.
 
     A side can depend on a window. If a viewBox gives the size of the drawing, it can also depend on a font: icons are
@@ -177,7 +179,7 @@ def _extent(text: str | None, name: str, has_box: bool) -> float | None:
     if text is None or text.strip() in ("", "auto") or text.strip().endswith("%"):
         return None
     try:
-        if _OF_FONT.fullmatch(text):
+        if _FONT_RELATIVE.fullmatch(text):
             return None if has_box else length_px(text, 0.0) * MM_PER["px"]
         return length_mm(text, "px")
     except Error as error:
@@ -188,7 +190,7 @@ _ALIGN = re.compile(r"(?:defer )?(?:(none)|x(Min|Mid|Max)Y(Min|Mid|Max))(?: (mee
 _SHARE = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
 
 
-def _fit(box, width: float, height: float, text: str | None, notices: list[Notice]) -> Matrix:
+def _fit_view_box(box, width: float, height: float, text: str | None, notices: list[Notice]) -> Matrix:
     x, y, box_width, box_height = box
     sx, sy = width / box_width, height / box_height
     align = _ALIGN.fullmatch(" ".join((text or "").split() or ["xMidYMid"]))
@@ -210,7 +212,10 @@ def _fit(box, width: float, height: float, text: str | None, notices: list[Notic
 
 
 def corners_of(matrix: Matrix, rectangle: tuple[float, float, float, float]) -> list[tuple[float, float]]:
-    """Return the corners [mm], in order, of a rectangle (x, y, width, height) in user units."""
+    """Return the corners [mm] of a rectangle, in order.
+
+    rectangle: (x, y, width, height) in user units; matrix: user units to paper.
+    """
     a, b, c, d, e, f = matrix
     x, y, width, height = rectangle
     places = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]

@@ -12,8 +12,8 @@ from operator import itemgetter
 from ....errors import Notice
 from ....units import FONT_PX, NUMBER
 from .declarations import Declaration, declarations
-from .math import computed_length
-from .values import computed, path_text, problem_of, substituted
+from .math import compute_length
+from .values import compute_value, find_problem, path_data_of, substitute_variables
 
 INHERITED = {
     "font-size": f"{FONT_PX:g}",  # px
@@ -42,7 +42,7 @@ OWN = {
     "overflow": "",
 }
 # Properties that exist in CSS only and are not read, with the value that has no effect.
-_CSS_ALONE = {
+_CSS_ONLY = {
     "mask-image": "none",
     "mix-blend-mode": "normal",
     "backdrop-filter": "none",
@@ -52,22 +52,22 @@ _CSS_ALONE = {
     "content-visibility": "visible",
     "all": "",
 }
-_UNREAD = ("filter", *_CSS_ALONE)
-OWN |= _CSS_ALONE
+_UNREAD_PROPERTIES = ("filter", *_CSS_ONLY)
+OWN |= _CSS_ONLY
 # Attributes that CSS can also set. CSS takes precedence.
-_GEOMETRY = frozenset(
+_GEOMETRY_PROPERTIES = frozenset(
     "transform transform-origin transform-box translate rotate scale d x y width height cx cy r rx ry".split()
 )
-_LENGTHS = frozenset("x y width height cx cy r rx ry".split())
-_COMPUTED = ("font-size", "stroke-width", "stroke-dashoffset")
+_LENGTH_PROPERTIES = frozenset("x y width height cx cy r rx ry".split())
+_COMPUTED_LENGTHS = ("font-size", "stroke-width", "stroke-dashoffset")
 _BARE_NUMBER = re.compile(NUMBER)  # a valid length in an attribute; in CSS only 0 is valid without a unit
 _OLD_PREFIX = "-webkit-"  # browsers still accept some properties with this prefix
-_PREFIXED = frozenset(
+_PREFIXED_PROPERTIES = frozenset(
     "transform transform-origin clip-path mask mask-image filter animation animation-name".split()
 )
 # Properties that can be attributes.
-_PRESENTED = tuple(name for name in (*INHERITED, *OWN) if name not in _CSS_ALONE)
-_READ = frozenset((*INHERITED, *OWN)) | _GEOMETRY
+_PRESENTATION_ATTRIBUTES = tuple(name for name in (*INHERITED, *OWN) if name not in _CSS_ONLY)
+_READ_PROPERTIES = frozenset((*INHERITED, *OWN)) | _GEOMETRY_PROPERTIES
 MARKERS = ("marker-start", "marker-mid", "marker-end")
 
 
@@ -101,45 +101,47 @@ def cascade(
     last; diagonal: of the viewport [px], the base of percentages.
     """
     inline = declarations(attributes["style"]) if "style" in attributes else ()
-    said: dict[str, list[str]] = {
-        name: [attributes[name]] for name in _PRESENTED if name in attributes and attributes[name].strip()
+    declared: dict[str, list[str]] = {
+        name: [attributes[name]]
+        for name in _PRESENTATION_ATTRIBUTES
+        if name in attributes and attributes[name].strip()
     }
-    if not (said or rules or inline):
+    if not (declared or rules or inline):
         return Style(parent.inherited, OWN, {}), []
     for name, value, _ in sorted((*rules, *inline), key=itemgetter(2)):
-        if name.startswith(_OLD_PREFIX) and name.removeprefix(_OLD_PREFIX) in _PREFIXED:
+        if name.startswith(_OLD_PREFIX) and name.removeprefix(_OLD_PREFIX) in _PREFIXED_PROPERTIES:
             name = name.removeprefix(_OLD_PREFIX)
         for longhand in MARKERS if name == "marker" else (name,):
-            if longhand in _READ or longhand.startswith("--"):
-                said.setdefault(longhand, []).append(value)
+            if longhand in _READ_PROPERTIES or longhand.startswith("--"):
+                declared.setdefault(longhand, []).append(value)
     inherited, own, geometry = dict(parent.inherited), dict(OWN), {}
-    inherited.update((name, said.pop(name)[-1]) for name in list(said) if name.startswith("--"))
-    if "font-size" in said:  # first, because other lengths depend on it
-        said = {"font-size": said["font-size"], **said}
+    inherited.update((name, declared.pop(name)[-1]) for name in list(declared) if name.startswith("--"))
+    if "font-size" in declared:  # first, because other lengths depend on it
+        declared = {"font-size": declared["font-size"], **declared}
     problems: list[Notice] = []
-    for name, values in said.items():
+    for name, values in declared.items():
         for text in reversed(values):  # the strongest valid declaration counts
             value = text.strip()
             if "var(" in value.lower():
-                value, problem = substituted(value, inherited)
+                value, problem = substitute_variables(value, inherited)
                 if problem:  # here CSS does not fall back to a weaker declaration
                     sentence = f"{name} {text[:40]!r} {problem}: it counts as not given"
                     if name != "font-size":
-                        is_damage = name == "stroke-width" or name in _GEOMETRY
+                        is_damage = name == "stroke-width" or name in _GEOMETRY_PROPERTIES
                         problems.append(Notice("", sentence, is_damage, code="css-invalid", about=name))
                     break
-            if "(" in value and (name in _LENGTHS or name in _COMPUTED):
-                value = computed_length(value)
+            if "(" in value and (name in _LENGTH_PROPERTIES or name in _COMPUTED_LENGTHS):
+                value = compute_length(value)
             if name == "d":
-                if (text := path_text(value)) is not None:
+                if (text := path_data_of(value)) is not None:
                     geometry[name] = text
                     break
                 continue
-            if name in _LENGTHS and _BARE_NUMBER.fullmatch(value) and float(value):
+            if name in _LENGTH_PROPERTIES and _BARE_NUMBER.fullmatch(value) and float(value):
                 sentence = f"{name} {value[:40]!r} of its style has no unit: it counts as not given"
                 problems.append(Notice("", sentence, code="css-invalid", about=name))
                 continue
-            if name in _GEOMETRY:
+            if name in _GEOMETRY_PROPERTIES:
                 geometry[name] = value
                 break
             if name == "all":
@@ -153,20 +155,20 @@ def cascade(
                 elif keyword == "inherit":
                     target[name] = (parent.inherited if target is inherited else parent.own)[name]
                 break
-            problem = problem_of(name, value, diagonal)
+            problem = find_problem(name, value, diagonal)
             if problem is None:
-                target[name] = computed(name, value, inherited)
+                target[name] = compute_value(name, value, inherited)
                 break
             problems.append(problem)
     return Style(inherited, own, geometry), problems
 
 
-def unread_own(own: dict[str, str]) -> list[tuple[str, str]]:
+def list_unread_properties(own: dict[str, str]) -> list[tuple[str, str]]:
     """Return (property, sentence) for unread properties of an element or group.
 
     These properties affect all that the element or group contains.
     """
-    effects = [name for name in _UNREAD if own[name] != OWN[name]]
+    effects = [name for name in _UNREAD_PROPERTIES if own[name] != OWN[name]]
     unread = [(name, f"{name} is not read: it counts as {OWN[name] or 'not given'}") for name in effects]
     if own["display"] == "contents":
         unread.append(("display", "display: contents is not read: it counts as inline"))

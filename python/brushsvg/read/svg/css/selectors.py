@@ -16,7 +16,7 @@ from ....errors import Error
 STEP_LIMIT = 3_000_000
 
 
-class _Budget:
+class _StepBudget:
     def __init__(self):
         self.left = STEP_LIMIT
 
@@ -30,13 +30,13 @@ class _Budget:
             )
 
 
-class _Node(ElementWrapper):
+class _CountingNode(ElementWrapper):
     """A node that walks to its relatives one by one and counts the steps.
 
     Lists of relatives would need memory in proportion to the square of the depth.
     """
 
-    budget: _Budget
+    budget: _StepBudget
 
     @property
     def ancestors(self) -> Iterator[ElementWrapper]:
@@ -66,12 +66,12 @@ class Tree:
     budget: for a copied part, the budget of its document.
     """
 
-    def __init__(self, root: ET.Element, budget: _Budget | None = None):
-        self.budget = budget or _Budget()
-        kind = type("_CountedNode", (_Node,), {"budget": self.budget})
+    def __init__(self, root: ET.Element, budget: _StepBudget | None = None):
+        self.budget = budget or _StepBudget()
+        kind = type("_CountedNode", (_CountingNode,), {"budget": self.budget})
         self.nodes = {node.etree_element: node for node in kind.from_xml_root(root).iter_subtree()}
 
-    def spend_of_type(self) -> None:
+    def spend_sibling_counts(self) -> None:
         """Spend the estimated steps of a selector that counts siblings of a type.
 
         cssselect2 takes these steps itself, so they cannot be counted one by one.
@@ -79,10 +79,10 @@ class Tree:
         counts = Counter(id(node.parent) for node in self.nodes.values()).values()
         self.budget.spend(sum(n * n for n in counts))
 
-    def compiled(self, prelude) -> list | None:
+    def compile_selectors(self, prelude) -> list | None:
         """Return the compiled selectors of a prelude, None if they cannot be read."""
         if "-of-type" in tinycss2.serialize(prelude):
-            self.spend_of_type()
+            self.spend_sibling_counts()
         try:
             return compile_selector_list(prelude)
         except (SelectorError, SyntaxError, RecursionError, MemoryError):

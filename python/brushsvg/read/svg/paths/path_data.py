@@ -19,7 +19,7 @@ _ARC_ARGUMENTS = (NUMBER, NUMBER, NUMBER, FLAG, FLAG, NUMBER, NUMBER)
 
 # Commands of one path. No lettering has a hundredth of this number, and each command needs 600 bytes.
 MOST_COMMANDS = 1_000_000
-_COUNT = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2}
+_ARGUMENT_COUNT = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2}
 
 # The position of the command or its arguments in the text, its letter, and its numbers.
 Command = tuple[int, str, tuple[float, ...]]
@@ -32,7 +32,7 @@ def numbers(text: str) -> list[float] | None:
     """
     if not text:
         return []
-    _, values, end = _run(text, 0)
+    _, values, end = _read_numbers(text, 0)
     return values if end == len(text) else None
 
 
@@ -60,9 +60,9 @@ def parse_path(d: str) -> tuple[list[Command], int | None]:
             commands.append((begin, letter, ()))
             continue
         if letter in "Aa":
-            at, error = _arcs(d, begin, at, letter, commands)
+            at, error = _read_arcs(d, begin, at, letter, commands)
         else:
-            at, error = _sets(d, begin, at, letter, commands)
+            at, error = _read_sets(d, begin, at, letter, commands)
         if error is not None:
             return commands, error
         at = SPACE.match(d, at).end()
@@ -76,13 +76,13 @@ def parse_points(text: str) -> tuple[list[Command], int | None]:
     """
     at = SPACE.match(text).end()
     commands: list[Command] = []
-    at, error = _sets(text, at, at, "M", commands)
+    at, error = _read_sets(text, at, at, "M", commands)
     if error is None and (end := SPACE.match(text, at).end()) < len(text):
         error = end
     return commands, error
 
 
-def _run(text: str, at: int) -> tuple[list[int], list[float], int]:
+def _read_numbers(text: str, at: int) -> tuple[list[int], list[float], int]:
     """Read the numbers from a position on.
 
     Returns the positions of the numbers, their values, and the end of the last number.
@@ -100,11 +100,11 @@ def _run(text: str, at: int) -> tuple[list[int], list[float], int]:
     return places, values, end
 
 
-def _sets(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> tuple[int, int | None]:
-    places, values, end = _run(d, at)
+def _read_sets(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> tuple[int, int | None]:
+    places, values, end = _read_numbers(d, at)
     if not values:
         return at, at
-    count = _COUNT[letter.upper()]
+    count = _ARGUMENT_COUNT[letter.upper()]
     for first in range(0, len(values) - count + 1, count):
         place = places[first] if first else begin
         if len(commands) >= MOST_COMMANDS:
@@ -115,7 +115,7 @@ def _sets(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> 
     return end, GAP.match(d, end).end() if len(values) % count else None
 
 
-def _arcs(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> tuple[int, int | None]:
+def _read_arcs(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> tuple[int, int | None]:
     while True:
         values = []
         for pattern in _ARC_ARGUMENTS:

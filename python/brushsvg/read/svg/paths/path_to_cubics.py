@@ -17,12 +17,12 @@ from .path_data import Command
 
 LARGEST_MM = 1e6  # a larger coordinate is damage, because no table is that large
 # Tolerance of arcs, far below a brush hair. Up to a radius of 23 mm, two cubics per quarter are enough.
-_TOLERANCE_MM = 1e-4
-_NOTHING_MM = 1e-6  # size of a segment below which its direction consists of rounding errors
+_ARC_TOLERANCE_MM = 1e-4
+_MIN_SEGMENT_MM = 1e-6  # size of a segment below which its direction consists of rounding errors
 
 
 @dataclass(frozen=True)
-class Line:
+class TracedPath:
     """The result of path commands.
 
     subpaths: in mm on paper.
@@ -35,7 +35,7 @@ class Line:
     beyond: int | None
 
 
-def trace(commands: list[Command], paper_from_user: tuple[float, ...], scale: float) -> Line:
+def trace(commands: list[Command], paper_from_user: tuple[float, ...], scale: float) -> TracedPath:
     """Draw commands on paper [mm].
 
     paper_from_user: matrix from user units to mm; scale: greatest stretch of the matrix [mm per user unit].
@@ -57,29 +57,31 @@ def trace(commands: list[Command], paper_from_user: tuple[float, ...], scale: fl
         ]
         cubics = np.array(points).reshape(-1, 4, 2)
         if all(-LARGEST_MM <= v <= LARGEST_MM for p in points for v in p):  # False for nan as well
-            has_tiny = any(abs(p[6] - p[0]) < _NOTHING_MM and abs(p[7] - p[1]) < _NOTHING_MM for p in points)
-            subpaths.append(_tidy(cubics, closed) if has_tiny else SubPath(cubics, closed))
+            has_tiny = any(
+                abs(p[6] - p[0]) < _MIN_SEGMENT_MM and abs(p[7] - p[1]) < _MIN_SEGMENT_MM for p in points
+            )
+            subpaths.append(_remove_tiny_segments(cubics, closed) if has_tiny else SubPath(cubics, closed))
             continue
         broken = int(np.argmin((np.abs(cubics) <= LARGEST_MM).all(axis=(1, 2))))
         if broken:
-            subpaths.append(_tidy(cubics[:broken], False))
-        return Line(tuple(subpaths), lone_movetos, places[broken])
-    return Line(tuple(subpaths), lone_movetos, None)
+            subpaths.append(_remove_tiny_segments(cubics[:broken], False))
+        return TracedPath(tuple(subpaths), lone_movetos, places[broken])
+    return TracedPath(tuple(subpaths), lone_movetos, None)
 
 
-def _tidy(cubics: np.ndarray, closed: bool) -> SubPath:
-    tiny = np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) < _NOTHING_MM
+def _remove_tiny_segments(cubics: np.ndarray, closed: bool) -> SubPath:
+    tiny = np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) < _MIN_SEGMENT_MM
     if tiny.all():
         return SubPath(np.repeat(cubics[:1, :1], 4, axis=1))
     if tiny.any():
-        kept = cubics[~tiny]
-        joined = np.concatenate((kept[:1, 0], kept[:-1, 3]))
-        handle = (kept[:, 1] == kept[:, 0]).all(axis=1)
-        kept[handle, 1] = joined[handle]
-        kept[:, 0] = joined
+        remaining = cubics[~tiny]
+        joined = np.concatenate((remaining[:1, 0], remaining[:-1, 3]))
+        handle = (remaining[:, 1] == remaining[:, 0]).all(axis=1)
+        remaining[handle, 1] = joined[handle]
+        remaining[:, 0] = joined
         if closed:
-            kept[-1, 3] = kept[0, 0]
-        cubics = kept
+            remaining[-1, 3] = remaining[0, 0]
+        cubics = remaining
     return SubPath(cubics, closed)
 
 
@@ -147,7 +149,7 @@ def _user_subpaths(commands: list[Command], scale: float) -> Iterator[tuple[list
 
 def _close(segments, places, place, x, y, start_x, start_y, scale: float) -> None:
     gap = max(abs(x - start_x), abs(y - start_y)) * scale
-    if segments and gap <= _TOLERANCE_MM:
+    if segments and gap <= _ARC_TOLERANCE_MM:
         # Relative commands rarely come back exactly. A tiny closing line would add a corner.
         segments[-1] = (*segments[-1][:6], start_x, start_y)
         return
@@ -165,7 +167,7 @@ def _arc(x, y, rx, ry, turn_deg, large, sweep, ex, ey, scale: float) -> list[tup
     if not max(rx, ry, abs(x), abs(y), abs(ex), abs(ey)) * scale <= LARGEST_MM or not math.isfinite(turn_deg):
         return [(x, y, x, y, math.nan, math.nan, ex, ey)]
     straight = (x, y, x + (ex - x) / 3, y + (ey - y) / 3, ex - (ex - x) / 3, ey - (ey - y) / 3, ex, ey)
-    if rx * scale < _NOTHING_MM or ry * scale < _NOTHING_MM:
+    if rx * scale < _MIN_SEGMENT_MM or ry * scale < _MIN_SEGMENT_MM:
         return [straight]
     cos, sin = math.cos(math.radians(turn_deg)), math.sin(math.radians(turn_deg))
     # Half the chord, in the frame in which the ellipse is the unit circle.
@@ -189,7 +191,7 @@ def _arc(x, y, rx, ry, turn_deg, large, sweep, ex, ey, scale: float) -> list[tup
         swept -= math.tau
     centre_x = (x + ex) / 2 + cos * rx * ux - sin * ry * uy
     centre_y = (y + ey) / 2 + sin * rx * ux + cos * ry * uy
-    count = arc_count(abs(swept), max(rx, ry) * scale, _TOLERANCE_MM)
+    count = arc_count(abs(swept), max(rx, ry) * scale, _ARC_TOLERANCE_MM)
     step = swept / count
     reach = 4 / 3 * math.tan(step / 4)
 

@@ -1,4 +1,4 @@
-"""Read Inkscape's PowerStroke: the drawn line and its width, in place of the outline in d.
+"""Read Inkscape's PowerStroke: a line with a width, in place of the outline in d.
 
 If other effects, such as Spiro, also shape the line, the outline counts, because Inkscape shows the outline.
 PowerStroke stores offset_points, (place, half width). A place is the number of a segment of the line plus the
@@ -18,14 +18,14 @@ from ....errors import Notice
 from ....geometry import cubics
 from ....geometry.arc_length import knots
 from ...design import SubPath
-from ..references import referred
+from ..references import find_referenced
 from .path_data import numbers
 
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
-_CAPS = ("round", "butt", "zerowidth")  # the brush makes the ends of the first two
-_PER_SEGMENT = 16  # knots of the width profile on each segment
+_KNOWN_CAPS = ("round", "butt", "zerowidth")  # the brush makes the ends of the first two
+_KNOTS_PER_SEGMENT = 16  # knots of the width profile on each segment
 # Effects whose result is a line, which d contains.
-_LINES = frozenset(
+_LINE_EFFECTS = frozenset(
     "spiro bspline fillet_chamfer simplify roughen interpolate_points lattice2 envelope".split()
 )
 
@@ -36,7 +36,7 @@ class PowerStroke:
 
     d: path data of the drawn line.
     offsets: (k, 2), place and half width [user units].
-    interpolator: Inkscape's name of the interpolation of the width; beta: its smoothness.
+    interpolator: Inkscape's name of the interpolation of the width; beta: its parameter.
     tapers: whether the width is 0 at the start and at the end (cap "zero width"); otherwise it is the width of the
     nearest offset.
     """
@@ -48,8 +48,11 @@ class PowerStroke:
     tapers: tuple[bool, bool] = (False, False)
 
 
-def in_effects_of_groups(root: ET.Element) -> set[ET.Element]:
-    """Return the elements of groups with path effects, which change the elements' outlines."""
+def find_elements_in_group_effects(root: ET.Element) -> set[ET.Element]:
+    """Return the elements of groups that have path effects.
+
+    Path effects of groups change the outlines of the elements.
+    """
     found: set[ET.Element] = set()
     for node in root.iter():
         if (
@@ -61,7 +64,7 @@ def in_effects_of_groups(root: ET.Element) -> set[ET.Element]:
     return found
 
 
-def drawn_line(
+def read_power_stroke(
     node: ET.Element, by_id: dict[str, ET.Element], in_group: bool
 ) -> tuple[PowerStroke | None, list[Notice]]:
     """Return the line of a PowerStroke, None if there is none, and notices.
@@ -74,14 +77,14 @@ def drawn_line(
     if not original:
         return None, []
     references = node.get(INKSCAPE + "path-effect", "").split(";")
-    found = (referred(reference.strip(), by_id) for reference in references)
+    found = (find_referenced(reference.strip(), by_id) for reference in references)
     effects = [
         effect for effect in found if effect is not None and effect.get("is_visible", "true") != "false"
     ]
     power = [effect for effect in effects if effect.get("effect") == "powerstroke"]
     kinds = [re.sub("[^A-Za-z0-9_]", "", str(effect.get("effect")))[:40] for effect in effects]
     if not power:
-        others = [kind for kind in kinds if kind not in _LINES]
+        others = [kind for kind in kinds if kind not in _LINE_EFFECTS]
         return None, [_unread(f"path effect {kind} is not read: its outline counts") for kind in others]
     if in_group or len(effects) > 1:
         others = [kind for kind in kinds if kind != "powerstroke"] + ["of a group"] * in_group
@@ -89,25 +92,25 @@ def drawn_line(
         return None, [
             _unread(f"its PowerStroke is not read together with path effect {also}: its outline counts")
         ]
-    (said,) = power
-    pairs = [numbers(pair.strip()) for pair in said.get("offset_points", "").split("|")]
-    scales = (numbers(said.get(name, "1").strip()) for name in ("scale_width", "interpolator_beta"))
+    (effect_node,) = power
+    pairs = [numbers(pair.strip()) for pair in effect_node.get("offset_points", "").split("|")]
+    scales = (numbers(effect_node.get(name, "1").strip()) for name in ("scale_width", "interpolator_beta"))
     numbered = [*pairs, *(values and [*values, 0.0] for values in scales)]
     if not all(pair and len(pair) == 2 and all(map(math.isfinite, pair)) for pair in numbered):
         return None, [_unread("its PowerStroke has no offset points that can be read: its outline counts")]
-    scale = numbers(said.get("scale_width", "1").strip()) or [1.0]
-    beta = numbers(said.get("interpolator_beta", "0.2").strip()) or [0.2]
+    scale = numbers(effect_node.get("scale_width", "1").strip()) or [1.0]
+    beta = numbers(effect_node.get("interpolator_beta", "0.2").strip()) or [0.2]
     offsets = np.array(pairs) * [1.0, scale[0]]
-    if said.get("sort_points", "true") == "true":
+    if effect_node.get("sort_points", "true") == "true":
         offsets = offsets[np.argsort(offsets[:, 0], kind="stable")]
     notices = []
-    interpolator = said.get("interpolator_type", "Linear")
+    interpolator = effect_node.get("interpolator_type", "Linear")
     if interpolator not in _INTERPOLATORS:
         how = re.sub("[^A-Za-z]", "", interpolator)[:30]
         notices.append(_unread(f"the width of its PowerStroke is interpolated {how}, read as Linear"))
-    caps = [said.get(f"{end}_linecap_type", "round") for end in ("start", "end")]
+    caps = [effect_node.get(f"{end}_linecap_type", "round") for end in ("start", "end")]
     for cap in dict.fromkeys(caps):
-        if cap not in _CAPS:
+        if cap not in _KNOWN_CAPS:
             how = re.sub("[^A-Za-z_]", "", cap)[:30]
             notices.append(
                 _unread(f"the cap {how} of its PowerStroke is not read: its ends are as the brush makes them")
@@ -120,17 +123,17 @@ def _unread(sentence: str) -> Notice:
     return Notice("", sentence, code="path-effect-unread")
 
 
-def with_widths(power: PowerStroke, subpaths: tuple[SubPath, ...], mm_per_user: float) -> tuple[SubPath, ...]:
+def add_widths(power: PowerStroke, subpaths: tuple[SubPath, ...], mm_per_user: float) -> tuple[SubPath, ...]:
     """Return the sub-paths with the widths of a PowerStroke.
 
     Places are counted through over all sub-paths.
     """
     result, first = [], 0
     for subpath in subpaths:
-        known = knots(subpath.cubics)
-        total = float(known[:, -1].sum())
+        knot_table = knots(subpath.cubics)
+        total = float(knot_table[:, -1].sum())
         count = len(subpath.cubics)
-        place = np.linspace(0.0, count, count * _PER_SEGMENT + 1)
+        place = np.linspace(0.0, count, count * _KNOTS_PER_SEGMENT + 1)
         corners = power.offsets[:, 0] - first
         place = np.unique(np.concatenate([place, corners[(corners > 0) & (corners < count)]]))
         widths = (
@@ -142,11 +145,13 @@ def with_widths(power: PowerStroke, subpaths: tuple[SubPath, ...], mm_per_user: 
             continue
         # The fraction of the arc length at each place. It is exact at the parameters of the table, which are denser
         # than the knots.
-        table = np.linspace(0.0, 1.0, known.shape[1])
-        ends = np.concatenate([[0.0], np.cumsum(known[:, -1])])
+        table = np.linspace(0.0, 1.0, knot_table.shape[1])
+        ends = np.concatenate([[0.0], np.cumsum(knot_table[:, -1])])
         k = np.minimum(place.astype(int), count - 1)
         at = (
-            np.array([ends[i] + np.interp(t, table, known[i]) for i, t in zip(k, place - k, strict=True)])
+            np.array(
+                [ends[i] + np.interp(t, table, knot_table[i]) for i, t in zip(k, place - k, strict=True)]
+            )
             / total
         )
         result.append(SubPath(subpath.cubics, subpath.closed, np.column_stack([at, widths])))
@@ -170,14 +175,14 @@ def _half_widths(power: PowerStroke, place: np.ndarray, first: int, last: int, c
     points = points[np.concatenate([[True], np.diff(points[:, 0]) > 0])]
     if len(points) == 1:
         return np.full(len(place), points[0, 1])
-    return _INTERPOLATORS.get(power.interpolator, _linear)(points, place, power.beta)
+    return _INTERPOLATORS.get(power.interpolator, _interpolate_linearly)(points, place, power.beta)
 
 
-def _linear(points: np.ndarray, place: np.ndarray, _beta: float) -> np.ndarray:
+def _interpolate_linearly(points: np.ndarray, place: np.ndarray, _beta: float) -> np.ndarray:
     return np.interp(place, points[:, 0], points[:, 1])
 
 
-def _cubic(points: np.ndarray, place: np.ndarray, handles: np.ndarray) -> np.ndarray:
+def _interpolate_by_cubics(points: np.ndarray, place: np.ndarray, handles: np.ndarray) -> np.ndarray:
     """Interpolate by cubic Bezier pieces in the plane of place and half width.
 
     points: (k, 2); handles: (k - 1, 2, 2), the inner control points of each piece.
@@ -191,10 +196,12 @@ def _cubic(points: np.ndarray, place: np.ndarray, handles: np.ndarray) -> np.nda
 def johan(points: np.ndarray, place: np.ndarray, beta: float) -> np.ndarray:
     """Interpolate half widths as Inkscape's CubicBezierJohan does.
 
-    points: (k, 2), sorted. The profile is level at each point. The smaller beta is, the shorter is its level part.
+    The profile is level at each point. The smaller beta is, the more suddenly it becomes level.
+
+    points: (k, 2), place and half width, sorted by place.
     """
     along = np.diff(points, axis=0) * [beta, 0.0]
-    return _cubic(points, place, np.stack([points[:-1] + along, points[1:] - along], axis=1))
+    return _interpolate_by_cubics(points, place, np.stack([points[:-1] + along, points[1:] - along], axis=1))
 
 
 def _centripetal(points: np.ndarray, place: np.ndarray, _beta: float) -> np.ndarray:
@@ -218,7 +225,11 @@ def _centripetal(points: np.ndarray, place: np.ndarray, _beta: float) -> np.ndar
             around, around[1:], around[2:], around[3:], gap, gap[1:], gap[2:], strict=False
         )
     ]
-    return _cubic(points, place, np.array(handles))
+    return _interpolate_by_cubics(points, place, np.array(handles))
 
 
-_INTERPOLATORS = {"Linear": _linear, "CubicBezierJohan": johan, "CentripetalCatmullRom": _centripetal}
+_INTERPOLATORS = {
+    "Linear": _interpolate_linearly,
+    "CubicBezierJohan": johan,
+    "CentripetalCatmullRom": _centripetal,
+}
