@@ -12,7 +12,7 @@ from ....units import length_px
 
 MAX_DEPTH = 20  # nesting depth of functions and brackets
 _RELATIVE_UNITS = ("%", "em", "rem", "ex")  # units that depend on an element
-Amount = tuple[float, str]  # value and unit: "" for a number, "px", or a unit of _RELATIVE
+Amount = tuple[float, str]  # value and unit: "" for a number, "px", or a unit of _RELATIVE_UNITS
 
 
 def compute_length(value: str) -> str:
