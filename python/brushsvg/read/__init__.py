@@ -144,9 +144,9 @@ def settings_in(path, alone: bool = False) -> dict:
         data = loaded[1]
     else:
         return {}
-    from .svg import settings_of
+    from .svg import read_svg_settings
 
-    return settings_of(data, alone)
+    return read_svg_settings(data, alone)
 
 
 READERS = {  # by file extension; each reader takes (bytes, ReadOptions)

@@ -146,7 +146,7 @@ def _cut_subpath(subpath: SubPath, begin: float, end: float) -> SubPath:
     if subpath.widths is None:
         return SubPath(cubics)
     total = knots(subpath.cubics)[:, -1]
-    upto = [
+    fractions = [
         (
             float(total[:k].sum())
             + (float(knots(between(subpath.cubics, (k, 0.0), (k, t)))[:, -1].sum()) if t else 0.0)
@@ -155,8 +155,8 @@ def _cut_subpath(subpath: SubPath, begin: float, end: float) -> SubPath:
         for k, t in ends
     ]
     shares, widths = subpath.widths.T
-    inner = subpath.widths[(shares > upto[0]) & (shares < upto[1])]
-    first, last = ((share, np.interp(share, shares, widths)) for share in upto)
+    inner = subpath.widths[(shares > fractions[0]) & (shares < fractions[1])]
+    first, last = ((share, np.interp(share, shares, widths)) for share in fractions)
     rows = np.vstack([first, inner, last])
-    rows[:, 0] = (rows[:, 0] - upto[0]) / max(upto[1] - upto[0], 1e-12)
+    rows[:, 0] = (rows[:, 0] - fractions[0]) / max(fractions[1] - fractions[0], 1e-12)
     return SubPath(cubics, widths=rows)

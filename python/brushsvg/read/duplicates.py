@@ -20,14 +20,14 @@ def remove_duplicates(design: Design) -> Design:
     A notice names the removed elements. A line drawn backwards is the same line. An element with another colour,
     width, layer or setting is kept.
     """
-    seen: dict[tuple, str] = {}
+    id_by_key: dict[tuple, str] = {}
     kept, duplicates = [], []
     for element in design.elements:
         key = _element_key(element)
-        if key in seen:
-            duplicates.append(f"{element.id} (like {seen[key]})")
+        if key in id_by_key:
+            duplicates.append(f"{element.id} (like {id_by_key[key]})")
             continue
-        seen[key] = element.id
+        id_by_key[key] = element.id
         kept.append(element)
     if not duplicates:
         return design

@@ -150,21 +150,23 @@ def _find_layer(name: str, paths: list[str]) -> str:
         lambda path: plain(path) == plain(name),
         lambda path: plain(path).endswith("/" + plain(name)),
     ):
-        found = [path for path in paths if matches(path)]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            listed = ", ".join(map(repr, found[:_MAX_NAMED_LAYERS]))
+        matching = [path for path in paths if matches(path)]
+        if len(matching) == 1:
+            return matching[0]
+        if matching:
+            listed = ", ".join(map(repr, matching[:_MAX_NAMED_LAYERS]))
             raise Error(
-                f"{name!r} names {len(found)} layers: {listed}; write the whole name",
+                f"{name!r} names {len(matching)} layers: {listed}; write the whole name",
                 where="layer",
                 code="layer-ambiguous",
             )
-    there = ", ".join(paths[:_MAX_NAMED_LAYERS]) + (
+    available = ", ".join(paths[:_MAX_NAMED_LAYERS]) + (
         f" and {len(paths) - _MAX_NAMED_LAYERS} more" if len(paths) > _MAX_NAMED_LAYERS else ""
     )
     raise Error(
-        f"there is no layer {name!r}; there are: {there or 'none'}", where="layer", code="layer-unknown"
+        f"there is no layer {name!r}; there are: {available or 'none'}",
+        where="layer",
+        code="layer-unknown",
     )
 
 

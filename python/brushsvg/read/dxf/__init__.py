@@ -8,7 +8,7 @@ from __future__ import annotations
 from .. import AS_DRAWN, ReadOptions
 from ..design import Design, Notice
 from ..empty_drawing import empty_drawing_error
-from .entity_walk import Walk
+from .entity_walk import EntityWalk
 from .file import open_dxf
 from .linetypes import DashCutter
 from .pieces_to_elements import find_pattern_restarts, join_pieces, piece_to_element
@@ -29,7 +29,7 @@ def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     """
     document, notices = open_dxf(data)
     mm_per_unit, unit_notices = find_unit(document, options.units)
-    walk = Walk(document, mm_per_unit)
+    walk = EntityWalk(document, mm_per_unit)
     walk.run()
     pieces, far_notices = keep_in_range(walk.pieces if options.sheet_mm else move_to_origin(walk.pieces))
     notices += [*unit_notices, *walk.notices, *far_notices]

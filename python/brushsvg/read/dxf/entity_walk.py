@@ -15,7 +15,7 @@ import numpy as np
 
 from ...errors import Error
 from ..design import Notice
-from ..svg.paths.path_to_cubics import LARGEST_MM
+from ..svg.paths.path_to_cubics import MAX_COORDINATE_MM
 from . import entity_curves as dxf_curves
 from .entity_curves import Curve
 from .ezdxf_import import ezdxf
@@ -110,7 +110,7 @@ def _attribute_text_entity(attribute):
     return attribute.virtual_mtext_entity() if attribute.has_embedded_mtext_entity else attribute
 
 
-class Walk:
+class EntityWalk:
     """The walk over a model space. Call run, then use pieces and notices."""
 
     def __init__(self, document: ezdxf.document.Drawing, mm_per_unit: float):
@@ -303,7 +303,7 @@ class Walk:
         self, entity, kind: str, name: str, pen: Pen, place: _Placement, lines: list[Curve]
     ) -> None:
         fill_rule = "nonzero" if kind in _TEXT_TYPES else "evenodd" if kind in dxf_curves.FILLED_TYPES else ""
-        found = []
+        curves = []
         for line in lines:
             self._cubics += len(line.cubics)
             if self._cubics > _MAX_CUBICS:
@@ -315,22 +315,23 @@ class Walk:
             cubics = line.cubics @ place.mm_from_block[:3, :3] + place.mm_from_block[3, :3]
             widths = None if line.widths is None else place.widths_mm(line, entity.dxf.extrusion.normalize())
             if not (
-                np.abs(cubics).max() <= _MAX_DISTANCE_MM and np.ptp(cubics, axis=(0, 1)).max() <= LARGEST_MM
+                np.abs(cubics).max() <= _MAX_DISTANCE_MM
+                and np.ptp(cubics, axis=(0, 1)).max() <= MAX_COORDINATE_MM
             ):
                 sentence = "its geometry is not finite or beyond 1e6 mm: left out"
                 self._note(name, sentence, pen.layer, damaged=True, code="geometry-out-of-range")
                 return
-            if widths is not None and not (widths.min() >= 0 and widths.max() <= LARGEST_MM):
+            if widths is not None and not (widths.min() >= 0 and widths.max() <= MAX_COORDINATE_MM):
                 sentence = "its widths are outside the range [0, 1e6] mm: left out"
                 self._note(name, sentence, pen.layer, damaged=True, code="geometry-out-of-range")
                 return
-            found.append(Curve(cubics, line.closed, widths, line.pattern_restarts))
-        if not found:
+            curves.append(Curve(cubics, line.closed, widths, line.pattern_restarts))
+        if not curves:
             self._note(name, "it has no geometry: left out", pen.layer, code="geometry-empty")
             return
         filling = pen
         if kind == "MPOLYGON":
-            self.pieces.append(Piece(f"{name}.border", place.name, pen, tuple(found)))
+            self.pieces.append(Piece(f"{name}.border", place.name, pen, tuple(curves)))
             if not (entity.dxf.solid_fill or entity.dxf.pattern_name not in ("", "SOLID")):
                 return
             filling = self.pens.filling(entity, pen, place.pen) if entity.dxf.solid_fill else pen
@@ -343,9 +344,9 @@ class Walk:
                 self._note(
                     name, "its gradient is not read: it counts as filled", pen.layer, code="paint-unread"
                 )
-        self._report_unpainted(entity, kind, name, pen, bool(fill_rule) or found[0].widths is not None)
-        joinable = kind in _JOINABLE_TYPES and len(found) == 1 and not found[0].closed
-        self.pieces.append(Piece(name, place.name, filling, tuple(found), fill_rule, joinable))
+        self._report_unpainted(entity, kind, name, pen, bool(fill_rule) or curves[0].widths is not None)
+        joinable = kind in _JOINABLE_TYPES and len(curves) == 1 and not curves[0].closed
+        self.pieces.append(Piece(name, place.name, filling, tuple(curves), fill_rule, joinable))
 
     def _report_unpainted(self, entity, kind: str, name: str, pen: Pen, filled: bool) -> None:
         header, dxf = self.document.header, entity.dxf

@@ -102,11 +102,11 @@ class Fonts:
         """
         folders = _font_manager.FONT_DIRECTORIES.get(platform.system(), _font_manager.LINUX_FONT_DIRS)
         files = (path for folder in folders for path in _walk_files(os.path.expanduser(folder)))
-        found: dict[str, Path] = {}
+        paths_by_name: dict[str, Path] = {}
         for path in islice(files, _MAX_FILES):
             if path.suffix.lower() in _font_manager.SUPPORTED_TTF_TYPES:
-                found.setdefault(path.name.lower(), path)
-        return found
+                paths_by_name.setdefault(path.name.lower(), path)
+        return paths_by_name
 
     @cached_property
     def _files_by_stem(self) -> dict[str, Path]:

@@ -80,14 +80,14 @@ def find_pattern_restarts(piece: Piece) -> list[np.ndarray]:
 
     Returns an array of indices for each sub-path of the piece's element, without the first cubic.
     """
-    found = []
+    restarts_by_subpath = []
     for curve in piece.curves:
         cubics, _ = _closed_cubics(curve)
-        begins = np.zeros(len(cubics), dtype=bool)
+        restarts = np.zeros(len(cubics), dtype=bool)
         if curve.pattern_restarts is not None:
-            begins = np.append(curve.pattern_restarts, [True] * (len(cubics) - len(curve.pattern_restarts)))
-        found.append(np.flatnonzero(begins[_has_extent(cubics)][1:]) + 1)
-    return found
+            restarts = np.append(curve.pattern_restarts, [True] * (len(cubics) - len(curve.pattern_restarts)))
+        restarts_by_subpath.append(np.flatnonzero(restarts[_has_extent(cubics)][1:]) + 1)
+    return restarts_by_subpath
 
 
 def _closed_cubics(curve: Curve) -> tuple[np.ndarray, float]:
@@ -112,11 +112,11 @@ def _subpath(curve: Curve, default_mm: float) -> SubPath:
         widths = np.where((widths == 0).all(axis=1, keepdims=True), default_mm, widths)
         if len(widths) < len(cubics):
             widths = np.concatenate((widths, widths[-1:, 1:].repeat(2, axis=1)))
-    real = _has_extent(cubics)
-    if not real.any():
+    has_extent = _has_extent(cubics)
+    if not has_extent.any():
         point = np.repeat(cubics[:1, :1], 4, axis=1)
         return SubPath(point, widths=None if widths is None else np.array([[0.0, widths.max()]]))
-    cubics, widths = make_continuous(cubics[real]), None if widths is None else widths[real]
+    cubics, widths = make_continuous(cubics[has_extent]), None if widths is None else widths[has_extent]
     # A line with widths is closed only if drawn so: a line that tapers off where it began is not a ring.
     closed = curve.closed or (gap <= _MAX_GAP_MM and widths is None)
     if closed:
@@ -129,8 +129,8 @@ def _widths_along_length(cubics: np.ndarray, widths: np.ndarray) -> np.ndarray:
 
     Where the width jumps, two rows have the same fraction.
     """
-    at = np.cumsum([0.0, *knots(cubics)[:, -1]])
-    at = at / at[-1]
-    rows = np.column_stack((np.column_stack((at[:-1], at[1:])).ravel(), widths.ravel()))
-    new = np.append(True, (np.diff(rows, axis=0) != 0).any(axis=1))
-    return rows[new]
+    fractions = np.cumsum([0.0, *knots(cubics)[:, -1]])
+    fractions = fractions / fractions[-1]
+    rows = np.column_stack((np.column_stack((fractions[:-1], fractions[1:])).ravel(), widths.ravel()))
+    is_new = np.append(True, (np.diff(rows, axis=0) != 0).any(axis=1))
+    return rows[is_new]

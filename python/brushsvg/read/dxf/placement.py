@@ -11,7 +11,7 @@ import numpy as np
 
 from ...geometry.cubics import extremes
 from ..design import Element, Notice
-from ..svg.paths.path_to_cubics import LARGEST_MM
+from ..svg.paths.path_to_cubics import MAX_COORDINATE_MM
 from .entity_walk import Piece
 
 MARGIN_MM = 20.0
@@ -26,7 +26,7 @@ def move_to_origin(pieces: list[Piece]) -> list[Piece]:
         return pieces
     starts = np.array([piece.curves[0].cubics[0, 0, :2] for piece in pieces])
     middle = np.sort(starts, axis=0)[(len(starts) - 1) // 2]
-    if np.abs(middle).max() <= LARGEST_MM:
+    if np.abs(middle).max() <= MAX_COORDINATE_MM:
         return pieces
     shift = np.array([*middle.round(), 0.0])
     return [
@@ -39,7 +39,7 @@ def keep_in_range(pieces: list[Piece]) -> tuple[list[Piece], list[Notice]]:
     """Return the pieces within 1e6 mm, and the notices about the others."""
     kept, notices = [], []
     for piece in pieces:
-        if all(np.abs(curve.cubics).max() <= LARGEST_MM for curve in piece.curves):
+        if all(np.abs(curve.cubics).max() <= MAX_COORDINATE_MM for curve in piece.curves):
             kept.append(piece)
         else:
             sentence = "its geometry is beyond 1e6 mm: left out"

@@ -113,13 +113,13 @@ def _fit_cubics(pieces: np.ndarray, tolerance: float) -> np.ndarray:
     Curves that a cubic does not fit are halved until it fits.
     """
     begin, length = np.arange(len(pieces), dtype=float), 1.0
-    begins, found = [], []
+    begins, fitted = [], []
     for halvings in range(_MAX_HALVINGS + 1):
-        cubics, off = _hermite_cubics(pieces)
+        cubics, errors = _hermite_cubics(pieces)
         # False for nan, which the check of all geometry finds later.
-        rough = (off > 0.5 * tolerance) & (halvings < _MAX_HALVINGS)
+        rough = (errors > 0.5 * tolerance) & (halvings < _MAX_HALVINGS)
         begins.append(begin[~rough])
-        found.append(cubics[~rough])
+        fitted.append(cubics[~rough])
         if not rough.any():
             break
         if rough.sum() > _MAX_PIECES:
@@ -127,7 +127,7 @@ def _fit_cubics(pieces: np.ndarray, tolerance: float) -> np.ndarray:
         length /= 2
         begin = np.concatenate((begin[rough], begin[rough] + length))
         pieces = np.concatenate(_split_at(pieces[rough], 0.5))
-    return np.concatenate(found)[np.argsort(np.concatenate(begins))]
+    return np.concatenate(fitted)[np.argsort(np.concatenate(begins))]
 
 
 def _hermite_cubics(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -141,11 +141,13 @@ def _hermite_cubics(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     first = degree * weights[:, 1] / weights[:, 0] * (p[:, 1] - p[:, 0])
     last = degree * weights[:, -2] / weights[:, -1] * (p[:, -1] - p[:, -2])
     cubics = np.stack((p[:, 0], p[:, 0] + first / 3, p[:, -1] - last / 3, p[:, -1]), axis=1)
-    off = np.zeros(len(pieces))
+    errors = np.zeros(len(pieces))
     for t in (0.25, 0.5, 0.75):
         true = _split_at(pieces, t)[1][:, 0]
-        off = np.maximum(off, np.abs(true[:, :3] / true[:, 3:] - _split_at(cubics, t)[1][:, 0]).max(axis=1))
-    return cubics, off
+        errors = np.maximum(
+            errors, np.abs(true[:, :3] / true[:, 3:] - _split_at(cubics, t)[1][:, 0]).max(axis=1)
+        )
+    return cubics, errors
 
 
 def _split_at(points: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:

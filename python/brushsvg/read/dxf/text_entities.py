@@ -52,12 +52,12 @@ class TextConverter:
 
     @property
     def notices(self) -> list[Notice]:
-        found = list(self._unread)
+        notices = list(self._unread)
         for (font, layer), (where, text) in self._first_use.items():
             more = self._use_counts[font, layer] - 1
             text_name = f"text {printable(text, 40)!r}" + (f" and {more} more" if more else "")
             why = f": {font.why}" if font.why else ""
-            found.append(
+            notices.append(
                 Notice(
                     where,
                     f"{text_name} became the outlines of font {font.name}{why}",
@@ -66,17 +66,19 @@ class TextConverter:
                 )
             )
         for (font, layer), letters in self._missing_letters.items():
-            listed = ", ".join(repr(c) for c in list(letters)[:5]) + (" ..." if len(letters) > 5 else "")
+            listed_letters = ", ".join(repr(c) for c in list(letters)[:5]) + (
+                " ..." if len(letters) > 5 else ""
+            )
             where = self._first_use[font, layer][0]
-            found.append(
+            notices.append(
                 Notice(
                     where,
-                    f"font {font.name} has no glyph for {listed}: left out",
+                    f"font {font.name} has no glyph for {listed_letters}: left out",
                     layer=layer,
                     code="glyph-missing",
                 )
             )
-        return found
+        return notices
 
     def outlines(self, entity, name: str, layer: str) -> list[Curve]:
         """Return the outlines of a TEXT or ATTRIB, in its own world.
@@ -288,7 +290,7 @@ def _align_baselines(line) -> None:
 
 def _path_to_cubics(path) -> np.ndarray:
     """Return a Path of ezdxf without gaps as cubics (n, 4, 3)."""
-    begin, found = path.start, []
+    begin, control_points = path.start, []
     for command in path.commands():
         end = command.end
         match command[1:]:
@@ -298,6 +300,6 @@ def _path_to_cubics(path) -> np.ndarray:
                 handles = begin.lerp(handle, 2 / 3), end.lerp(handle, 2 / 3)
             case handles:
                 pass
-        found.append([point.xyz for point in (begin, *handles, end)])
+        control_points.append([point.xyz for point in (begin, *handles, end)])
         begin = end
-    return np.array(found)
+    return np.array(control_points)

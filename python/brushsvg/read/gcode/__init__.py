@@ -104,7 +104,7 @@ def _group_into_lines(all_ways: list[Way], down: Sequence[bool]) -> list[list[Wa
 
 def _continues_line(chain: list[Way], way: Way) -> bool:
     gap = way.points_mm[0, :2] - chain[-1].points_mm[-1, :2]
-    is_line = all(np.ptp(each.points_mm[:, :2], axis=0).any() for each in (chain[-1], way))
+    is_line = all(np.ptp(part.points_mm[:, :2], axis=0).any() for part in (chain[-1], way))
     return is_line and bool(np.hypot(*gap) <= MAX_HOP_MM)
 
 
@@ -123,18 +123,22 @@ def _leave_out_dips(
     if any(skipped):
         sentence = f"left out by region or comment: {sum(skipped)} of {len(skipped)} strokes"
         notices.append(Notice("skip", sentence, code="strokes-skipped"))
-    left = [(chain, stroke) for chain, stroke, gone in zip(chains, strokes, skipped, strict=True) if not gone]
+    remaining = [
+        (chain, stroke)
+        for chain, stroke, is_skipped in zip(chains, strokes, skipped, strict=True)
+        if not is_skipped
+    ]
     # If the user chooses the strokes to leave out, no others are left out.
     if options.skip_comments or options.skip_regions_mm:
-        return [chain for chain, _ in left], notices
-    are_dips, how = find_dips([stroke for _, stroke in left], comment_by_line)
+        return [chain for chain, _ in remaining], notices
+    are_dips, how = find_dips([stroke for _, stroke in remaining], comment_by_line)
     if any(are_dips):
-        lines = [stroke[0] for (_, stroke), is_dip in zip(left, are_dips, strict=True) if is_dip]
+        lines = [stroke[0] for (_, stroke), is_dip in zip(remaining, are_dips, strict=True) if is_dip]
         count = f"{len(lines)} dips are" if len(lines) > 1 else "1 dip is"
         sentence = f"{count} left out, recognised {how}; the first is in line {lines[0]}"
         advice = "--skip-comment TEXT or --skip-region X0,Y0,X1,Y1 leaves out other strokes instead"
         notices.append(Notice("dips", sentence, code="dips-left-out", advice=advice))
-    return [chain for (chain, _), is_dip in zip(left, are_dips, strict=True) if not is_dip], notices
+    return [chain for (chain, _), is_dip in zip(remaining, are_dips, strict=True) if not is_dip], notices
 
 
 def _is_skipped(line: int, points: np.ndarray, comment_by_line: dict[int, str], options: ReadOptions) -> bool:

@@ -24,11 +24,11 @@ _END = re.compile(r"\b(?:end|done|finished)\b", re.I)
 
 def read_comments(text: str) -> dict[int, str]:
     """Return the comments of a program by line number, counted from 1."""
-    found = {}
+    comment_by_line = {}
     for number, line in enumerate(text.splitlines(), 1):
         if comment := " ".join(filter(None, (a or b for a, b in _COMMENT.findall(line)))).strip():
-            found[number] = comment
-    return found
+            comment_by_line[number] = comment
+    return comment_by_line
 
 
 def find_dips(
@@ -98,16 +98,16 @@ def _find_dips_at_pots(strokes: list[np.ndarray]) -> list[bool]:
         return []
     begins = np.array([points[0] for points in strokes])
     # Strokes that follow each other at one place are coats of paint, not dips.
-    follows = np.append(False, np.hypot(*np.diff(begins, axis=0).T) <= SAME_PLACE_MM)
-    places, of = np.unique(begins, axis=0, return_inverse=True)
-    there, followed = np.bincount(of), np.bincount(of, follows)
+    is_coat = np.append(False, np.hypot(*np.diff(begins, axis=0).T) <= SAME_PLACE_MM)
+    places, place_of_stroke = np.unique(begins, axis=0, return_inverse=True)
+    stroke_counts, coat_counts = np.bincount(place_of_stroke), np.bincount(place_of_stroke, is_coat)
     points = shapely.points(places)
     tree, visits, coats = shapely.STRtree(points), np.zeros(len(places)), np.zeros(len(places))
     for first in range(0, len(places), QUERY_BATCH):
-        queried, found = tree.query(
+        queried, neighbours = tree.query(
             points[first : first + QUERY_BATCH], predicate="dwithin", distance=SAME_PLACE_MM
         )
-        np.add.at(visits, first + queried, there[found])
-        np.add.at(coats, first + queried, followed[found])
-    is_pot = ((visits >= MIN_POT_VISITS) & (coats == 0))[of]
+        np.add.at(visits, first + queried, stroke_counts[neighbours])
+        np.add.at(coats, first + queried, coat_counts[neighbours])
+    is_pot = ((visits >= MIN_POT_VISITS) & (coats == 0))[place_of_stroke]
     return _find_outside_others(strokes, is_pot.tolist())

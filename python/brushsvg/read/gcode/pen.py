@@ -149,9 +149,9 @@ def _decide_by_height(
         )
     else:
         lowest_travel, inverted_least = (sign * paper_z_mm + 2 * SAME_HEIGHT_MM for sign in (1, -1))
-    shown = _travel_score(all_ways, is_sideways, lowest_travel - SAME_HEIGHT_MM)
+    score = _travel_score(all_ways, is_sideways, lowest_travel - SAME_HEIGHT_MM)
     is_inverted = (
-        _travel_score(inverted, is_sideways, inverted_least - SAME_HEIGHT_MM) > shown + MIN_INVERSION_EVIDENCE
+        _travel_score(inverted, is_sideways, inverted_least - SAME_HEIGHT_MM) > score + MIN_INVERSION_EVIDENCE
     )
     if is_inverted:
         all_ways, levels, lowest_travel = inverted, inverted_levels, inverted_least

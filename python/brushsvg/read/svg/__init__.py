@@ -16,11 +16,11 @@ from ..background import remove_background
 from ..design import Design, Notice
 from ..empty_drawing import empty_drawing_error
 from ..off_page import keep_on_page
-from .context import local, one_line
+from .context import local_name, printable_line
 from .css.cascade import INITIAL, cascade
 from .selection import select_elements
 from .settings import PREFIX, document_settings
-from .tree_walk import SVG, Walk
+from .tree_walk import SVG, TreeWalk
 from .viewport import Page, read_page
 from .xml import Document, parse_xml
 
@@ -41,7 +41,7 @@ def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
         raise Error("its CSS is nested too deeply", where="style", code="css-too-complex") from None
 
 
-def settings_of(data: bytes, alone: bool = False) -> dict:
+def read_svg_settings(data: bytes, alone: bool = False) -> dict:
     """Return the settings of the root element for the whole job.
 
     The result is {} for a damaged file, which read_svg reports.
@@ -62,7 +62,7 @@ def settings_of(data: bytes, alone: bool = False) -> dict:
 def _checked_root(document: Document) -> ET.Element:
     root = document.root
     if root.tag not in (SVG + "svg", "svg"):
-        raise Error(f"the root element is <{local(root)[:40]}>, not <svg>", code="not-svg")
+        raise Error(f"the root element is <{local_name(root)[:40]}>, not <svg>", code="not-svg")
     return root
 
 
@@ -71,13 +71,13 @@ def _read(document: Document, options: ReadOptions) -> Design:
     style = cascade(INITIAL, root.attrib, [], 0.0)[0].geometry
     page = read_page(root.attrib, options.sheet_mm, style)
     selected = select_elements(root, options.select) if options.select else None
-    walk = Walk(root, page, selected, _notices_outside_tree(document, root, page))
+    walk = TreeWalk(root, page, selected, _notices_outside_tree(document, root, page))
     walk.run()
     if not walk.elements:
         raise empty_drawing_error(walk.notices, walk.left_out)
     elements, off_page = keep_on_page(walk.elements, page.sheet_mm)
     title = root.find(SVG + "title" if root.tag.startswith("{") else "title")
-    name = "" if title is None else one_line("".join(title.itertext()))
+    name = "" if title is None else printable_line("".join(title.itertext()))
     design = Design(page.sheet_mm, elements, (*walk.notices, *off_page), name, walk.layers)
     if options.background == "keep":
         return design
@@ -94,9 +94,11 @@ def _notices_outside_tree(document: Document, root: ET.Element, page: Page) -> l
     if "xml-stylesheet" in document.instructions:
         sentence = "CSS in another file is not read: what it says is missing"
         notices.append(Notice("xml-stylesheet", sentence, code="css-unread"))
-    if page.in_px and (found := _find_other_pixel_size(document, root)):
-        own = page if root.get("viewBox") is None else read_page(root.attrib)  # for any requested sheet
-        notices.append(_probable_size_notice(*found, own.sheet_mm, root.get("viewBox") is not None))
+    if page.in_px and (program_and_pixels := _find_other_pixel_size(document, root)):
+        own_page = page if root.get("viewBox") is None else read_page(root.attrib)  # for any requested sheet
+        notices.append(
+            _probable_size_notice(*program_and_pixels, own_page.sheet_mm, root.get("viewBox") is not None)
+        )
     return notices
 
 

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 from ...errors import Error
 from ...units import length_px
-from .context import Context, local
+from .context import Context, local_name
 from .css.cascade import INITIAL, Style, cascade
-from .css.style_sheets import Rules
+from .css.style_sheets import StyleSheets
 from .paint_servers import URL
 from .paths import shapes
 from .paths.path_to_cubics import trace
 from .references import find_referenced, href
 from .transform import Matrix, multiply, parse_transform, scales
-from .viewport import corners_of
+from .viewport import rectangle_corners
 
 if TYPE_CHECKING:
     import shapely
@@ -54,7 +54,7 @@ class ClipPaths:
     by_id: the elements of the drawing; rules: its style sheets.
     """
 
-    def __init__(self, root: ET.Element, by_id: dict[str, ET.Element], rules: Rules):
+    def __init__(self, root: ET.Element, by_id: dict[str, ET.Element], rules: StyleSheets):
         self._root = root
         self._by_id = by_id
         self._rules = rules
@@ -67,7 +67,7 @@ class ClipPaths:
         """Return the style of an element, inherited from all elements around it."""
         parent = self._parents.get(node)
         above = INITIAL if parent is None else self._style_of(parent, diagonal)
-        return cascade(above, node.attrib, self._rules.of(node), diagonal)[0]
+        return cascade(above, node.attrib, self._rules.declarations_for(node), diagonal)[0]
 
     def region(
         self, value: str, context: Context, bounds: Callable[[], tuple[float, float, float, float] | None]
@@ -79,11 +79,11 @@ class ClipPaths:
         context: its matrix maps user units to paper; bounds: returns (x, y, width, height) of the element.
         Raises ClipPathError if the clip path cannot be read.
         """
-        found = URL.match(value)
-        if not found:
+        url = URL.match(value)
+        if not url:
             raise ClipPathError("clip-path: only url(#...) is read: painted whole", code="clipping-unread")
-        target = find_referenced(found[1].strip().strip("\"'"), self._by_id)
-        if target is None or local(target) != "clipPath":
+        target = find_referenced(url[1].strip().strip("\"'"), self._by_id)
+        if target is None or local_name(target) != "clipPath":
             return None
         return self._region(target, context, bounds, 0)
 
@@ -112,11 +112,11 @@ class ClipPaths:
         """
         import shapely
 
-        found = URL.match(value)
-        target = find_referenced(found[1].strip().strip("\"'"), self._by_id) if found else None
-        if found and (target is None or local(target) != "mask"):
+        url = URL.match(value)
+        target = find_referenced(url[1].strip().strip("\"'"), self._by_id) if url else None
+        if url and (target is None or local_name(target) != "mask"):
             return None
-        if not found or "mask-type" in target.attrib or "mask-type" in target.get("style", ""):
+        if not url or "mask-type" in target.attrib or "mask-type" in target.get("style", ""):
             raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
         matrix = context.matrix
         if target.get("maskContentUnits") == "objectBoundingBox":
@@ -150,13 +150,13 @@ class ClipPaths:
                 return None
             matrix = multiply(context.matrix, _matrix_from_bounds(box))
             rectangle = [length_px(text, 1.0, context.em_px) for text in sides.values()]
-        return shapely.Polygon(corners_of(matrix, tuple(rectangle)))
+        return shapely.Polygon(rectangle_corners(matrix, tuple(rectangle)))
 
     def _clip_by_own_path(self, style: Style, context: Context, region, depth: int) -> shapely.Geometry:
         """Return the part of a region inside the clip path of its own style."""
-        if (value := style.own["clip-path"]) == "none" or not (found := URL.match(value)):
+        if (value := style.own["clip-path"]) == "none" or not (url := URL.match(value)):
             return region
-        target = find_referenced(found[1].strip().strip("\"'"), self._by_id)
+        target = find_referenced(url[1].strip().strip("\"'"), self._by_id)
         if target is None:
             return region
         return region.intersection(self._region(target, context, lambda: None, depth + 1))
@@ -171,8 +171,8 @@ class ClipPaths:
         from ..clipping import fill_region, flatten_subpaths
 
         for child in node:
-            tag = local(child)
-            style, _ = cascade(parent, child.attrib, self._rules.of(child), context.diagonal)
+            tag = local_name(child)
+            style, _ = cascade(parent, child.attrib, self._rules.declarations_for(child), context.diagonal)
             if style.own["display"] == "none" or style.inherited["visibility"] != "visible":
                 continue
             _refuse_css_transform(style)
@@ -198,7 +198,7 @@ class ClipPaths:
             elif tag in shapes.TAGS:
                 attributes = {**child.attrib, **style.geometry}
                 try:
-                    commands = shapes.commands_of(tag, attributes, here.viewport, here.em_px)
+                    commands = shapes.shape_commands(tag, attributes, here.viewport, here.em_px)
                 except shapes.DamageError as damage:
                     commands = damage.commands
                 line = trace(commands, matrix, scales(matrix)[0])

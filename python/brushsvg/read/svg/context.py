@@ -50,7 +50,7 @@ class Context(NamedTuple):
         return float(self.style.inherited["font-size"])
 
     @property
-    def is_of_screen(self) -> bool:
+    def counts_in_screen_px(self) -> bool:
         """Whether widths and dashes count in px of the screen and ignore transforms."""
         return self.style.own["vector-effect"] == "non-scaling-stroke"
 
@@ -63,10 +63,10 @@ class Context(NamedTuple):
 
         Without an id, the result is the ids of the uses alone, or "" outside of uses.
         """
-        return "/".join(filter(None, (self.prefix, one_line(node.get("id", "")))))
+        return "/".join(filter(None, (self.prefix, printable_line(node.get("id", "")))))
 
 
-class Notes:
+class NoticeList:
     """The notices of a drawing in the order of reading, with names for its elements."""
 
     def __init__(self, root: ET.Element, notices: list[Notice]):
@@ -87,28 +87,28 @@ class Notes:
     ) -> None:
         """Add a notice about an element, if the element is chosen or the root."""
         if context.chosen or node is self.root:
-            in_one_line = one_line(sentence)
+            in_one_line = printable_line(sentence)
             self.notices.append(
                 Notice(self.label(node), in_one_line, damaged, context.layer, code, about, advice)
             )
 
     def label(self, node: ET.Element) -> str:
         """Return the id of an element, or its type and number: "rect 3"."""
-        if name := one_line(node.get("id", "")):
+        if name := printable_line(node.get("id", "")):
             return name
         if not self._ordinals:
             counts: dict[str, int] = {}
             for element in self.root.iter():
                 counts[element.tag] = self._ordinals[element] = counts.get(element.tag, 0) + 1
-        return local(node) if node is self.root else f"{local(node)} {self._ordinals[node]}"
+        return local_name(node) if node is self.root else f"{local_name(node)} {self._ordinals[node]}"
 
 
-def local(node: ET.Element) -> str:
+def local_name(node: ET.Element) -> str:
     """Return the tag of an element without its namespace."""
     return node.tag.rpartition("}")[2]
 
 
-def one_line(text: str) -> str:
+def printable_line(text: str) -> str:
     """Return text of a drawing for use in a name or a sentence: one printable line."""
     text = " ".join(text.split())
     return text if text.isprintable() else "".join(c if c.isprintable() else "?" for c in text)

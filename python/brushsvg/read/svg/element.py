@@ -16,11 +16,11 @@ from ...geometry.rings import signed_area
 from ...units import MM_PER, number
 from ..background import is_light
 from ..design import Element, SubPath
-from .context import Context, Notes, local
+from .context import Context, NoticeList, local_name
 from .css.cascade import MARKERS
-from .paint_servers import Paints
+from .paint_servers import PaintServers
 from .paths import shapes
-from .paths.path_to_cubics import LARGEST_MM, trace
+from .paths.path_to_cubics import MAX_COORDINATE_MM, trace
 from .paths.power_stroke import PowerStroke, add_widths, read_power_stroke
 from .transform import IDENTITY, scales
 
@@ -32,7 +32,7 @@ _MAX_DASHES = 100_000
 _MAX_PATH_DATA = 10_000_000
 
 
-class Painted:
+class PaintedElements:
     """Collects the painted elements of a drawing.
 
     elements: the converted elements, in the order in which they are painted.
@@ -40,7 +40,11 @@ class Painted:
     """
 
     def __init__(
-        self, by_id: dict[str, ET.Element], notes: Notes, paints: Paints, in_group_effects: set[ET.Element]
+        self,
+        by_id: dict[str, ET.Element],
+        notes: NoticeList,
+        paints: PaintServers,
+        in_group_effects: set[ET.Element],
     ):
         self.elements: list[Element] = []
         self.by_id = by_id
@@ -53,8 +57,8 @@ class Painted:
     def add(self, node: ET.Element, tag: str, context: Context) -> None:
         """Convert the undamaged part of a shape and add it to the elements."""
         properties = context.style.inherited
-        stroke, stroke_notices = self.paints.of(properties, "stroke")
-        fill, fill_notices = self.paints.of(properties, "fill") if tag != "line" else ("none", [])
+        stroke, stroke_notices = self.paints.find_paint(properties, "stroke")
+        fill, fill_notices = self.paints.find_paint(properties, "fill") if tag != "line" else ("none", [])
         attributes = {**node.attrib, **context.style.geometry} if context.style.geometry else node.attrib
         power, unread = (
             read_power_stroke(node, self.by_id, node in self.in_group_effects)
@@ -69,7 +73,7 @@ class Painted:
             return
         mm_per_user = math.sqrt(greatest * least)
         width_mm = context.length(properties["stroke-width"], context.diagonal) * mm_per_user
-        if context.is_of_screen:
+        if context.counts_in_screen_px:
             width_mm *= MM_PER["px"] / mm_per_user
         if power:
             attributes = {**attributes, "d": power.d}
@@ -85,7 +89,7 @@ class Painted:
             sentence = f"{self._why_unpainted(properties, tag, width_mm)}: left out"
             self.notes.add(node, context, sentence, code="neither-stroke-nor-fill")
             return
-        if not width_mm <= LARGEST_MM:
+        if not width_mm <= MAX_COORDINATE_MM:
             sentence = f"its stroke-width {width_mm:.6g} mm is beyond 1e6 mm: left out"
             self.notes.add(node, context, sentence, damaged=True, code="geometry-out-of-range")
             return
@@ -94,7 +98,7 @@ class Painted:
         subpaths = self._with_dashes(node, context, outline) if stroke != "none" else outline
         if not subpaths:
             return
-        has_even_width = "width_mm" in context.settings or (context.is_of_screen and power is None)
+        has_even_width = "width_mm" in context.settings or (context.counts_in_screen_px and power is None)
         if stroke != "none" and greatest > _MAX_EVEN_RATIO * least and not has_even_width:
             sentence = f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
             self.notes.add(node, context, sentence, code="stretched-unevenly")
@@ -132,11 +136,11 @@ class Painted:
     def _clipped(self, node: ET.Element, context: Context, element: Element) -> list[Element]:
         from ..clipping import clip_element
 
-        found = clip_element(element, context.clip)
-        if not found:
+        pieces = clip_element(element, context.clip)
+        if not pieces:
             sentence = "it is outside the clip path, mask or viewport that would show it: left out"
             self.notes.add(node, context, sentence, code="clipped-away")
-        return found
+        return pieces
 
     def _why_unpainted(self, properties: dict[str, str], tag: str, width_mm: float) -> str:
         """Return the reason why an element has neither stroke nor fill."""
@@ -148,7 +152,7 @@ class Painted:
         causes = [
             "its stroke-width is 0"
             if name == "stroke" and width_mm == 0
-            else self.paints.why_none(properties, name)
+            else self.paints.explain_no_paint(properties, name)
             for name in kinds
         ]
         return " and ".join(causes) or "it has neither stroke nor fill"
@@ -160,7 +164,7 @@ class Painted:
         """
         attributes = {**node.attrib, **context.style.geometry}
         try:
-            commands = shapes.commands_of(local(node), attributes, context.viewport, context.em_px)
+            commands = shapes.shape_commands(local_name(node), attributes, context.viewport, context.em_px)
         except shapes.DamageError:
             return None
         line = trace(commands, IDENTITY, 1.0)
@@ -195,7 +199,7 @@ class Painted:
 
     def _with_dashes(self, node, context: Context, subpaths: tuple[SubPath, ...]) -> tuple[SubPath, ...]:
         greatest, least = scales(context.matrix)
-        mm_per_unit = MM_PER["px"] if context.is_of_screen else math.sqrt(greatest * least)
+        mm_per_unit = MM_PER["px"] if context.counts_in_screen_px else math.sqrt(greatest * least)
         return self._cut_dashes(node, context, subpaths, mm_per_unit)
 
     def _trace_geometry(
@@ -209,7 +213,7 @@ class Painted:
                 code="drawing-too-large",
             )
         try:
-            commands = shapes.commands_of(tag, attributes, context.viewport, context.em_px)
+            commands = shapes.shape_commands(tag, attributes, context.viewport, context.em_px)
             if not commands:
                 self.notes.add(node, context, "it has no geometry: left out", code="geometry-empty")
         except shapes.DamageError as damage:

@@ -11,7 +11,7 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 
-from .context import local, one_line
+from .context import local_name, printable_line
 from .paths.power_stroke import INKSCAPE
 
 _SERIF = "{http://www.serif.com/}"
@@ -24,7 +24,7 @@ _NOT_DRAWN = frozenset("title desc metadata defs style script foreignObject name
 def layer_names(root: ET.Element) -> dict[ET.Element, str]:
     """Return the name of each layer, prefixed by the layers around it: "Ink/Fine"."""
     own = {
-        node: one_line(node.get(INKSCAPE + "label") or node.get("id", ""))
+        node: printable_line(node.get(INKSCAPE + "label") or node.get("id", ""))
         for node in root.iter()
         if node.get(INKSCAPE + "groupmode") == "layer"
     }
@@ -46,7 +46,7 @@ def layer_names(root: ET.Element) -> dict[ET.Element, str]:
     return names
 
 
-def is_documentation(path: str) -> bool:
+def is_notes_layer(path: str) -> bool:
     """Whether a layer contains notes that are not plotted.
 
     AxiDraw's software never plots layers whose names start with % (wiki.evilmadscientist.com, "AxiDraw Layer
@@ -57,12 +57,12 @@ def is_documentation(path: str) -> bool:
 
 def _names_by_convention(root: ET.Element) -> dict[ET.Element, str]:
     names: dict[ET.Element, str] = {}
-    inside: ET.Element | None = root
-    while inside is not None:
-        found = list(_outermost_groups(inside))
-        groups = {node: name for node, name in found if name}
+    container: ET.Element | None = root
+    while container is not None:
+        outermost = list(_outermost_groups(container))
+        groups = {node: name for node, name in outermost if name}
         names.update(groups)
-        inside = found[0][0] if len(found) == len(groups) == 1 else None
+        container = outermost[0][0] if len(outermost) == len(groups) == 1 else None
     return names
 
 
@@ -76,17 +76,17 @@ def _outermost_groups(parent: ET.Element) -> Iterator[tuple[ET.Element, str]]:
         node = next(stack[-1], None)
         if node is None:
             stack.pop()
-        elif local(node) == "g" and (name := _group_name(node)):
+        elif local_name(node) == "g" and (name := _group_name(node)):
             yield node, name
-        elif local(node) in _CONTAINERS or local(node) == "g":
+        elif local_name(node) in _CONTAINERS or local_name(node) == "g":
             stack.append(iter(node))
-        elif local(node) not in _NOT_DRAWN:
+        elif local_name(node) not in _NOT_DRAWN:
             yield node, ""
 
 
 def _group_name(node: ET.Element) -> str:
     given_name = node.get(_SERIF + "id") or node.get("data-name")
-    return one_line(given_name or _ESCAPE.sub(_unescape, node.get("id", "")))
+    return printable_line(given_name or _ESCAPE.sub(_unescape, node.get("id", "")))
 
 
 def _unescape(escape: re.Match) -> str:

@@ -21,7 +21,7 @@ _GRADIENTS = frozenset(("linearGradient", "radialGradient"))
 _UNSUPPORTED_SERVERS = frozenset("meshgradient mesh hatch solidcolor solidColor".split())
 
 
-class Paints:
+class PaintServers:
     """The paint servers of a drawing.
 
     by_id: the elements of the drawing; rules: returns the declarations of its style sheets for an element.
@@ -33,7 +33,7 @@ class Paints:
         # A cache, because thousands of shapes can share a long gradient.
         self._paint_cache: dict[tuple[str, str], tuple[str, list[Notice]]] = {}
 
-    def of(self, properties: dict[str, str], name: str) -> tuple[str, list[Notice]]:
+    def find_paint(self, properties: dict[str, str], name: str) -> tuple[str, list[Notice]]:
         """Return the paint, "#rrggbb" or "none", and notices about unread parts.
 
         properties: of the element; name: "stroke" or "fill".
@@ -60,11 +60,11 @@ class Paints:
             notices.append(Notice("", f"{name}-opacity is not read: it counts as 1", code="opacity-unread"))
         return colour[:7], notices
 
-    def why_none(self, properties: dict[str, str], name: str) -> str:
+    def explain_no_paint(self, properties: dict[str, str], name: str) -> str:
         """Return the reason why a stroke or fill of the drawing paints nothing."""
-        found = URL.match(properties[name])
-        if found and self._colour(properties[name], name)[0] == "none":
-            return f"the {name}'s paint {found[1].strip()[:40]} is nowhere in the drawing or paints nothing"
+        url = URL.match(properties[name])
+        if url and self._colour(properties[name], name)[0] == "none":
+            return f"the {name}'s paint {url[1].strip()[:40]} is nowhere in the drawing or paints nothing"
         return f"its {name} is fully transparent"
 
     def _colour(self, value: str, name: str) -> tuple[str, list[Notice]]:
@@ -73,10 +73,10 @@ class Paints:
         A reference to nothing, or to an element that is not a paint server, counts as its fallback, as SVG
         prescribes.
         """
-        found = URL.match(value)
-        if not found:
+        url = URL.match(value)
+        if not url:
             return value, []
-        reference, fallback = found[1].strip(" \"'"), found[2].strip()
+        reference, fallback = url[1].strip(" \"'"), url[2].strip()
         fallback_colour = (parse_colour(fallback) or "none") if fallback else "none"
         server = find_referenced(reference, self._by_id)
         tag = "" if server is None else server.tag.rpartition("}")[2]

@@ -59,8 +59,8 @@ def _read_settings(attributes: dict[str, str], known: dict) -> tuple[dict, list[
             settings[key] = read(text.strip())
         except (Error, ValueError) as problem:
             problems.append(f"{attribute}: {problem}")
-    if both := settings.pop("terminals", None):
-        settings = {"start": both, "end": both} | settings
+    if terminals := settings.pop("terminals", None):
+        settings = {"start": terminals, "end": terminals} | settings
     return settings, problems
 
 

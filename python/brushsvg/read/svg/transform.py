@@ -9,7 +9,7 @@ import math
 import re
 
 from ...errors import Error
-from .paths.path_data import numbers, snippet
+from .paths.path_data import parse_numbers, snippet
 
 Matrix = tuple[float, float, float, float, float, float]
 IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
@@ -67,7 +67,7 @@ def parse_transform(text: str) -> Matrix:
     while position < len(text):
         call = _CALL.match(text, position)
         counts, make = FUNCTIONS.get(call[1], ((), None)) if call else ((), None)
-        values = numbers(call[2].strip()) if call else None
+        values = parse_numbers(call[2].strip()) if call else None
         if values is None or len(values) not in counts or not all(map(math.isfinite, values)):
             raise Error(
                 f"transform is damaged at character {position + 1}: found {snippet(text, position)}",

@@ -13,19 +13,19 @@ from functools import cache
 from ...errors import Error
 from ..design import Element, Notice
 from .clip_paths import ClipPaths
-from .context import Context, Notes, local
+from .context import Context, NoticeList, local_name
 from .css.cascade import INITIAL, Style, cascade, list_unread_properties
-from .css.style_sheets import Rules
+from .css.style_sheets import StyleSheets
 from .css.transform import ReferenceBox, about_point, css_transform, individual_transform, transform_origin
-from .element import Painted
-from .layers import is_documentation, layer_names
-from .paint_servers import INVISIBLE_OPACITY, Paints
+from .element import PaintedElements
+from .layers import is_notes_layer, layer_names
+from .paint_servers import INVISIBLE_OPACITY, PaintServers
 from .paths import shapes
 from .paths.power_stroke import find_elements_in_group_effects
 from .references import find_referenced, href
 from .settings import own_settings
 from .transform import IDENTITY, Matrix, multiply, parse_transform
-from .viewport import Page, corners_of, nested_viewport
+from .viewport import Page, nested_viewport, rectangle_corners
 
 SVG = "{http://www.w3.org/2000/svg}"
 # Elements that are never painted themselves.
@@ -45,7 +45,7 @@ _TRANSFORMS = frozenset(("transform", "translate", "rotate", "scale"))
 _MAX_COPIES = 100_000  # elements that use may copy; a page of text has a hundredth of this
 
 
-class Walk:
+class TreeWalk:
     """The walk over a drawing. Call run, then use the attributes.
 
     elements: the painted elements, in document order.
@@ -59,19 +59,19 @@ class Walk:
         self.namespace = SVG if root.tag.startswith(SVG) else ""
         self.page = page
         self.chosen = chosen
-        self.rules = Rules(root)
+        self.rules = StyleSheets(root)
         self.by_id: dict[str, ET.Element] = {}
         animations = 0
         for node in root.iter():
             self.by_id.setdefault(node.get("id", ""), node)
-            animations += local(node) in _ANIMATIONS
+            animations += local_name(node) in _ANIMATIONS
         if animations:
             sentence = f"animations are not read: {animations} left out, what they move or show counts as without them"
             notices = [*notices, Notice("svg", sentence, code="animations-unread")]
-        self.notes = Notes(root, [*page.notices, *self.rules.notices, *notices])
-        paints = Paints(self.by_id, self.rules.of)
+        self.notes = NoticeList(root, [*page.notices, *self.rules.notices, *notices])
+        paints = PaintServers(self.by_id, self.rules.declarations_for)
         self.clip_paths = ClipPaths(root, self.by_id, self.rules)
-        self.painted = Painted(self.by_id, self.notes, paints, find_elements_in_group_effects(root))
+        self.painted = PaintedElements(self.by_id, self.notes, paints, find_elements_in_group_effects(root))
         self.layer_names = layer_names(root)
         self.layers = dict.fromkeys(self.layer_names.values(), "it is hidden in the drawing")
         self.left_out: dict[str, int] = {}
@@ -106,7 +106,7 @@ class Walk:
         self.entered.add(node)
 
     def _visit(self, node: ET.Element, context: Context) -> None:
-        tag = local(node)
+        tag = local_name(node)
         is_target = context.size is not None
         if (
             not node.tag.startswith(self.namespace)
@@ -124,13 +124,13 @@ class Walk:
                     where=self.notes.label(node),
                     code="drawing-too-large",
                 )
-        rules = self.rules.of(node, context.copied)
+        rules = self.rules.declarations_for(node, context.copied)
         style, problems = cascade(context.style, node.attrib, rules, context.diagonal)
-        if context.copied is not None and rules != self.rules.of(node):
+        if context.copied is not None and rules != self.rules.declarations_for(node):
             problems.append(Notice("", _COPY_SENTENCE, code="css-of-copies"))
         if node in self.layer_names and context.copied is None:
             context = context._replace(layer=self.layer_names[node])
-            if is_documentation(context.layer):
+            if is_notes_layer(context.layer):
                 self._leave_documentation_out(node, context)
                 return
             if style.own["display"] != "none" and style.inherited["visibility"] == "visible":
@@ -220,10 +220,10 @@ class Walk:
 
     def _clip(self, node: ET.Element, context: Context, region_of: Callable, value: str) -> Context:
         """Return the context with the visible region of a clip path or mask of the node."""
-        is_shape = local(node) in shapes.TAGS
+        is_shape = local_name(node) in shapes.TAGS
         try:
             inner = context
-            if local(node) == "use":
+            if local_name(node) == "use":
                 attributes = {**node.attrib, **context.style.geometry}
                 inner = context._replace(matrix=_matrix_of_use(attributes, context))
             region = region_of(value, inner, lambda: self.painted.bounds(node, context) if is_shape else None)
@@ -291,9 +291,9 @@ class Walk:
         kind = context.style.geometry.get("transform-box", "view-box").lower()
         if kind not in ("fill-box", "content-box", "stroke-box", "border-box"):
             return (0.0, 0.0, *context.viewport)
-        bounds = self.painted.bounds(node, context) if local(node) in shapes.TAGS else None
+        bounds = self.painted.bounds(node, context) if local_name(node) in shapes.TAGS else None
         if bounds is None or kind in ("stroke-box", "border-box"):
-            sentence = f"transform-box {kind} is not read on {local(node)[:40]}: it counts as view-box"
+            sentence = f"transform-box {kind} is not read on {local_name(node)[:40]}: it counts as view-box"
             self.notes.add(node, context, sentence, damaged=True, code="transform-unread")
             return (0.0, 0.0, *context.viewport)
         return bounds
@@ -313,7 +313,7 @@ class Walk:
             self.notes.add(node, context, notice.sentence, code=notice.code)
         clip = context.clip
         if context.style.own["overflow"] not in ("visible", "auto"):
-            clip = _clip_to_corners(clip, corners_of(context.matrix, corners))
+            clip = _clip_to_corners(clip, rectangle_corners(context.matrix, corners))
         matrix = multiply(context.matrix, inner)
         self._enter(
             node, iter(node), context._replace(matrix=matrix, viewport=viewport, clip=clip, size=None)

@@ -11,8 +11,8 @@ from types import MappingProxyType
 from ...errors import Error
 from ...units import FONT_PX, MM_PER, length_mm, length_px
 from ..design import Notice
-from .paths.path_data import numbers, snippet
-from .paths.path_to_cubics import LARGEST_MM
+from .paths.path_data import parse_numbers, snippet
+from .paths.path_to_cubics import MAX_COORDINATE_MM
 from .transform import IDENTITY, Matrix, multiply
 
 
@@ -128,12 +128,12 @@ def read_page(
             Notice("svg", f"the drawing has {reason}, {width:.6g} x {height:.6g} mm", code="size-assumed")
         )
     for name, value in (("width", width), ("height", height)):
-        if not 0 < value <= LARGEST_MM:
+        if not 0 < value <= MAX_COORDINATE_MM:
             raise Error(
-                f"the page's {name} {value:.6g} mm is outside the range (0, {LARGEST_MM:.0f}] mm",
+                f"the page's {name} {value:.6g} mm is outside the range (0, {MAX_COORDINATE_MM:.0f}] mm",
                 where="svg",
                 value=value,
-                range=(0.0, LARGEST_MM),
+                range=(0.0, MAX_COORDINATE_MM),
                 code="out-of-range",
             )
     if box is None:
@@ -150,7 +150,7 @@ def read_page(
 def _view_box(text: str | None) -> tuple[float, float, float, float] | None:
     if text is None or not text.strip():
         return None
-    values = numbers(text.strip())
+    values = parse_numbers(text.strip())
     if values is None or len(values) != 4 or not all(map(math.isfinite, values)):
         raise Error(
             f"viewBox {snippet(text, 0, 40)} is not four numbers", where="svg", code="viewbox-invalid"
@@ -211,7 +211,9 @@ def _fit_view_box(box, width: float, height: float, text: str | None, notices: l
     return (s, 0.0, 0.0, s, left - x * s, top - y * s)
 
 
-def corners_of(matrix: Matrix, rectangle: tuple[float, float, float, float]) -> list[tuple[float, float]]:
+def rectangle_corners(
+    matrix: Matrix, rectangle: tuple[float, float, float, float]
+) -> list[tuple[float, float]]:
     """Return the corners [mm] of a rectangle, in order.
 
     rectangle: (x, y, width, height) in user units; matrix: user units to paper.

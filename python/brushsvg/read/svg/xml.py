@@ -100,10 +100,10 @@ def parse_xml(data: bytes) -> Document:
         default_length += len(default or "")
         limit_growth("attribute defaults", data.count(b"<") * default_length)
 
-    def limit_growth(what: str, length: int) -> None:
+    def limit_growth(content: str, length: int) -> None:
         if length > EXPANSION_LIMIT:
             raise Error(
-                f"{position()}: the document's {what} could grow to {length} characters, "
+                f"{position()}: the document's {content} could grow to {length} characters, "
                 f"beyond the limit of {EXPANSION_LIMIT}",
                 value=length,
                 range=(0, EXPANSION_LIMIT),

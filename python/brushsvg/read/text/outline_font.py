@@ -20,7 +20,7 @@ from fontTools.ttLib import TTFont
 from ...errors import Error
 from ...geometry.rings import signed_area
 from ..design import Notice, SubPath
-from .setting import Placed, Setting, find_script, is_seen
+from .setting import PlacedGlyph, TypesetText, find_script, should_have_ink
 
 _MAX_UNPACKED_BYTES = (
     200_000_000  # bytes; the largest fonts, with all Chinese characters, have a fifth of this size
@@ -37,7 +37,7 @@ _JOINED_SCRIPTS = ("arabic", "devanagari")  # scripts in which a word is one sha
 _MIN_CLOSED_CUBICS = 8
 
 
-def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
+def set_lines(data: bytes, lines: list[str], size_mm: float) -> TypesetText:
     """Typeset lines of text, kerned and joined as the font prescribes.
 
     A collection is read as its first font, a variable font as its default instance.
@@ -47,7 +47,7 @@ def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
     unpacked = _unpack(data)
     setter = _Typesetter(unpacked, size_mm)
     placed = tuple(map(setter.place, lines))
-    is_filled = not setter.is_of_lines()
+    is_filled = not setter.is_single_line_font()
     notices: tuple[Notice, ...] = tuple(_unused_part_notices(unpacked, setter.face))
     if not is_filled:
         notices = Notice("font", _SINGLE_LINE_SENTENCE, code="font-of-lines"), *notices
@@ -55,7 +55,7 @@ def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
             tuple(replace(glyph, subpaths=contours_to_lines(glyph.subpaths)) for glyph in line)
             for line in placed
         )
-    return Setting(placed, is_filled, tuple(setter.missing), notices, tuple(setter.blank))
+    return TypesetText(placed, is_filled, tuple(setter.missing), notices, tuple(setter.blank))
 
 
 def _unused_part_notices(data: bytes, face: hb.Face) -> Iterator[Notice]:
@@ -106,7 +106,7 @@ class _Typesetter:
         self.missing: dict[str, None] = {}
         self.blank: dict[str, None] = {}
 
-    def place(self, line: str) -> tuple[Placed, ...]:
+    def place(self, line: str) -> tuple[PlacedGlyph, ...]:
         buffer = hb.Buffer()
         buffer.add_codepoints([ord(character) for character in line])
         buffer.language = "und"  # some builds of HarfBuzz use the locale, so the output would depend on it
@@ -130,15 +130,15 @@ class _Typesetter:
                 inked.add(info.cluster)
                 origin = x + position.x_offset, -(y + position.y_offset)
                 at_mm = (value * self.mm_per_unit for value in origin)
-                placed.append(Placed(characters, subpaths, *at_mm, find_script(characters)))
+                placed.append(PlacedGlyph(characters, subpaths, *at_mm, find_script(characters)))
                 words.append(line[: info.cluster].count(" "))
             x, y = x + position.x_advance, y + position.y_advance
         for cluster in clusters:
             if cluster not in inked:
-                self.blank.update(dict.fromkeys(filter(is_seen, line[cluster : ends[cluster]])))
+                self.blank.update(dict.fromkeys(filter(should_have_ink, line[cluster : ends[cluster]])))
         return tuple(_join_words(placed, words, line.split(" ")))
 
-    def is_of_lines(self) -> bool:
+    def is_single_line_font(self) -> bool:
         """Whether the font is a single-line font.
 
         TrueType has no open lines. In a single-line font, a contour goes back along its line or has two points. Then
@@ -159,14 +159,14 @@ class _Typesetter:
         return self.shapes[glyph]
 
 
-def _join_words(placed: list[Placed], words: list[int], texts: list[str]) -> list[Placed]:
+def _join_words(placed: list[PlacedGlyph], words: list[int], texts: list[str]) -> list[PlacedGlyph]:
     """Return the glyphs of a line from the first word on, and join words.
 
     A word in a joined script becomes one shape, because one line runs through all its letters and the dots come last.
 
     words: the number of the word of each glyph; texts: the text of all words.
     """
-    joined: dict[object, Placed] = {}
+    joined: dict[object, PlacedGlyph] = {}
     for k in sorted(range(len(placed)), key=words.__getitem__):
         glyph = placed[k]
         key = words[k] if glyph.script in _JOINED_SCRIPTS else -1 - k

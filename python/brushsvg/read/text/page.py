@@ -9,8 +9,8 @@ import numpy as np
 from ...errors import Error
 from ...geometry.cubics import extremes
 from ..design import SubPath
-from ..svg.paths.path_to_cubics import LARGEST_MM
-from .setting import Placed, Setting
+from ..svg.paths.path_to_cubics import MAX_COORDINATE_MM
+from .setting import PlacedGlyph, TypesetText
 
 _MARGIN_MM = 20  # the same margin as around a drawing without a sheet
 _MAX_CUBICS = 2_000_000  # a book page has a hundredth of this; with more, the document alone needs 100 MB
@@ -20,7 +20,7 @@ _MAX_STRAIGHT_ERROR_MM = (
 
 
 def svg_document(
-    setting: Setting,
+    typeset: TypesetText,
     title: str,
     leading_mm: float,
     width_mm: float,
@@ -40,7 +40,7 @@ def svg_document(
     """
     placed = [
         (glyph, np.array([glyph.x_mm, glyph.y_mm + row * leading_mm]))
-        for row, line in enumerate(setting.lines)
+        for row, line in enumerate(typeset.lines)
         for glyph in line
     ]
     count = sum(len(subpath.cubics) for glyph, _ in placed for subpath in glyph.subpaths)
@@ -54,7 +54,7 @@ def svg_document(
         )
     lower, upper = _curve_extents(placed)
     size = upper - lower + width_mm
-    if not (size < LARGEST_MM).all():
+    if not (size < MAX_COORDINATE_MM).all():
         raise Error(
             f"the text is {size.max():.4g} mm long, beyond the range [0, 1e6] mm",
             "text",
@@ -74,7 +74,7 @@ def svg_document(
     shift = (sheet - lower - upper) / 2
     style = (
         'fill="#000000" fill-rule="nonzero" stroke="none"'
-        if setting.filled
+        if typeset.filled
         else f'fill="none" stroke="#000000" stroke-width="{_format_number(width_mm)}" '
         'stroke-linecap="round" stroke-linejoin="round"'
     )
@@ -95,12 +95,12 @@ def svg_document(
     )
 
 
-def _script_attribute(glyph: Placed, script: str) -> str:
+def _script_attribute(glyph: PlacedGlyph, script: str) -> str:
     glyph_script = glyph.script if script == "auto" else script
     return "" if glyph_script == "auto" else f'data-brushsvg-script="{glyph_script}" '
 
 
-def _curve_extents(placed: list[tuple[Placed, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+def _curve_extents(placed: list[tuple[PlacedGlyph, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
     """Return the least and the greatest x and y [mm] of the curves without widths."""
     known_extents: dict[int, tuple[np.ndarray, np.ndarray]] = {}
     corners = []

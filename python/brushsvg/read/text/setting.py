@@ -14,7 +14,7 @@ _SCRIPTS = {"ARABIC": "arabic", "DEVANAGARI": "devanagari"} | dict.fromkeys(
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedGlyph:
     """One glyph with ink.
 
     label: the characters that the glyph stands for.
@@ -31,7 +31,7 @@ class Placed:
 
 
 @dataclass(frozen=True)
-class Setting:
+class TypesetText:
     """A typeset text.
 
     lines: the glyphs of each line.
@@ -41,14 +41,14 @@ class Setting:
     blank: characters that should be visible and whose glyph has nothing to paint.
     """
 
-    lines: tuple[tuple[Placed, ...], ...]
+    lines: tuple[tuple[PlacedGlyph, ...], ...]
     filled: bool
     missing: tuple[str, ...] = ()
     notices: tuple[Notice, ...] = ()
     blank: tuple[str, ...] = ()
 
 
-def is_seen(character: str) -> bool:
+def should_have_ink(character: str) -> bool:
     """Whether a character should have ink.
 
     Letters, figures, punctuation and symbols have ink, except for fillers and Braille's blank.

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 from ...errors import Error
 from ..design import Notice, SubPath
-from ..svg.paths.path_data import numbers, parse_path, snippet
+from ..svg.paths.path_data import parse_numbers, parse_path, snippet
 from ..svg.paths.path_to_cubics import trace
 from ..svg.xml import parse_xml
-from .setting import Placed, Setting, is_seen
+from .setting import PlacedGlyph, TypesetText, should_have_ink
 
 # Characters of a ligature. No script joins more, and every length in the font is tried at each position of the text.
 _MAX_LIGATURE = 32
@@ -25,7 +25,7 @@ _UNITS_PER_EM_RANGE = (1, 1e6)
 _RANGE = re.compile(r"[Uu]\+([0-9A-Fa-f]{0,6})(\?{0,6})(?:-([0-9A-Fa-f]{1,6}))?")
 
 
-def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
+def set_lines(data: bytes, lines: list[str], size_mm: float) -> TypesetText:
     """Typeset lines of text.
 
     data: the font file; size_mm: the em of the font. Raises Error if the data is not an SVG font or contains an
@@ -77,7 +77,7 @@ def _local_name(node: ET.Element) -> str:
 
 def _number(node: ET.Element, name: str, default: str | None = None) -> float:
     text = node.get(name, default)
-    values = numbers(text.strip()) if text else None
+    values = parse_numbers(text.strip()) if text else None
     if values is None or len(values) != 1 or not math.isfinite(values[0]):
         problem = "is missing" if text is None else f"{snippet(text, 0)} is not a number"
         raise Error(f"{name} {problem}", _glyph_label(node), code="font-damaged")
@@ -100,15 +100,15 @@ class _Typesetter:
         self.blank: dict[str, None] = {}
         self.notices = list(font.notices)
 
-    def typeset(self, lines: list[str]) -> Setting:
+    def typeset(self, lines: list[str]) -> TypesetText:
         placed = tuple(self._line(unicodedata.normalize("NFC", line)) for line in lines)
         drawn = [subpath for shape in self.shapes.values() for subpath in shape]
         if drawn and all(subpath.closed for subpath in drawn):
             sentence = "every line of these letters is closed; if they are outlines, the outlines are painted"
             self.notices.append(Notice("font", sentence, code="font-of-outlines"))
-        return Setting(placed, False, tuple(self.missing), tuple(self.notices), tuple(self.blank))
+        return TypesetText(placed, False, tuple(self.missing), tuple(self.notices), tuple(self.blank))
 
-    def _line(self, line: str) -> tuple[Placed, ...]:
+    def _line(self, line: str) -> tuple[PlacedGlyph, ...]:
         placed = []
         x, at, before = 0.0, 0, ""
         while at < len(line):
@@ -120,9 +120,9 @@ class _Typesetter:
             if before:
                 x -= self._kern(before, found)
             if shape := self._shape(found):
-                placed.append(Placed(found, shape, x * self.mm_per_unit))
+                placed.append(PlacedGlyph(found, shape, x * self.mm_per_unit))
             elif not self.font.nodes[found].get("d") and not len(self.font.nodes[found]):
-                self.blank.update(dict.fromkeys(filter(is_seen, found)))
+                self.blank.update(dict.fromkeys(filter(should_have_ink, found)))
             x += self._advance(found)
             at, before = at + len(found), found
         return tuple(placed)

@@ -55,33 +55,33 @@ def text_svg(
         sentence = f"the text has {len(text)} characters, beyond the limit of {_MAX_CHARACTERS}"
         raise Error(sentence, "text", len(text), (1, _MAX_CHARACTERS), code="text-too-long")
     text, notices = _remove_controls(text)
-    setter = _find_setter(font)
-    setting = setter.set_lines(font, text.split("\n"), size_mm)
-    notices += setting.notices
-    if setting.missing:
+    font_module = _find_font_module(font)
+    typeset = font_module.set_lines(font, text.split("\n"), size_mm)
+    notices += typeset.notices
+    if typeset.missing:
         notices.append(
             Notice(
                 "text",
-                f"the font has no glyph for {_list_characters(setting.missing)}: left out",
+                f"the font has no glyph for {_list_characters(typeset.missing)}: left out",
                 code="glyph-missing",
             )
         )
-    if setting.blank:
-        sentence = f"the font has no outline for {_list_characters(setting.blank)}: left out"
+    if typeset.blank:
+        sentence = f"the font has no outline for {_list_characters(typeset.blank)}: left out"
         notices.append(Notice("text", sentence, code="glyph-missing"))
-    notices += _direction_notices(text, setting.filled)
-    if not any(setting.lines):
+    notices += _direction_notices(text, typeset.filled)
+    if not any(typeset.lines):
         reasons = "; ".join(notice.sentence for notice in notices if notice.where != "font")
         raise Error(
             "the text leaves nothing to paint" + (f": {reasons}" if reasons else ""),
             "text",
             code="nothing-to-paint",
         )
-    if setting.filled and width_mm is not None:
+    if typeset.filled and width_mm is not None:
         sentence = f"the width {width_mm:g} mm has no effect: the font has outlines, not single lines"
         notices.append(Notice("font", sentence, code="width-without-effect"))
-    stroke_mm = 0.0 if setting.filled else width_mm or 1.0
-    return svg_document(setting, text, line_spacing * size_mm, stroke_mm, sheet_mm, script), notices
+    stroke_mm = 0.0 if typeset.filled else width_mm or 1.0
+    return svg_document(typeset, text, line_spacing * size_mm, stroke_mm, sheet_mm, script), notices
 
 
 def _check_range(name: str, value: float, maximum: float, unit: str = "") -> None:
@@ -152,7 +152,7 @@ def _list_characters(characters: tuple[str, ...]) -> str:
     return ", ".join(named) + (f" and {more} more" if more else "")
 
 
-def _find_setter(font: bytes):
+def _find_font_module(font: bytes):
     if not font.strip():
         raise Error("the font file is empty", code="file-empty")
     if font.startswith(_OUTLINE_FONT_STARTS):

@@ -21,7 +21,7 @@ _ROOT_SELECTOR = re.compile(r":(?:root|scope)\b", re.IGNORECASE)
 _STYLE_TAGS = (f"{{{_SVG_NAMESPACE}}}style", "{http://www.w3.org/1999/xhtml}style", "style")
 
 
-class Rules:
+class StyleSheets:
     """The style sheets of a document, in order.
 
     notices: about the parts that are not read.
@@ -44,7 +44,7 @@ class Rules:
         for text in texts:
             self._add_rules(tinycss2.parse_stylesheet(text, True, True))
 
-    def of(self, node: ET.Element, copied: ET.Element | None = None) -> list[Declaration]:
+    def declarations_for(self, node: ET.Element, copied: ET.Element | None = None) -> list[Declaration]:
         """Return the declarations for an element.
 
         Among declarations of equal importance, the strongest is last.

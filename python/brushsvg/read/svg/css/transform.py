@@ -56,21 +56,21 @@ def css_transform(text: str, box: Callable[[], ReferenceBox], em_px: float) -> M
 
     box: returns the reference box of percentages. Raises Error if the text is not CSS, or a transform in 3D.
     """
-    matrix, at = IDENTITY, 0
+    matrix, position = IDENTITY, 0
     if text.strip().lower() in _NO_TRANSFORM:
         return matrix
-    while at < len(text):
-        call = _CALL.match(text, at)
+    while position < len(text):
+        call = _CALL.match(text, position)
         name = call[1].lower() if call else ""
         words = [word.strip() for word in call[2].split(",")] if call else []
         kinds = _ARGUMENT_KINDS.get(name, ())
         if not kinds or not (len(words) == len(kinds) or (len(kinds) == 2 and len(words) == 1)):
             raise Error(
-                f"transform is not read from character {at + 1} on: found {snippet(text, at)}",
+                f"transform is not read from character {position + 1} on: found {snippet(text, position)}",
                 code="transform-unread",
             )
         matrix = multiply(matrix, _MATRIX_MAKERS[name](*_values(words, kinds, box, em_px)))
-        at = call.end()
+        position = call.end()
     return matrix
 
 
@@ -135,19 +135,19 @@ def _value(word: str, kind: str, box: Callable[[], ReferenceBox], em_px: float) 
         side = box()[2 if kind == "x" else 3] if word.endswith("%") else 0.0
         return _length(word, side, True, em_px)
     if kind == "angle":
-        found = _ANGLE.fullmatch(word)
-        if found:
-            return float(found[1]) * _DEGREES[found[2].lower()]
+        match = _ANGLE.fullmatch(word)
+        if match:
+            return float(match[1]) * _DEGREES[match[2].lower()]
         if _BARE_NUMBER.fullmatch(word) and float(word) == 0:
             return 0.0
         raise Error(
             f"transform: {word[:24]!r} is not an angle as CSS writes it, for example 30deg",
             code="transform-unread",
         )
-    found = _NUMBER_OR_PERCENTAGE.fullmatch(word)
-    if not found or (found[2] and kind == "number"):
+    match = _NUMBER_OR_PERCENTAGE.fullmatch(word)
+    if not match or (match[2] and kind == "number"):
         raise Error(f"transform: {word[:24]!r} is not a number", code="transform-unread")
-    return float(found[1]) / (100 if found[2] else 1)
+    return float(match[1]) / (100 if match[2] else 1)
 
 
 def _length(word: str, percent_of: float, is_css: bool, em_px: float) -> float:

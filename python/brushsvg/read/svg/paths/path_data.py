@@ -25,7 +25,7 @@ _ARGUMENT_COUNT = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 
 Command = tuple[int, str, tuple[float, ...]]
 
 
-def numbers(text: str) -> list[float] | None:
+def parse_numbers(text: str) -> list[float] | None:
     """Parse a list of numbers separated as SVG allows.
 
     The result is [] for an empty text, and None if the text is not a list of numbers.

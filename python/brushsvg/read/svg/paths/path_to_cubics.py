@@ -15,7 +15,7 @@ from ....geometry.arc_to_cubics import arc_count
 from ...design import SubPath
 from .path_data import Command
 
-LARGEST_MM = 1e6  # a larger coordinate is damage, because no table is that large
+MAX_COORDINATE_MM = 1e6  # a larger coordinate is damage, because no table is that large
 # Tolerance of arcs, far below a brush hair. Up to a radius of 23 mm, two cubics per quarter are enough.
 _ARC_TOLERANCE_MM = 1e-4
 _MIN_SEGMENT_MM = 1e-6  # size of a segment below which its direction consists of rounding errors
@@ -56,13 +56,14 @@ def trace(commands: list[Command], paper_from_user: tuple[float, ...], scale: fl
             for x0, y0, x1, y1, x2, y2, x3, y3 in segments
         ]
         cubics = np.array(points).reshape(-1, 4, 2)
-        if all(-LARGEST_MM <= v <= LARGEST_MM for p in points for v in p):  # False for nan as well
+        # The comparison is False for nan as well.
+        if all(-MAX_COORDINATE_MM <= v <= MAX_COORDINATE_MM for p in points for v in p):
             has_tiny = any(
                 abs(p[6] - p[0]) < _MIN_SEGMENT_MM and abs(p[7] - p[1]) < _MIN_SEGMENT_MM for p in points
             )
             subpaths.append(_remove_tiny_segments(cubics, closed) if has_tiny else SubPath(cubics, closed))
             continue
-        broken = int(np.argmin((np.abs(cubics) <= LARGEST_MM).all(axis=(1, 2))))
+        broken = int(np.argmin((np.abs(cubics) <= MAX_COORDINATE_MM).all(axis=(1, 2))))
         if broken:
             subpaths.append(_remove_tiny_segments(cubics[:broken], False))
         return TracedPath(tuple(subpaths), lone_movetos, places[broken])
@@ -164,7 +165,9 @@ def _arc(x, y, rx, ry, turn_deg, large, sweep, ex, ey, scale: float) -> list[tup
     The appendix computes the centre from the end points.
     """
     rx, ry = abs(rx), abs(ry)
-    if not max(rx, ry, abs(x), abs(y), abs(ex), abs(ey)) * scale <= LARGEST_MM or not math.isfinite(turn_deg):
+    if not max(rx, ry, abs(x), abs(y), abs(ex), abs(ey)) * scale <= MAX_COORDINATE_MM or not math.isfinite(
+        turn_deg
+    ):
         return [(x, y, x, y, math.nan, math.nan, ex, ey)]
     straight = (x, y, x + (ex - x) / 3, y + (ey - y) / 3, ex - (ex - x) / 3, ey - (ey - y) / 3, ex, ey)
     if rx * scale < _MIN_SEGMENT_MM or ry * scale < _MIN_SEGMENT_MM:

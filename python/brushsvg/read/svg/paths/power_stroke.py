@@ -19,7 +19,7 @@ from ....geometry import cubics
 from ....geometry.arc_length import knots
 from ...design import SubPath
 from ..references import find_referenced
-from .path_data import numbers
+from .path_data import parse_numbers
 
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 _KNOWN_CAPS = ("round", "butt", "zerowidth")  # the brush makes the ends of the first two
@@ -93,13 +93,15 @@ def read_power_stroke(
             _unread(f"its PowerStroke is not read together with path effect {also}: its outline counts")
         ]
     (effect_node,) = power
-    pairs = [numbers(pair.strip()) for pair in effect_node.get("offset_points", "").split("|")]
-    scales = (numbers(effect_node.get(name, "1").strip()) for name in ("scale_width", "interpolator_beta"))
+    pairs = [parse_numbers(pair.strip()) for pair in effect_node.get("offset_points", "").split("|")]
+    scales = (
+        parse_numbers(effect_node.get(name, "1").strip()) for name in ("scale_width", "interpolator_beta")
+    )
     numbered = [*pairs, *(values and [*values, 0.0] for values in scales)]
     if not all(pair and len(pair) == 2 and all(map(math.isfinite, pair)) for pair in numbered):
         return None, [_unread("its PowerStroke has no offset points that can be read: its outline counts")]
-    scale = numbers(effect_node.get("scale_width", "1").strip()) or [1.0]
-    beta = numbers(effect_node.get("interpolator_beta", "0.2").strip()) or [0.2]
+    scale = parse_numbers(effect_node.get("scale_width", "1").strip()) or [1.0]
+    beta = parse_numbers(effect_node.get("interpolator_beta", "0.2").strip()) or [0.2]
     offsets = np.array(pairs) * [1.0, scale[0]]
     if effect_node.get("sort_points", "true") == "true":
         offsets = offsets[np.argsort(offsets[:, 0], kind="stable")]

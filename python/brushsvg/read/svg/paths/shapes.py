@@ -20,7 +20,7 @@ class DamageError(Exception):
         self.commands = commands
 
 
-def commands_of(
+def shape_commands(
     tag: str, attributes: dict[str, str], viewport: tuple[float, float], em_px: float = FONT_PX
 ) -> list[Command]:
     """Return the path commands of a shape in user units.
