@@ -20,14 +20,14 @@ def test_pots_are_found_among_many_strokes_as_by_their_definition(monkeypatch):
     for count in (1, 2, 40, 700):
         begins = random.uniform(0, 25, (count, 2))
         begins[::9] = begins[0]
-        assert dips._find_dips_at_pots([begin[None] for begin in begins]) == at_pots_by_definition(begins)
+        assert dips._find_pot_dips([begin[None] for begin in begins]) == at_pots_by_definition(begins)
 
 
 def test_memory_does_not_grow_with_the_square_of_the_strokes():
     begins = np.random.default_rng(6).uniform(0, 100, (8000, 2))
     tracemalloc.start()
     try:
-        dips._find_dips_at_pots([begin[None] for begin in begins])
+        dips._find_pot_dips([begin[None] for begin in begins])
         assert tracemalloc.get_traced_memory()[1] < 100e6
     finally:
         tracemalloc.stop()

@@ -166,8 +166,8 @@ def read_drawing(path: Source, options: ReadOptions = AS_DRAWN) -> Design:
     as its root element or as a Document of svgpathtools. An open document is read as its file would be. One
     difference: an ElementTree has nothing before its root, so links to style sheets there are not reported.
 
-    Raises Error if the drawing cannot be read, has an unknown format or has nothing to paint, and if its geometry
-    is damaged and options.lenient is False.
+    Raises Error if the drawing cannot be read, has an unknown format or has nothing to paint. Damaged geometry is an
+    error, too, unless options.lenient is True.
     """
     refuse_invalid_options(options)
     reader, data = _load_source(path)

@@ -18,7 +18,7 @@ _MAX_JOINT_GAP_MM = 1e-6  # rounding error between the end of a line and the end
 
 
 class DashCutter:
-    """Cuts the elements of a drawing into dashes, up to a common limit.
+    """A cutter of elements into dashes, with a common limit for a drawing.
 
     notices: about the elements that were cut, and about line types that are not read.
     """
@@ -61,9 +61,8 @@ class DashCutter:
         pieces: list[SubPath] = []
         for subpath, restarts, length in zip(element.subpaths, pattern_restarts, lengths, strict=True):
             runs = np.split(np.arange(len(length)), restarts)
-            if all(
-                length[run].sum() < sum(pattern) for run in runs
-            ):  # CAD programs draw short lines unbroken
+            # CAD programs draw lines unbroken that are shorter than the pattern.
+            if all(length[run].sum() < sum(pattern) for run in runs):
                 pieces.append(subpath)
                 continue
             try:

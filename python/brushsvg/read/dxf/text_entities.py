@@ -35,9 +35,9 @@ _LINE_CODE = re.compile(r"(?<!%)%%[kou]", re.IGNORECASE)  # codes for lines alon
 
 
 class TextConverter:
-    """Converts the text entities of a document.
+    """A converter of the text entities of a document.
 
-    notices: the fonts of all text that outlines and parts have converted so far, and unread parts of the text.
+    notices: about the fonts of the text converted so far, and about the parts of the text that are not read.
     """
 
     def __init__(self, document: ezdxf.document.Drawing):
@@ -191,7 +191,9 @@ _STACK = re.compile(r"((?<!\\)(?:\\\\)*\\S[^;^]*)\^(?! )")
 
 
 class _MTextExploder(ezdxf.addons.mtxpl.MTextExplode):
-    """Explodes MTEXT with our fonts, in styles that the document does not contain.
+    """An exploder of MTEXT that uses our fonts.
+
+    The resulting entities have styles that the document does not contain.
 
     uneven: whether the letters have several heights; spread: whether the distance of the letters differs from the
     font's distance.

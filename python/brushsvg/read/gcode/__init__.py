@@ -55,7 +55,7 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
         notices += pen.notices
     chains, left_out = _leave_out_dips(chains, read_comments(text), options)
     notices += left_out
-    elements = [_element(chain) for chain in chains]
+    elements = [_line_to_element(chain) for chain in chains]
     if not elements:
         raise empty_drawing_error(notices)
     ends = np.concatenate(
@@ -63,9 +63,11 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     )
     sentence = f"G-code has no widths: its lines count as {LINE_WIDTH_MM:g} mm wide"
     notices.append(Notice("", sentence, code="gcode-no-width", advice="--width MM sets their width"))
-    down = np.concatenate([way.points_mm[:, 2] for chain in chains for way in chain])
-    if np.isfinite(down).all() and np.ptp(down) > 1e-3:
-        sentence = f"its pen goes at heights from {down.min():.6g} to {down.max():.6g} mm: they are left out"
+    heights = np.concatenate([way.points_mm[:, 2] for chain in chains for way in chain])
+    if np.isfinite(heights).all() and np.ptp(heights) > 1e-3:
+        sentence = (
+            f"its pen goes at heights from {heights.min():.6g} to {heights.max():.6g} mm: they are left out"
+        )
         notices.append(Notice("z", sentence, code="gcode-not-flat"))
     if options.sheet_mm:
         return Design(options.sheet_mm, tuple(elements), tuple(notices))
@@ -158,7 +160,7 @@ def is_ours(text: str) -> bool:
     )
 
 
-def _element(chain: list) -> Element:
+def _line_to_element(chain: list) -> Element:
     points = [chain[0].points_mm[:1, :2], *(way.points_mm[1:, :2] for way in chain)]
     path = np.concatenate(points)
     path = path[np.r_[True, np.diff(path, axis=0).any(axis=1)]]

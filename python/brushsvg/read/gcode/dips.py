@@ -49,7 +49,7 @@ def find_dips(
     by_comment = _find_commented_dips(strokes, comment_by_line)
     if any(by_comment):
         return by_comment, "by their comments"
-    return _find_dips_at_pots(
+    return _find_pot_dips(
         [points for _, points in strokes]
     ), "by their place, to which the program comes back"
 
@@ -91,7 +91,7 @@ def _find_outside_others(strokes: list[np.ndarray], chosen: list[bool]) -> list[
     ]
 
 
-def _find_dips_at_pots(strokes: list[np.ndarray]) -> list[bool]:
+def _find_pot_dips(strokes: list[np.ndarray]) -> list[bool]:
     import shapely  # imported here because only programs of other tools need it
 
     if not strokes:

@@ -281,8 +281,8 @@ def _decide_by_servo(all_ways: list[Way], is_sideways: list[bool]) -> tuple[list
 def _read_share(all_ways: list[Way], is_sideways: list[bool], down: list[bool]) -> float:
     """Return the drawn length divided by the length of all ways that may be drawn.
 
-    Doubtful are ways by G1, G2 and G3 that are read as travel and do not look like travel: the pen is not lifted
-    before them, or there are too many in a row.
+    Ways by G1, G2 and G3 that are read as travel may be drawn if they do not look like travel. In this case the pen is
+    not lifted before them, or there are too many in a row.
     """
     lengths = [length(way.points_mm[:, :2]) for way in all_ways]
     drawn = doubtful = 0.0

@@ -75,10 +75,10 @@ def ways_and_end(text: str) -> tuple[list[Way], float | None]:
     The pen value is the value of M3, M4 or M280, or None if the pen is up.
     M2 and M30 end the value of M3, as M5 does. They do not move a servo of M280.
     """
-    reader = _Interpreter()
+    interpreter = _Interpreter()
     for number, line in enumerate(text.splitlines(), 1):
-        reader.line(number, line)
-    return list(_insert_dots(reader.ways)), reader.pen()
+        interpreter.run_line(number, line)
+    return list(_insert_dots(interpreter.ways)), interpreter.pen_value()
 
 
 def _insert_dots(all_ways: list[Way]) -> Iterator[Way]:
@@ -97,27 +97,27 @@ def _is_plunge(way: Way, turn: int = 1) -> bool:
 class _Interpreter:
     def __init__(self):
         self.ways: list[Way] = []
-        self.at = np.full(3, np.nan)  # the position at the start is unknown
-        self.shift = np.zeros(3)
-        self.mm, self.unit_known = 1.0, False
+        self.position_mm = np.full(3, np.nan)  # the position at the start is unknown
+        self.offset_mm = np.zeros(3)
+        self.mm_per_unit, self.unit_known = 1.0, False
         self.absolute, self.absolute_centres = True, False
         self.motion, self.feed_mm_s = None, 0.0
-        self.power, self.on, self.by_angle, self.ended = 0.0, False, 0, False
-        self.percents, self.ways_before = 0, 0
+        self.power, self.is_on, self.by_angle, self.is_ended = 0.0, False, 0, False
+        self.percent_count, self.way_count_at_pen_change = 0, 0
         self.by_laser = False
 
-    def line(self, number: int, line: str) -> None:
+    def run_line(self, number: int, line: str) -> None:
         code = re.sub(r"\([^()]*\)", "", line.partition(";")[0]).strip().upper()
         code = re.sub(r"\*\d+$", "", code.lstrip("/"))  # a checksum
         if re.match(r"(?:N\d+\s*)?G28(?!\d)", code):  # axes without numbers name the axes to home
             code = re.sub(r"([XYZ])(?!\s*[-+.\d])", r"\g<1>0", code)
         # $ begins a setting of grbl, or $H, which moves to an unknown position.
-        if not code or self.ended or code.startswith("$"):
-            self.at[:] = np.nan if code.startswith("$H") else self.at
+        if not code or self.is_ended or code.startswith("$"):
+            self.position_mm[:] = np.nan if code.startswith("$H") else self.position_mm
             return
         if code.startswith("%"):  # the second % ends the program
-            self.percents += 1
-            self.ended = self.percents > 1
+            self.percent_count += 1
+            self.is_ended = self.percent_count > 1
             return
         if re.search(r"\dE[-+]?\d", code):
             raise _unread_line_error(number, line)
@@ -138,46 +138,50 @@ class _Interpreter:
         ):
             raise _unread_line_error(number, line)
         values = {letter: value for letter, value in words if letter not in "GMNT"}
-        power = self.pen()
+        power = self.pen_value()
         for letter, code_number in words:
             if letter in "GM":
                 self._apply_code(number, line, letter, code_number, values)
         if "F" in values:
-            self.feed_mm_s = values["F"] * self.mm / 60
+            self.feed_mm_s = values["F"] * self.mm_per_unit / 60
         if "S" in values and not any(word in _COMMANDS_WITH_OTHER_S for word in words):
             self.power = values["S"]
-        if self.pen() != power:
+        if self.pen_value() != power:
             self._add_dot(number, power)
         if 4 in codes and set("XYZIJ") & set(values):  # some controllers only wait, others also move
             raise _unread_line_error(number, line)
         if codes & {92, 10, 43, 43.1}:  # the numbers are offsets, not positions
             return
         if 53 in codes:  # the position is in the frame of the machine, so it is unknown here
-            self.at[[k for k, axis in enumerate("XYZ") if axis in values]] = np.nan
+            self.position_mm[[k for k, axis in enumerate("XYZ") if axis in values]] = np.nan
             return
         if set("XYZ") & set(values) or (self.motion in (2, 3) and set("IJ") & set(values)):
             self._add_move(number, line, values)
 
-    def pen(self) -> float | None:
+    def pen_value(self) -> float | None:
         """Return the value of M3, M4 or M280, None if the pen is up.
 
         M3 S0 raises the pen as M5 does. For M280, 0 is an angle like any other.
         """
-        return self.power if self.on and (self.power or self.by_angle) else None
+        return self.power if self.is_on and (self.power or self.by_angle) else None
 
     def _add_dot(self, number: int, power: float | None) -> None:
         """Add a dot if the pen went down and up again without a move."""
-        if power is not None and len(self.ways) == self.ways_before and np.isfinite(self.at[:2]).all():
-            here = np.array([self.at, self.at])
+        if (
+            power is not None
+            and len(self.ways) == self.way_count_at_pen_change
+            and np.isfinite(self.position_mm[:2]).all()
+        ):
+            here = np.array([self.position_mm, self.position_mm])
             dot = Way(number, here, False, self.feed_mm_s, power, self.unit_known, by_angle=self.by_angle)
             self.ways.append(dot)
-        self.ways_before = len(self.ways)
+        self.way_count_at_pen_change = len(self.ways)
 
     def _apply_code(self, number: int, line: str, letter: str, code: float, values: dict) -> None:
         if letter == "G" and code in (0, 1, 2, 3):
             self.motion = int(code)
         elif letter == "G" and code in (20, 21):
-            self.mm, self.unit_known = 25.4 if code == 20 else 1.0, True
+            self.mm_per_unit, self.unit_known = 25.4 if code == 20 else 1.0, True
         elif letter == "G" and code in (90, 91):
             self.absolute = code == 90
         elif letter == "G" and code in (90.1, 91.1):
@@ -186,47 +190,49 @@ class _Interpreter:
             for k, axis in enumerate("XYZ"):
                 if axis in values:
                     # An unknown position becomes the origin.
-                    known = 0.0 if math.isnan(self.at[k]) else self.at[k]
-                    self.at[k], self.shift[k] = known, known - values[axis] * self.mm
+                    known = 0.0 if math.isnan(self.position_mm[k]) else self.position_mm[k]
+                    self.position_mm[k], self.offset_mm[k] = known, known - values[axis] * self.mm_per_unit
         elif letter == "G" and code == 28:
-            self.at[:] = np.nan
+            self.position_mm[:] = np.nan
             for axis in "XYZ":
                 values.pop(axis, None)
         elif letter == "M" and code in (3, 4, 5):
-            self.on, self.by_angle, self.by_laser = code != 5, 0, code == 4
+            self.is_on, self.by_angle, self.by_laser = code != 5, 0, code == 4
         elif letter == "M" and "S" in values and (code == 280 or _is_servo_angle(code, values)):
             # S is a servo angle.
-            self.on, self.power, self.by_angle = True, values["S"], int(code)
+            self.is_on, self.power, self.by_angle = True, values["S"], int(code)
             self.by_laser = False
         elif letter == "G" and code == 53:
             pass
         elif code not in _IGNORED_CODES[letter]:
             raise _unread_line_error(number, line)
-        self.ended = letter == "M" and code in (2, 30)
-        self.on = self.on and (self.by_angle or not self.ended)
+        self.is_ended = letter == "M" and code in (2, 30)
+        self.is_on = self.is_on and (self.by_angle or not self.is_ended)
 
     def _add_move(self, number: int, line: str, values: dict) -> None:
         if self.motion is None:
             self.motion = 0  # grbl and Marlin begin with G0
-        start, end = self.at.copy(), self.at.copy()
+        start, end = self.position_mm.copy(), self.position_mm.copy()
         for k, axis in enumerate("XYZ"):
             if axis in values:
-                given_mm = values[axis] * self.mm
-                if not self.absolute and math.isnan(self.at[k]):
+                given_mm = values[axis] * self.mm_per_unit
+                if not self.absolute and math.isnan(self.position_mm[k]):
                     # A program that begins with a relative move begins at its zero.
-                    self.at[k] = start[k] = 0.0
-                end[k] = given_mm + self.shift[k] if self.absolute else self.at[k] + given_mm
+                    self.position_mm[k] = start[k] = 0.0
+                end[k] = given_mm + self.offset_mm[k] if self.absolute else self.position_mm[k] + given_mm
         if np.abs(np.nan_to_num(end)).max() > MAX_COORDINATE_MM:
             raise _out_of_range_error(number, line)
         straight = np.array([start, end])
         rapid, by_angle = self.motion == 0, self.by_angle
-        way = Way(number, straight, rapid, self.feed_mm_s, self.pen(), self.unit_known, by_angle=by_angle)
+        way = Way(
+            number, straight, rapid, self.feed_mm_s, self.pen_value(), self.unit_known, by_angle=by_angle
+        )
         way = replace(way, by_laser=self.by_laser)
         if self.motion in (2, 3):
             way = self._bend_into_circle(number, line, way, values)
         if way.turn or not np.array_equal(start, end, equal_nan=True):
             self.ways.append(way)
-        self.at = end
+        self.position_mm = end
 
     def _bend_into_circle(self, number: int, line: str, way: Way, values: dict) -> Way:
         start, end = way.points_mm
@@ -236,15 +242,15 @@ class _Interpreter:
         if ("R" in values and {"I", "J"} & set(values)) or values.get("P", 1.0) != 1.0:
             raise _unread_line_error(number, line)
         if "R" in values:
-            radius = values["R"] * self.mm
+            radius = values["R"] * self.mm_per_unit
             half, chord = (end - start)[:2] / 2, math.dist(start[:2], end[:2])
             if not 0 < chord <= 2 * abs(radius) + 0.01:
                 raise Error(f"line {number}: {line.strip()[:40]!r} is no circle", code="line-incomplete")
             offset = math.sqrt(max(radius**2 - chord**2 / 4, 0.0)) * turn * (1 if radius > 0 else -1)
             centre = start[:2] + half + offset * np.array([-half[1], half[0]]) * 2 / chord
         elif {"I", "J"} & set(values):
-            offset_mm = np.array([values.get("I", 0.0), values.get("J", 0.0)]) * self.mm
-            centre = offset_mm + self.shift[:2] if self.absolute_centres else start[:2] + offset_mm
+            offset_mm = np.array([values.get("I", 0.0), values.get("J", 0.0)]) * self.mm_per_unit
+            centre = offset_mm + self.offset_mm[:2] if self.absolute_centres else start[:2] + offset_mm
         else:
             raise Error(f"line {number}: {line.strip()[:40]!r} is no circle", code="line-incomplete")
         if not np.abs(centre).max() <= MAX_COORDINATE_MM:

@@ -23,12 +23,8 @@ if TYPE_CHECKING:
     import shapely
 
 _CSS_TRANSFORMS = frozenset(("transform", "translate", "rotate", "scale"))
-DEFAULT_MASK_RECTANGLE = {
-    "x": "-10%",
-    "y": "-10%",
-    "width": "120%",
-    "height": "120%",
-}  # rectangle of a mask without its own
+# The rectangle of a mask that does not define one.
+DEFAULT_MASK_RECTANGLE = {"x": "-10%", "y": "-10%", "width": "120%", "height": "120%"}
 _MAX_DEPTH = 20  # nesting depth of clip paths and uses
 _TOO_DEEP = "its clip paths or masks refer to each other, or are nested too deep: painted whole"
 _MASK_UNREAD = "its mask is not made of filled white and black shapes alone, which is not read: painted whole"

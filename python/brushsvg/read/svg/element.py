@@ -33,10 +33,10 @@ _MAX_PATH_DATA = 10_000_000
 
 
 class PaintedElements:
-    """Collects the painted elements of a drawing.
+    """The painted elements of a drawing. Each call of add converts a shape.
 
     elements: the converted elements, in the order in which they are painted.
-    bent: the elements that path effects of groups change.
+    in_group_effects: the SVG elements whose outlines are changed by path effects of groups.
     """
 
     def __init__(
@@ -81,7 +81,8 @@ class PaintedElements:
             fill = "none"
         if "width_mm" in context.settings:
             width_mm, power = context.settings["width_mm"], None
-            if stroke == "none" and fill == "none":  # a filled shape gets no stroke
+            # Only an element without any paint gets a stroke. A filled shape stays a filled shape.
+            if stroke == "none" and fill == "none":
                 stroke = properties["color"][:7]
         if power is None and width_mm == 0:
             stroke = "none"

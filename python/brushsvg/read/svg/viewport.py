@@ -44,8 +44,12 @@ def nested_viewport(
 
     outer: (width, height) of the viewport around it; size: (width, height) of a use, as written.
 
-    Returns the matrix of the content, the viewport (width, height) in units of the content, the rectangle
-    (x, y, width, height) in outer units, and notices. The result is None if the rectangle has no area.
+    Returns four values, or None if the rectangle has no area:
+
+    * the matrix of the content;
+    * the viewport (width, height) in units of the content;
+    * the rectangle (x, y, width, height) in outer units;
+    * notices.
 
     Raises Error if a length or the viewBox is invalid.
     """

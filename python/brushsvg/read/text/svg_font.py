@@ -110,21 +110,21 @@ class _Typesetter:
 
     def _line(self, line: str) -> tuple[PlacedGlyph, ...]:
         placed = []
-        x, at, before = 0.0, 0, ""
-        while at < len(line):
-            found = self._longest_match(line, at)
-            if not found:
-                self.missing[line[at]] = None
-                at, before = at + 1, ""
+        x, position, previous = 0.0, 0, ""
+        while position < len(line):
+            characters = self._longest_match(line, position)
+            if not characters:
+                self.missing[line[position]] = None
+                position, previous = position + 1, ""
                 continue
-            if before:
-                x -= self._kern(before, found)
-            if shape := self._shape(found):
-                placed.append(PlacedGlyph(found, shape, x * self.mm_per_unit))
-            elif not self.font.nodes[found].get("d") and not len(self.font.nodes[found]):
-                self.blank.update(dict.fromkeys(filter(should_have_ink, found)))
-            x += self._advance(found)
-            at, before = at + len(found), found
+            if previous:
+                x -= self._kern(previous, characters)
+            if shape := self._shape(characters):
+                placed.append(PlacedGlyph(characters, shape, x * self.mm_per_unit))
+            elif not self.font.nodes[characters].get("d") and not len(self.font.nodes[characters]):
+                self.blank.update(dict.fromkeys(filter(should_have_ink, characters)))
+            x += self._advance(characters)
+            position, previous = position + len(characters), characters
         return tuple(placed)
 
     def _longest_match(self, line: str, at: int) -> str:
