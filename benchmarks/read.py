@@ -97,11 +97,11 @@ def cold_ms(work, rounds: int) -> float:
 
 def styles(root) -> None:
     """The rules, and the style of every element from its parent's."""
-    rules = style_sheets.Rules(root)
+    rules = style_sheets.StyleSheets(root)
     waiting = [(root, cascade.INITIAL)]
     while waiting:
         node, parent = waiting.pop()
-        style, _ = cascade.cascade(parent, node.attrib, rules.of(node), 100.0)
+        style, _ = cascade.cascade(parent, node.attrib, rules.declarations_for(node), 100.0)
         waiting += [(child, style) for child in node]
 
 
@@ -114,7 +114,7 @@ def stages(data: bytes, rounds: int) -> dict[str, float]:
     ]
 
     def path_data():
-        return [svg_shapes.commands_of(tag, attributes, page.viewport) for tag, attributes in shapes]
+        return [svg_shapes.shape_commands(tag, attributes, page.viewport) for tag, attributes in shapes]
 
     drawn = path_data()
     design = read_svg(data)

@@ -18,7 +18,7 @@ from shapely.ops import substring
 
 import brushsvg
 from brushsvg.read import ReadOptions
-from brushsvg.read.svg.element import Painted as OurPainted
+from brushsvg.read.svg.element import PaintedElements
 
 DRAWINGS = svg_features.DRAWINGS | svg_styles.DRAWINGS
 REPORTED_OTHERWISE = svg_features.REPORTED_OTHERWISE | svg_styles.REPORTED_OTHERWISE
@@ -43,9 +43,9 @@ def read(text: str, folder) -> Page:
     file = folder / "drawing.svg"
     file.write_text(text, encoding="utf-8")
     with pytest.MonkeyPatch.context() as patch:  # resvg's tree has whole paths in groups with clips
-        patch.setattr(OurPainted, "_clipped", lambda self, node, context, whole: [whole])
-        patch.setattr("brushsvg.read.duplicates.without_duplicates", lambda design: design)
-        patch.setattr("brushsvg.read.svg.on_page", lambda elements, sheet_mm: (tuple(elements), []))
+        patch.setattr(PaintedElements, "_clipped", lambda self, node, context, whole: [whole])
+        patch.setattr("brushsvg.read.duplicates.remove_duplicates", lambda design: design)
+        patch.setattr("brushsvg.read.svg.keep_on_page", lambda elements, sheet_mm: (tuple(elements), []))
         design = brushsvg.read_drawing(file, ReadOptions(background="keep", lenient=True))
     height_mm = design.sheet_mm[1]
 

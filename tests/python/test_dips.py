@@ -1,36 +1,33 @@
 """Which strokes of another tool's program fetch paint."""
 
-import sys
 import tracemalloc
 
 import numpy as np
 
-import brushsvg.read.gcode.dips  # noqa: F401
-
-dips = sys.modules["brushsvg.read.gcode.dips"]  # the package has a function of this name
+from brushsvg.read.gcode import dips
 
 
 def at_pots_by_definition(begins: np.ndarray) -> list[bool]:
     """Of each pair of strokes: at one place three times, and never twice in a row."""
-    near = np.hypot(*(begins[:, None] - begins[None]).transpose(2, 0, 1)) <= dips.PLACE_MM
+    near = np.hypot(*(begins[:, None] - begins[None]).transpose(2, 0, 1)) <= dips.SAME_PLACE_MM
     follows = np.array([False, *(near[k, k + 1] for k in range(len(begins) - 1))])
-    return ((near.sum(axis=1) >= dips.LEAST_VISITS) & ~(near & follows[None]).any(axis=1)).tolist()
+    return ((near.sum(axis=1) >= dips.MIN_POT_VISITS) & ~(near & follows[None]).any(axis=1)).tolist()
 
 
 def test_pots_are_found_among_many_strokes_as_by_their_definition(monkeypatch):
-    monkeypatch.setattr(dips, "_outside", lambda strokes, chosen: chosen)
+    monkeypatch.setattr(dips, "_find_outside_others", lambda strokes, chosen: chosen)
     random = np.random.default_rng(5)
     for count in (1, 2, 40, 700):
         begins = random.uniform(0, 25, (count, 2))
         begins[::9] = begins[0]
-        assert dips._at_pots([begin[None] for begin in begins]) == at_pots_by_definition(begins)
+        assert dips._find_pot_dips([begin[None] for begin in begins]) == at_pots_by_definition(begins)
 
 
 def test_memory_does_not_grow_with_the_square_of_the_strokes():
     begins = np.random.default_rng(6).uniform(0, 100, (8000, 2))
     tracemalloc.start()
     try:
-        dips._at_pots([begin[None] for begin in begins])
+        dips._find_pot_dips([begin[None] for begin in begins])
         assert tracemalloc.get_traced_memory()[1] < 100e6
     finally:
         tracemalloc.stop()

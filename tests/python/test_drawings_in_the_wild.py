@@ -231,28 +231,28 @@ def test_a_clipped_shape_has_no_stroke_along_the_clip():
 
 
 def test_a_cut_line_keeps_its_widths():
-    from brushsvg.read.clipping import clipped, region_of
+    from brushsvg.read.clipping import clip_element, fill_region
     from brushsvg.read.design import Element, SubPath
 
     cubics = np.array([[(0, 0), (10, 0), (20, 0), (30, 0)]], float)
     line = SubPath(cubics, widths=np.array([(0.0, 1.0), (0.5, 3.0), (1.0, 1.0)]))
-    window = region_of([np.array([(10, -5), (25, -5), (25, 5), (10, 5.0)])], "nonzero")
-    (piece,) = clipped(Element("a", (line,), 0.0), window)[0].subpaths
+    window = fill_region([np.array([(10, -5), (25, -5), (25, 5), (10, 5.0)])], "nonzero")
+    (piece,) = clip_element(Element("a", (line,), 0.0), window)[0].subpaths
     along = 10 + 15 * piece.widths[:, 0]
     assert piece.widths[:, 1] == pytest.approx(np.interp(along, [0, 15, 30], [1, 3, 1]), abs=1e-6)
 
 
 def test_a_closed_line_of_varying_width_keeps_its_widths_where_it_begins_inside():
     """The two parts that meet at its beginning were joined without their widths, and painted 0 mm wide."""
-    from brushsvg.read.clipping import clipped, region_of
+    from brushsvg.read.clipping import clip_element, fill_region
     from brushsvg.read.design import Element, SubPath
 
     corners = np.array([(0, 0), (30, 0), (30, 30), (0, 30), (0, 0)], float)
     a, b = corners[:-1], corners[1:]
     cubics = np.stack([a, a + (b - a) / 3, b - (b - a) / 3, b], axis=1)
     ring = SubPath(cubics, True, np.array([(0.0, 2.0), (0.5, 4.0), (1.0, 2.0)]))
-    window = region_of([np.array([(-5, -5), (15, -5), (15, 15), (-5, 15.0)])], "nonzero")
-    first, last = clipped(Element("a", (ring,), 0.0), window)[0].subpaths
+    window = fill_region([np.array([(-5, -5), (15, -5), (15, 15), (-5, 15.0)])], "nonzero")
+    first, last = clip_element(Element("a", (ring,), 0.0), window)[0].subpaths
     assert first.widths[[0, -1], 1] == pytest.approx([2.0, 2.5]) and last.widths[[0, -1], 1] == pytest.approx(
         [2.5, 2.0]
     )

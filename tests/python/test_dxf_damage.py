@@ -224,7 +224,7 @@ def test_broken_splines_are_left_out(degree, knots, weights, count, said):
 
 
 def test_splines_of_great_cost_are_left_out(monkeypatch):
-    monkeypatch.setattr(splines, "_MOST_PIECES", 5000)
+    monkeypatch.setattr(splines, "_MAX_PIECES", 5000)
 
     def draw(msp):
         msp.add_spline([(k, k % 3) for k in range(4000)])
@@ -271,7 +271,7 @@ def chain(count, *others):
 
 @pytest.mark.parametrize("others", [(), ("B",)])
 def test_chains_that_double_are_refused(others, monkeypatch):
-    monkeypatch.setattr(entity_walk, "_MOST_ENTITIES", 2000)
+    monkeypatch.setattr(entity_walk, "_MAX_ENTITIES", 2000)
     with refused("drawing-too-large 2000 entities"):
         read(chain(41, *others))
 

@@ -147,7 +147,7 @@ def test_lines_of_changing_width_stay_whole():
 
 
 def test_too_many_dashes_are_refused(monkeypatch):
-    monkeypatch.setattr(linetypes, "_MOST_DASHES", 1000)
+    monkeypatch.setattr(linetypes, "_MAX_DASHES", 1000)
 
     def draw(msp):
         for k in range(2):

@@ -323,7 +323,7 @@ def test_empty_text_is_named(fonts):
 
 @pytest.mark.parametrize("kind", ["add_text", "add_mtext"])
 def test_long_text_is_refused_however_it_is_repeated(fonts, kind, monkeypatch):
-    monkeypatch.setattr(text_entities, "_MOST_LETTERS", 2000)
+    monkeypatch.setattr(text_entities, "_MAX_LETTERS", 2000)
     document = in_boxes()
     getattr(document.blocks.new("b"), kind)("A" * 100, dxfattribs={"style": "Boxes"})
     grid = {"row_count": 30, "column_count": 30, "row_spacing": 9, "column_spacing": 9}

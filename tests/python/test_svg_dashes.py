@@ -5,7 +5,7 @@ from scipy.integrate import quad
 from svg_text import lines, read
 
 from brushsvg.geometry.arc_length import knots, parameters_at
-from brushsvg.read.dashes import dashed
+from brushsvg.read.dashes import cut_into_dashes
 from brushsvg.read.design import SubPath
 from brushsvg.read.svg import element
 
@@ -112,7 +112,7 @@ def test_dashes_go_round_corners_and_a_closed_line_has_no_seam():
 
 def test_each_dash_is_on_the_line():
     cubics = np.array([[[0, 0], [10, 30], [30, -30], [40, 0]]], float)
-    pieces = dashed(SubPath(cubics), [2.0, 1.0], 0.5, 1000)
+    pieces = cut_into_dashes(SubPath(cubics), [2.0, 1.0], 0.5, 1000)
     t = np.linspace(0, 1, 4001)[:, None]
     p = cubics[0]
     curve = (1 - t) ** 3 * p[0] + 3 * t * (1 - t) ** 2 * p[1] + 3 * t * t * (1 - t) * p[2] + t**3 * p[3]
@@ -124,7 +124,7 @@ def test_each_dash_is_on_the_line():
 
 
 def test_dashes_too_many_to_paint_are_refused(monkeypatch):
-    monkeypatch.setattr(element, "_MOST_DASHES", 300)
+    monkeypatch.setattr(element, "_MAX_DASHES", 300)
     line = '<path id="p" d="M0 0H20" stroke-dasharray="0.05"/>'
     assert len(read(line).elements[0].subpaths) == 200
     with refused("drawing-too-large 200 100"):

@@ -110,7 +110,7 @@ def test_a_paint_is_looked_up_once(monkeypatch):
     """3,000 shapes with a gradient of 3,000 stops took twenty seconds."""
     requested = []
     monkeypatch.setattr(
-        paint_servers.Paints, "_stop", lambda _self, stop: requested.append(stop) or "#00ff00"
+        paint_servers.PaintServers, "_stop", lambda _self, stop: requested.append(stop) or "#00ff00"
     )
     gradient = '<linearGradient id="s">' + "<stop/>" * 50 + "</linearGradient>"
     assert len(read(gradient + BOTH.format("url(#s)", "none", "") * 50).elements) == 50
@@ -119,8 +119,10 @@ def test_a_paint_is_looked_up_once(monkeypatch):
 
 def test_a_box_is_measured_once(monkeypatch):
     requested = []
-    bounds = element.Painted.bounds
-    monkeypatch.setattr(element.Painted, "bounds", lambda *words: requested.append(1) or bounds(*words))
+    bounds = element.PaintedElements.bounds
+    monkeypatch.setattr(
+        element.PaintedElements, "bounds", lambda *words: requested.append(1) or bounds(*words)
+    )
     move = "translate(1%, 1%)" * 50
     read(f'<path d="M0 0H5V5" style="transform-box:fill-box;transform:{move};transform-origin:center"/>')
     assert len(requested) == 1

@@ -116,7 +116,7 @@ def test_uses_that_lead_nowhere(body, said, damaged):
 
 
 def test_use_chains_that_double_are_refused(monkeypatch):
-    monkeypatch.setattr(tree_walk, "_MOST_USED", 2000)
+    monkeypatch.setattr(tree_walk, "_MAX_COPIES", 2000)
     chain = "".join(f'<g id="a{k}"><use href="#a{k + 1}"/><use href="#a{k + 1}"/></g>' for k in range(40))
     with refused("drawing-too-large 2000"):
         read(f'<defs>{chain}<g id="a40">{LINE}</g></defs><use href="#a0"/>')
@@ -129,7 +129,7 @@ def test_a_long_chain_of_uses_is_walked_without_recursion():
 
 
 def test_path_data_without_end_is_refused(monkeypatch):
-    monkeypatch.setattr(svg_element, "_MOST_DATA", 1000)
+    monkeypatch.setattr(svg_element, "_MAX_PATH_DATA", 1000)
     assert read(LINE * 100).elements
     with refused("drawing-too-large 1000"):
         read(LINE * 200)

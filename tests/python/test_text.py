@@ -470,7 +470,7 @@ def test_woff_is_unpacked_and_woff2_refused(ttf):
 
 
 def test_a_woff_bomb_is_refused(ttf, monkeypatch):
-    monkeypatch.setattr("brushsvg.read.text.outline_font._UNPACKED", 500)
+    monkeypatch.setattr("brushsvg.read.text.outline_font._MAX_UNPACKED_BYTES", 500)
     assert agrees(refusal("A", repacked(ttf, "woff")), "file-too-large 500")
 
 

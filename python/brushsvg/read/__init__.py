@@ -1,4 +1,4 @@
-"""Drawings in, Design out: one format per file. READERS names them all."""
+"""Readers from drawings to a Design, one package per format, listed in READERS."""
 
 from __future__ import annotations
 
@@ -20,14 +20,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ReadOptions:
-    """Options of a reader.
+    """Options of a reader. Each format uses the options that apply to it.
 
-    sheet_mm: (w, h) in place of the drawing's own; units: "mm" or "in", of a drawing that has numbers only (DXF);
-    select: a CSS selector; elements outside of its matches are left out (SVG); background: "auto"
-    leaves out a white shape that comes first and covers the page, "keep" paints it (SVG). Of G-code, pen: "z" or
-    "servo", what moves its pen; paper_z_mm: the height at which it draws; skip_regions_mm: (x0, y0, x1, y1), strokes
-    inside are left out; skip_comments: so are those behind comments that hold such a text. lenient: take what is
-    sound of damaged geometry, with a notice for what is not.
+    sheet_mm: (width, height) of the sheet, in place of the drawing's own size.
+    units: "mm" or "in", the unit of a drawing that has numbers only (DXF).
+    select: a CSS selector; elements that it does not match are left out (SVG).
+    background: "auto" leaves out a white shape that comes first and covers the page, "keep" paints it (SVG).
+    pen: "z" or "servo", what moves the pen (G-code).
+    paper_z_mm: the height at which the pen draws (G-code).
+    skip_regions_mm: rectangles (x0, y0, x1, y1); strokes inside a rectangle are left out (G-code).
+    skip_comments: texts; strokes that follow a comment with one of these texts are left out (G-code).
+    lenient: read the undamaged part of damaged geometry and add a notice about the damaged part.
     """
 
     sheet_mm: tuple[float, float] | None = None
@@ -42,15 +45,15 @@ class ReadOptions:
 
 
 AS_DRAWN = ReadOptions()
-SIZE_MM = (0.001, 1e6)  # of a sheet's sides
+SIZE_MM = (0.001, 1e6)  # range of the sides of a sheet
 UNITS = ("mm", "in")
 BACKGROUNDS = ("auto", "keep")
-SCRIPTS = ("auto", "latin", "arabic", "devanagari", "cjk")  # how filled shapes are written
-PENS = ("z", "servo")  # what moves the pen of a program
+SCRIPTS = ("auto", "latin", "arabic", "devanagari", "cjk")  # writing systems of filled shapes
+PENS = ("z", "servo")  # the axes that can move the pen of a program
 
 
-def refuse_unusable(options: ReadOptions) -> None:
-    """Error for options that no drawing can be read with."""
+def refuse_invalid_options(options: ReadOptions) -> None:
+    """Raise Error if the options are of a wrong type or out of range."""
     need(options, ReadOptions, "options to read a drawing with, as ReadOptions are")
     if options.sheet_mm is not None:
         need(options.sheet_mm, (tuple, list), "a sheet's width and height [mm]")
@@ -80,14 +83,17 @@ def refuse_unusable(options: ReadOptions) -> None:
 
 @dataclass(frozen=True)
 class InMemory:
-    """A drawing that is no file, or not read here: the extension says its format, data is what a file would hold."""
+    """A drawing that is not read from a file.
+
+    extension: the key in READERS that selects the format; data: the content that a file would have.
+    """
 
     extension: str
     data: bytes
 
 
 class HasTree(Protocol):
-    """What svgpathtools' Document is."""
+    """An object with an element tree, for example a Document of svgpathtools."""
 
     @property
     def tree(self) -> Any: ...
@@ -99,77 +105,83 @@ if TYPE_CHECKING:
     )
 
 
-def _svg(data: bytes, options: ReadOptions) -> Design:
-    from .svg import read_svg  # loaded for who reads, not for who only asks what can be read
+def _read_svg_bytes(data: bytes, options: ReadOptions) -> Design:
+    from .svg import read_svg  # imported here so that looking up READERS does not load the readers
 
     return read_svg(data, options)
 
 
-def _dxf(data: bytes, options: ReadOptions) -> Design:
+def _read_dxf_bytes(data: bytes, options: ReadOptions) -> Design:
     from .dxf import read_dxf
 
     return read_dxf(data, options)
 
 
-def _gcode(data: bytes, options: ReadOptions) -> Design:
+def _read_gcode_bytes(data: bytes, options: ReadOptions) -> Design:
     from .gcode import read_gcode
 
     return read_gcode(data, options)
 
 
 def settings_in(path, alone: bool = False) -> dict:
-    """Brush, cell, compensation, tolerance [mm] and wide that a drawing asks for, as far as it does.
+    """Return the settings for the whole job that a drawing contains.
 
-    path: as for read_drawing; anything else asks for nothing. Error if the file cannot be read; alone, where nothing
-    else of it will be: also if it is no drawing.
+    Among them are brush, cell, compensation, tolerance [mm] and wide. A setting that the drawing does not contain
+    is absent. Formats other than SVG have no settings.
+
+    path: as for read_drawing; any other object has no settings.
+    alone: whether read_drawing is not called for this file, so that its problems are reported here.
+
+    Raises Error if the file cannot be read and, with alone, also if it is not a drawing.
     """
     if isinstance(path, str | os.PathLike):
         if os.path.splitext(path)[1].lower() not in (".svg", ".svgz"):
             if alone:
-                read_bytes(path)  # a DXF asks for nothing, but there should be one
+                read_bytes(path)  # a DXF has no settings, but a missing file is still an error
             return {}
         data = read_bytes(path)
-    elif (opened := _of_opened(path)) and opened[0] is _svg:
-        data = opened[1]
+    elif (loaded := _load_open_document(path)) and loaded[0] is _read_svg_bytes:
+        data = loaded[1]
     else:
         return {}
-    from .svg import settings_of
+    from .svg import read_svg_settings
 
-    return settings_of(data, alone)
+    return read_svg_settings(data, alone)
 
 
-READERS = {  # by extension; each takes (bytes, ReadOptions)
-    ".svg": _svg,
-    ".svgz": _svg,
-    ".dxf": _dxf,
-    ".gcode": _gcode,
-    ".ngc": _gcode,
-    ".nc": _gcode,
+READERS = {  # by file extension; each reader takes (bytes, ReadOptions)
+    ".svg": _read_svg_bytes,
+    ".svgz": _read_svg_bytes,
+    ".dxf": _read_dxf_bytes,
+    ".gcode": _read_gcode_bytes,
+    ".ngc": _read_gcode_bytes,
+    ".nc": _read_gcode_bytes,
 }
 
 
 def read_drawing(path: Source, options: ReadOptions = AS_DRAWN) -> Design:
-    """The drawing in a file, its format chosen by extension; or one that is open already.
+    """Read a drawing from a file, or from a document that is already open.
 
-    path: of the file; or an ezdxf document, or an SVG as an ElementTree, its root element or svgpathtools' Document:
-    read as their files would be, but an ElementTree holds nothing that stands before its root, so of links to style
-    sheets there nothing is said.
-    Error if it cannot be read, is of no known format, has nothing to paint, or holds damaged geometry and lenient
-    is False.
+    path: the path of a file, whose extension selects the format; an ezdxf document; or an SVG as an ElementTree,
+    as its root element or as a Document of svgpathtools. An open document is read as its file would be. One
+    difference: an ElementTree has nothing before its root, so links to style sheets there are not reported.
+
+    Raises Error if the drawing cannot be read, has an unknown format or has nothing to paint. Damaged geometry is an
+    error, too, unless options.lenient is True.
     """
-    refuse_unusable(options)
-    reader, data = _opened(path)
-    from .duplicates import without_duplicates  # loaded to read, as the readers are
-    from .pressure_strokes import with_pressure_strokes
+    refuse_invalid_options(options)
+    reader, data = _load_source(path)
+    from .duplicates import remove_duplicates  # imported here for the same reason as the readers
+    from .pressure_strokes import join_pressure_strokes
 
-    design = without_duplicates(with_pressure_strokes(reader(data, options)))
+    design = remove_duplicates(join_pressure_strokes(reader(data, options)))
     if not options.lenient:
         refuse_damage(design)
     return design
 
 
-def _opened(path) -> tuple:
-    """(Reader, bytes) of a file or of what was open already."""
+def _load_source(path) -> tuple:
+    """Return (reader, bytes) for a file or an open document."""
     if isinstance(path, str | os.PathLike):
         extension = os.path.splitext(path)[1]
         reader = READERS.get(extension.lower())
@@ -182,26 +194,26 @@ def _opened(path) -> tuple:
                 code="drawing-format",
             )
         return reader, read_bytes(path)
-    opened = _of_opened(path)
-    if opened is None:
+    loaded = _load_open_document(path)
+    if loaded is None:
         raise Error(
             f"a {type(path).__name__} is neither the path of a drawing nor an open one, "
             "an ezdxf document or an ElementTree",
             code="drawing-format",
         )
-    return opened
+    return loaded
 
 
-def _of_opened(drawing) -> tuple | None:
-    """The same of what was open already; None for anything else."""
+def _load_open_document(drawing) -> tuple | None:
+    """Return (reader, bytes) for an open document, None for any other object."""
     if isinstance(drawing, InMemory) and drawing.extension in READERS:
         return READERS[drawing.extension], drawing.data
     if hasattr(drawing, "modelspace"):
         text = io.StringIO()
         drawing.write(text)
-        return _dxf, text.getvalue().encode(drawing.output_encoding, errors="dxfreplace")
+        return _read_dxf_bytes, text.getvalue().encode(drawing.output_encoding, errors="dxfreplace")
     tree = getattr(drawing, "tree", drawing)
     root = tree.getroot() if hasattr(tree, "getroot") else tree
     if ElementTree.iselement(root) and isinstance(root, ElementTree.Element):
-        return _svg, ElementTree.tostring(root)
+        return _read_svg_bytes, ElementTree.tostring(root)
     return None

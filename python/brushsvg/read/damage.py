@@ -1,4 +1,7 @@
-"""Damaged geometry: readers take what is sound of it, with a notice; who did not ask for that is refused."""
+"""Refuse drawings with damaged geometry.
+
+Readers keep the undamaged part and add a notice. Only callers that ask for lenient reading accept such a drawing.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def refuse_damage(design: Design) -> None:
-    """Error with the first notice of geometry that is broken, as it was drawn, and was read up to there."""
+    """Raise Error with the first notice about damaged geometry, if there is one."""
     for notice in design.notices:
         if notice.damaged:
             raise Error(notice.sentence, where=notice.where, code=notice.code, advice=notice.advice)

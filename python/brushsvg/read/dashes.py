@@ -1,4 +1,4 @@
-"""Dashes: a line cut into the pieces that are painted."""
+"""Cut a line into its dashes."""
 
 from __future__ import annotations
 
@@ -9,46 +9,51 @@ from ..geometry.arc_length import knots, parameters_at
 from ..geometry.cubics import between
 from .design import SubPath
 
-_ROUNDING = 1e-9  # of a length: a dash that begins nearer to the end would be a dab that nobody drew
+# Share of the length of the line. A dash that begins closer to the end is a rounding error and would paint a dab.
+_MIN_DASH_START_SHARE = 1e-9
 
 
-def dashed(subpath: SubPath, pattern_mm: list[float], offset_mm: float, most: int) -> list[SubPath]:
-    """The dashes of one sub-path, in order; the pattern's even entries are painted, an odd count repeats.
+def cut_into_dashes(subpath: SubPath, pattern_mm: list[float], offset_mm: float, limit: int) -> list[SubPath]:
+    """Return the dashes of a sub-path, in order.
 
-    On a closed line the last dash and the first are one where they meet. Error when there are more than `most`.
+    pattern_mm: lengths; entries 0, 2, 4 ... are painted. A pattern with an odd count is repeated once, as in SVG.
+    offset_mm: the place in the pattern at which the line begins.
+
+    The last and the first dash of a closed line are joined if they meet. A sub-path without length stays as it is.
+    Raises Error if there are more dashes than the limit.
     """
     pattern = np.array(pattern_mm if len(pattern_mm) % 2 == 0 else 2 * pattern_mm)
     period = float(pattern.sum())
-    known = knots(subpath.cubics)
-    end = float(known[:, -1].sum())
-    if end == 0:
+    knot_table = knots(subpath.cubics)
+    total = float(knot_table[:, -1].sum())
+    if total == 0:
         return [subpath]
-    count = end / period * len(pattern) / 2
-    if count > most:
+    count = total / period * len(pattern) / 2
+    if count > limit:
         raise Error(
-            f"its dashes of {period:.4g} mm would make {count:.3g} strokes where {most} are left of the drawing's "
+            f"its dashes of {period:.4g} mm would make {count:.3g} strokes where {limit} are left of the drawing's "
             "limit",
             code="drawing-too-large",
         )
     ends = np.cumsum(pattern)
     first = -(offset_mm % period)
-    periods = np.arange(int(np.ceil((end - first) / period)) + 1) * period + first
+    periods = np.arange(int(np.ceil((total - first) / period)) + 1) * period + first
     spans = np.stack(
         [(periods[:, None] + ends[0::2] - pattern[0::2]).ravel(), (periods[:, None] + ends[0::2]).ravel()],
         axis=1,
     )
     spans = spans[
-        (spans[:, 1] > 0) & (spans[:, 0] < end * (1 - _ROUNDING))
+        (spans[:, 1] > 0) & (spans[:, 0] < total * (1 - _MIN_DASH_START_SHARE))
         | ((spans[:, 0] == spans[:, 1]) & (spans[:, 0] == 0))
     ]
-    spans = np.clip(spans, 0.0, end)
+    spans = np.clip(spans, 0.0, total)
     if not len(spans):
         return []
-    if (spans[0] == (0.0, end)).all():
+    if (spans[0] == (0.0, total)).all():
         return [subpath]
-    number, t = parameters_at(subpath.cubics, known, spans.ravel())
+    number, t = parameters_at(subpath.cubics, knot_table, spans.ravel())
     places = list(zip(number.tolist(), t.tolist(), strict=True))
     pieces = [between(subpath.cubics, *ends) for ends in zip(places[0::2], places[1::2], strict=True)]
-    if subpath.closed and len(pieces) > 1 and spans[0, 0] == 0 and spans[-1, 1] == end:
+    if subpath.closed and len(pieces) > 1 and spans[0, 0] == 0 and spans[-1, 1] == total:
         pieces[0] = np.concatenate([pieces.pop(), pieces[0]])
     return [SubPath(piece) for piece in pieces]

@@ -1,4 +1,7 @@
-"""What a drawing says, in millimetres of the paper frame: origin lower left, x right, y up."""
+"""The content of a drawing in mm.
+
+All coordinates are in the paper frame: origin lower left, x right, y up.
+"""
 
 from __future__ import annotations
 
@@ -12,10 +15,13 @@ from ..errors import Notice
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SubPath(ArrayValue):
-    """One unbroken line: cubics (n, 4, 2) in mm, n >= 1; the end of each is the start of the next.
+    """One unbroken line.
 
-    A sub-path without length is one cubic whose four points coincide. widths: (k, 2), fraction of the arc
-    length in [0, 1] and width [mm] there, linear in between; None where the element's one width serves.
+    cubics: (n, 4, 2) control points in mm, n >= 1; each cubic starts where the one before it ends. A sub-path
+    without length is one cubic whose four points coincide.
+    closed: whether the line ends where it begins.
+    widths: (k, 2), a fraction of the arc length in [0, 1] and the width [mm] there, linear in between; None if the
+    whole line has the width of its element.
     """
 
     cubics: np.ndarray
@@ -27,10 +33,13 @@ class SubPath(ArrayValue):
 class Element:
     """One painted element: a stroked line, a filled shape, or both.
 
-    id: as in the drawing, strokeN for the N-th without one; stroke_width_mm: 0 without a stroke; colour: "#rrggbb"
-    of the stroke, of the fill where there is none; layer: "" outside of any layer; settings: what the drawing says
-    to brushsvg itself; fill_rule: "nonzero" or "evenodd" of a filled shape, "" without a fill. fill_colour: of the fill
-    of a shape whose stroke has another colour, "" of any other element.
+    id: as in the drawing; strokeN for the N-th element without an id.
+    stroke_width_mm: 0 without a stroke.
+    colour: "#rrggbb" of the stroke, or of the fill if there is no stroke.
+    layer: "" outside of any layer.
+    settings: the settings for brushsvg that the drawing contains.
+    fill_rule: "nonzero" or "evenodd" for a filled shape, "" without a fill.
+    fill_colour: colour of the fill if the stroke has another colour, otherwise "".
     """
 
     id: str
@@ -44,11 +53,14 @@ class Element:
 
     @property
     def is_stroked(self) -> bool:
-        """Whether it is a line with a width, rather than a shape alone."""
+        """Whether the element has a stroke, and not only a fill."""
         return self.stroke_width_mm > 0 or any(subpath.widths is not None for subpath in self.subpaths)
 
     def by_colour(self) -> tuple[Element, ...]:
-        """The shape in the colour of its fill, and the line around it in its own, on top; itself in one colour."""
+        """Split an element whose fill and stroke have different colours.
+
+        Returns the filled shape and, on top of it, the stroke. An element with one colour is returned as it is.
+        """
         if not self.fill_colour:
             return (self,)
         plain = tuple(replace(subpath, widths=None) for subpath in self.subpaths)
@@ -65,9 +77,13 @@ class Element:
 
 @dataclass(frozen=True, repr=False)
 class Design:
-    """A drawing: sheet (width, height) in mm, elements in document order, what was noticed while reading.
+    """A drawing.
 
-    layers: why a layer by that name ("Ink/Fine" for one in another) is not painted, "" where nothing forbids it.
+    sheet_mm: (width, height).
+    elements: in document order.
+    notices: about the parts of the drawing that were read differently than drawn, or not at all.
+    layers: for each layer name ("Ink/Fine" for a layer inside another) the reason why the layer is not painted, or
+    "" if it is painted.
     """
 
     sheet_mm: tuple[float, float]

@@ -1,4 +1,7 @@
-"""Elements drawn more than once in the same place, as exports and pasted copies leave them."""
+"""Remove elements that are drawn more than once in the same place.
+
+Exports and pasted copies leave such elements.
+"""
 
 from __future__ import annotations
 
@@ -8,35 +11,38 @@ import numpy as np
 
 from .design import Design, Element, Notice, SubPath
 
-SAME_MM = 1e-3  # places that differ by less are the same; no robot places a brush as finely
+SAME_PLACE_MM = 1e-3  # places that differ by less are the same; no robot places a brush this precisely
 
 
-def without_duplicates(design: Design) -> Design:
-    """The drawing with each element once. A line drawn backwards is the same line; another colour, width, layer or
-    setting makes another element. A notice names what was left out."""
-    seen: dict[tuple, str] = {}
-    kept, twins = [], []
+def remove_duplicates(design: Design) -> Design:
+    """Return the drawing with each element once.
+
+    A notice names the removed elements. A line drawn backwards is the same line. An element with another colour,
+    width, layer or setting is kept.
+    """
+    id_by_key: dict[tuple, str] = {}
+    kept, duplicates = [], []
     for element in design.elements:
-        key = _key(element)
-        if key in seen:
-            twins.append(f"{element.id} (like {seen[key]})")
+        key = _element_key(element)
+        if key in id_by_key:
+            duplicates.append(f"{element.id} (like {id_by_key[key]})")
             continue
-        seen[key] = element.id
+        id_by_key[key] = element.id
         kept.append(element)
-    if not twins:
+    if not duplicates:
         return design
-    count = "1 element is" if len(twins) == 1 else f"{len(twins)} elements are"
-    named = ", ".join(twins[:3]) + (f" and {len(twins) - 3} more" if len(twins) > 3 else "")
+    count = "1 element is" if len(duplicates) == 1 else f"{len(duplicates)} elements are"
+    named = ", ".join(duplicates[:3]) + (f" and {len(duplicates) - 3} more" if len(duplicates) > 3 else "")
     sentence = f"{count} exactly on another and would be painted twice: left out, {named}"
     notice = Notice("drawing", sentence, code="drawn-twice")
     return replace(design, elements=tuple(kept), notices=(*design.notices, notice))
 
 
-def _key(element: Element) -> tuple:
+def _element_key(element: Element) -> tuple:
     return (
         frozenset(map(_path_key, element.subpaths)),
         len(element.subpaths),
-        round(element.stroke_width_mm / SAME_MM),
+        round(element.stroke_width_mm / SAME_PLACE_MM),
         element.colour,
         element.layer,
         element.fill_rule,
@@ -46,11 +52,14 @@ def _key(element: Element) -> tuple:
 
 
 def _path_key(path: SubPath) -> tuple[bytes, bytes]:
-    ways = [path.cubics, path.cubics[::-1, ::-1]]
+    directions = [path.cubics, path.cubics[::-1, ::-1]]
     widths = [np.empty(0)] * 2 if path.widths is None else [path.widths, path.widths[::-1] * (-1, 1) + (1, 0)]
-    keys = [(_rounded(way), _rounded(width)) for way, width in zip(ways, widths, strict=True)]
+    keys = [
+        (_rounded_bytes(cubics), _rounded_bytes(width))
+        for cubics, width in zip(directions, widths, strict=True)
+    ]
     return min(keys)
 
 
-def _rounded(values: np.ndarray) -> bytes:
-    return (np.round(values / SAME_MM) + 0.0).astype(np.int64).tobytes()
+def _rounded_bytes(values: np.ndarray) -> bytes:
+    return (np.round(values / SAME_PLACE_MM) + 0.0).astype(np.int64).tobytes()

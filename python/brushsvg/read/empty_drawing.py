@@ -1,4 +1,4 @@
-"""The refusal of a drawing of which nothing is left, with the reasons."""
+"""The error for a drawing with nothing to paint, with the reasons."""
 
 from __future__ import annotations
 
@@ -7,26 +7,33 @@ from collections.abc import Iterable, Mapping
 from ..errors import Error
 from .design import Notice
 
-_REASONS = 3
+_MAX_NAMED_REASONS = 3  # reasons that the error names
 
 
-def nothing_to_paint(notices: Iterable[Notice], left_out: Mapping[str, int] | None = None) -> Error:
-    """Names damage first, then what was met most often. left_out: how often something was, without a notice, by why."""
-    alike: dict[tuple, list[Notice]] = {}
+def empty_drawing_error(notices: Iterable[Notice], left_out: Mapping[str, int] | None = None) -> Error:
+    """Return the error for a drawing with nothing to paint.
+
+    Its sentence names damage first, then the most frequent reasons.
+
+    left_out: the number of elements that were left out without a notice, by reason.
+    """
+    notices_by_kind: dict[tuple, list[Notice]] = {}
     for notice in notices:
-        alike.setdefault(notice.kind, []).append(notice)
-    reasons = [(found[0].damaged, len(found), _said(found)) for found in alike.values()]
+        notices_by_kind.setdefault(notice.kind, []).append(notice)
+    reasons = [
+        (group[0].damaged, len(group), _summarize_notices(group)) for group in notices_by_kind.values()
+    ]
     for why, count in (left_out or {}).items():
         reasons.append((False, count, f"{count} {'element is' if count == 1 else 'elements are'} {why}"))
     reasons.sort(key=lambda reason: (not reason[0], -reason[1]))
     sentence = "the drawing holds nothing to paint"
     if reasons:
-        sentence += ": " + "; ".join(said for *_, said in reasons[:_REASONS])
-    if more := len(reasons[_REASONS:]):
+        sentence += ": " + "; ".join(reason_text for *_, reason_text in reasons[:_MAX_NAMED_REASONS])
+    if more := len(reasons[_MAX_NAMED_REASONS:]):
         sentence += f"; and {more} more reason{'s' * (more > 1)}"
     return Error(sentence, code="nothing-to-paint")
 
 
-def _said(alike: list[Notice]) -> str:
-    first = alike[0]
-    return f"{first.where}: {first.text}" if len(alike) == 1 else f"{len(alike)} times: {first.text}"
+def _summarize_notices(group: list[Notice]) -> str:
+    first = group[0]
+    return f"{first.where}: {first.text}" if len(group) == 1 else f"{len(group)} times: {first.text}"

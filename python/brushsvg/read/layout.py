@@ -1,4 +1,4 @@
-"""Place a drawing on the sheet and choose which of its layers are painted: Design to Design."""
+"""Place a drawing on the sheet and choose the layers to paint: Design to Design."""
 
 from __future__ import annotations
 
@@ -14,12 +14,16 @@ from .design import Design, Element, SubPath
 
 @dataclass(frozen=True)
 class Layout:
-    """Options for a drawing as a whole; None or empty: as drawn.
+    """Options for a drawing as a whole.
 
-    layers: names of those to paint, with all they hold; width_mm: of every stroke, in place of the drawing's widths;
-    fit_mm (w, h): the target marks fill this size as far as their shape allows, in the middle of the sheet;
-    scale: instead, a factor, about the middle of the marks; origin_mm (x, y): where the lower left corner of the
-    marks is, instead of the middle of the sheet or where it was.
+    A value that is None or empty leaves the drawing as drawn.
+
+    layers: names of the layers to paint, with all that they contain.
+    width_mm: width of every stroke, in place of the drawing's widths.
+    fit_mm: (width, height); the target marks are scaled to fill this size as far as their shape allows, and placed
+    in the middle of the sheet.
+    scale: a factor in place of fit_mm, about the middle of the marks.
+    origin_mm: (x, y) of the lower left corner of the marks, in place of the middle of the sheet or their own place.
     """
 
     layers: tuple[str, ...] = ()
@@ -30,21 +34,23 @@ class Layout:
 
 
 AS_DRAWN = Layout()
-OF_WIDTHS = ("gcode-no-width", "stretched-unevenly")  # notices on widths that are no longer used
-_NAMED = 20  # layers in a sentence
+# Codes of the notices about widths. These notices are dropped if width_mm replaces the widths.
+WIDTH_NOTICE_CODES = ("gcode-no-width", "stretched-unevenly")
+_MAX_NAMED_LAYERS = 20  # layers that a sentence names
 
 
 def arrange(design: Design, layout: Layout) -> Design:
-    """The drawing with its layers chosen, its widths set and its place found; widths are scaled with the drawing,
-    but for layout.width_mm. The sheet stays.
+    """Choose the layers of a drawing, set its widths, scale and place its marks.
 
-    Error for a layer that is not there or has nothing to paint, or marks that cannot be fitted.
+    Widths are scaled with the drawing, except for layout.width_mm. The sheet stays the same.
+
+    Raises Error for a layer that does not exist or has nothing to paint, and for marks that cannot be fitted.
     """
     if layout.layers:
-        design = _of_layers(design, layout.layers)
+        design = _select_layers(design, layout.layers)
     if layout.width_mm is not None:
-        elements = tuple(_with_width(e, layout.width_mm) for e in design.elements)
-        notices = tuple(notice for notice in design.notices if notice.code not in OF_WIDTHS)
+        elements = tuple(_set_width(e, layout.width_mm) for e in design.elements)
+        notices = tuple(notice for notice in design.notices if notice.code not in WIDTH_NOTICE_CODES)
         design = replace(design, elements=elements, notices=notices)
     if layout.fit_mm is None and layout.scale is None and layout.origin_mm is None:
         return design
@@ -54,7 +60,7 @@ def arrange(design: Design, layout: Layout) -> Design:
     if layout.fit_mm is not None:
         scale = _fitting_scale(lines, marks, layout.fit_mm, keeps_width)
     margin = (marks - lines) * (1.0 if keeps_width else scale)
-    scaled = lines * scale + margin  # the marks' bounds, apart from their place
+    scaled = lines * scale + margin  # bounds of the scaled marks, before they are moved
     if layout.origin_mm is not None:
         shift = np.array(layout.origin_mm) - scaled[:2]
     elif layout.fit_mm is not None:
@@ -62,11 +68,16 @@ def arrange(design: Design, layout: Layout) -> Design:
     else:
         shift = (marks[:2] + marks[2:]) / 2 - (scaled[:2] + scaled[2:]) / 2
     width_scale = 1.0 if keeps_width else scale
-    return replace(design, elements=tuple(_moved(e, scale, shift, width_scale) for e in design.elements))
+    return replace(
+        design, elements=tuple(_scale_and_move(e, scale, shift, width_scale) for e in design.elements)
+    )
 
 
 def bounds_mm(design: Design, with_widths: bool = True) -> np.ndarray:
-    """Return the bounds of the target marks, or of their middle lines and outlines alone: x0, y0, x1, y1 [mm]."""
+    """Return the bounds x0, y0, x1, y1 [mm] of the target marks, shape (4,).
+
+    with_widths: include half the stroke widths; otherwise the bounds of the middle lines and outlines alone.
+    """
     box = np.array([math.inf, math.inf, -math.inf, -math.inf])
     for element in design.elements:
         if not element.subpaths:
@@ -87,7 +98,7 @@ def half_width_mm(element: Element, subpath: SubPath) -> float:
 def _fitting_scale(
     lines: np.ndarray, marks: np.ndarray, fit_mm: tuple[float, float], keeps_width: bool
 ) -> float:
-    """The largest scale at which marks are not larger than fit_mm."""
+    """Return the largest scale at which the marks are not larger than fit_mm."""
     size, margin = lines[2:] - lines[:2], (marks[2:] - marks[:2]) - (lines[2:] - lines[:2])
     room = np.array(fit_mm) - (margin if keeps_width else 0.0)
     growing = size if keeps_width else size + margin
@@ -104,30 +115,34 @@ def _fitting_scale(
     return scale
 
 
-def _of_layers(design: Design, names: tuple[str, ...]) -> Design:
+def _select_layers(design: Design, names: tuple[str, ...]) -> Design:
     painted = [element.layer for element in design.elements if element.layer]
     noticed = [notice.layer for notice in design.notices if notice.layer]
     paths = list(dict.fromkeys([*painted, *filter(None, design.layers), *noticed]))
-    requested = [_layer(name, paths) for name in names]
+    requested = [_find_layer(name, paths) for name in names]
 
-    def chosen(layer: str | None, among: list[str] = requested) -> bool:
+    def is_chosen(layer: str | None, among: list[str] = requested) -> bool:
         return any(layer == path or (layer or "").startswith(path + "/") for path in among)
 
     for path in requested:
-        if not any(chosen(element.layer, [path]) for element in design.elements):
-            raise Error(_why_nothing(design, path, chosen), where="layer", code="nothing-to-paint")
-    elements = tuple(element for element in design.elements if chosen(element.layer))
-    notices = tuple(notice for notice in design.notices if notice.layer is None or chosen(notice.layer))
+        if not any(is_chosen(element.layer, [path]) for element in design.elements):
+            raise Error(_explain_empty_layer(design, path, is_chosen), where="layer", code="nothing-to-paint")
+    elements = tuple(element for element in design.elements if is_chosen(element.layer))
+    notices = tuple(notice for notice in design.notices if notice.layer is None or is_chosen(notice.layer))
     return replace(design, elements=elements, notices=notices)
 
 
-def _layer(name: str, paths: list[str]) -> str:
-    """Return the layer that a name means: as written, or the only one that ends so, ignoring case and underscores."""
+def _find_layer(name: str, paths: list[str]) -> str:
+    """Return the layer that a name refers to.
+
+    The exact name comes first, then the only layer that ends with it, then both without regard to case and
+    underscores.
+    """
 
     def plain(text: str) -> str:
         return text.casefold().replace("_", " ")
 
-    if any(path.startswith(name + "/") for path in paths):  # "Ink" where there is "Ink/Fine" alone
+    if any(path.startswith(name + "/") for path in paths):  # "Ink", if only "Ink/Fine" exists
         return name
     for matches in (
         lambda path: path == name,
@@ -135,26 +150,30 @@ def _layer(name: str, paths: list[str]) -> str:
         lambda path: plain(path) == plain(name),
         lambda path: plain(path).endswith("/" + plain(name)),
     ):
-        found = [path for path in paths if matches(path)]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            listed = ", ".join(map(repr, found[:_NAMED]))
+        matching = [path for path in paths if matches(path)]
+        if len(matching) == 1:
+            return matching[0]
+        if matching:
+            listed = ", ".join(map(repr, matching[:_MAX_NAMED_LAYERS]))
             raise Error(
-                f"{name!r} names {len(found)} layers: {listed}; write the whole name",
+                f"{name!r} names {len(matching)} layers: {listed}; write the whole name",
                 where="layer",
                 code="layer-ambiguous",
             )
-    there = ", ".join(paths[:_NAMED]) + (f" and {len(paths) - _NAMED} more" if len(paths) > _NAMED else "")
+    available = ", ".join(paths[:_MAX_NAMED_LAYERS]) + (
+        f" and {len(paths) - _MAX_NAMED_LAYERS} more" if len(paths) > _MAX_NAMED_LAYERS else ""
+    )
     raise Error(
-        f"there is no layer {name!r}; there are: {there or 'none'}", where="layer", code="layer-unknown"
+        f"there is no layer {name!r}; there are: {available or 'none'}",
+        where="layer",
+        code="layer-unknown",
     )
 
 
-def _why_nothing(design: Design, path: str, chosen) -> str:
+def _explain_empty_layer(design: Design, path: str, is_chosen) -> str:
     if why := design.layers.get(path):
         return f"layer {path!r} cannot be painted: {why}"
-    of_layers = [notice for notice in design.notices if chosen(notice.layer, [path])]
+    of_layers = [notice for notice in design.notices if is_chosen(notice.layer, [path])]
     sentence = f"layer {path!r} has nothing to paint"
     if of_layers:
         first = next((notice for notice in of_layers if notice.damaged), of_layers[0])
@@ -162,7 +181,7 @@ def _why_nothing(design: Design, path: str, chosen) -> str:
     return sentence
 
 
-def _with_width(element: Element, width_mm: float) -> Element:
+def _set_width(element: Element, width_mm: float) -> Element:
     if not element.is_stroked:
         return element
     plain = tuple(replace(subpath, widths=None) for subpath in element.subpaths)
@@ -170,7 +189,7 @@ def _with_width(element: Element, width_mm: float) -> Element:
     return replace(element, stroke_width_mm=width_mm, subpaths=plain, settings=settings)
 
 
-def _moved(element: Element, scale: float, shift: np.ndarray, width_scale: float) -> Element:
+def _scale_and_move(element: Element, scale: float, shift: np.ndarray, width_scale: float) -> Element:
     return replace(
         element,
         stroke_width_mm=element.stroke_width_mm * width_scale,

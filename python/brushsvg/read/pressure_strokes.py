@@ -1,4 +1,7 @@
-"""Strokes of a tablet pen that were exported as many short lines, each with its own width."""
+"""Join pressure strokes of a tablet pen.
+
+Some programs export a pressure stroke as many short lines, each with its own width.
+"""
 
 from __future__ import annotations
 
@@ -10,22 +13,27 @@ import numpy as np
 from ..geometry.arc_length import knots
 from .design import Design, Element, Notice, SubPath
 
-MEETS = 0.1  # of a line's width: ends nearer to each other than this are one point, however they were rounded
-LEAST_PIECES = 3  # a corner of two lines with two widths may be drawn on purpose
-MOST_CHANGE = 2.0  # ratio of the widths of neighbouring pieces; pressure changes less between two samples
+MAX_GAP_SHARE = 0.1  # share of a line's width: ends that are closer are the same point, rounded differently
+MIN_PIECES = 3  # two lines that meet at a corner with two widths may be drawn on purpose
+MAX_WIDTH_RATIO = (
+    2.0  # largest ratio of the widths of neighbouring pieces; pressure changes less between two samples
+)
 
 
-def with_pressure_strokes(design: Design) -> Design:
-    """The drawing with each run of lines that meet end to end, in one colour and with changing widths, as one line of
-    varying width. Xournal++, Tuhi and fabric.js write pressure strokes so. A notice says how many were joined."""
+def join_pressure_strokes(design: Design) -> Design:
+    """Join each run of short lines to one line of varying width.
+
+    The lines of a run meet end to end, have the same colour and different widths. Xournal++, Tuhi and fabric.js
+    write pressure strokes in this form. A notice reports how many lines were joined.
+    """
     elements: list[Element] = []
     strokes = pieces = 0
-    for run in _runs(design.elements):
+    for run in _group_into_runs(design.elements):
         widths = {element.stroke_width_mm for element in run}
-        if len(run) < LEAST_PIECES or len(widths) == 1:
+        if len(run) < MIN_PIECES or len(widths) == 1:
             elements += run
             continue
-        elements.append(_joined(run))
+        elements.append(_join_run(run))
         strokes += 1
         pieces += len(run)
     if not strokes:
@@ -38,7 +46,7 @@ def with_pressure_strokes(design: Design) -> Design:
     return replace(design, elements=tuple(elements), notices=(*design.notices, notice))
 
 
-def _runs(elements: tuple[Element, ...]) -> list[list[Element]]:
+def _group_into_runs(elements: tuple[Element, ...]) -> list[list[Element]]:
     runs: list[list[Element]] = []
     for element in elements:
         if runs and _continues(runs[-1][-1], element):
@@ -48,24 +56,27 @@ def _runs(elements: tuple[Element, ...]) -> list[list[Element]]:
     return runs
 
 
-def _is_piece(element: Element) -> bool:
+def _is_joinable(element: Element) -> bool:
     paths = element.subpaths
     is_line = not element.fill_rule and element.stroke_width_mm > 0
     return is_line and len(paths) == 1 and not paths[0].closed and paths[0].widths is None
 
 
 def _continues(before: Element, after: Element) -> bool:
-    if not (_is_piece(before) and _is_piece(after)):
+    if not (_is_joinable(before) and _is_joinable(after)):
         return False
     if (before.colour, before.layer, before.settings) != (after.colour, after.layer, after.settings):
         return False
     thin, wide = sorted((before.stroke_width_mm, after.stroke_width_mm))
     gap = after.subpaths[0].cubics[0, 0] - before.subpaths[0].cubics[-1, 3]
-    return bool(wide <= MOST_CHANGE * thin and np.hypot(*gap) <= MEETS * thin)
+    return bool(wide <= MAX_WIDTH_RATIO * thin and np.hypot(*gap) <= MAX_GAP_SHARE * thin)
 
 
-def _joined(run: list[Element]) -> Element:
-    """One line; each piece has its own width in its middle, and widths change evenly between the middles."""
+def _join_run(run: list[Element]) -> Element:
+    """Return a run of pieces as one line of varying width.
+
+    The line has the width of each piece in the middle of this piece, and linear changes in between.
+    """
     cubics = [element.subpaths[0].cubics.copy() for element in run]
     for before, after in pairwise(cubics):
         after[0, 0] = before[-1, 3]

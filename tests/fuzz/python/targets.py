@@ -82,9 +82,9 @@ def _design(design) -> None:
 
 def _read_svg(data: bytes) -> None:
     from brushsvg.read import ReadOptions
-    from brushsvg.read.svg import read_svg, settings_of
+    from brushsvg.read.svg import read_svg, read_svg_settings
 
-    settings_of(data)
+    read_svg_settings(data)
     _design(read_svg(data, ReadOptions(lenient=True)))
 
 

@@ -1,4 +1,7 @@
-"""A DXF entity to cubics, in its own world and drawing units: exact where cubics can be, else to a tolerance."""
+"""Convert a DXF entity to cubics, in its own world and in drawing units.
+
+The cubics are exact where this is possible, otherwise they keep a tolerance.
+"""
 
 from __future__ import annotations
 
@@ -10,37 +13,42 @@ import numpy as np
 
 from ...geometry.arc_to_cubics import arc_count
 from .ezdxf_import import ezdxf
-from .splines import b_spline, interpolated, joined
+from .splines import b_spline_to_cubics, fit_points_to_cubics, make_continuous
 
-FILLED = frozenset(("HATCH", "MPOLYGON", "SOLID", "TRACE"))
-_FLAT = ezdxf.math.OCS()
+FILLED_TYPES = frozenset(("HATCH", "MPOLYGON", "SOLID", "TRACE"))
+_PLANE = ezdxf.math.OCS()
 
 
 @dataclass(frozen=True)
 class Curve:
-    """One line: cubics (n, 4, 3) end to end; widths: (n, 2), at the start and end of each, None if none are drawn.
+    """One line of an entity.
 
-    A width of 0 is drawn with the entity's line weight. anew: (n,) where a line type's pattern begins anew, None if it
-    runs on from end to end.
+    cubics: (n, 4, 3), end to end.
+    closed: whether the line ends where it begins.
+    widths: (n, 2), at the start and end of each cubic; None if the entity has no widths. A width of 0 is drawn with
+    the line weight of the entity.
+    anew: (n,), whether the pattern of a line type restarts at each cubic; None if it continues along the whole line.
     """
 
     cubics: np.ndarray
     closed: bool = False
     widths: np.ndarray | None = None
-    anew: np.ndarray | None = None
+    pattern_restarts: np.ndarray | None = None
 
 
-def curves(entity, tolerance: float) -> list[Curve] | None:
-    """The lines of an entity, of a FILLED one its outlines; [] if it has no geometry, None if it is not read.
+def entity_to_curves(entity, tolerance: float) -> list[Curve] | None:
+    """Return the lines of an entity, or the outlines of a filled entity.
 
-    tolerance: in drawing units. Raises the errors of ezdxf if the entity is broken.
+    The result is [] if the entity has no geometry, and None if entities of its type are not read.
+
+    tolerance: in drawing units. Raises the errors of ezdxf if the entity is damaged.
     """
-    draw = _DRAWN.get(entity.dxftype())
+    draw = _CONVERTERS_BY_TYPE.get(entity.dxftype())
     return None if draw is None else draw(entity, tolerance)
 
 
-def straight(points) -> np.ndarray:
-    """Cubics through points (n, d): (n - 1, 4, d)."""
+def lines_to_cubics(points) -> np.ndarray:
+    """Return the straight lines through points (n, d) as cubics (n - 1, 4, d)."""
     points = np.asarray(points, dtype=float)
     a, b = points[:-1, None], points[1:, None]
     return a + (b - a) * (np.arange(4) / 3)[:, None]
@@ -50,11 +58,11 @@ def straight(points) -> np.ndarray:
 
 
 def _line(entity, _tolerance: float) -> list[Curve]:
-    return [Curve(straight([entity.dxf.start.xyz, entity.dxf.end.xyz]))]
+    return [Curve(lines_to_cubics([entity.dxf.start.xyz, entity.dxf.end.xyz]))]
 
 
 def _point(entity, _tolerance: float) -> list[Curve]:
-    return [Curve(straight([entity.dxf.location.xyz] * 2))]
+    return [Curve(lines_to_cubics([entity.dxf.location.xyz] * 2))]
 
 
 def _arc(entity, tolerance: float) -> list[Curve]:
@@ -63,14 +71,14 @@ def _arc(entity, tolerance: float) -> list[Curve]:
         return []
     angles = (dxf.start_angle, dxf.end_angle) if entity.dxftype() == "ARC" else (0.0, 360.0)
     tool = ezdxf.math.ConstructionEllipse.from_arc(dxf.center, abs(dxf.radius), dxf.extrusion, *angles)
-    return _elliptical(tool, tolerance)
+    return _ellipse_to_curves(tool, tolerance)
 
 
 def _ellipse(entity, tolerance: float) -> list[Curve]:
-    return _elliptical(entity.construction_tool(), tolerance)
+    return _ellipse_to_curves(entity.construction_tool(), tolerance)
 
 
-def _elliptical(tool, tolerance: float) -> list[Curve]:
+def _ellipse_to_curves(tool, tolerance: float) -> list[Curve]:
     if tool.major_axis.magnitude == 0:
         return []
     count = arc_count(tool.param_span, tool.major_axis.magnitude, tolerance)
@@ -86,7 +94,7 @@ def _elliptical(tool, tolerance: float) -> list[Curve]:
 
 def _lwpolyline(entity, tolerance: float) -> list[Curve]:
     rows = np.array(entity.get_points("xybse"), dtype=float).reshape(-1, 5)
-    if entity.dxf.hasattr("const_width") and not rows[:, 3:].any():  # widths of its own go first
+    if entity.dxf.hasattr("const_width") and not rows[:, 3:].any():  # widths of the vertices take precedence
         rows[:, 3:] = entity.dxf.const_width
     runs_on = bool(entity.dxf.flags & _PLINEGEN)
     return _polyline_2d(rows, entity.closed, entity.ocs(), entity.dxf.elevation, tolerance, runs_on)
@@ -103,7 +111,9 @@ def _polyline(entity, tolerance: float) -> list[Curve] | None:
         if entity.is_closed and len(points) > 1:
             points.append(points[0])
         return (
-            [Curve(straight(points if len(points) > 1 else points * 2), entity.is_closed)] if points else []
+            [Curve(lines_to_cubics(points if len(points) > 1 else points * 2), entity.is_closed)]
+            if points
+            else []
         )
     widths = entity.dxf.get("default_start_width", 0.0), entity.dxf.get("default_end_width", 0.0)
     rows = [
@@ -123,13 +133,17 @@ def _polyline(entity, tolerance: float) -> list[Curve] | None:
     return _polyline_2d(np.array(rows), entity.is_closed, entity.ocs(), elevation, tolerance, runs_on)
 
 
-_PLINEGEN = 128  # of a polyline's flags: dashes run on over its vertices
+_PLINEGEN = 128  # polyline flag: dashes continue over the vertices
 
 
 def _polyline_2d(
     rows: np.ndarray, closed: bool, ocs, elevation: float, tolerance: float, runs_on: bool = True
 ) -> list[Curve]:
-    """rows: x, y, bulge, start and end width of each vertex; those of the last one count if it is closed."""
+    """Return the curve of a plane polyline.
+
+    rows: (n, 5), x, y, bulge, start and end width of each vertex. The bulge and widths of the last vertex count only
+    if the polyline is closed.
+    """
     if not len(rows):
         return []
     if len(rows) == 1:
@@ -138,23 +152,26 @@ def _polyline_2d(
     q = np.roll(p, -1)
     count = len(rows) if closed else len(rows) - 1
     pieces = list((p[:count, None] + (q - p)[:count, None] * np.arange(4) / 3)[:, None])
-    # How far an arc leaves its chord: from there on it is one.
+    # A bulge counts as an arc if the arc leaves its chord by more than 1e-3 tolerances.
     for k in np.flatnonzero(~(np.abs(rows[:count, 2] * (q - p)[:count]) / 2 <= 1e-3 * tolerance)):
-        pieces[k] = _bulge(p[k], q[k], rows[k, 2], tolerance)
+        pieces[k] = _bulge_to_cubics(p[k], q[k], rows[k, 2], tolerance)
     flat = np.concatenate(pieces)
-    cubics = _world(np.stack((flat.real, flat.imag, np.full(flat.shape, float(elevation))), axis=-1), ocs)
-    anew = None if runs_on else np.concatenate([np.arange(len(piece)) == 0 for piece in pieces])
+    cubics = _to_world(np.stack((flat.real, flat.imag, np.full(flat.shape, float(elevation))), axis=-1), ocs)
+    pattern_restarts = None if runs_on else np.concatenate([np.arange(len(piece)) == 0 for piece in pieces])
     if not rows[:count, 3:].any():
-        return [Curve(joined(cubics), closed, anew=anew)]
-    drawn = []
+        return [Curve(make_continuous(cubics), closed, pattern_restarts=pattern_restarts)]
+    piece_widths = []
     for piece, ends in zip(pieces, rows[:count, 3:], strict=True):
-        at = np.linspace(*ends, len(piece) + 1)
-        drawn.append(np.column_stack((at[:-1], at[1:])))
-    return [Curve(joined(cubics), closed, np.concatenate(drawn), anew)]
+        steps = np.linspace(*ends, len(piece) + 1)
+        piece_widths.append(np.column_stack((steps[:-1], steps[1:])))
+    return [Curve(make_continuous(cubics), closed, np.concatenate(piece_widths), pattern_restarts)]
 
 
-def _bulge(p: complex, q: complex, bulge: float, tolerance: float) -> np.ndarray:
-    """Cubics (n, 4) of an arc from p to q, in complex numbers. bulge: tangent of a quarter of its angle, left > 0."""
+def _bulge_to_cubics(p: complex, q: complex, bulge: float, tolerance: float) -> np.ndarray:
+    """Return the arc from p to q as cubics (n, 4), in complex numbers.
+
+    bulge: tangent of a quarter of the angle of the arc, positive for a left turn.
+    """
     turn = 4 * math.atan(bulge)
     chord = 2 * math.sin(turn / 2)
     count = arc_count(abs(turn), abs((q - p) / chord), tolerance)
@@ -165,7 +182,7 @@ def _bulge(p: complex, q: complex, bulge: float, tolerance: float) -> np.ndarray
     return np.column_stack((at[:-1], at[:-1] + handle[:-1], at[1:] - handle[1:], at[1:]))
 
 
-def _world(points: np.ndarray, ocs) -> np.ndarray:
+def _to_world(points: np.ndarray, ocs) -> np.ndarray:
     return points @ np.array([ocs.ux.xyz, ocs.uy.xyz, ocs.uz.xyz]) if ocs.transform else points
 
 
@@ -175,10 +192,10 @@ def _world(points: np.ndarray, ocs) -> np.ndarray:
 def _spline(entity, tolerance: float) -> list[Curve]:
     dxf = entity.dxf
     if len(entity.control_points):
-        lines = b_spline(dxf.degree, entity.knots, entity.control_points, entity.weights, tolerance)
+        lines = b_spline_to_cubics(dxf.degree, entity.knots, entity.control_points, entity.weights, tolerance)
     else:
         tangents = dxf.get("start_tangent"), dxf.get("end_tangent")
-        lines = interpolated(entity.fit_points, tangents, tolerance)
+        lines = fit_points_to_cubics(entity.fit_points, tangents, tolerance)
     return [Curve(cubics) for cubics in lines]
 
 
@@ -187,7 +204,7 @@ def _spline(entity, tolerance: float) -> list[Curve]:
 
 def _quadrilateral(entity, _tolerance: float) -> list[Curve]:
     points = [point.xyz for point in entity.wcs_vertices()]
-    return [Curve(straight([*points, points[0]]), True)]
+    return [Curve(lines_to_cubics([*points, points[0]]), True)]
 
 
 def _face(entity, tolerance: float) -> list[Curve]:
@@ -196,7 +213,7 @@ def _face(entity, tolerance: float) -> list[Curve]:
     if all(visible):
         return _quadrilateral(entity, tolerance)
     edges = zip(points, [*points[1:], points[0]], visible, strict=True)
-    return [Curve(straight([begin, end])) for begin, end, seen in edges if seen]
+    return [Curve(lines_to_cubics([begin, end])) for begin, end, seen in edges if seen]
 
 
 def _hatch(entity, tolerance: float) -> list[Curve]:
@@ -207,61 +224,62 @@ def _hatch(entity, tolerance: float) -> list[Curve]:
     for path in paths:
         if isinstance(path, ezdxf.entities.PolylinePath):
             rows = [(x, y, bulge, 0.0, 0.0) for x, y, bulge in path.vertices]
-            pieces = [line.cubics for line in _polyline_2d(np.array(rows), True, _FLAT, 0.0, tolerance)]
+            pieces = [line.cubics for line in _polyline_2d(np.array(rows), True, _PLANE, 0.0, tolerance)]
         else:
-            pieces = [line.cubics for edge in path.edges for line in _edge(edge, tolerance)]
+            pieces = [line.cubics for edge in path.edges for line in _edge_to_curves(edge, tolerance)]
         if pieces:
             shift = np.array([offset[0], offset[1], elevation])
-            outlines.append(Curve(_world(_outline(pieces) + shift, ocs), True))
+            outlines.append(Curve(_to_world(_join_edges(pieces) + shift, ocs), True))
     return outlines
 
 
-def _edge(edge, tolerance: float) -> list[Curve]:
-    """Of a hatch, in its plane."""
+def _edge_to_curves(edge, tolerance: float) -> list[Curve]:
+    """Return the lines of an edge of a hatch, in the plane of the hatch."""
     match edge.EDGE_TYPE:
         case "LineEdge":
-            return [Curve(straight([(*edge.start, 0.0), (*edge.end, 0.0)]))]
+            return [Curve(lines_to_cubics([(*edge.start, 0.0), (*edge.end, 0.0)]))]
         case "ArcEdge":
             angles = edge.start_angle, edge.end_angle
             tool = ezdxf.math.ConstructionEllipse.from_arc(edge.center, abs(edge.radius), (0, 0, 1), *angles)
-            return _elliptical(tool, tolerance)
+            return _ellipse_to_curves(tool, tolerance)
         case "EllipseEdge":
-            return _elliptical(edge.construction_tool(), tolerance)
+            return _ellipse_to_curves(edge.construction_tool(), tolerance)
     points = [(*point, 0.0) for point in edge.control_points]
     if not points:
         fit_points = [(*point, 0.0) for point in edge.fit_points]
-        lines = interpolated(fit_points, (edge.start_tangent, edge.end_tangent), tolerance)
+        lines = fit_points_to_cubics(fit_points, (edge.start_tangent, edge.end_tangent), tolerance)
     else:
-        lines = b_spline(edge.degree, edge.knot_values, points, edge.weights, tolerance)
+        lines = b_spline_to_cubics(edge.degree, edge.knot_values, points, edge.weights, tolerance)
     return [Curve(cubics) for cubics in lines]
 
 
-def _outline(pieces: list[np.ndarray]) -> np.ndarray:
-    """Edges, each of which may have been drawn from its end to its start, as one closed line."""
+def _join_edges(pieces: list[np.ndarray]) -> np.ndarray:
+    """Join edges to one closed line. Each edge may be drawn in either direction."""
     first = pieces[0]
-    if len(pieces) > 1 and _distance(first[0, 0], pieces[1]) < _distance(first[-1, 3], pieces[1]):
-        first = reversed_cubics(first)
+    if len(pieces) > 1 and _distance_to_ends(first[0, 0], pieces[1]) < _distance_to_ends(
+        first[-1, 3], pieces[1]
+    ):
+        first = reverse_cubics(first)
     line = [first]
     for piece in pieces[1:]:
         end = line[-1][-1, 3]
         if math.dist(end, piece[-1, 3]) < math.dist(end, piece[0, 0]):
-            piece = reversed_cubics(piece)
-        line += [straight([end, piece[0, 0]]), piece]
-    line.append(
-        straight([line[-1][-1, 3], first[0, 0]])
-    )  # lines without length are taken out later, as all are
+            piece = reverse_cubics(piece)
+        line += [lines_to_cubics([end, piece[0, 0]]), piece]
+    # This line may have no length. Later all cubics without length are removed.
+    line.append(lines_to_cubics([line[-1][-1, 3], first[0, 0]]))
     return np.concatenate(line)
 
 
-def _distance(point: np.ndarray, piece: np.ndarray) -> float:
+def _distance_to_ends(point: np.ndarray, piece: np.ndarray) -> float:
     return min(math.dist(point, piece[0, 0]), math.dist(point, piece[-1, 3]))
 
 
-def reversed_cubics(cubics: np.ndarray) -> np.ndarray:
+def reverse_cubics(cubics: np.ndarray) -> np.ndarray:
     return cubics[::-1, ::-1].copy()
 
 
-_DRAWN: dict[str, Callable[[object, float], list[Curve] | None]] = {
+_CONVERTERS_BY_TYPE: dict[str, Callable[[object, float], list[Curve] | None]] = {
     "LINE": _line,
     "POINT": _point,
     "ARC": _arc,

@@ -1,8 +1,8 @@
-"""ezdxf, loaded so that it neither scans this machine's fonts nor writes a cache into the user's home.
+"""Import ezdxf without a scan of all fonts or a cache in the user's home.
 
-On import ezdxf reads every font there is (seconds, and results that depend on the machine) unless it finds its
-cache of them. It finds an empty one here, in a folder that is gone afterwards. A program that draws text with ezdxf
-too gets its fonts back with ezdxf.fonts.fonts.load().
+On import, ezdxf reads all fonts of the machine unless it finds its font cache. This takes seconds, and the results
+depend on the machine. Here it finds an empty cache in a temporary folder. A program that also draws text with ezdxf
+gets the fonts back with ezdxf.fonts.fonts.load().
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ with _empty_home():
     import ezdxf.tools.text_layout
     import ezdxf.xclip
 
-# Its log becomes notices; without a handler the standard library would print it.
+# The log of ezdxf becomes notices. Without a handler the standard library would print it.
 logging.getLogger("ezdxf").addHandler(logging.NullHandler())
 
 __all__ = ["ezdxf"]

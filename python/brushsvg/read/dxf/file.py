@@ -1,4 +1,4 @@
-"""Bytes to an ezdxf document, as far as they can be repaired, and what was repaired."""
+"""Load an ezdxf document from bytes, and report repairs and damage."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import io
 from ...errors import Error
 from ..design import Notice
 from .ezdxf_import import ezdxf
-from .tag_filter import Entities
+from .tag_filter import EntityFilter
 
 _BINARY = b"AutoCAD Binary DXF\r\n\x1a\x00"
-_MOST_NOTICES = 5
-_NUMBER = ezdxf.audit.AuditError.INVALID_FLOATING_POINT_VALUE
+_MAX_NOTICES = 5
+_INVALID_NUMBER = ezdxf.audit.AuditError.INVALID_FLOATING_POINT_VALUE
 
 
-_UNSEEN = {  # repairs of what ties the parts of a file together, and of what is not painted
+_INVISIBLE_REPAIRS = {  # repairs of links between the parts of a file, and of parts that are not painted
     ezdxf.audit.AuditError[name]
     for name in """CREATED_MISSING_OBJECT GROUP_ENTITIES_IN_DIFFERENT_LAYOUTS INVALID_CREASE_VALUE_COUNT
     INVALID_DICTIONARY_ENTRY INVALID_DIMSTYLE INVALID_ENTITY_HANDLE INVALID_GROUP_ENTITIES INVALID_OWNER_HANDLE
@@ -27,115 +27,127 @@ _UNSEEN = {  # repairs of what ties the parts of a file together, and of what is
 
 class _Auditor(ezdxf.audit.Auditor):
     def check_block_reference_cycles(self) -> None:
-        """Left out: it walks every path through nested blocks. We count while we unfold them."""
+        """Do nothing: this check walks every path through nested blocks.
+
+        The walk over the entities limits the number of blocks in its own way.
+        """
 
     def trash(self, entity) -> None:
-        """What is drawn is kept even if it is broken, so that the walk can name it."""
+        """Keep drawn entities even if they are damaged, so that the walk can name them."""
         if not isinstance(entity, ezdxf.entities.DXFGraphic):
             super().trash(entity)
-        elif self.fixes and str(entity) in self.fixes[-1].message:  # "removed"
+        elif self.fixes and str(entity) in self.fixes[-1].message:  # this fix reports the removal
             self.fixes.pop()
 
     def repairs(self) -> list[Notice]:
-        """Return a notice for each repair that may change the painting; repairs of one kind share a notice."""
+        """Return a notice for each repair that may change the painting."""
         return [
             Notice(
                 str(fix.entity or "file"),
-                f"repaired: {shown(fix.message).rstrip('.')}",
+                f"repaired: {printable(fix.message).rstrip('.')}",
                 code="dxf-repaired",
                 about=str(fix.code),
             )
             for fix in self.fixes
-            if fix.code not in _UNSEEN
+            if fix.code not in _INVISIBLE_REPAIRS
         ]
 
 
 def open_dxf(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
-    """The document and a few notices on its damage. Error if it is no DXF, or damaged beyond repair."""
+    """Load a document, and notices about its damage.
+
+    Raises Error if the data is not a DXF or is damaged beyond repair.
+    """
     if data[:4] == b"AC10" and data[4:6].isdigit():
         raise Error(
             "the file is a DWG, not a DXF: save it as DXF in the program that made it", code="dxf-damaged"
         )
     if b"ENTITIES" not in data:
         raise Error("the file is not a DXF, or cut short: it has no ENTITIES", code="dxf-damaged")
-    read = _binary if data.startswith(_BINARY) else _text
+    read = _load_binary if data.startswith(_BINARY) else _load_text
     try:
         document, notices = read(data)
         auditor = _Auditor(document)
         auditor.run()
     except ezdxf.DXFError as problem:
-        raise Error(f"the DXF is damaged beyond repair: {reason(problem)}", code="dxf-damaged") from None
+        raise Error(
+            f"the DXF is damaged beyond repair: {exception_text(problem)}", code="dxf-damaged"
+        ) from None
     except Exception:  # ezdxf raises anything on arbitrary bytes
         raise Error("the DXF is damaged beyond repair, or cut short", code="dxf-damaged") from None
-    problems = _some([("file", error.message) for error in auditor.errors], damaged=False)
+    problems = _summarize_problems([("file", error.message) for error in auditor.errors], damaged=False)
     return document, notices + problems + auditor.repairs()
 
 
-def _binary(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
+def _load_binary(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
     return ezdxf.document.Drawing.load(ezdxf.lldxf.tagger.binary_tags_loader(data)), []
 
 
-def _text(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
+def _load_text(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
     damage = []
     if not data.rstrip(b" \t\r\n\0\x1a").endswith(b"EOF"):
         damage.append(("file", "the end of the file is missing"))
-        data = _up_to_the_last_entity(data)
-    entities = Entities()
+        data = _drop_last_entity(data)
+    entities = EntityFilter()
     try:
-        document, recovered = _loaded(data, entities)
-        bad_numbers = any(code == _NUMBER for code, _ in recovered.errors)
-    except Exception:  # as above; the walk reports the problem entity by entity
+        document, recovered = _load_recovered(data, entities)
+        bad_numbers = any(code == _INVALID_NUMBER for code, _ in recovered.errors)
+    except Exception:  # ezdxf raises anything; the strict filter below reports the damaged entities
         bad_numbers = True
     if bad_numbers:
-        entities = Entities(is_strict=True)
-        document, recovered = _loaded(data, entities)
-    damage += [(shown(name), f"it is damaged ({shown(why)}): left out") for name, why in entities.broken]
+        entities = EntityFilter(is_strict=True)
+        document, recovered = _load_recovered(data, entities)
+    damage += [
+        (printable(name), f"it is damaged ({printable(why)}): left out") for name, why in entities.broken
+    ]
     damage += [("file", message) for _, message in (*recovered.errors, *recovered.fixes)]
     counts = [
         Notice(
-            shown(kind),
-            f"{not_read(shown(kind))}: {n} {'entity' if n == 1 else 'entities'} left out",
+            printable(kind),
+            f"{unread_phrase(printable(kind))}: {n} {'entity' if n == 1 else 'entities'} left out",
             code="dxf-entity-unread",
         )
         for kind, n in entities.left_out.items()
     ]
-    return document, _some(damage, damaged=True) + counts
+    return document, _summarize_problems(damage, damaged=True) + counts
 
 
-def _loaded(data: bytes, entities: Entities) -> tuple[ezdxf.document.Drawing, ezdxf.recover.Recover]:
-    """As ezdxf.recover.read() does, but without its audit."""
+def _load_recovered(
+    data: bytes, entities: EntityFilter
+) -> tuple[ezdxf.document.Drawing, ezdxf.recover.Recover]:
+    """Load a document as ezdxf.recover.read() does, but without the audit."""
     recovered = ezdxf.recover.Recover.run(io.BytesIO(data), loader=entities.tags)
     document = ezdxf.document.Drawing()
     document._load_section_dict(recovered.section_dict)
     return document, recovered
 
 
-def _up_to_the_last_entity(data: bytes) -> bytes:
-    """Of a file that was cut short: what follows a last group code 0 may be half an entity."""
+def _drop_last_entity(data: bytes) -> bytes:
+    """Remove the last entity of a file that was cut short: it may be incomplete."""
     lines = data.split(b"\n")
     codes = range(0, len(lines), 2)
     last = next((k for k in reversed(codes) if lines[k].strip() == b"0"), 0)
     return b"\n".join([*lines[:last], b"0", b"ENDSEC", b"0", b"EOF", b""])
 
 
-def not_read(kind: str) -> str:
-    """The beginning of the sentence on entities of a kind that nobody here reads."""
+def unread_phrase(kind: str) -> str:
+    """Return the beginning of a sentence about entities of a type that is not read."""
     return f"{kind} is not read" + (", what it covers is painted" if kind == "WIPEOUT" else "")
 
 
-def reason(problem: Exception) -> str:
-    """What ezdxf says of a problem, as the end of a sentence."""
-    return shown(str(problem)).rstrip(".") or type(problem).__name__
+def exception_text(problem: Exception) -> str:
+    """Return the message of an exception of ezdxf, as the end of a sentence."""
+    return printable(str(problem)).rstrip(".") or type(problem).__name__
 
 
-def shown(text: str, most: int = 120) -> str:
-    """Text of a file as it can stand in a sentence: one line, nothing that does not print."""
+def printable(text: str, max_length: int = 120) -> str:
+    """Return text of a file for use in a sentence: one line, printable, shortened."""
     text = " ".join("".join(c if c.isprintable() or c.isspace() else "?" for c in text).split())
-    return text if len(text) <= most else text[: most - 3] + "..."
+    return text if len(text) <= max_length else text[: max_length - 3] + "..."
 
 
-def _some(reported: list[tuple[str, str]], damaged: bool) -> list[Notice]:
-    kept = [(where, shown(sentence).rstrip(".")) for where, sentence in reported[:_MOST_NOTICES]]
+def _summarize_problems(reported: list[tuple[str, str]], damaged: bool) -> list[Notice]:
+    kept = [(where, printable(sentence).rstrip(".")) for where, sentence in reported[:_MAX_NOTICES]]
     if more := len(reported) - len(kept):
         kept.append(("file", f"and {more} more such problems"))
     return [Notice(where, sentence, damaged, code="dxf-repaired", about=sentence) for where, sentence in kept]

@@ -1,5 +1,7 @@
-"""Find fonts of this machine for the text of a DXF: files are found by their names, and opened only when a text needs
-them."""
+"""Find the fonts of this machine for the text of a DXF.
+
+Font files are found by their names, and opened only if a text needs them.
+"""
 
 from __future__ import annotations
 
@@ -11,14 +13,14 @@ from itertools import islice
 from pathlib import Path, PureWindowsPath
 
 from .ezdxf_import import ezdxf
-from .file import shown
+from .file import printable
 
 _fonts = ezdxf.fonts.fonts
-_found = ezdxf.fonts.font_manager
+_font_manager = ezdxf.fonts.font_manager
 
-_MOST_FILES = 50_000  # looked at; beyond, what is not found yet counts as missing
-# Endings of file names, without hyphens and blanks, by (bold, italic); the short ones are Windows'.
-_ENDINGS = {
+_MAX_FILES = 50_000  # files that are searched; a font beyond them counts as missing
+# Endings of file names, without hyphens and blanks, by (bold, italic). Windows uses the short endings.
+_STYLE_ENDINGS = {
     (False, False): ("", "regular", "book", "roman"),
     (True, False): ("bold", "bd", "b"),
     (False, True): ("italic", "oblique", "i"),
@@ -27,38 +29,42 @@ _ENDINGS = {
 
 
 class NoFontError(Exception):
-    """This machine has no font."""
+    """The machine has no usable font."""
 
 
 @dataclass(frozen=True)
 class Font:
-    """name: for people; path: of its file; why: it replaces another one, "" if it is the requested font."""
+    """A font file.
+
+    name: the name for messages; path: of the file; why: the reason why it replaces the requested font, "" if it is
+    the requested font.
+    """
 
     name: str
     path: Path
     why: str = ""
 
-    def drawn_at(self, cap_height: float, width_factor: float = 1.0):
-        """ezdxf's AbstractFont."""
+    def ezdxf_font(self, cap_height: float, width_factor: float = 1.0):
+        """Return the font as an AbstractFont of ezdxf."""
         font = _fonts.sideload_ttf(self.path, cap_height)
         font.width_factor = width_factor
         return font
 
-    def missing(self, text: str) -> list[str]:
-        """Characters it has no glyph for."""
-        known = self.drawn_at(1.0).glyph_cache.cmap
+    def missing_glyphs(self, text: str) -> list[str]:
+        """Return the characters of a text for which the font has no glyph."""
+        known = self.ezdxf_font(1.0).glyph_cache.cmap
         return [c for c in dict.fromkeys(text) if not c.isspace() and ord(c) not in known]
 
 
 class Fonts:
-    """The fonts of text styles, or what stands for them."""
+    """The fonts of text styles, or the fonts that replace them."""
 
     def __init__(self, styles):
         self._styles = styles
-        self._known: dict[tuple, Font] = {}
+        self._font_cache: dict[tuple, Font] = {}
 
     def face(self, style_name: str):
-        """What a text style asks for, an ezdxf FontFace."""
+        """Return the FontFace of ezdxf that a text style asks for."""
         known = style_name in self._styles
         style = self._styles.get(style_name) if known else ezdxf.entities.Textstyle()
         family, italic, bold = style.get_extended_font_data()
@@ -66,80 +72,88 @@ class Fonts:
         return _fonts.FontFace(style.dxf.font, family, slant, weight)
 
     def font(self, face) -> Font:
-        """NoFontError if there is none at all."""
+        """Return the font for a FontFace. Raises NoFontError if the machine has no font."""
         key = face.filename, face.family, face.is_bold, face.is_italic
-        if key not in self._known:
-            self._known[key] = self._opened(face)
-        return self._known[key]
+        if key not in self._font_cache:
+            self._font_cache[key] = self._find_font(face)
+        return self._font_cache[key]
 
-    def _opened(self, face) -> Font:
-        for name in _names(face):
-            if (path := self._files.get(name)) and (font := _usable(path)):
+    def _find_font(self, face) -> Font:
+        for name in _candidate_file_names(face):
+            if (path := self._files_by_name.get(name)) and (font := _load_font(path)):
                 return font
-        for stem in _stems(face):
-            if (path := self._stems.get(stem)) and (font := _usable(path)):
+        for stem in _candidate_stems(face):
+            if (path := self._files_by_stem.get(stem)) and (font := _load_font(path)):
                 return font
-        if self._stand_in is None:
+        if self._fallback_font is None:
             raise NoFontError
         name = PureWindowsPath(face.filename).name
         if name and not face.family and _fonts.is_shx_font_name(name):
             why = "the drawing's SHX fonts are no strokes here"
         else:
-            why = f"there is no font {shown(face.family or name, 40)} here"
-        return Font(self._stand_in.name, self._stand_in.path, why)
+            why = f"there is no font {printable(face.family or name, 40)} here"
+        return Font(self._fallback_font.name, self._fallback_font.path, why)
 
     @cached_property
-    def _files(self) -> dict[str, Path]:
-        """By file name in lower case; of two, the first in ezdxf's order of folders."""
-        folders = _found.FONT_DIRECTORIES.get(platform.system(), _found.LINUX_FONT_DIRS)
-        files = (path for folder in folders for path in _files_in(os.path.expanduser(folder)))
-        found: dict[str, Path] = {}
-        for path in islice(files, _MOST_FILES):
-            if path.suffix.lower() in _found.SUPPORTED_TTF_TYPES:
-                found.setdefault(path.name.lower(), path)
-        return found
+    def _files_by_name(self) -> dict[str, Path]:
+        """Font files by their names in lower case.
+
+        If two files have the same name, the first in ezdxf's order of folders counts.
+        """
+        folders = _font_manager.FONT_DIRECTORIES.get(platform.system(), _font_manager.LINUX_FONT_DIRS)
+        files = (path for folder in folders for path in _walk_files(os.path.expanduser(folder)))
+        paths_by_name: dict[str, Path] = {}
+        for path in islice(files, _MAX_FILES):
+            if path.suffix.lower() in _font_manager.SUPPORTED_TTF_TYPES:
+                paths_by_name.setdefault(path.name.lower(), path)
+        return paths_by_name
 
     @cached_property
-    def _stems(self) -> dict[str, Path]:
-        return {_plain(Path(name).stem): self._files[name] for name in sorted(self._files, reverse=True)}
+    def _files_by_stem(self) -> dict[str, Path]:
+        return {
+            _alphanumeric(Path(name).stem): self._files_by_name[name]
+            for name in sorted(self._files_by_name, reverse=True)
+        }
 
     @cached_property
-    def _stand_in(self) -> Font | None:
-        """One that looks like Arial, or any upright sans serif."""
-        names = [name.lower() for name in _found.DEFAULT_FONTS]
+    def _fallback_font(self) -> Font | None:
+        """A font that looks like Arial, or any upright sans serif font."""
+        names = [name.lower() for name in _font_manager.DEFAULT_FONTS]
         names += [
-            name for name in sorted(self._files) if _plain(Path(name).stem).endswith(("sans", "sansregular"))
+            name
+            for name in sorted(self._files_by_name)
+            if _alphanumeric(Path(name).stem).endswith(("sans", "sansregular"))
         ]
-        paths = (self._files[name] for name in names if name in self._files)
-        return next(filter(None, map(_usable, paths)), None)
+        paths = (self._files_by_name[name] for name in names if name in self._files_by_name)
+        return next(filter(None, map(_load_font, paths)), None)
 
 
-def _files_in(folder: str):
+def _walk_files(folder: str):
     for place, folders, names in os.walk(folder):
         folders.sort()
         yield from (Path(place, name) for name in sorted(names))
 
 
-def _usable(path: Path) -> Font | None:
+def _load_font(path: Path) -> Font | None:
     try:
         font = _fonts.sideload_ttf(path, 1.0)
         names = font.glyph_cache.font["name"]
         name = names.getBestFullName() or names.getBestFamilyName() or path.stem
-        return Font(shown(name, 40), path)
-    except Exception:  # fontTools raises anything on a file that is no font
+        return Font(printable(name, 40), path)
+    except Exception:  # fontTools raises anything on a file that is not a font
         return None
 
 
-def _names(face) -> list[str]:
+def _candidate_file_names(face) -> list[str]:
     name = PureWindowsPath(face.filename).name.lower()
     return [name, f"{name}.ttf", _fonts.map_shx_to_ttf(name).lower()] if name else []
 
 
-def _stems(face) -> list[str]:
-    family = _plain(face.family)
+def _candidate_stems(face) -> list[str]:
+    family = _alphanumeric(face.family)
     italic = face.is_italic or face.is_oblique
-    return [family + ending for ending in _ENDINGS[face.is_bold, italic]] if family else []
+    return [family + ending for ending in _STYLE_ENDINGS[face.is_bold, italic]] if family else []
 
 
-def _plain(name: str) -> str:
+def _alphanumeric(name: str) -> str:
     return "".join(c for c in name.lower() if c.isalnum())

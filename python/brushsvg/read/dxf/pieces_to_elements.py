@@ -1,4 +1,7 @@
-"""What DXF entities paint, as elements of a Design: lines that meet joined, widths along the arc length."""
+"""Convert the pieces of a DXF to elements of a Design.
+
+Lines that meet are joined. Widths are given along the arc length.
+"""
 
 from __future__ import annotations
 
@@ -9,57 +12,60 @@ import numpy as np
 
 from ...geometry.arc_length import knots
 from ..design import Element, SubPath
-from .entity_curves import Curve, reversed_cubics, straight
+from .entity_curves import Curve, lines_to_cubics, reverse_cubics
 from .entity_walk import Piece
-from .splines import joined
+from .splines import make_continuous
 
-_GAP_MM = 1e-4  # ends nearer than this meet
-_NOTHING_MM = 1e-6  # cubics below it have a direction made of rounding errors
+_MAX_GAP_MM = 1e-4  # ends within this distance meet
+_MIN_CUBIC_MM = 1e-6  # size of a cubic below which its direction consists of rounding errors
 
 
-def chained(pieces: list[Piece]) -> list[Piece]:
-    """Lines that were drawn one after the other and meet, as one: the brush is not lifted between them."""
+def join_pieces(pieces: list[Piece]) -> list[Piece]:
+    """Join lines that were drawn one after the other and meet.
+
+    The brush is not lifted between the lines of a chain.
+    """
     chains: list[list[Piece]] = []
     ends = None  # of the last chain: start and end
     for piece in pieces:
         begin, end = (piece.curves[0].cubics[k, m, :2] for k, m in ((0, 0), (-1, 3)))
-        if ends is not None and _alike(chains[-1][-1], piece):
+        if ends is not None and _are_joinable(chains[-1][-1], piece):
             chain = chains[-1]
-            meets = [[_meet(mine, its) for its in (begin, end)] for mine in ends]
+            meets = [[_meet(chain_end, piece_end) for piece_end in (begin, end)] for chain_end in ends]
             if len(chain) == 1 and any(meets[0]) and not any(meets[1]):
-                chain[0], ends, meets = _turned(chain[0]), ends[::-1], meets[::-1]
+                chain[0], ends, meets = _reverse_piece(chain[0]), ends[::-1], meets[::-1]
             if any(meets[1]):
                 if not meets[1][0]:
-                    piece, begin, end = _turned(piece), end, begin
+                    piece, begin, end = _reverse_piece(piece), end, begin
                 chain.append(piece)
                 ends = None if _meet(ends[0], end) else (ends[0], end)
                 continue
         chains.append([piece])
         ends = (begin, end) if piece.joinable and not _meet(begin, end) else None
-    return [_joined(chain) for chain in chains]
+    return [_merge_chain(chain) for chain in chains]
 
 
-def _alike(a: Piece, b: Piece) -> bool:
+def _are_joinable(a: Piece, b: Piece) -> bool:
     return b.joinable and a.block == b.block and a.pen == b.pen
 
 
 def _meet(a: np.ndarray, b: np.ndarray) -> bool:
-    return math.dist(a, b) <= _GAP_MM
+    return math.dist(a, b) <= _MAX_GAP_MM
 
 
-def _turned(piece: Piece) -> Piece:
+def _reverse_piece(piece: Piece) -> Piece:
     (curve,) = piece.curves
-    return replace(piece, curves=(replace(curve, cubics=reversed_cubics(curve.cubics)),))
+    return replace(piece, curves=(replace(curve, cubics=reverse_cubics(curve.cubics)),))
 
 
-def _joined(chain: list[Piece]) -> Piece:
+def _merge_chain(chain: list[Piece]) -> Piece:
     if len(chain) == 1:
         return chain[0]
     cubics = np.concatenate([piece.curves[0].cubics for piece in chain])
     return replace(chain[0], curves=(Curve(cubics),))
 
 
-def element_of(piece: Piece) -> Element:
+def piece_to_element(piece: Piece) -> Element:
     default_mm = 0.0 if piece.fill_rule else piece.pen.width_mm
     subpaths = tuple(_subpath(curve, default_mm) for curve in piece.curves)
     drawn = [subpath.widths[:, 1] for subpath in subpaths if subpath.widths is not None]
@@ -69,54 +75,62 @@ def element_of(piece: Piece) -> Element:
     return Element(piece.id, subpaths, width_mm, piece.pen.colour, piece.pen.layer, fill_rule=piece.fill_rule)
 
 
-def anew(piece: Piece) -> list[np.ndarray]:
-    """For each sub-path of the piece's element the cubics, but for the first, with which a line type's pattern begins
-    anew."""
-    found = []
+def find_pattern_restarts(piece: Piece) -> list[np.ndarray]:
+    """Find the cubics at which the pattern of a line type restarts.
+
+    Returns an array of indices for each sub-path of the piece's element, without the first cubic.
+    """
+    restarts_by_subpath = []
     for curve in piece.curves:
-        cubics, _ = _with_its_end(curve)
-        begins = np.zeros(len(cubics), dtype=bool)
-        if curve.anew is not None:
-            begins = np.append(curve.anew, [True] * (len(cubics) - len(curve.anew)))
-        found.append(np.flatnonzero(begins[_real(cubics)][1:]) + 1)
-    return found
+        cubics, _ = _closed_cubics(curve)
+        restarts = np.zeros(len(cubics), dtype=bool)
+        if curve.pattern_restarts is not None:
+            restarts = np.append(curve.pattern_restarts, [True] * (len(cubics) - len(curve.pattern_restarts)))
+        restarts_by_subpath.append(np.flatnonzero(restarts[_has_extent(cubics)][1:]) + 1)
+    return restarts_by_subpath
 
 
-def _with_its_end(curve: Curve) -> tuple[np.ndarray, float]:
-    """Its cubics, closed if it is, and how far its ends are apart as drawn."""
+def _closed_cubics(curve: Curve) -> tuple[np.ndarray, float]:
+    """Return the cubics of a curve (n, 4, 2) and the distance of its ends as drawn.
+
+    If the curve is closed and its ends do not meet, a last cubic connects them.
+    """
     cubics = curve.cubics[..., :2]
     gap = math.dist(cubics[0, 0], cubics[-1, 3])
-    if curve.closed and gap > _GAP_MM:
-        cubics = np.concatenate((cubics, straight([cubics[-1, 3], cubics[0, 0]])))
+    if curve.closed and gap > _MAX_GAP_MM:
+        cubics = np.concatenate((cubics, lines_to_cubics([cubics[-1, 3], cubics[0, 0]])))
     return cubics, gap
 
 
-def _real(cubics: np.ndarray) -> np.ndarray:
-    return np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) >= _NOTHING_MM
+def _has_extent(cubics: np.ndarray) -> np.ndarray:
+    return np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) >= _MIN_CUBIC_MM
 
 
 def _subpath(curve: Curve, default_mm: float) -> SubPath:
-    (cubics, gap), widths = _with_its_end(curve), curve.widths
+    (cubics, gap), widths = _closed_cubics(curve), curve.widths
     if widths is not None:
         widths = np.where((widths == 0).all(axis=1, keepdims=True), default_mm, widths)
         if len(widths) < len(cubics):
             widths = np.concatenate((widths, widths[-1:, 1:].repeat(2, axis=1)))
-    real = _real(cubics)
-    if not real.any():
+    has_extent = _has_extent(cubics)
+    if not has_extent.any():
         point = np.repeat(cubics[:1, :1], 4, axis=1)
         return SubPath(point, widths=None if widths is None else np.array([[0.0, widths.max()]]))
-    cubics, widths = joined(cubics[real]), None if widths is None else widths[real]
-    # As drawn if it has widths: one that tapers off where it began is not a ring.
-    closed = curve.closed or (gap <= _GAP_MM and widths is None)
+    cubics, widths = make_continuous(cubics[has_extent]), None if widths is None else widths[has_extent]
+    # A line with widths is closed only if drawn so: a line that tapers off where it began is not a ring.
+    closed = curve.closed or (gap <= _MAX_GAP_MM and widths is None)
     if closed:
         cubics[-1, 3] = cubics[0, 0]
-    return SubPath(cubics, closed, None if widths is None else _along(cubics, widths))
+    return SubPath(cubics, closed, None if widths is None else _widths_along_length(cubics, widths))
 
 
-def _along(cubics: np.ndarray, widths: np.ndarray) -> np.ndarray:
-    """(k, 2): fraction of the arc length and width there; two rows at one fraction where the width jumps."""
-    at = np.cumsum([0.0, *knots(cubics)[:, -1]])
-    at = at / at[-1]
-    rows = np.column_stack((np.column_stack((at[:-1], at[1:])).ravel(), widths.ravel()))
-    new = np.append(True, (np.diff(rows, axis=0) != 0).any(axis=1))
-    return rows[new]
+def _widths_along_length(cubics: np.ndarray, widths: np.ndarray) -> np.ndarray:
+    """Return rows (k, 2) of a fraction of the arc length and the width there.
+
+    Where the width jumps, two rows have the same fraction.
+    """
+    fractions = np.cumsum([0.0, *knots(cubics)[:, -1]])
+    fractions = fractions / fractions[-1]
+    rows = np.column_stack((np.column_stack((fractions[:-1], fractions[1:])).ravel(), widths.ravel()))
+    is_new = np.append(True, (np.diff(rows, axis=0) != 0).any(axis=1))
+    return rows[is_new]

@@ -1,4 +1,7 @@
-"""Place a DXF's lines on the sheet: model space has no page, and its origin can be anywhere on earth."""
+"""Place the lines of a DXF on the sheet.
+
+Model space has no page, and its origin can be far away, as in maps.
+"""
 
 from __future__ import annotations
 
@@ -8,20 +11,22 @@ import numpy as np
 
 from ...geometry.cubics import extremes
 from ..design import Element, Notice
-from ..svg.paths.path_to_cubics import LARGEST_MM
+from ..svg.paths.path_to_cubics import MAX_COORDINATE_MM
 from .entity_walk import Piece
 
 MARGIN_MM = 20.0
 
 
-def anchored(pieces: list[Piece]) -> list[Piece]:
-    """Return the pieces, moved to the origin if most of them are beyond 1e6 mm from it, as in the coordinates of
-    maps."""
+def move_to_origin(pieces: list[Piece]) -> list[Piece]:
+    """Move the pieces to the origin if most of them are more than 1e6 mm from it.
+
+    Coordinates in maps are that large.
+    """
     if not pieces:
         return pieces
     starts = np.array([piece.curves[0].cubics[0, 0, :2] for piece in pieces])
     middle = np.sort(starts, axis=0)[(len(starts) - 1) // 2]
-    if np.abs(middle).max() <= LARGEST_MM:
+    if np.abs(middle).max() <= MAX_COORDINATE_MM:
         return pieces
     shift = np.array([*middle.round(), 0.0])
     return [
@@ -30,11 +35,11 @@ def anchored(pieces: list[Piece]) -> list[Piece]:
     ]
 
 
-def in_range(pieces: list[Piece]) -> tuple[list[Piece], list[Notice]]:
+def keep_in_range(pieces: list[Piece]) -> tuple[list[Piece], list[Notice]]:
     """Return the pieces within 1e6 mm, and the notices about the others."""
     kept, notices = [], []
     for piece in pieces:
-        if all(np.abs(curve.cubics).max() <= LARGEST_MM for curve in piece.curves):
+        if all(np.abs(curve.cubics).max() <= MAX_COORDINATE_MM for curve in piece.curves):
             kept.append(piece)
         else:
             sentence = "its geometry is beyond 1e6 mm: left out"
@@ -44,16 +49,19 @@ def in_range(pieces: list[Piece]) -> tuple[list[Piece], list[Notice]]:
     return kept, notices
 
 
-def with_margin(elements: list[Element]) -> tuple[tuple[float, float], tuple[Element, ...]]:
-    """The sheet that holds all that is drawn, widths included, and 20 mm around it; the elements moved onto it."""
-    least, greatest = extents(elements)
-    shift = MARGIN_MM - least
-    width, height = (greatest + shift + MARGIN_MM).tolist()
-    return (width, height), tuple(_moved(element, shift) for element in elements)
+def place_with_margin(elements: list[Element]) -> tuple[tuple[float, float], tuple[Element, ...]]:
+    """Return a sheet for the elements, and the elements moved onto it.
+
+    The sheet, (width, height) [mm], is the bounding box of the elements with their widths, plus a margin of 20 mm.
+    """
+    lower, upper = drawn_extents(elements)
+    shift = MARGIN_MM - lower
+    width, height = (upper + shift + MARGIN_MM).tolist()
+    return (width, height), tuple(_shift_element(element, shift) for element in elements)
 
 
-def extents(elements: list[Element]) -> tuple[np.ndarray, np.ndarray]:
-    """Lower left and upper right corner of what is drawn, half the widths included."""
+def drawn_extents(elements: list[Element]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lower left and upper right corner of elements with their widths."""
     cubics, halves = [], []
     for element in elements:
         for subpath in element.subpaths:
@@ -65,6 +73,6 @@ def extents(elements: list[Element]) -> tuple[np.ndarray, np.ndarray]:
     return (points - half).min(axis=(0, 1)), (points + half).max(axis=(0, 1))
 
 
-def _moved(element: Element, shift: np.ndarray) -> Element:
+def _shift_element(element: Element, shift: np.ndarray) -> Element:
     subpaths = tuple(replace(subpath, cubics=subpath.cubics + shift) for subpath in element.subpaths)
     return replace(element, subpaths=subpaths)

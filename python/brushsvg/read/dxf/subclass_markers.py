@@ -1,6 +1,7 @@
-"""Newer entities as minimal exporters write them, marked as ezdxf wants them.
+"""Add the subclass markers that ezdxf needs to entities of minimal exporters.
 
-Such files have no header, or call themselves R12, or leave the markers of subclasses (group code 100) out.
+Files of minimal exporters have newer entities, but no header, or the version R12, or no markers of subclasses (group
+code 100).
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from itertools import takewhile
 
 from .ezdxf_import import ezdxf
 
-SUBCLASS = {
+SUBCLASS_BY_TYPE = {
     b"HATCH": b"AcDbHatch",
     b"LEADER": b"AcDbLeader",
     b"LWPOLYLINE": b"AcDbPolyline",
@@ -18,27 +19,28 @@ SUBCLASS = {
     b"MTEXT": b"AcDbMText",
     b"SPLINE": b"AcDbSpline",
 }
-OF_ALL = b"AcDbEntity"
-MARKED = b"AC1012"  # the first version with markers
-_MARKER = 100
-_HEAD = frozenset((0, 5, 102, 330, 360))  # type, handles
-_GRAPHIC = frozenset((6, 8, 48, 60, 62, 67, 370, 410, 420, 430, 440))  # layer, line type, colour ...
+ENTITY_SUBCLASS = b"AcDbEntity"
+FIRST_MARKED_VERSION = b"AC1012"  # the first version with markers
+_MARKER_CODE = 100
+_HEAD_CODES = frozenset((0, 5, 102, 330, 360))  # group codes of type and handles
+# Group codes of layer, line type, colour and other properties that all graphic entities have.
+_GRAPHIC_CODES = frozenset((6, 8, 48, 60, 62, 67, 370, 410, 420, 430, 440))
 
 Tag = ezdxf.lldxf.types.DXFTag
 
 
 def is_marked(entity: list[Tag]) -> bool:
-    return any(tag.code == _MARKER and tag.value.strip() == OF_ALL for tag in entity)
+    return any(tag.code == _MARKER_CODE and tag.value.strip() == ENTITY_SUBCLASS for tag in entity)
 
 
-def with_markers(entity: list[Tag], subclass: bytes) -> list[Tag]:
-    """An entity as ezdxf reads it; one that is marked stays as it is."""
-    markers = [tag.value.strip() for tag in entity if tag.code == _MARKER]
-    if markers[:2] == [OF_ALL, subclass]:
+def add_markers(entity: list[Tag], subclass: bytes) -> list[Tag]:
+    """Return an entity with its subclass markers. A marked entity stays as it is."""
+    markers = [tag.value.strip() for tag in entity if tag.code == _MARKER_CODE]
+    if markers[:2] == [ENTITY_SUBCLASS, subclass]:
         return entity
-    entity = [tag for tag in entity if tag.code != _MARKER]
-    head = list(takewhile(lambda tag: tag.code in _HEAD, entity))
+    entity = [tag for tag in entity if tag.code != _MARKER_CODE]
+    head = list(takewhile(lambda tag: tag.code in _HEAD_CODES, entity))
     rest = entity[len(head) :]
-    graphic = [tag for tag in rest if tag.code in _GRAPHIC]
-    own = [tag for tag in rest if tag.code not in _GRAPHIC]
-    return [*head, Tag(_MARKER, OF_ALL), *graphic, Tag(_MARKER, subclass), *own]
+    graphic = [tag for tag in rest if tag.code in _GRAPHIC_CODES]
+    own = [tag for tag in rest if tag.code not in _GRAPHIC_CODES]
+    return [*head, Tag(_MARKER_CODE, ENTITY_SUBCLASS), *graphic, Tag(_MARKER_CODE, subclass), *own]

@@ -1,7 +1,8 @@
-"""Which entities of a text DXF are let through, before ezdxf builds anything of them; entity_curves draws them.
+"""Filter the entities of a text DXF before ezdxf builds them.
 
-ezdxf refuses a whole file over one entity that it cannot build, and drops others without a word. So what nobody here
-reads is taken out beforehand and counted, and, where the file cannot be loaded without, what is broken.
+ezdxf refuses a whole file because of one entity that it cannot build, and drops others without a message. So this
+filter removes and counts the entities that brushsvg does not read. If a file cannot be loaded otherwise, it also
+removes damaged entities. entity_curves converts the rest.
 """
 
 from __future__ import annotations
@@ -12,25 +13,28 @@ from dataclasses import dataclass, field
 from typing import BinaryIO
 
 from .ezdxf_import import ezdxf
-from .subclass_markers import MARKED, SUBCLASS, Tag, is_marked, with_markers
+from .subclass_markers import FIRST_MARKED_VERSION, SUBCLASS_BY_TYPE, Tag, add_markers, is_marked
 
-_R12 = "ARC ATTDEF ATTRIB BLOCK CIRCLE DIMENSION ENDBLK INSERT LINE POINT POLYLINE SEQEND SOLID TEXT TRACE VERTEX"
-_OLD = frozenset([*_R12.encode().split(), b"3DFACE"])
-_BARE = frozenset((b"ELLIPSE", b"RAY", b"XLINE"))  # read without markers, too
-_ONLY_MARKED = frozenset(
+_R12_NAMES = "ARC ATTDEF ATTRIB BLOCK CIRCLE DIMENSION ENDBLK INSERT LINE POINT POLYLINE SEQEND SOLID TEXT TRACE VERTEX"
+_R12_TYPES = frozenset([*_R12_NAMES.encode().split(), b"3DFACE"])
+_UNMARKED_TYPES = frozenset((b"ELLIPSE", b"RAY", b"XLINE"))  # ezdxf also reads these without markers
+_MARKED_ONLY_TYPES = frozenset(
     b"ACAD_PROXY_ENTITY ARC_DIMENSION HELIX LARGE_RADIAL_DIMENSION MLEADER MULTILEADER".split()
 )
-_NEW = _BARE | _ONLY_MARKED | SUBCLASS.keys()
-_PARTS = frozenset((b"ATTRIB", b"SEQEND", b"VERTEX"))  # of the entity before them
-_SILENT = frozenset((b"VIEWPORT",))
-_FLOATS = frozenset((*range(10, 60), *range(140, 150), *range(210, 240)))
-_END = Tag(0, b"EOF")
+_NEWER_TYPES = _UNMARKED_TYPES | _MARKED_ONLY_TYPES | SUBCLASS_BY_TYPE.keys()
+_PART_TYPES = frozenset((b"ATTRIB", b"SEQEND", b"VERTEX"))  # these belong to the entity before them
+_SILENT_TYPES = frozenset((b"VIEWPORT",))
+_FLOAT_CODES = frozenset((*range(10, 60), *range(140, 150), *range(210, 240)))
+_END_TAG = Tag(0, b"EOF")
 
 
 @dataclass
-class Entities:
-    """A loader for ezdxf.recover.Recover. left_out: by type, what is not read; broken: (name, why) of what was taken
-    out for it, if is_strict.
+class EntityFilter:
+    """A loader for ezdxf.recover.Recover that filters entities.
+
+    is_strict: remove damaged entities, too.
+    left_out: number of removed entities by type, because the type is not read.
+    broken: (name, reason) of the removed damaged entities.
     """
 
     is_strict: bool = False
@@ -41,40 +45,42 @@ class Entities:
     def tags(self, stream: BinaryIO) -> Iterator[Tag]:
         tags = list(ezdxf.recover.bytes_loader(stream))
         starts = [k for k, (code, _) in enumerate(tags) if code == 0]
-        kept = [part for whole in self._readable(tags, starts) for part in whole]
-        has_new = any(part[0].value.strip() in _NEW for part in kept)
-        yield from _versioned(tags[: starts[0]] if starts else tags, kept) if has_new else _flat(kept)
+        kept = [part for whole in self._readable_entities(tags, starts) for part in whole]
+        has_new = any(part[0].value.strip() in _NEWER_TYPES for part in kept)
+        yield from (
+            _with_newer_version(tags[: starts[0]] if starts else tags, kept) if has_new else _flatten(kept)
+        )
 
-    def _readable(self, tags: list[Tag], starts: list[int]) -> Iterator[list[list[Tag]]]:
-        """What stands between group codes 0; entities with all their parts."""
+    def _readable_entities(self, tags: list[Tag], starts: list[int]) -> Iterator[list[list[Tag]]]:
+        """Yield the tags between group codes 0, and each entity together with its parts."""
         section, whole = b"", []
         for begin, end in zip(starts, [*starts[1:], len(tags)], strict=True):
             part, kind = tags[begin:end], tags[begin].value.strip()
             if kind == b"SECTION":
                 section = part[1].value.strip() if len(part) > 1 else b""
             drawn = section in (b"ENTITIES", b"BLOCKS") and kind not in (b"SECTION", b"ENDSEC", b"EOF")
-            if whole and not (drawn and kind in _PARTS):
-                yield from self._sound(whole)
+            if whole and not (drawn and kind in _PART_TYPES):
+                yield from self._undamaged(whole)
                 whole = []
             if not drawn:
                 yield [part]
             elif whole or self._is_read(kind, part):
-                whole.append(with_markers(part, SUBCLASS[kind]) if kind in SUBCLASS else part)
+                whole.append(add_markers(part, SUBCLASS_BY_TYPE[kind]) if kind in SUBCLASS_BY_TYPE else part)
         if whole:
-            yield from self._sound(whole)
+            yield from self._undamaged(whole)
 
     def _is_read(self, kind: bytes, part: list[Tag]) -> bool:
-        if kind in _OLD or kind in _BARE or kind in SUBCLASS:
+        if kind in _R12_TYPES or kind in _UNMARKED_TYPES or kind in SUBCLASS_BY_TYPE:
             return True
-        if kind in _ONLY_MARKED and is_marked(part):
+        if kind in _MARKED_ONLY_TYPES and is_marked(part):
             return True
-        if kind not in _SILENT:
+        if kind not in _SILENT_TYPES:
             self.left_out[kind.decode(errors="replace")] += 1
         return False
 
-    def _sound(self, whole: list[list[Tag]]) -> Iterator[list[list[Tag]]]:
+    def _undamaged(self, whole: list[list[Tag]]) -> Iterator[list[list[Tag]]]:
         self._number += 1
-        if self.is_strict and (why := _fault(whole)):
+        if self.is_strict and (why := _find_fault(whole)):
             handle = next((tag.value for tag in whole[0] if tag.code == 5), b"")
             name = b"-".join((whole[0][0].value.strip(), handle.strip() or b"%d" % self._number))
             self.broken.append((name.decode(errors="replace"), why))
@@ -82,16 +88,16 @@ class Entities:
             yield whole
 
 
-def _flat(parts: list[list[Tag]]) -> Iterator[Tag]:
+def _flatten(parts: list[list[Tag]]) -> Iterator[Tag]:
     return (tag for part in parts for tag in part)
 
 
-def _versioned(before: list[Tag], parts: list[list[Tag]]) -> Iterator[Tag]:
-    """The tags of a file with newer entities, which then is no R12."""
-    tags = [*before, *_flat(parts)]
+def _with_newer_version(before: list[Tag], parts: list[list[Tag]]) -> Iterator[Tag]:
+    """Yield the tags of a file with newer entities, with a version that allows them."""
+    tags = [*before, *_flatten(parts)]
     versions = [k + 1 for k, tag in enumerate(tags[:-1]) if tag == (9, b"$ACADVER")]
     for k in versions:
-        if tags[k].value.strip() < MARKED:
+        if tags[k].value.strip() < FIRST_MARKED_VERSION:
             tags[k] = Tag(1, b"AC1015")
     if not versions:
         header = (0, b"SECTION"), (2, b"HEADER"), (9, b"$ACADVER"), (1, b"AC1015"), (0, b"ENDSEC")
@@ -99,14 +105,14 @@ def _versioned(before: list[Tag], parts: list[list[Tag]]) -> Iterator[Tag]:
     yield from tags
 
 
-def _fault(whole: list[list[Tag]]) -> str:
-    """Why ezdxf cannot build an entity of its tags as they are, "" if it can."""
+def _find_fault(whole: list[list[Tag]]) -> str:
+    """Return the reason why ezdxf cannot build an entity from its tags, "" if it can."""
     for part in whole:
         for code, value in part:
-            if code in _FLOATS and not _is_number(value):
+            if code in _FLOAT_CODES and not _is_number(value):
                 return f"{value.decode(errors='replace')!r} at group code {code} is not a number"
         try:
-            tags = ezdxf.recover.safe_tag_loader(None, lambda _, part=part: iter([*part, _END]))
+            tags = ezdxf.recover.safe_tag_loader(None, lambda _, part=part: iter([*part, _END_TAG]))
             ezdxf.entities.factory.load(
                 ezdxf.lldxf.extendedtags.ExtendedTags(ezdxf.lldxf.tags.Tags(list(tags)[:-1]))
             )

@@ -1,4 +1,7 @@
-"""Text of a DXF as outlines: TEXT and ATTRIB as one shape, MTEXT taken apart into such and lines."""
+"""Convert text of a DXF to outlines.
+
+TEXT and ATTRIB become one shape each. MTEXT is exploded into TEXT and LINE entities.
+"""
 
 from __future__ import annotations
 
@@ -12,90 +15,102 @@ from ...errors import Error
 from ..design import Notice
 from .entity_curves import Curve
 from .ezdxf_import import ezdxf
-from .file import shown
+from .file import printable
 from .fonts import Font, Fonts
 
 _tools, _boxes = ezdxf.tools.text, ezdxf.tools.text_layout
 
-_MOST_LETTERS = 50_000  # a brush paints some hundred a day
-_WIDEST = 10_000.0  # columns of MTEXT, in letters: ezdxf makes a tab stop for every fourth
-_MOST_COLUMNS = 1000
-_TAB = 4.0  # heights between the tab stops that ezdxf makes where a text has none of its own
-_FRAME = 16  # of MTEXT's bg_fill; the others are paint behind the letters
-_EXACTLY = 2  # of MTEXT's line_spacing_style
-_VERTICALLY = 3  # of MTEXT's flow_direction
-_UPRIGHT_STACK = 4  # of a style's flags: letters one below the other
-_CHARACTER = re.compile(r"(?<!%)%%(\d{3})")  # by its number, in TEXT
-_STROKES = re.compile(r"(?<!%)%%[kou]", re.IGNORECASE)  # lines along TEXT
+_MAX_LETTERS = 50_000  # a brush paints a few hundred letters a day
+_MAX_COLUMN_HEIGHTS = (
+    10_000.0  # width of MTEXT columns in letter heights; ezdxf makes a tab stop every 4 heights
+)
+_MAX_COLUMNS = 1000
+_TAB_HEIGHTS = 4.0  # distance in letter heights of the tab stops that ezdxf makes if a text has no tab stops
+_FRAME_BIT = 16  # bit of MTEXT's bg_fill for a frame; the other bits are paint behind the letters
+_EXACT_SPACING = 2  # value of MTEXT's line_spacing_style
+_VERTICAL_FLOW = 3  # value of MTEXT's flow_direction
+_STACKED_BIT = 4  # bit of a style's flags: letters one below the other
+_CHARACTER_CODE = re.compile(r"(?<!%)%%(\d{3})")  # a character of TEXT by its number
+_LINE_CODE = re.compile(r"(?<!%)%%[kou]", re.IGNORECASE)  # codes for lines along TEXT
 
 
-class Letters:
-    """notices: the fonts of the text so far, once its outlines or parts were requested."""
+class TextConverter:
+    """A converter of the text entities of a document.
+
+    notices: about the fonts of the text converted so far, and about the parts of the text that are not read.
+    """
 
     def __init__(self, document: ezdxf.document.Drawing):
         self._document = document
         self._fonts = Fonts(document.styles)
-        self._faces: dict[str, object] = {}  # of the styles MTEXT is taken apart into
-        self._left = _MOST_LETTERS
-        self._drawn: dict[tuple[Font, str], tuple[str, str]] = {}
-        self._count: Counter[tuple[Font, str]] = Counter()
-        self._missing: dict[tuple[Font, str], dict[str, None]] = {}
+        self._faces: dict[str, object] = {}  # font faces of the styles that exploded MTEXT uses
+        self._letters_left = _MAX_LETTERS
+        self._first_use: dict[tuple[Font, str], tuple[str, str]] = {}
+        self._use_counts: Counter[tuple[Font, str]] = Counter()
+        self._missing_letters: dict[tuple[Font, str], dict[str, None]] = {}
         self._unread: list[Notice] = []
 
     @property
     def notices(self) -> list[Notice]:
-        found = list(self._unread)
-        for (font, layer), (where, text) in self._drawn.items():
-            more = self._count[font, layer] - 1
-            said = f"text {shown(text, 40)!r}" + (f" and {more} more" if more else "")
+        notices = list(self._unread)
+        for (font, layer), (where, text) in self._first_use.items():
+            more = self._use_counts[font, layer] - 1
+            text_name = f"text {printable(text, 40)!r}" + (f" and {more} more" if more else "")
             why = f": {font.why}" if font.why else ""
-            found.append(
+            notices.append(
                 Notice(
                     where,
-                    f"{said} became the outlines of font {font.name}{why}",
+                    f"{text_name} became the outlines of font {font.name}{why}",
                     layer=layer,
                     code="text-outlined",
                 )
             )
-        for (font, layer), letters in self._missing.items():
-            listed = ", ".join(repr(c) for c in list(letters)[:5]) + (" ..." if len(letters) > 5 else "")
-            where = self._drawn[font, layer][0]
-            found.append(
+        for (font, layer), letters in self._missing_letters.items():
+            listed_letters = ", ".join(repr(c) for c in list(letters)[:5]) + (
+                " ..." if len(letters) > 5 else ""
+            )
+            where = self._first_use[font, layer][0]
+            notices.append(
                 Notice(
                     where,
-                    f"font {font.name} has no glyph for {listed}: left out",
+                    f"font {font.name} has no glyph for {listed_letters}: left out",
                     layer=layer,
                     code="glyph-missing",
                 )
             )
-        return found
+        return notices
 
     def outlines(self, entity, name: str, layer: str) -> list[Curve]:
-        """Of a TEXT or ATTRIB, in its own world. NoFontError if this machine has no font."""
+        """Return the outlines of a TEXT or ATTRIB, in its own world.
+
+        Raises NoFontError if the machine has no font.
+        """
         dxf = entity.dxf
         _check_height(dxf.get("height"))
-        written = _CHARACTER.sub(lambda found: chr(int(found[1])), dxf.text)
+        written = _CHARACTER_CODE.sub(lambda found: chr(int(found[1])), dxf.text)
         text = " ".join(_tools.plain_text(written).splitlines())
-        if dxf.style not in self._faces:  # the letters of MTEXT were counted as such
+        if dxf.style not in self._faces:  # the letters of exploded MTEXT are counted already
             self._count_letters(text, name)
         if not text.strip():
             return []
         face = self._faces.get(dxf.style) or self._fonts.face(dxf.style)
         font = self._fonts.font(face)
-        self._drawn.setdefault((font, layer), (name, text))
-        self._count[font, layer] += 1
-        if missing := font.missing(text):
-            self._missing.setdefault((font, layer), {}).update(dict.fromkeys(missing))
+        self._first_use.setdefault((font, layer), (name, text))
+        self._use_counts[font, layer] += 1
+        if missing := font.missing_glyphs(text):
+            self._missing_letters.setdefault((font, layer), {}).update(dict.fromkeys(missing))
         text = "".join(" " if c in missing or c.isspace() else c for c in text)
-        drawn = font.drawn_at(1.0)
+        drawn = font.ezdxf_font(1.0)
         path = drawn.text_path_ex(text, cap_height=dxf.height).to_path()
         if not len(path):
             return []
-        if _STROKES.search(written):
-            self._not_read(name, "its lines along the letters (%%u, %%o, %%k) are not read: left out", layer)
+        if _LINE_CODE.search(written):
+            self._note_unread(
+                name, "its lines along the letters (%%u, %%o, %%k) are not read: left out", layer
+            )
         if self._is_stacked(dxf.style):
-            self._not_read(name, _SET_IN_A_LINE, layer)
-        length = drawn.text_width_ex(text, cap_height=dxf.height)  # blanks at its ends take their place, too
+            self._note_unread(name, _STACKED_SENTENCE, layer)
+        length = drawn.text_width_ex(text, cap_height=dxf.height)  # includes blanks at the ends
         placed = ezdxf.addons.text2path.alignment_transformation(
             drawn.measurements.scale_from_baseline(dxf.height),
             ezdxf.math.BoundingBox([(0, 0), (length, dxf.height)]),
@@ -103,58 +118,63 @@ class Letters:
             entity.fit_length(),
         )
         path = path.transform(placed * entity.wcs_transformation_matrix())
-        return [Curve(_cubics(outline), True) for outline in path.sub_paths() if len(outline)]
+        return [Curve(_path_to_cubics(outline), True) for outline in path.sub_paths() if len(outline)]
 
     def parts(self, mtext, name: str, layer: str) -> list:
-        """An MTEXT as TEXT and LINE, in its own world. NoFontError if this machine has no font."""
+        """Explode an MTEXT into TEXT and LINE entities, in its own world.
+
+        Raises NoFontError if the machine has no font.
+        """
         mtext = mtext.copy()
         mtext.doc = self._document
         self._count_letters(mtext.all_columns_raw_content(), name)
         columns = mtext.columns
-        if columns is not None and not 0 <= columns.count <= _MOST_COLUMNS:
+        if columns is not None and not 0 <= columns.count <= _MAX_COLUMNS:
             raise ValueError(f"it has {columns.count} columns")
         for part in (mtext, *(columns.linked_columns if columns is not None else ())):
             part.text = _STACK.sub(r"\1^ ", part.text)
         background = mtext.dxf.get("bg_fill", 0)
-        mtext.dxf.bg_fill = background & _FRAME
+        mtext.dxf.bg_fill = background & _FRAME_BIT
         height = _check_height(mtext.dxf.get("char_height"))
         layout = ezdxf.layouts.VirtualLayout()
-        apart = _Apart(layout, self._document, self._fonts, self._faces)
+        exploder = _MTextExploder(layout, self._document, self._fonts, self._faces)
         width = mtext.dxf.get("width", 0.0)
-        mtext.dxf.width = min(width if width > 1e-6 else apart.unbroken_width(mtext), _WIDEST * height)
-        apart.explode(mtext)
-        if background & ~_FRAME:
-            self._not_read(name, "its background is not painted, and covers nothing", layer)
-        if apart.spread:
-            self._not_read(
+        mtext.dxf.width = min(
+            width if width > 1e-6 else exploder.unbroken_width(mtext), _MAX_COLUMN_HEIGHTS * height
+        )
+        exploder.explode(mtext)
+        if background & ~_FRAME_BIT:
+            self._note_unread(name, "its background is not painted, and covers nothing", layer)
+        if exploder.spread:
+            self._note_unread(
                 name, "the distances between its letters (\\T) are not read: they count as 1", layer
             )
-        if apart.uneven and mtext.dxf.get("line_spacing_style", 1) == _EXACTLY:
-            self._not_read(name, "its lines are set as far apart as their tallest letters ask for", layer)
-        if mtext.dxf.get("flow_direction", 1) == _VERTICALLY or self._is_stacked(mtext.dxf.style):
-            self._not_read(name, _SET_IN_A_LINE, layer)
+        if exploder.uneven and mtext.dxf.get("line_spacing_style", 1) == _EXACT_SPACING:
+            self._note_unread(name, "its lines are set as far apart as their tallest letters ask for", layer)
+        if mtext.dxf.get("flow_direction", 1) == _VERTICAL_FLOW or self._is_stacked(mtext.dxf.style):
+            self._note_unread(name, _STACKED_SENTENCE, layer)
         return list(layout)
 
     def _is_stacked(self, style: str) -> bool:
         return style in self._document.styles and bool(
-            self._document.styles.get(style).dxf.get("flags", 0) & _UPRIGHT_STACK
+            self._document.styles.get(style).dxf.get("flags", 0) & _STACKED_BIT
         )
 
-    def _not_read(self, name: str, sentence: str, layer: str) -> None:
+    def _note_unread(self, name: str, sentence: str, layer: str) -> None:
         self._unread.append(Notice(name, sentence, layer=layer, code="text-unread"))
 
     def _count_letters(self, text: str, name: str) -> None:
-        self._left -= len(text)
-        if self._left < 0:
+        self._letters_left -= len(text)
+        if self._letters_left < 0:
             where = name.partition("/")[0]
             raise Error(
-                f"the drawing's text unfolds to more than {_MOST_LETTERS} letters",
+                f"the drawing's text unfolds to more than {_MAX_LETTERS} letters",
                 where=where,
                 code="drawing-too-large",
             )
 
 
-_SET_IN_A_LINE = "its letters one below the other are not read: they are set in a line"
+_STACKED_SENTENCE = "its letters one below the other are not read: they are set in a line"
 
 
 def _check_height(height: float | None) -> float:
@@ -165,15 +185,18 @@ def _check_height(height: float | None) -> float:
     return height
 
 
-# "^" between the two numbers of a stack, as CAD programs write it: ezdxf takes it and the letter behind it for a
-# control character, unless that is a blank
+# CAD programs write "^" between the two numbers of a stack. ezdxf reads "^" and the next letter as a control
+# character, unless this letter is a blank.
 _STACK = re.compile(r"((?<!\\)(?:\\\\)*\\S[^;^]*)\^(?! )")
 
 
-class _Apart(ezdxf.addons.mtxpl.MTextExplode):
-    """With fonts of ours, in styles that no document needs to know.
+class _MTextExploder(ezdxf.addons.mtxpl.MTextExplode):
+    """An exploder of MTEXT that uses our fonts.
 
-    uneven: its letters have several heights; spread: their distance is not the font's.
+    The resulting entities have styles that the document does not contain.
+
+    uneven: whether the letters have several heights; spread: whether the distance of the letters differs from the
+    font's distance.
     """
 
     def __init__(self, layout, document, fonts: Fonts, faces: dict[str, object]):
@@ -193,7 +216,7 @@ class _Apart(ezdxf.addons.mtxpl.MTextExplode):
             for paragraph in column:
                 if isinstance(paragraph, _boxes.Paragraph):
                     for line in paragraph:
-                        _stand_on_one_line(line)
+                        _align_baselines(line)
         layout.render(mtext.ucs().matrix)
 
     def word(self, text: str, ctx):
@@ -203,7 +226,7 @@ class _Apart(ezdxf.addons.mtxpl.MTextExplode):
 
     def fraction(self, data: tuple, ctx):
         cell = super().fraction(data, ctx)
-        if isinstance(cell, _boxes.Fraction):  # its line is of the colour of its numbers
+        if isinstance(cell, _boxes.Fraction):  # the line of a fraction has the colour of its numbers
             attributes = self.current_base_attribs | ezdxf.addons.mtxpl.get_color_attribs(ctx)
             cell.renderer = ezdxf.addons.mtxpl.FrameRenderer(attributes, self.layout)
         return cell
@@ -218,10 +241,13 @@ class _Apart(ezdxf.addons.mtxpl.MTextExplode):
         return self._fonts.face(mtext.dxf.style)
 
     def get_font(self, ctx):
-        return self._fonts.font(ctx.font_face).drawn_at(ctx.cap_height, ctx.width_factor)
+        return self._fonts.font(ctx.font_face).ezdxf_font(ctx.cap_height, ctx.width_factor)
 
     def unbroken_width(self, mtext) -> float:
-        """Of its longest paragraph in one line; with tabs an upper bound."""
+        """Return the width of the longest paragraph in one line.
+
+        For a paragraph with tabs the width is an upper bound.
+        """
         context = self.make_mtext_context(mtext)
         height = context.cap_height
         widest = line = 0.0
@@ -234,11 +260,11 @@ class _Apart(ezdxf.addons.mtxpl.MTextExplode):
             elif kind == _tools.TokenType.STACK:
                 line += self.fraction(token.data, context).total_width
             elif kind == _tools.TokenType.TABULATOR:
-                line += max(self.space_width(context), _TAB * height)
+                line += max(self.space_width(context), _TAB_HEIGHTS * height)
             elif kind in (_tools.TokenType.SPACE, _tools.TokenType.NBSP):
                 line += self.space_width(context)
             shape = context.paragraph
-            indents = sum(max(0.0, each) for each in (shape.indent, shape.left, shape.right)) * height
+            indents = sum(max(0.0, indent) for indent in (shape.indent, shape.left, shape.right)) * height
             widest = max(widest, line + indents)
         return max((1 + 1e-9) * widest, height)
 
@@ -251,8 +277,11 @@ class _Apart(ezdxf.addons.mtxpl.MTextExplode):
         return name
 
 
-def _stand_on_one_line(line) -> None:
-    """Letters of several heights in one word: ezdxf hangs them from one line, unless it can break between them."""
+def _align_baselines(line) -> None:
+    """Put letters of several heights in one word on one baseline.
+
+    ezdxf aligns their tops, unless it can break the line between them.
+    """
     for group in line.cells():
         if isinstance(group, _boxes.RigidConnection):
             for cell in group:
@@ -261,9 +290,9 @@ def _stand_on_one_line(line) -> None:
                     cell.place(x, y + _boxes.vertical_cell_shift(cell, group.total_height))
 
 
-def _cubics(path) -> np.ndarray:
-    """(n, 4, 3) of an ezdxf Path without gaps."""
-    begin, found = path.start, []
+def _path_to_cubics(path) -> np.ndarray:
+    """Return a Path of ezdxf without gaps as cubics (n, 4, 3)."""
+    begin, control_points = path.start, []
     for command in path.commands():
         end = command.end
         match command[1:]:
@@ -273,6 +302,6 @@ def _cubics(path) -> np.ndarray:
                 handles = begin.lerp(handle, 2 / 3), end.lerp(handle, 2 / 3)
             case handles:
                 pass
-        found.append([point.xyz for point in (begin, *handles, end)])
+        control_points.append([point.xyz for point in (begin, *handles, end)])
         begin = end
-    return np.array(found)
+    return np.array(control_points)

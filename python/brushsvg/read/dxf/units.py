@@ -1,4 +1,4 @@
-"""What a unit of a DXF is in mm: its header, or who reads it, says so."""
+"""The unit of a DXF in mm, from the header or from the options of the reader."""
 
 from __future__ import annotations
 
@@ -36,12 +36,16 @@ _UNITS = {
     23: ("US survey yards", 3 * _SURVEY_FOOT_MM),
     24: ("US survey miles", 5280 * _SURVEY_FOOT_MM),
 }
-_LARGE_MM = 5000.0  # no brush paints so far
-_REQUESTED = {"mm": _UNITS[4], "in": _UNITS[1]}
+_MAX_PLAUSIBLE_MM = 5000.0  # no brush paints a larger drawing
+_REQUESTED_UNITS = {"mm": _UNITS[4], "in": _UNITS[1]}
 
 
-def unit_of(document, requested: str | None) -> tuple[float, list[Notice]]:
-    """Return the unit of the drawing, or the requested one. Error where neither says a unit."""
+def find_unit(document, requested: str | None) -> tuple[float, list[Notice]]:
+    """Return the unit of the drawing, or the requested unit, in mm.
+
+    Also returns a notice if the request overrules the drawing.
+    Raises Error if neither the drawing nor the request gives a unit.
+    """
     name, drawn = _UNITS.get(document.header.get("$INSUNITS", 0), ("", None))
     if requested is None:
         if drawn is None:
@@ -51,7 +55,7 @@ def unit_of(document, requested: str | None) -> tuple[float, list[Notice]]:
                 code="unit-unknown",
             )
         return drawn, []
-    unit_name, unit_mm = _REQUESTED[requested]
+    unit_name, unit_mm = _REQUESTED_UNITS[requested]
     if drawn is None or drawn == unit_mm:
         return unit_mm, []
     return unit_mm, [
@@ -63,10 +67,13 @@ def unit_of(document, requested: str | None) -> tuple[float, list[Notice]]:
     ]
 
 
-def large_for_its_unit(document, size_mm: float) -> list[Notice]:
-    """A notice of a drawing whose longer side is beyond all sheets, and whose numbers may be of a smaller unit."""
+def report_large_unit(document, size_mm: float) -> list[Notice]:
+    """Return a notice if the longer side of the drawing is larger than any sheet.
+
+    The numbers of such a drawing are probably in a smaller unit.
+    """
     name, drawn = _UNITS[document.header["$INSUNITS"]]
-    if drawn <= 1 or size_mm <= _LARGE_MM:
+    if drawn <= 1 or size_mm <= _MAX_PLAUSIBLE_MM:
         return []
     sentence = f"the drawing is {size_mm / 1000:.4g} m large, since its unit is {name}"
     advice = "--units mm reads its numbers as millimetres"

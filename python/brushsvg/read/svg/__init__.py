@@ -1,4 +1,7 @@
-"""SVG to Design. What is not read is named in a notice. How it is read: docs/reference/drawings.md."""
+"""Reader from SVG to a Design.
+
+Notices name the parts that are not read. The rules are in docs/reference/drawings.md.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +12,15 @@ from contextlib import suppress
 from ...errors import Error
 from ...units import MM_PER
 from .. import AS_DRAWN, ReadOptions
-from ..background import without_background
+from ..background import remove_background
 from ..design import Design, Notice
-from ..empty_drawing import nothing_to_paint
-from ..off_page import on_page
-from .context import local, one_line
+from ..empty_drawing import empty_drawing_error
+from ..off_page import keep_on_page
+from .context import local_name, printable_line
 from .css.cascade import INITIAL, cascade
-from .selection import selected
+from .selection import select_elements
 from .settings import PREFIX, document_settings
-from .tree_walk import SVG, Walk
+from .tree_walk import SVG, TreeWalk
 from .viewport import Page, read_page
 from .xml import Document, parse_xml
 
@@ -25,11 +28,12 @@ _INKSCAPE_VERSION = "{http://www.inkscape.org/namespaces/inkscape}version"
 
 
 def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
-    """The drawing, its elements in document order, in mm with y up.
+    """Read an SVG document, with its elements in document order, in mm with y up.
 
-    A sheet given replaces the viewport's size; the drawing keeps its scale and its upper left corner.
+    options.sheet_mm replaces the size of the page. The drawing keeps its scale and its upper left corner.
 
-    Error if it is not SVG, has no size, has nothing to paint, or copies itself beyond all bounds.
+    Raises Error if the data is not SVG, if the drawing has no size or nothing to paint, or if it copies itself too
+    often.
     """
     try:
         return _read(parse_xml(data), options)
@@ -37,68 +41,75 @@ def read_svg(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
         raise Error("its CSS is nested too deeply", where="style", code="css-too-complex") from None
 
 
-def settings_of(data: bytes, alone: bool = False) -> dict:
-    """Return the root's settings for the whole job; {} for a damaged file, which read_svg reports.
+def read_svg_settings(data: bytes, alone: bool = False) -> dict:
+    """Return the settings of the root element for the whole job.
 
-    alone: read_svg is not called, so the problems are reported here."""
+    The result is {} for a damaged file, which read_svg reports.
+
+    alone: whether read_svg is not called for this file, so that its problems are reported here.
+    """
     is_plain = not data.startswith((b"\x1f\x8b", b"\xff\xfe", b"\xfe\xff"))  # neither compressed nor UTF-16
     if is_plain and PREFIX.encode() not in data and not alone:
         return {}
     try:
-        return document_settings(_root_of(parse_xml(data)).attrib)
+        return document_settings(_checked_root(parse_xml(data)).attrib)
     except Error:
         if alone:
             raise
         return {}
 
 
-def _root_of(document: Document) -> ET.Element:
+def _checked_root(document: Document) -> ET.Element:
     root = document.root
     if root.tag not in (SVG + "svg", "svg"):
-        raise Error(f"the root element is <{local(root)[:40]}>, not <svg>", code="not-svg")
+        raise Error(f"the root element is <{local_name(root)[:40]}>, not <svg>", code="not-svg")
     return root
 
 
 def _read(document: Document, options: ReadOptions) -> Design:
-    root = _root_of(document)
+    root = _checked_root(document)
     style = cascade(INITIAL, root.attrib, [], 0.0)[0].geometry
     page = read_page(root.attrib, options.sheet_mm, style)
-    chosen = selected(root, options.select) if options.select else None
-    walk = Walk(root, page, chosen, _outside_the_tree(document, root, page))
+    selected = select_elements(root, options.select) if options.select else None
+    walk = TreeWalk(root, page, selected, _notices_outside_tree(document, root, page))
     walk.run()
     if not walk.elements:
-        raise nothing_to_paint(walk.notices, walk.left_out)
-    elements, off_page = on_page(walk.elements, page.sheet_mm)
+        raise empty_drawing_error(walk.notices, walk.left_out)
+    elements, off_page = keep_on_page(walk.elements, page.sheet_mm)
     title = root.find(SVG + "title" if root.tag.startswith("{") else "title")
-    name = "" if title is None else one_line("".join(title.itertext()))
+    name = "" if title is None else printable_line("".join(title.itertext()))
     design = Design(page.sheet_mm, elements, (*walk.notices, *off_page), name, walk.layers)
     if options.background == "keep":
         return design
     own_mm = page.sheet_mm
     if options.sheet_mm is not None:
-        with suppress(Error):  # a drawing without a size of its own has the sheet's
+        with suppress(Error):  # a drawing without its own size has the size of the sheet
             own_mm = read_page(root.attrib, None, style).sheet_mm
-    return without_background(design, own_mm)
+    return remove_background(design, own_mm)
 
 
-def _outside_the_tree(document: Document, root: ET.Element, page: Page) -> list[Notice]:
-    """Return the notices about text next to the tree."""
+def _notices_outside_tree(document: Document, root: ET.Element, page: Page) -> list[Notice]:
+    """Return notices about content outside of the tree: style sheets and comments."""
     notices = []
     if "xml-stylesheet" in document.instructions:
         sentence = "CSS in another file is not read: what it says is missing"
         notices.append(Notice("xml-stylesheet", sentence, code="css-unread"))
-    if page.in_px and (found := _other_pixels(document, root)):
-        own = page if root.get("viewBox") is None else read_page(root.attrib)  # for any requested sheet
-        notices.append(_probable_size(*found, own.sheet_mm, root.get("viewBox") is not None))
+    if page.in_px and (program_and_pixels := _find_other_pixel_size(document, root)):
+        own_page = page if root.get("viewBox") is None else read_page(root.attrib)  # for any requested sheet
+        notices.append(
+            _probable_size_notice(*program_and_pixels, own_page.sheet_mm, root.get("viewBox") is not None)
+        )
     return notices
 
 
-def _other_pixels(document: Document, root: ET.Element) -> tuple[str, int] | None:
-    """The program that wrote the drawing and its pixels per inch, where these are not 96.
+def _find_other_pixel_size(document: Document, root: ET.Element) -> tuple[str, int] | None:
+    """Return the program that wrote the drawing, and its pixels per inch.
 
-    Illustrator's "Save as" leaves a comment, its "Export as" a data-name on the root; "enable-background: new" is its
-    own, and stays where tools have taken the comment away. Inkscape counted 90 px until 0.91 (wiki.inkscape.org,
-    "Release notes/0.92").
+    The result is None if the program counts 96 pixels per inch or is unknown.
+
+    Illustrator counts 72 px to the inch. Its "Save as" writes a comment, its "Export as" writes a data-name on the
+    root. Only Illustrator writes "enable-background: new", which remains if a tool has removed the comment. Inkscape
+    counted 90 px until 0.91 (wiki.inkscape.org, "Release notes/0.92").
     """
     is_its_style = "enable-background" in root.get("style", "") or "enable-background" in root.attrib
     if (
@@ -111,7 +122,7 @@ def _other_pixels(document: Document, root: ET.Element) -> tuple[str, int] | Non
     return (f"Inkscape {version[0]}", 90) if version and int(version[1]) < 92 else None
 
 
-def _probable_size(program: str, per_inch: int, read_mm: tuple[float, float], has_box: bool) -> Notice:
+def _probable_size_notice(program: str, per_inch: int, read_mm: tuple[float, float], has_box: bool) -> Notice:
     w, h = (side * 96 / per_inch for side in read_mm)
     sentence = f"written by {program}, which counts {per_inch} px to the inch, so it was probably drawn as "
     advice = f'give its svg width="{w:.6g}mm" height="{h:.6g}mm"'

@@ -1,4 +1,4 @@
-"""Clip paths and masks of SVG: the region, on paper, that they leave of an element (CSS Masking 1)."""
+"""Clip paths and masks of SVG: the visible region of an element (CSS Masking 1)."""
 
 from __future__ import annotations
 
@@ -9,41 +9,48 @@ from typing import TYPE_CHECKING
 
 from ...errors import Error
 from ...units import length_px
-from .context import Context, local
+from .context import Context, local_name
 from .css.cascade import INITIAL, Style, cascade
-from .css.style_sheets import Rules
+from .css.style_sheets import StyleSheets
 from .paint_servers import URL
 from .paths import shapes
 from .paths.path_to_cubics import trace
-from .references import href, referred
+from .references import find_referenced, href
 from .transform import Matrix, multiply, parse_transform, scales
-from .viewport import corners_of
+from .viewport import rectangle_corners
 
 if TYPE_CHECKING:
     import shapely
 
 _CSS_TRANSFORMS = frozenset(("transform", "translate", "rotate", "scale"))
-MASK_PAGE = {"x": "-10%", "y": "-10%", "width": "120%", "height": "120%"}  # where a mask does not give it
-_DEEPEST = 20  # clip paths and uses in each other
+# The rectangle of a mask that does not define one.
+DEFAULT_MASK_RECTANGLE = {"x": "-10%", "y": "-10%", "width": "120%", "height": "120%"}
+_MAX_DEPTH = 20  # nesting depth of clip paths and uses
 _TOO_DEEP = "its clip paths or masks refer to each other, or are nested too deep: painted whole"
 _MASK_UNREAD = "its mask is not made of filled white and black shapes alone, which is not read: painted whole"
 
 
 class ClipPathError(Error):
-    """A clip path that cannot be read: the element is painted whole."""
+    """A clip path or mask that cannot be read. The element is painted whole."""
 
 
 def _refuse_css_transform(style: Style) -> None:
-    """Attributes are read; a transform that CSS says would be passed over, and the clip path be elsewhere."""
+    """Raise ClipPathError if CSS transforms a clip path.
+
+    Only transform attributes are read here. Without this check the clip path would be in the wrong place.
+    """
     if not _CSS_TRANSFORMS.isdisjoint(style.geometry):
         sentence = "its clip path has a transform in CSS, which is not read: painted whole"
         raise ClipPathError(sentence, code="clipping-unread")
 
 
 class ClipPaths:
-    """The clip paths and masks of a drawing. by_id: its elements; rules: its style sheets."""
+    """The clip paths and masks of a drawing.
 
-    def __init__(self, root: ET.Element, by_id: dict[str, ET.Element], rules: Rules):
+    by_id: the elements of the drawing; rules: its style sheets.
+    """
+
+    def __init__(self, root: ET.Element, by_id: dict[str, ET.Element], rules: StyleSheets):
         self._root = root
         self._by_id = by_id
         self._rules = rules
@@ -53,89 +60,99 @@ class ClipPaths:
         return {child: parent for parent in self._root.iter() for child in parent}
 
     def _style_of(self, node: ET.Element, diagonal: float) -> Style:
-        """The style of an element by all elements that it is in."""
+        """Return the style of an element, inherited from all elements around it."""
         parent = self._parents.get(node)
         above = INITIAL if parent is None else self._style_of(parent, diagonal)
-        return cascade(above, node.attrib, self._rules.of(node), diagonal)[0]
+        return cascade(above, node.attrib, self._rules.declarations_for(node), diagonal)[0]
 
     def region(
         self, value: str, context: Context, bounds: Callable[[], tuple[float, float, float, float] | None]
     ) -> shapely.Geometry | None:
-        """The region of a clip-path property in the context's user units, on paper; None where it refers to nothing,
-        which clips nothing. bounds: (x, y, width, height) of the element. ClipPathError for what is not read."""
-        found = URL.match(value)
-        if not found:
+        """Return the region of a clip-path property on paper.
+
+        The result is None if the property refers to nothing, which clips nothing.
+
+        context: its matrix maps user units to paper; bounds: returns (x, y, width, height) of the element.
+        Raises ClipPathError if the clip path cannot be read.
+        """
+        url = URL.match(value)
+        if not url:
             raise ClipPathError("clip-path: only url(#...) is read: painted whole", code="clipping-unread")
-        target = referred(found[1].strip().strip("\"'"), self._by_id)
-        if target is None or local(target) != "clipPath":
+        target = find_referenced(url[1].strip().strip("\"'"), self._by_id)
+        if target is None or local_name(target) != "clipPath":
             return None
         return self._region(target, context, bounds, 0)
 
     def _region(self, node: ET.Element, context: Context, bounds, depth: int) -> shapely.Geometry:
         import shapely
 
-        if depth > _DEEPEST:
+        if depth > _MAX_DEPTH:
             raise ClipPathError(_TOO_DEEP, code="clipping-unread")
         matrix = context.matrix
         if node.get("transform"):
             matrix = multiply(matrix, parse_transform(node.get("transform", "")))
         if node.get("clipPathUnits") == "objectBoundingBox":
-            matrix = multiply(matrix, _in_bounds(bounds()))
+            matrix = multiply(matrix, _matrix_from_bounds(bounds()))
         style = self._style_of(node, context.diagonal)
         _refuse_css_transform(style)
         parts = self._shapes(node, context._replace(matrix=matrix), style, depth, "clip-rule")
         region = shapely.union_all([region for _, region in parts])
-        return self._own(style, context, region, depth)
+        return self._clip_by_own_path(style, context, region, depth)
 
     def mask_region(
         self, value: str, context: Context, bounds: Callable[[], tuple[float, float, float, float] | None]
     ) -> shapely.Geometry | None:
-        """The region that a mask of white and black shapes leaves; otherwise as `region`."""
+        """Return the visible region of a mask of white and black shapes.
+
+        The parameters, None and ClipPathError are as for region.
+        """
         import shapely
 
-        found = URL.match(value)
-        target = referred(found[1].strip().strip("\"'"), self._by_id) if found else None
-        if found and (target is None or local(target) != "mask"):
+        url = URL.match(value)
+        target = find_referenced(url[1].strip().strip("\"'"), self._by_id) if url else None
+        if url and (target is None or local_name(target) != "mask"):
             return None
-        if not found or "mask-type" in target.attrib or "mask-type" in target.get("style", ""):
+        if not url or "mask-type" in target.attrib or "mask-type" in target.get("style", ""):
             raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
         matrix = context.matrix
         if target.get("maskContentUnits") == "objectBoundingBox":
-            matrix = multiply(matrix, _in_bounds(bounds()))
-        page = self._mask_page(target, context, bounds)
-        left = shapely.Polygon()
+            matrix = multiply(matrix, _matrix_from_bounds(bounds()))
+        rectangle_region = self._mask_rectangle(target, context, bounds)
+        visible = shapely.Polygon()
         inner = context._replace(matrix=matrix)
         style = self._style_of(target, context.diagonal)
-        for shown, region in self._shapes(target, inner, style, 0, "fill-rule"):
-            left = left.union(region) if _is_white(shown) else left.difference(region)
-        if page is not None:
-            left = left.intersection(page)
-        return self._own(style, context, left, 0)
+        for shape_style, region in self._shapes(target, inner, style, 0, "fill-rule"):
+            visible = visible.union(region) if _is_white(shape_style) else visible.difference(region)
+        if rectangle_region is not None:
+            visible = visible.intersection(rectangle_region)
+        return self._clip_by_own_path(style, context, visible, 0)
 
-    def _mask_page(self, mask: ET.Element, context: Context, bounds) -> shapely.Geometry | None:
-        """The rectangle outside of which a mask hides everything; None for the default one of a group, which is
-        larger than what is masked."""
+    def _mask_rectangle(self, mask: ET.Element, context: Context, bounds) -> shapely.Geometry | None:
+        """Return the rectangle outside of which a mask hides everything.
+
+        The result is None for the default rectangle of a group, which is larger than the group.
+        """
         import shapely
 
-        given = {name: mask.get(name, default).strip() for name, default in MASK_PAGE.items()}
+        sides = {name: mask.get(name, default).strip() for name, default in DEFAULT_MASK_RECTANGLE.items()}
         if mask.get("maskUnits") == "userSpaceOnUse":
             matrix = context.matrix
             rectangle = [
                 context.length(text, context.viewport[name in ("y", "height")])
-                for name, text in given.items()
+                for name, text in sides.items()
             ]
         else:
-            if (box := bounds()) is None and given == MASK_PAGE:
+            if (box := bounds()) is None and sides == DEFAULT_MASK_RECTANGLE:
                 return None
-            matrix = multiply(context.matrix, _in_bounds(box))
-            rectangle = [length_px(text, 1.0, context.em_px) for text in given.values()]
-        return shapely.Polygon(corners_of(matrix, tuple(rectangle)))
+            matrix = multiply(context.matrix, _matrix_from_bounds(box))
+            rectangle = [length_px(text, 1.0, context.em_px) for text in sides.values()]
+        return shapely.Polygon(rectangle_corners(matrix, tuple(rectangle)))
 
-    def _own(self, style: Style, context: Context, region, depth: int) -> shapely.Geometry:
-        """The region as far as the clip path of its own leaves it."""
-        if (value := style.own["clip-path"]) == "none" or not (found := URL.match(value)):
+    def _clip_by_own_path(self, style: Style, context: Context, region, depth: int) -> shapely.Geometry:
+        """Return the part of a region inside the clip path of its own style."""
+        if (value := style.own["clip-path"]) == "none" or not (url := URL.match(value)):
             return region
-        target = referred(found[1].strip().strip("\"'"), self._by_id)
+        target = find_referenced(url[1].strip().strip("\"'"), self._by_id)
         if target is None:
             return region
         return region.intersection(self._region(target, context, lambda: None, depth + 1))
@@ -143,12 +160,15 @@ class ClipPaths:
     def _shapes(
         self, node: ET.Element, context: Context, parent: Style, depth: int, rule: str
     ) -> Iterator[tuple[Style, shapely.Geometry]]:
-        """The shapes in a clip path ("clip-rule") or, with those of its groups, in a mask ("fill-rule")."""
-        from ..clipping import outlines_of, region_of
+        """Yield the shapes in a clip path or mask, with their style.
+
+        rule: "clip-rule" for a clip path, "fill-rule" for a mask. Groups are read in masks only.
+        """
+        from ..clipping import fill_region, flatten_subpaths
 
         for child in node:
-            tag = local(child)
-            style, _ = cascade(parent, child.attrib, self._rules.of(child), context.diagonal)
+            tag = local_name(child)
+            style, _ = cascade(parent, child.attrib, self._rules.declarations_for(child), context.diagonal)
             if style.own["display"] == "none" or style.inherited["visibility"] != "visible":
                 continue
             _refuse_css_transform(style)
@@ -160,11 +180,13 @@ class ClipPaths:
             if tag == "use" or is_group:
                 if rule == "fill-rule":
                     _refuse_effects(style)
-                if depth > _DEEPEST:
+                if depth > _MAX_DEPTH:
                     raise ClipPathError(_TOO_DEEP, code="clipping-unread")
                 inside = self._shapes(child, here, style, depth + 1, rule)
-                for shown, region in inside if is_group else self._used(child, here, style, depth, rule):
-                    yield shown, self._own(style, here, region, depth)
+                for shape_style, region in (
+                    inside if is_group else self._use_shapes(child, here, style, depth, rule)
+                ):
+                    yield shape_style, self._clip_by_own_path(style, here, region, depth)
             elif tag == "text":
                 raise ClipPathError(
                     "its clip path is text, which is not read: painted whole", code="clipping-unread"
@@ -172,35 +194,35 @@ class ClipPaths:
             elif tag in shapes.TAGS:
                 attributes = {**child.attrib, **style.geometry}
                 try:
-                    commands = shapes.commands_of(tag, attributes, here.viewport, here.em_px)
+                    commands = shapes.shape_commands(tag, attributes, here.viewport, here.em_px)
                 except shapes.DamageError as damage:
                     commands = damage.commands
                 line = trace(commands, matrix, scales(matrix)[0])
-                region = region_of(outlines_of(line.subpaths), style.inherited[rule])
-                yield style, self._own(style, here, region, depth)
+                region = fill_region(flatten_subpaths(line.subpaths), style.inherited[rule])
+                yield style, self._clip_by_own_path(style, here, region, depth)
             elif tag in ("image", "svg", "symbol", "switch", "foreignObject") and rule == "fill-rule":
                 raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
 
-    def _used(
+    def _use_shapes(
         self, use: ET.Element, context: Context, style: Style, depth: int, rule: str
     ) -> Iterator[tuple[Style, shapely.Geometry]]:
-        target = referred(href(use), self._by_id)
+        target = find_referenced(href(use), self._by_id)
         if target is None:
             return
-        if depth > _DEEPEST:
+        if depth > _MAX_DEPTH:
             raise ClipPathError(_TOO_DEEP, code="clipping-unread")
         x, y = (
             context.length(use.get(name, "").strip() or "0", context.viewport[k])
             for k, name in enumerate("xy")
         )
         moved = context._replace(matrix=multiply(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)))
-        alone = ET.Element("clipPath")
-        alone.append(target)
-        yield from self._shapes(alone, moved, style, depth + 1, rule)
+        wrapper = ET.Element("clipPath")
+        wrapper.append(target)
+        yield from self._shapes(wrapper, moved, style, depth + 1, rule)
 
 
-def _in_bounds(box: tuple[float, float, float, float] | None) -> Matrix:
-    """From fractions of an element's bounds (x, y, width, height) to its user units."""
+def _matrix_from_bounds(box: tuple[float, float, float, float] | None) -> Matrix:
+    """Return the matrix from fractions of bounds (x, y, width, height) to user units."""
     if box is None:
         sentence = "its clip path or mask counts in the size of a group, which is not read: painted whole"
         raise ClipPathError(sentence, code="clipping-unread")
@@ -208,14 +230,20 @@ def _in_bounds(box: tuple[float, float, float, float] | None) -> Matrix:
 
 
 def _refuse_effects(style: Style) -> None:
-    """In a mask what is half transparent is grey, and so may be what has a filter or a mask of its own."""
+    """Raise ClipPathError for effects that can make a shape of a mask grey.
+
+    Such effects are opacity, a filter, or a mask inside the mask.
+    """
     own = style.own
     if own["opacity"] != "1" or own["mask"] != "none" or own["filter"] != "none":
         raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
 
 
 def _is_white(style: Style) -> bool:
-    """Whether a shape of a mask shows what is under it. ClipPathError for one that is neither white nor black."""
+    """Whether a shape of a mask is white, so that the element is visible there.
+
+    Raises ClipPathError for a shape that is neither white nor black.
+    """
     _refuse_effects(style)
     fill, is_opaque = style.inherited["fill"] or "#000000", style.inherited["fill-opacity"] == "1"
     if fill == "currentcolor":

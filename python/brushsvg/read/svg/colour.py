@@ -1,4 +1,4 @@
-"""Paint as SVG writes it, to "#rrggbb" and how far it is seen through."""
+"""Parse the colours of SVG."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ _HEX = re.compile("#[0-9a-fA-F]{6}")
 
 @lru_cache
 def parse_colour(value: str) -> str | None:
-    """ "#rrggbb", "#rrggbbaa" if it can be seen through, "none" or "currentcolor"; None if it is none of them."""
+    """Return a colour as "#rrggbb", "#rrggbbaa", "none" or "currentcolor".
+
+    "#rrggbbaa" stands for a transparent colour. The result is None if the value is not a colour.
+    """
     if value.lower() == "none":
         return "none"
     if _HEX.fullmatch(value):

@@ -1,4 +1,4 @@
-"""What an SVG element takes from where it stands, and what is noticed about it."""
+"""The context that an SVG element inherits, and the notices of a drawing."""
 
 from __future__ import annotations
 
@@ -16,10 +16,18 @@ if TYPE_CHECKING:
 
 
 class Context(NamedTuple):
-    """viewport: (w, h) in user units; clip: the region on paper that clip paths and
-    nested viewports show, None for all; prefix: ids of the
-    uses that enclose it; copied: the element that the innermost copies; size: width and height that it gives a symbol
-    or svg right below it.
+    """The state that an element inherits from the elements around it.
+
+    matrix: user units to paper.
+    style: the style of the element around it.
+    layer: "" outside of any layer.
+    settings: the settings for brushsvg, inherited.
+    viewport: (width, height) in user units.
+    clip: the region on paper that clip paths, masks and nested viewports show; None for all.
+    prefix: ids of the use elements around it, separated by "/".
+    chosen: whether the user's selection includes it.
+    copied: the element that the innermost use copies, None outside of uses.
+    size: width and height that the use gives to a symbol or svg directly below it.
     """
 
     matrix: Matrix
@@ -42,21 +50,24 @@ class Context(NamedTuple):
         return float(self.style.inherited["font-size"])
 
     @property
-    def is_of_screen(self) -> bool:
-        """Return whether widths and dashes count in px of the screen, under any transforms."""
+    def counts_in_screen_px(self) -> bool:
+        """Whether widths and dashes count in px of the screen and ignore transforms."""
         return self.style.own["vector-effect"] == "non-scaling-stroke"
 
     def length(self, text: str, percent_of: float) -> float:
-        """A length in user units. Error if it is none."""
+        """Return a length in user units. Raises Error if the text is not a length."""
         return length_px(text, percent_of, self.em_px)
 
     def name(self, node: ET.Element) -> str:
-        """Return the name of an element through the uses that copy it, "" without an id."""
-        return "/".join(filter(None, (self.prefix, one_line(node.get("id", "")))))
+        """Return the id of an element with the ids of the uses that copy it.
+
+        Without an id, the result is the ids of the uses alone, or "" outside of uses.
+        """
+        return "/".join(filter(None, (self.prefix, printable_line(node.get("id", "")))))
 
 
-class Notes:
-    """The notices of a drawing, in the order met, and names for its elements in them."""
+class NoticeList:
+    """The notices of a drawing in the order of reading, with names for its elements."""
 
     def __init__(self, root: ET.Element, notices: list[Notice]):
         self.root = root
@@ -74,30 +85,30 @@ class Notes:
         about: str = "",
         advice: str = "",
     ) -> None:
-        """Say something of an element that is to be painted; of any other there is nothing to say."""
+        """Add a notice about an element, if the element is chosen or the root."""
         if context.chosen or node is self.root:
-            in_one_line = one_line(sentence)
+            in_one_line = printable_line(sentence)
             self.notices.append(
                 Notice(self.label(node), in_one_line, damaged, context.layer, code, about, advice)
             )
 
     def label(self, node: ET.Element) -> str:
-        """An element's id, or which one of its kind it is: "rect 3"."""
-        if name := one_line(node.get("id", "")):
+        """Return the id of an element, or its type and number: "rect 3"."""
+        if name := printable_line(node.get("id", "")):
             return name
         if not self._ordinals:
             counts: dict[str, int] = {}
-            for each in self.root.iter():
-                counts[each.tag] = self._ordinals[each] = counts.get(each.tag, 0) + 1
-        return local(node) if node is self.root else f"{local(node)} {self._ordinals[node]}"
+            for element in self.root.iter():
+                counts[element.tag] = self._ordinals[element] = counts.get(element.tag, 0) + 1
+        return local_name(node) if node is self.root else f"{local_name(node)} {self._ordinals[node]}"
 
 
-def local(node: ET.Element) -> str:
-    """An element's name without its namespace."""
+def local_name(node: ET.Element) -> str:
+    """Return the tag of an element without its namespace."""
     return node.tag.rpartition("}")[2]
 
 
-def one_line(text: str) -> str:
-    """Text of a drawing as it can stand in a name or a sentence."""
+def printable_line(text: str) -> str:
+    """Return text of a drawing for use in a name or a sentence: one printable line."""
     text = " ".join(text.split())
     return text if text.isprintable() else "".join(c if c.isprintable() else "?" for c in text)

@@ -1,4 +1,4 @@
-"""One shape of an SVG file to an Element: what it is painted with, its geometry on paper, its dashes."""
+"""Convert a shape of an SVG file to an Element: paint, geometry and dashes."""
 
 from __future__ import annotations
 
@@ -16,41 +16,55 @@ from ...geometry.rings import signed_area
 from ...units import MM_PER, number
 from ..background import is_light
 from ..design import Element, SubPath
-from .context import Context, Notes, local
+from .context import Context, NoticeList, local_name
 from .css.cascade import MARKERS
-from .paint_servers import Paints
+from .paint_servers import PaintServers
 from .paths import shapes
-from .paths.path_to_cubics import LARGEST_MM, trace
-from .paths.power_stroke import PowerStroke, drawn_line, with_widths
+from .paths.path_to_cubics import MAX_COORDINATE_MM, trace
+from .paths.power_stroke import PowerStroke, add_widths, read_power_stroke
 from .transform import IDENTITY, scales
 
 _WITH_MARKERS = frozenset(("path", "line", "polyline", "polygon"))
-_UNEVEN = 1.05  # below it, the width along and across differs by less than a brush's own scatter
-# A page of text has a hundredth of each.
-_FLAT_MM = 0.05
-_MOST_DASHES = 100_000
-_MOST_DATA = 10_000_000  # characters of path data
+_MAX_EVEN_RATIO = 1.05  # ratio of the scales; below it the width differs by less than the scatter of a brush
+_FLATTENING_TOLERANCE_MM = 0.05
+# A page of text has a hundredth of these numbers of dashes and of characters of path data.
+_MAX_DASHES = 100_000
+_MAX_PATH_DATA = 10_000_000
 
 
-class Painted:
-    """elements: those of the drawing in the order painted. bent: elements in path effects of groups."""
+class PaintedElements:
+    """The painted elements of a drawing. Each call of add converts a shape.
 
-    def __init__(self, by_id: dict[str, ET.Element], notes: Notes, paints: Paints, bent: set[ET.Element]):
+    elements: the converted elements, in the order in which they are painted.
+    in_group_effects: the SVG elements whose outlines are changed by path effects of groups.
+    """
+
+    def __init__(
+        self,
+        by_id: dict[str, ET.Element],
+        notes: NoticeList,
+        paints: PaintServers,
+        in_group_effects: set[ET.Element],
+    ):
         self.elements: list[Element] = []
         self.by_id = by_id
         self.paints = paints
-        self.bent = bent
+        self.in_group_effects = in_group_effects
         self.notes = notes
-        self.nameless = self.data = 0
-        self.dashes_left = _MOST_DASHES
+        self.unnamed = self.path_data_length = 0
+        self.dashes_left = _MAX_DASHES
 
     def add(self, node: ET.Element, tag: str, context: Context) -> None:
-        """Take a shape in, as far as it is sound."""
+        """Convert the undamaged part of a shape and add it to the elements."""
         properties = context.style.inherited
-        stroke, of_stroke = self.paints.of(properties, "stroke")
-        fill, of_fill = self.paints.of(properties, "fill") if tag != "line" else ("none", [])
+        stroke, stroke_notices = self.paints.find_paint(properties, "stroke")
+        fill, fill_notices = self.paints.find_paint(properties, "fill") if tag != "line" else ("none", [])
         attributes = {**node.attrib, **context.style.geometry} if context.style.geometry else node.attrib
-        power, unread = drawn_line(node, self.by_id, node in self.bent) if tag == "path" else (None, [])
+        power, unread = (
+            read_power_stroke(node, self.by_id, node in self.in_group_effects)
+            if tag == "path"
+            else (None, [])
+        )
         greatest, least = scales(context.matrix)
         if least <= 1e-12 * greatest:
             self.notes.add(
@@ -59,15 +73,16 @@ class Painted:
             return
         mm_per_user = math.sqrt(greatest * least)
         width_mm = context.length(properties["stroke-width"], context.diagonal) * mm_per_user
-        if context.is_of_screen:
+        if context.counts_in_screen_px:
             width_mm *= MM_PER["px"] / mm_per_user
         if power:
             attributes = {**attributes, "d": power.d}
-            stroke, of_stroke = (fill, of_fill) if fill != "none" else (stroke, of_stroke)
+            stroke, stroke_notices = (fill, fill_notices) if fill != "none" else (stroke, stroke_notices)
             fill = "none"
         if "width_mm" in context.settings:
             width_mm, power = context.settings["width_mm"], None
-            if stroke == "none" and fill == "none":  # a shape stays a shape
+            # Only an element without any paint gets a stroke. A filled shape stays a filled shape.
+            if stroke == "none" and fill == "none":
                 stroke = properties["color"][:7]
         if power is None and width_mm == 0:
             stroke = "none"
@@ -75,33 +90,33 @@ class Painted:
             sentence = f"{self._why_unpainted(properties, tag, width_mm)}: left out"
             self.notes.add(node, context, sentence, code="neither-stroke-nor-fill")
             return
-        if not width_mm <= LARGEST_MM:
+        if not width_mm <= MAX_COORDINATE_MM:
             sentence = f"its stroke-width {width_mm:.6g} mm is beyond 1e6 mm: left out"
             self.notes.add(node, context, sentence, damaged=True, code="geometry-out-of-range")
             return
         before = len(self.notes.notices)
-        outline = self._outline(node, tag, attributes, context, power)
+        outline = self._outline_on_paper(node, tag, attributes, context, power)
         subpaths = self._with_dashes(node, context, outline) if stroke != "none" else outline
         if not subpaths:
             return
-        is_even = "width_mm" in context.settings or (context.is_of_screen and power is None)
-        if stroke != "none" and greatest > _UNEVEN * least and not is_even:
+        has_even_width = "width_mm" in context.settings or (context.counts_in_screen_px and power is None)
+        if stroke != "none" and greatest > _MAX_EVEN_RATIO * least and not has_even_width:
             sentence = f"its transforms stretch it unevenly: its width counts as {width_mm:.4g} mm, the mean"
             self.notes.add(node, context, sentence, code="stretched-unevenly")
-        for each in unread + of_fill * (fill != "none") + of_stroke * (stroke != "none"):
-            self.notes.add(node, context, each.sentence, code=each.code, about=each.about)
+        for notice in unread + fill_notices * (fill != "none") + stroke_notices * (stroke != "none"):
+            self.notes.add(node, context, notice.sentence, code=notice.code, about=notice.about)
         if any(is_light(colour) for colour in (fill, stroke) if colour.startswith("#")):
             sentence = (
                 "it is white or nearly white, and painted like any colour: what it hides in the drawing is painted, "
                 'too; data-brushsvg-skip="yes" on it leaves it out'
             )
             self.notes.add(node, context, sentence, code="white-paint")
-        # a black fill that nobody chose is rarely intended next to a stroke of another colour
+        # A black fill by default is rarely intended next to a stroke of another colour.
         is_two = properties["fill"] and "none" not in (fill, stroke) and fill != stroke
         if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
             self.notes.add(node, context, "markers are not read: left out", code="markers-unread")
         element = Element(
-            id=self._named(node, context, before),
+            id=self._name_element(node, context, before),
             subpaths=subpaths,
             stroke_width_mm=0.0 if stroke == "none" else width_mm,
             colour=fill if stroke == "none" else stroke,
@@ -111,26 +126,25 @@ class Painted:
             fill_colour=fill if is_two else "",
         )
         elements = [element]
-        if (
-            element.fill_rule and subpaths is not outline and _encloses(outline, width_mm)
-        ):  # its dashes do not
+        # The dashes do not enclose the filled area, so the fill keeps the outline without dashes.
+        if element.fill_rule and subpaths is not outline and _encloses(outline, width_mm):
             shape, line = replace(element, fill_colour=element.fill_colour or element.colour).by_colour()
             elements = [replace(shape, subpaths=outline), line]
         if context.clip is not None:
-            elements = [piece for each in elements for piece in self._clipped(node, context, each)]
+            elements = [piece for whole in elements for piece in self._clipped(node, context, whole)]
         self.elements += elements
 
     def _clipped(self, node: ET.Element, context: Context, element: Element) -> list[Element]:
-        from ..clipping import clipped
+        from ..clipping import clip_element
 
-        found = clipped(element, context.clip)
-        if not found:
+        pieces = clip_element(element, context.clip)
+        if not pieces:
             sentence = "it is outside the clip path, mask or viewport that would show it: left out"
             self.notes.add(node, context, sentence, code="clipped-away")
-        return found
+        return pieces
 
     def _why_unpainted(self, properties: dict[str, str], tag: str, width_mm: float) -> str:
-        """Return the reason why a stroke or fill of the drawing paints nothing."""
+        """Return the reason why an element has neither stroke nor fill."""
         kinds = [
             name
             for name in ("stroke", "fill")
@@ -139,16 +153,19 @@ class Painted:
         causes = [
             "its stroke-width is 0"
             if name == "stroke" and width_mm == 0
-            else self.paints.why_none(properties, name)
+            else self.paints.explain_no_paint(properties, name)
             for name in kinds
         ]
         return " and ".join(causes) or "it has neither stroke nor fill"
 
     def bounds(self, node: ET.Element, context: Context) -> tuple[float, float, float, float] | None:
-        """(x, y, width, height) of a shape's geometry in its own user units, None if it has none that is sound."""
+        """Return the bounds (x, y, width, height) of a shape in its own user units.
+
+        The result is None if the shape has no geometry or damaged geometry.
+        """
         attributes = {**node.attrib, **context.style.geometry}
         try:
-            commands = shapes.commands_of(local(node), attributes, context.viewport, context.em_px)
+            commands = shapes.shape_commands(local_name(node), attributes, context.viewport, context.em_px)
         except shapes.DamageError:
             return None
         line = trace(commands, IDENTITY, 1.0)
@@ -158,41 +175,46 @@ class Painted:
         (x, y), (width, height) = points.min(axis=0).tolist(), np.ptp(points, axis=0).tolist()
         return x, y, width, height
 
-    def _named(self, node: ET.Element, context: Context, first: int) -> str:
-        """Return a painted element's name; notices about one without an id are renamed as well."""
+    def _name_element(self, node: ET.Element, context: Context, first: int) -> str:
+        """Return the name of a painted element.
+
+        An element without an id gets a name, which its notices, from index first on, use as well.
+        """
         if name := context.name(node):
             return name
-        self.nameless += 1
-        name = f"stroke{self.nameless}"
+        self.unnamed += 1
+        name = f"stroke{self.unnamed}"
         notices = self.notes.notices
         if len(notices) > first:
             label = f"{name} ({self.notes.label(node)})"
             notices[first:] = [replace(notice, where=label) for notice in notices[first:]]
         return name
 
-    def _outline(
+    def _outline_on_paper(
         self, node, tag: str, attributes, context: Context, power: PowerStroke | None
     ) -> tuple[SubPath, ...]:
-        """An element's geometry on paper, without dashes."""
+        """Return the geometry of an element on paper, without dashes."""
         greatest, least = scales(context.matrix)
-        subpaths = self._sound(node, tag, attributes, context, greatest)
-        return with_widths(power, subpaths, math.sqrt(greatest * least)) if power else subpaths
+        subpaths = self._trace_geometry(node, tag, attributes, context, greatest)
+        return add_widths(power, subpaths, math.sqrt(greatest * least)) if power else subpaths
 
     def _with_dashes(self, node, context: Context, subpaths: tuple[SubPath, ...]) -> tuple[SubPath, ...]:
         greatest, least = scales(context.matrix)
-        mm_per_unit = MM_PER["px"] if context.is_of_screen else math.sqrt(greatest * least)
-        return self._dashed(node, context, subpaths, mm_per_unit)
+        mm_per_unit = MM_PER["px"] if context.counts_in_screen_px else math.sqrt(greatest * least)
+        return self._cut_dashes(node, context, subpaths, mm_per_unit)
 
-    def _sound(self, node, tag: str, attributes, context: Context, greatest: float) -> tuple[SubPath, ...]:
-        self.data += len(attributes.get("d", "")) + len(attributes.get("points", ""))
-        if self.data > _MOST_DATA:
+    def _trace_geometry(
+        self, node, tag: str, attributes, context: Context, greatest: float
+    ) -> tuple[SubPath, ...]:
+        self.path_data_length += len(attributes.get("d", "")) + len(attributes.get("points", ""))
+        if self.path_data_length > _MAX_PATH_DATA:
             raise Error(
-                f"the drawing has more than {_MOST_DATA} characters of path data",
+                f"the drawing has more than {_MAX_PATH_DATA} characters of path data",
                 self.notes.label(node),
                 code="drawing-too-large",
             )
         try:
-            commands = shapes.commands_of(tag, attributes, context.viewport, context.em_px)
+            commands = shapes.shape_commands(tag, attributes, context.viewport, context.em_px)
             if not commands:
                 self.notes.add(node, context, "it has no geometry: left out", code="geometry-empty")
         except shapes.DamageError as damage:
@@ -203,7 +225,7 @@ class Painted:
             self.notes.add(
                 node,
                 context,
-                _beyond(attributes, tag, line.beyond),
+                _out_of_range_sentence(attributes, tag, line.beyond),
                 damaged=True,
                 code="geometry-out-of-range",
             )
@@ -212,15 +234,15 @@ class Painted:
             self.notes.add(node, context, f"{count} without a line to follow: skipped", code="moveto-alone")
         return line.subpaths
 
-    def _dashed(self, node, context: Context, subpaths, mm_per_unit: float) -> tuple[SubPath, ...]:
+    def _cut_dashes(self, node, context: Context, subpaths, mm_per_unit: float) -> tuple[SubPath, ...]:
         properties = context.style.inherited
         if properties["stroke-dasharray"] == "none" or not subpaths:
             return subpaths
-        from ..dashes import dashed
+        from ..dashes import cut_into_dashes
 
         words = [word for part in properties["stroke-dasharray"].split(",") for word in part.split() or [""]]
         try:
-            scale = mm_per_unit * self._path_scale(node, context, subpaths, mm_per_unit)
+            scale = mm_per_unit * self._dash_unit_scale(node, context, subpaths, mm_per_unit)
             pattern = [context.length(word, context.diagonal) * scale for word in words]
             offset = context.length(properties["stroke-dashoffset"], context.diagonal) * scale
         except Error as error:
@@ -244,38 +266,41 @@ class Painted:
         pieces: list[SubPath] = []
         try:
             for subpath in subpaths:
-                pieces += dashed(subpath, pattern, offset, self.dashes_left - len(pieces))
+                pieces += cut_into_dashes(subpath, pattern, offset, self.dashes_left - len(pieces))
         except Error as error:
             raise Error(str(error), where=self.notes.label(node), code=error.code) from None
         self.dashes_left -= len(pieces)
         self.notes.add(node, context, f"it is dashed: {len(pieces)} dashes, each a stroke", code="dashed")
         return tuple(pieces)
 
-    def _path_scale(self, node, context: Context, subpaths, mm_per_unit: float) -> float:
-        """How long a unit of the dashes is, of mm_per_unit: pathLength may say how many the path has."""
+    def _dash_unit_scale(self, node, context: Context, subpaths, mm_per_unit: float) -> float:
+        """Return the length of a dash unit as a multiple of mm_per_unit.
+
+        pathLength can define how many units the path has. Without it the result is 1.
+        """
         text = (node.get("pathLength") or "").strip()
         if not text:
             return 1.0
         try:
-            said = number(text)
+            path_length = number(text)
         except Error as error:
             self.notes.add(
                 node, context, f"pathLength: {error}; it counts as not given", code="path-length-unread"
             )
             return 1.0
-        if said < 0:
+        if path_length < 0:
             return 1.0
         length_mm = sum(float(knots(subpath.cubics)[:, -1].sum()) for subpath in subpaths)
-        return length_mm / mm_per_unit / said if said else math.inf
+        return length_mm / mm_per_unit / path_length if path_length else math.inf
 
 
 def _encloses(subpaths: tuple[SubPath, ...], width_mm: float) -> bool:
-    """Whether there is more inside of an outline than a line of this width along it hides."""
-    rings = [flattened(subpath.cubics, _FLAT_MM) for subpath in subpaths]
+    """Whether an outline encloses more area than a line along it covers."""
+    rings = [flattened(subpath.cubics, _FLATTENING_TOLERANCE_MM) for subpath in subpaths]
     return sum(abs(signed_area(ring)) for ring in rings) > sum(map(length, rings)) * width_mm / 2
 
 
-def _beyond(attributes, tag: str, place: int) -> str:
+def _out_of_range_sentence(attributes, tag: str, place: int) -> str:
     name = {"path": "d", "polyline": "points", "polygon": "points"}.get(tag)
     if name is None:
         return "its geometry is beyond 1e6 mm: left out"

@@ -1,8 +1,8 @@
-"""Which groups of an SVG file are layers, and what they are called, by the habits of the programs that write them.
+"""Find the groups of an SVG file that are layers, and their names.
 
-Inkscape marks layers. Elsewhere they are the outermost groups with a name: an id, in which Illustrator and CorelDRAW
-escape what an id cannot hold, or, next to it, Affinity's serif:id or Illustrator's data-name. Where such a group holds
-the whole drawing, as a page or an artboard does, the groups in it are layers, too.
+Inkscape marks layers. In files of other programs, the outermost groups with a name are layers. The name is an id, in
+which Illustrator and CorelDRAW escape special characters, or Affinity's serif:id or Illustrator's data-name next to
+the id. If such a group contains the whole drawing, as a page or an artboard does, the groups inside are layers, too.
 """
 
 from __future__ import annotations
@@ -11,78 +11,84 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 
-from .context import local, one_line
+from .context import local_name, printable_line
 from .paths.power_stroke import INKSCAPE
 
 _SERIF = "{http://www.serif.com/}"
 _ESCAPE = re.compile("_x([0-9A-Fa-f]{2,6})_")
-_AROUND = frozenset(("svg", "switch", "a"))  # what stands around layers without being one
-_DEEPEST = 100  # layers in layers with names of their own: nobody clicks deeper
+_CONTAINERS = frozenset(("svg", "switch", "a"))  # elements that can contain layers and are not layers
+_MAX_LAYER_DEPTH = 100  # nesting depth of layers that get their own names; no user needs more
 _NOT_DRAWN = frozenset("title desc metadata defs style script foreignObject namedview".split())
 
 
 def layer_names(root: ET.Element) -> dict[ET.Element, str]:
-    """Return the name of each group that is a layer, with those of the layers around it: "Ink/Fine"."""
+    """Return the name of each layer, prefixed by the layers around it: "Ink/Fine"."""
     own = {
-        node: one_line(node.get(INKSCAPE + "label") or node.get("id", ""))
+        node: printable_line(node.get(INKSCAPE + "label") or node.get("id", ""))
         for node in root.iter()
         if node.get(INKSCAPE + "groupmode") == "layer"
     }
-    own = own or _by_convention(root)
+    own = own or _names_by_convention(root)
     names: dict[ET.Element, str] = {}
-    waiting = [("", 0, iter(root))] if own else []
-    while waiting:
-        path, depth, nodes = waiting[-1]
+    stack = [("", 0, iter(root))] if own else []
+    while stack:
+        path, depth, nodes = stack[-1]
         node = next(nodes, None)
         if node is None:
-            waiting.pop()
+            stack.pop()
             continue
         if node in own:
-            if depth < _DEEPEST:
+            if depth < _MAX_LAYER_DEPTH:
                 path, depth = "/".join(filter(None, (path, own[node]))), depth + 1
             names[node] = path
         if len(node):
-            waiting.append((path, depth, iter(node)))
+            stack.append((path, depth, iter(node)))
     return names
 
 
-def is_documentation(path: str) -> bool:
-    """Whether a layer holds notes for people: AxiDraw's software never plots layers whose names start with %
-    (wiki.evilmadscientist.com, "AxiDraw Layer Control")."""
+def is_notes_layer(path: str) -> bool:
+    """Whether a layer contains notes that are not plotted.
+
+    AxiDraw's software never plots layers whose names start with % (wiki.evilmadscientist.com, "AxiDraw Layer
+    Control").
+    """
     return path.rpartition("/")[2].startswith("%")
 
 
-def _by_convention(root: ET.Element) -> dict[ET.Element, str]:
+def _names_by_convention(root: ET.Element) -> dict[ET.Element, str]:
     names: dict[ET.Element, str] = {}
-    inside: ET.Element | None = root
-    while inside is not None:
-        found = list(_outermost(inside))
-        groups = {node: name for node, name in found if name}
+    container: ET.Element | None = root
+    while container is not None:
+        outermost = list(_outermost_groups(container))
+        groups = {node: name for node, name in outermost if name}
         names.update(groups)
-        inside = found[0][0] if len(found) == len(groups) == 1 else None
+        container = outermost[0][0] if len(outermost) == len(groups) == 1 else None
     return names
 
 
-def _outermost(parent: ET.Element) -> Iterator[tuple[ET.Element, str]]:
-    """Return the outermost named groups and, with "", everything painted outside of them."""
-    waiting = [iter(parent)]
-    while waiting:
-        node = next(waiting[-1], None)
+def _outermost_groups(parent: ET.Element) -> Iterator[tuple[ET.Element, str]]:
+    """Yield (element, name) for the outermost named groups.
+
+    Painted elements outside of these groups have the name "".
+    """
+    stack = [iter(parent)]
+    while stack:
+        node = next(stack[-1], None)
         if node is None:
-            waiting.pop()
-        elif local(node) == "g" and (name := _name(node)):
+            stack.pop()
+        elif local_name(node) == "g" and (name := _group_name(node)):
             yield node, name
-        elif local(node) in _AROUND or local(node) == "g":
-            waiting.append(iter(node))
-        elif local(node) not in _NOT_DRAWN:
+        elif local_name(node) in _CONTAINERS or local_name(node) == "g":
+            stack.append(iter(node))
+        elif local_name(node) not in _NOT_DRAWN:
             yield node, ""
 
 
-def _name(node: ET.Element) -> str:
-    said = node.get(_SERIF + "id") or node.get("data-name")
-    return one_line(said or _ESCAPE.sub(_character, node.get("id", "")))
+def _group_name(node: ET.Element) -> str:
+    given_name = node.get(_SERIF + "id") or node.get("data-name")
+    return printable_line(given_name or _ESCAPE.sub(_unescape, node.get("id", "")))
 
 
-def _character(escape: re.Match) -> str:
+def _unescape(escape: re.Match) -> str:
     number = int(escape[1], 16)
     return chr(number) if number < 0x110000 and chr(number).isprintable() else escape[0]

@@ -1,4 +1,4 @@
-"""What the href of an element, or a url(), refers to."""
+"""Resolve the references of href and url()."""
 
 from __future__ import annotations
 
@@ -9,12 +9,15 @@ _XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
 
 
 def href(node: ET.Element) -> str:
-    """Of the attribute or, where that is not given, XLink's."""
+    """Return the attribute href of an element or, if it is missing, xlink:href."""
     return node.get("href", node.get(_XLINK_HREF, ""))
 
 
-def referred(reference: str, by_id: dict[str, ET.Element]) -> ET.Element | None:
-    """The element of the same drawing: of the id as it is written or, as URLs write letters beyond ASCII, unquoted."""
+def find_referenced(reference: str, by_id: dict[str, ET.Element]) -> ET.Element | None:
+    """Return the element that a reference names in the same drawing, or None.
+
+    The id is used as written or, because URLs quote letters beyond ASCII, unquoted.
+    """
     if not reference.startswith("#") or reference == "#":
         return None
     return by_id.get(reference[1:], by_id.get(unquote(reference[1:])))

@@ -1,4 +1,4 @@
-"""Which elements of an SVG are chosen by a CSS selector that its user gives."""
+"""Select elements of an SVG by a CSS selector from the user."""
 
 from __future__ import annotations
 
@@ -10,16 +10,21 @@ from ...errors import Error
 from .css.selectors import Tree
 
 
-def selected(root: ET.Element, text: str) -> set[ET.Element]:
-    """The elements that a CSS selector names. Error if it is none, or names nothing."""
+def select_elements(root: ET.Element, text: str) -> set[ET.Element]:
+    """Return the elements that a CSS selector matches.
+
+    Raises Error if the text is not a selector, or matches nothing.
+    """
     tree = Tree(root)
-    selectors = tree.compiled(tinycss2.parse_component_value_list(text))
+    selectors = tree.compile_selectors(tinycss2.parse_component_value_list(text))
     if not selectors:
         raise Error(
             f"{text[:60]!r} is not a CSS selector; write for example #signature or g.ink path",
             code="selector-invalid",
         )
-    found = {node for node, wrapped in tree.nodes.items() if any(each.test(wrapped) for each in selectors)}
+    found = {
+        node for node, wrapped in tree.nodes.items() if any(selector.test(wrapped) for selector in selectors)
+    }
     if not found:
         raise Error(
             f"selector {text[:60]!r} matches no element of the drawing", code="selector-matches-nothing"

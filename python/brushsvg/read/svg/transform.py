@@ -1,4 +1,4 @@
-"""Matrices of SVG, and the attribute they are written as; CSS: css_transform.
+"""Matrices of SVG, and the transform attribute. css/transform.py reads CSS.
 
 A matrix (a, b, c, d, e, f) maps (x, y) to (a x + c y + e, b x + d y + f).
 """
@@ -9,14 +9,14 @@ import math
 import re
 
 from ...errors import Error
-from .paths.path_data import numbers, snippet
+from .paths.path_data import parse_numbers, snippet
 
 Matrix = tuple[float, float, float, float, float, float]
 IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 
 
 def multiply(outer: Matrix, inner: Matrix) -> Matrix:
-    """The map that applies inner first."""
+    """Return the matrix that applies inner first, then outer."""
     a, b, c, d, e, f = outer
     g, h, i, j, k, m = inner
     return (
@@ -30,7 +30,7 @@ def multiply(outer: Matrix, inner: Matrix) -> Matrix:
 
 
 def scales(matrix: Matrix) -> tuple[float, float]:
-    """Greatest and least stretch of a matrix (its singular values)."""
+    """Return the greatest and least stretch of a matrix (its singular values)."""
     a, b, c, d = matrix[:4]
     turning, mirroring = math.hypot(a + d, b - c), math.hypot(a - d, b + c)
     return (turning + mirroring) / 2, abs(turning - mirroring) / 2
@@ -56,7 +56,10 @@ _CALL = re.compile(r"([a-zA-Z]++)\s*+\(([^()]*+)\)")
 
 
 def parse_transform(text: str) -> Matrix:
-    """The matrix of a transform attribute. Error names the character where it stops making sense."""
+    """Return the matrix of a transform attribute.
+
+    Raises Error with the number of the first character that cannot be read.
+    """
     matrix = IDENTITY
     if text.strip() == "none":
         return matrix
@@ -64,7 +67,7 @@ def parse_transform(text: str) -> Matrix:
     while position < len(text):
         call = _CALL.match(text, position)
         counts, make = FUNCTIONS.get(call[1], ((), None)) if call else ((), None)
-        values = numbers(call[2].strip()) if call else None
+        values = parse_numbers(call[2].strip()) if call else None
         if values is None or len(values) not in counts or not all(map(math.isfinite, values)):
             raise Error(
                 f"transform is damaged at character {position + 1}: found {snippet(text, position)}",

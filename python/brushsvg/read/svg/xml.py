@@ -1,8 +1,8 @@
-"""Bytes to an element tree, with nothing fetched and nothing inflated.
+"""Parse XML safely: nothing is fetched, and nothing can inflate itself.
 
-An entity bomb is stopped before it grows: entities built from entities are refused, and what the rest can
-grow to is bounded beforehand by (number of references) x (longest entity); attribute defaults likewise.
-Nesting costs no recursion, here or in the walk over the tree.
+An entity bomb is stopped before it grows. Entities that contain entities are refused, and the size of the others is
+bounded beforehand by (number of references) x (longest entity). Attribute defaults are bounded in the same way.
+Nested elements need no recursion, here or in the walk over the tree.
 """
 
 from __future__ import annotations
@@ -15,23 +15,27 @@ from xml.parsers import expat
 
 from ...errors import Error
 
-# Drawing programs declare a dozen short entities and use each once per element: far below a megabyte.
+# Characters to which all entities, or all attribute defaults, may grow. Drawing programs declare a dozen short entities
+# and use each once per element, which is far below a megabyte.
 EXPANSION_LIMIT = 10_000_000
-_MOST_ELEMENTS = 1_000_000  # ten times what may be painted
-_LARGEST_UNPACKED = 64_000_000  # characters; path data may have 10 million
+_MAX_ELEMENTS = 1_000_000  # ten times the number of elements that can be painted
+_MAX_UNPACKED_BYTES = 64_000_000  # bytes; path data may have 10 million characters
 
 
 @dataclass(frozen=True)
 class Document:
-    """root: tags as "{namespace}name"; instructions: names of the processing instructions; comments: the first few."""
+    """A parsed document.
+
+    root: tags are "{namespace}name"; instructions: names of the processing instructions; comments: the first 10.
+    """
 
     root: ET.Element
     instructions: list[str]
     comments: list[str]
 
 
-# How files begin that users pass as drawings, under any name; Illustrator's .ai is a PDF.
-_OTHERS = {
+# First bytes of other files that users pass as drawings. Illustrator's .ai is a PDF.
+_OTHER_FORMATS = {
     b"%PDF": "a PDF",
     b"%!PS": "a PostScript file",
     b"\x89PNG": "a PNG picture",
@@ -42,16 +46,16 @@ _OTHERS = {
 
 
 def parse_xml(data: bytes) -> Document:
-    """Return the document's tree and the processing instructions next to it.
+    """Parse a document, which may be compressed (SVGZ).
 
-    Error, with the line where there is one, for what is not XML, reads other files or inflates itself.
+    Raises Error, with the line if it is known, if the data is not XML, reads other files or inflates itself.
     """
     if not data.strip():
         raise Error("the file is empty", code="file-empty")
-    data = _unpacked(data) if data.startswith(b"\x1f\x8b") else data
-    if kind := next((kind for begin, kind in _OTHERS.items() if data.startswith(begin)), None):
+    data = _unpack(data) if data.startswith(b"\x1f\x8b") else data
+    if kind := next((kind for begin, kind in _OTHER_FORMATS.items() if data.startswith(begin)), None):
         raise Error(f"this is {kind}, not an SVG: export the drawing as SVG", code="not-xml")
-    data, encoding = _decoded(data)
+    data, encoding = _decode(data)
     parser = expat.ParserCreate(encoding, namespace_separator="}")
     parser.buffer_text = True
     builder = ET.TreeBuilder()
@@ -60,10 +64,10 @@ def parse_xml(data: bytes) -> Document:
     names: dict[str, str] = {}
     default_length = 0
 
-    def line() -> str:
+    def position() -> str:
         return f"line {parser.CurrentLineNumber}"
 
-    def full(name: str) -> str:
+    def qualified(name: str) -> str:
         if name not in names:
             names[name] = "{" + name if "}" in name else name
         return names[name]
@@ -73,30 +77,33 @@ def parse_xml(data: bytes) -> Document:
     def start(tag: str, attributes: dict[str, str]) -> None:
         nonlocal elements
         elements += 1
-        if elements > _MOST_ELEMENTS:
+        if elements > _MAX_ELEMENTS:
             raise Error(
-                f"{line()}: the document has more than {_MOST_ELEMENTS} elements", code="drawing-too-large"
+                f"{position()}: the document has more than {_MAX_ELEMENTS} elements", code="drawing-too-large"
             )
-        builder.start(full(tag), {full(name): value for name, value in attributes.items()})
+        builder.start(qualified(tag), {qualified(name): value for name, value in attributes.items()})
 
     def entity(name, is_parameter, value, _base, system_id, _public_id, _notation) -> None:
         if system_id is not None:
-            raise Error(f"{line()}: entity {name!r} is in another file, which is not read", code="xml-entity")
+            raise Error(
+                f"{position()}: entity {name!r} is in another file, which is not read", code="xml-entity"
+            )
         if is_parameter or re.search("&[^#]", value):
             raise Error(
-                f"{line()}: entity {name!r} is built from other entities, which is refused", code="xml-entity"
+                f"{position()}: entity {name!r} is built from other entities, which is refused",
+                code="xml-entity",
             )
-        bound("entities", data.count(b"&") * len(value))
+        limit_growth("entities", data.count(b"&") * len(value))
 
     def attribute_default(_element, _name, _type, default, _required) -> None:
         nonlocal default_length
         default_length += len(default or "")
-        bound("attribute defaults", data.count(b"<") * default_length)
+        limit_growth("attribute defaults", data.count(b"<") * default_length)
 
-    def bound(what: str, length: int) -> None:
+    def limit_growth(content: str, length: int) -> None:
         if length > EXPANSION_LIMIT:
             raise Error(
-                f"{line()}: the document's {what} could grow to {length} characters, "
+                f"{position()}: the document's {content} could grow to {length} characters, "
                 f"beyond the limit of {EXPANSION_LIMIT}",
                 value=length,
                 range=(0, EXPANSION_LIMIT),
@@ -104,7 +111,7 @@ def parse_xml(data: bytes) -> Document:
             )
 
     parser.StartElementHandler = start
-    parser.EndElementHandler = lambda tag: builder.end(full(tag))
+    parser.EndElementHandler = lambda tag: builder.end(qualified(tag))
     parser.CharacterDataHandler = builder.data
     parser.EntityDeclHandler = entity
     parser.AttlistDeclHandler = attribute_default
@@ -124,8 +131,8 @@ def parse_xml(data: bytes) -> Document:
     return Document(builder.close(), instructions, comments)
 
 
-# What expat cannot decode, by its label and the codec that browsers read it with (WHATWG Encoding Standard).
-_MULTI_BYTE = {
+# Encodings that expat cannot decode: the label, and the codec that browsers use (WHATWG Encoding Standard).
+_MULTI_BYTE_CODECS = {
     "gb2312": "gb18030",
     "gbk": "gb18030",
     "gb18030": "gb18030",
@@ -139,10 +146,13 @@ _MULTI_BYTE = {
 _DECLARED = re.compile(rb"""\s*<\?xml\s[^>]*?encoding\s*=\s*["']([A-Za-z0-9._-]+)""")
 
 
-def _decoded(data: bytes) -> tuple[bytes, str | None]:
-    """The document in UTF-8 and that name, where it is in an encoding of several bytes a character; else as it is."""
+def _decode(data: bytes) -> tuple[bytes, str | None]:
+    """Convert a document from an encoding with several bytes per character to UTF-8.
+
+    Returns the data and "utf-8", or the unchanged data and None for other encodings.
+    """
     declared = _DECLARED.match(data[:200])
-    codec = _MULTI_BYTE.get(declared[1].decode().lower()) if declared else None
+    codec = _MULTI_BYTE_CODECS.get(declared[1].decode().lower()) if declared else None
     if codec is None:
         return data, None
     try:
@@ -152,18 +162,18 @@ def _decoded(data: bytes) -> tuple[bytes, str | None]:
         raise Error(f"{sentence}; save it in UTF-8", code="not-xml") from None
 
 
-def _unpacked(data: bytes) -> bytes:
-    """What a compressed file (SVGZ) holds."""
+def _unpack(data: bytes) -> bytes:
+    """Return the content of a compressed file (SVGZ)."""
     unpacking = zlib.decompressobj(wbits=31)
     try:
-        plain = unpacking.decompress(data, _LARGEST_UNPACKED + 1)
+        plain = unpacking.decompress(data, _MAX_UNPACKED_BYTES + 1)
     except zlib.error:
         raise Error(
             "the file is compressed (SVGZ), but what it holds is damaged", code="svgz-damaged"
         ) from None
-    if len(plain) > _LARGEST_UNPACKED:
+    if len(plain) > _MAX_UNPACKED_BYTES:
         raise Error(
-            f"the file is compressed (SVGZ) and unpacks to more than {_LARGEST_UNPACKED} bytes",
+            f"the file is compressed (SVGZ) and unpacks to more than {_MAX_UNPACKED_BYTES} bytes",
             code="file-too-large",
         )
     if not unpacking.eof:

@@ -1,6 +1,7 @@
-"""Text in a TrueType or OpenType font: HarfBuzz shapes and draws, fontTools unpacks and makes cubics.
+"""Typeset text in a TrueType or OpenType font.
 
-Needs the extra `text`; nobody else imports what it imports.
+HarfBuzz shapes and draws the glyphs. fontTools unpacks fonts and makes cubics. Only this module imports them, so only
+outline fonts need the extra `text`.
 """
 
 from __future__ import annotations
@@ -19,37 +20,46 @@ from fontTools.ttLib import TTFont
 from ...errors import Error
 from ...geometry.rings import signed_area
 from ..design import Notice, SubPath
-from .setting import Placed, Setting, find_script, is_seen
+from .setting import PlacedGlyph, TypesetText, find_script, should_have_ink
 
-_UNPACKED = 200_000_000  # bytes: the largest fonts there are, of all Chinese characters, take a fifth of it
-_UNITS = (16, 16384)  # to the em, of the format
-_COLOURS = ("COLR", "CBDT", "sbix", "SVG ")  # tables of glyphs in colours or as pictures
-_LETTERS = "AEFHIKLMNTVWXYZilt"  # straight ones: in a font of lines, contours of many of them have no area
-_LINES_NOTICE = "it is a single-line font: its contours are read as lines"
-_JOINED = ("arabic", "devanagari")  # scripts of which a word is one shape
-_CLOSED = 8  # cubics of a contour from which its last one may be as short as the others: an O, and no V
+_MAX_UNPACKED_BYTES = (
+    200_000_000  # bytes; the largest fonts, with all Chinese characters, have a fifth of this size
+)
+_UNITS_PER_EM_RANGE = (16, 16384)  # units per em that the format allows
+_COLOUR_TABLES = ("COLR", "CBDT", "sbix", "SVG ")  # tables of glyphs in colours or as pictures
+_STRAIGHT_LETTERS = (
+    "AEFHIKLMNTVWXYZilt"  # straight letters: in a single-line font, contours of many have no area
+)
+_SINGLE_LINE_SENTENCE = "it is a single-line font: its contours are read as lines"
+_JOINED_SCRIPTS = ("arabic", "devanagari")  # scripts in which a word is one shape
+# Cubics of a contour. With fewer cubics, the last one always counts as the edge that closes the contour, as in a V.
+# From this number on, a short last cubic belongs to the drawn line, as in an O.
+_MIN_CLOSED_CUBICS = 8
 
 
-def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
-    """Lines of text in a font whose em is size_mm, kerned and joined as the font says.
+def set_lines(data: bytes, lines: list[str], size_mm: float) -> TypesetText:
+    """Typeset lines of text, kerned and joined as the font prescribes.
 
-    Of a collection, the first font; of a variable font, its default. Error if the font cannot be read.
+    A collection is read as its first font, a variable font as its default instance.
+
+    data: the font file; size_mm: the em of the font. Raises Error if the font cannot be read.
     """
-    unpacked = _unpacked(data)
-    setter = _Setter(unpacked, size_mm)
+    unpacked = _unpack(data)
+    setter = _Typesetter(unpacked, size_mm)
     placed = tuple(map(setter.place, lines))
-    is_filled = not setter.is_of_lines()
-    notices: tuple[Notice, ...] = tuple(_choices(unpacked, setter.face))
+    is_filled = not setter.is_single_line_font()
+    notices: tuple[Notice, ...] = tuple(_unused_part_notices(unpacked, setter.face))
     if not is_filled:
-        notices = Notice("font", _LINES_NOTICE, code="font-of-lines"), *notices
+        notices = Notice("font", _SINGLE_LINE_SENTENCE, code="font-of-lines"), *notices
         placed = tuple(
-            tuple(replace(each, subpaths=as_lines(each.subpaths)) for each in line) for line in placed
+            tuple(replace(glyph, subpaths=contours_to_lines(glyph.subpaths)) for glyph in line)
+            for line in placed
         )
-    return Setting(placed, is_filled, tuple(setter.missing), notices, tuple(setter.blank))
+    return TypesetText(placed, is_filled, tuple(setter.missing), notices, tuple(setter.blank))
 
 
-def _choices(data: bytes, face: hb.Face) -> Iterator[Notice]:
-    """Further tables of the font."""
+def _unused_part_notices(data: bytes, face: hb.Face) -> Iterator[Notice]:
+    """Yield notices about unused parts of a font: other fonts, instances, colours."""
     if data.startswith(b"ttcf") and (count := int.from_bytes(data[8:12], "big")) > 1:
         yield Notice(
             "font",
@@ -66,13 +76,13 @@ def _choices(data: bytes, face: hb.Face) -> Iterator[Notice]:
             code="font-of-choices",
             advice=f"make another instance of it beforehand, as with fonttools varLib.instancer FILE {tag}={default:g}",
         )
-    if any(face.reference_table(tag).data for tag in _COLOURS):
+    if any(face.reference_table(tag).data for tag in _COLOUR_TABLES):
         sentence = "it is a font of colours, which are not read: of its letters plain outlines are painted"
         yield Notice("font", sentence, code="font-of-colours")
 
 
 def _axes(fvar: bytes) -> list[tuple[str, float]]:
-    """Tag and default of each axis of a variable font."""
+    """Return (tag, default) of each axis of a variable font."""
     if len(fvar) < 16:
         return []
     first, _, count, size = struct.unpack(">4H", fvar[4:12])
@@ -84,22 +94,22 @@ def _axes(fvar: bytes) -> list[tuple[str, float]]:
     ]
 
 
-class _Setter:
+class _Typesetter:
     def __init__(self, data: bytes, size_mm: float):
         face = hb.Face(data)
         if not face.glyph_count:
             raise Error("this is a damaged font: it holds no glyphs that can be read", code="font-damaged")
-        _refuse_unmeasured(face)
+        _refuse_undefined_sizes(face)
         self.face, self.font = face, hb.Font(face)
         self.mm_per_unit = size_mm / face.upem
         self.shapes: dict[int, tuple[SubPath, ...]] = {}
         self.missing: dict[str, None] = {}
         self.blank: dict[str, None] = {}
 
-    def place(self, line: str) -> tuple[Placed, ...]:
+    def place(self, line: str) -> tuple[PlacedGlyph, ...]:
         buffer = hb.Buffer()
         buffer.add_codepoints([ord(character) for character in line])
-        buffer.language = "und"  # some builds of HarfBuzz would take the locale's: same input, other bytes
+        buffer.language = "und"  # some builds of HarfBuzz use the locale, so the output would depend on it
         buffer.guess_segment_properties()
         hb.shape(self.font, buffer)
         infos, positions = buffer.glyph_infos or (), buffer.glyph_positions or ()
@@ -110,33 +120,38 @@ class _Setter:
         for info, position in zip(infos, positions, strict=True):
             characters = line[info.cluster : ends[info.cluster]]
             if info.codepoint == 0:
-                inked.add(info.cluster)  # reported as missing
-                lacking = [each for each in characters if not self.font.get_nominal_glyph(ord(each))]
-                self.missing.update(dict.fromkeys(lacking or characters))
+                inked.add(info.cluster)  # this cluster is reported as missing, not as blank
+                without_glyph = [
+                    character for character in characters if not self.font.get_nominal_glyph(ord(character))
+                ]
+                self.missing.update(dict.fromkeys(without_glyph or characters))
                 continue
             if subpaths := self._shape(info.codepoint):
                 inked.add(info.cluster)
                 origin = x + position.x_offset, -(y + position.y_offset)
                 at_mm = (value * self.mm_per_unit for value in origin)
-                placed.append(Placed(characters, subpaths, *at_mm, find_script(characters)))
+                placed.append(PlacedGlyph(characters, subpaths, *at_mm, find_script(characters)))
                 words.append(line[: info.cluster].count(" "))
             x, y = x + position.x_advance, y + position.y_advance
         for cluster in clusters:
             if cluster not in inked:
-                self.blank.update(dict.fromkeys(filter(is_seen, line[cluster : ends[cluster]])))
-        return tuple(_in_writing_order(placed, words, line.split(" ")))
+                self.blank.update(dict.fromkeys(filter(should_have_ink, line[cluster : ends[cluster]])))
+        return tuple(_join_words(placed, words, line.split(" ")))
 
-    def is_of_lines(self) -> bool:
-        """Whether it is a single-line font: TrueType knows no open lines, so these go back as they came, or are two
-        points. At least a third of the straight letters have a contour without area then, and none in other fonts."""
-        glyphs = [self.font.get_nominal_glyph(ord(letter)) for letter in _LETTERS]
+    def is_single_line_font(self) -> bool:
+        """Whether the font is a single-line font.
+
+        TrueType has no open lines. In a single-line font, a contour goes back along its line or has two points. Then
+        at least a third of the straight letters have a contour without area. In other fonts, no letter has one.
+        """
+        glyphs = [self.font.get_nominal_glyph(ord(letter)) for letter in _STRAIGHT_LETTERS]
         shapes = [shape for glyph in glyphs if glyph and (shape := self._shape(glyph))]
         flat = sum(any(map(_is_flat, shape)) for shape in shapes)
         return bool(shapes) and 3 * flat >= len(shapes)
 
     def _shape(self, glyph: int) -> tuple[SubPath, ...]:
         if glyph not in self.shapes:
-            pen = _Cubics()
+            pen = _CubicPen()
             self.font.draw_glyph_with_pen(glyph, pen)
             to_mm = np.array([self.mm_per_unit, -self.mm_per_unit])
             contours = (np.array(contour).reshape(-1, 4, 2) * to_mm for contour in pen.contours if contour)
@@ -144,22 +159,23 @@ class _Setter:
         return self.shapes[glyph]
 
 
-def _in_writing_order(placed: list[Placed], words: list[int], texts: list[str]) -> list[Placed]:
-    """Return the glyphs of a line, from the first word on; words whose letters are joined become one shape each.
+def _join_words(placed: list[PlacedGlyph], words: list[int], texts: list[str]) -> list[PlacedGlyph]:
+    """Return the glyphs of a line from the first word on, and join words.
 
-    words: of which word each glyph is; texts: of all words. One line runs through the letters of a joined word, and its
-    dots come after all of them.
+    A word in a joined script becomes one shape, because one line runs through all its letters and the dots come last.
+
+    words: the number of the word of each glyph; texts: the text of all words.
     """
-    joined: dict[object, Placed] = {}
+    joined: dict[object, PlacedGlyph] = {}
     for k in sorted(range(len(placed)), key=words.__getitem__):
         glyph = placed[k]
-        key = words[k] if glyph.script in _JOINED else -1 - k
+        key = words[k] if glyph.script in _JOINED_SCRIPTS else -1 - k
         if key not in joined:
             joined[key] = glyph
             continue
         first = joined[key]
         shift = np.array([glyph.x_mm - first.x_mm, glyph.y_mm - first.y_mm])
-        moved = tuple(SubPath(each.cubics + shift, each.closed) for each in glyph.subpaths)
+        moved = tuple(SubPath(subpath.cubics + shift, subpath.closed) for subpath in glyph.subpaths)
         joined[key] = replace(first, label=texts[words[k]], subpaths=first.subpaths + moved)
     return list(joined.values())
 
@@ -170,14 +186,17 @@ def _is_flat(contour: SubPath) -> bool:
     return abs(signed_area(ring)) < 1e-6 * around**2
 
 
-def as_lines(contours: tuple[SubPath, ...]) -> tuple[SubPath, ...]:
-    """The lines of a single-line font: contours without what they go over twice, and without the edge that closes them
-    where that is longer than those that were drawn."""
+def contours_to_lines(contours: tuple[SubPath, ...]) -> tuple[SubPath, ...]:
+    """Return the lines of the contours of a single-line font.
+
+    Parts that a contour draws twice are kept once. The edge that closes a contour is removed if the contour has few
+    edges, or if this edge is longer than the drawn edges.
+    """
     lines = []
     for contour in contours:
         cubics, known, kept = contour.cubics, set(), []
         lengths = np.hypot(*(cubics[:, 3] - cubics[:, 0]).T)
-        if len(cubics) < _CLOSED or lengths[-1] > 2 * np.median(lengths):
+        if len(cubics) < _MIN_CLOSED_CUBICS or lengths[-1] > 2 * np.median(lengths):
             cubics = cubics[:-1]
         for cubic in cubics:
             key = np.round(cubic, 6)
@@ -192,17 +211,20 @@ def as_lines(contours: tuple[SubPath, ...]) -> tuple[SubPath, ...]:
     return tuple(lines)
 
 
-def _refuse_unmeasured(face: hb.Face) -> None:
-    """Where a font does not say how large its em is or how far its letters go, HarfBuzz takes numbers of its own."""
+def _refuse_undefined_sizes(face: hb.Face) -> None:
+    """Raise Error if a font does not define its em or the widths of its glyphs.
+
+    HarfBuzz would use its own numbers for such a font.
+    """
     head, hhea, hmtx = (face.reference_table(tag).data or b"" for tag in ("head", "hhea", "hmtx"))
     units = int.from_bytes(head[18:20], "big") if len(head) >= 20 else None
-    if units is None or not _UNITS[0] <= units <= _UNITS[1]:
+    if units is None or not _UNITS_PER_EM_RANGE[0] <= units <= _UNITS_PER_EM_RANGE[1]:
         raise Error(
             f"this is a damaged font: units per em, {'missing' if units is None else units}, is outside the range "
-            f"[{_UNITS[0]}, {_UNITS[1]}]",
+            f"[{_UNITS_PER_EM_RANGE[0]}, {_UNITS_PER_EM_RANGE[1]}]",
             "head",
             units,
-            _UNITS,
+            _UNITS_PER_EM_RANGE,
             code="font-damaged",
         )
     widths = int.from_bytes(hhea[34:36], "big") if len(hhea) >= 36 else 0
@@ -212,8 +234,11 @@ def _refuse_unmeasured(face: hb.Face) -> None:
         raise Error(sentence, "hmtx", code="font-damaged")
 
 
-class _Cubics(BasePen):
-    """Contours as eight numbers a cubic; quadratic curves come as cubics from BasePen."""
+class _CubicPen(BasePen):
+    """A pen that collects contours as cubics of eight numbers.
+
+    BasePen converts quadratic curves to cubics.
+    """
 
     def __init__(self):
         super().__init__(None)
@@ -236,8 +261,8 @@ class _Cubics(BasePen):
             self._lineTo(self.start)
 
 
-def _unpacked(data: bytes) -> bytes:
-    """The font as HarfBuzz reads it: WOFF is taken out of its compression."""
+def _unpack(data: bytes) -> bytes:
+    """Return a font as HarfBuzz reads it: a WOFF font is decompressed."""
     if data.startswith(b"wOF2"):
         raise Error(
             "WOFF2 is not read: unpack it first, for example with fonttools ttLib.woff2 decompress",
@@ -247,9 +272,9 @@ def _unpacked(data: bytes) -> bytes:
         return data
     try:
         font = TTFont(io.BytesIO(data), lazy=True, recalcBBoxes=False, recalcTimestamp=False)
-        left = _UNPACKED
+        bytes_left = _MAX_UNPACKED_BYTES
         for table in font.reader.tables.values():
-            left -= _inflated_length(data[table.offset : table.offset + table.length], left)
+            bytes_left -= _inflated_length(data[table.offset : table.offset + table.length], bytes_left)
         font.flavor = None
         out = io.BytesIO()
         font.save(out, reorderTables=None)
@@ -262,17 +287,20 @@ def _unpacked(data: bytes) -> bytes:
 
 
 def _inflated_length(packed: bytes, limit: int) -> int:
-    """Of a table of a WOFF font, found before fontTools fills the memory with it."""
+    """Return the length of a decompressed table of a WOFF font.
+
+    A table beyond the limit is refused here, before fontTools fills the memory with it.
+    """
     try:
         length = len(zlib.decompressobj().decompress(packed, limit + 1))
     except zlib.error:
-        return len(packed)  # as it is: WOFF leaves alone what would not shrink
+        return len(packed)  # WOFF stores a table uncompressed if compression would not shrink it
     if length > limit:
         raise Error(
-            f"the font unpacks to more than {_UNPACKED} bytes",
+            f"the font unpacks to more than {_MAX_UNPACKED_BYTES} bytes",
             "",
             length,
-            (0, _UNPACKED),
+            (0, _MAX_UNPACKED_BYTES),
             code="file-too-large",
         )
     return length

@@ -1,4 +1,4 @@
-"""Set text to an SVG document in mm: its place on the sheet, and its letters."""
+"""Write typeset text as an SVG document in mm, and place it on the sheet."""
 
 from __future__ import annotations
 
@@ -9,45 +9,52 @@ import numpy as np
 from ...errors import Error
 from ...geometry.cubics import extremes
 from ..design import SubPath
-from ..svg.paths.path_to_cubics import LARGEST_MM
-from .setting import Placed, Setting
+from ..svg.paths.path_to_cubics import MAX_COORDINATE_MM
+from .setting import PlacedGlyph, TypesetText
 
-_MARGIN_MM = 20  # as around a drawing without a sheet of its own
-_CUBICS = 2_000_000  # a book page has a hundredth of it; beyond, the document alone takes 100 MB
-_STRAIGHT_MM = 1e-6  # handles this close to the thirds of a line: rounding errors, far below the decimals
+_MARGIN_MM = 20  # the same margin as around a drawing without a sheet
+_MAX_CUBICS = 2_000_000  # a book page has a hundredth of this; with more, the document alone needs 100 MB
+_MAX_STRAIGHT_ERROR_MM = (
+    1e-6  # distance of handles from the thirds of a line due to rounding, far below the decimals
+)
 
 
-def document(
-    setting: Setting,
+def svg_document(
+    typeset: TypesetText,
     title: str,
     leading_mm: float,
     width_mm: float,
     sheet_mm: tuple[float, float] | None,
     script: str = "auto",
 ) -> str:
-    """The SVG document: one path a glyph, the ink in the middle of the sheet.
+    """Return the SVG document of a text, with one path per glyph.
 
-    leading_mm: from line to line; width_mm: of strokes, 0 for filled shapes; sheet_mm: None for the ink and
-    20 mm around it; script: of all glyphs, "auto": each of its own. Error if there is no ink, too much of it, or more
-    than the sheet takes.
+    The ink is in the middle of the sheet.
+
+    leading_mm: distance of the lines.
+    width_mm: width of the strokes, 0 for filled shapes.
+    sheet_mm: (width, height), None for the bounding box of the ink plus a margin of 20 mm.
+    script: the script of all glyphs; "auto": the script of each glyph.
+
+    Raises Error if there is no ink or too much ink, or if the ink does not fit the sheet.
     """
     placed = [
         (glyph, np.array([glyph.x_mm, glyph.y_mm + row * leading_mm]))
-        for row, line in enumerate(setting.lines)
+        for row, line in enumerate(typeset.lines)
         for glyph in line
     ]
     count = sum(len(subpath.cubics) for glyph, _ in placed for subpath in glyph.subpaths)
-    if count > _CUBICS:
+    if count > _MAX_CUBICS:
         raise Error(
-            f"the text takes {count} curves, beyond the limit of {_CUBICS}",
+            f"the text takes {count} curves, beyond the limit of {_MAX_CUBICS}",
             "",
             count,
-            (0, _CUBICS),
+            (0, _MAX_CUBICS),
             code="text-too-long",
         )
-    least, most = _extents(placed)
-    size = most - least + width_mm
-    if not (size < LARGEST_MM).all():
+    lower, upper = _curve_extents(placed)
+    size = upper - lower + width_mm
+    if not (size < MAX_COORDINATE_MM).all():
         raise Error(
             f"the text is {size.max():.4g} mm long, beyond the range [0, 1e6] mm",
             "text",
@@ -64,14 +71,14 @@ def document(
                 "text",
                 code="text-does-not-fit",
             )
-    shift = (sheet - least - most) / 2
+    shift = (sheet - lower - upper) / 2
     style = (
         'fill="#000000" fill-rule="nonzero" stroke="none"'
-        if setting.filled
-        else f'fill="none" stroke="#000000" stroke-width="{_plain(width_mm)}" '
+        if typeset.filled
+        else f'fill="none" stroke="#000000" stroke-width="{_format_number(width_mm)}" '
         'stroke-linecap="round" stroke-linejoin="round"'
     )
-    width, height = map(_plain, sheet)
+    width, height = map(_format_number, sheet)
     return "\n".join(
         (
             '<?xml version="1.0" encoding="UTF-8"?>',
@@ -79,8 +86,8 @@ def document(
             f'viewBox="0 0 {width} {height}">',
             f"  <title>{escape(title)}</title>",
             *(
-                f'  <path id="glyph-{number}-{_label(glyph.label)}" {style} {_script(glyph, script)}'
-                f'd="{_path(glyph.subpaths, origin + shift)}"/>'
+                f'  <path id="glyph-{number}-{_id_label(glyph.label)}" {style} {_script_attribute(glyph, script)}'
+                f'd="{_path_data(glyph.subpaths, origin + shift)}"/>'
                 for number, (glyph, origin) in enumerate(placed, 1)
             ),
             "</svg>\n",
@@ -88,48 +95,53 @@ def document(
     )
 
 
-def _script(glyph: Placed, script: str) -> str:
-    said = glyph.script if script == "auto" else script
-    return "" if said == "auto" else f'data-brushsvg-script="{said}" '
+def _script_attribute(glyph: PlacedGlyph, script: str) -> str:
+    glyph_script = glyph.script if script == "auto" else script
+    return "" if glyph_script == "auto" else f'data-brushsvg-script="{glyph_script}" '
 
 
-def _extents(placed: list[tuple[Placed, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
-    """Least and greatest x and y [mm] of the curves themselves."""
-    known: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+def _curve_extents(placed: list[tuple[PlacedGlyph, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the least and the greatest x and y [mm] of the curves without widths."""
+    known_extents: dict[int, tuple[np.ndarray, np.ndarray]] = {}
     corners = []
     for glyph, origin in placed:
-        if id(glyph.subpaths) not in known:
+        if id(glyph.subpaths) not in known_extents:
             points = np.concatenate([extremes(subpath.cubics) for subpath in glyph.subpaths])
-            known[id(glyph.subpaths)] = points.min(axis=0), points.max(axis=0)
-        corners += [corner + origin for corner in known[id(glyph.subpaths)]]
+            known_extents[id(glyph.subpaths)] = points.min(axis=0), points.max(axis=0)
+        corners += [corner + origin for corner in known_extents[id(glyph.subpaths)]]
     if not corners:
         raise Error("the text leaves nothing to paint", "text", code="nothing-to-paint")
     return np.min(corners, axis=0), np.max(corners, axis=0)
 
 
-def _path(subpaths: tuple[SubPath, ...], shift: np.ndarray) -> str:
-    return " ".join(_subpath(subpath.cubics + shift, subpath.closed) for subpath in subpaths)
+def _path_data(subpaths: tuple[SubPath, ...], shift: np.ndarray) -> str:
+    return " ".join(_subpath_data(subpath.cubics + shift, subpath.closed) for subpath in subpaths)
 
 
-def _subpath(cubics: np.ndarray, closed: bool) -> str:
+def _subpath_data(cubics: np.ndarray, closed: bool) -> str:
     thirds = cubics[:, :1] + (cubics[:, 3:] - cubics[:, :1]) * np.array([1, 2])[:, None] / 3
-    straight = np.abs(cubics[:, 1:3] - thirds).max(axis=(1, 2)) < _STRAIGHT_MM
+    straight = np.abs(cubics[:, 1:3] - thirds).max(axis=(1, 2)) < _MAX_STRAIGHT_ERROR_MM
     if closed and straight[-1] and len(cubics) > 1:
-        cubics = cubics[:-1]  # closing draws it
-    words = ["M", *_numbers(cubics[0, :1])]
+        cubics = cubics[:-1]  # the command Z draws this line
+    words = ["M", *_format_points(cubics[0, :1])]
     for cubic, is_line in zip(cubics, straight, strict=False):
-        words += ["L" if is_line else "C", *_numbers(cubic[3:] if is_line else cubic[1:])]
+        words += ["L" if is_line else "C", *_format_points(cubic[3:] if is_line else cubic[1:])]
     return " ".join([*words, "Z"] if closed else words)
 
 
-def _numbers(points: np.ndarray) -> list[str]:
+def _format_points(points: np.ndarray) -> list[str]:
     return [f"{x + 0.0:.4f},{y + 0.0:.4f}" for x, y in points.round(4).tolist()]
 
 
-def _plain(value: float) -> str:
+def _format_number(value: float) -> str:
     return f"{value:.4f}".rstrip("0").rstrip(".")
 
 
-def _label(characters: str) -> str:
-    """What stands behind the number in an id: letters and digits of ASCII as they are, the rest by number."""
-    return "".join(each if each.isascii() and each.isalnum() else f"u{ord(each):04X}" for each in characters)
+def _id_label(characters: str) -> str:
+    """Return the last part of an id.
+
+    ASCII letters and digits stay as they are. Other characters become their numbers.
+    """
+    return "".join(
+        letter if letter.isascii() and letter.isalnum() else f"u{ord(letter):04X}" for letter in characters
+    )

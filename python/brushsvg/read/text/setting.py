@@ -1,4 +1,4 @@
-"""Text as a font sets it, before it has a place on a sheet."""
+"""Typeset text, before it is placed on a sheet."""
 
 from __future__ import annotations
 
@@ -7,17 +7,20 @@ from dataclasses import dataclass
 
 from ..design import Notice, SubPath
 
+# Scripts by the first word of a character's name in Unicode.
 _SCRIPTS = {"ARABIC": "arabic", "DEVANAGARI": "devanagari"} | dict.fromkeys(
     ("CJK", "HIRAGANA", "KATAKANA", "HANGUL", "BOPOMOFO", "KANGXI"), "cjk"
-)  # by the first word of a character's name
+)
 
 
 @dataclass(frozen=True)
-class Placed:
-    """One glyph with ink. x_mm, y_mm: its origin from where its line of text begins, y down.
+class PlacedGlyph:
+    """One glyph with ink.
 
-    label: the characters it stands for; subpaths: from its origin, in mm, y down; script: how it is written, one of
-    drawing.SCRIPTS.
+    label: the characters that the glyph stands for.
+    subpaths: relative to the origin of the glyph, in mm, y down.
+    x_mm, y_mm: the origin of the glyph relative to the start of its line of text, y down.
+    script: the writing system, one of read.SCRIPTS.
     """
 
     label: str
@@ -28,26 +31,32 @@ class Placed:
 
 
 @dataclass(frozen=True)
-class Setting:
-    """A text: the glyphs of each line; filled: they are shapes, not lines to follow.
+class TypesetText:
+    """A typeset text.
 
-    missing: characters without a glyph, each once, in the order met; blank: those that should be seen and whose glyph
-    has nothing to paint.
+    lines: the glyphs of each line.
+    filled: whether the glyphs are filled shapes, and not single lines.
+    missing: characters without a glyph, each once, in the order of the text.
+    notices: about the font and its glyphs.
+    blank: characters that should be visible and whose glyph has nothing to paint.
     """
 
-    lines: tuple[tuple[Placed, ...], ...]
+    lines: tuple[tuple[PlacedGlyph, ...], ...]
     filled: bool
     missing: tuple[str, ...] = ()
     notices: tuple[Notice, ...] = ()
     blank: tuple[str, ...] = ()
 
 
-def is_seen(character: str) -> bool:
-    """Whether there should be ink: of letters, figures, punctuation and symbols, but fillers and Braille's blank."""
+def should_have_ink(character: str) -> bool:
+    """Whether a character should have ink.
+
+    Letters, figures, punctuation and symbols have ink, except for fillers and Braille's blank.
+    """
     return unicodedata.category(character)[0] in "LNPS" and character not in "\u115f\u1160\u2800\u3164\uffa0"
 
 
 def find_script(characters: str) -> str:
-    """Return how characters are written: the script of the first one that is not written as Latin letters are."""
-    names = (unicodedata.name(each, "").split(" ")[0] for each in characters)
+    """Return the script of characters: the first script that is not "latin", if any."""
+    names = (unicodedata.name(character, "").split(" ")[0] for character in characters)
     return next((_SCRIPTS[name] for name in names if name in _SCRIPTS), "latin")

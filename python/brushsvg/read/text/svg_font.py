@@ -1,4 +1,7 @@
-"""Text in an SVG 1.1 font: the form in which single-line fonts come (EMS, Hershey)."""
+"""Typeset text in an SVG 1.1 font.
+
+Single-line fonts such as EMS and Hershey have this format.
+"""
 
 from __future__ import annotations
 
@@ -10,79 +13,83 @@ from dataclasses import dataclass
 
 from ...errors import Error
 from ..design import Notice, SubPath
-from ..svg.paths.path_data import numbers, parse_path, snippet
+from ..svg.paths.path_data import parse_numbers, parse_path, snippet
 from ..svg.paths.path_to_cubics import trace
 from ..svg.xml import parse_xml
-from .setting import Placed, Setting, is_seen
+from .setting import PlacedGlyph, TypesetText, should_have_ink
 
-_LIGATURE = (
-    32  # characters; no script joins more, and each place in the text is tried at every length there is
-)
-_UNITS = (1, 1e6)  # per em: beyond it, numbers of a glyph cannot be distinguished from damage
+# Characters of a ligature. No script joins more, and every length in the font is tried at each position of the text.
+_MAX_LIGATURE = 32
+# Units per em. Outside of this range, the numbers of a glyph cannot be distinguished from damage.
+_UNITS_PER_EM_RANGE = (1, 1e6)
 _RANGE = re.compile(r"[Uu]\+([0-9A-Fa-f]{0,6})(\?{0,6})(?:-([0-9A-Fa-f]{1,6}))?")
 
 
-def set_lines(data: bytes, lines: list[str], size_mm: float) -> Setting:
-    """Lines of text in a font whose em is size_mm. Error if it is no SVG font or a number in it is bad."""
-    return _Setter(_read(data), size_mm).run(lines)
+def set_lines(data: bytes, lines: list[str], size_mm: float) -> TypesetText:
+    """Typeset lines of text.
+
+    data: the font file; size_mm: the em of the font. Raises Error if the data is not an SVG font or contains an
+    invalid number.
+    """
+    return _Typesetter(_read_font(data), size_mm).typeset(lines)
 
 
 @dataclass(frozen=True)
 class _Font:
-    nodes: dict[str, ET.Element]  # by the characters they stand for
+    nodes: dict[str, ET.Element]  # glyphs by the characters that they stand for
     kerns: _Kerns
     units_per_em: float
     advance: str | None
     notices: tuple[Notice, ...]
 
 
-def _read(data: bytes) -> _Font:
+def _read_font(data: bytes) -> _Font:
     root = parse_xml(data).root
-    fonts = [node for node in root.iter() if _local(node) == "font"]
+    fonts = [node for node in root.iter() if _local_name(node) == "font"]
     if not fonts:
-        raise Error(f"this is no font: <{_local(root)[:40]}> holds no <font>", code="font-unknown")
+        raise Error(f"this is no font: <{_local_name(root)[:40]}> holds no <font>", code="font-unknown")
     font, notices = fonts[0], []
     if len(fonts) > 1:
         notices.append(
             Notice("font", f"the file holds {len(fonts)} fonts: the first one is used", code="fonts-in-file")
         )
-    face = next((node for node in font if _local(node) == "font-face"), font)
+    face = next((node for node in font if _local_name(node) == "font-face"), font)
     nodes: dict[str, ET.Element] = {}
     kerns = _Kerns()
     for node in font:
-        if _local(node) == "glyph" and node.get("orientation") != "v":
-            if 0 < len(characters := node.get("unicode", "")) <= _LIGATURE:
+        if _local_name(node) == "glyph" and node.get("orientation") != "v":
+            if 0 < len(characters := node.get("unicode", "")) <= _MAX_LIGATURE:
                 nodes.setdefault(characters, node)
-        elif _local(node) == "hkern":
+        elif _local_name(node) == "hkern":
             kerns.add(node)
     if not nodes:
         raise Error("the font has no glyph for any character", code="font-damaged")
     units = _number(face, "units-per-em", "1000")
-    if not _UNITS[0] <= units <= _UNITS[1]:
+    if not _UNITS_PER_EM_RANGE[0] <= units <= _UNITS_PER_EM_RANGE[1]:
         sentence = f"units-per-em {units:g} is outside the range [1, 1e6]"
-        raise Error(sentence, _local(face), units, _UNITS, code="font-damaged")
+        raise Error(sentence, _local_name(face), units, _UNITS_PER_EM_RANGE, code="font-damaged")
     return _Font(nodes, kerns, units, font.get("horiz-adv-x"), tuple(notices))
 
 
-def _local(node: ET.Element) -> str:
+def _local_name(node: ET.Element) -> str:
     return node.tag.rpartition("}")[2]
 
 
 def _number(node: ET.Element, name: str, default: str | None = None) -> float:
     text = node.get(name, default)
-    values = numbers(text.strip()) if text else None
+    values = parse_numbers(text.strip()) if text else None
     if values is None or len(values) != 1 or not math.isfinite(values[0]):
-        said = "is missing" if text is None else f"{snippet(text, 0)} is not a number"
-        raise Error(f"{name} {said}", _name(node), code="font-damaged")
+        problem = "is missing" if text is None else f"{snippet(text, 0)} is not a number"
+        raise Error(f"{name} {problem}", _glyph_label(node), code="font-damaged")
     return values[0]
 
 
-def _name(node: ET.Element) -> str:
+def _glyph_label(node: ET.Element) -> str:
     name = node.get("glyph-name") or node.get("unicode") or ""
-    return f"{_local(node)} {name[:40]}".strip() if name.isprintable() else _local(node)
+    return f"{_local_name(node)} {name[:40]}".strip() if name.isprintable() else _local_name(node)
 
 
-class _Setter:
+class _Typesetter:
     def __init__(self, font: _Font, size_mm: float):
         self.font = font
         self.mm_per_unit = size_mm / font.units_per_em
@@ -93,34 +100,34 @@ class _Setter:
         self.blank: dict[str, None] = {}
         self.notices = list(font.notices)
 
-    def run(self, lines: list[str]) -> Setting:
+    def typeset(self, lines: list[str]) -> TypesetText:
         placed = tuple(self._line(unicodedata.normalize("NFC", line)) for line in lines)
         drawn = [subpath for shape in self.shapes.values() for subpath in shape]
         if drawn and all(subpath.closed for subpath in drawn):
             sentence = "every line of these letters is closed; if they are outlines, the outlines are painted"
             self.notices.append(Notice("font", sentence, code="font-of-outlines"))
-        return Setting(placed, False, tuple(self.missing), tuple(self.notices), tuple(self.blank))
+        return TypesetText(placed, False, tuple(self.missing), tuple(self.notices), tuple(self.blank))
 
-    def _line(self, line: str) -> tuple[Placed, ...]:
+    def _line(self, line: str) -> tuple[PlacedGlyph, ...]:
         placed = []
-        x, at, before = 0.0, 0, ""
-        while at < len(line):
-            found = self._longest(line, at)
-            if not found:
-                self.missing[line[at]] = None
-                at, before = at + 1, ""
+        x, position, previous = 0.0, 0, ""
+        while position < len(line):
+            characters = self._longest_match(line, position)
+            if not characters:
+                self.missing[line[position]] = None
+                position, previous = position + 1, ""
                 continue
-            if before:
-                x -= self._kern(before, found)
-            if shape := self._shape(found):
-                placed.append(Placed(found, shape, x * self.mm_per_unit))
-            elif not self.font.nodes[found].get("d") and not len(self.font.nodes[found]):
-                self.blank.update(dict.fromkeys(filter(is_seen, found)))
-            x += self._advance(found)
-            at, before = at + len(found), found
+            if previous:
+                x -= self._kern(previous, characters)
+            if shape := self._shape(characters):
+                placed.append(PlacedGlyph(characters, shape, x * self.mm_per_unit))
+            elif not self.font.nodes[characters].get("d") and not len(self.font.nodes[characters]):
+                self.blank.update(dict.fromkeys(filter(should_have_ink, characters)))
+            x += self._advance(characters)
+            position, previous = position + len(characters), characters
         return tuple(placed)
 
-    def _longest(self, line: str, at: int) -> str:
+    def _longest_match(self, line: str, at: int) -> str:
         return next((line[at : at + n] for n in self.lengths if line[at : at + n] in self.font.nodes), "")
 
     def _advance(self, characters: str) -> float:
@@ -129,7 +136,7 @@ class _Setter:
     def _kern(self, first: str, second: str) -> float:
         pair = first, second
         if pair not in self.kerned:
-            self.kerned[pair] = self.font.kerns.between(*((each, self.font.nodes[each]) for each in pair))
+            self.kerned[pair] = self.font.kerns.between(*((glyph, self.font.nodes[glyph]) for glyph in pair))
         return self.kerned[pair]
 
     def _shape(self, characters: str) -> tuple[SubPath, ...]:
@@ -153,16 +160,18 @@ class _Setter:
         if line.lone_movetos:
             count = "a moveto" if line.lone_movetos == 1 else f"{line.lone_movetos} movetos"
             self.notices.append(
-                Notice(_name(node), f"{count} without a line to follow: skipped", code="moveto-alone")
+                Notice(_glyph_label(node), f"{count} without a line to follow: skipped", code="moveto-alone")
             )
         return line.subpaths
 
     def _skip(self, node: ET.Element, sentence: str, damaged: bool = True) -> None:
-        self.notices.append(Notice(_name(node), f"{sentence}; it is left out", damaged, code="glyph-damaged"))
+        self.notices.append(
+            Notice(_glyph_label(node), f"{sentence}; it is left out", damaged, code="glyph-damaged")
+        )
 
 
 class _Kerns:
-    """The hkern elements. The first one that fits a pair counts."""
+    """The hkern elements of a font. The first element that fits a pair counts."""
 
     def __init__(self):
         self.rules: list[tuple[ET.Element, tuple]] = []
@@ -170,7 +179,7 @@ class _Kerns:
         self.ranged: list[int] = []
 
     def add(self, node: ET.Element) -> None:
-        first, second = (_side(node, side) for side in "12")
+        first, second = (_parse_side(node, side) for side in "12")
         for key in first[0]:
             self.by_first.setdefault(key, []).append(len(self.rules))
         if first[1]:
@@ -178,7 +187,10 @@ class _Kerns:
         self.rules.append((node, (first, second)))
 
     def between(self, first: tuple[str, ET.Element], second: tuple[str, ET.Element]) -> float:
-        """How much closer [font units] the second glyph stands, each given as (characters, element)."""
+        """Return how much closer [font units] the second glyph is to the first.
+
+        first, second: (characters, element) of the glyphs.
+        """
         near = {*self.ranged, *(rule for key in _keys(*first) for rule in self.by_first.get(key, ()))}
         for rule in sorted(near):
             node, sides = self.rules[rule]
@@ -191,8 +203,11 @@ def _keys(characters: str, node: ET.Element) -> list[str]:
     return ["u" + characters, *("g" + name.strip() for name in node.get("glyph-name", "").split(","))]
 
 
-def _side(node: ET.Element, side: str) -> tuple[frozenset[str], list[tuple[int, int]]]:
-    """Keys (u and characters, g and a glyph's name) and ranges of code points on one side of a kern."""
+def _parse_side(node: ET.Element, side: str) -> tuple[frozenset[str], list[tuple[int, int]]]:
+    """Return the keys and the ranges of code points on one side of a kern.
+
+    A key is "u" with characters, or "g" with the name of a glyph.
+    """
     keys, ranges = {"g" + name.strip() for name in node.get("g" + side, "").split(",") if name.strip()}, []
     listed = node.get("u" + side, "")
     for token in [listed] if listed == "," else listed.split(","):

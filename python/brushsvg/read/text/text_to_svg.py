@@ -1,4 +1,4 @@
-"""Text in a font to a drawing: an SVG document in mm, one path a glyph."""
+"""Convert text in a font to an SVG document in mm, with one path per glyph."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from ...errors import Error, lacking, need, need_one_of
 from .. import SCRIPTS
 from ..design import Notice
 from . import svg_font
-from .page import document
+from .page import svg_document
 
-_CHARACTERS = 100_000  # forty pages: more is a mistake
-_OUTLINES = (b"\0\1\0\0", b"OTTO", b"true", b"ttcf", b"wOFF", b"wOF2")  # how such font files begin
-_NAMED = 12  # characters without a glyph that a sentence names
+_MAX_CHARACTERS = 100_000  # forty pages; a longer text is a mistake
+# First bytes of outline fonts.
+_OUTLINE_FONT_STARTS = (b"\0\1\0\0", b"OTTO", b"true", b"ttcf", b"wOFF", b"wOF2")
+_MAX_NAMED_CHARACTERS = 12  # characters without a glyph that a sentence names
 
 
 def text_svg(
@@ -26,92 +27,101 @@ def text_svg(
     line_spacing: float = 1.4,
     script: str = "auto",
 ) -> tuple[str, list[Notice]]:
-    """The SVG document of a text and what was noticed while setting it.
+    """Return the SVG document of a text, and notices about the text and the font.
 
-    font: what a font file holds, an SVG font (its lines are stroked with width_mm, 1 if None) or TrueType or OpenType
-    (outlines, filled); size_mm: its em; sheet_mm: (w, h), None for the ink and 20 mm around it;
-    line_spacing: from line to line, in ems; script: how the letters are written, "latin", "arabic", "devanagari",
-    "cjk", or "auto": as their characters say. A newline starts a line; lines begin at the same x.
+    A newline starts a line. All lines begin at the same x.
 
-    Error if a number is out of range, the font cannot be read, or nothing of the text can be painted.
+    font: the content of a font file. The lines of an SVG font are stroked with width_mm. The outlines of a TrueType
+    or OpenType font are filled.
+    size_mm: the em of the font.
+    width_mm: width of the strokes, 1 mm if None.
+    sheet_mm: (width, height), None for the bounding box of the ink plus a margin of 20 mm.
+    line_spacing: distance of the lines in ems.
+    script: the writing system: "latin", "arabic", "devanagari", "cjk", or "auto" to find it from the characters.
+
+    Raises Error if a number is out of range, the font cannot be read, or nothing of the text can be painted.
     """
     need(text, str, "a text")
     need(font, bytes, "what a font file holds, as bytes")
     need_one_of(script, SCRIPTS, "script")
-    _in_range("size", size_mm, 1000, " mm")
-    _in_range("width", 1.0 if width_mm is None else width_mm, 1000, " mm")
-    _in_range("line spacing", line_spacing, 100)
+    _check_range("size", size_mm, 1000, " mm")
+    _check_range("width", 1.0 if width_mm is None else width_mm, 1000, " mm")
+    _check_range("line spacing", line_spacing, 100)
     for side_mm in sheet_mm or ():
-        _in_range("a side of the sheet", side_mm, 1e6, " mm")
+        _check_range("a side of the sheet", side_mm, 1e6, " mm")
     if not text:
         raise Error("the text is empty", "text", code="text-empty")
-    if len(text) > _CHARACTERS:
-        sentence = f"the text has {len(text)} characters, beyond the limit of {_CHARACTERS}"
-        raise Error(sentence, "text", len(text), (1, _CHARACTERS), code="text-too-long")
-    text, notices = _without_controls(text)
-    setter = _setter(font)
-    setting = setter.set_lines(font, text.split("\n"), size_mm)
-    notices += setting.notices
-    if setting.missing:
+    if len(text) > _MAX_CHARACTERS:
+        sentence = f"the text has {len(text)} characters, beyond the limit of {_MAX_CHARACTERS}"
+        raise Error(sentence, "text", len(text), (1, _MAX_CHARACTERS), code="text-too-long")
+    text, notices = _remove_controls(text)
+    font_module = _find_font_module(font)
+    typeset = font_module.set_lines(font, text.split("\n"), size_mm)
+    notices += typeset.notices
+    if typeset.missing:
         notices.append(
             Notice(
                 "text",
-                f"the font has no glyph for {_listed(setting.missing)}: left out",
+                f"the font has no glyph for {_list_characters(typeset.missing)}: left out",
                 code="glyph-missing",
             )
         )
-    if setting.blank:
-        sentence = f"the font has no outline for {_listed(setting.blank)}: left out"
+    if typeset.blank:
+        sentence = f"the font has no outline for {_list_characters(typeset.blank)}: left out"
         notices.append(Notice("text", sentence, code="glyph-missing"))
-    notices += _directions(text, setting.filled)
-    if not any(setting.lines):
-        said = "; ".join(notice.sentence for notice in notices if notice.where != "font")
+    notices += _direction_notices(text, typeset.filled)
+    if not any(typeset.lines):
+        reasons = "; ".join(notice.sentence for notice in notices if notice.where != "font")
         raise Error(
-            "the text leaves nothing to paint" + (f": {said}" if said else ""),
+            "the text leaves nothing to paint" + (f": {reasons}" if reasons else ""),
             "text",
             code="nothing-to-paint",
         )
-    if setting.filled and width_mm is not None:
+    if typeset.filled and width_mm is not None:
         sentence = f"the width {width_mm:g} mm has no effect: the font has outlines, not single lines"
         notices.append(Notice("font", sentence, code="width-without-effect"))
-    stroke_mm = 0.0 if setting.filled else width_mm or 1.0
-    return document(setting, text, line_spacing * size_mm, stroke_mm, sheet_mm, script), notices
+    stroke_mm = 0.0 if typeset.filled else width_mm or 1.0
+    return svg_document(typeset, text, line_spacing * size_mm, stroke_mm, sheet_mm, script), notices
 
 
-def _in_range(name: str, value: float, most: float, unit: str = "") -> None:
-    if not (math.isfinite(value) and 0 < value <= most):
+def _check_range(name: str, value: float, maximum: float, unit: str = "") -> None:
+    if not (math.isfinite(value) and 0 < value <= maximum):
         raise Error(
-            f"{name} {value:g}{unit} is outside the range (0, {most:g}]{unit}",
+            f"{name} {value:g}{unit} is outside the range (0, {maximum:g}]{unit}",
             "",
             value,
-            (0, most),
+            (0, maximum),
             code="out-of-range",
         )
 
 
-def _without_controls(text: str) -> tuple[str, list[Notice]]:
+def _remove_controls(text: str) -> tuple[str, list[Notice]]:
     text = text.replace("\r\n", "\n").replace("\r", "\n")
-    kept = "".join(each for each in text if each == "\n" or not _is_control(each))
+    kept = "".join(character for character in text if character == "\n" or not _is_control(character))
     if kept == text:
         return text, []
-    dropped = dict.fromkeys(each for each in text if each != "\n" and _is_control(each))
+    dropped = dict.fromkeys(character for character in text if character != "\n" and _is_control(character))
     return kept, [
         Notice(
             "text",
-            f"control characters are not painted: {_listed(tuple(dropped))} left out",
+            f"control characters are not painted: {_list_characters(tuple(dropped))} left out",
             code="control-characters",
         )
     ]
 
 
-def _directions(text: str, shaped: bool) -> list[Notice]:
-    """Lines that need an order of runs, which nobody here finds: a wrong order looks like a right one."""
+def _direction_notices(text: str, is_shaped: bool) -> list[Notice]:
+    """Return notices about lines whose order of writing directions may be wrong.
+
+    Lines with two directions need an order of their runs, which is not computed here. A user cannot see that such a
+    line is in the wrong order.
+    """
     notices = []
     for number, line in enumerate(text.split("\n"), 1):
-        kinds = {unicodedata.bidirectional(each) for each in line}
-        if not kinds & {"R", "AL"}:
+        directions = {unicodedata.bidirectional(character) for character in line}
+        if not directions & {"R", "AL"}:
             continue
-        if not shaped:
+        if not is_shaped:
             notices.append(
                 Notice(
                     "text",
@@ -119,30 +129,33 @@ def _directions(text: str, shaped: bool) -> list[Notice]:
                     code="text-direction",
                 )
             )
-        elif kinds & {"L", "EN", "AN"}:
+        elif directions & {"L", "EN", "AN"}:
             sentence = f"line {number} holds writing in two directions and is set in one: check its order"
             notices.append(Notice("text", sentence, code="text-direction"))
     return notices
 
 
 def _is_control(character: str) -> bool:
-    """Also what XML cannot say: halves of surrogate pairs and two numbers that are no characters."""
+    """Whether a character is a control character, or is not allowed in XML.
+
+    XML does not allow halves of surrogate pairs, and two numbers that are not characters.
+    """
     return unicodedata.category(character) in ("Cc", "Cs") or character in "\ufffe\uffff"
 
 
-def _listed(characters: tuple[str, ...]) -> str:
+def _list_characters(characters: tuple[str, ...]) -> str:
     named = [
-        f"U+{ord(each):04X}" + (f" {each}" if each.isprintable() and not each.isspace() else "")
-        for each in characters[:_NAMED]
+        f"U+{ord(letter):04X}" + (f" {letter}" if letter.isprintable() and not letter.isspace() else "")
+        for letter in characters[:_MAX_NAMED_CHARACTERS]
     ]
     more = len(characters) - len(named)
     return ", ".join(named) + (f" and {more} more" if more else "")
 
 
-def _setter(font: bytes):
+def _find_font_module(font: bytes):
     if not font.strip():
         raise Error("the font file is empty", code="file-empty")
-    if font.startswith(_OUTLINES):
+    if font.startswith(_OUTLINE_FONT_STARTS):
         try:
             from . import outline_font
         except ImportError:

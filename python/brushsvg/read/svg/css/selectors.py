@@ -1,4 +1,4 @@
-"""CSS selectors held against an SVG tree, within bounds, by cssselect2."""
+"""Match CSS selectors against an SVG tree with cssselect2, with limited work."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ from cssselect2 import ElementWrapper, SelectorError, compile_selector_list
 
 from ....errors import Error
 
-# Steps through the tree that selectors may take together: some ten seconds' worth, a hundred times what drawings need.
+# Steps through the tree that all selectors together may take. The limit corresponds to about ten seconds and is a
+# hundred times the need of real drawings.
 STEP_LIMIT = 3_000_000
 
 
-class _Budget:
+class _StepBudget:
     def __init__(self):
         self.left = STEP_LIMIT
 
@@ -29,10 +30,13 @@ class _Budget:
             )
 
 
-class _Node(ElementWrapper):
-    """Walks to its kin one by one and counts: kept lists of them would grow with the depth squared."""
+class _CountingNode(ElementWrapper):
+    """A node that walks to its relatives one by one and counts the steps.
 
-    budget: _Budget
+    Lists of relatives would need memory in proportion to the square of the depth.
+    """
+
+    budget: _StepBudget
 
     @property
     def ancestors(self) -> Iterator[ElementWrapper]:
@@ -57,25 +61,31 @@ class _Node(ElementWrapper):
 
 
 class Tree:
-    """A document, or the copied part of it, as selectors see it. budget: of the document that it is copied from."""
+    """A document, or a copied part of a document, as selectors see it.
 
-    def __init__(self, root: ET.Element, budget: _Budget | None = None):
-        self.budget = budget or _Budget()
-        kind = type("_CountedNode", (_Node,), {"budget": self.budget})
+    budget: for a copied part, the budget of its document.
+    """
+
+    def __init__(self, root: ET.Element, budget: _StepBudget | None = None):
+        self.budget = budget or _StepBudget()
+        kind = type("_CountedNode", (_CountingNode,), {"budget": self.budget})
         self.nodes = {node.etree_element: node for node in kind.from_xml_root(root).iter_subtree()}
 
-    def spend_of_type(self) -> None:
-        """What a selector takes that counts siblings of a type, where they cannot be counted here."""
+    def spend_sibling_counts(self) -> None:
+        """Spend the estimated steps of a selector that counts siblings of a type.
+
+        cssselect2 takes these steps itself, so they cannot be counted one by one.
+        """
         counts = Counter(id(node.parent) for node in self.nodes.values()).values()
         self.budget.spend(sum(n * n for n in counts))
 
-    def compiled(self, prelude) -> list | None:
-        """Selectors; None if the text is none that is read."""
+    def compile_selectors(self, prelude) -> list | None:
+        """Return the compiled selectors of a prelude, None if they cannot be read."""
         if "-of-type" in tinycss2.serialize(prelude):
-            self.spend_of_type()
+            self.spend_sibling_counts()
         try:
             return compile_selector_list(prelude)
         except (SelectorError, SyntaxError, RecursionError, MemoryError):
             return None
-        except (AttributeError, TypeError):  # tinycss2 1.5 meets the end of ":nth-child(2n +)" unprepared
+        except (AttributeError, TypeError):  # tinycss2 1.5 fails at the end of ":nth-child(2n +)"
             return None

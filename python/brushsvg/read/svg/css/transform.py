@@ -1,7 +1,7 @@
-"""Transforms as CSS writes them, and the point that a transform leaves where it is.
+"""Parse the transforms of CSS, and the origin of a transform.
 
-CSS is stricter than SVG's attribute: lengths and angles have units, numbers have commas between them. What browsers
-do not accept is not guessed here either.
+CSS is stricter than the attribute of SVG: lengths and angles have units, and commas separate numbers. A value that
+browsers do not accept is not accepted here either.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ ReferenceBox = tuple[float, float, float, float]  # x, y, width, height in user 
 _CALL = re.compile(r"\s*+([a-zA-Z]++)\(([^()]*+)\)\s*+")
 _ANGLE = re.compile(rf"({NUMBER})(deg|rad|grad|turn)", re.IGNORECASE)
 _DEGREES = {"deg": 1.0, "rad": 180 / math.pi, "grad": 0.9, "turn": 360.0}
-_SHARE = re.compile(rf"({NUMBER})(%?)")
-_BARE = re.compile(NUMBER)
+_NUMBER_OR_PERCENTAGE = re.compile(rf"({NUMBER})(%?)")
+_BARE_NUMBER = re.compile(NUMBER)
 
-# Of each function: what its arguments are. "x" and "y": lengths or percentages of that side of the box.
-_KINDS = {
+# The kinds of the arguments of each function. "x" and "y" are lengths or percentages of this side of the box.
+_ARGUMENT_KINDS = {
     "matrix": ("number",) * 6,
     "translate": ("x", "y"),
     "translatex": ("x",),
@@ -37,71 +37,85 @@ _KINDS = {
     "skewx": ("angle",),
     "skewy": ("angle",),
 }
-_MAKE = {name.lower(): make for name, (_, make) in FUNCTIONS.items()} | {
+_MATRIX_MAKERS = {name.lower(): make for name, (_, make) in FUNCTIONS.items()} | {
     "translatex": lambda x: (1.0, 0.0, 0.0, 1.0, x, 0.0),
     "translatey": lambda y: (1.0, 0.0, 0.0, 1.0, 0.0, y),
     "scalex": lambda x: (x, 0.0, 0.0, 1.0, 0.0, 0.0),
     "scaley": lambda y: (1.0, 0.0, 0.0, y, 0.0, 0.0),
     "skew": lambda x, y=0.0: (1.0, FUNCTIONS["skewY"][1](y)[1], FUNCTIONS["skewX"][1](x)[2], 1.0, 0.0, 0.0),
 }
-_ACROSS, _DOWN = {"left": 0.0, "center": 0.5, "right": 1.0}, {"top": 0.0, "center": 0.5, "bottom": 1.0}
-_NOTHING = ("none", "initial", "unset", "revert")
+_X_KEYWORDS, _Y_KEYWORDS = (
+    {"left": 0.0, "center": 0.5, "right": 1.0},
+    {"top": 0.0, "center": 0.5, "bottom": 1.0},
+)
+_NO_TRANSFORM = ("none", "initial", "unset", "revert")
 
 
 def css_transform(text: str, box: Callable[[], ReferenceBox], em_px: float) -> Matrix:
-    """The matrix of the property `transform`. box: of which percentages are. Error if it is not CSS, or in space."""
-    matrix, at = IDENTITY, 0
-    if text.strip().lower() in _NOTHING:
+    """Return the matrix of the property `transform`.
+
+    box: returns the reference box of percentages. Raises Error if the text is not CSS, or a transform in 3D.
+    """
+    matrix, position = IDENTITY, 0
+    if text.strip().lower() in _NO_TRANSFORM:
         return matrix
-    while at < len(text):
-        call = _CALL.match(text, at)
+    while position < len(text):
+        call = _CALL.match(text, position)
         name = call[1].lower() if call else ""
         words = [word.strip() for word in call[2].split(",")] if call else []
-        kinds = _KINDS.get(name, ())
+        kinds = _ARGUMENT_KINDS.get(name, ())
         if not kinds or not (len(words) == len(kinds) or (len(kinds) == 2 and len(words) == 1)):
             raise Error(
-                f"transform is not read from character {at + 1} on: found {snippet(text, at)}",
+                f"transform is not read from character {position + 1} on: found {snippet(text, position)}",
                 code="transform-unread",
             )
-        matrix = multiply(matrix, _MAKE[name](*_values(words, kinds, box, em_px)))
-        at = call.end()
+        matrix = multiply(matrix, _MATRIX_MAKERS[name](*_values(words, kinds, box, em_px)))
+        position = call.end()
     return matrix
 
 
 def individual_transform(name: str, text: str, box: Callable[[], ReferenceBox], em_px: float) -> Matrix:
-    """The matrix of one of the properties `translate`, `rotate` and `scale`. Error if it is not CSS, or in space."""
+    """Return the matrix of the property `translate`, `rotate` or `scale`.
+
+    Raises Error if the text is not CSS, or a transform in 3D.
+    """
     words = text.split()
-    if text.strip().lower() in _NOTHING:
+    if text.strip().lower() in _NO_TRANSFORM:
         return IDENTITY
-    kinds = _KINDS[name]
+    kinds = _ARGUMENT_KINDS[name]
     if not 1 <= len(words) <= len(kinds):
         raise Error(f"{name} {text[:40]!r} is not read", code="transform-unread")
-    return _MAKE[name](*_values(words, kinds, box, em_px))
+    return _MATRIX_MAKERS[name](*_values(words, kinds, box, em_px))
 
 
-def origin(text: str, is_css: bool, box: Callable[[], ReferenceBox], em_px: float) -> tuple[float, float]:
-    """The point that `transform-origin` names. is_css: whether lengths need units. Error if it is not CSS."""
+def transform_origin(
+    text: str, is_css: bool, box: Callable[[], ReferenceBox], em_px: float
+) -> tuple[float, float]:
+    """Return the point (x, y) of `transform-origin`.
+
+    is_css: whether lengths need units, as in CSS. Raises Error if the text is invalid.
+    """
     words = text.lower().split()
     if not 1 <= len(words) <= 3:
         raise Error(f"transform-origin {text[:40]!r} is not read", code="transform-unread")
-    if len(words) == 3:  # above the paper
+    if len(words) == 3:  # the third number is the depth, which has no effect
         if (depth := words.pop()).endswith("%"):
             raise Error(f"transform-origin {text[:40]!r} is not read", code="transform-unread")
         _length(depth, 0.0, is_css, em_px)
     if len(words) == 1:
-        words = ["center", *words] if words[0] in _DOWN else [*words, "center"]
-    elif words[0] in _DOWN and words[1] in _ACROSS:
+        words = ["center", *words] if words[0] in _Y_KEYWORDS else [*words, "center"]
+    elif words[0] in _Y_KEYWORDS and words[1] in _X_KEYWORDS:
         words.reverse()
     x, y, width, height = box()
     across, down = (
         side * names[word] if word in names else _length(word, side, is_css, em_px)
-        for word, names, side in zip(words, (_ACROSS, _DOWN), (width, height), strict=True)
+        for word, names, side in zip(words, (_X_KEYWORDS, _Y_KEYWORDS), (width, height), strict=True)
     )
     return x + across, y + down
 
 
-def about(point: tuple[float, float], matrix: Matrix) -> Matrix:
-    """A matrix as it acts about a point."""
+def about_point(point: tuple[float, float], matrix: Matrix) -> Matrix:
+    """Return a matrix that applies another matrix about a point."""
     x, y = point
     return multiply(multiply((1.0, 0.0, 0.0, 1.0, x, y), matrix), (1.0, 0.0, 0.0, 1.0, -x, -y))
 
@@ -121,23 +135,23 @@ def _value(word: str, kind: str, box: Callable[[], ReferenceBox], em_px: float) 
         side = box()[2 if kind == "x" else 3] if word.endswith("%") else 0.0
         return _length(word, side, True, em_px)
     if kind == "angle":
-        found = _ANGLE.fullmatch(word)
-        if found:
-            return float(found[1]) * _DEGREES[found[2].lower()]
-        if _BARE.fullmatch(word) and float(word) == 0:
+        match = _ANGLE.fullmatch(word)
+        if match:
+            return float(match[1]) * _DEGREES[match[2].lower()]
+        if _BARE_NUMBER.fullmatch(word) and float(word) == 0:
             return 0.0
         raise Error(
             f"transform: {word[:24]!r} is not an angle as CSS writes it, for example 30deg",
             code="transform-unread",
         )
-    found = _SHARE.fullmatch(word)
-    if not found or (found[2] and kind == "number"):
+    match = _NUMBER_OR_PERCENTAGE.fullmatch(word)
+    if not match or (match[2] and kind == "number"):
         raise Error(f"transform: {word[:24]!r} is not a number", code="transform-unread")
-    return float(found[1]) / (100 if found[2] else 1)
+    return float(match[1]) / (100 if match[2] else 1)
 
 
 def _length(word: str, percent_of: float, is_css: bool, em_px: float) -> float:
-    if is_css and _BARE.fullmatch(word) and float(word) != 0:
+    if is_css and _BARE_NUMBER.fullmatch(word) and float(word) != 0:
         raise Error(
             f"transform: {word[:24]!r} has no unit, which CSS asks for: write {word[:24]}px",
             code="transform-unread",

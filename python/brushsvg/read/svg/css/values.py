@@ -1,4 +1,4 @@
-"""Whether a value is one of its CSS property, what it comes to, and what var() puts into it."""
+"""Check and compute the values of CSS properties, and substitute var()."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from ....units import NUMBER, length_px
 from ..colour import parse_colour
 from ..paint_servers import URL
 
-_LENGTHS = frozenset(("stroke-width", "stroke-dasharray", "stroke-dashoffset"))
-_OPACITIES = frozenset(("opacity", "stroke-opacity", "fill-opacity"))
+_LENGTH_PROPERTIES = frozenset(("stroke-width", "stroke-dasharray", "stroke-dashoffset"))
+_OPACITY_PROPERTIES = frozenset(("opacity", "stroke-opacity", "fill-opacity"))
 _SHARE = re.compile(rf"{NUMBER}%?")
-_OF_FONT = re.compile(rf"({NUMBER})(r?em|ex)\b", re.IGNORECASE)
+_FONT_RELATIVE = re.compile(rf"({NUMBER})(r?em|ex)\b", re.IGNORECASE)
 _FONT_SIZES = {
     "xx-small": 9.0,
     "x-small": 10.0,
@@ -25,11 +25,14 @@ _FONT_SIZES = {
     "x-large": 24.0,
     "xx-large": 32.0,
 }
-_LONGEST_VALUE = 10_000  # of custom properties put into each other
+_MAX_VALUE_LENGTH = 10_000  # characters of a value after the substitution of custom properties
 
 
-def problem_of(name: str, value: str, diagonal: float) -> Notice | None:
-    """Why a value is not one of its property, as far as it matters."""
+def find_problem(name: str, value: str, diagonal: float) -> Notice | None:
+    """Return a notice if a value is not valid for its property, otherwise None.
+
+    Only properties whose invalid values matter are checked.
+    """
     if name in ("stroke", "fill", "color"):
         if not URL.match(value) and parse_colour(value) is None:
             return Notice(
@@ -46,7 +49,7 @@ def problem_of(name: str, value: str, diagonal: float) -> Notice | None:
             return Notice(
                 "", f"stroke-width: {error}; it counts as not given", True, code="stroke-width-invalid"
             )
-    elif name in _OPACITIES and not _SHARE.fullmatch(value):
+    elif name in _OPACITY_PROPERTIES and not _SHARE.fullmatch(value):
         return Notice(
             "",
             f"{name} {value[:40]!r} is not a number: it counts as not given",
@@ -56,28 +59,28 @@ def problem_of(name: str, value: str, diagonal: float) -> Notice | None:
     return None
 
 
-def computed(name: str, value: str, inherited: dict[str, str]) -> str:
+def compute_value(name: str, value: str, inherited: dict[str, str]) -> str:
     if name in ("stroke", "fill"):
         return value if URL.match(value) else parse_colour(value)
     if name == "color":
         colour = None if URL.match(value) else parse_colour(value)
         return inherited["color"] if colour in (None, "none", "currentcolor") else colour
-    if name in _OPACITIES:
+    if name in _OPACITY_PROPERTIES:
         return f"{min(1.0, max(0.0, length_px(value, 1.0))):.15g}"
     if name == "visibility":
         return value.lower() if value.lower() in ("visible", "hidden", "collapse") else inherited[name]
     if name in ("fill-rule", "clip-rule"):
         return "evenodd" if value.lower() == "evenodd" else "nonzero"
     if name == "font-size":
-        return _font_size(value.lower(), inherited["font-size"])
-    if name in _LENGTHS:  # what is said in em is handed down in px
-        return _OF_FONT.sub(
-            lambda found: f"{length_px(found[0], 0.0, float(inherited['font-size'])):.15g}", value
+        return _compute_font_size(value.lower(), inherited["font-size"])
+    if name in _LENGTH_PROPERTIES:  # children inherit em values in px
+        return _FONT_RELATIVE.sub(
+            lambda replacement: f"{length_px(replacement[0], 0.0, float(inherited['font-size'])):.15g}", value
         )
     return value if name.startswith(("marker", "clip-path")) else value.lower()
 
 
-def _font_size(value: str, parents: str) -> str:
+def _compute_font_size(value: str, parents: str) -> str:
     em_px = float(parents)
     if value in ("larger", "smaller"):
         return f"{em_px * (1.2 if value == 'larger' else 1 / 1.2):.15g}"
@@ -88,12 +91,15 @@ def _font_size(value: str, parents: str) -> str:
     return f"{size_px:.15g}" if 0 <= size_px <= 1e6 else parents
 
 
-def substituted(value: str, inherited: dict[str, str]) -> tuple[str, str]:
-    """A value with its var(--name, fallback) replaced, and why that leads nowhere, "" if it does not."""
+def substitute_variables(value: str, inherited: dict[str, str]) -> tuple[str, str]:
+    """Return a value with var(--name, fallback) substituted, and a problem.
+
+    The problem is a phrase that says why the substitution fails, "" if it works.
+    """
     problem = ""
 
-    @cache  # or variables that name two others each would take for ever
-    def at(depth: int, value: str) -> str:
+    @cache  # without the cache, variables that each use two others would take exponential time
+    def substitute(depth: int, value: str) -> str:
         nonlocal problem
         parts = []
         for token in tinycss2.parse_component_value_list(value):
@@ -101,26 +107,28 @@ def substituted(value: str, inherited: dict[str, str]) -> tuple[str, str]:
                 parts.append(tinycss2.serialize([token]))
                 continue
             name, comma, fallback = tinycss2.serialize(token.arguments).partition(",")
-            found = inherited.get(name.strip(), fallback.strip() if comma else None)
-            if found is None:
+            replacement = inherited.get(name.strip(), fallback.strip() if comma else None)
+            if replacement is None:
                 problem = problem or f"names {name.strip()[:40]}, which nothing says"
             elif depth > 20:
                 problem = problem or f"leads through {name.strip()[:40]} in a circle, or too far"
-            elif len(found) + sum(map(len, parts)) > _LONGEST_VALUE:
-                problem = problem or f"grows beyond {_LONGEST_VALUE} characters"
+            elif len(replacement) + sum(map(len, parts)) > _MAX_VALUE_LENGTH:
+                problem = problem or f"grows beyond {_MAX_VALUE_LENGTH} characters"
             else:
-                parts.append(at(depth + 1, found) if "var(" in found.lower() else found)
+                parts.append(
+                    substitute(depth + 1, replacement) if "var(" in replacement.lower() else replacement
+                )
         return "".join(parts).strip()
 
-    return at(0, value), problem
+    return substitute(0, value), problem
 
 
-def path_text(value: str) -> str | None:
-    """The text in d: path("..."), "" for none; None if it is neither."""
+def path_data_of(value: str) -> str | None:
+    """Return the path data in a value of d: path("..."), "" for none, else None."""
     if value.lower() == "none":
         return ""
     token, *others = tinycss2.parse_component_value_list(value, skip_comments=True)
     if others or token.type != "function" or token.lower_name != "path":
         return None
-    given = [each for each in token.arguments if each.type not in ("whitespace", "comment")]
-    return given[0].value if len(given) == 1 and given[0].type == "string" else None
+    arguments = [argument for argument in token.arguments if argument.type not in ("whitespace", "comment")]
+    return arguments[0].value if len(arguments) == 1 and arguments[0].type == "string" else None

@@ -1,6 +1,7 @@
-"""SVG path data: text to commands.
+"""Parse SVG path data to commands.
 
-The grammar is walked by hand and to the letter: what it does not allow ends the path there, with the place.
+The parser follows the grammar exactly. A path ends at the first text that the grammar does not allow, and the
+position of this text is returned.
 """
 
 from __future__ import annotations
@@ -12,33 +13,40 @@ from ....units import NUMBER as _NUMBER
 _SPACE = r"[ \t\n\r\f]*+"
 _GAP = rf"{_SPACE}(?:,{_SPACE})?"
 NUMBER, SPACE, GAP, FLAG = (re.compile(text) for text in (_NUMBER, _SPACE, _GAP, "[01]"))
-_NEXT_NUMBER = re.compile(f"{_GAP}({_NUMBER})|")  # or nothing, where a list ends: no search beyond
+# The empty alternative matches at the end of a list, so finditer does not search further.
+_NEXT_NUMBER = re.compile(f"{_GAP}({_NUMBER})|")
 _ARC_ARGUMENTS = (NUMBER, NUMBER, NUMBER, FLAG, FLAG, NUMBER, NUMBER)
 
-MOST_COMMANDS = 1_000_000  # of one path: no lettering has a hundredth of it, and each takes 600 bytes
-_COUNT = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2}
+# Commands of one path. No lettering has a hundredth of this number, and each command needs 600 bytes.
+MOST_COMMANDS = 1_000_000
+_ARGUMENT_COUNT = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2}
 
-# Where the command's arguments begin in the text, its letter, its numbers.
+# The position of the command or its arguments in the text, its letter, and its numbers.
 Command = tuple[int, str, tuple[float, ...]]
 
 
-def numbers(text: str) -> list[float] | None:
-    """A list of numbers separated as SVG allows, [] for no text; None if it is anything else."""
+def parse_numbers(text: str) -> list[float] | None:
+    """Parse a list of numbers separated as SVG allows.
+
+    The result is [] for an empty text, and None if the text is not a list of numbers.
+    """
     if not text:
         return []
-    _, values, end = _run(text, 0)
+    _, values, end = _read_numbers(text, 0)
     return values if end == len(text) else None
 
 
 def snippet(text: str, position: int, length: int = 16) -> str:
-    """What stands at a position, quoted and shortened, for a sentence."""
+    """Return the text at a position, quoted and shortened, for use in a sentence."""
     found = text[position : position + length].strip()
     return repr(found + ("..." if position + length < len(text) else "")) if found else "the end"
 
 
 def parse_path(d: str) -> tuple[list[Command], int | None]:
-    """Commands up to the first error, and where that is (None if there is none). One more than MOST_COMMANDS is an
-    error, too."""
+    """Return the commands up to the first error, and its position.
+
+    The position is None if there is no error. More than MOST_COMMANDS commands are an error, too.
+    """
     commands: list[Command] = []
     at = SPACE.match(d).end()
     while at < len(d):
@@ -52,9 +60,9 @@ def parse_path(d: str) -> tuple[list[Command], int | None]:
             commands.append((begin, letter, ()))
             continue
         if letter in "Aa":
-            at, error = _arcs(d, begin, at, letter, commands)
+            at, error = _read_arcs(d, begin, at, letter, commands)
         else:
-            at, error = _sets(d, begin, at, letter, commands)
+            at, error = _read_sets(d, begin, at, letter, commands)
         if error is not None:
             return commands, error
         at = SPACE.match(d, at).end()
@@ -62,23 +70,29 @@ def parse_path(d: str) -> tuple[list[Command], int | None]:
 
 
 def parse_points(text: str) -> tuple[list[Command], int | None]:
-    """A list of points as moveto and linetos up to the first error, and where that is."""
+    """Return a list of points as moveto and lineto commands up to the first error.
+
+    Also returns the position of the error, None if there is none.
+    """
     at = SPACE.match(text).end()
     commands: list[Command] = []
-    at, error = _sets(text, at, at, "M", commands)
+    at, error = _read_sets(text, at, at, "M", commands)
     if error is None and (end := SPACE.match(text, at).end()) < len(text):
         error = end
     return commands, error
 
 
-def _run(text: str, at: int) -> tuple[list[int], list[float], int]:
-    """Where the numbers that follow begin, what they are, and where the last one ends."""
+def _read_numbers(text: str, at: int) -> tuple[list[int], list[float], int]:
+    """Read the numbers from a position on.
+
+    Returns the positions of the numbers, their values, and the end of the last number.
+    """
     first = NUMBER.match(text, at)
     if not first:
         return [], [], at
     places, values, end = [at], [float(first[0])], first.end()
     for found in _NEXT_NUMBER.finditer(text, end):
-        if found[1] is None or len(values) > 6 * MOST_COMMANDS:  # six numbers make a C
+        if found[1] is None or len(values) > 6 * MOST_COMMANDS:  # C has the most numbers: six
             break
         places.append(found.start(1))
         values.append(float(found[1]))
@@ -86,11 +100,11 @@ def _run(text: str, at: int) -> tuple[list[int], list[float], int]:
     return places, values, end
 
 
-def _sets(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> tuple[int, int | None]:
-    places, values, end = _run(d, at)
+def _read_sets(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> tuple[int, int | None]:
+    places, values, end = _read_numbers(d, at)
     if not values:
         return at, at
-    count = _COUNT[letter.upper()]
+    count = _ARGUMENT_COUNT[letter.upper()]
     for first in range(0, len(values) - count + 1, count):
         place = places[first] if first else begin
         if len(commands) >= MOST_COMMANDS:
@@ -101,7 +115,7 @@ def _sets(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> 
     return end, GAP.match(d, end).end() if len(values) % count else None
 
 
-def _arcs(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> tuple[int, int | None]:
+def _read_arcs(d: str, begin: int, at: int, letter: str, commands: list[Command]) -> tuple[int, int | None]:
     while True:
         values = []
         for pattern in _ARC_ARGUMENTS:

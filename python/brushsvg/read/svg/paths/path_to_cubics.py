@@ -1,4 +1,7 @@
-"""Path commands to cubics on paper: drawn in user units, mapped by one matrix, cut where out of range."""
+"""Convert path commands to cubics on paper.
+
+The commands are drawn in user units and mapped by one matrix. A path ends where it leaves the range.
+"""
 
 from __future__ import annotations
 
@@ -12,22 +15,31 @@ from ....geometry.arc_to_cubics import arc_count
 from ...design import SubPath
 from .path_data import Command
 
-LARGEST_MM = 1e6  # a number beyond it is damage: no table is that large
-_TOLERANCE_MM = 1e-4  # of arcs: far below a brush hair, yet two cubics a quarter serve up to 23 mm radius
-_NOTHING_MM = 1e-6  # segments below it have a direction made of rounding errors
+MAX_COORDINATE_MM = 1e6  # a larger coordinate is damage, because no table is that large
+# Tolerance of arcs, far below a brush hair. Up to a radius of 23 mm, two cubics per quarter are enough.
+_ARC_TOLERANCE_MM = 1e-4
+_MIN_SEGMENT_MM = 1e-6  # size of a segment below which its direction consists of rounding errors
 
 
 @dataclass(frozen=True)
-class Line:
-    """What commands draw; beyond: where in the text a number left the range and drawing stopped, or None."""
+class TracedPath:
+    """The result of path commands.
+
+    subpaths: in mm on paper.
+    lone_movetos: number of movetos without a line.
+    beyond: the position in the text at which the path left the range and ended, or None.
+    """
 
     subpaths: tuple[SubPath, ...]
     lone_movetos: int
     beyond: int | None
 
 
-def trace(commands: list[Command], paper_from_user: tuple[float, ...], scale: float) -> Line:
-    """Sub-paths on paper [mm]. scale: greatest stretch of the matrix, mm per user unit."""
+def trace(commands: list[Command], paper_from_user: tuple[float, ...], scale: float) -> TracedPath:
+    """Draw commands on paper [mm].
+
+    paper_from_user: matrix from user units to mm; scale: greatest stretch of the matrix [mm per user unit].
+    """
     a, b, c, d, e, f = paper_from_user
     subpaths: list[SubPath] = []
     lone_movetos = 0
@@ -35,7 +47,7 @@ def trace(commands: list[Command], paper_from_user: tuple[float, ...], scale: fl
         if not segments:
             lone_movetos += 1
             continue
-        # Most paths are short: number by number is faster than by matrix product, and alike on every machine.
+        # Most paths are short. Plain numbers are then faster than a matrix product, and equal on every machine.
         points = [
             (
                 *(a * x0 + c * y0 + e, b * x0 + d * y0 + f, a * x1 + c * y1 + e, b * x1 + d * y1 + f),
@@ -44,35 +56,41 @@ def trace(commands: list[Command], paper_from_user: tuple[float, ...], scale: fl
             for x0, y0, x1, y1, x2, y2, x3, y3 in segments
         ]
         cubics = np.array(points).reshape(-1, 4, 2)
-        if all(-LARGEST_MM <= v <= LARGEST_MM for p in points for v in p):  # False for nan as well
-            has_tiny = any(abs(p[6] - p[0]) < _NOTHING_MM and abs(p[7] - p[1]) < _NOTHING_MM for p in points)
-            subpaths.append(_tidy(cubics, closed) if has_tiny else SubPath(cubics, closed))
+        # The comparison is False for nan as well.
+        if all(-MAX_COORDINATE_MM <= v <= MAX_COORDINATE_MM for p in points for v in p):
+            has_tiny = any(
+                abs(p[6] - p[0]) < _MIN_SEGMENT_MM and abs(p[7] - p[1]) < _MIN_SEGMENT_MM for p in points
+            )
+            subpaths.append(_remove_tiny_segments(cubics, closed) if has_tiny else SubPath(cubics, closed))
             continue
-        broken = int(np.argmin((np.abs(cubics) <= LARGEST_MM).all(axis=(1, 2))))
+        broken = int(np.argmin((np.abs(cubics) <= MAX_COORDINATE_MM).all(axis=(1, 2))))
         if broken:
-            subpaths.append(_tidy(cubics[:broken], False))
-        return Line(tuple(subpaths), lone_movetos, places[broken])
-    return Line(tuple(subpaths), lone_movetos, None)
+            subpaths.append(_remove_tiny_segments(cubics[:broken], False))
+        return TracedPath(tuple(subpaths), lone_movetos, places[broken])
+    return TracedPath(tuple(subpaths), lone_movetos, None)
 
 
-def _tidy(cubics: np.ndarray, closed: bool) -> SubPath:
-    tiny = np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) < _NOTHING_MM
+def _remove_tiny_segments(cubics: np.ndarray, closed: bool) -> SubPath:
+    tiny = np.abs(cubics - cubics[:, :1]).max(axis=(1, 2)) < _MIN_SEGMENT_MM
     if tiny.all():
         return SubPath(np.repeat(cubics[:1, :1], 4, axis=1))
     if tiny.any():
-        kept = cubics[~tiny]
-        joined = np.concatenate((kept[:1, 0], kept[:-1, 3]))
-        handle = (kept[:, 1] == kept[:, 0]).all(axis=1)
-        kept[handle, 1] = joined[handle]
-        kept[:, 0] = joined
+        remaining = cubics[~tiny]
+        joined = np.concatenate((remaining[:1, 0], remaining[:-1, 3]))
+        handle = (remaining[:, 1] == remaining[:, 0]).all(axis=1)
+        remaining[handle, 1] = joined[handle]
+        remaining[:, 0] = joined
         if closed:
-            kept[-1, 3] = kept[0, 0]
-        cubics = kept
+            remaining[-1, 3] = remaining[0, 0]
+        cubics = remaining
     return SubPath(cubics, closed)
 
 
 def _user_subpaths(commands: list[Command], scale: float) -> Iterator[tuple[list, list[int], bool]]:
-    """(Segments of eight numbers, where each stands in the text, closed); no segments: a lone moveto."""
+    """Yield sub-paths in user units: segments, positions, closed.
+
+    A segment has eight numbers, and its position is an index into the text. A lone moveto has no segments.
+    """
     segments: list[tuple[float, ...]] = []
     places: list[int] = []
     x = y = start_x = start_y = handle_x = handle_y = 0.0
@@ -132,8 +150,8 @@ def _user_subpaths(commands: list[Command], scale: float) -> Iterator[tuple[list
 
 def _close(segments, places, place, x, y, start_x, start_y, scale: float) -> None:
     gap = max(abs(x - start_x), abs(y - start_y)) * scale
-    if segments and gap <= _TOLERANCE_MM:
-        # Relative commands rarely come back to the last digit; a hair of a line would be a corner of its own.
+    if segments and gap <= _ARC_TOLERANCE_MM:
+        # Relative commands rarely come back exactly. A tiny closing line would add a corner.
         segments[-1] = (*segments[-1][:6], start_x, start_y)
         return
     dx, dy = (start_x - x) / 3, (start_y - y) / 3
@@ -142,15 +160,20 @@ def _close(segments, places, place, x, y, start_x, start_y, scale: float) -> Non
 
 
 def _arc(x, y, rx, ry, turn_deg, large, sweep, ex, ey, scale: float) -> list[tuple[float, ...]]:
-    """Cubics of an elliptical arc, SVG 2 appendix B.2.4 and B.2.5 (centre from end points)."""
+    """Return the cubics of an elliptical arc, by SVG 2 appendix B.2.4 and B.2.5.
+
+    The appendix computes the centre from the end points.
+    """
     rx, ry = abs(rx), abs(ry)
-    if not max(rx, ry, abs(x), abs(y), abs(ex), abs(ey)) * scale <= LARGEST_MM or not math.isfinite(turn_deg):
+    if not max(rx, ry, abs(x), abs(y), abs(ex), abs(ey)) * scale <= MAX_COORDINATE_MM or not math.isfinite(
+        turn_deg
+    ):
         return [(x, y, x, y, math.nan, math.nan, ex, ey)]
     straight = (x, y, x + (ex - x) / 3, y + (ey - y) / 3, ex - (ex - x) / 3, ey - (ey - y) / 3, ex, ey)
-    if rx * scale < _NOTHING_MM or ry * scale < _NOTHING_MM:
+    if rx * scale < _MIN_SEGMENT_MM or ry * scale < _MIN_SEGMENT_MM:
         return [straight]
     cos, sin = math.cos(math.radians(turn_deg)), math.sin(math.radians(turn_deg))
-    # Half the chord in the frame where the ellipse is the unit circle.
+    # Half the chord, in the frame in which the ellipse is the unit circle.
     px = (cos * (x - ex) + sin * (y - ey)) / 2 / rx
     py = (-sin * (x - ex) + cos * (y - ey)) / 2 / ry
     half_chord = math.hypot(px, py)
@@ -171,7 +194,7 @@ def _arc(x, y, rx, ry, turn_deg, large, sweep, ex, ey, scale: float) -> list[tup
         swept -= math.tau
     centre_x = (x + ex) / 2 + cos * rx * ux - sin * ry * uy
     centre_y = (y + ey) / 2 + sin * rx * ux + cos * ry * uy
-    count = arc_count(abs(swept), max(rx, ry) * scale, _TOLERANCE_MM)
+    count = arc_count(abs(swept), max(rx, ry) * scale, _ARC_TOLERANCE_MM)
     step = swept / count
     reach = 4 / 3 * math.tan(step / 4)
 

@@ -1,4 +1,7 @@
-"""SVG's basic shapes as path commands, with the starting points and directions SVG prescribes."""
+"""Convert the basic shapes of SVG to path commands.
+
+The starting points and directions are as SVG prescribes.
+"""
 
 from __future__ import annotations
 
@@ -10,17 +13,22 @@ from .path_data import MOST_COMMANDS, Command, parse_path, parse_points, snippet
 
 
 class DamageError(Exception):
-    """Broken geometry: what could be drawn up to the error, and a sentence."""
+    """Damaged geometry: a sentence about it, and the commands up to the error."""
 
     def __init__(self, sentence: str, commands: list[Command]):
         super().__init__(sentence)
         self.commands = commands
 
 
-def commands_of(
+def shape_commands(
     tag: str, attributes: dict[str, str], viewport: tuple[float, float], em_px: float = FONT_PX
 ) -> list[Command]:
-    """Commands in user units, [] for a shape SVG does not render. viewport: (w, h), base of percentages."""
+    """Return the path commands of a shape in user units.
+
+    The result is [] for a shape that SVG does not render.
+
+    viewport: (width, height), the base of percentages. Raises DamageError if the geometry is damaged.
+    """
     return _SHAPES[tag](attributes, _Lengths(attributes, viewport, em_px))
 
 
@@ -30,11 +38,11 @@ class _Lengths:
         self.viewport = viewport
         self.em_px = em_px
 
-    def __call__(self, name: str, base: str, least: float = -math.inf) -> float:
-        value = self.optional(name, base, least)
+    def __call__(self, name: str, base: str, minimum: float = -math.inf) -> float:
+        value = self.optional(name, base, minimum)
         return 0.0 if value is None else value
 
-    def optional(self, name: str, base: str, least: float = 0.0) -> float | None:
+    def optional(self, name: str, base: str, minimum: float = 0.0) -> float | None:
         text = self.attributes.get(name)
         if text is None or text.strip() in ("", "auto"):
             return None
@@ -42,7 +50,7 @@ class _Lengths:
             value = length_px(text, self._base(base), self.em_px)
         except Error as error:
             raise DamageError(f"{name}: {error}", []) from None
-        if value < least:
+        if value < minimum:
             raise DamageError(f"{name}: {snippet(text, 0)} is negative", [])
         return value
 
@@ -51,7 +59,7 @@ class _Lengths:
         return {"x": width, "y": height, "r": math.hypot(width, height) / math.sqrt(2)}[name]
 
 
-def _damage_at(name: str, text: str, error: int, commands: list[Command]) -> DamageError:
+def _damage_error(name: str, text: str, error: int, commands: list[Command]) -> DamageError:
     if len(commands) >= MOST_COMMANDS:
         return DamageError(f"{name} has more than {MOST_COMMANDS} commands; read up to there", commands)
     found = f"found {snippet(text, error)}; read up to there"
@@ -64,7 +72,7 @@ def _path(attributes: dict[str, str], _length: _Lengths) -> list[Command]:
         return []
     commands, error = parse_path(d)
     if error is not None:
-        raise _damage_at("d", d, error, commands)
+        raise _damage_error("d", d, error, commands)
     return commands
 
 
@@ -77,7 +85,7 @@ def _rect(_attributes: dict[str, str], length: _Lengths) -> list[Command]:
         return []
     rx, ry = min(rx, width / 2), min(ry, height / 2)
     if rx == 0 or ry == 0:
-        return _drawn(("M", x, y), ("H", x + width), ("V", y + height), ("H", x), ("Z",))
+        return _commands(("M", x, y), ("H", x + width), ("V", y + height), ("H", x), ("Z",))
     right, bottom = x + width, y + height
     parts = [("M", x + rx, y)]
     for begin, end in (
@@ -87,14 +95,14 @@ def _rect(_attributes: dict[str, str], length: _Lengths) -> list[Command]:
         ((x, y + ry), (x + rx, y)),
     ):
         parts += [("L", *begin), ("A", rx, ry, 0.0, 0.0, 1.0, *end)]
-    return _drawn(*parts, ("Z",))
+    return _commands(*parts, ("Z",))
 
 
 def _ellipse_at(x: float, y: float, rx: float, ry: float) -> list[Command]:
     if rx == 0 or ry == 0:
         return []
     quarters = ((x, y + ry), (x - rx, y), (x, y - ry), (x + rx, y))
-    return _drawn(("M", x + rx, y), *(("A", rx, ry, 0.0, 0.0, 1.0, *end) for end in quarters), ("Z",))
+    return _commands(("M", x + rx, y), *(("A", rx, ry, 0.0, 0.0, 1.0, *end) for end in quarters), ("Z",))
 
 
 def _circle(_attributes: dict[str, str], length: _Lengths) -> list[Command]:
@@ -110,7 +118,7 @@ def _ellipse(_attributes: dict[str, str], length: _Lengths) -> list[Command]:
 
 def _line(_attributes: dict[str, str], length: _Lengths) -> list[Command]:
     begin = ("M", length("x1", "x"), length("y1", "y"))
-    return _drawn(begin, ("L", length("x2", "x"), length("y2", "y")))
+    return _commands(begin, ("L", length("x2", "x"), length("y2", "y")))
 
 
 def _polyline(attributes: dict[str, str], _length: _Lengths, last: tuple[Command, ...] = ()) -> list[Command]:
@@ -119,7 +127,7 @@ def _polyline(attributes: dict[str, str], _length: _Lengths, last: tuple[Command
         return []
     commands, error = parse_points(points)
     if error is not None:
-        raise _damage_at("points", points, error, commands)
+        raise _damage_error("points", points, error, commands)
     return [*commands, *last]
 
 
@@ -127,7 +135,7 @@ def _polygon(attributes: dict[str, str], length: _Lengths) -> list[Command]:
     return _polyline(attributes, length, ((0, "Z", ()),))
 
 
-def _drawn(*parts: tuple) -> list[Command]:
+def _commands(*parts: tuple) -> list[Command]:
     return [(0, letter, values) for letter, *values in parts]
 
 
