@@ -17,6 +17,7 @@ mark compared with its shape.
   torn      glyphs whose mark has more pieces than their shape
   closed    counters wider than the brush's finest line that are painted over
   outside   places where a mark is more than 0.3 mm outside of its shape
+  strokes   per glyph, and the most that one has
 
 Each font is painted so large that the stem of its l is nearly as wide as the brush paints, at most 100 mm to the em.
 FONT is a file, TrueType, OpenType or WOFF; --pictures writes a page of all glyphs per font. --against runs the same
@@ -78,6 +79,7 @@ class Painted:
     is_torn: bool
     closed: int
     outside: int
+    strokes: int
 
 
 def fitting_mm(font: bytes, brush, stem_of: str = "l") -> float:
@@ -122,6 +124,7 @@ def painted(text: str, font: bytes, size_mm: float, brush_name: str, compensatio
         len(_large(mark)) > len(_large(shape)),
         sum(_is_closed(hole, mark, finest) for hole in _holes(shape)),
         len(_large(mark.difference(shape.buffer(EDGE_MM)))),
+        len(work.strokes),
     )
 
 
@@ -215,6 +218,7 @@ def row(name: str, size_mm: float, compensation: str, done: list[Painted]) -> st
         f"{np.mean([each.turns for each in done]):>9.2f}{np.mean([each.notches_mm2 for each in done]):>9.2f}"
         f"{np.mean([each.bulges_mm2 for each in done]):>8.2f}{sum(each.is_torn for each in done):>6}"
         f"{sum(each.closed for each in done):>8}{sum(each.outside for each in done):>9}"
+        f"{np.mean([each.strokes for each in done]):>9.1f}{max(each.strokes for each in done):>6}"
         f"  {''.join(each.text for each in losing)}"
     )
 
@@ -236,7 +240,7 @@ def main() -> None:
     print(
         f"{'font':<24}{'em':>4}  {'':<8}{'lost':>5}{'bare':>6}{'glyphs':>8}{'silent':>8}{'overlap':>9}{'least':>7}"
         f"{'notices':>9}{'thorns':>8}{'turning':>9}{'notches':>9}{'bulges':>8}"
-        f"{'torn':>6}{'closed':>8}{'outside':>9}  which glyphs"
+        f"{'torn':>6}{'closed':>8}{'outside':>9}{'strokes':>9}{'most':>6}  which glyphs"
     )
     with ProcessPoolExecutor(options.processes) as pool:
         for file in options.font:

@@ -321,6 +321,13 @@ def test_a_full_circle_is_drawn(desk, capsys, line):
     assert status == 0 and re.search(r"circle|line 4", out)
 
 
+@pytest.mark.parametrize("end", ["M2", "M2 G90", "G90 M30"])
+def test_nothing_is_read_after_the_end_of_a_program(end):
+    """Words after M2 on its line made the program go on."""
+    moves = "G90\nG0 Z5\nG0 X60 Y60\nG1 Z-1 F300\nG1 X80\n"
+    assert len(ways(f"{moves}{end}\nG1 X90 Y90\n")) == len(ways(moves))
+
+
 @pytest.mark.parametrize(
     ("end", "is_down"),
     [

@@ -206,7 +206,7 @@ class _Interpreter:
             pass
         elif code not in _IGNORED_CODES[letter]:
             raise _unread_line_error(number, line)
-        self.is_ended = letter == "M" and code in (2, 30)
+        self.is_ended = self.is_ended or (letter == "M" and code in (2, 30))
         self.is_on = self.is_on and (self.by_angle or not self.is_ended)
 
     def _add_move(self, number: int, line: str, values: dict) -> None:
