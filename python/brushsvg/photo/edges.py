@@ -390,16 +390,16 @@ def _is_separate_mark(other, areas, px_per_mm: float) -> np.ndarray:
     return (other > MIN_SPLIT_SHARE * areas) & (other > MIN_SPLIT_MM2 * px_per_mm**2)
 
 
-def _largest_area_elsewhere(areas_in_boxes, areas, home, kept) -> np.ndarray:
+def _largest_area_elsewhere(areas_in_boxes, areas, own_box, is_kept) -> np.ndarray:
     """Return the largest area of each part in a box of another stroke that has no larger mark.
 
     A part that reaches into the box of a stroke with a larger mark is displaced, not joined.
     """
-    own = np.zeros(areas_in_boxes.shape[1])
-    np.maximum.at(own, home[kept], areas[kept])
-    foreign = areas_in_boxes * (np.arange(areas_in_boxes.shape[1]) != home[:, None])
+    largest_marks = np.zeros(areas_in_boxes.shape[1])
+    np.maximum.at(largest_marks, own_box[is_kept], areas[is_kept])
+    foreign = areas_in_boxes * (np.arange(areas_in_boxes.shape[1]) != own_box[:, None])
     foreign[:, 0] = 0
-    foreign[foreign < own] = 0
+    foreign[foreign < largest_marks] = 0
     return foreign.max(axis=1)
 
 
@@ -452,20 +452,22 @@ def _refuse_elsewhere(painted: np.ndarray, flat: Flat, stroke_boxes: list[Stroke
         c0, r0, c1, r1 = _box_pixels(flat, stroke_box.box_mm, 0.5)
         is_in_box[r0:r1, c0:c1] = True
     total = max(int(painted.sum()), 1)
-    here, turned = ((painted & mask).sum() / total for mask in (is_in_box, is_in_box[::-1, ::-1]))
-    if turned > here + MIN_TURNED_EXCESS:
+    inside_share, turned_share = (
+        (painted & mask).sum() / total for mask in (is_in_box, is_in_box[::-1, ::-1])
+    )
+    if turned_share > inside_share + MIN_TURNED_EXCESS:
         raise Error(
-            f"{100 * turned:.0f} % of the paint is where the strokes would be if the page were turned by 180 degrees, "
-            f"{100 * here:.0f} % where they should be: turn the page round for the machine",
-            value=turned,
+            f"{100 * turned_share:.0f} % of the paint is where the strokes would be if the page were turned by 180 "
+            f"degrees, {100 * inside_share:.0f} % where they should be: turn the page round for the machine",
+            value=turned_share,
             code="photo-paint-elsewhere",
         )
-    if here < MIN_SHARE_IN_BOXES:
+    if inside_share < MIN_SHARE_IN_BOXES:
         raise Error(
-            f"only {100 * here:.0f} % of the paint is where strokes of this chart should be, at least "
+            f"only {100 * inside_share:.0f} % of the paint is where strokes of this chart should be, at least "
             f"{100 * MIN_SHARE_IN_BOXES:.0f} % must be: was this chart painted on this page, once, was the page at its "
             "stop, and was it printed at 100 % (measure its bar)?",
-            value=here,
+            value=inside_share,
             code="photo-paint-elsewhere",
         )
 
@@ -481,41 +483,41 @@ def _outlines_of_stroke(
     right, bottom = (stats[parts, :2] + stats[parts, 2:4]).max(axis=0) + margin
     rows = slice(max(top, 0), min(bottom, part.shape[0]))
     columns = slice(max(left, 0), min(right, part.shape[1]))
-    seen, here = part[rows, columns], owner[rows, columns] == number
-    is_own = is_own_part[seen] & (here | ~is_cut[seen])
+    part_numbers, is_in_box = part[rows, columns], owner[rows, columns] == number
+    is_own = is_own_part[part_numbers] & (is_in_box | ~is_cut[part_numbers])
     corner = columns.start / px_per_mm, height_mm - rows.start / px_per_mm
-    return outlines_of(paint[rows, columns], is_own, (seen > 0) & ~is_own, usual, px_per_mm, corner)
+    return outlines_of(paint[rows, columns], is_own, (part_numbers > 0) & ~is_own, usual, px_per_mm, corner)
 
 
-def outlines_of(amount, mine, foreign, usual: float, fine: float, left_top_mm) -> list[np.ndarray]:
+def outlines_of(amount, is_own, is_foreign, usual: float, px_per_mm: float, left_top_mm) -> list[np.ndarray]:
     """Return rings around one mark, half way between paper and the mark's paint, in mm.
 
-    amount: (rows, columns) of paint; mine, foreign: masks of pixels that certainly belong to the mark, and to other
-    marks; usual: amount of paint of a typical mark; fine: pixels per mm; left_top_mm: corner of this part of the sheet.
+    amount: (rows, columns) of paint; is_own, is_foreign: masks of pixels that certainly belong to the mark, and to
+    other marks; usual: amount of paint of a typical mark; left_top_mm: corner of this part of the sheet.
     """
-    level = 0.5 * _full_paint(amount, mine, usual, fine)
-    reach = max(1, round(EDGE_MM * fine))
+    level = 0.5 * _full_paint(amount, is_own, usual, px_per_mm)
+    reach = max(1, round(EDGE_MM * px_per_mm))
     ellipse = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
-    near = cv2.dilate(np.uint8(mine), ellipse) == 1
-    amount = np.where(near & ~foreign, amount, 0.0)
-    rings = mask_outlines(amount, level, 1.0 / fine, left_top_mm, MIN_PART_MM2)
+    near = cv2.dilate(np.uint8(is_own), ellipse) == 1
+    amount = np.where(near & ~is_foreign, amount, 0.0)
+    rings = mask_outlines(amount, level, 1.0 / px_per_mm, left_top_mm, MIN_PART_MM2)
     sizes = [_signed_area(ring) for ring in rings]
     least = MIN_PART_SHARE * max(sizes, default=0.0)
     return [_smooth_ring(ring) for ring, size in zip(rings, sizes, strict=True) if size >= least or size < 0]
 
 
-def _full_paint(amount: np.ndarray, mine: np.ndarray, usual: float, px_per_mm: float) -> float:
+def _full_paint(amount: np.ndarray, is_own: np.ndarray, usual: float, px_per_mm: float) -> float:
     """Return how much paint a mark has where blur does not reduce it.
 
     A narrow mark has no such place. It gets the usual amount, limited to MAX_BLUR_FACTOR times its own, because half
     of a smaller amount would be outside its edge.
     """
-    broad = cv2.erode(np.uint8(mine), None, iterations=max(1, round(BLUR_MARGIN_MM * px_per_mm))) == 1
-    if broad.sum() > 0.1 * mine.sum():
-        return float(np.median(amount[broad]))
-    core = cv2.erode(np.uint8(mine), None, iterations=1) == 1
-    own = float(np.quantile(amount[core if core.any() else mine], 0.8))
-    return float(np.clip(usual, own, MAX_BLUR_FACTOR * own))
+    inner = cv2.erode(np.uint8(is_own), None, iterations=max(1, round(BLUR_MARGIN_MM * px_per_mm))) == 1
+    if inner.sum() > 0.1 * is_own.sum():
+        return float(np.median(amount[inner]))
+    core = cv2.erode(np.uint8(is_own), None, iterations=1) == 1
+    own_paint = float(np.quantile(amount[core if core.any() else is_own], 0.8))
+    return float(np.clip(usual, own_paint, MAX_BLUR_FACTOR * own_paint))
 
 
 def _longest_side(rings: list[np.ndarray]) -> float:

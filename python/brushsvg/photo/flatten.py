@@ -35,12 +35,12 @@ def flatten(
     pixels: np.ndarray, view: View, sheet_mm: tuple[float, float], px_per_mm: float | None = None
 ) -> Flat:
     """Flatten a photograph of a sheet, at the photograph's own resolution unless px_per_mm is given."""
-    fine = px_per_mm or min(view.px_per_mm, MAX_PX_PER_MM)
-    columns, rows = (round(side * fine) for side in sheet_mm)
+    resolution = px_per_mm or min(view.px_per_mm, MAX_PX_PER_MM)
+    columns, rows = (round(side * resolution) for side in sheet_mm)
     across, down = (math.ceil(count / GRID_STEP_PX) + 2 for count in (columns, rows))
     # The nodes are where resizing places the middles of the coarse pixels.
-    x = ((np.arange(across) - 0.5) * GRID_STEP_PX) / fine
-    y = sheet_mm[1] - ((np.arange(down) - 0.5) * GRID_STEP_PX) / fine
+    x = ((np.arange(across) - 0.5) * GRID_STEP_PX) / resolution
+    y = sheet_mm[1] - ((np.arange(down) - 0.5) * GRID_STEP_PX) / resolution
     nodes = view.to_px(np.column_stack([np.tile(x, down), np.repeat(y, across)])).astype(np.float32)
     size = (across * GRID_STEP_PX, down * GRID_STEP_PX)
     inside = (slice(GRID_STEP_PX, GRID_STEP_PX + rows), slice(GRID_STEP_PX, GRID_STEP_PX + columns))
@@ -48,5 +48,5 @@ def flatten(
         cv2.resize(nodes[:, k].reshape(down, across), size, interpolation=cv2.INTER_LINEAR)[inside]
         for k in (0, 1)
     ]
-    seen = cv2.remap(pixels, *maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-    return Flat(seen, fine, sheet_mm)
+    flattened = cv2.remap(pixels, *maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    return Flat(flattened, resolution, sheet_mm)

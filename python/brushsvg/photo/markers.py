@@ -160,9 +160,9 @@ def detect_markers(pixels: np.ndarray, dictionary: str) -> list[tuple[int, np.nd
 
 
 def _find_chart_markers(pixels: np.ndarray, light: np.ndarray, printed: Printed) -> dict[int, np.ndarray]:
-    seen = detect_markers(pixels, printed.dictionary)
-    ours = [(number, corners) for number, corners in seen if number in printed.corners_mm]
-    others = {number for number, _ in seen} - set(printed.corners_mm)
+    markers_in_picture = detect_markers(pixels, printed.dictionary)
+    ours = [(number, corners) for number, corners in markers_in_picture if number in printed.corners_mm]
+    others = {number for number, _ in markers_in_picture} - set(printed.corners_mm)
     found: dict[int, np.ndarray] = {}
     for number, corners in ours:
         if number in found:
@@ -213,10 +213,10 @@ def _refuse_cropped(found: dict[int, np.ndarray], printed: Printed, shape) -> No
     if not others:
         return
     mm = np.vstack([printed.corners_mm[number] for number in found])
-    roughly, _ = cv2.estimateAffinePartial2D(mm * (1, -1), np.vstack([*found.values()]))
-    if roughly is None:
+    rough_view, _ = cv2.estimateAffinePartial2D(mm * (1, -1), np.vstack([*found.values()]))
+    if rough_view is None:
         return
-    px = np.array(others) * (1, -1) @ roughly[:, :2].T + roughly[:, 2]
+    px = np.array(others) * (1, -1) @ rough_view[:, :2].T + rough_view[:, 2]
     beyond = (px < 0).any(axis=1) | (px > np.array(shape[1::-1]) - 1).any(axis=1)
     if beyond.mean() >= 0.5:
         raise Error(
@@ -262,11 +262,12 @@ def _refuse_poor_picture(light: np.ndarray, count: int) -> None:
             code="photo-overexposed",
             advice="" if count else ADVICE_FOR_UNPRINTED,
         )
-    if (wide := blur_px(light)) > MAX_EDGE_SHARE * max(light.shape):
+    if (edge_width_px := blur_px(light)) > MAX_EDGE_SHARE * max(light.shape):
         raise Error(
-            f"{few}, and edges go over {wide:.0f} pixels, more than {MAX_EDGE_SHARE * max(light.shape):.0f}: the "
-            "picture is blurred; hold the camera still and let it focus on the paper",
-            value=wide,
+            f"{few}, and edges go over {edge_width_px:.0f} pixels, more than "
+            f"{MAX_EDGE_SHARE * max(light.shape):.0f}: the picture is blurred; hold the camera still and let it focus on "
+            "the paper",
+            value=edge_width_px,
             code="photo-blurred",
         )
 
@@ -333,12 +334,12 @@ def _locate_edge(light, a, b, module_px: float) -> tuple[np.ndarray, float, np.n
 
 def _fit_line(points: np.ndarray) -> tuple[np.ndarray, float]:
     """Fit a line to points without outliers; return its normal and its distance from the origin."""
-    kept = points
+    inliers = points
     for _ in range(3):
-        middle = kept.mean(axis=0)
-        normal = np.linalg.svd(kept - middle, full_matrices=False)[2][1]
+        middle = inliers.mean(axis=0)
+        normal = np.linalg.svd(inliers - middle, full_matrices=False)[2][1]
         distances = np.abs((points - middle) @ normal)
-        kept = points[distances <= max(3 * 1.4826 * np.median(distances), 0.05)]
+        inliers = points[distances <= max(3 * 1.4826 * np.median(distances), 0.05)]
     return normal, float(normal @ middle)
 
 
@@ -388,9 +389,9 @@ def _fit_view(corners: dict[int, np.ndarray], printed: Printed, shape, shift_px=
         unknowns = unknowns + change
         if np.abs(change).max() < 1e-9:
             break
-    found = view(unknowns)
-    scale = _min_px_per_mm(found, printed.sheet_mm)
-    squares = np.sum((found.to_px(mm) - px) ** 2, axis=1) / scale**2
+    fitted = view(unknowns)
+    scale = _min_px_per_mm(fitted, printed.sheet_mm)
+    squares = np.sum((fitted.to_px(mm) - px) ** 2, axis=1) / scale**2
     freedom = len(mm) - 4.5  # eight of the homography and k1; each corner gives two numbers
     rms_of_marker = {
         number: float(np.sqrt(squares[marker == number].mean())) for number in np.unique(marker).tolist()
@@ -399,8 +400,8 @@ def _fit_view(corners: dict[int, np.ndarray], printed: Printed, shape, shift_px=
     residual = float(np.sqrt(squares.sum() / freedom))
     unsure_mm = _least_certain_px(view, unknowns, np.linalg.pinv(slopes.T @ slopes), printed.sheet_mm) / scale
     return View(
-        found.homography,
-        found.distortion,
+        fitted.homography,
+        fitted.distortion,
         middle,
         radius,
         scale,
@@ -418,12 +419,12 @@ def _fit_without_covered(view: View, corners: dict, clear: dict, printed: Printe
     displacement is also tried without all its corners, because the edge of the covering object may be mistaken for the
     marker's edge. Bulging paper, in contrast, moves all markers, and the clear corners of covered ones with them.
     """
-    number, own = view.worst
+    number, worst_mm = view.worst
     limit = view.most_residual_mm
     if view.residual_mm <= limit:
         return view
     hidden = {k: ~is_clear for k, is_clear in clear.items() if not is_clear.all()}
-    if own >= MIN_COVERED_FACTOR * limit:
+    if worst_mm >= MIN_COVERED_FACTOR * limit:
         hidden.setdefault(number, np.ones(4, bool))
     for count in range(1, min(len(hidden), len(corners) - MIN_MARKERS) + 1):
         fits = [
@@ -442,9 +443,9 @@ def _mask_corners(corners: np.ndarray, hidden: np.ndarray) -> np.ndarray:
 
 def _least_certain_px(view, unknowns: np.ndarray, covariance: np.ndarray, sheet_mm) -> float:
     at = np.array([(x * sheet_mm[0], y * sheet_mm[1]) for x in (0.1, 0.5, 0.9) for y in (0.1, 0.5, 0.9)])
-    here = view(unknowns).to_px(at)
+    places_px = view(unknowns).to_px(at)
     slopes = [
-        (view(unknowns + step).to_px(at) - here).ravel() / 1e-6 for step in 1e-6 * np.eye(len(unknowns))
+        (view(unknowns + step).to_px(at) - places_px).ravel() / 1e-6 for step in 1e-6 * np.eye(len(unknowns))
     ]
     spread = np.einsum("ki,kl,li->i", slopes, covariance, slopes).reshape(-1, 2)
     return float(np.sqrt(spread.sum(axis=1).max()))
@@ -481,10 +482,11 @@ def _refuse_unmeasurable(view: View, printed: Printed) -> None:
             code="photo-overexposed",
         )
     if view.residual_mm > limit:
-        number, own = view.worst
+        number, worst_mm = view.worst
         raise Error(
             f"the markers are {view.residual_mm:.2f} mm (rms) from where flat paper would have them, more than "
-            f"{limit:.2f}; marker {number} most, {own:.2f} mm: press the page flat, and take it from straight above",
+            f"{limit:.2f}; marker {number} most, {worst_mm:.2f} mm: press the page flat, and take it from straight "
+            "above",
             value=view.residual_mm,
             code="photo-not-flat",
         )

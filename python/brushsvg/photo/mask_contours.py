@@ -23,9 +23,9 @@ def mask_outlines(
     border = cv2.copyMakeBorder(np.float32(paint), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0.0)
     fine = cv2.resize(border, None, fx=UPSAMPLING, fy=UPSAMPLING, interpolation=cv2.INTER_LINEAR)
     above = np.uint8(fine > level)
-    found, tree = cv2.findContours(above, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    contours, tree = cv2.findContours(above, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     rings = []
-    for points, (_, _, _, parent) in zip(found, tree[0] if tree is not None else [], strict=True):
+    for points, (_, _, _, parent) in zip(contours, tree[0] if tree is not None else [], strict=True):
         ring = points[:, 0, :].astype(float)
         if len(ring) < 3 * UPSAMPLING:
             continue

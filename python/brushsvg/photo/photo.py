@@ -53,12 +53,12 @@ def refuse_twice(photos: list[tuple[str, bytes]]) -> None:
 
     photos: name and content of each file.
     """
-    known: dict[bytes, str] = {}
+    name_of_content: dict[bytes, str] = {}
     for name, data in photos:
-        if data in known:
-            sentence = f"this is the same photograph as {known[data]}: pass each photograph once"
+        if data in name_of_content:
+            sentence = f"this is the same photograph as {name_of_content[data]}: pass each photograph once"
             raise Error(sentence, file=name, code="photo-twice")
-        known[data] = name
+        name_of_content[data] = name
 
 
 def read_photo(data: bytes) -> np.ndarray:

@@ -94,14 +94,14 @@ def _find_paint_mask(coarse: np.ndarray) -> np.ndarray:
     flat = Flat(coarse, COARSE_PX_PER_MM, sheet)
     amount = paint_seen(flat, np.zeros((rows, columns), np.uint8), [StrokeBox("", (0.0, 0.0, *sheet))])
     _, part, stats, _ = cv2.connectedComponentsWithStats(np.uint8(amount > SEEN), connectivity=8)
-    kept = stats[:, cv2.CC_STAT_AREA] > MIN_MARK_MM2 * COARSE_PX_PER_MM**2
+    is_kept = stats[:, cv2.CC_STAT_AREA] > MIN_MARK_MM2 * COARSE_PX_PER_MM**2
     rim = max(1, round(3.0 * COARSE_PX_PER_MM))
-    beyond = np.concatenate(
+    edge_parts = np.concatenate(
         [part[:rim].ravel(), part[-rim:].ravel(), part[:, :rim].ravel(), part[:, -rim:].ravel()]
     )
-    kept[np.unique(beyond)] = False
-    kept[0] = False
-    return kept[part]
+    is_kept[np.unique(edge_parts)] = False
+    is_kept[0] = False
+    return is_kept[part]
 
 
 def _refuse_another_size(paint: np.ndarray, stroke_boxes: list[StrokeBox], dpi: float) -> None:
@@ -113,12 +113,12 @@ def _refuse_another_size(paint: np.ndarray, stroke_boxes: list[StrokeBox], dpi: 
             "no paint is found on the scan: is it the painted sheet, and clear of the glass's edges?",
             code="photo-without-paint",
         )
-    found = sorted(np.array([np.ptp(rows) + 1, np.ptp(columns) + 1]) / COARSE_PX_PER_MM)
-    size = math.sqrt(found[0] * found[1] / (expected[0] * expected[1]))
+    painted_mm = sorted(np.array([np.ptp(rows) + 1, np.ptp(columns) + 1]) / COARSE_PX_PER_MM)
+    size = math.sqrt(painted_mm[0] * painted_mm[1] / (expected[0] * expected[1]))
     if not SIZE_RANGE[0] < size < SIZE_RANGE[1]:
         raise Error(
-            f"at {dpi:g} dpi the paint on the scan covers {found[1]:.0f} x {found[0]:.0f} mm, the strokes of the "
-            f"chart over {expected[1]:.0f} x {expected[0]:.0f} mm: was it scanned at "
+            f"at {dpi:g} dpi the paint on the scan covers {painted_mm[1]:.0f} x {painted_mm[0]:.0f} mm, the strokes of "
+            f"the chart over {expected[1]:.0f} x {expected[0]:.0f} mm: was it scanned at "
             f"{_name_resolution(dpi * size)} dpi, in one piece, and is it this chart?",
             value=dpi,
             code="scan-resolution",
@@ -127,8 +127,10 @@ def _refuse_another_size(paint: np.ndarray, stroke_boxes: list[StrokeBox], dpi: 
 
 def _name_resolution(dpi: float) -> str:
     """Return a resolution in words: one that scanners have, where it is near, else "about" the number."""
-    near = min((150, 200, 240, 300, 400, 600, 800, 1200, 2400), key=lambda each: abs(math.log(each / dpi)))
-    return f"{near}" if abs(math.log(near / dpi)) < 0.02 else f"about {dpi:.0f}"
+    nearest_dpi = min(
+        (150, 200, 240, 300, 400, 600, 800, 1200, 2400), key=lambda candidate: abs(math.log(candidate / dpi))
+    )
+    return f"{nearest_dpi}" if abs(math.log(nearest_dpi / dpi)) < 0.02 else f"about {dpi:.0f}"
 
 
 def _match_turn_and_shift(paint: np.ndarray, paths_mm: list[np.ndarray]) -> tuple[float, complex]:
@@ -258,23 +260,23 @@ def find_marks_in_boxes(
             round(max(sheet_mm[1] - y, 0.0) * px_per_mm)
             for y in (top + MAX_STRAY_MM / 2, bottom - MAX_STRAY_MM / 2)
         )
-        here = np.bincount(part[r0:r1, c0:c1].ravel(), minlength=count)
-        here[0] = 0
-        main = int(here.argmax())
-        x, y, wide, tall, area = stats[main]
-        is_whole = main and here[main] > MIN_SHARE_IN_BOX * area
-        if is_whole and max(wide, tall) > MIN_LENGTH_SHARE * px_per_mm * max(right - left, top - bottom):
+        areas_in_box = np.bincount(part[r0:r1, c0:c1].ravel(), minlength=count)
+        areas_in_box[0] = 0
+        main = int(areas_in_box.argmax())
+        x, y, width, height, area = stats[main]
+        is_whole = main and areas_in_box[main] > MIN_SHARE_IN_BOX * area
+        if is_whole and max(width, height) > MIN_LENGTH_SHARE * px_per_mm * max(right - left, top - bottom):
             numbers.append(number)
-            places.append(complex((x + wide / 2) / px_per_mm, (y + tall / 2) / px_per_mm - sheet_mm[1]))
+            places.append(complex((x + width / 2) / px_per_mm, (y + height / 2) / px_per_mm - sheet_mm[1]))
     return numbers, np.array(places)
 
 
 def fit_similarity(middles: np.ndarray, places: np.ndarray) -> tuple[complex, complex]:
     """Fit a and b of places = a middles + b without outliers, all complex."""
-    kept = np.ones(len(middles), bool)
+    is_inlier = np.ones(len(middles), bool)
     for _ in range(4):
-        columns = np.column_stack([middles[kept], np.ones(kept.sum())])
-        (a, b), *_ = np.linalg.lstsq(columns, places[kept], rcond=None)
+        columns = np.column_stack([middles[is_inlier], np.ones(is_inlier.sum())])
+        (a, b), *_ = np.linalg.lstsq(columns, places[is_inlier], rcond=None)
         distances = np.abs(a * middles + b - places)
-        kept = distances <= max(2.5 * float(np.median(distances)), 0.3)
+        is_inlier = distances <= max(2.5 * float(np.median(distances)), 0.3)
     return complex(a), complex(b)

@@ -78,19 +78,19 @@ def worst_areas(
     _, group = np.unique(keys, return_inverse=True)
     sums = [np.bincount(group, weights=mask[rows, columns]) / px_per_mm**2 for mask in (missing, outside)]
     thickness = np.maximum(*(cv2.distanceTransform(mask, cv2.DIST_L2, 3) for mask in (missing, outside)))
-    found = []
+    areas = []
     for k in np.argsort(-(sums[0] + sums[1]), kind="stable")[:most]:
-        missing_mm2, outside_mm2 = (float(each[k]) for each in sums)
+        missing_mm2, outside_mm2 = (float(values[k]) for values in sums)
         if missing_mm2 + outside_mm2 < MIN_AREA_MM2:
             break
         mask = missing if missing_mm2 >= outside_mm2 else outside
-        here = np.flatnonzero((group == k) & (mask[rows, columns] > 0))
-        at = here[thickness[rows[here], columns[here]].argmax()]
+        area_px = np.flatnonzero((group == k) & (mask[rows, columns] > 0))
+        at = area_px[thickness[rows[area_px], columns[area_px]].argmax()]
         x = corner_mm[0] + (columns[at] + 0.5) / px_per_mm
         y = corner_mm[1] - (rows[at] + 0.5) / px_per_mm
         stroke = int(nearest[rows[at], columns[at]])
-        found.append(WorstArea(stroke, (float(x), float(y)), missing_mm2, outside_mm2))
-    return found
+        areas.append(WorstArea(stroke, (float(x), float(y)), missing_mm2, outside_mm2))
+    return areas
 
 
 def _nearest_line(shape, corner_mm, px_per_mm: float, lines_mm) -> np.ndarray:

@@ -287,8 +287,8 @@ def _fill_area(image: np.ndarray, rings, colour: str, opacity: float) -> None:
     cv2.fillPoly(mask, fixed, 255, cv2.LINE_AA, 4)
     rows, columns = np.divmod(np.flatnonzero(mask), mask.shape[1])
     share = (mask[rows, columns] / 255.0 * opacity)[:, None]
-    here = image[y0 + rows, x0 + columns]
-    image[y0 + rows, x0 + columns] = np.round(here * (1 - share) + np.array(_bgr(colour)) * share)
+    pixels = image[y0 + rows, x0 + columns]
+    image[y0 + rows, x0 + columns] = np.round(pixels * (1 - share) + np.array(_bgr(colour)) * share)
 
 
 def _bgr(colour: str) -> tuple[int, int, int]:

@@ -68,9 +68,9 @@ def marks_svg(
             lines[-1] += '"/>'
     if blank:
         data = "".join(path_data(ring, height) for ring in blank)
-        wide = round(LINE_WIDTH_SHARE * max(width, height), 3)
+        line_width = round(LINE_WIDTH_SHARE * max(width, height), 3)
         lines.append(
-            f'<path class="blank" fill="none" stroke="{MISSING}" stroke-width="{wide:g}" d="{data}"/>'
+            f'<path class="blank" fill="none" stroke="{MISSING}" stroke-width="{line_width:g}" d="{data}"/>'
         )
     if toolpath_mm:
         lines += _toolpath_elements(toolpath_mm, width, height)

@@ -42,11 +42,11 @@ class Panel:
 def panels_png(panels: list[Panel], heading: str, note: str, width_px: int = 2000) -> bytes:
     """Draw the panels at one scale, under each other for a wide drawing, else side by side."""
     x0, y0, x1, y1 = _panel_extent(panels)
-    wide = x1 - x0 > 1.5 * (y1 - y0)
-    across, down = (1, len(panels)) if wide else (len(panels), 1)
+    is_wide = x1 - x0 > 1.5 * (y1 - y0)
+    across, down = (1, len(panels)) if is_wide else (len(panels), 1)
     card_w = (width_px - 2 * MARGIN - (across - 1) * GAP) // across
-    text_w, text_h = (LABEL_W, 0) if wide else (0, LABEL_H)
-    room_w, room_h = card_w - text_w - 2 * PAD, (366 if wide else 800)
+    text_w, text_h = (LABEL_W, 0) if is_wide else (0, LABEL_H)
+    room_w, room_h = card_w - text_w - 2 * PAD, (366 if is_wide else 800)
     px_per_mm = min(room_w / (x1 - x0), room_h / (y1 - y0))
     picture_h = round((y1 - y0) * px_per_mm)
     card_h = max(picture_h + text_h, LABEL_H) + 2 * PAD
@@ -57,10 +57,10 @@ def panels_png(panels: list[Panel], heading: str, note: str, width_px: int = 200
     write_text(image, heading, (MARGIN, 70), 44, 600, TEXT)
     write_text(image, note, (MARGIN, 110), 22, 400, MUTED_TEXT)
     for number, panel in enumerate(panels):
-        left = MARGIN + (0 if wide else number * (card_w + GAP))
-        upper = TOP + (number * (card_h + GAP) if wide else 0)
+        left = MARGIN + (0 if is_wide else number * (card_w + GAP))
+        upper = TOP + (number * (card_h + GAP) if is_wide else 0)
         image[upper : upper + card_h, left : left + card_w] = bgr(CARD)
-        label_y = upper + (card_h - LABEL_H) // 2 if wide else upper + PAD
+        label_y = upper + (card_h - LABEL_H) // 2 if is_wide else upper + PAD
         _write_label(image, panel, left + PAD + 8, label_y)
         corner = (left + text_w + PAD, upper + (card_h - picture_h + text_h) // 2)
         _draw_panel(image, panel, window, px_per_mm, corner)

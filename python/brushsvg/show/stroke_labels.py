@@ -66,10 +66,10 @@ def width_text(stroke) -> str:
 
 def start_direction(line: np.ndarray) -> np.ndarray:
     """Return the direction in which a line starts, as a unit vector."""
-    away = np.hypot(*(line - line[0]).T)
-    far = line[int(np.argmax(away >= 6.0))] if (away >= 6.0).any() else line[-1]
-    length = math.dist(far, line[0])
-    return (far - line[0]) / length if length > 0 else np.array([1.0, 0.0])
+    distances = np.hypot(*(line - line[0]).T)
+    ahead = line[int(np.argmax(distances >= 6.0))] if (distances >= 6.0).any() else line[-1]
+    length = math.dist(ahead, line[0])
+    return (ahead - line[0]) / length if length > 0 else np.array([1.0, 0.0])
 
 
 def mark_cells(lines: list[np.ndarray], size: tuple[float, float]) -> np.ndarray:

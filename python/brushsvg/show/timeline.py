@@ -115,14 +115,14 @@ def _timeline_rows(time_s, tcp_mm, brush=np.nan) -> np.ndarray:
     return table
 
 
-def _waiting_rows(wait: Wait, here: np.ndarray) -> np.ndarray:
-    return _timeline_rows([HAND_PAUSE_S if wait.seconds is None else wait.seconds], here)
+def _waiting_rows(wait: Wait, start_mm: np.ndarray) -> np.ndarray:
+    return _timeline_rows([HAND_PAUSE_S if wait.seconds is None else wait.seconds], start_mm)
 
 
-def _air_rows(move: Move, here: np.ndarray | None, program: Program) -> np.ndarray:
-    path = np.vstack([move.points_mm[:1] if here is None else here, move.points_mm])
-    along_mm = np.concatenate([[0.0], distances(move, here)])
-    at_mm = along_mm if here is None else np.union1d(along_mm, along_mm[-1] * AIR_SAMPLE_SHARES)
+def _air_rows(move: Move, start_mm: np.ndarray | None, program: Program) -> np.ndarray:
+    path = np.vstack([move.points_mm[:1] if start_mm is None else start_mm, move.points_mm])
+    along_mm = np.concatenate([[0.0], distances(move, start_mm)])
+    at_mm = along_mm if start_mm is None else np.union1d(along_mm, along_mm[-1] * AIR_SAMPLE_SHARES)
     time_s = times_s(at_mm, along_mm[-1], move.speed_mm_s, program.cell)
     return _timeline_rows(time_s, np.column_stack([np.interp(at_mm, along_mm, axis) for axis in path.T]))
 
@@ -141,18 +141,18 @@ def _landing_rows(trace, landed: np.ndarray) -> np.ndarray:
     return _timeline_rows(np.full(len(brush), landed[0]), landed[1:4], brush)
 
 
-def _painting_rows(move: Move, here: np.ndarray, trace, first: int, program: Program) -> np.ndarray:
+def _painting_rows(move: Move, start_mm: np.ndarray, trace, first_pose: int, program: Program) -> np.ndarray:
     """Return the rows of the trace from pose `first` through the move's points."""
     pose = np.asarray(trace.pose)
-    chosen = (pose > first) & (pose <= first + len(move.points_mm))
-    along_mm = np.concatenate([[0.0], distances(move, here)])
+    chosen = (pose > first_pose) & (pose <= first_pose + len(move.points_mm))
+    along_mm = np.concatenate([[0.0], distances(move, start_mm)])
     if not chosen.any():  # for a servo that moves on the spot, the trace has no row
         time_s = times_s(along_mm[-1:], along_mm[-1], move.speed_mm_s, program.cell)
         return _timeline_rows(
-            time_s, move.points_mm[-1], _brush_columns(trace, np.flatnonzero(pose <= first)[-1:])
+            time_s, move.points_mm[-1], _brush_columns(trace, np.flatnonzero(pose <= first_pose)[-1:])
         )
-    heights_mm = np.concatenate([here[2:], move.points_mm[:, 2]])
-    numbers = first + np.arange(len(along_mm))
+    heights_mm = np.concatenate([start_mm[2:], move.points_mm[:, 2]])
+    numbers = first_pose + np.arange(len(along_mm))
     at_mm, z_mm = (np.interp(pose[chosen], numbers, column) for column in (along_mm, heights_mm))
     time_s = times_s(at_mm, along_mm[-1], move.speed_mm_s, program.cell)
     # The trace also follows the arcs between poses.

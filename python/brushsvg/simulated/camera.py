@@ -74,9 +74,9 @@ class Sheet:
                 x = (np.arange(c0, c1) + 0.5) / self.texels
                 opacity = opacity(x, self.size_mm[1] - (np.arange(r0, r1) + 0.5) / self.texels)
             share = (opacity * share)[..., None].astype(np.float32)
-            here = self.shown[r0:r1, c0:c1]
-            here *= 1 - share
-            here += share * np.asarray(colour, np.float32)
+            window = self.shown[r0:r1, c0:c1]
+            window *= 1 - share
+            window += share * np.asarray(colour, np.float32)
 
     def _texel_coverage(self, rings):
         """Return the share of each texel inside the rings (even-odd), and the window (r0, r1, c0, c1) of texels."""
@@ -216,15 +216,15 @@ def _sheet_points_of_pixels(
     from_middle = np.empty((rows, columns), np.float32)
     for top in range(0, rows, 256):
         v, u = np.mgrid[top : min(top + 256, rows), 0:columns].astype(float)
-        seen = np.stack([(u - middle[0]) / focal_px, (v - middle[1]) / focal_px], axis=-1)
-        distance = np.hypot(seen[..., 0], seen[..., 1])
-        seen *= (np.interp(distance, seen_at, ideal_at) / np.maximum(distance, 1e-12))[..., None]
-        ray = seen @ rotation[:, :2].T + rotation[:, 2]
+        directions = np.stack([(u - middle[0]) / focal_px, (v - middle[1]) / focal_px], axis=-1)
+        distance = np.hypot(directions[..., 0], directions[..., 1])
+        directions *= (np.interp(distance, seen_at, ideal_at) / np.maximum(distance, 1e-12))[..., None]
+        ray = directions @ rotation[:, :2].T + rotation[:, 2]
         height = 0.0
         for _ in range(1 if sag_mm == 0 else 4):
-            here = place[:2] + ray[..., :2] * ((height - place[2]) / ray[..., 2])[..., None]
-            height = _paper_height_mm(camera, sheet_mm, here)
-        at[top : top + len(v)] = here
+            points_mm = place[:2] + ray[..., :2] * ((height - place[2]) / ray[..., 2])[..., None]
+            height = _paper_height_mm(camera, sheet_mm, points_mm)
+        at[top : top + len(v)] = points_mm
         from_middle[top : top + len(v)] = distance / (0.5 * np.hypot(columns, rows) / focal_px)
     at.flags.writeable = from_middle.flags.writeable = False
     return at, from_middle
@@ -234,10 +234,10 @@ def coded(light):
     """Encode linear light as 8-bit sRGB."""
     out = np.empty(light.shape, np.uint8)
     for top in range(0, len(light), 32):  # 32 rows fit into the processor's cache
-        here = np.clip(light[top : top + 32], 0, 1)
-        here *= 65535
-        here += 0.5
-        out[top : top + 32] = _srgb_table()[here.astype(np.uint16)]
+        block = np.clip(light[top : top + 32], 0, 1)
+        block *= 65535
+        block += 0.5
+        out[top : top + 32] = _srgb_table()[block.astype(np.uint16)]
     return out
 
 

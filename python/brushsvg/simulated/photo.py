@@ -93,21 +93,21 @@ def _print_page(sheet: Sheet, page: JobPage) -> None:
         sheet.paint([tick], INK)
     for label in printed.labels:
         left, _, right, _ = label_box(label)
-        (wide, tall), under = cv2.getTextSize(label.text, cv2.FONT_HERSHEY_SIMPLEX, 1.0, 1)
-        room = (right - left) * sheet.texels
-        scale = room / wide
-        thick = round(1.5 * scale)
+        (text_width, text_height), descent = cv2.getTextSize(label.text, cv2.FONT_HERSHEY_SIMPLEX, 1.0, 1)
+        width_px = (right - left) * sheet.texels
+        scale = width_px / text_width
+        thickness = round(1.5 * scale)
         # Thick letters are wider than thin ones.
-        scale *= room / cv2.getTextSize(label.text, cv2.FONT_HERSHEY_SIMPLEX, scale, thick)[0][0]
-        size = math.ceil((tall + under) * scale) + 4, math.ceil(1.3 * wide * scale) + 4
-        at = 2, math.ceil(tall * scale) + 2
+        scale *= width_px / cv2.getTextSize(label.text, cv2.FONT_HERSHEY_SIMPLEX, scale, thickness)[0][0]
+        size = math.ceil((text_height + descent) * scale) + 4, math.ceil(1.3 * text_width * scale) + 4
+        at = 2, math.ceil(text_height * scale) + 2
         letters = np.zeros(size, np.uint8)
-        cv2.putText(letters, label.text, at, cv2.FONT_HERSHEY_SIMPLEX, scale, 255, thick, cv2.LINE_AA)
+        cv2.putText(letters, label.text, at, cv2.FONT_HERSHEY_SIMPLEX, scale, 255, thickness, cv2.LINE_AA)
         row = round((page.size_mm[1] - label.at_mm[1]) * sheet.texels) - at[1]
         column = round(left * sheet.texels) - at[0]
-        here = sheet.shown[row : row + size[0], column : column + size[1]]
-        share = letters[: here.shape[0], : here.shape[1], None] / np.float32(255)
-        here += share * (LABEL_COLOUR - here).astype(np.float32)
+        window = sheet.shown[row : row + size[0], column : column + size[1]]
+        share = letters[: window.shape[0], : window.shape[1], None] / np.float32(255)
+        window += share * (LABEL_COLOUR - window).astype(np.float32)
 
 
 def _opacity_along_stroke(stroke: PaintedStroke, frame_mm: float, lasts_mm: float, seed: int):
@@ -140,11 +140,14 @@ def _opacity_along_stroke(stroke: PaintedStroke, frame_mm: float, lasts_mm: floa
 
 def _write_notice(pixels: np.ndarray) -> None:
     rows, columns = pixels.shape[:2]
-    tall = round(NOTICE_HEIGHT_SHARE * rows)
-    pixels[rows - tall :] = (120, 0, 0)
-    (wide, high), _ = cv2.getTextSize(NOTICE, cv2.FONT_HERSHEY_SIMPLEX, 1.0, 2)
-    scale = min(0.7 * tall / high, 0.9 * columns / wide)
-    at = round((columns - scale * wide) / 2), round(rows - 0.5 * tall + 0.5 * scale * high)
+    strip_height = round(NOTICE_HEIGHT_SHARE * rows)
+    pixels[rows - strip_height :] = (120, 0, 0)
+    (text_width, text_height), _ = cv2.getTextSize(NOTICE, cv2.FONT_HERSHEY_SIMPLEX, 1.0, 2)
+    scale = min(0.7 * strip_height / text_height, 0.9 * columns / text_width)
+    at = (
+        round((columns - scale * text_width) / 2),
+        round(rows - 0.5 * strip_height + 0.5 * scale * text_height),
+    )
     cv2.putText(
         pixels,
         NOTICE,

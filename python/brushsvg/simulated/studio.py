@@ -108,8 +108,8 @@ def random_studio(seed: int, sheet_mm: tuple[float, float]) -> Studio:
     rng = np.random.default_rng(seed)
 
     def draw_within(most: float, count: int | None = None):
-        found = rng.uniform(-most, most, count)
-        return tuple(round(value, 5) for value in found.tolist()) if count else round(float(found), 5)
+        drawn = rng.uniform(-most, most, count)
+        return tuple(round(value, 5) for value in drawn.tolist()) if count else round(float(drawn), 5)
 
     lag, half_width = (1 + value for value in draw_within(0.2, 2))
     scale = tuple(round(1 + value, 5) for value in draw_within(0.01, 2))

@@ -131,11 +131,11 @@ def _width_cause(place: _StrokePlace, area_mm2: float, size_mm: float, where: st
 
 
 def _one_width_cause(place: _StrokePlace) -> Cause | None:
-    own = place.brush.half_width(place.depth_mm)
-    less = place.half_mm - own if place.is_missing else own - place.half_mm
-    if less <= MIN_WIDTH_ERROR * own:
+    brush_half_mm = place.brush.half_width(place.depth_mm)
+    error_mm = place.half_mm - brush_half_mm if place.is_missing else brush_half_mm - place.half_mm
+    if error_mm <= MIN_WIDTH_ERROR * brush_half_mm:
         return None
-    words = f"{2 * place.half_mm:.3g} mm wide there, the one width of the brush is {2 * own:.3g} mm"
+    words = f"{2 * place.half_mm:.3g} mm wide there, the one width of the brush is {2 * brush_half_mm:.3g} mm"
     return Cause(words, code="one-width")
 
 
@@ -235,8 +235,8 @@ def _sharpest_corner_deg(line: np.ndarray, s: float, reach_mm: float, closed: bo
         return 0.0
     turns, length = np.abs(_turning_angles(steps)), line[-1, 2]
     at = np.unique(line[:, 2])[1:-1][: len(turns)]
-    away = np.abs(at - s)
-    near = turns[: len(at)][(np.minimum(away, length - away) if closed else away) <= reach_mm]
+    distance = np.abs(at - s)
+    near = turns[: len(at)][(np.minimum(distance, length - distance) if closed else distance) <= reach_mm]
     if closed and min(s, length - s) <= reach_mm:
         near = np.append(near, np.abs(_turning_angles(steps[[-1, 0]])))
     return float(np.degrees(near.max(initial=0.0)))

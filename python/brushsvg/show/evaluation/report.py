@@ -154,17 +154,19 @@ def measure(painted: PaintedPlan) -> tuple[tuple[Figures, ...], Figures]:
     if strokes is None:
         rows = tuple(_path_figures(a_pass) for a_pass in plan.passes)
         return rows, _total_figures(rows, None)
-    runs, traces = plan.passes, painted.marks.passes
-    known = [k for k, stroke in enumerate(strokes) if stroke is not None]
-    alone = [strokes[k] for k in known]
-    verdicts = _core.verdicts([traces[k] for k in known], alone, brush)
-    tracking_errors = _core.tracking_errors_of([runs[k] for k in known], alone, brush, painted.tolerance_mm)
+    passes, traces = plan.passes, painted.marks.passes
+    known_passes = [k for k, stroke in enumerate(strokes) if stroke is not None]
+    known_strokes = [strokes[k] for k in known_passes]
+    verdicts = _core.verdicts([traces[k] for k in known_passes], known_strokes, brush)
+    tracking_errors = _core.tracking_errors_of(
+        [passes[k] for k in known_passes], known_strokes, brush, painted.tolerance_mm
+    )
     measured = iter(zip(verdicts, tracking_errors, strict=True))
     rows = tuple(
         _path_figures(a_pass) if stroke is None else _stroke_figures(painted, a_pass, stroke, *next(measured))
-        for a_pass, stroke in zip(runs, strokes, strict=True)
+        for a_pass, stroke in zip(passes, strokes, strict=True)
     )
-    target = alone if painted.drawn is None else list(painted.drawn)
+    target = known_strokes if painted.drawn is None else list(painted.drawn)
     overlap = _core.common_area(traces, target, brush).overlap if rows else None
     return rows, _total_figures(rows, overlap)
 
@@ -201,9 +203,9 @@ def worst_places(painted: PaintedPlan) -> tuple[Place, ...]:
         (error,) = _core.tracking_errors_of([run], [stroke], painted.brush, painted.tolerance_mm)
         line = _core.flatten(stroke, RING_TOLERANCE_MM)
         size_mm = max(_square_side_mm(line), area.area_mm2**0.5)
-        found = _find_cause(painted, stroke, line, area, size_mm, error)
-        is_off = not (stroke.wanted_mm or error.within_tolerance or "tracking error" in found.words)
-        return found, error.largest_mm if is_off else None
+        found_cause = _find_cause(painted, stroke, line, area, size_mm, error)
+        is_off = not (stroke.wanted_mm or error.within_tolerance or "tracking error" in found_cause.words)
+        return found_cause, error.largest_mm if is_off else None
 
     targets = painted.drawn if painted.drawn is not None else [stroke for _, stroke in whole.values()]
     return find_places(painted.marks, painted.brush, list(targets), why)
@@ -215,13 +217,13 @@ def _square_side_mm(line: np.ndarray) -> float:
 
 def _find_cause(painted: PaintedPlan, stroke, line, place, size_mm, tracking_error) -> Cause:
     """Find why paint differs at a place. size_mm: side of the square around it that is examined."""
-    here = [
+    pieces_here = [
         piece
         for piece in painted.unreached
         if piece.element == stroke.origin.element and _is_near_rings(place.at_mm, piece.rings, size_mm / 2)
     ]
-    is_bare = place.is_missing and any(not piece.is_rim for piece in here)
-    is_rim = place.is_missing and bool(here)
+    is_bare = place.is_missing and any(not piece.is_rim for piece in pieces_here)
+    is_rim = place.is_missing and bool(pieces_here)
     is_corner = place.is_missing and _outside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
     where = "bare" if is_bare else "rim" if is_rim else "corner" if is_corner else ""
     return cause(
@@ -270,13 +272,15 @@ def groups(
 
     strokes: one per pass, None for a pass that is a part of a stroke.
     """
-    known = [pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None]
-    traces, targets = [trace for trace, _ in known], [stroke for _, stroke in known]
-    together = _core.touching(targets)
-    areas = _core.common_areas(traces, targets, together, brush)
+    known_pairs = [
+        pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None
+    ]
+    traces, targets = [trace for trace, _ in known_pairs], [stroke for _, stroke in known_pairs]
+    touching = _core.touching(targets)
+    areas = _core.common_areas(traces, targets, touching, brush)
     return tuple(
         Group(tuple(targets[k].id for k in members), area.overlap)
-        for members, area in zip(together, areas, strict=True)
+        for members, area in zip(touching, areas, strict=True)
     )
 
 
@@ -287,7 +291,7 @@ def _path_figures(a_pass) -> Figures:
 
 
 def _total_figures(rows: tuple[Figures, ...], overlap: float | None) -> Figures:
-    def known(name, combine):
+    def combine_known(name, combine):
         values = [(getattr(row, name), row.drawn_mm or 0.0) for row in rows if getattr(row, name) is not None]
         return combine(*zip(*values, strict=True)) if values else None
 
@@ -297,12 +301,12 @@ def _total_figures(rows: tuple[Figures, ...], overlap: float | None) -> Figures:
     return Figures(
         stroke="all",
         overlap=overlap,
-        centre_mean_mm=known("centre_mean_mm", mean),
-        centre_largest_mm=known("centre_largest_mm", lambda values, _: max(values)),
-        width_error_mm=known("width_error_mm", mean),
-        excess_turning=known("excess_turning", lambda values, _: float(np.mean(values))),
-        widths_out_of_reach=known("widths_out_of_reach", lambda values, _: sum(values)),
-        drawn_mm=known("drawn_mm", lambda values, _: sum(values)),
+        centre_mean_mm=combine_known("centre_mean_mm", mean),
+        centre_largest_mm=combine_known("centre_largest_mm", lambda values, _: max(values)),
+        width_error_mm=combine_known("width_error_mm", mean),
+        excess_turning=combine_known("excess_turning", lambda values, _: float(np.mean(values))),
+        widths_out_of_reach=combine_known("widths_out_of_reach", lambda values, _: sum(values)),
+        drawn_mm=combine_known("drawn_mm", lambda values, _: sum(values)),
         painted_mm=sum(row.painted_mm for row in rows),
         poses=sum(row.poses for row in rows),
     )
@@ -327,8 +331,8 @@ def to_json(report: Report) -> str:
     """Return the report as JSON, with lengths rounded to 1e-6 mm, so that the same input gives the same bytes."""
 
     def figures(row: Figures, confidence) -> dict:
-        known = {} if confidence is None else {"uncertainty_95": _round_floats(asdict(confidence))}
-        return _round_floats(asdict(row)) | known
+        intervals_95 = {} if confidence is None else {"uncertainty_95": _round_floats(asdict(confidence))}
+        return _round_floats(asdict(row)) | intervals_95
 
     confidence = report.confidence
     intervals = [None] * len(report.strokes) if confidence is None else confidence.strokes
@@ -375,7 +379,7 @@ def to_csv(report: Report) -> str:
     """Return the report as CSV: one row per stroke, with the keys of the JSON; unknown values are empty cells."""
     plain = [column.name for column in fields(Figures) if column.name != "worst"]
     worst = [column.name for column in fields(Worst) if column.name != "place_mm"]
-    known = [column.name for column in fields(Confidence)] if report.confidence else []
+    interval_names = [column.name for column in fields(Confidence)] if report.confidence else []
     out = io.StringIO()
     rows = csv.writer(out, lineterminator="\n")
     rows.writerow(
@@ -384,7 +388,7 @@ def to_csv(report: Report) -> str:
             "worst_x_mm",
             "worst_y_mm",
             *(f"worst_{name}" for name in worst),
-            *(f"{name}_95" for name in known),
+            *(f"{name}_95" for name in interval_names),
         ]
     )
     intervals = report.confidence.strokes if report.confidence else [None] * len(report.strokes)
@@ -393,7 +397,7 @@ def to_csv(report: Report) -> str:
         cells = [getattr(row, name) for name in plain]
         cells += [*at, *(getattr(row.worst, name, "") for name in worst)]
         rows.writerow(
-            [_round_floats(cell) for cell in (*cells, *(getattr(interval, name) for name in known))]
+            [_round_floats(cell) for cell in (*cells, *(getattr(interval, name) for name in interval_names))]
         )
     return out.getvalue()
 

@@ -159,17 +159,17 @@ def _all_effects(plan, brush, marks):
     parts = {law: (factor / scale[:, None])[place] for law, place in at.items()}
     passes, traces = plan.passes, marks.passes  # fetched once, because every access copies the list
     for first in range(0, len(traces), PASSES_AT_ONCE):
-        some = slice(first, first + PASSES_AT_ONCE)
-        moved = _moved_by_steps(brush, passes[some], traces[some], sides)
-        for trace, (d_contact, d_along) in zip(traces[some], moved, strict=True):
+        block = slice(first, first + PASSES_AT_ONCE)
+        changes = _moved_by_steps(brush, passes[block], traces[block], sides)
+        for trace, (d_contact, d_along) in zip(traces[block], changes, strict=True):
             yield _effects(brush, trace, parts, d_contact @ mixing, d_along @ mixing)
 
 
 def _covariance_factor(covariance: np.ndarray) -> np.ndarray:
     """Return L (n, K) with covariance = L L^T; directions without variance are left out."""
     values, vectors = np.linalg.eigh((covariance + covariance.T) / 2)
-    kept = values > 1e-12 * max(values.max(initial=0.0), 1e-300)
-    return vectors[:, kept] * np.sqrt(values[kept])
+    is_kept = values > 1e-12 * max(values.max(initial=0.0), 1e-300)
+    return vectors[:, is_kept] * np.sqrt(values[is_kept])
 
 
 def _lag_steps(brush, step: np.ndarray):
@@ -191,7 +191,7 @@ def _moved_by_steps(brush, passes, traces, sides) -> list[tuple[np.ndarray, np.n
     up, down, part = zip(*sides, strict=True)
     followed = _core.follow_lags(passes, traces, (*up, *down), brush.depth_range_mm)
     steps, k = 2 * np.array(part), len(sides)
-    return [tuple((at[:, :, :k] - at[:, :, k:]) / steps for at in each) for each in followed]
+    return [tuple((at[:, :, :k] - at[:, :, k:]) / steps for at in pair) for pair in followed]
 
 
 def _effects(brush, trace, parts, d_contact, d_along) -> _Effects:
@@ -256,7 +256,9 @@ def _half_interval(effects: np.ndarray) -> np.ndarray:
 
 def _largest(strokes: tuple[Confidence, ...]) -> Confidence:
     def largest(name: str):
-        return max((value for each in strokes if (value := getattr(each, name)) is not None), default=None)
+        return max(
+            (value for stroke in strokes if (value := getattr(stroke, name)) is not None), default=None
+        )
 
     return Confidence(*(largest(name) for name in ("middle_mm", "ends_mm", "width_mm")))
 
@@ -270,15 +272,15 @@ def _swept_triangles(ring: np.ndarray, effects: _Effects) -> list[np.ndarray]:
     outward = np.column_stack([edge[:, 1], -edge[:, 0]])
     outward = outward + np.roll(outward, 1, axis=0)
     outward /= np.maximum(np.hypot(*outward.T), 1e-12)[:, None]
-    off = outward * _edge_half_interval(ring, outward, effects)[:, None]
-    outer, inner = ring + off, ring - off
+    offset = outward * _edge_half_interval(ring, outward, effects)[:, None]
+    outer, inner = ring + offset, ring - offset
     # Each edge gives two triangles instead of a quad, because a quad that is folded over has no proper area.
     next_outer, next_inner = np.roll(outer, -1, axis=0), np.roll(inner, -1, axis=0)
     halves = ((inner, outer, next_outer), (inner, next_outer, next_inner))
     triangles = np.concatenate([np.stack(corners, axis=1) for corners in halves])
-    one, two = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
-    folded = one[:, 0] * two[:, 1] < one[:, 1] * two[:, 0]
-    triangles[folded] = triangles[folded, ::-1]
+    side_1, side_2 = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    is_clockwise = side_1[:, 0] * side_2[:, 1] < side_1[:, 1] * side_2[:, 0]
+    triangles[is_clockwise] = triangles[is_clockwise, ::-1]
     return list(triangles)
 
 

@@ -31,18 +31,20 @@ def verdict_of(report) -> str:
 
 
 def _left_out_reasons(report) -> list[str]:
-    count, every = len(report.refused), len(report.strokes) + len(report.refused)
-    left_out = [f"{count} of {plural(every, 'stroke')} cannot be painted"] if count else []
+    count, total = len(report.refused), len(report.strokes) + len(report.refused)
+    left_out = [f"{count} of {plural(total, 'stroke')} cannot be painted"] if count else []
     if report.strokes and report.total.overlap is None:
         left_out.append("the drawing is not known, so nobody can say whether the paint matches it")
     return left_out
 
 
 def _off_drawing_reasons(warnings: Iterable) -> list[str]:
-    off = {notice.where for notice in warnings if notice.code in OFF_DRAWING}
+    strokes_off = {notice.where for notice in warnings if notice.code in OFF_DRAWING}
     return (
-        [f"{plural(len(off), 'stroke')} visibly {'miss' if len(off) > 1 else 'misses'} the drawing"]
-        if off
+        [
+            f"{plural(len(strokes_off), 'stroke')} visibly {'miss' if len(strokes_off) > 1 else 'misses'} the drawing"
+        ]
+        if strokes_off
         else []
     )
 
