@@ -265,8 +265,8 @@ def _refuse_poor_picture(light: np.ndarray, count: int) -> None:
     if (edge_width_px := blur_px(light)) > MAX_EDGE_SHARE * max(light.shape):
         raise Error(
             f"{few}, and edges go over {edge_width_px:.0f} pixels, more than "
-            f"{MAX_EDGE_SHARE * max(light.shape):.0f}: the picture is blurred; hold the camera still and let it focus on "
-            "the paper",
+            f"{MAX_EDGE_SHARE * max(light.shape):.0f}: the picture is blurred; hold the camera still and let it focus "
+            "on the paper",
             value=edge_width_px,
             code="photo-blurred",
         )
