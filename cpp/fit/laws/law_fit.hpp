@@ -20,7 +20,7 @@ struct LawShape {
     bool rising = false;                                      ///< never falls with depth
     double floor = -std::numeric_limits<double>::infinity();  ///< law = max(floor, polynomial)
     Norm norm = Norm::squares;
-    double smoothing = 0.0;  ///< weight of the law's curvature, relative to 1 for the data; 0: no smoothing
+    double smoothing = 0.0;  ///< weight of the control points' second differences, relative to 1 for the data; 0: none
 };
 
 struct LawFit {
