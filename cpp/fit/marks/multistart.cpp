@@ -15,7 +15,7 @@ constexpr std::size_t kFollowed = 4;
 constexpr double kSparse = 3.0, kCoarse = 2.5;
 constexpr double kTolerance = 1e-3;  // coarse, because the noise is not known yet
 
-/// Estimates the half width per depth from the marks' areas: painted area over the swept area per unit of half width.
+/// Estimates the half width per depth: the painted areas are fitted to 2 times length of the path times depth.
 double width_rate(const std::vector<PaintedMark>& marks) {
     double over = 0.0, under = 0.0;
     for (const PaintedMark& mark : marks) {
