@@ -31,8 +31,7 @@ constexpr std::size_t kMostWays = 4000, kMostWaysAbsolute = 500;
 constexpr double kHeld = 1e6;  // weight that holds a law to its floor within about 1e-10 mm without loss of digits
 // Greater lengths of a brush, weights and depths are damaged data, and their powers overflow.
 constexpr double kGreatest = 1e6;
-constexpr double kLeastPositiveMm =
-    0.01;  // minimum of a law that must stay above 0: a lever without length has no heading
+constexpr double kLeastPositiveMm = 0.01;  // minimum of a positive law: a lever without length has no heading
 
 struct Problem {
     VectorXd depth, value;

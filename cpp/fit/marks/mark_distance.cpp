@@ -13,8 +13,8 @@ namespace {
 // points along a lever of micrometres, and turns around completely where the lean changes by as little. Derivatives
 // that are valid only over micrometres would make the lean seem known to micrometres.
 constexpr double kLeverMm = 0.3;
-constexpr double kNearMm =
-    0.5;  // size of a brush's hairs: for a shorter way out no other is tried, a further edge is not refined
+// Size of a brush's hairs. For a shorter way out no other is tried, and a further edge is not refined.
+constexpr double kNearMm = 0.5;
 constexpr int kStraighter = 3;      // rounds in which a way out is made perpendicular to the edge
 constexpr double kSquare = 0.9999;  // cosine above which a way out is perpendicular
 constexpr double kGrazing = 0.3;    // cosine below which an edge is met too obliquely to refine the distance
