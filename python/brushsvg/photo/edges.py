@@ -89,7 +89,7 @@ def find_marks(
 
 
 def printed_pixels(flat: Flat, printed_mm) -> np.ndarray:
-    """Return the mask (rows, columns) of the area inside the rings around printed parts."""
+    """Return the mask (rows, columns) of the printed area, inside the rings."""
     is_printed = np.zeros(flat.pixels.shape[:2], np.uint8)
     for ring in printed_mm:
         cv2.fillPoly(is_printed, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
@@ -97,11 +97,11 @@ def printed_pixels(flat: Flat, printed_mm) -> np.ndarray:
 
 
 def paint_seen(flat: Flat, is_printed: np.ndarray, stroke_boxes: list[StrokeBox], labels_mm=()) -> np.ndarray:
-    """Return the amount of paint in each pixel, (rows, columns): 0 is paper, 1 is the usual paint.
+    """Return the amount of paint in each pixel: 0 is paper, 1 is the usual paint.
 
-    It is measured along the colour that best separates paint from paper, relative to the light that bare paper would
-    reflect at the same place. Paint may be darker or lighter than paper. is_printed: mask (rows, columns) of pixels
-    that do not count; labels_mm: boxes that do not count as bare paper.
+    The amount (rows, columns) is measured along the colour that best separates paint from paper, relative to the light
+    that bare paper would reflect at the same place. Paint may be darker or lighter than paper. is_printed: mask (rows,
+    columns) of pixels that do not count; labels_mm: boxes that do not count as bare paper.
     """
     light = cv2.LUT(flat.pixels, LIGHT)
     printed = is_printed.copy()
@@ -132,10 +132,10 @@ def _rim_px(flat: Flat) -> int:
 def _estimate_paper_light(
     light: np.ndarray, is_printed: np.ndarray, px_per_mm: float
 ) -> tuple[np.ndarray, bool]:
-    """Return the light of bare paper at every pixel, and whether paint is lighter than paper.
+    """Return the light of bare paper at every pixel.
 
-    The light is smoothed from the bare paper around, at one pixel per mm. Most of the surroundings of a pixel are
-    taken to be paper.
+    Returns also whether paint is lighter than paper. The light is smoothed from the bare paper around, at one pixel per
+    mm. Most of the surroundings of a pixel are taken to be paper.
     """
     rows, columns = light.shape[:2]
     size = (max(8, round(columns / px_per_mm)), max(8, round(rows / px_per_mm)))
@@ -159,7 +159,10 @@ def _estimate_paper_light(
 
 
 def _is_paint_lighter(coarse: np.ndarray, is_covered: np.ndarray) -> bool:
-    """Return whether pixels lighter than their surroundings outnumber darker ones, at one pixel per mm."""
+    """Return whether paint is lighter than paper.
+
+    Pixels that are lighter than their surroundings then outnumber darker ones, at one pixel per mm.
+    """
     levels = np.uint8(
         np.round(255 * np.sqrt(np.clip(coarse, 0, 1)))
     )  # a median over so many pixels needs 8 bits
@@ -173,10 +176,10 @@ def _is_paint_lighter(coarse: np.ndarray, is_covered: np.ndarray) -> bool:
 
 
 def _paint_weights(absorbed: np.ndarray) -> np.ndarray:
-    """Return the colour weights (3,) that map paint to 1 and paper to 0 with the least noise.
+    """Return colour weights (3,) that map paint to 1 and paper to 0.
 
-    This is Fisher's linear discriminant. absorbed: (n, 3) absorbed shares of the light. Raises Error where paint and
-    paper cannot be separated.
+    With these weights, noise is smallest. This is Fisher's linear discriminant. absorbed: (n, 3) absorbed shares of the
+    light. Raises Error where paint and paper cannot be separated.
     """
     strength = np.linalg.norm(np.maximum(absorbed, 0.0), axis=1) / np.sqrt(3)
     threshold, _ = cv2.threshold(
@@ -269,10 +272,10 @@ def assign_marks(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], l
 
 
 def _lean_boxes(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> list[StrokeBox] | None:
-    """Move the boxes in proportion to depth until their middles match those of most parts of the paint.
+    """Move the boxes in proportion to depth, so that they match the paint.
 
-    Returns None where no depth is known. Returns None also where one shift of all boxes fits better, because then the
-    sheet was out of place.
+    The middles of the boxes then match those of most parts of the paint. Returns None where no depth is known. Returns
+    None also where one shift of all boxes fits better, because then the sheet was out of place.
     """
     depths = np.array([stroke_box.depth_mm for stroke_box in stroke_boxes])
     if not depths.any():
@@ -287,9 +290,10 @@ def _lean_boxes(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) ->
     offsets = middle[:, None] - 0.5 * (boxes[:, :2] + boxes[:, 2:])
 
     def fit_boxes(by: np.ndarray) -> tuple[float, np.ndarray]:
-        """Return the smallest total distance of the parts from boxes, and the factors (2,) that give it.
+        """Fit the factors (2,) by which boxes move, and return the distance left.
 
-        The boxes move by the factors factors `by` (boxes,); the factors are at most MAX_LEAN_MM_PER_MM.
+        The distance is the smallest total distance of the parts from boxes. The boxes move by the factors times `by`
+        (boxes,). The factors are at most MAX_LEAN_MM_PER_MM.
         """
 
         def total_distance_mm(factors) -> float:
@@ -386,14 +390,18 @@ def _is_along_rim(part: np.ndarray, count: int, rim: int) -> np.ndarray:
 
 
 def _is_separate_mark(other, areas, px_per_mm: float) -> np.ndarray:
-    """Return whether the area of each part in another box [px] is large enough for a separate mark."""
+    """Return whether each part is a separate mark in another box.
+
+    other: area of each part in another box [px]; areas: whole area [px].
+    """
     return (other > MIN_SPLIT_SHARE * areas) & (other > MIN_SPLIT_MM2 * px_per_mm**2)
 
 
 def _largest_area_elsewhere(areas_in_boxes, areas, own_box, is_kept) -> np.ndarray:
-    """Return the largest area of each part in a box of another stroke that has no larger mark.
+    """Return the largest area of each part in a box of another stroke.
 
-    A part that reaches into the box of a stroke with a larger mark is displaced, not joined.
+    Only boxes of strokes without a larger mark count. A part that reaches into the box of a stroke with a larger mark
+    is displaced, not joined.
     """
     largest_marks = np.zeros(areas_in_boxes.shape[1])
     np.maximum.at(largest_marks, own_box[is_kept], areas[is_kept])
@@ -421,9 +429,9 @@ def _refuse_displaced(areas_in_boxes, reaching: np.ndarray, stroke_boxes: list[S
 
 
 def _refuse_covered(areas_in_boxes, areas, several, stroke_boxes: list[StrokeBox], px_per_mm: float) -> None:
-    """Refuse a part that covers the boxes of many strokes: a shadow or an object on the page.
+    """Refuse a part that covers the boxes of many strokes.
 
-    several: which parts are in the boxes of several strokes.
+    Then the part is a shadow or an object on the page. several: which parts are in the boxes of several strokes.
     """
     widest = max(
         (stroke_box.box_mm[2] - stroke_box.box_mm[0]) * (stroke_box.box_mm[3] - stroke_box.box_mm[1])
@@ -446,7 +454,10 @@ def _refuse_covered(areas_in_boxes, areas, several, stroke_boxes: list[StrokeBox
 
 
 def _refuse_elsewhere(painted: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> None:
-    """Refuse paint outside the strokes' boxes. painted: (rows, columns), the pixels that count as paint."""
+    """Refuse paint outside the strokes' boxes.
+
+    painted: (rows, columns), the pixels that count as paint.
+    """
     is_in_box = np.zeros(painted.shape, bool)
     for stroke_box in stroke_boxes:
         c0, r0, c1, r1 = _box_pixels(flat, stroke_box.box_mm, 0.5)
@@ -490,7 +501,7 @@ def _outlines_of_stroke(
 
 
 def outlines_of(amount, is_own, is_foreign, usual: float, px_per_mm: float, left_top_mm) -> list[np.ndarray]:
-    """Return rings around one mark, half way between paper and the mark's paint, in mm.
+    """Return rings [mm] around one mark, half way between paper and its paint.
 
     amount: (rows, columns) of paint; is_own, is_foreign: masks of pixels that certainly belong to the mark, and to
     other marks; usual: amount of paint of a typical mark; left_top_mm: corner of this part of the sheet.
@@ -530,7 +541,10 @@ def _signed_area(ring: np.ndarray) -> float:
 
 
 def _smooth_ring(ring: np.ndarray) -> np.ndarray:
-    """Resample a ring to points OUTLINE_STEP_MM apart, each averaged over OUTLINE_MEAN_MM of the outline."""
+    """Resample a ring evenly and smooth it.
+
+    Points are OUTLINE_STEP_MM apart, each averaged over OUTLINE_MEAN_MM of the outline.
+    """
     closed = np.vstack([ring, ring[:1]])
     at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
     oversampling = 4

@@ -27,14 +27,20 @@ class Flat:
     sheet_mm: tuple[float, float]
 
     def to_px(self, mm: np.ndarray) -> np.ndarray:
-        """Map points (n, 2) of the sheet to pixels; (0, 0) is the middle of the upper left pixel."""
+        """Map points (n, 2) of the sheet to pixels.
+
+        (0, 0) is the middle of the upper left pixel.
+        """
         return (np.asarray(mm) * [1, -1] + [0, self.sheet_mm[1]]) * self.px_per_mm - 0.5
 
 
 def flatten(
     pixels: np.ndarray, view: View, sheet_mm: tuple[float, float], px_per_mm: float | None = None
 ) -> Flat:
-    """Flatten a photograph of a sheet, at the photograph's own resolution unless px_per_mm is given."""
+    """Flatten a photograph of a sheet.
+
+    The resolution is that of the photograph unless px_per_mm is given.
+    """
     resolution = px_per_mm or min(view.px_per_mm, MAX_PX_PER_MM)
     columns, rows = (round(side * resolution) for side in sheet_mm)
     across, down = (math.ceil(count / GRID_STEP_PX) + 2 for count in (columns, rows))

@@ -59,7 +59,9 @@ class Printed:
 
 @dataclass(frozen=True)
 class View:
-    """The camera's view of the sheet: a homography from mm, then radial distortion about the picture's middle.
+    """The camera's view of the sheet.
+
+    A point in mm is mapped by a homography, then by radial distortion about the picture's middle.
 
     residual_mm: rms distance of the markers' corners from their places in the view; worst: the marker with the largest
     residual, and this residual; unsure_mm: standard deviation of the least certain place on the sheet, from the
@@ -86,7 +88,10 @@ class View:
         ) + MAX_RESIDUAL_PX / self.px_per_mm
 
     def to_px(self, mm: np.ndarray) -> np.ndarray:
-        """Map points (n, 2) of the sheet to pixels; (0, 0) is the middle of the upper left pixel."""
+        """Map points (n, 2) of the sheet to pixels.
+
+        (0, 0) is the middle of the upper left pixel.
+        """
         x, y = mm.T
         h = self.homography
         w = h[2, 0] * x + h[2, 1] * y + h[2, 2]
@@ -228,9 +233,10 @@ def _refuse_cropped(found: dict[int, np.ndarray], printed: Printed, shape) -> No
 
 
 def _refuse_cut_off(corners: dict[int, np.ndarray], printed: Printed, shape, view: View) -> None:
-    """Refuse a picture that fits flat paper only if the middle of the lens is not the middle of the picture.
+    """Refuse a picture of which a part was cut off.
 
-    Cameras have both in the same place, so that a part of this picture was cut off.
+    Such a picture fits flat paper only if the middle of the lens is not the middle of the picture. Cameras have both in
+    the same place, so that a part of this picture was cut off.
     """
     at = np.zeros(2)
     for step in LENS_MIDDLE_STEPS * view.radius_px:
@@ -249,7 +255,10 @@ def _refuse_cut_off(corners: dict[int, np.ndarray], printed: Printed, shape, vie
 
 
 def _refuse_poor_picture(light: np.ndarray, count: int) -> None:
-    """Refuse a picture whose grain, darkness, glare or blur explains why markers are not found."""
+    """Refuse a picture that is too poor for its markers to be found.
+
+    The reasons are grain, darkness, glare and blur.
+    """
     few = f"{count or 'no'} marker{'s' * (count > 1)} can be read"
     refuse_grainy(light, few)
     if not count:
@@ -279,9 +288,10 @@ def _list_numbers(numbers) -> str:
 def _refine_corners(
     light: np.ndarray, corners: np.ndarray, modules: int
 ) -> tuple[np.ndarray, float, np.ndarray]:
-    """Return the corners (4, 2) where lines through a marker's edges meet, the edges' blur [px], and visibility.
+    """Refine a marker's corners (4, 2) to where lines through its edges meet.
 
-    The visibility (4,) is true for corners between two edges that nothing covers.
+    Returns the corners, the edges' blur [px] and the visibility. The visibility (4,) is true for corners between two
+    edges that nothing covers.
     """
     blur, is_seen = 0.0, np.ones(4, bool)
     for iteration in range(3):  # the first two passes correct the lines; the third only measures along them
@@ -333,7 +343,10 @@ def _locate_edge(light, a, b, module_px: float) -> tuple[np.ndarray, float, np.n
 
 
 def _fit_line(points: np.ndarray) -> tuple[np.ndarray, float]:
-    """Fit a line to points without outliers; return its normal and its distance from the origin."""
+    """Fit a line to points without outliers.
+
+    Returns its normal and its distance from the origin.
+    """
     inliers = points
     for _ in range(3):
         middle = inliers.mean(axis=0)
@@ -413,11 +426,12 @@ def _fit_view(corners: dict[int, np.ndarray], printed: Printed, shape, shift_px=
 
 
 def _fit_without_covered(view: View, corners: dict, clear: dict, printed: Printed, shape) -> View:
-    """Fit the view without covered corners, of as few markers as possible, if the others then fit flat paper.
+    """Fit the view without covered corners.
 
-    clear: for each marker, which of its corners (4,) are between visible edges. The marker with the largest
-    displacement is also tried without all its corners, because the edge of the covering object may be mistaken for the
-    marker's edge. Bulging paper, in contrast, moves all markers, and the clear corners of covered ones with them.
+    As few markers as possible lose corners, and the others must then fit flat paper. clear: for each marker, which of
+    its corners (4,) are between visible edges. The marker with the largest displacement is also tried without all its
+    corners, because the edge of the covering object may be mistaken for the marker's edge. Bulging paper, in contrast,
+    moves all markers, and the clear corners of covered ones with them.
     """
     number, worst_mm = view.worst
     limit = view.most_residual_mm

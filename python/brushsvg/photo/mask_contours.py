@@ -44,5 +44,8 @@ def mask_outlines(
 
 
 def _outward_sign(ring: np.ndarray, outer: bool) -> float:
-    """Return the sign of the normal (-y, x) of a ring's direction that points away from the paint."""
+    """Return the sign of the normal that points away from the paint.
+
+    The normal of a direction (x, y) along the ring is (-y, x).
+    """
     return (-1.0 if signed_area(ring) > 0 else 1.0) * (1.0 if outer else -1.0)

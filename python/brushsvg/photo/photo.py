@@ -49,9 +49,9 @@ LIGHT = np.where(
 
 
 def refuse_twice(photos: list[tuple[str, bytes]]) -> None:
-    """Raise Error where a photograph is given twice, because it would count as two measurements.
+    """Raise Error where a photograph is given twice.
 
-    photos: name and content of each file.
+    The same photograph would count as two measurements. photos: name and content of each file.
     """
     name_of_content: dict[bytes, str] = {}
     for name, data in photos:
@@ -62,9 +62,10 @@ def refuse_twice(photos: list[tuple[str, bytes]]) -> None:
 
 
 def read_photo(data: bytes) -> np.ndarray:
-    """Return the 8-bit pixels (rows, columns, 3) of a photograph, blue first, rotated as the camera was held.
+    """Return the 8-bit pixels (rows, columns, 3) of a photograph, blue first.
 
-    Raises Error for files that are damaged, too large or not in one of the known formats.
+    The picture is rotated as the camera was held. Raises Error for files that are damaged, too large or not in one of
+    the known formats.
     """
     if data[4:8] == b"ftyp" and data[8:12] in HEIF_BRANDS:
         raise Error(
@@ -96,7 +97,10 @@ def read_photo(data: bytes) -> np.ndarray:
 
 
 def refuse_dark_paper(light: float) -> None:
-    """Raise Error for paper that reflects so little light that noise is as strong as paint."""
+    """Raise Error for paper that is too dark.
+
+    Such paper reflects so little light that noise is as strong as paint.
+    """
     if light < MIN_PAPER_LIGHT:
         raise Error(
             f"the paper in the picture shows {100 * light:.1f} % of the full light, at least "
@@ -110,9 +114,10 @@ _stderr_lock = threading.Lock()
 
 
 def _decode(data: bytes) -> tuple[np.ndarray | None, str]:
-    """Return the pixels, None where there are none, and the messages of the image libraries below OpenCV.
+    """Decode a picture and return its pixels and the libraries' messages.
 
-    These libraries report damage only on the standard error of the process, and fill the missing pixels with grey.
+    The pixels are None where the picture cannot be decoded. The libraries below OpenCV report damage only on the
+    standard error of the process, and fill the missing pixels with grey.
     """
     with _stderr_lock, tempfile.TemporaryFile() as captured:
         try:
@@ -157,9 +162,9 @@ def _composite_on_white(pixels: np.ndarray, whole: np.ndarray) -> np.ndarray:
 
 
 def jpeg_quality(data: bytes) -> float | None:
-    """Return the quality of a JPEG, 0 to 100 as encoders count it, or None for other formats.
+    """Return the quality of a JPEG, 0 to 100, or None for other formats.
 
-    It follows from the quantisation steps of the brightness.
+    The quality, on the scale of encoders, follows from the quantisation steps of the brightness.
     """
     at = 2
     while data[:2] == b"\xff\xd8" and at + 4 <= len(data) and data[at] == 0xFF and data[at + 1] != 0xDA:
@@ -172,13 +177,19 @@ def jpeg_quality(data: bytes) -> float | None:
 
 
 def white_share(light: np.ndarray) -> float:
-    """Return the share of the brightest fifth of a picture that is fully white, as in a clipped picture."""
+    """Return the share of a picture's brightest fifth that is fully white.
+
+    The share is large in a clipped picture.
+    """
     levels = np.sort(light[::7, ::7].ravel())
     return float(np.mean(levels[-max(1, len(levels) // 5) :] >= MIN_WHITE_LIGHT))
 
 
 def blur_px(light: np.ndarray) -> float:
-    """Return the width [px] of the steepest edges from black to white, the larger of across and down."""
+    """Return the width [px] of the steepest edges from black to white.
+
+    The larger of the widths across and down counts.
+    """
     low, high = np.quantile(light[::5, ::5], [0.01, 0.99])
     if high - low < MIN_CONTRAST or min(light.shape) < 2:
         return 0.0
@@ -187,7 +198,7 @@ def blur_px(light: np.ndarray) -> float:
 
 
 def refuse_grainy(light: np.ndarray, why: str) -> None:
-    """Raise Error where the grain is strong enough to be the reason for another refusal.
+    """Raise Error where grain may be the reason for another refusal.
 
     why: the other refusal, for the message.
     """

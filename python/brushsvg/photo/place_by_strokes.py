@@ -88,7 +88,10 @@ def find_scan_view(
 
 
 def _find_paint_mask(coarse: np.ndarray) -> np.ndarray:
-    """Return the mask (rows, columns) of the marks, without parts at the picture's edge such as lid and table."""
+    """Return the mask (rows, columns) of the marks.
+
+    Parts at the picture's edge, such as lid and table, are left out.
+    """
     rows, columns = coarse.shape[:2]
     sheet = (columns / COARSE_PX_PER_MM, rows / COARSE_PX_PER_MM)
     flat = Flat(coarse, COARSE_PX_PER_MM, sheet)
@@ -126,7 +129,10 @@ def _refuse_another_size(paint: np.ndarray, stroke_boxes: list[StrokeBox], dpi: 
 
 
 def _name_resolution(dpi: float) -> str:
-    """Return a resolution in words: one that scanners have, where it is near, else "about" the number."""
+    """Return a resolution in words.
+
+    It is one that scanners have, where it is near, else "about" the number.
+    """
     nearest_dpi = min(
         (150, 200, 240, 300, 400, 600, 800, 1200, 2400), key=lambda candidate: abs(math.log(candidate / dpi))
     )
@@ -134,7 +140,10 @@ def _name_resolution(dpi: float) -> str:
 
 
 def _match_turn_and_shift(paint: np.ndarray, paths_mm: list[np.ndarray]) -> tuple[float, complex]:
-    """Return a rough turn [rad] and shift [mm, y down]: place in the scan = (x - iy) e^(i turn) + shift."""
+    """Return a rough turn [rad] and shift [mm, y down] of the sheet.
+
+    The place in the scan is (x - iy) e^(i turn) + shift.
+    """
     down = [path[:, 0] - 1j * path[:, 1] for path in paths_mm]
     spectrum, shape = paint_spectrum(paint, down)
     best = {}
@@ -160,9 +169,9 @@ def _match_turn_and_shift(paint: np.ndarray, paths_mm: list[np.ndarray]) -> tupl
 
 
 def paint_spectrum(paint: np.ndarray, paths: list[np.ndarray]) -> tuple[np.ndarray, tuple[int, int]]:
-    """Return the spectrum of a coarse picture of paint, and the picture's shape at one pixel per mm.
+    """Return the spectrum of a coarse picture of paint.
 
-    The picture is padded so that the paths fit next to it.
+    Returns also the picture's shape at one pixel per mm. The picture is padded so that the paths fit next to it.
     """
     small = cv2.resize(
         paint.astype(np.float32),
@@ -185,9 +194,10 @@ def paint_spectrum(paint: np.ndarray, paths: list[np.ndarray]) -> tuple[np.ndarr
 def match_paths(
     spectrum: np.ndarray, shape: tuple[int, int], paths: list[np.ndarray]
 ) -> tuple[float, complex]:
-    """Return how much paint is along the paths (x - iy) at the best shift, and this shift.
+    """Return how much paint is along the paths at the best shift.
 
-    spectrum, shape: from `paint_spectrum`. Shifts beyond the picture's shape are negative: up and to the left.
+    Returns also this shift. Paths are given as x - iy. spectrum, shape: from `paint_spectrum`. Shifts beyond the
+    picture's shape are negative: up and to the left.
     """
     size = len(spectrum)
     all_points = np.concatenate(paths)
@@ -208,7 +218,10 @@ def match_paths(
 def _refine_by_boxes(
     paint: np.ndarray, sheet_mm, stroke_boxes: list[StrokeBox], turn: float, shift: complex, dpi: float
 ) -> tuple[complex, complex]:
-    """Refine e^(i turn) and shift: match the middles of the marks to those of their stroke boxes by least squares."""
+    """Refine e^(i turn) and shift by the strokes' boxes.
+
+    The middles of the marks are matched to those of the boxes by least squares.
+    """
     px_per_mm = COARSE_PX_PER_MM
     columns, rows = (math.ceil(side * px_per_mm) for side in sheet_mm)
     boxes = np.array([stroke_box.box_mm for stroke_box in stroke_boxes])
@@ -246,9 +259,10 @@ def _refine_by_boxes(
 def find_marks_in_boxes(
     aligned: np.ndarray, sheet_mm, stroke_boxes: list[StrokeBox]
 ) -> tuple[list[int], np.ndarray]:
-    """Return the numbers of the stroke boxes that hold one mark, and the middles of these marks as x - iy [mm].
+    """Return the numbers of the boxes that hold one mark, and the marks' places.
 
-    aligned: mask (rows, columns) of the paint, at COARSE_PX_PER_MM.
+    The places are the middles of the marks, as x - iy [mm]. aligned: mask (rows, columns) of the paint, at
+    COARSE_PX_PER_MM.
     """
     px_per_mm = COARSE_PX_PER_MM
     count, part, stats, _ = cv2.connectedComponentsWithStats(aligned, connectivity=8)

@@ -25,7 +25,10 @@ REFINEMENT_ROUNDS = 4
 
 @dataclass(frozen=True)
 class PaintPlace:
-    """The place of the paint on its page: scaled by `scale` about the sheet's middle, then moved by `shift_mm`."""
+    """The place of the paint on its page.
+
+    The plan is scaled by `scale` about the sheet's middle, then moved by `shift_mm`.
+    """
 
     scale: float
     shift_mm: tuple[float, float]

@@ -93,7 +93,10 @@ class LabelSpace:
         return PlacedLabel(left, top, right - left, bottom - top, choice, leader, cost == 0, on_labels > 0)
 
     def _candidates(self, anchor, size, towards, reach: float) -> np.ndarray:
-        """Return boxes (n, 4) around the anchor, in rings of growing distance, moved into the picture."""
+        """Return boxes (n, 4) around the anchor, in rings of growing distance.
+
+        The boxes are moved into the picture.
+        """
         low, high = self.bounds[:2], self.bounds[2:]
         farthest = min(reach, float(np.hypot(*(high - low))))
         nearest = self.radius + LABEL_GAP * size[1]
@@ -109,7 +112,10 @@ class LabelSpace:
         return np.hstack([corners, corners + size])
 
     def _cost(self, boxes: np.ndarray, anchor) -> tuple[np.ndarray, np.ndarray]:
-        """Return the cost (n,) of what each box covers, 0 for a free one, and the area (n,) of labels in it."""
+        """Return the cost (n,) of what each box covers, 0 for a free box.
+
+        Returns also the area (n,) of other labels in each box.
+        """
         low = np.minimum(boxes[:, :2].min(axis=0), anchor) - self.radius
         high = np.maximum(boxes[:, 2:].max(axis=0), anchor) + self.radius
         taken = self._boxes[((self._boxes[:, 2:] > low) & (self._boxes[:, :2] < high)).all(axis=1)]
@@ -134,7 +140,7 @@ class LabelSpace:
         return marks * self.cell**2 + LABEL_WEIGHT * labels + covered * areas, labels
 
     def _leader(self, anchor, box):
-        """Return a line from an anchor to its label, or None where they are next to each other."""
+        """Return a line from an anchor to its label, None where they are close."""
         end = np.clip(anchor, box[:2], box[2:])
         away = float(np.hypot(*(end - anchor)))
         if away <= self.radius + 2 * LABEL_GAP * (box[3] - box[1]):

@@ -15,14 +15,20 @@ USABLE_OVERLAP = 0.70  # the overlap is about 0.6 when the brush is not the one 
 
 @dataclass(frozen=True)
 class Report:
-    """A report for people. verdict: see `verdict`; lines: the main results; details: tables and coefficients."""
+    """A report for people.
+
+    verdict: see `verdict`; lines: the main results; details: tables and coefficients.
+    """
 
     verdict: str
     lines: tuple[str, ...]
     details: tuple[str, ...] = ()
 
     def text(self, details: bool = False, picture: str = "") -> str:
-        """Return at most ten lines, or all lines and the details. picture: name of a picture of the results."""
+        """Return at most ten lines, or all lines and the details.
+
+        picture: name of a picture of the results.
+        """
         lines, last = [self.verdict, *self.lines], [f"Picture: {picture}"] if picture else []
         most = MAX_LINES - len(last)
         if len(lines) > most and not details:
@@ -49,9 +55,10 @@ def _join_reasons(reasons: list[str]) -> str:
 def overlap_reasons(
     overlap: float | None, words: str, good: float = GOOD_OVERLAP, usable: float = USABLE_OVERLAP
 ) -> tuple[list[str], list[str]]:
-    """Return the reasons against use and the reasons for caution that follow from an overlap.
+    """Return the reasons that follow from an overlap.
 
-    words: the things that coincide, such as "paint and drawing".
+    The first list has reasons against use, the second reasons for caution. words: the things that coincide, such as
+    "paint and drawing".
     """
     if overlap is None or overlap >= good:
         return [], []
@@ -60,7 +67,10 @@ def overlap_reasons(
 
 
 def percent(share: float) -> str:
-    """Format a share as a percentage, rounded down: 95 % is never less than 0.95, and 100 % is everything."""
+    """Format a share as a percentage, rounded down.
+
+    95 % is never less than 0.95, and 100 % is everything.
+    """
     return f"{int(100 * share + 1e-9)} %"
 
 
@@ -77,9 +87,9 @@ def place_line(number: int, stroke: str, at_mm, size: str, reason: str, remedy: 
 
 
 def table(head, rows, notes=()) -> list[str]:
-    """Return the lines of a table: the first column flush left, the others flush right.
+    """Return the lines of a table.
 
-    notes: texts that follow the cells of each line.
+    The first column is flush left, the others flush right. notes: texts that follow the cells of each line.
     """
     cells = [tuple(head), *(tuple(row) for row in rows)]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]

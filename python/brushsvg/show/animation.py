@@ -82,7 +82,10 @@ def _encode_steps(values) -> list[int]:
 
 
 def _encode_rings(rings) -> list[list[int]]:
-    """Encode each ring as x, y, x, y, ... in 0.01 mm: its first point, then the steps between points."""
+    """Encode each ring as x, y, x, y, ... in 0.01 mm.
+
+    The first point is followed by the steps from point to point.
+    """
     encoded = []
     for ring in rings:
         points = np.round(np.asarray(ring) * COARSE_PER_UNIT).astype(np.int64)

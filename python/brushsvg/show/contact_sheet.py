@@ -75,7 +75,7 @@ def _place_picture(part: np.ndarray, png: bytes) -> None:
 
 
 def _write_wrapped(part: np.ndarray, text: str) -> None:
-    """Write a sentence, wrapped at its spaces and cut off where there is no more room."""
+    """Write a sentence, wrapped at spaces and cut off where there is no room."""
     lines, rest = [], text.split()
     while rest:
         line = rest.pop(0)

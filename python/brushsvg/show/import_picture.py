@@ -154,9 +154,9 @@ def _draw_direction(canvas: _Canvas, line: np.ndarray, ink: str) -> None:
 def _draw_numbers(
     canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: list[Run], bottom: float
 ) -> None:
-    """Write a stroke's number near its start, preferably behind it, where there is room.
+    """Write each stroke's number near its start, where there is room.
 
-    Of many dashes, only some are numbered.
+    The place behind the start is preferred. Of many dashes, only some are numbered.
     """
     space = LabelSpace(mark_cells(lines, (canvas.width, bottom)), LABEL_CELL_PX, (0, 0, canvas.width, bottom))
     for run in runs:

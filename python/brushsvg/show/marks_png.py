@@ -32,11 +32,11 @@ def marks_png(
     blank: Iterable[np.ndarray] = (),
     toolpath_mm: Sequence[np.ndarray] = (),
 ) -> bytes:
-    """Draw the sheet with its paint, anti-aliased, with later colours over earlier ones.
+    """Draw the sheet with its paint, anti-aliased.
 
-    band: the 95 % band of the marks' edges, drawn with a legend; blank: rings of the unpainted parts of shapes,
-    outlined; toolpath_mm: the tool's positions (n, 2) or (n, 3) in each pass, drawn over the paint, thinner where the
-    tool travels in the air. Raises Error where there is nothing to draw.
+    Later colours cover earlier ones. band: the 95 % band of the marks' edges, drawn with a legend; blank: rings of the
+    unpainted parts of shapes, outlined; toolpath_mm: the tool's positions (n, 2) or (n, 3) in each pass, drawn over the
+    paint, thinner where the tool travels in the air. Raises Error where there is nothing to draw.
     """
     check_picture(marks, sheet_mm, colours)
     need(brush, _core.Brush, "a brush")

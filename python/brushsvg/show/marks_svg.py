@@ -22,7 +22,10 @@ LINE_WIDTH_SHARE = 0.002  # of the sheet's longer side, for outlines of unpainte
 
 
 class Band(Protocol):
-    """The 95 % bands of the marks' edges: rings [mm] per mark, and their source in words."""
+    """The 95 % bands of the marks' edges.
+
+    rings: rings [mm] per mark; words: their source in words.
+    """
 
     @property
     def rings(self) -> Iterable[list[np.ndarray]]: ...
@@ -80,7 +83,10 @@ def marks_svg(
 
 
 def check_picture(marks: _core.Marks, sheet_mm: tuple[float, float], colours: list[str]) -> None:
-    """Raise Error for a sheet without a size, or where the number of colours is not that of the passes."""
+    """Raise Error for a sheet or colours that cannot be drawn.
+
+    The sheet must have a size, and each pass a colour.
+    """
     need(marks, _core.Marks, "marks, as simulate returns them")
     need(sheet_mm, (tuple, list), "a sheet's width and height")
     for side in sheet_mm:
@@ -98,7 +104,10 @@ def check_picture(marks: _core.Marks, sheet_mm: tuple[float, float], colours: li
 
 
 def travels(toolpath_mm: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Return the moves in the air from the end of each pass to the start of the next, each (2, 2) in mm."""
+    """Return the moves in the air between passes, each (2, 2) in mm.
+
+    They go from the end of each pass to the start of the next.
+    """
     return [np.stack((a[-1, :2], b[0, :2])) for a, b in pairwise(toolpath_mm)]
 
 
@@ -140,5 +149,8 @@ def _error_attributes(error, is_astray: bool) -> str:
 
 
 def known_colour(colour: str) -> str:
-    """Return the colour, or black where it is not #rrggbb, as in plans from other programs."""
+    """Return the colour, or black where it is not #rrggbb.
+
+    Plans from other programs may have other colours.
+    """
     return colour if re.fullmatch("#[0-9a-fA-F]{6}", colour) else "#000000"

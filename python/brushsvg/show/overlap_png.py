@@ -18,9 +18,10 @@ def overlap_png(
     legend: bool = True,
     places: Mapping[int, tuple[float, float]] | None = None,
 ) -> bytes:
-    """Draw where paint is missing and where there is too much paint, and number the given places.
+    """Draw where paint is missing and where there is too much paint.
 
-    target, painted: (rows, columns) covered share of each pixel; places: number -> (x, y) px.
+    The given places are numbered. target, painted: (rows, columns) covered share of each pixel; places: number -> (x,
+    y) px.
     """
     common = np.minimum(target, painted)
     rows, columns = common.shape
@@ -54,7 +55,10 @@ def _number_places(
 
 
 def write_legend(image: np.ndarray, x: int, y: int, size: int) -> None:
-    """Write the meaning of the colours, from x, y (px) on, in letters of this size (px)."""
+    """Write the meaning of the colours from x, y (px) on.
+
+    size: height of the letters (px).
+    """
     for colour, words in OVERLAP_COLOURS:
         image[y : y + size, x : x + size] = bgr(colour)
         x = write_text(image, words, (x + 3 * size // 2, y + 7 * size // 8), size, 400, TEXT) + 2 * size

@@ -30,10 +30,10 @@ def overlap_svg(
     title: str = "",
     places: Mapping[int, tuple[float, float]] | None = None,
 ) -> str:
-    """Draw where paint is missing and where there is too much paint, in millimetres of the sheet.
+    """Draw where paint is missing and where there is too much paint.
 
-    target, painted: rings of everything that was drawn, and of all paint; places: number -> (x, y) on the sheet, shown
-    with rings and numbers.
+    Lengths are millimetres of the sheet. target, painted: rings of everything that was drawn, and of all paint; places:
+    number -> (x, y) on the sheet, shown with rings and numbers.
     """
     width, height = sheet_mm
     size = max(2.0, 0.018 * max(width, height))
@@ -69,7 +69,7 @@ def overlap_svg(
 def _number_places(
     rings: list, sheet_mm, places: Mapping[int, tuple[float, float]], size: float
 ) -> list[str]:
-    """Return the SVG elements of a ring around each place, and of its number next to the ring."""
+    """Return the SVG elements of a ring and a number at each place."""
     width, height = sheet_mm
     cells = LABEL_GRID_CELLS / max(width, height)
     marks = _core.coverage(rings, (0.0, 0.0, width, height), cells) > MIN_COVERAGE

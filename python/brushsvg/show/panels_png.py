@@ -40,7 +40,10 @@ class Panel:
 
 
 def panels_png(panels: list[Panel], heading: str, note: str, width_px: int = 2000) -> bytes:
-    """Draw the panels at one scale, under each other for a wide drawing, else side by side."""
+    """Draw the panels at one scale.
+
+    They are under each other for a wide drawing, else side by side.
+    """
     x0, y0, x1, y1 = _panel_extent(panels)
     is_wide = x1 - x0 > 1.5 * (y1 - y0)
     across, down = (1, len(panels)) if is_wide else (len(panels), 1)

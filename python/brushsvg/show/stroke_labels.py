@@ -27,10 +27,10 @@ class Run:
 
 
 def group_runs(strokes: list) -> list[Run]:
-    """Group consecutive strokes with the same width and layer into entries of the list.
+    """Group consecutive similar strokes into entries of the list.
 
-    The strokes of a group are sub-paths of one element, or elements with consecutive numbers. Fewer than
-    MIN_STROKES_IN_RUN strokes stay separate entries.
+    The strokes have the same width and layer. The strokes of a group are sub-paths of one element, or elements with
+    consecutive numbers. Fewer than MIN_STROKES_IN_RUN strokes stay separate entries.
     """
     runs: list[Run] = []
     keys = []
@@ -50,7 +50,10 @@ def group_runs(strokes: list) -> list[Run]:
 
 
 def _series_key(origin) -> tuple[tuple, int]:
-    """Return the key that the strokes of one entry share, and their running number, or -1 for none."""
+    """Return the key that the strokes of one entry share.
+
+    Returns also the running number of the stroke, -1 for none.
+    """
     others = (origin.repeat, origin.lane)
     if origin.part:
         return (origin.element, True, *others), origin.part
@@ -73,9 +76,9 @@ def start_direction(line: np.ndarray) -> np.ndarray:
 
 
 def mark_cells(lines: list[np.ndarray], size: tuple[float, float]) -> np.ndarray:
-    """Return the mask (rows, columns) of the cells of LABEL_CELL_PX that lines go through.
+    """Return the mask (rows, columns) of the cells that lines go through.
 
-    size: width and height of the picture [px].
+    Cells have sides of LABEL_CELL_PX. size: width and height of the picture [px].
     """
     cells = np.zeros((math.ceil(size[1] / LABEL_CELL_PX), math.ceil(size[0] / LABEL_CELL_PX)), bool)
     for line in lines:

@@ -16,9 +16,10 @@ AIR_SAMPLE_SHARES = np.array([0.01, 0.04, 0.1, 0.9, 0.96, 0.99, 1.0])
 
 @dataclass(frozen=True)
 class Chapter:
-    """The rows from first_row up to the next chapter: one stroke, or one visit to the paint.
+    """The rows of one stroke, or of one visit to the paint.
 
-    trace: number of the stroke's pass in the plan and the marks, from 0; None for a visit to the paint.
+    first_row: its first row; it ends at the next chapter. trace: number of the stroke's pass in the plan and the marks,
+    from 0; None for a visit to the paint.
     """
 
     title: str
@@ -37,10 +38,10 @@ class Pause:
 
 @dataclass(frozen=True)
 class Timeline:
-    """Parallel rows in the order of time, with linear motion between them, in mm, rad and s in the paper's frame.
+    """Parallel rows in the order of time, with linear motion between them.
 
-    time_s: (n,), ascends from 0; tcp_mm: (n, 3); contact_mm (n, 2), heading_rad, depth_mm and pull (n,): as in Marks,
-    nan where the brush is in the air.
+    Units are mm, rad and s, in the paper's frame. time_s: (n,), ascends from 0; tcp_mm: (n, 3); contact_mm (n, 2),
+    heading_rad, depth_mm and pull (n,): as in Marks, nan where the brush is in the air.
     """
 
     time_s: np.ndarray
@@ -109,7 +110,10 @@ def _is_stroke(section: Section) -> bool:
 
 
 def _timeline_rows(time_s, tcp_mm, brush=np.nan) -> np.ndarray:
-    """Return rows (n, 9): time from the step's start, TCP, contact, heading, depth, pull."""
+    """Return rows (n, 9) of the timeline.
+
+    Columns: time from the step's start, TCP, contact, heading, depth, pull.
+    """
     table = np.full((len(time_s), 9), np.nan)
     table[:, 0], table[:, 1:4], table[:, 4:] = time_s, tcp_mm, brush
     return table
@@ -128,7 +132,10 @@ def _air_rows(move: Move, start_mm: np.ndarray | None, program: Program) -> np.n
 
 
 def _brush_columns(trace, chosen: np.ndarray) -> np.ndarray:
-    """Return columns (n, 5) of the chosen rows of a trace: contact, heading, depth, pull."""
+    """Return the brush's columns (n, 5) of the chosen rows of a trace.
+
+    Columns: contact, heading, depth, pull.
+    """
     columns = (np.asarray(trace.contact_mm), trace.heading_rad, trace.depth_mm, trace.pull)
     table = np.column_stack([np.asarray(column)[chosen] for column in columns])
     table[table[:, 3] < 0] = np.nan  # lifted
@@ -136,7 +143,10 @@ def _brush_columns(trace, chosen: np.ndarray) -> np.ndarray:
 
 
 def _landing_rows(trace, landed: np.ndarray) -> np.ndarray:
-    """Return the rows in which the brush touches the paper, once the tool is at the first pose."""
+    """Return the rows in which the brush touches the paper.
+
+    The tool is at the first pose then.
+    """
     brush = _brush_columns(trace, np.asarray(trace.pose) <= 0)
     return _timeline_rows(np.full(len(brush), landed[0]), landed[1:4], brush)
 

@@ -79,7 +79,10 @@ class Sheet:
             window += share * np.asarray(colour, np.float32)
 
     def _texel_coverage(self, rings):
-        """Return the share of each texel inside the rings (even-odd), and the window (r0, r1, c0, c1) of texels."""
+        """Return the share of each texel inside the rings, and the window of texels.
+
+        Overlapping rings count by the even-odd rule. The window is (r0, r1, c0, c1).
+        """
         rows, columns = self.shown.shape[:2]
         rings = [
             np.column_stack([r[:, 0], self.size_mm[1] - r[:, 1]]) * self.texels
@@ -120,7 +123,10 @@ def box(left, bottom, right, top):
 
 
 def corners_seen(camera, sheet_mm, points_mm):
-    """Return the pixels (n, 2) that show points (n, 2) of the sheet; (0, 0) is the middle of the first pixel."""
+    """Return the pixels (n, 2) that show points (n, 2) of the sheet.
+
+    (0, 0) is the middle of the first pixel.
+    """
     rotation, place, focal_px, middle = _camera_pose(camera, sheet_mm)
     world = np.column_stack(
         [np.asarray(points_mm, float), _paper_height_mm(camera, sheet_mm, np.asarray(points_mm, float))]
@@ -131,16 +137,17 @@ def corners_seen(camera, sheet_mm, points_mm):
 
 
 def _distortion_factor(camera, radius):
-    """Return the distorted distance from the optical axis divided by the ideal distance."""
+    """Return the distorted over the ideal distance from the optical axis."""
     widest = 0.5 * np.hypot(*camera.size_px) / (camera.focal * camera.size_px[0])
     square = (radius / widest) ** 2
     return 1 + camera.bend * square + 0.2 * camera.bend * square**2
 
 
 def _camera_pose(camera, sheet_mm):
-    """Return the camera's rotation, position [mm], focal length [px] and optical centre [px].
+    """Return the camera's rotation, position, focal length and optical centre.
 
-    The columns of the rotation (3, 3) are the camera's right, down and forward directions in the sheet's frame.
+    The position is in mm, focal length and centre are in px. The columns of the rotation (3, 3) are the camera's right,
+    down and forward directions in the sheet's frame.
     """
     across, up, turn = np.radians([*camera.tilt_deg, camera.turn_deg])
     forward = np.array([np.sin(across), np.sin(up), -np.cos(across) * np.cos(up)])
@@ -158,7 +165,7 @@ def _camera_pose(camera, sheet_mm):
 
 
 def _paper_height_mm(camera, sheet_mm, points):
-    """Return the height of paper that is flat at its left and right edges and bulges in between."""
+    """Return the height of paper that bulges between its left and right edges."""
     return camera.sag_mm * np.sin(np.pi * np.clip(points[..., 0] / sheet_mm[0], 0, 1))
 
 
@@ -199,9 +206,10 @@ def exposed(sheet, camera=Camera(), seed=1, mirrored=False):
 def _sheet_points_of_pixels(
     sheet_mm, size_px, focal, tilt_deg, turn_deg, bend, fill, displacement_mm, sag_mm
 ):
-    """Return the point on the sheet that each pixel shows, (rows, columns, 2) in mm, and its distance from the axis.
+    """Return the point on the sheet that each pixel shows, (rows, columns, 2) in mm.
 
-    The distance (rows, columns) is relative to that of the picture's corner. Both arrays have single precision.
+    Also returns the distance of each pixel from the optical axis. The distance (rows, columns) is relative to that of
+    the picture's corner. Both arrays have single precision.
     """
     camera = Camera(size_px, focal, tilt_deg, turn_deg, bend, fill, displacement_mm, sag_mm=sag_mm)
     columns, rows = size_px
@@ -259,7 +267,10 @@ def _light_on_sheet(camera, size_mm, at):
 
 
 def _sample_sheet(sheet, at):
-    """Interpolate the reflected light between texels; points off the sheet show a brown table."""
+    """Interpolate the reflected light between texels.
+
+    Points off the sheet show a brown table.
+    """
     rows, columns = sheet.shown.shape[:2]
     c = at[..., 0] * sheet.texels - 0.5
     r = (sheet.size_mm[1] - at[..., 1]) * sheet.texels - 0.5

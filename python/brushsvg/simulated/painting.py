@@ -91,7 +91,7 @@ def painted(
 
 
 def low_enough(studio: Studio, plan, brush, undone: Machine | None) -> Studio:
-    """Lower the studio's paper until no stroke is pressed beyond the brush's depth range.
+    """Lower the studio's paper until no stroke is pressed beyond the depth range.
 
     A plan that exceeds the range itself leaves the studio unchanged.
     """

@@ -111,10 +111,10 @@ def _print_page(sheet: Sheet, page: JobPage) -> None:
 
 
 def _opacity_along_stroke(stroke: PaintedStroke, frame_mm: float, lasts_mm: float, seed: int):
-    """Return the opacity of a stroke: a number, or a function of x and y where its paint runs out.
+    """Return the opacity of a stroke whose paint may run out.
 
-    Beyond lasts_mm, fewer and fewer bristles still paint. Returns a constant for a stroke that is shorter, or where
-    lasts_mm is 0.
+    The opacity is a number, or a function of x and y where the paint runs out. Beyond lasts_mm, fewer and fewer
+    bristles still paint. Returns a constant for a stroke that is shorter, or where lasts_mm is 0.
     """
     if not lasts_mm or not len(stroke.way) or stroke.way[-1, 2] <= lasts_mm:
         return 0.97

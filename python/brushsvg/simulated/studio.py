@@ -23,7 +23,7 @@ def _numbers_field(default: float, least: float, greatest: float, count: int = 2
 
 @dataclass(frozen=True)
 class BrushErrors:
-    """Factors from the lag and half width in the brush file to those of the brush that paints."""
+    """Factors from lag and half width of the brush file to the real brush."""
 
     lag: float = _number_field(1.0, 0.5, 2.0)
     half_width: float = _number_field(1.0, 0.5, 2.0)

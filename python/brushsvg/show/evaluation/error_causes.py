@@ -52,7 +52,10 @@ def remedy(code: str, stroke) -> str:
 
 @dataclass(frozen=True)
 class Cause:
-    """The cause of a difference in words, and as a code of docs/reference/diagnostics.md."""
+    """The cause of a difference.
+
+    words: the cause in words; code: a code of docs/reference/diagnostics.md.
+    """
 
     words: str
     code: str
@@ -109,7 +112,7 @@ class _StrokePlace:
 
 
 def _width_cause(place: _StrokePlace, area_mm2: float, size_mm: float, where: str) -> Cause | None:
-    """Return the cause if the brush is too wide or too narrow for the place, or no stroke reaches it."""
+    """Return the cause if the width is out of reach, or no stroke reaches the place."""
     half, (least, greatest) = place.half_mm, place.brush.half_width_range_mm()
     finest = max(least, _min_measured_half_width(place.brush))
     unpainted_mm2 = (half - greatest) * size_mm  # area that a mark of the greatest width leaves in the square
@@ -162,7 +165,7 @@ def _length_cause(place: _StrokePlace) -> Cause | None:
 
 
 def _path_cause(place: _StrokePlace) -> Cause | None:
-    """Return the cause if there is a corner, end or bend that the footprint cannot follow."""
+    """Return the cause if the footprint cannot follow a corner, end or bend."""
     line, brush, half, s_mm, is_open = (
         place.line,
         place.brush,
@@ -228,7 +231,10 @@ def _min_measured_half_width(brush) -> float:
 
 
 def _sharpest_corner_deg(line: np.ndarray, s: float, reach_mm: float, closed: bool) -> float:
-    """Return the sharpest corner within reach of arc length s, including the seam of a closed line."""
+    """Return the sharpest corner within reach of arc length s.
+
+    The corner at the seam of a closed line counts as well.
+    """
     steps = np.diff(line[:, :2], axis=0)
     steps = steps[np.hypot(*steps.T) > 0]
     if len(steps) < 2:
@@ -248,7 +254,10 @@ def _turning_angles(steps: np.ndarray) -> np.ndarray:
 
 
 def _turning_radius_mm(line: np.ndarray, s: float, window_mm: float) -> float:
-    """Return the radius of the line near arc length s, from its turn within a window of window_mm."""
+    """Return the radius of the line near arc length s.
+
+    It follows from the turn of the line within a window of window_mm.
+    """
     length = line[-1, 2]
     window_mm = min(max(window_mm, 1.0), length)
     first = min(max(s - window_mm / 2, 0.0), length - window_mm)

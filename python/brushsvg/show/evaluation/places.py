@@ -18,11 +18,11 @@ LINE_TOLERANCE_MM = 0.05  # tolerance of the polyline along a stroke
 
 @dataclass(frozen=True)
 class Place:
-    """A place where paint and drawing differ, with its number in the report and in the picture.
+    """A place where paint and drawing differ.
 
-    place_mm: (x, y); missing_mm2: target without paint; outside_mm2: paint outside the target; tracking_error_mm: the
-    largest tracking error of a drawn line, where it is above the tolerance; reason, code: see error_causes; remedy: the
-    remedy, "" for none; size: these sizes in words.
+    number: in the report and in the picture; place_mm: (x, y); missing_mm2: target without paint; outside_mm2: paint
+    outside the target; tracking_error_mm: the largest tracking error of a drawn line, where it is above the tolerance;
+    reason, code: see error_causes; remedy: the remedy, "" for none; size: these sizes in words.
     """
 
     number: int

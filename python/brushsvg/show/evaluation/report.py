@@ -31,7 +31,9 @@ _MIN_BARE_SHARE = 0.1  # of this square: a smaller area that no stroke reaches d
 
 @dataclass(frozen=True)
 class Figures:
-    """The figures of one stroke, or of all; None: the drawing is not known, or nothing could be measured.
+    """The figures of one stroke, or of all strokes together.
+
+    None means that the drawing is not known, or that nothing could be measured.
 
     overlap: area of intersection over area of union of predicted and drawn mark.
     centre_mean_mm, centre_largest_mm: distance of the widest point from the middle line over taut rows.
@@ -192,7 +194,10 @@ def _stroke_figures(painted: PaintedPlan, a_pass, stroke, verdict, tracking_erro
 
 
 def worst_places(painted: PaintedPlan) -> tuple[Place, ...]:
-    """Return the places where paint differs most from the drawing, the largest difference first."""
+    """Return the places where paint differs most from the drawing.
+
+    The largest difference comes first.
+    """
     pairs = zip(painted.plan.passes, painted.strokes or (), strict=bool(painted.strokes))
     whole = {stroke.id: (run, stroke) for run, stroke in pairs if stroke is not None}
 
@@ -216,7 +221,10 @@ def _square_side_mm(line: np.ndarray) -> float:
 
 
 def _find_cause(painted: PaintedPlan, stroke, line, place, size_mm, tracking_error) -> Cause:
-    """Find why paint differs at a place. size_mm: side of the square around it that is examined."""
+    """Find why paint differs at a place.
+
+    size_mm: side of the square around the place that is examined.
+    """
     pieces_here = [
         piece
         for piece in painted.unreached
@@ -240,7 +248,10 @@ def _find_cause(painted: PaintedPlan, stroke, line, place, size_mm, tracking_err
 
 
 def _is_near_rings(place_mm, rings, reach_mm: float) -> bool:
-    """Return whether rings enclose more than _MIN_BARE_SHARE of a square around a place."""
+    """Return whether rings enclose enough of a square around a place.
+
+    The limit is _MIN_BARE_SHARE of the square.
+    """
     return (
         _core.area(_core.intersect([_square_ring(place_mm, reach_mm)], rings))
         > _MIN_BARE_SHARE * (2 * reach_mm) ** 2
@@ -248,9 +259,10 @@ def _is_near_rings(place_mm, rings, reach_mm: float) -> bool:
 
 
 def _outside_discs_mm2(stroke, place_mm, size_mm: float) -> float:
-    """Return the area of a stroke's shape in a square that discs of its widths do not cover.
+    """Return the area of a shape near a place that discs do not cover.
 
-    A round brush cannot paint there. The square is around place_mm, with side size_mm.
+    The discs have the widths of the stroke. A round brush cannot paint there. The square is around place_mm, with side
+    size_mm.
     """
     if not stroke.wanted_mm:
         return 0.0
@@ -328,7 +340,10 @@ def _round_floats(value):
 
 
 def to_json(report: Report) -> str:
-    """Return the report as JSON, with lengths rounded to 1e-6 mm, so that the same input gives the same bytes."""
+    """Return the report as JSON.
+
+    Lengths are rounded to 1e-6 mm, so that the same input gives the same bytes.
+    """
 
     def figures(row: Figures, confidence) -> dict:
         intervals_95 = {} if confidence is None else {"uncertainty_95": _round_floats(asdict(confidence))}
@@ -369,14 +384,20 @@ def to_json(report: Report) -> str:
 
 
 def as_text(kind: str, report: Report, details: bool = False, picture: str = "") -> str:
-    """Return the report as JSON for .json, as a table of strokes for .csv, else as text, see to_text."""
+    """Return the report as JSON, CSV or text.
+
+    kind: .json for JSON, .csv for a table of strokes, else text, see to_text.
+    """
     if kind == ".json":
         return to_json(report)
     return to_csv(report) if kind == ".csv" else to_text(report, details, picture)
 
 
 def to_csv(report: Report) -> str:
-    """Return the report as CSV: one row per stroke, with the keys of the JSON; unknown values are empty cells."""
+    """Return the report as CSV, one row per stroke.
+
+    The columns are the keys of the JSON. Unknown values are empty cells.
+    """
     plain = [column.name for column in fields(Figures) if column.name != "worst"]
     worst = [column.name for column in fields(Worst) if column.name != "place_mm"]
     interval_names = [column.name for column in fields(Confidence)] if report.confidence else []
@@ -403,10 +424,10 @@ def to_csv(report: Report) -> str:
 
 
 def to_text(report: Report, details: bool = False, picture: str = "") -> str:
-    """Return the report in at most ten lines: verdict, overlap, time, worst places, and strokes left out.
+    """Return the report in at most ten lines.
 
-    details: add tables of the strokes and of those that touch, and every warning; picture: the file that shows the
-    numbers of the places, "" for none.
+    The lines show verdict, overlap, time, worst places and strokes left out. details: add tables of the strokes and of
+    those that touch, and every warning; picture: the file that shows the numbers of the places, "" for none.
     """
     lines = [_summary_line(report), *(place.line for place in report.places)]
     if not report.places and report.total.overlap is not None:
@@ -434,13 +455,19 @@ def _summary_line(report: Report) -> str:
 
 
 def _first_notice(notices: Iterable[Notice]) -> str:
-    """Return the first notice as text, with "..." for others, which are all in the details."""
+    """Return the first notice as text.
+
+    "..." stands for others, which are all in the details.
+    """
     first, *others = summarized(notices)
     return ": ".join(filter(None, (first.where, first.text))) + (" ..." if others else "")
 
 
 def _details(report: Report) -> list[str]:
-    """Return the lines of the details: tables of all strokes, all strokes left out and all warnings."""
+    """Return the lines of the details.
+
+    The details are tables of all strokes, all strokes left out and all warnings.
+    """
     rows = [*report.strokes, report.total]
     columns = [
         ("stroke", [_shorten(row.stroke) for row in rows]),
@@ -518,7 +545,10 @@ def _confidence_words(confidence: PlanConfidence | None, is_tilted: bool) -> lis
 
 
 def comparison_text(rows: list[tuple[str, Figures]]) -> str:
-    """Return a table of several ways to paint the same drawing. rows: (compensation, total figures)."""
+    """Return a table of several ways to paint the same drawing.
+
+    rows: (compensation, total figures).
+    """
     lines = _ruled_table(
         [
             ("compensation", [how for how, _ in rows]),
@@ -532,7 +562,10 @@ def comparison_text(rows: list[tuple[str, Figures]]) -> str:
 
 
 def brushes_json(title: str, suits) -> str:
-    """Return several suit.Suit as JSON, in their order, with overlaps rounded to 1e-6."""
+    """Return several suit.Suit as JSON, in their order.
+
+    Overlaps are rounded to 1e-6.
+    """
     rows = [_round_floats(asdict(suit)) for suit in suits]
     document = {"format": "brushsvg/brushes", "version": 1, "title": title, "brushes": rows}
     return json.dumps(document, indent=1, ensure_ascii=False) + "\n"

@@ -50,7 +50,10 @@ class PlanConfidence:
 
 @dataclass(frozen=True)
 class Band:
-    """The 95 % bands of the edges of marks: rings in mm per pass, and their source in words."""
+    """The 95 % bands of the edges of marks.
+
+    rings: rings in mm per pass; words: the source of the bands in words.
+    """
 
     rings: tuple[list, ...]
     words: str
@@ -58,7 +61,10 @@ class Band:
 
 @dataclass(frozen=True)
 class _Effects:
-    """Changes at the n rows of a pass by half a 95 % interval along each of K independent directions."""
+    """Changes at the n rows of a pass by uncertain laws, in K independent directions.
+
+    The laws change by half a 95 % interval along each direction.
+    """
 
     middle: np.ndarray  # (n, 2)
     along: np.ndarray  # (n, 2), u
@@ -97,9 +103,9 @@ def _is_law_measured(brush, law: str) -> bool:
 
 
 def uncertainty(plan, brush, marks) -> PlanConfidence | None:
-    """Return the confidence in the marks of a plan, per pass and in total, or None where nothing is known.
+    """Return the confidence in the marks of a plan, per pass and in total.
 
-    marks: the plan's marks, simulated with this brush.
+    Returns None where nothing is known. marks: the plan's marks, simulated with this brush.
     """
     source = known_from(brush)
     if source is None:
@@ -111,7 +117,10 @@ def uncertainty(plan, brush, marks) -> PlanConfidence | None:
 
 
 def band(plan, brush, marks) -> Band:
-    """Return the band of every pass, without rings where nothing is known. marks: with outlines."""
+    """Return the band of every pass.
+
+    It has no rings where nothing is known. marks: with outlines.
+    """
     if known_from(brush) is None:
         return Band(tuple([] for _ in marks.passes), in_words(brush))
     rings = []
@@ -166,16 +175,19 @@ def _all_effects(plan, brush, marks):
 
 
 def _covariance_factor(covariance: np.ndarray) -> np.ndarray:
-    """Return L (n, K) with covariance = L L^T; directions without variance are left out."""
+    """Return L (n, K) with covariance = L L^T.
+
+    Directions without variance are left out.
+    """
     values, vectors = np.linalg.eigh((covariance + covariance.T) / 2)
     is_kept = values > 1e-12 * max(values.max(initial=0.0), 1e-300)
     return vectors[:, is_kept] * np.sqrt(values[is_kept])
 
 
 def _lag_steps(brush, step: np.ndarray):
-    """Return the laws of the lag a step up and a step down, and the share of the step that was taken.
+    """Return the laws of the lag a step up and a step down.
 
-    The share is limited so that the lag r stays above 0.
+    Returns also the share of the step that was taken. The share is limited so that the lag r stays above 0.
     """
     depths = np.linspace(*brush.depth_range_mm, 101)
     change = np.abs(np.polynomial.polynomial.polyval(depths, step))
@@ -185,7 +197,10 @@ def _lag_steps(brush, step: np.ndarray):
 
 
 def _moved_by_steps(brush, passes, traces, sides) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return how much each step changes the contact and the heading, (n, 2, K) each, at the rows of each pass."""
+    """Return how much each step changes contact and heading.
+
+    The changes are (n, 2, K) each, at the rows of each pass.
+    """
     if not sides:
         return [(np.zeros((len(trace.pose), 2, 0)),) * 2 for trace in traces]
     up, down, part = zip(*sides, strict=True)
@@ -220,7 +235,10 @@ def _unit_vectors(angle: np.ndarray) -> np.ndarray:
 
 
 def _law_derivatives(law, depth: np.ndarray) -> np.ndarray:
-    """Return the derivatives (n, coefficients) of a law by its coefficients; they are 0 on its floor."""
+    """Return the derivatives (n, coefficients) of a law by its coefficients.
+
+    The derivatives are 0 on the floor of the law.
+    """
     powers = np.vander(depth, len(law.coefficients), increasing=True)
     if np.isfinite(law.floor):
         powers[powers @ np.array(law.coefficients) < law.floor + law.floor_slope * depth] = 0.0
@@ -241,7 +259,10 @@ def _stroke_confidence(effects: _Effects) -> Confidence:
 
 
 def _tangents(points: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Return unit directions (n, 2) of a line at its points, or of the brush where it does not move."""
+    """Return unit directions (n, 2) of a line at its points.
+
+    Where the line does not move, it is the direction of the brush.
+    """
     if len(points) < 2:
         return along
     step = np.gradient(points, axis=0)
@@ -264,7 +285,10 @@ def _largest(strokes: tuple[Confidence, ...]) -> Confidence:
 
 
 def _swept_triangles(ring: np.ndarray, effects: _Effects) -> list[np.ndarray]:
-    """Return the area in which the edge of an outline may be, as counter-clockwise triangles."""
+    """Return the area in which the edge of an outline may be.
+
+    The area is given by counter-clockwise triangles.
+    """
     if len(ring) < 3 or not len(effects.half):
         return []
     edge = np.roll(ring, -1, axis=0) - ring
