@@ -41,8 +41,8 @@ std::vector<std::string> doubts(const MarkProblem& fit) {
     const Layout& at = model.layout();
     const double noise_mm = fit.weighing.noise_mm * std::sqrt(fit.weighing.repeats);  // noise of one independent sample
     const Index n = at.shift();  // displacements cannot determine the place of the sheet, and need not
-    MatrixXd still = MatrixXd::Zero(n, n),
-             moving = still;  // information of marks at their places, and of marks that may be anywhere
+    // Information of marks at their places, and of marks that may be anywhere.
+    MatrixXd still = MatrixXd::Zero(n, n), moving = still;
     for (Index i = 0; i < model.marks(); ++i) {
         RowMajor by(model.points(i), at.size()), own(model.points(i), 2);
         VectorXd distance;

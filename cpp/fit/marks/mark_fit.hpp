@@ -113,7 +113,7 @@ struct MarkFit {
     double effective_samples = 0.0;    ///< number of independent points that would determine as much
     double left_aside = 0.0;           ///< share of the points that are left out as outliers
     double slim = 0.0;                 ///< share of the points left out at ends narrower than the noise
-    std::vector<std::string> remarks;  ///< what these marks cannot separate, and what to paint instead
+    std::vector<std::string> remarks;  ///< unknowns that these marks cannot separate, and additional strokes to paint
     int iterations = 0;
     bool converged = false;
 };

@@ -18,8 +18,8 @@ AIR_SAMPLE_SHARES = np.array([0.01, 0.04, 0.1, 0.9, 0.96, 0.99, 1.0])
 class Chapter:
     """The rows of one stroke, or of one visit to the paint.
 
-    first_row: its first row; it ends at the next chapter. trace: number of the stroke's pass in the plan and the marks,
-    from 0; None for a visit to the paint.
+    first_row: first row of the chapter, which ends where the next one begins; trace: number of the stroke's pass in the
+    plan and the marks, from 0; None for a visit to the paint.
     """
 
     title: str
@@ -145,7 +145,7 @@ def _brush_columns(trace, chosen: np.ndarray) -> np.ndarray:
 def _landing_rows(trace, landed: np.ndarray) -> np.ndarray:
     """Return the rows in which the brush touches the paper.
 
-    The tool is at the first pose then.
+    In these rows the tool is at the first pose.
     """
     brush = _brush_columns(trace, np.asarray(trace.pose) <= 0)
     return _timeline_rows(np.full(len(brush), landed[0]), landed[1:4], brush)
