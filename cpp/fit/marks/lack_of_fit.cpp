@@ -13,13 +13,12 @@ namespace {
 
 constexpr int kLaws = 5;                                // lag, tip gap, half width, both ratios of the footprint
 constexpr std::array<int, kLaws> kMore{3, 2, 3, 3, 3};  // additional coefficients of each law
-constexpr int kHalf = 2;         // the half width, which may also rise with another power of depth
-constexpr int kMoreOfPower = 4;  // additional coefficients of the half width in this case
-constexpr int kSizes =
-    kLaws + 1;  // number of departure sizes: one for each law, and one for the power of the half width
-constexpr double kFreedom = 3.0;  // degrees of freedom of the size of a departure
+constexpr int kHalf = 2;           // the half width, which may also rise with another power of depth
+constexpr int kMoreOfPower = 4;    // additional coefficients of the half width in this case
+constexpr int kSizes = kLaws + 1;  // departure sizes: one for each law, and one for the power of the half width
+constexpr double kFreedom = 3.0;   // degrees of freedom of the size of a departure
 // Log of the likelihood ratio of departing below which laws keep their few coefficients. For a brush that departs where
-// the marks determine little, by how deep its tip is pressed, the marks speak no more against departing than by chance.
+// the marks determine little, by how deep its tip is pressed, the evidence against departing is no more than chance.
 constexpr double kHeld = -1.25;
 // Log of the likelihood ratio from which laws clearly depart, so that the half width may also rise with another power.
 // With weaker evidence (brushes of the family reach 0.2), this would only make the intervals wider.
@@ -36,7 +35,7 @@ constexpr int kSweeps = 6;
 /// tests/laws/painter.py depart by less (their six, four and three shapes: lag 0.016, 0.020, 0.012, tip gap 0.12, 0.10,
 /// 0.13, half width 0.08, 0.07, 0.07, widest section 0.13, 0.12, 0.13). The standard deviation of the log is 0.7 to 1.3
 /// for these curves. The last value is the difference of the power of the half width from 1: 0.06 for these curves, and
-/// 0.1 to 0.35 for square roots down to the touch.
+/// 0.1 to 0.35 for roots down to the touch.
 constexpr std::array<double, kSizes> kTypical{0.02, 0.1, 0.1, 0.1, 0.05, 0.15};
 constexpr double kScatter = 1.0;
 
