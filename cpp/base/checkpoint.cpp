@@ -13,12 +13,12 @@ struct CancelWhen::Asked {
     std::thread::id owner = std::this_thread::get_id();
     std::chrono::steady_clock::time_point last{};
     std::exception_ptr why;
-    std::atomic<bool> over{false};  ///< and `why` says why
+    std::atomic<bool> over{false};  ///< cancelled, for the reason in `why`
 };
 
 namespace {
 
-/// So much work is done between looks at the clock, and so much time passes between questions.
+/// Amount of work between readings of the clock, and time between calls of is_over.
 constexpr int kWorkBetween = 500;
 constexpr std::chrono::milliseconds kBetween{50};
 

@@ -12,9 +12,10 @@
 
 namespace brushsvg {
 
-/// work(), on a thread of its own while this one asks whether to go on: for what a library does in one piece without a
-/// checkpoint, seconds at a time. Given up, nobody waits for it: it goes on to its next checkpoint and ends there, so
-/// `work` must own all that it reads.
+/// Runs work() on its own thread, while this thread polls for cancellation.
+///
+/// It is for library calls that need seconds without a checkpoint. After a cancellation nobody waits for the work. It
+/// continues to its next checkpoint and ends there, so that `work` must own everything that it reads.
 template <class Work>
 auto asking_meanwhile(Work work) {
     const auto is_over = std::make_shared<std::atomic<bool>>(false);
@@ -28,7 +29,7 @@ auto asking_meanwhile(Work work) {
     try {
         other = std::thread([task] { (*task)(); });
     } catch (const std::system_error&) {
-        (*task)();  // the system starts no thread: here, then, without polling
+        (*task)();  // the system starts no thread: work on this one, without polling
         return result.get();
     }
     try {

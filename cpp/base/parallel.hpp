@@ -14,14 +14,15 @@
 
 namespace brushsvg {
 
-/// Queried once: the system reads a file each time, a thirtieth of a page's convert.
+/// Returns the number of processors. It is queried once, because the system reads a file each time, which needs a
+/// thirtieth of the time to convert a page.
 inline std::size_t processors() {
     static const std::size_t count = std::max(1u, std::thread::hardware_concurrency());
     return count;
 }
 
-/// work(i) for i in [begin, end) on all processors; of several errors the first stroke's is thrown. If the system
-/// starts fewer threads, as in a container with a limit of processes, the work is done by those, or by this one alone.
+/// Calls work(i) for i in [begin, end) on all processors. Of several errors, the one with the lowest i is thrown. If
+/// the system starts fewer threads, as in a container with a limit of processes, these threads or this one do the work.
 template <class Work>
 void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
     std::atomic<std::size_t> next{begin};
@@ -40,9 +41,9 @@ void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
     const std::size_t threads = std::min(processors(), end - begin);
     std::size_t running = 0;
     std::vector<std::thread> others;
-    others.reserve(threads);  // so that only starting a thread can fail below
+    others.reserve(threads);  // so that below only the start of a thread can fail
     for (std::size_t k = 1; k < threads; ++k) try {
-            const std::lock_guard lock(mutex);  // a thread that ends at once must find itself counted
+            const std::lock_guard lock(mutex);  // a thread that ends at once must already be counted
             others.emplace_back([&] {
                 cancel.take_over();
                 run();
@@ -52,10 +53,10 @@ void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
             });
             ++running;
         } catch (const std::exception&) {
-            break;  // the system gives no more threads, or no memory for them: those that run do all the work
+            break;  // no more threads or no memory for them: the running threads do all the work
         }
     run();
-    std::exception_ptr given_up;  // this thread alone asks whether to go on, also while it waits
+    std::exception_ptr given_up;  // only this thread polls for cancellation, also while it waits
     std::unique_lock lock(mutex);
     while (running > 0) {
         ended.wait_for(lock, std::chrono::milliseconds(50));

@@ -10,8 +10,8 @@
 namespace brushsvg {
 namespace {
 
-constexpr double kUpperEnd = 0.975;     // of an interval that leaves 2.5 % on either side
-constexpr double kLeastFreedom = 0.01;  // with less an interval would be longer than any number
+constexpr double kUpperEnd = 0.975;     // quantile at the upper end of an interval with 2.5 % on either side
+constexpr double kLeastFreedom = 0.01;  // with less, an interval would be longer than any number
 
 void require_freedom(double degrees) {
     if (!(degrees >= kLeastFreedom))

@@ -8,10 +8,10 @@
 
 namespace brushsvg {
 
-/// Finer ones are lost in rounding and take no end, coarser ones say nothing of a brush.
+/// Range of tolerances. Finer ones are lost in rounding and never end, coarser ones are useless for a brush.
 inline constexpr std::array<double, 2> kTolerancesMm{1e-8, 1000.0};
 
-/// Throws Error for a tolerance [mm] outside of them.
+/// Throws Error for a tolerance [mm] outside this range.
 inline void require_tolerance(double tolerance_mm, const std::string& where = "") {
     if (tolerance_mm >= kTolerancesMm[0] && tolerance_mm <= kTolerancesMm[1]) return;
     char text[120];

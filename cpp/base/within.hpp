@@ -8,7 +8,7 @@
 
 namespace brushsvg {
 
-/// Throws Error for a number outside of a range, and for one that is none. `what`: its name in the sentence.
+/// Throws Error for a number outside a range, and for NaN. `what`: name of the number in the message.
 inline void require_within(double value, const std::array<double, 2>& range, const std::string& what,
                            const std::string& where = "") {
     if (value >= range[0] && value <= range[1]) return;

@@ -12,7 +12,7 @@ namespace brushsvg::io {
 namespace {
 
 constexpr const char* kFormat = "brushsvg/brush";
-constexpr double kMostFreedom = 1e9;  // normal long before
+constexpr double kMostFreedom = 1e9;  // Student's t is normal long before this limit
 const std::set<std::string> kBrushKeys{
     "format",        "version",    "name",       "kind",           "depth_range_mm", "lag",  "tip_gap",
     "tip_to_widest", "half_width", "covariance", "max_speed_mm_s", "paint_depth_mm", "paint"};
@@ -101,7 +101,7 @@ Paint read_paint(Field field) {
     return paint;
 }
 
-/// Outlines of one kind; unknown keys of each go to `notes` with their depth.
+/// Reads the outlines of one kind. Unknown keys of each outline go to `notes` with its depth.
 std::vector<Footprint> read_outlines(Field field, Eigen::Index& vertex_count, Json& notes) {
     std::vector<Footprint> outlines;
     for (Field& member : members(std::move(field))) {
@@ -315,7 +315,7 @@ std::string write_brush(const Brush& brush) {
     if (brush.paint) append_paint(out, *brush.paint);
     append_footprints(out, brush.footprints, std::move(notes));
     out += "\n}\n";
-    read_brush(out);  // what cannot be read back is not handed out
+    read_brush(out);  // throws where the text cannot be read back
     return out;
 }
 

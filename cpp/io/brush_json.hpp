@@ -7,12 +7,12 @@
 namespace [[gnu::visibility("default")]] brushsvg {
 namespace io {
 
-/// Reads a brush.json: its shape (keys, types, intervals, counts), not its physics; check(brush) judges that.
-/// Unknown keys go to Profile::extra and Brush::extra; those of "footprints" and of single outlines to
+/// Reads a brush.json. This checks its shape (keys, types, intervals, counts), and check(brush) its physics.
+/// Unknown keys go to Profile::extra and Brush::extra. Unknown keys of "footprints" and of outlines go to
 /// Brush::extra under "footprints" (outlines by their depth). Throws Error with `where` = key path.
 Brush read_brush(const std::string& text);
 
-/// The same brush as text, every number reading back to the same double. Throws Error for what read_brush
+/// Writes a brush as text, with numbers that read back to the same doubles. Throws Error for a brush that read_brush
 /// would refuse.
 std::string write_brush(const Brush& brush);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Private to brushsvg::io: from a text to a JSON document that is well formed, of the right format and version.
+// Private to brushsvg::io: parses a text to a well-formed JSON document of the right format and version.
 
 #include <algorithm>
 #include <cmath>
@@ -16,19 +16,20 @@
 
 namespace brushsvg::io {
 
-/// Rows of numbers under passes[i].key, taken out of the document while it is parsed: a table of ten million
-/// poses as JSON values would fill gigabytes. Row k of pass i is values[i][k * width] and on.
+/// Rows of numbers under passes[i].key, which are removed from the document while it is parsed, because a table of ten
+/// million poses as JSON values would need gigabytes. Row k of pass i begins at values[i][k * width].
 struct PassRows {
     std::string key;
     std::size_t width;
     std::vector<std::vector<double>> values;
 
-    /// The rows of one pass as a matrix; `left` is what parsing has left of the array: rows of another shape.
+    /// Returns the rows of one pass as a matrix. `left`: the rest of the array after parsing, which are rows of another
+    /// shape.
     template <class Matrix>
     Matrix of_pass(std::size_t pass, const Field& left, const std::string& shape) const;
 };
 
-/// Follows the parser through the document: knows the key path, refuses keys that stand twice in one object,
+/// Follows the parser through the document: tracks the key path, refuses keys that appear twice in one object,
 /// and collects the rows of passes.
 class Watcher {
  public:
@@ -53,19 +54,19 @@ class Watcher {
  private:
     struct Level {
         bool is_array;
-        std::size_t index;  ///< of the member being read, in an array
-        std::string key;    ///< of the member being read, in an object
+        std::size_t index;  ///< index of the current member in an array
+        std::string key;    ///< key of the current member in an object
         std::set<std::string> keys;
     };
 
-    /// False: the value just read is dropped from the document.
+    /// Handles an event of the parser. Returns false to drop the value just read from the document.
     bool see(Json::parse_event_t event, const Json& parsed) {
         checkpoint();
         using Event = Json::parse_event_t;
         switch (event) {
             case Event::object_start:
             case Event::array_start:
-                // Printing nested values recurses; no file of ours is deeper than seven.
+                // Printing nested values is recursive. Our files have at most seven levels.
                 if (levels_.size() == 100)
                     throw Error("not-json", "the file is nested deeper than 100 levels", levels_.front().key);
                 levels_.push_back({event == Event::array_start, 0, {}, {}});
@@ -105,7 +106,7 @@ class Watcher {
         const std::size_t pass = levels_[1].index;
         if (rows->values.size() <= pass) rows->values.resize(pass + 1);
         std::vector<double>& values = rows->values[pass];
-        // Rows after a misshapen one stay too, so that it keeps its number.
+        // Rows after a row of a wrong shape stay as well, so that it keeps its number.
         if (row.size() != rows->width || values.size() != levels_[3].index * rows->width) return false;
         for (const Json& value : row) {
             if (!value.is_number()) return false;
@@ -139,7 +140,7 @@ Matrix PassRows::of_pass(std::size_t pass, const Field& left, const std::string&
     return Eigen::Map<const Matrix>(flat.data(), static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(width));
 }
 
-/// "line 3, column 7" of a byte (counted from 1) of the text.
+/// Returns "line 3, column 7" for a byte of the text (counted from 1).
 inline std::string line_and_column(const std::string& text, std::size_t byte) {
     std::size_t line = 1;
     std::size_t column = 1;
@@ -150,7 +151,8 @@ inline std::string line_and_column(const std::string& text, std::size_t byte) {
     return "line " + std::to_string(line) + ", column " + std::to_string(column);
 }
 
-/// The reason in the library's message "...syntax error while parsing X - REASON; last read: '...'; expected Y".
+/// Returns the reason from the library's message "...syntax error while parsing X - REASON; last read: '...'; expected
+/// Y".
 inline std::string reason_of(const std::string& message) {
     const std::size_t dash = message.find(" - ");
     std::string reason = dash == std::string::npos ? "it breaks off" : message.substr(dash + 3);
@@ -175,7 +177,7 @@ inline Document parse_versions(const std::string& text, const std::string& forma
             "not-json",
             "the file is not valid JSON at " + line_and_column(text, fault.byte) + ": " + reason_of(fault.what()),
             watcher.path());
-    } catch (const Json::out_of_range& fault) {  // 1e400
+    } catch (const Json::out_of_range& fault) {  // for example 1e400
         throw Error("not-finite", "the file holds a number that is too large to be finite", watcher.path());
     }
     Fields fields(Field{std::move(document), ""});
@@ -195,12 +197,12 @@ inline Document parse_versions(const std::string& text, const std::string& forma
     return {std::move(fields), static_cast<int>(read)};
 }
 
-/// Of a format that has had one version.
+/// Parses a text of a format that has only one version.
 inline Fields parse_document(const std::string& text, const std::string& format) {
     return parse_versions(text, format, 1, nullptr).fields;
 }
 
-/// The JSON object in a value type's `extra` or `settings`; none of its keys may be one the writer itself writes.
+/// Parses the JSON object in a value type's `extra` or `settings`, which must not have keys of the writer itself.
 inline Json parse_object(const std::string& text, const std::string& path, const std::set<std::string>& own_keys = {}) {
     Watcher watcher(nullptr);
     Json object;

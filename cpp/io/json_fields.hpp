@@ -1,6 +1,6 @@
 #pragma once
 
-// Private to brushsvg::io: values of a JSON document read as what they must be, with their key path.
+// Private to brushsvg::io: reads values of a JSON document with the required types, and with their key paths.
 
 #include <array>
 #include <cmath>
@@ -18,13 +18,13 @@ namespace brushsvg::io {
 
 using Json = nlohmann::ordered_json;  // keeps the order of unknown keys
 
-/// A value and where it stands in its file ("lag.coefficients").
+/// A value and its key path in the file, such as "lag.coefficients".
 struct Field {
     Json value;
     std::string path;
 
     [[noreturn]] void refuse(const char* code, const std::string& sentence) const { throw Error(code, sentence, path); }
-    /// "coefficients": what a sentence calls this value.
+    /// Returns the name of the value for messages, such as "coefficients".
     std::string name() const { return path.empty() ? "the file" : path.substr(path.find_last_of('.') + 1); }
 };
 
@@ -81,7 +81,7 @@ inline bool truth(const Field& field) {
     return field.value.get<bool>();
 }
 
-/// Members of an array as fields of their own, with the index in their path.
+/// Returns the members of an array as fields, with the index in their paths.
 inline std::vector<Field> members(Field field) {
     if (!field.value.is_array())
         field.refuse("wrong-type", field.name() + " must be an array, not " + in_words(field.value));
@@ -117,14 +117,14 @@ inline std::array<double, 2> pair(const Field& field) {
     return {values[0], values[1]};
 }
 
-/// [least, greatest].
+/// Reads an interval [least, greatest].
 inline std::array<double, 2> interval(const Field& field) {
     const std::array<double, 2> ends = pair(field);
     if (ends[0] > ends[1]) field.refuse("not-ascending", field.name() + " must name the smaller number first");
     return ends;
 }
 
-/// A coordinate [mm] beyond it is damage; squares of smaller ones still add up.
+/// Largest coordinate [mm]. Greater ones are damaged data; squares of smaller ones can be added without overflow.
 inline constexpr double kFarthestMm = 1e6;
 
 inline void require_coordinates(const Ring& ring, const std::string& path) {
@@ -136,7 +136,7 @@ inline void require_coordinates(const Ring& ring, const std::string& path) {
                             path + "[" + std::to_string(i) + "]", mm, std::array<double, 2>{-kFarthestMm, kFarthestMm});
 }
 
-/// [[x, y], ...]
+/// Reads points [[x, y], ...].
 inline Ring points(const Field& field) {
     if (!field.value.is_array()) {
         field.refuse("wrong-type", field.name() + " must be an array of points [x, y], not " + in_words(field.value));
@@ -155,7 +155,7 @@ inline Ring points(const Field& field) {
     return ring;
 }
 
-/// An object whose known keys are taken out one by one; what then is left are the unknown ones.
+/// An object whose known keys are removed one by one, so that the unknown keys remain.
 class Fields {
  public:
     explicit Fields(Field object) : object_(std::move(object)) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Private to brushsvg::io: JSON as text that a person can read and diff, built in one string.
+// Private to brushsvg::io: writes JSON that people can read and compare, in one string.
 
 #include <array>
 #include <charconv>
@@ -21,19 +21,19 @@ inline void refuse_not_finite(double value, const std::string& what) {
         throw Error("not-finite", what + " is not a finite number and cannot be written", what, value);
 }
 
-/// The shortest plain decimal that reads back to the same double: no exponent, no -0.
+/// Appends the shortest plain decimal that reads back to the same double, without exponent and without -0.
 inline void append_exact(std::string& out, double value, const char* what) {
     refuse_not_finite(value, what);
-    std::array<char, 1100> digits;  // the least subnormal has 1077 characters
+    std::array<char, 1100> digits;  // the smallest subnormal number has 1077 characters
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value == 0.0 ? 0.0 : value,
                                    std::chars_format::fixed);
     out.append(digits.data(), end.ptr);
 }
 
-/// A number inside a sentence.
+/// Formats a number for a message.
 inline std::string in_words(double value) {
     if (!std::isfinite(value)) return "a number that is not finite";
-    if (std::abs(value) >= 1e9) {  // three hundred digits add nothing
+    if (std::abs(value) >= 1e9) {  // up to three hundred digits would not help
         std::array<char, 32> digits;
         char* end =
             std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 6).ptr;
@@ -44,7 +44,7 @@ inline std::string in_words(double value) {
     return out;
 }
 
-/// Plain decimal rounded to 1e-7: a hundredth of what any machine resolves, and files stay readable.
+/// Appends a plain decimal rounded to 1e-7, a hundredth of any machine's resolution, so that files stay readable.
 inline void append_rounded(std::string& out, double value, const char* what) {
     refuse_not_finite(value, what);
     std::array<char, 330> digits;
@@ -67,11 +67,11 @@ inline void append_string(std::string& out, const std::string& text, const std::
     append_json(out, Json(text), path);
 }
 
-/// "[item, item,\n      item]": as many to a line as fit into 110 columns.
+/// Appends "[item, item,\n      item]" with as many items on a line as fit into 110 columns.
 template <class Append>
 void append_array(std::string& out, std::size_t count, std::size_t indent, Append append_item) {
     out += '[';
-    std::size_t line = out.find_last_of('\n') + 1;  // npos + 1 is 0: the first line
+    std::size_t line = out.find_last_of('\n') + 1;  // npos + 1 is 0, for the first line
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t gap = out.size() + 1;
         if (i > 0) out += ", ";
@@ -90,7 +90,7 @@ inline void append_numbers(std::string& out, const std::vector<double>& values, 
     append_array(out, values.size(), indent, [&](std::size_t i) { append_exact(out, values[i], what); });
 }
 
-/// [[x, y], ...], exact or rounded, from any matrix with one point per row.
+/// Appends [[x, y], ...], exact or rounded, from a matrix with one point per row.
 template <class Matrix>
 void append_rows(std::string& out, const Matrix& rows, std::size_t indent, const char* what,
                  void (*append)(std::string&, double, const char*) = append_rounded) {
@@ -103,7 +103,7 @@ void append_rows(std::string& out, const Matrix& rows, std::size_t indent, const
     });
 }
 
-/// `, "key": value` for each key of an object, on lines of their own.
+/// Appends `, "key": value` for each key of an object, each on its own line.
 inline void append_extra(std::string& out, const Json& object, std::size_t indent) {
     for (const auto& [key, value] : object.items()) {
         out += ",\n" + std::string(indent, ' ') + Json(key).dump() + ": " + value.dump();

@@ -13,9 +13,9 @@ namespace brushsvg::io {
 namespace {
 
 constexpr const char* kFormat = "brushsvg/marks";
-constexpr int kLeaning = 2;  // the version that says how a tilted brush leans; others are written without
+constexpr int kLeaning = 2;  // the version with the lean of a tilted brush; other marks are written without it
 
-/// Rows are parallel, read or about to be written. `path`: of the pass.
+/// Throws Error unless the rows of a pass are parallel. `path`: key path of the pass.
 void require_parallel(const PassMarks& pass, const std::string& path) {
     const auto require = [&](const char* key, std::size_t rows) {
         if (rows == pass.pose.size()) return;
@@ -41,12 +41,12 @@ void require_within(const std::vector<double>& values, const std::string& path, 
                         path + "[" + std::to_string(i) + "]", values[i], std::array<double, 2>{least, greatest});
 }
 
-/// No brush is tilted further than a plan may say.
+/// Throws Error where the brush leans by more than a plan permits.
 void require_lean(const PassMarks& pass, const std::string& path) {
     static const double most = std::tan((kMostTiltDeg + kRoundedTiltDeg) * std::acos(-1.0) / 180.0);
     for (Eigen::Index i = 0; i < pass.lean_mm_per_mm.rows(); ++i) {
         const double lean = pass.lean_mm_per_mm.row(i).norm();
-        if (!(lean <= most + 1e-6))  // written to seven decimals
+        if (!(lean <= most + 1e-6))  // values are written with seven decimals
             throw Error("out-of-range",
                         "row " + std::to_string(i) + " of stroke " + pass.stroke + " leans by " + in_words(lean) +
                             " mm per mm, outside [0, " + in_words(most) + "]",

@@ -15,13 +15,13 @@ namespace brushsvg::io {
 namespace {
 
 constexpr const char* kFormat = "brushsvg/plan";
-constexpr int kTilting = 2;  // the version that says how the brush is tilted; others are written without
+constexpr int kTilting = 2;  // the version with the tilt of the brush; other plans are written without it
 const std::set<std::string> kPlanKeys{"format", "version", "brush", "brush_sha256", "sheet_mm", "passes"};
 const std::set<std::string> kPassKeys{"stroke", "poses_mm", "arcs", "speed_mm_s", "layer",
                                       "colour", "settings", "load", "tool_axes"};
 
-/// What holds for every pass, read or about to be written. `path`: of the pass; `slack_mm`: how far above the
-/// paper still counts as on it.
+/// Throws Error for a pass that cannot be read or written. `path`: key path of the pass; `slack_mm`: height above the
+/// paper that still counts as on the paper.
 void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
     const auto where = [&](Eigen::Index i) { return path + ".poses_mm[" + std::to_string(i) + "]"; };
     if (pass.poses_mm.rows() == 0)
@@ -60,7 +60,7 @@ void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
     check_tool_axes(pass, path + ".tool_axes");
 }
 
-/// [first pose, last pose, x and y of the centre, 1 or -1]
+/// Reads an arc [first pose, last pose, x and y of the centre, 1 or -1].
 Arc read_arc(const Field& field) {
     const std::vector<double> row = numbers(field);
     if (row.size() != 5) {
@@ -95,7 +95,7 @@ Settings read_settings(Field field) {
     return settings;
 }
 
-/// Unknown keys follow the known ones.
+/// Appends the settings, with unknown keys after the known ones.
 void append_settings(std::string& out, const Settings& settings, const std::string& path) {
     Json said = Json::object();
     std::set<std::string> own_keys;
@@ -134,7 +134,7 @@ Pass read_pass(Field field, std::size_t index, const std::vector<PassRows>& tabl
 }
 
 void append_pass(std::string& out, const Pass& pass, const std::string& path) {
-    require_sound(pass, path, 0.5e-7);  // what is written as 0
+    require_sound(pass, path, 0.5e-7);  // heights that are written as 0
     out += "    {\"stroke\": ";
     append_string(out, pass.stroke.name(), path + ".stroke");
     out += ", \"speed_mm_s\": ";

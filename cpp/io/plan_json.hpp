@@ -11,7 +11,8 @@ namespace io {
 /// and value. Unknown keys go to Pass::extra and Plan::extra. Throws Error with `where` = key path.
 Plan read_plan(const std::string& text);
 
-/// The same plan as text, poses in plain decimals rounded to 1e-7 mm. Throws Error for what read_plan would refuse.
+/// Writes a plan as text, with poses as plain decimals rounded to 1e-7 mm. Throws Error for a plan that read_plan would
+/// refuse.
 std::string write_plan(const Plan& plan);
 
 }  // namespace io

@@ -21,12 +21,12 @@ std::string format(const char* pattern, Numbers... numbers) {
 constexpr double kDeepestMm = 1000.0;  // no brush is longer, and plans grow with the depth
 constexpr double kLargestLawMm = 1000.0;
 constexpr std::size_t kMostOutlines = 1000;
-constexpr Eigen::Index kMostVertices = 2000;             // of an outline: each is held against each other
+constexpr Eigen::Index kMostVertices = 2000;             // of an outline: all pairs are compared
 constexpr std::array<double, 2> kSpeeds{0.01, 10000.0};  // mm/s; a program writes feeds in steps of 0.1 mm/min
-constexpr double kUnseenMm = 0.05;                       // how far off a mark's edge may be unseen: the usual tolerance
-constexpr double kPoorFit = 0.3;    // RMSE by the law's size; the article's worst, its angles' tip gap, has 0.6
-constexpr double kRounding = 1e-4;  // of a correlation: what five digits leave of a covariance
-constexpr double kLawAgainstOutlineMm = 0.5;  // outlines rule the mark, laws the inverse; they must agree
+constexpr double kUnseenMm = 0.05;  // largest invisible error of a mark's edge: the default tolerance
+constexpr double kPoorFit = 0.3;    // RMSE relative to the law; the article's worst, the tip gap from angles, has 0.6
+constexpr double kRounding = 1e-4;  // error of a correlation when a covariance is rounded to five digits
+constexpr double kLawAgainstOutlineMm = 0.5;  // outlines determine the mark, laws the inverse: they must agree
 
 std::array<std::pair<const Profile*, const char*>, 4> laws(const Brush& brush) {
     return {{{&brush.lag, "lag"},
@@ -35,7 +35,7 @@ std::array<std::pair<const Profile*, const char*>, 4> laws(const Brush& brush) {
              {&brush.half_width, "half_width"}}};
 }
 
-/// Least value of a profile over the depth range and where it stands.
+/// The least value of a profile over the depth range, and its depth.
 struct Least {
     double depth, value;
 };
@@ -57,7 +57,7 @@ struct Fall {
     double mm, from_mm, to_mm;
 };
 
-/// By how much a law falls at most from one depth to a greater one.
+/// Returns the greatest decrease of a law from one depth to a greater one.
 Fall greatest_fall(const Profile& profile, double lo, double hi) {
     Fall fall{0.0, lo, lo};
     double highest_at = lo;
@@ -91,7 +91,7 @@ void check_lag(const Brush& brush) {
                            worst.value, worst.depth, lo) +
                         format("%.2f mm", hi),
                     "lag", worst.value, std::array<double, 2>{0.0, INFINITY});
-    // zero at depth 0 alone is admissible: the lever grows out of nothing
+    // A lag of zero is only valid at depth 0, where the lever begins to grow.
     const Least inside = least(brush.lag, lo + 1e-3 * (hi - lo), hi);
     if (!(inside.value > 0.0))
         throw Error("law-zero",
@@ -142,7 +142,8 @@ void check_range(const Profile& law, double lo, double hi, const char* where) {
         throw Error("out-of-range", "an interval or rmse_mm is negative", where);
 }
 
-/// Symmetric, positive semi-definite within rounding, and no law less sure than it may be large.
+/// Throws Error unless the covariance is symmetric, positive semi-definite within rounding errors, and gives no law a
+/// standard deviation above the largest permitted value of a law.
 void check_covariance(const Brush& brush) {
     if (brush.covariance.empty()) return;
     const Eigen::Index n = Eigen::Index(brush.covariance.size());
@@ -257,7 +258,7 @@ void check_shapes(const Brush& brush, const std::vector<Footprint>& shapes, cons
         if (crosses_itself(shape.outline_mm)) throw Error("footprint-invalid", "the outline crosses itself", here);
         if (d > brush.depth_range_mm[1]) continue;
         const WidestSection seen = widest_section(shape.outline_mm);
-        // several sections may be equally wide: the law must be one of them
+        // Several sections may be equally wide. The law must match one of them.
         const double x_law = brush.tip_to_widest(d), h_law = brush.half_width(d);
         if (std::abs(seen.half_width_mm - h_law) > kLawAgainstOutlineMm)
             throw Error(
@@ -295,7 +296,7 @@ bool Brush::width_follows_depth() const {
 double Brush::depth_for_half_width(double half_width_mm, const std::string& where) const {
     if (!width_follows_depth()) return paint_depth_mm;
     const auto [narrow, wide] = half_width_range_mm();
-    const double rounding = 1e-9 * wide;  // a width that came through text and units
+    const double rounding = 1e-9 * wide;  // of a width after conversion from text and units
     if (!(half_width_mm >= narrow - rounding && half_width_mm <= wide + rounding) || !(half_width_mm > 0.0))
         throw Error("width-out-of-reach",
                     format("width %.3f mm is outside the range [%.3f, %.3f] mm", 2.0 * half_width_mm, 2.0 * narrow,
@@ -308,7 +309,7 @@ double Brush::depth_for_half_width(double half_width_mm, const std::string& wher
                         ", or take another brush",
                     where, 2.0 * half_width_mm, std::array<double, 2>{2.0 * narrow, 2.0 * wide});
     double a = depth_range_mm[0], b = depth_range_mm[1];
-    // At depth 0 a brush only touches the paper: a program that goes no deeper paints nothing.
+    // At depth 0 a brush only touches the paper, and a program that goes no deeper paints nothing.
     if (a == 0.0 && narrow > 0.0) half_width_mm = std::max(half_width_mm, std::min(narrow + kUnseenMm, wide));
     if (half_width.coefficients.size() == 2 && std::isinf(half_width.floor))
         return std::clamp((half_width_mm - half_width.coefficients[0]) / half_width.coefficients[1], a, b);

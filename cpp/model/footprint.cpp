@@ -44,7 +44,8 @@ Ring footprint_at(const FootprintTable& table, double depth_mm, double pull) {
 }
 
 WidestSection widest_section(const Ring& outline_mm) {
-    // width at x = top - bottom; piecewise linear between the vertices' x, so the greatest stands at one of them
+    // The width at x is top - bottom. It is piecewise linear between the x of vertices, so that it is greatest at a
+    // vertex.
     WidestSection best{0.0, 0.0};
     const Eigen::Index n = outline_mm.rows();
     for (Eigen::Index i = 0; i < n; ++i) {

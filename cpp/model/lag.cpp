@@ -17,7 +17,8 @@ std::vector<std::complex<double>> all_roots(const std::vector<double>& coefficie
     return {roots.data(), roots.data() + n};
 }
 
-/// Bound of the absolute value of a polynomial's k-th derivative on [lo, hi]: the largest Bernstein coefficient.
+/// Returns a bound of the absolute value of a polynomial's derivative of this order on [lo, hi]: the largest Bernstein
+/// coefficient.
 double bound_of_derivative(std::vector<double> c, int order, double lo, double hi) {
     for (; order > 0; --order) {
         for (std::size_t i = 1; i < c.size(); ++i) c[i - 1] = double(i) * c[i];
@@ -76,7 +77,7 @@ LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign)
 
 namespace detail {
 
-/// Of the square of a law, and of a parabola.
+/// Number of coefficients of the square of a law, which is more than those of a parabola.
 constexpr std::size_t kMostCoefficients = 2 * kMaxLawDegree + 1;
 
 double first_positive(std::vector<double> f) {
@@ -87,7 +88,7 @@ double first_positive(std::vector<double> f) {
         double a, b;
         Bernstein c;
     };
-    // halves of halves, the left one first: one waits at each depth
+    // Intervals are halved again and again, the left half first. One interval waits at each level.
     std::array<Span, 64> stack;
     std::size_t top = 0;
     Span& whole = stack[top++];
@@ -102,7 +103,7 @@ double first_positive(std::vector<double> f) {
         whole.c[i] = sum;
     }
     for (int looks = 0; top > 0 && looks < kMostLooks; ++looks) {
-        Span& span = stack[top - 1];  // becomes its own right half
+        Span& span = stack[top - 1];  // the interval becomes its own right half
         if (std::all_of(span.c.begin(), span.c.begin() + n + 1, [](double c) { return c <= 0.0; })) {
             --top;
             continue;

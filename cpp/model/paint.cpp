@@ -8,9 +8,10 @@
 namespace brushsvg {
 namespace {
 
-constexpr std::array<double, 2> kNarrowsPerM{0.0, 20.0};  // at 20 a mark has half its width after 35 mm: no load at all
-constexpr std::array<double, 2> kLastsMm{1.0, 1e6};       // as a cell's reload.every_mm
-constexpr double kRounding = 1e-4;                        // of a correlation: what five digits leave of a covariance
+// At 20 per m, a mark has half its width after 35 mm, which is no usable load.
+constexpr std::array<double, 2> kNarrowsPerM{0.0, 20.0};
+constexpr std::array<double, 2> kLastsMm{1.0, 1e6};  // same range as a cell's reload.every_mm
+constexpr double kRounding = 1e-4;  // error of a correlation when a covariance is rounded to five digits
 
 void require_within(double value, const std::array<double, 2>& range, const char* key, const char* in_words) {
     if (!(value >= range[0] && value <= range[1]))

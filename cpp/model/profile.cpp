@@ -9,9 +9,9 @@
 namespace brushsvg {
 namespace {
 
-/// Of a polynomial whose roots are looked for, each of whose derivatives is solved before it.
+/// Limit of the terms of a polynomial whose roots are searched, because all its derivatives have to be solved first.
 constexpr std::size_t kMostTerms = 64;
-constexpr double kRoundingMm = 1e-6;  // of depths that were computed, or read from a plan
+constexpr double kRoundingMm = 1e-6;  // rounding error of depths that were computed or read from a plan
 
 double evaluate(const std::vector<double>& c, double x) {
     double y = 0.0;
@@ -23,7 +23,7 @@ double evaluate(const std::vector<double>& c, double x) {
 
 double Profile::at(double depth_mm) const {
     if (depth_range_mm) {
-        // a brush passes the depths above its range as it is set down and lifted
+        // A brush passes the depths above its range when it is set down and lifted.
         const double deepest = (*depth_range_mm)[1];
         if (!(depth_mm >= -kRoundingMm && depth_mm <= deepest + kRoundingMm)) {
             char text[160];
@@ -42,7 +42,7 @@ std::vector<double> real_roots(const std::vector<double>& coefficients, double l
     if (c.size() < 2) return {};
     if (c.size() > kMostTerms)
         throw Error("law-terms", "a polynomial of more than 64 terms is not solved", "", double(c.size()));
-    // between the roots of its derivative a polynomial is monotone
+    // A polynomial is monotonic between the roots of its derivative.
     std::vector<double> slope(c.size() - 1);
     for (std::size_t i = 1; i < c.size(); ++i) slope[i - 1] = double(i) * c[i];
     std::vector<double> ends = real_roots(slope, lo, hi);

@@ -17,11 +17,12 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr double kUnit = 1e4;                     // of the last decimal, in a mm
-constexpr double kLeastMoveMm = 2.00125e-3;       // no move is shorter: rounded, it would go anywhere or nowhere
-constexpr double kCircleMm = 1e-3;                // ends nearer to each other: rounded, they might be one
-constexpr double kPartRad = 3.5, kMostRad = 5.0;  // of one circle: rounded, a longer one might be none, or all round
-constexpr double kOnTheSpotMm = 1e-6;             // sideways; less, and the move goes straight up or down
+constexpr double kUnit = 1e4;                // units of the last decimal in a mm
+constexpr double kLeastMoveMm = 2.00125e-3;  // shortest move: rounding could turn a shorter one or remove it
+constexpr double kCircleMm = 1e-3;  // smallest distance between ends of a circle: rounding could make closer ends equal
+// Turn of one arc: rounding could make a longer arc empty or a full circle.
+constexpr double kPartRad = 3.5, kMostRad = 5.0;
+constexpr double kOnTheSpotMm = 1e-6;  // sideways: a move with less goes straight up or down
 constexpr double kSlowestMmS = 1e-6;
 constexpr std::size_t kCommentLetters = 118;
 
@@ -34,20 +35,21 @@ std::string text_of(const char* format, Numbers... numbers) {
 
 double rounded(double value) { return std::nearbyint(value * kUnit) / kUnit + 0.0; }  // -0.0 + 0.0 is 0.0
 
-// U+00C0 to U+017F without their accents
+// The letters U+00C0 to U+017F without their accents.
 constexpr char kPlain[] =
     "AAAAAA?CEEEEIIII?NOOOOO??UUUUY??aaaaaa?ceeeeiiii?nooooo??uuuuy?yAaAaAaCcCcCcCcDd??EeEeEeEeEeGgGgGgGgHh??IiIiIiIiI?"
     "??JjKk?LlLlLl????NnNnNn???OoOoOo??RrRrRrSsSsSsSsTtTt??UuUuUuUuUuUuWwYyYZzZzZzs";
 
-/// One line of comment: 7-bit, no brackets. Accents go, as they do where Python writes it: brushsvg check compares.
+/// Returns one line of comment in 7-bit characters, without brackets. Accents are removed as in Python, because
+/// brushsvg check compares the comments.
 std::string comment(const std::string& text) {
     std::string out;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const auto byte = static_cast<unsigned char>(text[i]);
-        if ((byte & 0xC0) == 0x80) continue;  // what follows the first byte of a letter
+        if ((byte & 0xC0) == 0x80) continue;  // a byte after the first one of a letter
         const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0u;
         const unsigned letter = (byte & 0xE0) == 0xC0 ? (byte & 0x1Fu) << 6 | (next & 0x3Fu) : byte;
-        if (letter >= 0x300 && letter <= 0x36F) continue;  // an accent by itself
+        if (letter >= 0x300 && letter <= 0x36F) continue;  // a separate accent
         if (byte >= 0xC3 && byte <= 0xC5)
             out += kPlain[letter - 0xC0];
         else if (byte > '~' || (byte < ' ' && !std::isspace(byte)))
@@ -74,7 +76,7 @@ void require(double value, std::array<double, 2> range, const std::string& what,
                 where, value, range);
 }
 
-/// The largest and the least coordinate of the way, circles included.
+/// Throws Error where the path, including its circles, leaves the range of the machine.
 void require_inside(const Pass& pass, const FlatCell& cell, const std::array<double, 2>& sheet_mm) {
     const std::string where = pass.stroke.name();
     const auto look = [&](const Vector2d& place) {
@@ -134,7 +136,8 @@ void require_sound(const Plan& plan, const Brush& brush, const FlatCell& cell) {
     }
 }
 
-/// Rows of the poses as they are written: those too near to the one before give way, but not the ends of circles.
+/// Returns the rows of the poses that are written. Poses too close to the one before are left out, except the ends of
+/// circles.
 std::vector<Index> kept(const Poses& written, const std::vector<bool>& stays) {
     std::vector<Index> out{0};
     const auto near = [&](Index i) { return (written.row(i) - written.row(out.back())).norm() < kLeastMoveMm; };
@@ -159,7 +162,7 @@ class Text {
         way_mm_ += here_ ? (to - *here_).norm() : 0.0;
         here_ = to;
     }
-    void feed(double mm_s) {  // in steps of 0.1 mm/min, rounded down, so that a limit is kept
+    void feed(double mm_s) {  // in steps of 0.1 mm/min, rounded down to keep a limit
         const std::string line = text_of("F%.1f\n", std::max(std::floor(600.0 * mm_s + 1e-6), 1.0) / 10.0);
         if (line != feed_) all += line;
         feed_ = line;
@@ -170,7 +173,8 @@ class Text {
         way_mm_ += length_mm;
         here_ = to;
     }
-    /// What was gone since the last rest, from rest to rest: v rises at the acceleration, stays, falls.
+    /// Adds the time of the distance since the last rest, from rest to rest: the speed rises with the acceleration,
+    /// stays constant, and falls.
     double rest(double mm_s) {
         const double a = acceleration_mm_s2_, way_mm = way_mm_;
         time_s += way_mm > mm_s * mm_s / a ? way_mm / mm_s + mm_s / a : 2.0 * std::sqrt(way_mm / a);
@@ -187,7 +191,7 @@ class Text {
     std::string feed_;
 };
 
-/// The pass as it is run: one that begins or ends below the paper is set down and lifted there.
+/// Returns the pass as it is run: a pass that begins or ends below the paper is set down and lifted there.
 Pass on_the_paper(Pass pass) {
     const Poses& poses = pass.poses_mm;
     const Index n = poses.rows(), before = poses(0, 2) < 0.0 ? 1 : 0, after = poses(n - 1, 2) < 0.0 ? 1 : 0;
@@ -202,8 +206,7 @@ Pass on_the_paper(Pass pass) {
     return pass;
 }
 
-/// An arc that comes back to where it began or goes on beyond, in parts: rounded, it might be no circle, or lose a
-/// turn.
+/// Splits an arc of a full turn or more into parts, because after rounding it might be no circle, or lose a turn.
 std::vector<Arc> in_parts(const Arc& arc, const Poses& written) {
     std::vector<double> turned{0.0};
     for (Index i = arc.first; i < arc.last; ++i)
@@ -236,7 +239,7 @@ void write_pass(const Pass& planned, const Brush& brush, const FlatCell& cell, T
     std::vector<Arc> parts;
     for (const Arc& arc : pass.arcs)
         for (const Arc& part : in_parts(arc, written)) parts.push_back(part);
-    std::vector<const Arc*> circle_at(std::size_t(last + 1), nullptr);  // by its first pose
+    std::vector<const Arc*> circle_at(std::size_t(last + 1), nullptr);  // circles by their first pose
     std::vector<bool> stays(std::size_t(last + 1), false);
     stays.front() = stays.back() = true;
     Index done = 0;
@@ -260,7 +263,7 @@ void write_pass(const Pass& planned, const Brush& brush, const FlatCell& cell, T
     text.feed(press_mm_s);
     text.go("G1", pass.poses_mm.row(0));
     text.rest(press_mm_s);
-    double speed_mm_s = 0.0;  // of the lines that go on without a rest; 0: of none
+    double speed_mm_s = 0.0;  // speed of the lines without a rest in between; 0: no such lines
     const auto rest = [&] {
         if (speed_mm_s > 0.0) text.painted_mm += text.rest(speed_mm_s);
         speed_mm_s = 0.0;

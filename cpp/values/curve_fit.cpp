@@ -18,10 +18,10 @@ using Eigen::Vector2d;
 using Points = std::vector<Vector2d>;
 using Cubic = std::array<Vector2d, 4>;
 
-constexpr int kMoves = 6;      // of the parameters: more gain less than a split
-constexpr double kStep = 8.0;  // tolerances between points: fewer cut bends short, more only cost time
+constexpr int kMoves = 6;      // of the parameters: more moves improve the fit less than a split
+constexpr double kStep = 8.0;  // tolerances between points: greater steps cut bends short, smaller ones only cost time
 constexpr double kLeastPieces = 8.0, kMostPieces = 2000.0;
-// Points this many tolerances apart show a direction: nearer ones would show the noise.
+// Tolerances between points that determine a direction. Nearer points would show the noise.
 constexpr double kTangentReach = 12.0;
 
 Vector2d at(const Cubic& c, double t) {
@@ -29,11 +29,12 @@ Vector2d at(const Cubic& c, double t) {
     return u * u * u * c[0] + 3.0 * u * u * t * c[1] + 3.0 * u * t * t * c[2] + t * t * t * c[3];
 }
 
-/// Of a cubic's mean speed along its chord, the least amid it: slower ones swing round there, in a cusp or a curl.
+/// Smallest speed in the middle of a cubic, relative to its mean speed along the chord. Slower cubics turn around
+/// there, in a cusp or a loop.
 constexpr double kSlowest = 0.25;
 
-/// Whether it runs on along its chord, hardly on or even back, and on again. Along it the derivative is a quadratic,
-/// here in Bernstein's form.
+/// Returns whether a cubic almost stops along its chord, or goes back, before it continues. The derivative along the
+/// chord is a quadratic polynomial, here in Bernstein form.
 bool folds(const Cubic& c) {
     const Vector2d chord = c[3] - c[0];
     const double first = chord.dot(c[1] - c[0]), amid = chord.dot(c[2] - c[1]), last = chord.dot(c[3] - c[2]);
@@ -54,14 +55,14 @@ class Fit {
         stretch(0, last, start, end);
     }
     std::vector<Cubic> cubics;
-    std::vector<std::vector<double>> parameters;  // of each cubic's points, its first one included
+    std::vector<std::vector<double>> parameters;  // of each cubic's points, including its first one
 
  private:
     void keep(const Cubic& cubic, const std::vector<double>& t) {
         cubics.push_back(cubic);
         parameters.push_back(t);
     }
-    /// Direction from a point to those that follow (step 1) or come before it (step -1).
+    /// Returns the direction from a point to the points after it (step 1) or before it (step -1).
     Vector2d towards(std::size_t i, int step) const {
         const double reach = kTangentReach * tolerance_;
         Vector2d sum = Vector2d::Zero();
@@ -127,14 +128,14 @@ class Fit {
         Eigen::Vector2d alpha = Eigen::Vector2d::Constant(chord / 3.0);
         if (determinant > 1e-12 * c(0, 0) * c(1, 1)) {
             const Eigen::Vector2d found = c.inverse() * x;
-            // handles that turn back or loop say that the stretch is too long
+            // Handles that turn back or make a loop show that the stretch is too long.
             if (found.minCoeff() > 1e-3 * chord && found.maxCoeff() < 3.0 * chord + 1e-9 &&
                 !folds({a, a + found(0) * start, b + found(1) * end, b}))
                 alpha = found;
         }
         return {a, a + alpha(0) * start, b + alpha(1) * end, b};
     }
-    /// One step of Newton towards the parameter of the nearest point, in order and inside.
+    /// Makes one Newton step towards the parameters of the nearest points, which stay in order and inside.
     void move(const Cubic& c, std::size_t first, std::vector<double>& t) const {
         for (std::size_t i = 1; i + 1 < t.size(); ++i) {
             const double v = t[i], u = 1.0 - v;
@@ -149,7 +150,7 @@ class Fit {
     double tolerance_;
 };
 
-/// The line in even steps: the fit weighs points, not lengths. Half widths are not negative.
+/// Resamples the line at even steps, because the fit weights points and not lengths. Half widths are not negative.
 void evenly(const WideLine& line, double step, Points& points, std::vector<double>& half) {
     std::vector<double> at{0.0};
     for (Index i = 1; i < line.rows(); ++i) at.push_back(at.back() + (line.row(i) - line.row(i - 1)).head<2>().norm());
@@ -169,7 +170,8 @@ void evenly(const WideLine& line, double step, Points& points, std::vector<doubl
     }
 }
 
-/// As few of the places (fraction, half width) as keep the others to the tolerance: split where it is worst.
+/// Selects as few places (fraction, half width) as keep the others within the tolerance, by splitting at the worst
+/// place.
 void few(const std::vector<WidthKnot>& all, std::size_t first, std::size_t last, double tolerance,
          std::vector<WidthKnot>& out) {
     double most = tolerance;
@@ -231,9 +233,9 @@ FittedLine fit_curve(const WideLine& line, double tolerance_mm, bool closed) {
 
 namespace {
 
-constexpr int kMostFits = 2000;  // of one line: what is left then are straight lines
+constexpr int kMostFits = 2000;  // of one line: the rest then becomes straight lines
 
-/// The points that differ from the one before. Error for what no stroke is.
+/// Returns the points that differ from the one before. Throws Error for points that are not a stroke.
 WideLine need_line(const StrokeId& id, const WideLine& points) {
     WideLine line(points.rows(), 3);
     Index n = 0;
@@ -256,7 +258,7 @@ WideLine need_line(const StrokeId& id, const WideLine& points) {
     return line.topRows(n);
 }
 
-/// Cubics along rows first to last, appended: split at the point that is passed farthest off.
+/// Appends cubics along rows first to last, split at the point with the largest distance from the curve.
 void smooth(const WideLine& line, Index first, Index last, double tolerance, bool closed, int& fits,
             std::vector<Eigen::Matrix<double, 1, 8>>& out) {
     const auto straight = [&](Index i) {
@@ -279,7 +281,7 @@ void smooth(const WideLine& line, Index first, Index last, double tolerance, boo
         part.half_width = {{0.0, 1.0}};
         const MiddlePolyline way = flatten(part, 0.1 * tolerance);
         Nearest<MiddlePolyline> nearest(way);
-        double most = 0.9 * tolerance;  // the way is not the curve itself
+        double most = 0.9 * tolerance;  // a margin, because distances are from a polyline and not from the curve itself
         Index worst = -1;
         for (Index i = from + 1; i < to; ++i) {
             const double off = nearest.distance(line.row(i).head<2>().transpose());
@@ -288,7 +290,7 @@ void smooth(const WideLine& line, Index first, Index last, double tolerance, boo
             worst = i;
         }
         if (worst < 0) {
-            if (part.middle_mm.rows() > to - from)  // finer than the points are: the fit follows their chords
+            if (part.middle_mm.rows() > to - from)  // more cubics than points: the fit follows the chords
                 for (Index i = from; i < to; ++i) straight(i);
             else
                 for (Index i = 0; i < part.middle_mm.rows(); ++i) out.emplace_back(part.middle_mm.row(i));

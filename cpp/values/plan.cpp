@@ -11,14 +11,14 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Files are rounded to 1e-7 mm; a depth that differs by more is a depth that changes.
+/// Files are rounded to 1e-7 mm. Depths that differ by more than this limit are different.
 constexpr double kSameDepthMm = 1e-6;
-/// Nearer to half a turn than this the direction of a chord no longer shows on which side the arc is.
+/// For a turn this close to half a turn, the direction of the chord does not show on which side the arc is.
 constexpr double kAlmostHalfTurnRad = 1e-6;
 
 constexpr double kPi = 3.14159265358979323846;
 
-constexpr double kLargestSheetMm = 1e6;  // as files and strokes have it
+constexpr double kLargestSheetMm = 1e6;  // same limit as for files and strokes
 
 template <class... Numbers>
 std::string text_of(const char* format, Numbers... numbers) {

@@ -10,8 +10,8 @@
 namespace brushsvg {
 namespace {
 
-constexpr double kDeepestMm = 1000.0, kLargestLawMm = 1000.0;  // as check(brush) has it
-constexpr int kLooks = 16;                                     // at a law over the depth range
+constexpr double kDeepestMm = 1000.0, kLargestLawMm = 1000.0;  // same limits as in check(brush)
+constexpr int kLooks = 16;                                     // evaluations of a law over the depth range
 
 template <class... Numbers>
 std::string format(const char* pattern, Numbers... numbers) {

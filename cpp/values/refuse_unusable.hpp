@@ -5,15 +5,16 @@
 
 namespace brushsvg {
 
-/// Marks reach beyond what was drawn by a brush's lag, no more: a coordinate beyond it is damage.
+/// Marks reach beyond the drawing by no more than a brush's lag. A greater coordinate is damaged data.
 inline constexpr double kFarthestPaintedMm = 1e7;
 
-/// Refuses what cannot be computed with, quickly: check(brush) says whether a brush makes sense. Throws Error when the
-/// kind is unknown, the depth range does not rise, a law is not finite, negative where it is a length or larger than
-/// any brush, or an outline is missing, too large or not as long as the others.
+/// Refuses a brush that cannot be used in computations. This check is quick; check(brush) tests whether a brush makes
+/// sense. Throws Error when the kind is unknown or the depth range does not rise, when a law is not finite, negative
+/// where it is a length, or larger than for any brush, and when an outline is missing, too large or has another number
+/// of vertices than the others.
 void require_usable(const Brush& brush);
 
-/// Rows that are not parallel, not finite, or beyond 1e7 mm.
+/// Refuses marks whose rows are not parallel, not finite, or beyond 1e7 mm.
 void require_usable(const PassMarks& marks);
 
 }  // namespace brushsvg

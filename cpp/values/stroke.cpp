@@ -18,14 +18,15 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// Lines that are joined meet within as much. What is further apart would be painted straight across.
+/// Largest gap between joined lines. A wider gap would be painted across by a straight line.
 constexpr double kGapMm = 0.01;
 
-/// Precision of parameters at a length: 47 halves of a cubic, less than a hair of a metre of it.
+/// Precision of the parameter at a length: a cubic halved 47 times, which is far below a hair's width on a metre.
 constexpr double kParameterStep = 0x1p-47;
-/// Such steps that are looked at where Newton's way ends: rounding ends it next to the right one now and then.
+/// Number of these steps that are checked where Newton's method ends, because rounding sometimes ends it next to the
+/// right step.
 constexpr int kStepsBeside = 4;
-/// After a step of Newton's that is no longer than this the next one leads there to rounding.
+/// After a Newton step of at most this length, the next step is exact to rounding.
 constexpr double kLastStep = 1e-6;
 
 void require_cubic(const Cubics& c, Index i) {
@@ -37,7 +38,7 @@ void require_cubic(const Cubics& c, Index i) {
 
 Vector2d control(const Cubics& c, Index i, int k) { return c.row(i).segment<2>(2 * k).transpose(); }
 
-/// B'(t) of one cubic.
+/// The derivative B'(t) of one cubic.
 struct Derivative {
     Vector2d a, b, d;
 
@@ -49,7 +50,7 @@ struct Derivative {
         const double u = 1.0 - t;
         return 3.0 * (u * u * a + 2.0 * u * t * b + t * t * d);
     }
-    /// |B'(t)| of several, to the same bits.
+    /// Returns |B'(t)| of several parameters, with the same bits as one at a time.
     template <class Numbers>
     Numbers sizes(const Numbers& t) const {
         const Numbers u = 1.0 - t, p = u * u, q = 2.0 * u * t, r = t * t;
@@ -84,7 +85,8 @@ Vector2d tangent_at(const Cubics& c, const Place& place) {
 }
 
 double arc_length(const Cubics& c, Index i, double t0, double t1) {
-    // Gauss-Legendre, 5 nodes on pieces of at most an eighth of the cubic: 1e-9 of the length away from cusps
+    // Gauss-Legendre quadrature with 5 nodes on pieces of at most an eighth of the cubic. The error is 1e-9 of the
+    // length, except at cusps.
     static constexpr double x[5] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
                                     0.9061798459386640};
     static constexpr double w[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
@@ -95,7 +97,7 @@ double arc_length(const Cubics& c, Index i, double t0, double t1) {
     double sum = 0.0;
     for (int k = 0; k < n; ++k) {
         const double a = t0 + (t1 - t0) * k / n, half = 0.5 * (t1 - t0) / n;
-        Eigen::Array<double, 6, 1> t;  // all nodes at once by vector instructions, and one that is not counted
+        Eigen::Array<double, 6, 1> t;  // all nodes at once by vector instructions; the sixth is not used
         for (int j = 0; j < 6; ++j) t[j] = a + half * (1.0 + x[std::min(j, 4)]);
         const Eigen::Array<double, 6, 1> speed = derivative.sizes(t);
         for (int j = 0; j < 5; ++j) sum += w[j] * half * speed[j];
@@ -108,7 +110,7 @@ double parameter_at(const Cubics& c, Index i, double length_mm) {
     const double whole = arc_length(c, i, 0.0, 1.0);
     if (!(length_mm < whole)) return 1.0;
     const auto is_before = [&](double t) { return arc_length(c, i, 0.0, t) < length_mm; };
-    // Newton's way to it, by the length of each step, and once more by all of it; at a cusp it leads nowhere
+    // Newton's method, with the length of each step, and a last step with the whole length. It fails at a cusp.
     const Derivative derivative(c, i);
     double t = length_mm / whole, missing = length_mm - arc_length(c, i, 0.0, t);
     for (int k = 0; k < 8; ++k) {
@@ -121,7 +123,8 @@ double parameter_at(const Cubics& c, Index i, double length_mm) {
         t += missing / derivative(t).norm();
         break;
     }
-    // never before the place, not by a rounding error: a lever that is drawn out by none is loose for a move
+    // The result is never before the place, not even by a rounding error: a lever that is not extended at all is loose
+    // for one move.
     double a = std::floor(t / kParameterStep) * kParameterStep, b = a + kParameterStep;
     bool holds = false;
     for (int k = 0; !holds && k < kStepsBeside && a >= 0.0 && b <= 1.0; ++k) {
@@ -190,7 +193,7 @@ void check(const Stroke& stroke) {
 
 namespace {
 
-/// Points x, y, arc length with those added where the width has a knot: it is linear between rows.
+/// Adds points (x, y, arc length) where the width has a knot, because the width is linear between rows.
 std::vector<std::array<double, 3>> with_places_of_knots(const std::vector<std::array<double, 3>>& points,
                                                         const Stroke& stroke, double length) {
     std::vector<std::array<double, 3>> out{points.front()};
@@ -210,14 +213,15 @@ std::vector<std::array<double, 3>> with_places_of_knots(const std::vector<std::a
 
 }  // namespace
 
-/// Of a line: with more, kilometres of curves to a hair, it is as fine as these allow.
+/// Limit of the points of a line. A longer line, such as kilometres of curves with fine details, becomes as fine as
+/// this limit permits.
 constexpr double kMostPoints = 4e6;
 
 MiddlePolyline flatten(const Stroke& stroke, double tolerance_mm) {
     check(stroke);
     require_tolerance(tolerance_mm, stroke.id);
     const Cubics& c = stroke.middle_mm;
-    // chord error of equal steps: |B''| / 8 n^2
+    // The chord error of n equal steps is |B''| / (8 n^2).
     std::vector<double> steps;
     for (Index i = 0; i < c.rows(); ++i) {
         const Vector2d p0 = control(c, i, 0), p1 = control(c, i, 1), p2 = control(c, i, 2), p3 = control(c, i, 3);

@@ -20,7 +20,7 @@ from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import describe_reading, read_chart_photos, remarks
 from brushsvg.cli import main
 from brushsvg.errors import Error
-from brushsvg.photo.place_by_strokes import _along_ways
+from brushsvg.photo.place_by_strokes import _match_turn_and_shift
 
 pytestmark = pytest.mark.long
 
@@ -160,7 +160,7 @@ def test_a_small_sheet_is_found_anywhere_on_a_large_glass(at_mm):
     for way in ways:
         line = np.round(3 * (way * [1, -1] + at_mm + [0, 30])).astype(np.int32)
         cv2.polylines(paint, [line[:, None]], False, 1, 9)
-    turn, shift = _along_ways(paint > 0, ways)
+    turn, shift = _match_turn_and_shift(paint > 0, ways)
     assert abs(turn) < 1e-9 and abs(shift - complex(at_mm[0], at_mm[1] + 30)) < 1.5, (turn, shift)
 
 

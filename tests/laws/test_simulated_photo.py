@@ -120,7 +120,7 @@ def test_letters_of_the_page_end_where_its_layout_has_them(monkeypatch):
         sheet = Sheet(page.size_mm, 1, texels)
         bare = sheet.shown.copy()
         monkeypatch.setattr(sheet, "paint", lambda *_: None)
-        photo._print(sheet, page)
+        photo._print_page(sheet, page)
         dark = np.abs(sheet.shown - bare).max(axis=2) > 0
         for label in page.printed.labels:
             _, bottom, right, top = np.array(label_box(label)) * texels

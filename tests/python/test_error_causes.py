@@ -5,7 +5,7 @@ import pytest
 
 from brushsvg import _core, compensate, find_brush, flatten, simulate
 from brushsvg.show.evaluation import report
-from brushsvg.show.evaluation.error_causes import _corner_deg
+from brushsvg.show.evaluation.error_causes import _sharpest_corner_deg
 from brushsvg.strokes.wide_shapes import within_reach
 
 
@@ -102,9 +102,9 @@ def test_a_closed_line_has_a_corner_at_its_seam_too():
     """The worst place of a square was where it begins, and bends were blamed."""
     square = flatten(stroke([(30, 30), (70, 30), (70, 70), (30, 70), (30, 30)], 1.5, True), 0.01)
     for s in (0.0, 1.0, 159.0, 160.0):
-        assert _corner_deg(square, s, 3.0, True) == pytest.approx(90)
-        assert _corner_deg(square, s, 3.0, False) == 0.0
-    assert _corner_deg(square, 20.0, 3.0, True) == 0.0
+        assert _sharpest_corner_deg(square, s, 3.0, True) == pytest.approx(90)
+        assert _sharpest_corner_deg(square, s, 3.0, False) == 0.0
+    assert _sharpest_corner_deg(square, 20.0, 3.0, True) == 0.0
 
 
 def test_a_flattened_dab_has_no_corner():

@@ -10,7 +10,7 @@ from svg_text import HEAD, read
 from brushsvg import strokes
 from brushsvg.cli import main
 from brushsvg.read.svg import read_svg
-from brushsvg.show.editable_svg import EVEN, lines_svg
+from brushsvg.show.editable_svg import WIDTH_TOLERANCE, lines_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
@@ -47,7 +47,7 @@ def test_read_again_they_are_the_same_strokes(body):
     for a, b in zip(before, after, strict=True):
         assert np.abs(a.middle_mm - b.middle_mm).max() < 1e-3
         assert (a.closed, a.colour, a.layer) == (b.closed, b.colour, b.layer)
-        assert np.abs(width_mm(a, at) - width_mm(b, at)).max() < EVEN * width_mm(a, at).max()
+        assert np.abs(width_mm(a, at) - width_mm(b, at)).max() < WIDTH_TOLERANCE * width_mm(a, at).max()
 
 
 def test_one_width_is_a_stroke_width_and_a_varying_one_a_power_stroke():

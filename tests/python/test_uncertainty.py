@@ -89,5 +89,5 @@ def test_a_band_is_for_pictures(drawing, tmp_path, capsys):
 
 def test_a_law_on_its_floor_does_not_move():
     law = _core.Profile([-1.0, 1.0], floor=0.0)
-    moved = uncertainty._powers(law, np.array([0.5, 2.0]))
+    moved = uncertainty._law_derivatives(law, np.array([0.5, 2.0]))
     np.testing.assert_allclose(moved, [[0, 0], [1, 2]])

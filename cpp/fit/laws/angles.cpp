@@ -16,18 +16,18 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Beyond 90 degrees the bristles are loose and the patch rests for s = -2 r cos(alpha0), then is at 180 degrees -
-// alpha0: neither (7), nor (11) and (12), nor what follows of them holds. Angles are read to a degree or two, though,
-// and those of a turn by 90 degrees straddle it: (19) is off by 0.0005 lags at 95 degrees, by 0.004 at 100, by 0.1 at
-// 120.
+// Beyond 90 degrees the bristles are loose. The patch then rests for s = -2 r cos(alpha0), and is at 180 degrees -
+// alpha0 afterwards, so that (7), (11), (12) and all equations derived from them do not hold. Angles are only read to
+// a degree or two, however, and readings of a turn by 90 degrees may be above or below 90. (19) is off by 0.0005 lags
+// at 95 degrees, by 0.004 at 100 and by 0.1 at 120.
 constexpr double kGreatestAlpha0 = 95.0 * M_PI / 180.0 + 1e-9;
-constexpr double kLongestMm = 1e6;  // a longer drag is damage
+constexpr double kLongestMm = 1e6;  // a longer drag is damaged data
 
-/// k of y = k x through the origin.
+/// Returns k of the line y = k x through the origin.
 double slope(const VectorXd& x, const VectorXd& y, Lines lines) {
     const double plain = x.dot(y) / x.squaredNorm();
     if (lines == Lines::plain) return plain;
-    const double scale = y.norm() / x.norm();  // F counts e-foldings, s millimetres
+    const double scale = y.norm() / x.norm();  // scales F, which counts e-foldings, to the millimetres of s
     MatrixXd both(x.size(), 2);
     both << scale * x, y;
     const Eigen::Vector2d across = both.jacobiSvd(Eigen::ComputeFullV).matrixV().col(1);
@@ -77,13 +77,13 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
         f[i] = log_cot_half(series.alpha0) - log_cot_half(series.alpha[used[i]]);  // (19)
     }
     out.lag_mm = -slope(f, s, lines);  // (20)
-    // an angle that has hardly moved has a logarithm lost in rounding, and a lag of any size
+    // The logarithm of an angle that has hardly changed is lost in rounding, and the lag may then have any size.
     require_within(out.lag_mm, {0.0, kLongestMm}, "the lag from the angles", "alpha");
     out.lag_rmse_mm = rmse(s + out.lag_mm * f);
     if (series.beta.empty()) return out;
 
-    // The integrals of (21) in closed form, from (10): int sin^2 ds = r (cos a1 - cos a0),
-    // int sin cos ds = r (sin a0 - sin a1)
+    // The integrals of (21) in closed form, from (10):
+    // int sin^2 ds = r (cos a1 - cos a0), int sin cos ds = r (sin a0 - sin a1).
     VectorXd integral(m);
     for (Eigen::Index i = 0; i < m; ++i) {
         const double a1 = series.alpha[used[i]], beta = series.beta[used[i]];

@@ -7,7 +7,7 @@ namespace brushsvg::fit {
 using Eigen::MatrixXd;
 
 MatrixXd powers_from_controls(int degree, double lo, double hi) {
-    MatrixXd unit = MatrixXd::Zero(degree + 1, degree + 1);  // in t = (d - lo) / (hi - lo)
+    MatrixXd unit = MatrixXd::Zero(degree + 1, degree + 1);  // powers of t = (d - lo) / (hi - lo)
     const auto binomial = [](int n, int k) {
         double out = 1.0;
         for (int i = 0; i < k; ++i) out = out * (n - i) / (i + 1);
@@ -16,7 +16,7 @@ MatrixXd powers_from_controls(int degree, double lo, double hi) {
     for (int j = 0; j <= degree; ++j)
         for (int k = j; k <= degree; ++k)
             unit(k, j) = binomial(degree, j) * binomial(degree - j, k - j) * ((k - j) % 2 ? -1.0 : 1.0);
-    MatrixXd shift = MatrixXd::Zero(degree + 1, degree + 1);  // t^k in powers of d
+    MatrixXd shift = MatrixXd::Zero(degree + 1, degree + 1);  // t^k as powers of d
     for (int k = 0; k <= degree; ++k)
         for (int i = 0; i <= k; ++i) shift(i, k) = binomial(k, i) * std::pow(-lo, k - i) / std::pow(hi - lo, k);
     return shift * unit;

@@ -20,17 +20,18 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// What an absolute residual counts as at least when it is a weight's denominator: far below what a ruler or a camera
-// resolves, far above rounding.
+// Lower limit of an absolute residual in the denominator of a weight: far below what a ruler or a camera resolves, far
+// above rounding.
 constexpr double kLeastResidualMm = 1e-9;
 constexpr int kMostReweightings = 500;
-// Ways to be below a floor that are tried: all of a cubic at some 20 depths, in some 10 ms; with more depths it is let
-// through its floor less often. Absolute residuals take some thirty times as long each.
+// Largest number of sign patterns relative to the floor that are tried. For a cubic at about 20 depths these are all
+// patterns, in about 10 ms. With more depths, the law may cross its floor less often. With absolute residuals, each
+// pattern needs about thirty times as long.
 constexpr std::size_t kMostWays = 4000, kMostWaysAbsolute = 500;
-constexpr double kHeld = 1e6;  // weight that holds a law to its floor to some 1e-10 mm without spoiling the digits
-// Greater lengths of a brush, weights and depths are damage, and their powers overflow.
+constexpr double kHeld = 1e6;  // weight that holds a law to its floor within about 1e-10 mm without loss of digits
+// Greater lengths of a brush, weights and depths are damaged data, and their powers overflow.
 constexpr double kGreatest = 1e6;
-constexpr double kLeastPositiveMm = 0.01;  // of a law that must stay above 0: a lever of no length has no heading
+constexpr double kLeastPositiveMm = 0.01;  // minimum of a positive law: a lever without length has no heading
 
 struct Problem {
     VectorXd depth, value;
@@ -39,7 +40,7 @@ struct Problem {
     Index terms() const { return shape.degree + (shape.through_zero ? 0 : 1); }
 };
 
-/// Powers of depth, without the constant term where there is none.
+/// Returns the powers of depth, without the constant term for a law through zero.
 MatrixXd powers(const VectorXd& depth, const LawShape& shape) {
     const Index first = shape.through_zero ? 1 : 0;
     MatrixXd out(depth.size(), shape.degree + 1 - first);
@@ -75,8 +76,8 @@ bool keeps(const std::vector<double>& c, const LawShape& shape) {
     return !shape.rising || (value(c, lo) >= 0.0 && least(slope_of(c)) >= -1e-12);
 }
 
-/// min |A x - y| over x >= 0 by Lawson and Hanson's active sets: exact after finitely many steps. (Ceres' bounds, which
-/// project each step, stall far from the optimum on columns as alike as these.)
+/// Minimises |A x - y| over x >= 0 by Lawson and Hanson's active sets, exactly after finitely many steps. (The bounds
+/// of Ceres, which project each step, stall far from the optimum on columns as similar as these.)
 VectorXd least_squares_above_zero(const MatrixXd& a, const VectorXd& y) {
     const Index n = a.cols();
     VectorXd x = VectorXd::Zero(n);
@@ -109,8 +110,8 @@ VectorXd least_squares_above_zero(const MatrixXd& a, const VectorXd& y) {
     return x;
 }
 
-/// Over the values of the law's control points on the range: all at least kLeastPositiveMm, or none below the one
-/// before.
+/// Solves for the values of the law's control points on the range: all at least kLeastPositiveMm, or each at least the
+/// one before.
 VectorXd solve_controls(const Problem& problem, const VectorXd& weight, bool held) {
     const LawShape& shape = problem.shape;
     const int n = shape.degree;
@@ -118,7 +119,7 @@ VectorXd solve_controls(const Problem& problem, const VectorXd& weight, bool hel
     MatrixXd from_x = powers_from_controls(n, first ? 0.0 : shape.range_mm[0], shape.range_mm[1]);
     MatrixXd bends = MatrixXd::Zero(std::max(0, n - 1), n + 1);
     for (Index i = 0; i < bends.rows(); ++i) bends.row(i).segment(i, 3) << 1.0, -2.0, 1.0;
-    if (shape.rising) {  // x: the first control point, then the steps up
+    if (shape.rising) {  // x holds the first control point, then the steps up
         const MatrixXd sums = MatrixXd::Ones(n + 1, n + 1).triangularView<Eigen::Lower>();
         from_x = from_x * sums;
         bends = bends * sums;
@@ -139,7 +140,7 @@ VectorXd solve_controls(const Problem& problem, const VectorXd& weight, bool hel
     return c.tail(n + 1 - first);
 }
 
-/// Free coefficients for given weights. `held`: under the bounds of the shape.
+/// Returns the free coefficients for given weights. `held`: within the bounds of the shape.
 VectorXd solve(const Problem& problem, const VectorXd& weight, bool held) {
     if (held || problem.shape.smoothing > 0.0) return solve_controls(problem, weight, held);
     const MatrixXd a = powers(problem.depth, problem.shape);
@@ -150,8 +151,8 @@ VectorXd residuals(const Problem& problem, const VectorXd& free) {
     return problem.value - (powers(problem.depth, problem.shape) * free).cwiseMax(problem.shape.floor);
 }
 
-/// Least squares by `solve(weights)`, or least absolute residuals by reweighting them: residuals weighted by
-/// 1 / sqrt|residual| count by their size, not its square. `left(x)`: the residuals.
+/// Solves least squares by `solve(weights)`, or least absolute residuals by reweighting: residuals weighted by
+/// 1 / sqrt|residual| count by their size instead of its square. `left(x)`: the residuals.
 template <class Solve, class Left>
 VectorXd in_norm(Norm norm, Index rows, Solve&& solve, Left&& left) {
     checkpoint(1 + int(rows));
@@ -175,11 +176,11 @@ double size(const VectorXd& residual, Norm norm) {
     return norm == Norm::squares ? residual.squaredNorm() : residual.lpNorm<1>();
 }
 
-/// Where a polynomial is at one depth: above its floor, below, or on it.
+/// The position of a polynomial at one depth relative to its floor.
 enum class Side : char { above, below, on };
 
-/// Every way in which a polynomial with so many roots less its floor can be at depths in ascending order; `on` only
-/// where `may_stop` says so. At most `most` and one.
+/// Lists all sign patterns of a polynomial minus its floor at ascending depths, for a given number of roots. `on` is
+/// only possible where `may_stop` is true. Lists at most `most` + 1 patterns.
 class Ways {
  public:
     Ways(const std::vector<bool>& may_stop, int roots, std::size_t most) : may_stop_(may_stop), most_(most) {
@@ -188,7 +189,7 @@ class Ways {
     std::vector<std::vector<Side>> found;
 
  private:
-    /// `side`: on which it is between this depth and the one before.
+    /// `side`: the polynomial's side between the previous depth and this one.
     void extend(std::vector<Side> way, Side side, int roots) {
         if (found.size() > most_) return;
         if (roots < 1 || way.size() == may_stop_.size()) {
@@ -204,9 +205,9 @@ class Ways {
         if (stops) {
             way.back() = Side::on;
             extend(way, other, roots - 1);
-            if (roots > 1) extend(way, side, roots - 2);  // touches it
+            if (roots > 1) extend(way, side, roots - 2);  // touches the floor
         }
-        if (way.size() == 1) return;  // that begins on the other side
+        if (way.size() == 1) return;  // this pattern begins on the other side
         way.back() = other;
         extend(way, other, roots - 1);
     }
@@ -214,9 +215,9 @@ class Ways {
     std::size_t most_;
 };
 
-/// The law with a floor that fits best. Where its polynomial is below the floor a value has no effect, so one
-/// hollow is as deep as the next only by chance, and a solver ends in that where it began: all ways to be above and
-/// below are tried. A value below the floor pulls the law down to the floor and no further: there it may stop.
+/// Fits the law with a floor. A value has no effect where the polynomial is below the floor, so that there are several
+/// local minima and a solver ends in the one where it began. Therefore all sign patterns relative to the floor are
+/// tried. A value below the floor pulls the law down to the floor and no further, so that the law may stop there.
 VectorXd solve_floored(const Problem& problem) {
     const LawShape& shape = problem.shape;
     const MatrixXd a = powers(problem.depth, shape);
@@ -232,14 +233,14 @@ VectorXd solve_floored(const Problem& problem) {
     const std::size_t most = shape.norm == Norm::squares ? kMostWays : kMostWaysAbsolute;
     std::vector<std::vector<Side>> ways;
     for (int roots = shape.degree; roots >= 0; --roots) {
-        if (roots > 0 && depths.size() > most) continue;  // a root may be between any two of them
+        if (roots > 0 && depths.size() > most) continue;  // a root may be between any two depths
         ways = Ways(may_stop, roots, most).found;
         if (ways.size() <= most) break;
     }
     VectorXd best, kept(a.rows()), wanted = problem.value;
     double least = std::numeric_limits<double>::infinity();
     for (const std::vector<Side>& way : ways) {
-        double floored = 0.0;  // what the values on and below the floor cost, for any polynomial
+        double floored = 0.0;  // cost of the values on and below the floor, for any polynomial
         for (Index i = 0; i < a.rows(); ++i) {
             const Side side = way[place[std::size_t(i)]];
             kept[i] = side == Side::on ? kHeld : side == Side::below ? 0.0 : 1.0;
@@ -247,7 +248,7 @@ VectorXd solve_floored(const Problem& problem) {
             const double off = problem.worth[i] * std::abs(problem.value[i] - shape.floor);
             if (side != Side::above) floored += shape.norm == Norm::squares ? off * off : off;
         }
-        // The best law is one of these ways and costs at least that: with all but a few ways it is already too much.
+        // A law with this pattern costs at least this much. For most patterns it is already more than the best cost.
         if (floored > least) continue;
         const auto solve_kept = [&](const VectorXd& weight) -> VectorXd {
             const VectorXd both = weight.cwiseProduct(kept).cwiseProduct(problem.worth);
@@ -273,8 +274,8 @@ double median(std::vector<double> values) {
     return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-/// Variance of one value. Absolute residuals: from the median of those that the law does not pass through, for normal
-/// noise, times pi / 2, what the median costs against the mean.
+/// Returns the variance of one value. With absolute residuals it follows, for normal noise, from the median residual of
+/// the values that the law does not pass through, times pi / 2 for the lower efficiency of the median.
 double variance(const VectorXd& residual, Index terms, int freedom, Norm norm) {
     if (norm == Norm::squares) return residual.squaredNorm() / freedom;
     std::vector<double> size(residual.data(), residual.data() + residual.size());
@@ -317,7 +318,7 @@ void refuse_what_cannot_be_fitted(const std::vector<double>& depth, const std::v
     if (std::isfinite(shape.floor) && (shape.positive || shape.rising || shape.smoothing > 0.0))
         throw Error("options-contradict", "a law with a floor cannot be held to a shape as well");
     if (depth.empty() && shape.smoothing > 0.0) throw Error("measurement-missing", "there is no value to fit a law to");
-    if (shape.smoothing > 0.0) return;  // which decides where the data leave it open
+    if (shape.smoothing > 0.0) return;  // the smoothing determines what the data leave open
     const std::size_t terms = std::size_t(shape.degree) + (shape.through_zero ? 0 : 1);
     std::set<double> different(depth.begin(), depth.end());
     if (shape.through_zero) different.erase(0.0);

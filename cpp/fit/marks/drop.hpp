@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-// The drop that stands for a round brush's footprint: tip at (0, 0), the widest section at x = widest, half width
-// `half`, in front of it half an ellipse that ends at widest + front. Behind it straight flanks, or half an ellipse
-// where the tail is round. Lengths in mm.
+// The drop that models a round brush's footprint. Its tip is at (0, 0) and its widest section, with half width `half`,
+// at x = widest. In front of this section is half an ellipse that ends at widest + front. Behind it are straight
+// flanks, or half an ellipse where the tail is round. Lengths are in mm.
 namespace brushsvg::fit {
 
 struct Drop {
@@ -13,7 +13,7 @@ struct Drop {
     bool round_tail = false;
 };
 
-/// The place of a drop's edge that is nearest to a point, and how far the point is from it.
+/// The place of a drop's edge nearest to a point, and the distance of the point from it.
 struct NearestEdge {
     double distance;             ///< negative inside
     double x, y;                 ///< the place on the edge
@@ -22,8 +22,8 @@ struct NearestEdge {
     double by_half;              ///< y = by_half * half
 };
 
-/// Nearest place on the quarter of an ellipse x >= 0, y >= 0 as (cos, sin) of its parameter, by its centres of
-/// curvature: three steps are exact to a few 1e-6 of the axes where these differ by less than half.
+/// Finds the nearest place on the quarter of an ellipse x >= 0, y >= 0 as (cos, sin) of its parameter. It uses the
+/// centres of curvature. Three steps are exact to a few 1e-6 of the axes where the axes differ by less than half.
 inline void nearest_on_quarter(double a, double b, double px, double py, double& c, double& s) {
     c = s = M_SQRT1_2;
     for (int i = 0; i < 4; ++i) {
@@ -45,15 +45,16 @@ inline void nearest_on_quarter(double a, double b, double px, double py, double&
     }
 }
 
-/// No more than the distance, and hardly less close to the edge: that from a straight line that touches the drop, on
-/// the flank or where the ray from the ellipse's centre to the point meets it. x, y: the point in the drop's frame.
+/// Returns a lower bound of the distance, which is almost exact close to the edge. It is the distance from a tangent of
+/// the drop: the flank, or the tangent where the ray from the ellipse's centre to the point meets the edge. x, y: the
+/// point in the drop's frame.
 inline double least_distance(const Drop& drop, double x, double y) {
     const double up = std::abs(y), ahead = x - drop.widest;
     if (ahead <= 0.0 && !drop.round_tail) {
         const double length = std::sqrt(drop.widest * drop.widest + drop.half * drop.half);
         return std::max((up * drop.widest - x * drop.half) / length, up - drop.half);
     }
-    // with (c, s) = (ahead / front, up / half) / rho the line is c X / front + s Y / half = 1
+    // With (c, s) = (ahead / front, up / half) / rho the tangent is c X / front + s Y / half = 1.
     const double axis = ahead <= 0.0 ? drop.widest : drop.front;
     const double c = ahead / axis, s = up / drop.half, rho = std::sqrt(c * c + s * s);
     if (!(rho > 0.0)) return -std::min(std::min(drop.front, drop.widest), drop.half);
@@ -61,7 +62,7 @@ inline double least_distance(const Drop& drop, double x, double y) {
     return (rho - 1.0) * rho / std::sqrt(nx * nx + ny * ny);
 }
 
-/// x, y: the point in the drop's frame.
+/// Finds the place of a drop's edge nearest to a point. x, y: the point in the drop's frame.
 inline NearestEdge nearest_edge(const Drop& drop, double x, double y) {
     const double side = y < 0.0 ? -1.0 : 1.0, up = std::abs(y), ahead = x - drop.widest;
     const bool behind = ahead <= 0.0;
@@ -107,7 +108,7 @@ inline NearestEdge nearest_edge(const Drop& drop, double x, double y) {
     return out;
 }
 
-/// The flank on the side of a point behind the tip, on and on: its place, the point's foot, is beyond the tip.
+/// Returns the flank on the side of a point behind the tip, extended beyond the tip to the point's foot.
 inline NearestEdge flank_beyond_tip(const Drop& drop, double x, double y) {
     const double side = y < 0.0 ? -1.0 : 1.0, up = std::abs(y), length = std::hypot(drop.widest, drop.half);
     const double t = (x * drop.widest + up * drop.half) / (length * length);
@@ -121,7 +122,7 @@ inline NearestEdge flank_beyond_tip(const Drop& drop, double x, double y) {
             side * t};
 }
 
-/// The place of a drop's edge that is farthest in direction (nx, ny), a unit vector in the drop's frame.
+/// Returns the place of a drop's edge that is farthest in direction (nx, ny), a unit vector in the drop's frame.
 inline NearestEdge farthest_edge(const Drop& drop, double nx, double ny) {
     const double up = std::abs(ny), side = ny < 0.0 ? -1.0 : 1.0;
     NearestEdge out{0, 0, 0, nx, ny, 0, 0, 0};
@@ -141,7 +142,8 @@ inline NearestEdge farthest_edge(const Drop& drop, double nx, double ny) {
     return out;
 }
 
-/// Of a line that touches a drop at one place and the drop, an instant later, at another: the place at a share of it.
+/// Returns the place at a share of the line that touches a drop at one place and the drop of the next instant at
+/// another.
 inline NearestEdge between(const Drop& drop, const NearestEdge& one, const NearestEdge& other, double share) {
     NearestEdge out = one;
     out.by_widest += share * (other.by_widest - one.by_widest);
@@ -152,13 +154,13 @@ inline NearestEdge between(const Drop& drop, const NearestEdge& one, const Neare
     return out;
 }
 
-/// Where a line runs inside a drop: (x, y) + t (dx, dy) for t in [from, to]; empty where to < from. In the drop's
-/// frame, which flank and front divide into a triangle and half an ellipse.
+/// The part of a line (x, y) + t (dx, dy) inside a drop: t in [from, to], empty where to < from. Coordinates are in the
+/// drop's frame. The drop consists of a triangle behind its widest section and half an ellipse in front of it.
 struct Span {
     double from, to;
 };
 inline Span span_inside(const Drop& drop, double x, double y, double dx, double dy) {
-    const auto cut = [](Span span, double value, double rate) {  // to where value + t rate >= 0
+    const auto cut = [](Span span, double value, double rate) {  // to t with value + t rate >= 0
         if (rate > 0.0)
             span.from = std::max(span.from, -value / rate);
         else if (rate < 0.0)

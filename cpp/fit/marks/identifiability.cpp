@@ -6,15 +6,15 @@
 namespace brushsvg::fit {
 namespace {
 
-constexpr double kOpen = 0.25;  // of a law's size: more is not a measurement
+constexpr double kOpen = 0.25;  // of a law's size: a law with a larger standard deviation is not measured
 
 struct Group {
     std::string name;
     int begin, count;
 };
 
-/// Directions that stay open, as the share each group has in them; information over the shared unknowns in units of
-/// their sizes.
+/// A direction of the unknowns that the marks do not determine, with its standard deviation. The information is over
+/// the shared unknowns, in units of their sizes.
 struct Open {
     double sd;
     VectorXd direction;
@@ -39,9 +39,10 @@ std::vector<std::string> doubts(const MarkProblem& fit) {
     const MarkModel& model = fit.model;
     const VectorXd& shared = fit.shared;
     const Layout& at = model.layout();
-    const double noise_mm = fit.weighing.noise_mm * std::sqrt(fit.weighing.repeats);  // of one independent sample
-    const Index n = at.shift();  // the place of the sheet cannot be determined from displacements, and need not be
-    MatrixXd still = MatrixXd::Zero(n, n), moving = still;  // marks that stay, marks that may be anywhere
+    const double noise_mm = fit.weighing.noise_mm * std::sqrt(fit.weighing.repeats);  // noise of one independent sample
+    const Index n = at.shift();  // displacements cannot determine the place of the sheet, and need not
+    // Information of marks at their places, and of marks that may be anywhere.
+    MatrixXd still = MatrixXd::Zero(n, n), moving = still;
     for (Index i = 0; i < model.marks(); ++i) {
         RowMajor by(model.points(i), at.size()), own(model.points(i), 2);
         VectorXd distance;
@@ -53,7 +54,7 @@ std::vector<std::string> doubts(const MarkProblem& fit) {
         moving += laws.transpose() * laws -
                   between.transpose() * (place.transpose() * place).completeOrthogonalDecomposition().solve(between);
     }
-    // sizes: of the laws where they are greatest; of the height what moves the widest mark by a quarter
+    // Sizes of the laws are their greatest values. The size of the height moves the widest mark by a quarter.
     VectorXd size(n);
     const double lag = std::max(0.5, shared.head(at.lag).maxCoeff());
     const double half = std::max(0.1, shared.segment(at.half_at(), at.half).sum());

@@ -7,9 +7,11 @@
 
 namespace brushsvg::fit {
 
-/// What marks leave open, in words: directions of the unknowns along which the Jacobian, without any prior, has so
-/// small a singular value that the noise moves a law by more than a quarter of itself. With whom it is mistaken is
-/// found by holding others: displacements, the height, another law.
+/// Returns, in words, which unknowns the marks leave open.
+///
+/// Along an open direction, the Jacobian without priors has such a small singular value that the noise changes a law by
+/// more than a quarter of itself. Holding other unknowns shows what the law is confused with: displacements, the height
+/// or another law.
 std::vector<std::string> doubts(const MarkProblem& fit);
 
 }  // namespace brushsvg::fit

@@ -12,33 +12,34 @@ namespace brushsvg::fit {
 namespace {
 
 constexpr int kLaws = 5;                                // lag, tip gap, half width, both ratios of the footprint
-constexpr std::array<int, kLaws> kMore{3, 2, 3, 3, 3};  // numbers more of each law
-constexpr int kHalf = 2;                                // the half width may also rise with another power of the depth
-constexpr int kMoreOfPower = 4;                         // numbers more of it, then
-constexpr int kSizes = kLaws + 1;                       // of departures: one of each law, and that of this power
-constexpr double kFreedom = 3.0;  // how far a law departs is found from as many further numbers of it
-// log of how much less likely departing must be for laws to keep their few numbers: marks of a brush that departs where
-// they determine little, by how deep its tip is pressed, speak no more against it than chance does
+constexpr std::array<int, kLaws> kMore{3, 2, 3, 3, 3};  // additional coefficients of each law
+constexpr int kHalf = 2;           // the half width, which may also rise with another power of depth
+constexpr int kMoreOfPower = 4;    // additional coefficients of the half width in this case
+constexpr int kSizes = kLaws + 1;  // departure sizes: one for each law, and one for the power of the half width
+constexpr double kFreedom = 3.0;   // degrees of freedom of the size of a departure
+// Log of the likelihood ratio of departing below which laws keep their few coefficients. For a brush that departs where
+// the marks determine little, by how deep its tip is pressed, the evidence against departing is no more than chance.
 constexpr double kHeld = -1.25;
-// from which log of how much likelier on laws depart clearly, so that the half width may rise with another power, too:
-// where little speaks for departing (brushes of the family reach 0.2), that leaves their intervals wider for nothing
+// Log of the likelihood ratio from which laws clearly depart, so that the half width may also rise with another power.
+// With weaker evidence (brushes of the family reach 0.2), this would only make the intervals wider.
 constexpr double kClearly = 0.5;
-// log of how much likelier it is before any marks that a brush departs: laws of few numbers are our choice, not
-// nature's
+// Log of the prior odds that a brush departs. They are in favour of departing, because laws with few coefficients are
+// our choice and not a property of brushes.
 constexpr double kBeforehand = 2.0;
-constexpr double kLeast = 0.001;  // share that a law departs by where it does not
-constexpr double kUsual = 0.05;   // share to begin with
-constexpr double kOpen = 3.0;     // share of a law that it may depart by where nothing is known
-constexpr double kSmooth = 0.7;   // the k-th further polynomial is as much smaller as (numbers / k) to this power
+constexpr double kLeast = 0.001;  // departure of a law that does not depart, as a share of the law
+constexpr double kUsual = 0.05;   // initial departure, as a share of the law
+constexpr double kOpen = 3.0;     // largest departure where nothing is known, as a share of the law
+constexpr double kSmooth = 0.7;   // the k-th further polynomial is smaller by (coefficients / k) to this power
 constexpr int kSweeps = 6;
-/// By what share of a law whose numbers do not suffice the rest departs: half of the curves of tests/laws/painter.py do
-/// by less (their six, four and three shapes: lag 0.016, 0.020, 0.012, tip gap 0.12, 0.10, 0.13, half width 0.08, 0.07,
-/// 0.07, widest section 0.13, 0.12, 0.13). The standard deviation of its log is 0.7 to 1.3 there. Last, by how much the
-/// power of the half width differs from 1: 0.06 there, and 0.1 to 0.35 for roots all the way to the touch.
+/// Typical departures of laws whose coefficients do not suffice, as shares of the laws. Half of the curves of
+/// tests/laws/painter.py depart by less (their six, four and three shapes: lag 0.016, 0.020, 0.012, tip gap 0.12, 0.10,
+/// 0.13, half width 0.08, 0.07, 0.07, widest section 0.13, 0.12, 0.13). The standard deviation of the log is 0.7 to 1.3
+/// for these curves. The last value is the difference of the power of the half width from 1: 0.06 for these curves, and
+/// 0.1 to 0.35 for roots down to the touch.
 constexpr std::array<double, kSizes> kTypical{0.02, 0.1, 0.1, 0.1, 0.05, 0.15};
 constexpr double kScatter = 1.0;
 
-/// What a law may depart by, as shares of it; 0 first.
+/// Lists the departures that are tried, as shares of the law, with 0 first.
 std::vector<double> shares() {
     std::vector<double> out{0.0};
     for (double share = 0.003; share < 1.0; share *= 1.5) out.push_back(share);
@@ -47,8 +48,8 @@ std::vector<double> shares() {
 
 using Sizes = std::array<double, kSizes>;
 
-/// Departures of all laws: rows over the shared unknowns, and what they are at sizes of 1: columns of independent
-/// deviations, each with the size that it is multiplied by.
+/// The departures of all laws. rows: departures by the shared unknowns; deviations: columns of independent deviations
+/// for departure sizes of 1; size_of: for each column, the index of the size that scales it.
 struct Departures {
     MatrixXd rows;
     MatrixXd deviations;
@@ -61,7 +62,7 @@ struct Departures {
     }
 };
 
-/// Of -log(t) over t in [0, 1], the k-th polynomial of Legendre's: t^(1 - share) is t (1 - share log(t)) at first.
+/// Returns the k-th Legendre coefficient of -log(t) over [0, 1]: to first order, t^(1 - share) is t (1 - share log(t)).
 double share_of_log(int k) { return (k % 2 ? -1.0 : 1.0) * (2.0 * k + 1.0) / (double(k) * (k + 1.0)); }
 
 Departures departures_of(const MarkModel& model, const Layout& from, const MarkLaws& laws, double deepest) {
@@ -88,7 +89,8 @@ Departures departures_of(const MarkModel& model, const Layout& from, const MarkL
         const auto [known, all] = terms[std::size_t(law)];
         for (int k = known; k < all; ++k, ++row) {
             out.size_of.push_back(law);
-            const double falls = std::pow(double(known) / k, kSmooth);  // as for smooth laws
+            const double falls =
+                std::pow(double(known) / k, kSmooth);  // higher polynomials are smaller, as in smooth laws
             out.deviations(row, row) = falls * whole[std::size_t(law)];
             if (law == kHalf && rises) out.deviations(row, all_rows) = whole[kHalf] * share_of_log(k);
         }
@@ -99,25 +101,26 @@ Departures departures_of(const MarkModel& model, const Layout& from, const MarkL
 
 struct Shares {
     Sizes sizes;
-    double likelier;  ///< log of how much likelier they make the marks than laws that do not depart
+    double likelier;  ///< log of the likelihood ratio of the marks to laws that do not depart
 };
 
-/// Log of how likely a size is beforehand.
+/// Log of the prior probability of a size.
 using LogPrior = double (*)(int which, double share);
 
-/// 0 in one case of two, else any order of magnitude.
+/// Prior in which a size is 0 in half of the cases, else of any order of magnitude.
 double of_any_size(int, double share) {
     static const double log_count = std::log(double(shares().size() - 1));
     return share > 0.0 ? -log_count : 0.0;
 }
 
-/// As curves of other forms depart.
+/// Prior from the departures of curves of other forms, see kTypical.
 double of_usual_size(int which, double share) {
     if (!(share > 0.0)) return -INFINITY;
     return -0.5 * std::pow(std::log(share / kTypical[std::size_t(which)]) / kScatter, 2);
 }
 
-/// One of the sizes when the others are `share`: rms over all that it may be, by how likely each makes the marks.
+/// Returns the rms of one size over all values that it may have, weighted by the likelihood of the marks, while the
+/// other sizes are `share`.
 template <class Evidence>
 double mean_share(Sizes share, int which, LogPrior known, Evidence&& evidence) {
     static const std::vector<double> tried = shares();
@@ -136,7 +139,7 @@ double mean_share(Sizes share, int which, LogPrior known, Evidence&& evidence) {
     return std::sqrt(square / all);
 }
 
-/// Sizes of all departures. The problem must expect nothing.
+/// Estimates the sizes of all departures. The problem must not have expected departures yet.
 Shares shares_of(const MarkProblem& at, const Departures& departures, LogPrior known_of) {
     MarksLoss loss = marks_loss(at);
     const Index g = at.shared.size(), all = loss.gradient.size();
@@ -179,7 +182,7 @@ Shares shares_of(const MarkProblem& at, const Departures& departures, LogPrior k
     return {out, evidence(out) - held};
 }
 
-/// How many numbers each law has where it may depart.
+/// Returns the options with more coefficients for each law that may depart.
 MarkOptions wider(const MarkOptions& options, const Sizes& sizes) {
     MarkOptions out = options;
     const std::array<int*, kLaws> terms{&out.lag_terms, &out.tip_gap_terms, &out.half_width_terms, &out.widest_terms,
@@ -190,7 +193,7 @@ MarkOptions wider(const MarkOptions& options, const Sizes& sizes) {
     return out;
 }
 
-/// Laws are expected to depart by these sizes.
+/// Sets the sizes of the expected departures.
 void expect(MarkProblem& at, const Departures& departures, const Sizes& sizes) {
     const MatrixXd by = departures.scaled(sizes);
     const Eigen::LLT<MatrixXd> spread(by * by.transpose());

@@ -6,27 +6,31 @@
 
 namespace brushsvg::fit {
 
-/// Lets laws depart from the numbers that the options give them, unless the marks are likelier where they do not: by
-/// further polynomials, which are known beforehand to be about 0, to a share of the law that is found from the marks
-/// (marginal likelihood, in addition to the solution), and where they clearly do, the half width by another power of
-/// the depth. Where they may, it must be solved again. Log of how much likelier the marks are if laws depart.
+/// Lets laws depart from the coefficients that the options give them, unless the marks are likelier without departures.
+///
+/// Laws depart by further polynomials, which are about 0 beforehand. Their size is a share of the law that is estimated
+/// from the marks by marginal likelihood, in addition to the solution. Where laws clearly depart, the half width may
+/// also rise with another power of the depth. If laws may depart, the problem must be solved again. Returns the log of
+/// the likelihood ratio of the marks for departing laws.
 double depart(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options);
 
-/// The same solution, its laws expected to depart by as much as curves of other forms do, unless the marks speak
-/// against it; not by any order of magnitude alike. They must depart.
+/// Returns the same solution with laws that are expected to depart as much as curves of other forms do, unless the
+/// marks contradict it, instead of by any order of magnitude. The laws must depart.
 MarkProblem of_usual_departures(const MarkProblem& fit, const MarkOptions& options);
 
-/// What variances are multiplied by where departing is as much likelier: by Student's t, for by how much laws depart is
-/// found from few numbers; by the less, the surer it is that they do not. Of laws that were never tested: 1.
+/// Returns the factor by which variances grow for this log likelihood ratio of departing.
+///
+/// The factor follows from Student's t, because the size of departures is estimated from few numbers. It is smaller the
+/// more certain it is that laws do not depart, and 1 for laws that were never tested.
 double unsurer(double likelier);
 
-/// The same solution, its laws expected to keep to the few numbers of the options.
+/// Returns the same solution with laws that are expected to keep to the few coefficients of the options.
 MarkProblem of_least_departures(const MarkProblem& fit, const MarkOptions& options);
 
-/// That a brush departs of which the marks say that it is as much likelier.
+/// Returns the probability that a brush departs, from the log likelihood ratio of its marks.
 double chance_of_departing(double likelier);
 
-/// The same solution with as many numbers a law as the options say, nearest where those are fewer.
+/// Returns the same solution with as many coefficients per law as in the options, or the nearest laws with fewer.
 MarkProblem with_terms(const MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options);
 
 }  // namespace brushsvg::fit

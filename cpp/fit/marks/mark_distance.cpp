@@ -9,15 +9,17 @@
 namespace brushsvg::fit {
 namespace {
 
-// A brush that is pressed on the spot by a machine that leans points along a lever of micrometres, and turns right
-// round where the lean changes by as little: derivatives that hold no further than that would make the lean as sure.
+// Levers shorter than this have damped derivatives. When a leaning machine presses a brush on the spot, the brush
+// points along a lever of micrometres, and turns around completely where the lean changes by as little. Derivatives
+// that are valid only over micrometres would make the lean seem known to micrometres.
 constexpr double kLeverMm = 0.3;
-constexpr double kNearMm = 0.5;     // a brush's hairs: a shorter way out is not improved on, a further edge not refined
-constexpr int kStraighter = 3;      // times that a way out is made square to the edge
-constexpr double kSquare = 0.9999;  // cosine above which it is
-constexpr double kGrazing = 0.3;    // cosine below which an edge that is met aslant says nothing more exact
+// Size of a brush's hairs. For a shorter way out no other is tried, and a further edge is not refined.
+constexpr double kNearMm = 0.5;
+constexpr int kStraighter = 3;      // rounds in which a way out is made perpendicular to the edge
+constexpr double kSquare = 0.9999;  // cosine above which a way out is perpendicular
+constexpr double kGrazing = 0.3;    // cosine below which an edge is met too obliquely to refine the distance
 
-/// Counts what looking for the edges of one mark took.
+/// Counts the work spent on finding the edges of one mark.
 struct Spent {
     const Footprints& on;
     std::uint64_t& looks;
@@ -29,19 +31,22 @@ struct Beside {
     NearestEdge edge;
     std::size_t row;
     double distance_mm;
-    Eigen::Vector2d normal;  ///< of what the footprints sweep
+    Eigen::Vector2d normal;  ///< of the edge of the swept area
     double aslant;           ///< cosine between the painted edge's normal and the predicted one's
 };
 
-/// Instants stay where the TCP is while the laws change, and what a footprint's edge sweeps shifts along itself: of an
-/// edge that passes by, only what moves across its way moves the swept edge.
+/// Returns the normal of the swept edge across the motion of the footprint's edge.
+///
+/// Instants keep the TCP's position while the laws change, so that the edge swept by a footprint shifts along itself.
+/// Only movements across the direction of motion move the swept edge.
 Eigen::Vector2d across_the_way(const Footprints& footprints, std::size_t row, const SweptEdge& swept) {
     const Eigen::Vector2d along = footprints.passing(row, swept.edge);
     const Eigen::Vector2d across = swept.normal - swept.normal.dot(along) * along;
     return across.squaredNorm() > kGrazing * kGrazing ? across.normalized() : swept.normal;
 }
 
-/// The edge through which the way from x along `out` leaves footprint `row`, `far` off, and its neighbours.
+/// Returns the edge through which the way from x along `out` leaves footprint `row`, at distance `far`, and its
+/// neighbours.
 Beside left_at(const Footprints& footprints, const Eigen::Vector2d& x, const Eigen::Vector2d& out, double far,
                std::size_t row) {
     const Eigen::Vector2d end = x + far * out, at = footprints[row].in_frame(end);
@@ -52,8 +57,8 @@ Beside left_at(const Footprints& footprints, const Eigen::Vector2d& x, const Eig
     return {swept.edge, row, -far + std::min(0.0, swept.distance) / aslant, across, aslant};
 }
 
-/// From x, inside a footprint, along the painted edge's normal, or another way where that is far: outside it is the
-/// shortest way that counts, too.
+/// Returns the edge for x inside a footprint, along the normal of the painted edge, or along a shorter way where the
+/// edge is far. Outside the footprints, too, the shortest way counts.
 Beside way_out(const Footprints& footprints, const Eigen::Vector2d& x, const Eigen::Vector2d& normal, std::size_t row) {
     Eigen::Vector2d out = normal;
     double far = footprints.way_out(x, out, row);
@@ -70,7 +75,8 @@ Beside way_out(const Footprints& footprints, const Eigen::Vector2d& x, const Eig
         }
     }
     Beside found = left_at(footprints, x, out, far, row);
-    // a painted normal errs as its edge does; square to the edge that it reached the way is shorter
+    // The painted normal has the errors of the painted edge. Perpendicular to the edge that was reached, the way is
+    // shorter.
     for (int round = 0; round < kStraighter && far < kNearMm && found.aslant < kSquare; ++round) {
         const Eigen::Vector2d square = found.normal;
         far = footprints.way_out(x, square, row);
@@ -81,7 +87,7 @@ Beside way_out(const Footprints& footprints, const Eigen::Vector2d& x, const Eig
     return found;
 }
 
-/// From x, outside all footprints.
+/// Returns the edge for x outside all footprints.
 Beside way_in(const Footprints& footprints, const Eigen::Vector2d& x, const Eigen::Vector2d& normal, std::size_t row,
               const NearestEdge& nearest) {
     const Instant& here = footprints[row];
@@ -91,17 +97,18 @@ Beside way_in(const Footprints& footprints, const Eigen::Vector2d& x, const Eige
     }
     const bool tip = nearest.by_widest == 0.0 && !here.drop.round_tail;
     const Eigen::Vector2d at = here.in_frame(x);
-    // off a tip as off its flanks, as on the inside: else edges that err both ways would draw it out
+    // At a tip, the distance from its flanks counts, as on the inside. Otherwise edges with errors to both sides would
+    // make the tip longer.
     SweptEdge swept = footprints.swept(x, row, tip ? flank_beyond_tip(here.drop, at.x(), at.y()) : nearest);
     if (swept.normal.dot(normal) < -kGrazing) {
-        // what errs inwards by more than a hairline is wide has come out on its other side
+        // An edge of a hairline with a larger inward error is on the hairline's other side.
         const SweptEdge across = footprints.swept(x, row, here.farthest(-swept.normal));
         if (std::abs(across.distance) < kNearMm) swept = across;
     }
     return {swept.edge, row, swept.distance, across_the_way(footprints, row, swept), 1.0};
 }
 
-/// normal: the painted edge's, outwards. The search begins at `row`.
+/// Returns the predicted edge next to x. normal: outward normal of the painted edge. The search begins at `row`.
 Beside beside_of(const Footprints& footprints, const Eigen::Vector2d& x, const Eigen::Vector2d& normal,
                  std::size_t row) {
     const NearestEdge nearest = footprints.nearest(x, row);
@@ -191,11 +198,11 @@ void MarkModel::by_laws(const Instant& now, const InstantBy& by, const NearestEd
         heading_by.rightCols<kMachine>() *= lever2 / (lever2 + kLeverMm * kLeverMm);
     }
     left_by << -heading_by.row(1), heading_by.row(0);
-    // the edge moves outwards by normal dy: the distance falls by it
+    // Where the edge moves outwards by normal . dy, the distance decreases by as much.
     const Eigen::Matrix<double, 1, kWays> moved =
         normal.transpose() * (by.contact + (edge.x - now.gap) * heading_by + edge.y * left_by);
     out.head(layout_.lag) = -moved.head(layout_.lag);
-    // x and y of the edge per half width
+    // Derivatives of the edge's x and y by the half width, along the normal.
     const double along = edge.by_widest * now.widest_ratio + edge.by_front * now.front_ratio;
     const double per_half = along * nu + edge.by_half * nl;
     double power = 1.0;
@@ -222,7 +229,7 @@ void MarkModel::by_laws(const Instant& now, const InstantBy& by, const NearestEd
 void MarkModel::ratio_by(double depth, double ratio, double rate, Eigen::Ref<Eigen::RowVectorXd> out) const {
     out.setZero();
     if (out.size() > 1 && ratio <= kLeastRatio) return;
-    // P_k at depth, of the Legendre polynomials over [0, deepest]
+    // The Legendre polynomials P_k over [0, deepest] at this depth, by their recurrence.
     const double t = 2.0 * depth / deepest_ - 1.0;
     double before = 0.0, now = 1.0;
     for (Index k = 0; k < out.size(); ++k) {

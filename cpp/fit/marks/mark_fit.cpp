@@ -17,15 +17,16 @@
 namespace brushsvg::fit {
 namespace {
 
-constexpr double kDeepestMm = 1000.0;  // deeper is damage, and its powers overflow
-// Of one fit: each is met some hundred times, in a microsecond or so. A sheet of 49 strokes has 22,000 and 8,500.
+constexpr double kDeepestMm = 1000.0;  // greater depths are damaged data, and their powers overflow
+// Limits of one fit, in which each place and point is evaluated about a hundred times, in about a microsecond. A sheet
+// of 49 strokes has 22,000 places and 8,500 points.
 constexpr double kMostPlaces = 2e5, kMostPoints = 2e5;
-constexpr double kPlaceMm = 0.15;      // no two places of a prediction are further apart along the way
-constexpr double kMostCertain = 1e12;  // of a law's coefficient: 1 over its standard deviation
-constexpr double kLeastWideMm = 0.3;   // a pen's line, of which a picture's edges may err by as much
+constexpr double kPlaceMm = 0.15;      // largest distance between places of a prediction along the path
+constexpr double kMostCertain = 1e12;  // limit of 1 over the standard deviation of a law's coefficient
+constexpr double kLeastWideMm = 0.3;   // width of a pen's line; edges in a picture may have errors as large
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// `name`: of the option, a normal distribution's sigma.
+/// Throws Error for an invalid standard deviation. `name`: of the option.
 void require_sigma(double sigma, const std::string& name) {
     require_within(sigma, {0.0, kInf}, "the standard deviation", name);
 }
@@ -55,7 +56,7 @@ void refuse_options(const MarkOptions& options) {
     require_within(options.most_iterations, {1, 10000}, "the number of iterations", "most_iterations");
 }
 
-/// `of`: what they are for.
+/// Throws Error for laws that cannot be used. `of`: their purpose, for the message.
 void refuse_laws(const MarkLaws& laws, const std::string& of) {
     for (const auto& [law, name] : {std::pair{&laws.lag, ".lag"}, std::pair{&laws.tip_gap, ".tip_gap"},
                                     std::pair{&laws.half_width, ".half_width"}})
@@ -117,7 +118,7 @@ void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const M
     require_within(around / options.spacing_mm, {0.0, kMostPoints}, "the number of points along the outlines");
 }
 
-/// Edges that err by more than the marks are wide are those of no brush.
+/// Throws Error where the errors of the edges exceed the width of the marks: no brush paints such marks.
 void refuse_unlike_any(const std::vector<PaintedMark>& marks, const MarkFit& fit) {
     double area = 0.0, around = 0.0;
     for (const PaintedMark& mark : marks)
@@ -125,7 +126,7 @@ void refuse_unlike_any(const std::vector<PaintedMark>& marks, const MarkFit& fit
             area += signed_area(ring);
             around += length_around(ring);
         }
-    const double wide = 2.0 * area / std::max(around, 1e-9);  // of strips
+    const double wide = 2.0 * area / std::max(around, 1e-9);  // as for strips
     if (fit.noise_mm <= std::max(wide, kLeastWideMm)) return;
     std::size_t worst = 0;
     for (std::size_t i = 0; i < fit.marks.size(); ++i)
@@ -133,7 +134,7 @@ void refuse_unlike_any(const std::vector<PaintedMark>& marks, const MarkFit& fit
     throw no_brush_paints(marks[worst].stroke);
 }
 
-/// What is to expect of edges this uncertain, which forget themselves as exp(-s / length).
+/// Sets up the expected fit for edges with the given noise, whose autocorrelation is exp(-s / length).
 void expect(MarkProblem& at, const std::optional<MarkLaws>& from, const MarkOptions& options) {
     if (!from) throw Error("options-contradict", "to say what to expect takes a brush to start from");
     at.begin(*from);
@@ -150,18 +151,19 @@ void expect(MarkProblem& at, const std::optional<MarkLaws>& from, const MarkOpti
 
 struct Solved {
     bool converged = false;
-    double departing = -INFINITY;  ///< log of how much likelier the marks are of laws that depart
+    double departing = -INFINITY;  ///< log of the likelihood ratio of the marks for laws that depart
 };
 
-/// How sure the distances are is found on the way, wild ones lose their say, and laws depart from their numbers. As the
-/// noise is taken for more as long as they do not, that is repeated until it changes no more.
+/// Solves the problem, estimates the noise of the distances, leaves out outliers, and lets laws depart from their
+/// coefficients. The noise is overestimated as long as laws do not depart, so that the last step is repeated until it
+/// changes nothing any more.
 Solved solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
              const MarkOptions& options) {
     start(at, from, marks, options);
     const bool may_depart = options.departing && !options.laws;
     Solved out;
-    // the loss is smooth to some 1e-5 of it: points change from edge to edge. Numbers that only their prior holds move
-    // on for long, by far less than their intervals
+    // The loss is only smooth to about 1e-5 of its value, because points change from edge to edge. Unknowns that only
+    // their prior determines keep moving for many steps, by far less than their intervals.
     constexpr double kLast = 2e-5, kDeparting = 1e-4, kMore = 2.0;
     constexpr int kRounds = 3;
     for (const auto& [loss, tolerance] :
@@ -183,10 +185,12 @@ Solved solve(MarkProblem& at, const std::optional<MarkLaws>& from, const std::ve
     return out;
 }
 
-/// Strokes that land on a slope from height 0 begin the further on the lower the paper is, and where they did if it
-/// is higher: a height found just below 0 is determined less than its own derivatives say. There it is the mean
-/// of both sides' covariances, by how likely the paper is above: of two halves of normal distributions that meet at 0
-/// the wider one weighs as much more.
+/// Returns the covariance at a height of the paper near 0.
+///
+/// Strokes that land on a slope from height 0 begin later the lower the paper is, but begin at the same place if the
+/// paper is higher. A height just below 0 is therefore determined less well than its derivatives say. The result is the
+/// mean of the covariances on both sides, weighted by the probability that the paper is higher. The distribution
+/// consists of two halves of normal distributions that meet at 0, and the wider half has the larger weight.
 MatrixXd covariance_at_touch(MarkProblem fit) {
     constexpr double kAboveMm = 1e-3, kUnlikely = 1e-3;
     const int height = fit.model.layout().height();
@@ -194,7 +198,8 @@ MatrixXd covariance_at_touch(MarkProblem fit) {
     MatrixXd out = covariance(fit);
     const double found = fit.shared[height], sd = std::sqrt(out(height, height));
     if (found > 0.0) return out;
-    const double beyond = 0.5 * std::erfc(-found / (std::sqrt(2.0) * sd));  // where the far side is as this one
+    const double beyond =
+        0.5 * std::erfc(-found / (std::sqrt(2.0) * sd));  // probability of the other side, if both are equally wide
     if (beyond < kUnlikely) return out;
     MarkProblem higher = fit;
     higher.shared[height] = kAboveMm;
@@ -205,11 +210,12 @@ MatrixXd covariance_at_touch(MarkProblem fit) {
     return out + above / (above + 1.0 - beyond) * (there - out);
 }
 
-/// Mean square of what the shared unknowns may be off. Laws that depart were expected to do so by any order of
-/// magnitude, the least included; that chooses the height of the paper at which they look most like their few numbers,
-/// where the marks hardly distinguish it from others. It is kept, but what it may be off is that of usual departures:
-/// their covariance, and how far it is off the likeliest of them. As far as laws may keep to their numbers after all,
-/// it is that of such laws.
+/// Returns the mean square error matrix of the shared unknowns.
+///
+/// Departures of laws were expected to be of any order of magnitude, including the smallest. This prefers the height of
+/// the paper at which the laws are most like their few coefficients, although the marks hardly distinguish it from
+/// other heights. The solution is kept, but its error is that of usual departures: their covariance, and the distance
+/// from their most likely solution. With the probability that laws do not depart, the error is that of such laws.
 MatrixXd mean_square(const MarkProblem& fit, const MarkOptions& options, double likelier) {
     if (!fit.is_departing()) return covariance_at_touch(fit);
     const auto square_of = [](const MarkProblem& at) -> MatrixXd {
@@ -241,7 +247,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     out.laws = fit.model.laws(fit.shared);
     const MatrixXd to = fit.model.to_coefficients();
     VectorXd wider = VectorXd::Constant(to.rows(), std::sqrt(unsurer(solved.departing)));
-    // a field is determined by the places of marks, for any form of the laws
+    // The places of marks determine a field, independently of the form of the laws.
     if (fit.model.layout().machine_numbers > 0) wider.tail(kMachine - MachineAt::field).setOnes();
     const MatrixXd whole =
         wider.asDiagonal() * to * mean_square(fit, options, solved.departing) * to.transpose() * wider.asDiagonal();
@@ -280,10 +286,10 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     if (!options.noise_mm) refuse_unlike_any(marks, out);
     out.left_aside = aside / std::max(1.0, out.samples);
     out.slim = slim / std::max(1.0, out.samples);
-    // repeats divide squares, of which the loss lets through the slope's share
+    // Squares are divided by the repeats, and the loss passes the share `slope` of them.
     out.effective_samples =
         std::min(out.samples, (out.samples - aside - slim) * fit.weighing.slope / fit.weighing.repeats);
-    out.remarks = doubts(with_terms(fit, marks, options));  // what departs from them is open but for its prior
+    out.remarks = doubts(with_terms(fit, marks, options));  // without departures, which only their prior determines
     return out;
 }
 

@@ -3,17 +3,17 @@
 #include <cmath>
 #include <vector>
 
-// What a distance from the predicted edge costs. Inside fit_marks.
+// The cost of a distance from the predicted edge. Internal to fit_marks.
 namespace brushsvg::fit {
 
-constexpr double kCauchy = 2.385, kTukey = 4.685;  // each 95 % as sharp as least squares on normal noise
+constexpr double kCauchy = 2.385, kTukey = 4.685;  // each with 95 % of the efficiency of least squares on normal noise
 
-/// What a distance costs, in standard deviations z: rho(z), psi = rho'/2, its slope.
+/// The cost of a distance of z standard deviations: rho(z), psi = rho'/2 and the slope of psi.
 struct Cost {
     double rho, psi, slope;
 };
 
-enum class Loss { cauchy, tukey };  // from afar wild points pull, less the further it is; in the end not at all
+enum class Loss { cauchy, tukey };  // cauchy: outliers pull less the further they are; tukey, at the end: not at all
 
 inline Cost cost(Loss loss, double z) {
     if (loss == Loss::tukey) {
@@ -25,14 +25,14 @@ inline Cost cost(Loss loss, double z) {
     return {c2 * std::log(t), z / t, (2.0 - t) / (t * t)};
 }
 
-/// How sure distances are and what wild ones cost. Neighbours along an outline err together.
+/// The noise of distances and the cost of outliers. The errors of neighbours along an outline are correlated.
 struct Weighing {
-    double noise_mm = 0.5;              ///< while nothing is known: a brush's hairs
-    double repeats = 1.0;               ///< what squares are divided by: so many neighbours count as one
-    std::vector<double> together{1.0};  ///< autocovariance of psi along an outline: at 0, 1, 2 ... points
+    double noise_mm = 0.5;              ///< before it is estimated: the thickness of a brush's hairs
+    double repeats = 1.0;               ///< divisor of squares: this many neighbours count as one
+    std::vector<double> together{1.0};  ///< autocovariance of psi along an outline, at 0, 1, 2 ... points
     double slope = 1.0;                 ///< mean slope of psi
     Loss loss = Loss::cauchy;
-    bool is_asked = false;  ///< for edges with these errors, not for the given ones
+    bool is_asked = false;  ///< the errors of the edges are given, not estimated
 };
 
 }  // namespace brushsvg::fit

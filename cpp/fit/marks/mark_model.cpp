@@ -12,19 +12,20 @@
 namespace brushsvg::fit {
 namespace {
 
-// Footprints so close that the union of discs 0.5 mm wide scallops by 0.01 mm, wider ones by less.
+// Steps between footprints along the path and in depth. The edge of a union of discs 0.5 mm wide then has scallops of
+// 0.01 mm, of wider discs smaller ones.
 constexpr double kStepMm = 0.2, kPressMm = 0.15;
-constexpr double kAboveMm = 5.0;       // and the deepest: whence the brush comes, above any error of the paper's height
-constexpr double kLeastRingMm2 = 0.2;  // specks
-constexpr double kLeastReachMm = 5.0;  // of a field: over less, what is smooth is the same everywhere
-// Looks at instants in a whole fit, for each place and point there is. Marks of a brush take two to ten thousand;
-// those that no brush paints, where huge footprints overlap, took millions, and minutes.
+constexpr double kAboveMm = 5.0;       // added to the greatest depth: the brush starts above any error of the height
+constexpr double kLeastRingMm2 = 0.2;  // smaller rings are specks
+constexpr double kLeastReachMm = 5.0;  // of a field: over a shorter distance, a smooth field is constant
+// Limits of the evaluations of instants in a fit, in total and per place and point. Marks of a brush need two to ten
+// thousand. Marks that no brush paints, for which huge footprints overlap, needed millions, and minutes.
 constexpr double kMostLooks = 2e7, kMostLooksEach = 3e4;
-// And of one mark: about as many as a sheet of fifty strokes takes. 9 m of jumps to and fro, painted as a brush would,
-// took ten times as many, and a minute.
+// Limit for one mark, about as many as a sheet of fifty strokes needs. 9 m of jumps to and fro, painted as a brush
+// would, needed ten times as many, and a minute.
 constexpr double kMostLooksOfOne = 2e8;
 
-/// From above the paper down to the first pose and from the last one up again, as a robot moves.
+/// Adds moves from above the paper down to the first pose and from the last pose up again, as a robot moves.
 Poses from_above(const Poses& poses, double above_mm) {
     Poses out(poses.rows() + 2, 3);
     out.middleRows(1, poses.rows()) = poses;
@@ -34,7 +35,7 @@ Poses from_above(const Poses& poses, double above_mm) {
     return out;
 }
 
-/// The pass without arcs: what else makes of a circle is none.
+/// Replaces arcs by chords, because a machine with errors does not make circles of circles.
 void to_chords(Poses& poses, std::vector<Arc>& arcs) {
     constexpr double kChordRad = 0.02;
     std::vector<double> xyz;
@@ -58,8 +59,8 @@ void to_chords(Poses& poses, std::vector<Arc>& arcs) {
     arcs.clear();
 }
 
-/// The direction from which x and y came to the first pose: from where the mark before was left, or 0, which nobody
-/// knows for the first mark.
+/// Returns the direction from which x and y came to the first pose, from the end of the mark before; 0 for the first
+/// mark, for which it is unknown.
 Eigen::Vector2d came_from(const Poses& poses, const PaintedMark* before) {
     constexpr double kRestsMm = 1e-6;
     Eigen::Vector2d out(0.0, 0.0);
@@ -70,7 +71,7 @@ Eigen::Vector2d came_from(const Poses& poses, const PaintedMark* before) {
     return out;
 }
 
-/// With more poses where an axis turns: it stands still there for its backlash, and then goes on as far as commanded.
+/// Adds poses where an axis reverses: there it does not move for its backlash, and then moves as commanded.
 Poses close_at_turns(const Poses& poses, Eigen::Vector2d came) {
     constexpr std::array<double, 7> kBehindMm{0.05, 0.1, 0.2, 0.3, 0.45, 0.7, 1.0};
     std::vector<double> xyz(poses.data(), poses.data() + 3);
@@ -95,7 +96,8 @@ Poses close_at_turns(const Poses& poses, Eigen::Vector2d came) {
     return Eigen::Map<const Poses>(xyz.data(), Index(xyz.size() / 3), 3);
 }
 
-/// A law with so many coefficients: 0 for what it lacks, or the nearest one on [0, deepest]. first: its least power.
+/// Returns a law with `terms` coefficients: padded with 0, or the nearest law on [0, deepest] if c has more. first: its
+/// least power.
 VectorXd of_terms(const std::vector<double>& c, Index terms, Index first, double deepest) {
     constexpr int kDepths = 41;
     const Index size = Index(c.size());
@@ -129,7 +131,7 @@ std::vector<double> close_places(const Poses& poses, double coarse) {
     return out;
 }
 
-/// As far as the TCP was commanded to go.
+/// Returns the box of all places to which the TCP was commanded.
 FieldBox box_of(const std::vector<PaintedMark>& marks) {
     Eigen::Vector2d low(INFINITY, INFINITY), high = -low;
     for (const PaintedMark& mark : marks) {
@@ -139,7 +141,7 @@ FieldBox box_of(const std::vector<PaintedMark>& marks) {
     return {0.5 * (low + high), (0.5 * (high - low)).cwiseMax(kLeastReachMm)};
 }
 
-/// Points at equal distances along a closed outline, about `spacing` apart.
+/// Adds points at equal distances along a closed outline, about `spacing` apart.
 void add_points(const Ring& ring, double spacing, std::vector<double>& xy) {
     std::vector<double> along{0.0};
     for (Index i = 0; i < ring.rows(); ++i)
@@ -155,7 +157,7 @@ void add_points(const Ring& ring, double spacing, std::vector<double>& xy) {
     }
 }
 
-/// Unit normals to the right of a closed row of points, from the neighbours of each.
+/// Computes unit normals to the right of a closed row of points, from the neighbours of each point.
 void add_normals(const Ring& points, Index begin, Index end, Ring& normals) {
     const Index n = end - begin;
     for (Index k = 0; k < n; ++k) {
@@ -188,7 +190,7 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
     for (const PaintedMark& mark : marks) {
         Painted painted{mark.stroke, from_above(mark.poses_mm, kAboveMm + deepest_), mark.arcs, {0.0, 0.0}, {}, {}, {},
                         {0}};
-        for (Arc& arc : painted.arcs) {  // counted from the first pose, which comes second here
+        for (Arc& arc : painted.arcs) {  // arcs count from the first pose, which is the second one here
             ++arc.first;
             ++arc.last;
         }
@@ -291,7 +293,8 @@ MatrixXd MarkModel::departures(const Layout& from) const {
         }
     };
     put(0, layout_.lag, from.lag, 1.0);
-    put(layout_.gap_at(), layout_.gap, from.gap, deepest_);  // both go through 0: of their rise per depth
+    put(layout_.gap_at(), layout_.gap, from.gap,
+        deepest_);  // both laws go through 0, so that their slope by depth is used
     put(layout_.half_at(), layout_.half, from.half, deepest_);
     put(layout_.widest(), layout_.widest_terms, from.widest_terms, 1.0);
     put(layout_.front(), layout_.front_terms, from.front_terms, 1.0);

@@ -9,7 +9,7 @@
 #include "mark_fit.hpp"
 #include "swept_footprints.hpp"
 
-// Distances of painted edges from predicted ones, with their derivatives. Inside fit_marks.
+// Computes the distances of painted edges from predicted ones, with their derivatives. Internal to fit_marks.
 namespace brushsvg::fit {
 
 using Eigen::Index;
@@ -17,13 +17,15 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Where each unknown stands that all marks share. The lag stands as control values on [0, deepest] [mm], the tip gap
-/// as what each power adds at the deepest [mm], the half width as the steps from one control value to the next [mm],
-/// the ratios of the footprint as factors of the Legendre polynomials over [0, deepest].
+/// The indices of the unknowns that all marks share.
+///
+/// The lag is given by control values on [0, deepest] [mm], the tip gap by the contribution of each power at the
+/// deepest [mm], the half width by the steps from one control value to the next [mm], and the ratios of the footprint
+/// by factors of the Legendre polynomials over [0, deepest].
 struct Layout {
     int lag, gap, half;
     int widest_terms, front_terms;
-    int machine_numbers;  ///< kMachine or none
+    int machine_numbers;  ///< kMachine or 0
     int gap_at() const { return lag; }
     int half_at() const { return lag + gap; }
     int widest() const { return half_at() + half; }
@@ -37,7 +39,7 @@ struct Layout {
 
 class MarkModel {
  public:
-    /// coarse: so many times as far apart as they should be are the instants at which the brush is looked at.
+    /// coarse: factor on the distance between instants at which the brush is evaluated.
     MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse = 1.0);
 
     static Layout layout_of(const MarkOptions& options);
@@ -48,80 +50,82 @@ class MarkModel {
     Index points(Index mark) const { return painted_[std::size_t(mark)].point_mm.rows(); }
     Index ring_begin(Index mark, std::size_t ring) const { return painted_[std::size_t(mark)].rings[ring]; }
     std::size_t rings(Index mark) const { return painted_[std::size_t(mark)].rings.size() - 1; }
-    /// How deep a mark's stroke is pressed [mm].
+    /// Greatest depth of a mark's stroke [mm].
     double deepest(Index mark) const { return -painted_[std::size_t(mark)].poses_mm.col(2).minCoeff(); }
     std::array<double, 2> centre_mm() const { return {centre_.x(), centre_.y()}; }
 
-    /// The shared unknowns of laws, at any place; at their least values or above; and back.
+    /// Converts laws to the shared unknowns, with and without the limit to their least values, and back.
     VectorXd unbounded(const MarkLaws& laws) const;
     VectorXd unknowns(const MarkLaws& laws) const { return unbounded(laws).cwiseMax(least()); }
     MarkLaws laws(const VectorXd& shared) const;
-    /// d(what MarkFit::covariance is about) / d(shared unknowns).
+    /// Derivatives of the quantities in MarkFit::covariance by the shared unknowns.
     MatrixXd to_coefficients() const;
-    /// Rows over the shared unknowns: by how much each law departs [mm] from one of so many numbers, as factors of
-    /// polynomials that these do not hold, of which each is 1 at the deepest.
+    /// Departures [mm] of each law from a law with the coefficients of `from`, as rows over the shared unknowns. They
+    /// are factors of further polynomials that are each 1 at the deepest.
     MatrixXd departures(const Layout& from) const;
-    /// Least value of each shared unknown; the lag stays above 0, the half width rises.
+    /// Least value of each shared unknown, so that the lag stays above 0 and the half width rises.
     VectorXd least() const;
-    /// What the machine is at these unknowns.
+    /// The machine for these unknowns.
     Machine machine(const VectorXd& shared) const;
-    /// A mark's poses as commanded, as the machine ran them.
+    /// The poses of a mark as the machine ran them, from the commanded ones.
     Poses run(Index mark, const VectorXd& shared) const;
 
-    /// From now on there are no derivatives by the machine's numbers, or there are.
+    /// Switches the derivatives by the machine's numbers off or on.
     void hold_machine(bool hold) { is_machine_held_ = hold; }
-    /// From now on derivatives say little of what the machine does to the heading of a loose brush on a short lever.
+    /// Damps the derivatives of the heading of a loose brush on a short lever by the machine's numbers from now on.
     void doubt_headings() { headings_doubted_ = true; }
 
-    /// work(mark) for every mark, on all processors. Throws Error where these marks have taken so many looks that no
-    /// brush paints them: it names the one that took most.
+    /// Calls work(mark) for every mark, on all processors. Throws Error where the marks have needed so many evaluations
+    /// that no brush paints them, with the mark that needed most.
     template <class Work>
     void for_each(Work&& work) const {
         on_all_processors(0, painted_.size(), [&](std::size_t mark) { work(Index(mark)); });
         refuse_endless();
     }
 
-    /// The looks that another model of the same marks took count on here.
+    /// Continues the count of evaluations of another model of the same marks.
     void go_on_counting(const MarkModel& other) { looks_ = other.looks_; }
 
-    /// Distance [mm] of every point of a mark from the predicted edge; derivatives by the shared unknowns and by the
-    /// mark's displacement on request. Outside it is that from the nearest footprint and what it sweeps to its
-    /// neighbours. Inside it is negative: how far it is out of all footprints, square to the edge that the painted
-    /// edge's normal points to, and not how deep it is in one of them, of which slim footprints would make little.
-    /// False where there is no prediction.
+    /// Computes the distance [mm] of every point of a mark from the predicted edge, and on request the derivatives by
+    /// the shared unknowns and by the mark's displacement.
+    ///
+    /// Outside, it is the distance from the nearest footprint and the area swept between it and its neighbours. Inside,
+    /// it is negative: the way out of all footprints, perpendicular to the edge that the painted edge's normal points
+    /// to. The depth inside a single footprint would be small for slim footprints. Returns false where there is no
+    /// prediction.
     bool distances(Index mark, const double* shared, const double* displacement, VectorXd& distance_mm,
                    RowMajor* by_shared, RowMajor* by_displacement) const;
-    /// How far it is [mm] from the predicted edge at every point of a mark across to the other one; 0 beyond a tip.
+    /// Width of the prediction [mm] across from the edge at every point of a mark; 0 beyond a tip.
     VectorXd widths(Index mark, const double* shared, const double* displacement) const;
-    /// The points of a mark in the frame of the plan.
+    /// Returns the points of a mark in the frame of the plan.
     Ring placed(Index mark, const double* shared, const double* displacement) const;
 
  private:
     struct Painted {
         std::string stroke;
-        Poses poses_mm;  ///< from above the paper and back there
+        Poses poses_mm;  ///< begins and ends above the paper
         std::vector<Arc> arcs;
         Eigen::Vector2d came{0.0, 0.0};  ///< as in MachineHere
         std::vector<double> at;
-        Ring point_mm, outward;    ///< of the paint, unit vectors
-        std::vector<Index> rings;  ///< where each begins, and the end
+        Ring point_mm, outward;    ///< points of the paint's outline, and unit normals
+        std::vector<Index> rings;  ///< first point of each ring, and the end
     };
     void refuse_endless() const;
     MachineHere machine_here(const Painted& painted, const VectorXd& shared) const;
     std::array<double, kMachine> machine_numbers(const VectorXd& shared) const;
-    /// Derivatives of a distance by the laws' unknowns and the height.
+    /// Computes the derivatives of a distance by the unknowns of the laws, the height and the machine.
     void by_laws(const Instant& now, const InstantBy& by, const NearestEdge& edge, const Eigen::Vector2d& normal,
                  Eigen::Ref<Eigen::RowVectorXd> out) const;
 
-    /// rate times the derivatives of a ratio by its unknowns.
+    /// Computes rate times the derivatives of a ratio by its unknowns.
     void ratio_by(double depth, double ratio, double rate, Eigen::Ref<Eigen::RowVectorXd> out) const;
 
     std::vector<Painted> painted_;
-    mutable std::vector<std::uint64_t> looks_;  ///< of each mark, at instants of its pass: what was spent on it
+    mutable std::vector<std::uint64_t> looks_;  ///< number of evaluations of instants for each mark
     Layout layout_;
     double deepest_, coarse_, spacing_;
     bool round_tail_, is_bent_, headings_doubted_ = false, is_machine_held_ = false;
-    MatrixXd lag_powers_, half_powers_;  ///< coefficients of the laws from their unknowns
+    MatrixXd lag_powers_, half_powers_;  ///< matrices from the laws' unknowns to their coefficients
     Eigen::Vector2d centre_;
     FieldBox box_;
 };

@@ -14,13 +14,13 @@
 namespace brushsvg::fit {
 namespace {
 
-constexpr double kFarShare = 0.2;  // of a mark's points, wild: it may be matched with the wrong edge
+constexpr double kFarShare = 0.2;  // of a mark's points: with more outliers it may be matched with the wrong edge
 constexpr int kMoves = 3;
-// Noises that a point must have across. With 2 the ends of strokes that are lifted while moving still draw the height,
-// with 5 it is known a tenth less well than with 3.
+// Smallest width of the prediction at a point, in standard deviations of the noise. With 2, the ends of strokes that
+// are lifted while moving still bias the height; with 5, the height is known a tenth less well than with 3.
 constexpr double kSlim = 3.0;
 
-/// One mark for the solver: residuals whose squares add up to the loss, as they were evaluated last.
+/// The residuals of one mark for the solver, from the last evaluation. Their squares add up to the loss.
 class MarkCost : public ceres::CostFunction {
  public:
     MarkCost(const MarkProblem& at, Index mark, const std::vector<bool>& held, bool displaced)
@@ -28,7 +28,7 @@ class MarkCost : public ceres::CostFunction {
         set_num_residuals(int(at.model.points(mark)));
         *mutable_parameter_block_sizes() = {at.model.layout().size(), 2};
     }
-    /// Always with derivatives: they are needed next where the step is taken, as most are.
+    /// Evaluates residuals and derivatives. Derivatives are needed next if the step is accepted, as most steps are.
     void evaluate() {
         const Index n = num_residuals(), size = at_.model.layout().size();
         const Weighing& weighing = at_.weighing;
@@ -70,7 +70,7 @@ class MarkCost : public ceres::CostFunction {
     RowMajor by_shared_, by_own_;
 };
 
-/// All marks at the point that is being tried, once, on all processors, before Ceres asks for them one by one.
+/// Evaluates all marks at the tried point once, on all processors, before Ceres requests them one by one.
 class MarkCosts : public ceres::EvaluationCallback {
  public:
     explicit MarkCosts(const MarkProblem& at) : at_(at) {}
@@ -95,7 +95,7 @@ std::unique_ptr<ceres::CostFunction> prior(const VectorXd& value, const VectorXd
     return std::make_unique<ceres::NormalPrior>(weight, value);
 }
 
-/// LawPrior's rows, over the shared unknowns.
+/// Returns the rows of LawPrior over the shared unknowns.
 MatrixXd law_rows(const LawPrior& known, const MarkModel& model) {
     const Index laws = model.layout().front();
     MatrixXd rows(Index(known.rows.size()), laws);
@@ -195,7 +195,7 @@ void MarkProblem::leave_slim_aside() {
     if (all.empty()) return;
     const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
     std::nth_element(all.begin(), middle, all.end());
-    // of a pen, whose lines are no wider anywhere, the lines and not their ends
+    // For a pen, whose lines are narrow everywhere, the limit keeps the lines and leaves out only their ends.
     const double least = std::min(kSlim * weighing.noise_mm, 0.5 * *middle);
     for (Index i = 0; i < model.marks(); ++i)
         says[std::size_t(i)] = (width[std::size_t(i)].array() >= least).cast<double>();

@@ -7,53 +7,53 @@
 
 namespace brushsvg::fit {
 
-/// The whole least-squares problem at one place: unknowns that all marks share, and a displacement for each mark.
+/// The whole least-squares problem and its current state: unknowns that all marks share, and a displacement per mark.
 class MarkProblem {
  public:
     /// coarse: as in MarkModel.
     MarkProblem(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse = 1.0);
 
-    /// To these laws; the footprint's shape and the height as known beforehand, no displacements.
+    /// Starts at these laws, with the prior means of the footprint's shape and the height, and no displacements.
     void begin(const MarkLaws& laws);
-    /// The footprint's shape stays as it is, and the machine, too, where that is held.
+    /// Holds the footprint's shape constant, and on request the machine as well.
     void hold_shape(bool hold, bool hold_machine);
-    /// Marks of which a part is far off may have been matched with the wrong edge, the near one of a stroke that is
-    /// displaced by its width: they are moved to where that part is near, if that costs less.
+    /// Corrects marks that were matched with the wrong edge, such as the near edge of a displaced stroke. A mark with
+    /// a distant part is moved to where this part is near, if that costs less.
     void find_displaced();
-    /// Points at which the prediction is hardly wider than its edges err have no say from now on. At a pointed
-    /// end noise never leaves the paint narrower than nothing: it draws the end out, and the paper seems nearer.
+    /// Leaves out points at which the prediction is hardly wider than the noise of its edges. Noise cannot make the
+    /// paint at a pointed end narrower than 0, so that it makes the end longer, and the paper seems nearer.
     void leave_slim_aside();
-    /// Half the loss of each mark; infinite where there is no prediction.
+    /// Returns half the loss of each mark, infinite where there is no prediction.
     VectorXd losses() const;
-    /// Half the loss of all marks.
+    /// Returns half the loss of all marks.
     double loss() const;
-    /// Throws Error where these laws, which the caller chose, predict no mark for a stroke.
+    /// Throws Error where the laws, which the caller chose, predict no mark for a stroke.
     void require_prediction() const;
-    /// tolerance: ends when a step lowers the loss by less than this share of it. Whether it ended so.
+    /// Minimises the loss until a step lowers it by less than `tolerance`, as a share of the loss. Returns whether it
+    /// converged.
     bool solve(int most_iterations, double tolerance);
-    /// Laws depart from their numbers by no more than is expected: each of these rows makes a standard normal number of
-    /// the shared unknowns.
+    /// Sets the prior of the departures of laws: each row maps the shared unknowns to a standard normal number.
     void expect(const MatrixXd& rows);
     bool is_departing() const { return departs_; }
-    /// Adds the information of the priors, over every shared unknown and then both displacements of every mark.
+    /// Adds the information of the priors, over all shared unknowns and then both displacements of every mark.
     void add_known(MatrixXd& to) const;
-    /// Gradient of the priors over the same unknowns.
+    /// Returns the gradient of the priors over the same unknowns.
     VectorXd known_gradient() const;
 
     MarkModel model;
     Weighing weighing;
     VectorXd shared;
     std::vector<Eigen::Vector2d> own;
-    std::vector<VectorXd> says;  ///< of every mark: 1 for each point that has a say, 0 for the others
+    std::vector<VectorXd> says;  ///< for every mark: 1 for each point that counts, 0 for the others
     int iterations = 0;
 
  private:
-    /// Half the loss of one mark at a displacement, without its prior; infinite where there is no prediction.
+    /// Returns half the loss of one mark at a displacement, without its prior, infinite where there is no prediction.
     double loss_of(Index mark, const Eigen::Vector2d& displacement) const;
 
     double displacement_mm_;
     std::vector<Prior> priors_;
-    MatrixXd law_rows_;  ///< of LawPrior, over the shared unknowns; none where nothing is known
+    MatrixXd law_rows_;  ///< rows of LawPrior over the shared unknowns; empty where nothing is known
     VectorXd law_mean_;
     std::vector<bool> held_;
     bool departs_ = false;

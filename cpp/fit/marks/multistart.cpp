@@ -11,11 +11,11 @@ namespace brushsvg::fit {
 namespace {
 
 constexpr std::size_t kFollowed = 4;
-// On the way to the places of the marks, points are so many times as far apart, and instants.
+// Factors on the distances between points and between instants during the search for a start.
 constexpr double kSparse = 3.0, kCoarse = 2.5;
-constexpr double kTolerance = 1e-3;  // the noise is not known yet
+constexpr double kTolerance = 1e-3;  // coarse, because the noise is not known yet
 
-/// Half width per depth from the marks' areas: what is painted, over how far it was painted.
+/// Estimates the half width per depth: the painted areas are fitted to 2 times length of the path times depth.
 double width_rate(const std::vector<PaintedMark>& marks) {
     double over = 0.0, under = 0.0;
     for (const PaintedMark& mark : marks) {
@@ -34,7 +34,7 @@ std::vector<MarkLaws> starts(const std::vector<PaintedMark>& marks, const MarkOp
     const double rate = std::clamp(width_rate(marks), 0.02, 50.0), deepest = options.deepest_mm;
     std::vector<MarkLaws> out;
     for (double lag : {0.3, 1.0, 2.0, 3.5, 5.0, 7.5, 10.0, 14.0, 20.0, 30.0})
-        for (double share : {1.0, 0.3}) {  // of it at depth 0
+        for (double share : {1.0, 0.3}) {  // share of the lag at depth 0
             MarkLaws laws;
             laws.lag = {lag * share, lag * (1.0 - share) / deepest};
             laws.tip_gap = {0.0, 1.2 * rate};
@@ -48,11 +48,12 @@ std::vector<MarkLaws> starts(const std::vector<PaintedMark>& marks, const MarkOp
     return out;
 }
 
-/// Those of the starts that come nearest to the marks. Throws Error where none predicts them all.
+/// Returns the starts that are nearest to the marks. Throws Error where no start predicts all marks.
 std::vector<MarkLaws> nearest_starts(MarkProblem& at, const std::vector<PaintedMark>& marks,
                                      const MarkOptions& options) {
     std::vector<std::pair<double, MarkLaws>> from;
-    Eigen::VectorXi unpredicted = Eigen::VectorXi::Zero(at.model.marks());  // by how many starts, each mark
+    Eigen::VectorXi unpredicted =
+        Eigen::VectorXi::Zero(at.model.marks());  // number of starts that do not predict each mark
     for (const MarkLaws& laws : starts(marks, options)) {
         at.begin(laws);
         const VectorXd losses = at.losses();
@@ -70,7 +71,7 @@ std::vector<MarkLaws> nearest_starts(MarkProblem& at, const std::vector<PaintedM
     return out;
 }
 
-/// To the best of these starts, each followed a little, with the machine held or free.
+/// Moves to the best of these starts, each after a few steps, with the machine held constant or free.
 void try_lags(MarkProblem& at, const std::vector<MarkLaws>& starts, bool is_held) {
     at.hold_shape(true, is_held);
     double best = INFINITY;
@@ -90,9 +91,9 @@ void try_lags(MarkProblem& at, const std::vector<MarkLaws>& starts, bool is_held
     at.hold_shape(false, false);
 }
 
-/// Moves to the places of the marks, from lags that were tried with the machine free, or held, whichever comes nearer:
-/// held, a lag may win that does as a lean does, free, a lean that does as a lag does, and no small step leads back
-/// from either.
+/// Tries lags with the machine held constant and with the machine free, and keeps the better result. With the machine
+/// held, a lag may win that imitates a lean; with the machine free, a lean that imitates a lag. No small step leads
+/// back from either.
 void try_both(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
     const std::vector<MarkLaws> lags = nearest_starts(at, marks, options);
     double best = INFINITY;

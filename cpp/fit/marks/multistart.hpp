@@ -7,10 +7,12 @@
 
 namespace brushsvg::fit {
 
-/// Moves to the places of the marks as far as few points and instants show them, from these laws, or from the best of
-/// lags of many lengths, the same at all depths or longer with depth, each followed a little. The footprint's shape is
-/// held meanwhile: while the lag is wrong, marks look best on footprints without a front, and from there no small step
-/// leads back. How sure the distances are is known then. Throws Error where no start predicts the marks.
+/// Finds a start for the fit, with few points and instants.
+///
+/// It begins at the given laws, or at the best of many lags, constant or longer with depth, each after a few steps. The
+/// footprint's shape is held constant meanwhile: while the lag is wrong, marks fit best to footprints without a front,
+/// and no small step leads back from there. The noise of the distances is known afterwards. Throws Error where no start
+/// predicts the marks.
 void start(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
            const MarkOptions& options);
 

@@ -6,10 +6,10 @@
 
 namespace brushsvg::fit {
 
-/// The refusal of marks that no brush paints. `stroke` is the one whose mark fits least.
+/// Returns the error for marks that no brush paints. `stroke` is the stroke whose mark fits worst.
 ///
-/// A search that nothing fits ends anywhere: rounding decides whether it counts too much work, comes to laws that
-/// predict nothing, or finds a brush whose edges are far from the marks'. All of these refuse with this one error.
+/// A search without a solution ends anywhere. Rounding determines whether it needs too much work, reaches laws that
+/// predict nothing, or finds a brush whose edges are far from the marks. All these cases throw this error.
 inline Error no_brush_paints(const std::string& stroke) {
     return Error("fit-failed",
                  "no brush was found that paints this mark along its stroke. Check that it is the mark of this stroke, "

@@ -11,12 +11,12 @@
 namespace brushsvg::fit {
 namespace {
 
-// No picture of paint is surer, and what the laws cannot follow of a very clean one must not count as wild.
+// No picture of paint has less noise. In a very clean picture, misfits of the laws must not count as outliers.
 constexpr double kLeastNoiseMm = 0.05;
 constexpr int kScaleRounds = 5;
-constexpr Index kFarthest = 60;  // points along an outline that may err together
+constexpr Index kFarthest = 60;  // largest number of points between correlated errors on an outline
 
-/// A mark's distances and their derivatives by all that moves them: the shared unknowns and its displacement.
+/// A mark's distances and their derivatives by the shared unknowns and the mark's displacement.
 struct Seen {
     VectorXd distance_mm;
     MatrixXd by;
@@ -38,7 +38,7 @@ std::vector<Seen> look(const MarkProblem& at) {
     return out;
 }
 
-/// What is wild has no say.
+/// Leaves out outliers.
 void leave_out_wild(std::vector<Seen>& marks, const Weighing& weighing) {
     if (weighing.loss != Loss::tukey) return;
     for (Seen& mark : marks)
@@ -49,7 +49,7 @@ void leave_out_wild(std::vector<Seen>& marks, const Weighing& weighing) {
             }
 }
 
-/// A mark's square over its unknowns into one over all.
+/// Adds a mark's matrix over its own unknowns to a matrix over all unknowns.
 void add(MatrixXd& to, const MatrixXd& square, Index mark, Index shared) {
     const Index own = shared + 2 * mark;
     to.topLeftCorner(shared, shared) += square.topLeftCorner(shared, shared);
@@ -58,7 +58,7 @@ void add(MatrixXd& to, const MatrixXd& square, Index mark, Index shared) {
     to.block(own, own, 2, 2) += square.bottomRightCorner(2, 2);
 }
 
-/// The loss's second derivatives, without priors.
+/// Returns the second derivatives of the loss, without priors.
 MatrixXd slope_of(const MarkProblem& at, const std::vector<Seen>& marks, const Weighing& weighing) {
     const Index g = at.shared.size(), all = g + 2 * at.model.marks();
     MatrixXd slope = MatrixXd::Zero(all, all);
@@ -70,20 +70,20 @@ MatrixXd slope_of(const MarkProblem& at, const std::vector<Seen>& marks, const W
     return slope;
 }
 
-/// Inverse of the loss's second derivatives, priors included.
+/// Returns the inverse of the second derivatives of the loss with priors.
 MatrixXd inverse_slope(const MarkProblem& at, const std::vector<Seen>& marks, const Weighing& weighing) {
     const Index all = at.shared.size() + 2 * at.model.marks();
     MatrixXd slope = slope_of(at, marks, weighing);
     at.add_known(slope);
-    // in units of the unknowns' own sizes, or a polynomial's powers would drown each other
+    // In units of the unknowns' own sizes, because the powers of a polynomial have very different magnitudes.
     const VectorXd unit = slope.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
     const MatrixXd scaled = unit.asDiagonal() * slope * unit.asDiagonal();
-    const MatrixXd inverse = asking_meanwhile(  // of a thousand marks: seconds
+    const MatrixXd inverse = asking_meanwhile(  // seconds for a thousand marks
         [scaled, all]() -> MatrixXd { return scaled.ldlt().solve(MatrixXd::Identity(all, all)); });
     return unit.asDiagonal() * inverse * unit.asDiagonal();
 }
 
-/// The part of an inverse over all unknowns that one mark's distances depend on.
+/// Returns the part of an inverse over all unknowns that affects one mark's distances.
 MatrixXd part_of(const MatrixXd& inverse, Index mark, Index shared) {
     const Index own = shared + 2 * mark;
     MatrixXd out(shared + 2, shared + 2);
@@ -92,7 +92,7 @@ MatrixXd part_of(const MatrixXd& inverse, Index mark, Index shared) {
     return out;
 }
 
-/// By how much each mark alone moves the shared unknowns (g, marks), against all others.
+/// Returns how much each mark alone moves the shared unknowns (g, marks), against all other marks.
 MatrixXd pulls(const MarkProblem& at, const std::vector<Seen>& marks, const MatrixXd& inverse) {
     const Weighing& weighing = at.weighing;
     const Index g = at.shared.size();
@@ -107,7 +107,7 @@ MatrixXd pulls(const MarkProblem& at, const std::vector<Seen>& marks, const Matr
     return out;
 }
 
-/// The covariance raised in directions in which groups pull further apart than their noise makes as many of them.
+/// Raises the covariance in directions in which groups of marks disagree by more than their noise explains.
 MatrixXd raised(const MatrixXd& covariance, const MatrixXd& pulls) {
     const Index g = covariance.rows(), groups = pulls.cols();
     const VectorXd unit = covariance.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
@@ -116,16 +116,17 @@ MatrixXd raised(const MatrixXd& covariance, const MatrixXd& pulls) {
     const MatrixXd whitened =
         root.cwiseInverse().asDiagonal() * (eigen.eigenvectors().transpose() * (unit.asDiagonal() * pulls));
     const Eigen::SelfAdjointEigenSolver<MatrixXd> apart(whitened * whitened.transpose());
-    const double by_chance = std::pow(1.0 + std::sqrt(double(g) / double(groups)), 2);  // of white noise the largest
+    const double by_chance =
+        std::pow(1.0 + std::sqrt(double(g) / double(groups)), 2);  // largest eigenvalue of white noise
     const VectorXd more = apart.eigenvalues().unaryExpr([&](double v) { return v > by_chance ? v - 1.0 : 0.0; });
     const MatrixXd back =
         unit.cwiseInverse().asDiagonal() * (eigen.eigenvectors() * (root.asDiagonal() * apart.eigenvectors()));
     return covariance + back * more.asDiagonal() * back.transpose();
 }
 
-/// With what is common to a mark, and to all of a depth, beyond the noise.
+/// Adds errors beyond the noise that are common to a mark, or to all marks of a depth.
 MatrixXd with_misfit(const MatrixXd& covariance, const MatrixXd& pulls, const MarkProblem& at) {
-    constexpr double kSameDepth = 0.02;  // of the deepest
+    constexpr double kSameDepth = 0.02;  // as a share of the greatest depth
     std::vector<double> depths;
     for (Index i = 0; i < pulls.cols(); ++i) depths.push_back(at.model.deepest(i));
     const double most = *std::max_element(depths.begin(), depths.end());
@@ -137,7 +138,8 @@ MatrixXd with_misfit(const MatrixXd& covariance, const MatrixXd& pulls, const Ma
     return raised(raised(covariance, pulls), by_depth);
 }
 
-/// Sum over points of one closed outline, per number of points in between; and how many pairs with a say that are.
+/// Sums of products of two points on one closed outline, by their distance in points, and the number of pairs that
+/// count.
 struct Along {
     std::vector<double> sum, pairs;
     template <class Says, class Product>
@@ -171,7 +173,8 @@ Weighing weighed(const MarkProblem& at) {
             if (mark.says[k] > 0.0) size.push_back(std::abs(mark.distance_mm[k]));
     std::sort(size.begin(), size.end());
     auto end = size.end();
-    for (int round = 0; round < kScaleRounds; ++round) {  // over what has a say: a page's border would make all unsure
+    for (int round = 0; round < kScaleRounds;
+         ++round) {  // only over points that count: a page's border would raise the noise
         out.noise_mm = std::max(kLeastNoiseMm, 1.482602218505602 * size[std::size_t(end - size.begin()) / 2]);
         if (out.loss != Loss::tukey) break;
         end = std::lower_bound(size.begin(), size.end(), kTukey * out.noise_mm);
@@ -186,7 +189,7 @@ Weighing weighed(const MarkProblem& at) {
         }
     out.slope = std::max(0.1, slope / std::max(1.0, counted));
 
-    Weighing plain = out;  // the hat matrix hardly depends on the noise, but where priors weigh
+    Weighing plain = out;  // the hat matrix hardly depends on the noise, except where priors matter
     plain.repeats = std::max(1.0, at.weighing.repeats);
     const MatrixXd inverse = inverse_slope(at, marks, plain);
     const double weight = plain.slope / (plain.noise_mm * plain.noise_mm * plain.repeats);
@@ -196,7 +199,7 @@ Weighing weighed(const MarkProblem& at) {
         const VectorXd psi =
             (mark.distance_mm / out.noise_mm).unaryExpr([&](double z) { return cost(out.loss, z).psi; });
         const MatrixXd made = weight * mark.by * part_of(inverse, i, at.shared.size());
-        // a page's border has no say: if it counted, the noise of the marks would be spread over it
+        // A page's border does not count, because the noise of the marks would be spread over it.
         const auto says = [&](Index k) { return mark.says[k] > 0.0; };
         for (std::size_t r = 0; r < at.model.rings(i); ++r) {
             const Index begin = at.model.ring_begin(i, r), end = at.model.ring_begin(i, r + 1);
@@ -204,7 +207,7 @@ Weighing weighed(const MarkProblem& at) {
             followed.add(begin, end, says, [&](Index a, Index b) { return made.row(a).dot(mark.by.row(b)); });
         }
     }
-    // the sum ends where a pair of neighbours is lost in noise
+    // The sum ends where the autocovariance of neighbours is lost in noise.
     double whole = left.mean(0);
     for (int round = 0; round < 6; ++round) {
         std::vector<double> together;
@@ -219,8 +222,8 @@ Weighing weighed(const MarkProblem& at) {
         out.together = together;
         whole = sum / std::max(0.3, 1.0 - hat);
     }
-    // of noise below the least, points would count as more than there are; what paint and pictures leave of it even
-    // then forgets itself no faster than edges that are to be expected do
+    // With noise below the minimum, points would count as more than there are. The remaining noise of paint and
+    // pictures is correlated over at least the length that is expected of edges.
     const double kept = std::exp(-at.model.spacing_mm() / MarkOptions{}.noise_length_mm);
     const double least = out.slope * out.slope * (1.0 + kept) / (1.0 - kept);
     if (!(whole > least)) {

@@ -8,37 +8,37 @@
 #include "brushsvg/plan.hpp"
 #include "brushsvg/ring.hpp"
 
-// The way of a machine for a commanded one. Inside fit_marks.
+// Computes the path that a machine runs for a commanded one. Internal to fit_marks.
 namespace brushsvg::fit {
 
-constexpr int kMachine = 15;  // numbers of a machine, in the order of MachineAt
+constexpr int kMachine = 15;  // number of a machine's errors, in the order of MachineAt
 
-/// First of each number of a machine: of two, x and then y; of the field's six three of x and then three of y.
+/// First index of each error of a machine: x and then y, and for the field three numbers of x and then three of y.
 struct MachineAt {
     static constexpr int lean = 0, scale = 2, skew = 4, tilt = 5, backlash = 7, field = 9;
 };
 
-/// Where a field over the sheet is known: the box of all commanded places.
+/// The box of all commanded places, where a field over the sheet is known.
 struct FieldBox {
     Eigen::Vector2d middle{0.0, 0.0}, reach{1.0, 1.0};  ///< reach: half its sides [mm]
-    /// u^2, u v, v^2 of a place, u and v from -1 to 1 over the box.
+    /// Returns u^2, u v, v^2 of a place, where u and v go from -1 to 1 over the box.
     Eigen::Vector3d terms(const Eigen::Vector2d& place) const {
         const Eigen::Vector2d uv = (place - middle).cwiseQuotient(reach);
         return {uv.x() * uv.x(), uv.x() * uv.y(), uv.y() * uv.y()};
     }
 };
 
-/// What a machine does at one place of a fit. by: scale as what it is more than 1. came: the direction from which x and
-/// y came to the first pose, -1, 0 or 1.
+/// The machine at the current state of a fit. by: its errors, with scale as its difference from 1. came: the direction
+/// from which x and y came to the first pose, -1, 0 or 1.
 struct MachineHere {
     std::array<double, kMachine> by;
     Eigen::Vector2d centre, came;
     const FieldBox& box;
-    bool is_bent;  ///< a field is requested: without one its derivatives cost a third of all
+    bool is_bent;  ///< a field is requested; its derivatives need a third of the time
 };
 
-/// By how much each axis is behind its command, at each pose: an axis that turns stands still for its whole backlash.
-/// One less than nothing goes as far ahead.
+/// Returns how far each axis is behind its command at each pose. An axis that reverses does not move for its whole
+/// backlash. With a negative backlash, it is ahead by as much.
 template <class T>
 std::vector<Vec2<T>> behind_by(const Poses& poses, const MachineHere& machine, const std::array<T, kMachine>& by) {
     constexpr double kRestsMm = 1e-6;
@@ -61,7 +61,7 @@ std::vector<Vec2<T>> behind_by(const Poses& poses, const MachineHere& machine, c
     return out;
 }
 
-/// The TCP's way as such a machine runs the command, on any scalar.
+/// The TCP's path as a machine with errors runs the command, for any scalar type.
 template <class T>
 struct RunWay {
     const Poses& poses;
@@ -92,7 +92,7 @@ struct RunWay {
             for (int k = 0; k < 3; ++k) out[axis] += by[std::size_t(MachineAt::field + 3 * axis + k)] * terms[k];
         return out;
     }
-    T turn(const Arc&, Eigen::Index) const { return T(0.0); }  // it has none: circles are no circles
+    T turn(const Arc&, Eigen::Index) const { return T(0.0); }  // there are no arcs, because circles do not stay circles
 };
 
 }  // namespace brushsvg::fit

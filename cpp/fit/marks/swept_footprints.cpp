@@ -10,17 +10,19 @@
 namespace brushsvg::fit {
 namespace {
 
-// Where a loose brush is passed by its TCP the footprint turns round within tenths of a mm of the way: between instants
-// further apart the edge of what it sweeps would be missed, by 0.3 mm on a reversal.
+// Where the TCP passes a loose brush, the footprint turns around within tenths of a mm of the path. With instants
+// further apart, the edge of the swept area would be off, by 0.3 mm on a reversal.
 constexpr double kApartMm = 0.25;
 constexpr int kMostParts = 200, kRounds = 4, kTangentRounds = 6;
-// Instants of one pass. Real brushes take less than one a place and 1,500 for the largest footprint that turns round;
-// laws with footprints of half a metre, which a solver tries for marks that no brush paints, took a million.
+// Limits of the instants of one pass. Real brushes need less than one per place, and 1,500 for the largest footprint
+// that turns around. Laws with footprints of half a metre, which a solver tries for marks that no brush paints, needed
+// a million.
 constexpr std::size_t kMostInstants = 5000, kMostPerPlace = 10;
-constexpr std::uint64_t kLooksPerStep = 20;  // what it costs to follow a pass to the next instant, in looks at one
-constexpr double kLeastCosine = 0.05;        // between a footprint's own normal and that of a line that touches it
+constexpr std::uint64_t kLooksPerStep = 20;  // cost of following a pass to the next instant, in evaluations of instants
+constexpr double kLeastCosine = 0.05;        // between a footprint's own normal and that of a tangent
 
-// The lag's unknowns and the height, and the machine: even numbers, which processors take two at a time.
+// Derivatives by the lag's unknowns and the height, and by the machine. Their numbers are even, because processors
+// compute two at a time.
 constexpr int even(int n) { return n + n % 2; }
 using Jet = ceres::Jet<double, even(kMostTerms + 1)>;
 using MachineJet = ceres::Jet<double, even(kMostTerms + 1 + MachineAt::field)>;
@@ -70,7 +72,7 @@ RunWay<double> run(const PassRun& pass) {
     const MachineHere& machine = *pass.machine;
     return {pass.poses, pass.arcs, machine, pass.height_mm, machine.by, behind_by(pass.poses, machine, machine.by)};
 }
-/// With derivatives by the first so many numbers of the machine.
+/// Returns the path with derivatives by the first `numbers` errors of the machine.
 template <class T>
 RunWay<T> run_by(const PassRun& pass, int numbers) {
     const MachineHere& machine = *pass.machine;
@@ -83,7 +85,8 @@ RunWay<T> run_by(const PassRun& pass, int numbers) {
     return out;
 }
 
-/// First from i on of numbers that never fall that is no less than this one. In strides that double: most are short.
+/// Finds the first index from i on, in ascending numbers, of a number that is at least `least`. It searches in doubling
+/// strides, because most distances are short.
 std::size_t first_from(const std::vector<double>& rising, std::size_t i, double least) {
     std::size_t end = i;
     for (std::size_t stride = 1; end < rising.size() && rising[end] < least; stride *= 2) {
@@ -95,7 +98,7 @@ std::size_t first_from(const std::vector<double>& rising, std::size_t i, double 
         std::lower_bound(begin + std::ptrdiff_t(i), begin + std::ptrdiff_t(std::min(end, rising.size())), least) -
         begin);
 }
-/// How many of the first i are no more than this one.
+/// Counts how many of the first i numbers are at most `most`.
 std::size_t count_up_to(const std::vector<double>& rising, std::size_t i, double most) {
     std::size_t begin = i;
     for (std::size_t stride = 1; begin > 0 && rising[begin - 1] > most; stride *= 2) {
@@ -205,7 +208,7 @@ void Footprints::walk(const Way& way, const std::vector<double>& at, const MarkL
         ratio_at_depth(laws.front_by_depth, laws.front_per_half, d, now.front_ratio, now.front_slope);
         now.drop = {now.widest_ratio * half, half, now.front_ratio * half, laws.round_tail};
     });
-    // before the first motion there is no heading: the first one that follows
+    // Before the first motion there is no heading, and the first known one is used.
     std::size_t open = 0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         if (!rows_[i].heading_known) continue;
@@ -225,7 +228,7 @@ void Footprints::enclose() {
     Eigen::Matrix<double, 2, 6> before;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         const Instant& now = rows_[i];
-        // every point of the drop is a mean of these corners, with the same weights at all instants
+        // Every point of the drop is a mean of these corners, with the same weights at all instants.
         const Eigen::Vector2d tip = now.contact - now.gap * now.heading;
         const Eigen::Vector2d widest = tip + now.drop.widest * now.heading;
         const Eigen::Vector2d front = widest + now.drop.front * now.heading;
@@ -259,8 +262,8 @@ std::size_t Footprints::downhill(const Eigen::Vector2d& x, std::size_t row) cons
 }
 
 NearestEdge Footprints::nearest(const Eigen::Vector2d& x, std::size_t& row) const {
-    // Between instants a distance changes by no more than the footprint moves: where it is so much too long, so many
-    // instants are passed over.
+    // Between instants, a distance changes by no more than the footprint moves. Where it is much too long, many
+    // instants are skipped.
     const std::size_t begin = row = downhill(x, row);
     const Eigen::Vector2d first = rows_[begin].in_frame(x);
     NearestEdge best = nearest_edge(rows_[begin].drop, first.x(), first.y());
@@ -294,16 +297,17 @@ SweptEdge Footprints::swept(const Eigen::Vector2d& x, std::size_t row, const Nea
     SweptEdge best{normal.dot(x - from), normal, own};
     for (const std::size_t other : {row - 1, row + 1}) {
         if (other >= rows_.size()) continue;
-        // further apart only where the brush was in the air in between
+        // Instants are further apart only where the brush was in the air in between.
         const double moved = std::abs(gone_[other] - gone_[row]);
         if (!(moved > 1e-9) || moved > 4.0 * apart_) continue;
         const Instant& there = rows_[other];
         NearestEdge touched = own, beyond = there.farthest(normal);
         Eigen::Vector2d n = normal, a = from, b = there.place_of(beyond);
         if (n.dot(b - a) <= 1e-12) continue;  // the neighbour stays behind the footprint's own tangent
-        // From what both sweep x is as far as from the farthest of the lines that leave both behind.
+        // The distance of x from the swept area is that from the farthest line that has both footprints behind it.
         SweptEdge pair{n.dot(x - b), n, own};
-        // the line that touches both: through the farthest places, square to it the farthest ones anew
+        // The common tangent is found by iteration: a line through the farthest places, and the farthest places
+        // perpendicular to this line.
         for (int round = 0; round < kTangentRounds; ++round) {
             const Eigen::Vector2d along = b - a;
             Eigen::Vector2d across = Eigen::Vector2d(-along.y(), along.x()).normalized();
@@ -336,7 +340,7 @@ Eigen::Vector2d Footprints::passing(std::size_t row, const NearestEdge& edge) co
 }
 
 double Footprints::way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out, std::size_t& last) const {
-    // Where footprints are this near one after the other they count as side by side: more than instants are apart.
+    // Footprints with a smaller gap count as adjacent. The limit is larger than the distance between instants.
     const double gap = 2.0 * apart_;
     struct Part {
         Span span;

@@ -8,21 +8,22 @@
 #include "mark_fit.hpp"
 #include "run_way.hpp"
 
-// The footprints of one pass at close instants, and the near part of their union. Inside fit_marks.
+// Computes the footprints of one pass at close instants, and the edge of their union near a point. Internal to
+// fit_marks.
 namespace brushsvg::fit {
 
-constexpr int kMostTerms = 7;          // numbers of a law
-constexpr double kLeastLagMm = 0.02;   // a pen's; at 0 the law loses its derivatives
-constexpr double kLeastRatio = 0.1;    // of widest section and front to the half width
-constexpr double kLeastHalfMm = 1e-4;  // at touch-down, where a drop without width would have no direction
+constexpr int kMostTerms = 7;          // largest number of a law's coefficients
+constexpr double kLeastLagMm = 0.02;   // lag of a pen; at 0 the law has no derivatives
+constexpr double kLeastRatio = 0.1;    // smallest ratio of widest section and front to the half width
+constexpr double kLeastHalfMm = 1e-4;  // at touch-down, because a drop without width has no direction
 
-constexpr int kWays = kMostTerms + 1 + kMachine;  // the lag's unknowns, the height of the paper, the machine
+constexpr int kWays = kMostTerms + 1 + kMachine;  // unknowns of the lag, height of the paper, machine
 
-/// Derivatives of a place by the lag's unknowns, the height of the paper and the machine.
+/// Derivatives of a place by the unknowns of the lag, the height of the paper and the machine.
 using ByLag = Eigen::Matrix<double, 2, kWays>;
 
-/// A pass on its way, which begins and ends in the air, as these laws are painted by this machine; without one it is
-/// run as commanded.
+/// A pass that begins and ends in the air, with the laws and the machine that paint it. Without a machine, it runs as
+/// commanded.
 struct PassRun {
     const Poses& poses;
     const std::vector<Arc>& arcs;
@@ -31,31 +32,32 @@ struct PassRun {
     const MachineHere* machine;
 };
 
-/// The footprint at one instant. Lengths in mm, slopes by depth.
+/// The footprint at one instant. Lengths are in mm, slopes are derivatives by depth.
 struct Instant {
     Eigen::Vector2d contact, heading;
     Drop drop;
-    double place;  ///< poses, fractional in between
+    double place;  ///< index of the pose, fractional between poses
     double gap, depth, half_slope, gap_slope;
-    double widest_ratio, widest_slope, front_ratio, front_slope;  ///< to the half width; slopes 0 at the least ratio
+    double widest_ratio, widest_slope, front_ratio,
+        front_slope;  ///< to the half width; slopes are 0 at the least ratio
     bool heading_known;
-    std::size_t heading_of;  ///< the instant whose heading it has: itself, or the first that knows one
-    double loose_lever_mm;   ///< from where a loose brush touches to the TCP, along which it points; taut: infinite
+    std::size_t heading_of;  ///< the instant that determines its heading: itself, or the first with a known one
+    double loose_lever_mm;   ///< distance from the contact of a loose brush to the TCP; infinite for a taut brush
 
-    /// x from the tip, its first coordinate along the heading.
+    /// Returns x relative to the tip, with the first coordinate along the heading.
     Eigen::Vector2d in_frame(const Eigen::Vector2d& x) const {
         const Eigen::Vector2d from_tip = x - contact + gap * heading;
         return {from_tip.dot(heading), heading.x() * from_tip.y() - heading.y() * from_tip.x()};
     }
-    /// The place on the paper of what is a place of the edge.
+    /// Returns the place of an edge on the paper.
     Eigen::Vector2d place_of(const NearestEdge& edge) const {
         const double x = edge.by_widest * drop.widest + edge.by_front * drop.front, y = edge.by_half * drop.half;
         return contact + (x - gap) * heading + y * Eigen::Vector2d(-heading.y(), heading.x());
     }
-    Eigen::Vector2d on_paper(const NearestEdge& edge) const {  ///< its normal
+    Eigen::Vector2d on_paper(const NearestEdge& edge) const {  ///< returns the normal of an edge on the paper
         return edge.nx * heading + edge.ny * Eigen::Vector2d(-heading.y(), heading.x());
     }
-    /// The place of the edge that is farthest in a direction on the paper.
+    /// Returns the place of the edge that is farthest in a direction on the paper.
     NearestEdge farthest(const Eigen::Vector2d& n) const {
         return farthest_edge(drop, n.dot(heading), heading.x() * n.y() - heading.y() * n.x());
     }
@@ -64,42 +66,43 @@ struct Instant {
 /// Derivatives at one instant.
 struct InstantBy {
     ByLag contact, heading;
-    Eigen::Matrix<double, 1, 1 + kMachine> depth;  ///< by the height and the machine
+    Eigen::Matrix<double, 1, 1 + kMachine> depth;  ///< derivatives by the height and the machine
 };
 
-/// A line that touches a footprint and its neighbour, or the footprint alone.
+/// A tangent of a footprint and its neighbour, or of the footprint alone.
 struct SweptEdge {
-    double distance;         ///< of a point, negative inside
+    double distance;         ///< distance of a point, negative inside
     Eigen::Vector2d normal;  ///< outwards
     NearestEdge edge;        ///< where it touches the footprint
 };
 
 class Footprints {
  public:
-    /// Follows a pass; `at`: poses, fractional in between, and more are put in where the footprint turns quickly.
-    /// coarse: so many times as far apart as they should be may instants be. False where these laws paint nothing, and
-    /// where it needs more instants than any brush does.
+    /// Computes the footprints of a pass. `at`: indices of poses, fractional between poses; more instants are added
+    /// where the footprint turns quickly. coarse: factor on the distance between instants. Returns false where the laws
+    /// paint nothing, and where more instants are needed than for any brush.
     bool follow(const PassRun& pass, const std::vector<double>& at, double coarse);
-    /// Derivatives at these instants, as by() then returns them, of the pass that was followed last; lag_by: of the
-    /// lag's coefficients by its unknowns. They cost ten times what an instant itself does, and points need a third of
-    /// them.
+    /// Computes the derivatives at some instants of the pass that was followed last, for by(). lag_by: derivatives of
+    /// the lag's coefficients by its unknowns. Derivatives cost ten times as much as the instant, and points need only
+    /// a third of them.
     void derive(const PassRun& pass, const Eigen::MatrixXd& lag_by, bool by_machine, std::vector<std::size_t> rows);
     const Instant& operator[](std::size_t i) const { return rows_[i]; }
     const InstantBy& by(std::size_t i) const { return by_[i]; }
-    /// What looking for a point's nearest instant costs at most, for a checkpoint.
+    /// Returns the largest cost of finding the instant nearest to a point, for a checkpoint.
     int effort() const { return 5 + int(rows_.size() / 100); }
-    /// How often an instant was looked at since follow() began, which itself costs more than a look for each.
+    /// Returns the number of evaluations of instants since follow() began, including the cost of follow() itself.
     std::uint64_t looks() const { return looks_; }
 
-    /// Edge of the footprint that comes nearest to x, and which one; the search begins at `row`. Of a point inside
-    /// only that it is.
+    /// Finds the edge of the footprint nearest to x, and its row; the search begins at `row`. For a point inside a
+    /// footprint, the result only shows that it is inside.
     NearestEdge nearest(const Eigen::Vector2d& x, std::size_t& row) const;
-    /// How far it is from x, inside a footprint, out of all of them in direction `out`; which one is left last.
+    /// Returns the distance from x, inside a footprint, to the outside of all footprints in direction `out`. last: the
+    /// footprint that is left last.
     double way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out, std::size_t& last) const;
-    /// Edge of what footprint `row` and its neighbours sweep, next to a place of the footprint's own edge: instants are
-    /// so far apart that footprints alone would leave scallops of 0.02 mm, and gaps where they are shorter than that.
+    /// Returns the edge of the area that footprint `row` and its neighbours sweep, next to a place of the footprint's
+    /// edge. Footprints alone would leave scallops of 0.02 mm between instants, and gaps where footprints are shorter.
     SweptEdge swept(const Eigen::Vector2d& x, std::size_t row, const NearestEdge& own) const;
-    /// Direction in which a place of a footprint's edge passes by; none where it rests, turns back, begins or ends.
+    /// Returns the direction of motion of a place of a footprint's edge, 0 where it rests, reverses, begins or ends.
     Eigen::Vector2d passing(std::size_t row, const NearestEdge& edge) const;
 
  private:
@@ -111,18 +114,20 @@ class Footprints {
     void derive_on(const Way& way, const MarkLaws& laws, const Eigen::MatrixXd& lag_by,
                    const std::vector<std::size_t>& rows);
     void enclose();
-    /// From an instant on to neighbours as long as they come nearer to x, or x is deeper in them.
+    /// Moves from an instant to its neighbours as long as they are nearer to x, or x is deeper inside them.
     std::size_t downhill(const Eigen::Vector2d& x, std::size_t row) const;
-    /// Those places, and more between instants whose footprints are too far apart; as many where there are none.
+    /// Returns these places and more between instants whose footprints are too far apart; the same number where none
+    /// are.
     std::vector<double> closer(const std::vector<double>& at) const;
 
     std::vector<Instant> rows_;
     std::vector<InstantBy> by_;
-    /// Round each footprint; gone: no point of the footprint has moved further than this since the first instant.
+    /// A circle around each footprint, and an upper bound of the distance that its points have moved since the first
+    /// instant.
     std::vector<Eigen::Vector2d> middle_;
     std::vector<double> radius_, gone_;
-    double reach_ = 0.0;  ///< the greatest depth of the pass, or of the laws
-    double apart_ = 0.0;  ///< most that a point of the footprint moves from one instant to the next [mm]
+    double reach_ = 0.0;  ///< greatest depth of the pass, or of the laws
+    double apart_ = 0.0;  ///< largest movement of a footprint's point from one instant to the next [mm]
     mutable std::uint64_t looks_ = 0;
 };
 

@@ -7,10 +7,10 @@
 #include "brushsvg/plan.hpp"
 #include "marks/pass_walk.hpp"
 
-// What the patch does at chosen places of a pass, on any scalar: the simulator as a solver differentiates it.
+// Traces the patch at chosen places of a pass, for any scalar type, so that a solver can differentiate the simulator.
 namespace brushsvg::fit {
 
-/// The patch at one place. Not `down`: the brush is in the air and the rest says nothing.
+/// The patch at one place. If not `down`, the brush is in the air and the other values have no meaning.
 template <class T>
 struct Trace {
     bool down;
@@ -19,7 +19,7 @@ struct Trace {
     LagState<T> state;
 };
 
-/// The law of these coefficients (ascending), with what the events need to know of their values.
+/// Returns the law of these coefficients (ascending), with the bounds that events need from their values.
 template <class T>
 LagLaw<T> law_of(const std::vector<T>& coefficients, double lo, double hi) {
     std::vector<double> values;
@@ -38,11 +38,11 @@ LagLaw<T> law_of(const std::vector<T>& coefficients, double lo, double hi) {
     return {{piece}, plain.rigid};
 }
 
-/// Walks a pass, and reports what the patch does at some of its places.
+/// Walks a pass and reports the state of the patch at some of its places.
 template <class T, class Out>
 class TraceAt {
  public:
-    /// at: poses, fractional in between, ascending.
+    /// at: ascending indices of poses, fractional between poses.
     TraceAt(const LagLaw<T>& law, const std::vector<double>& at, Out& out) : law_(law), at_(at), out_(out) {}
 
     bool is_done() const { return k_ >= at_.size(); }
@@ -82,13 +82,13 @@ class TraceAt {
     LagState<T> state_;
 };
 
-/// Calls out(k, Trace) for every k of `at`: poses, fractional in between, ascending.
+/// Calls out(k, Trace) for every k of `at`: ascending indices of poses, fractional between poses.
 ///
-/// way: a CommandedWay, or a type with the same members. At the first pose the brush is set down, if it is not in the
+/// way: a CommandedWay, or a type with the same members. At the first pose, the brush is set down if it is not in the
 /// air.
 ///
-/// Derivatives pass through events: where bristles tighten and where they touch by the moment's own derivative; where
-/// they loosen the patch stands still, so that the moment does not matter.
+/// Derivatives pass through events. Where bristles tighten and where they touch, the derivative of the moment is used.
+/// Where bristles loosen, the patch does not move, so that the moment does not matter.
 template <class T, class Way, class Out>
 void trace(const LagLaw<T>& law, const Way& way, const std::vector<double>& at, Out&& out) {
     TraceAt<T, Out> to(law, at, out);

@@ -1,3 +1,3 @@
-"""A picture to marks in mm: markers, flattening, edges."""
+"""From a picture to marks in mm: markers, flattening, edges."""
 
-PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")  # extensions of pictures that are read
+PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")  # extensions of readable pictures

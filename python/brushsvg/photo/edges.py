@@ -1,4 +1,4 @@
-"""Marks on a flattened sheet: how much paint each pixel shows, and outlines half way between paper and paint."""
+"""Find the marks on a flattened sheet: the paint in each pixel, and outlines half way between paper and paint."""
 
 from __future__ import annotations
 
@@ -13,37 +13,44 @@ from .flatten import Flat
 from .mask_contours import mask_outlines
 from .photo import LIGHT, grey_light, refuse_grainy
 
-BROADEST_MM = 31  # paint is narrower: what is darker over less than this is not the light
-PAPER = 0.92  # of the light round about: darker is paint
-SMOOTH_MM = 8.0  # over which the light changes; shorter, and it would follow the stain round wet paint
-STRAY_MM = 6.0  # greatest distance of a mark from its box
-FAINTEST = 0.12  # share of the light that paint takes away at least
-CERTAIN = 6.0  # times the paper's noise
-SEEN = 0.3  # of the usual paint: more is a mark, the edge is found for each by itself
-SPLIT, SPLIT_MM2 = 0.15, 3.0  # share and area of a part in another stroke's box from which it is another mark
-MOST_JOINED = 2  # strokes that one piece of paint covers: more, and it is a shadow or a thing on the page
-MOST_TOUCHING = 0.25  # share of the strokes: more, and it is not one painting of this chart
-TURNED = 0.1  # of the paint: so much more would be in the boxes of strokes if the page were turned
-IN_STROKE_BOX = 0.7  # of the paint at least: the rest strays
-MOST_LEAN = 1.5  # mm of displacement for each mm of depth, as for a cell
-MOST_MISSING = 0.5  # share of the strokes
-LEAST_MM2 = 0.5
-BLOT = 0.03  # of a mark's area: smaller parts are splashes
-RIM_MM = 2.0  # along the sheet's edges, where the table and shadows show
-ALONG_RIM = (
-    0.3  # of a side: what goes along it so far is the table round paper that is smaller than the page's print
-)
-LEAST_LENGTH = 0.3  # of its box, that a mark is long at least: less is a splash where a stroke is missing
-CLEAR_MM = 0.5  # within a mark's edge, from where on blur takes nothing away
-MOST_BLURRED = 1.3  # times as much paint a narrow mark may have as it shows
-EDGE_MM = 0.8  # next to a mark, where its edge is searched
-STEP_MM, OVER_MM = 0.1, 0.2  # points of an outline, and over how much of it each is a mean: pixels make steps
+MAX_PAINT_WIDTH_MM = 31  # a darker area that is narrower than this is paint; a wider one is uneven light
+MIN_BARE_LIGHT_RATIO = 0.92  # of the surrounding light: a darker pixel is not bare paper
+# Distance over which the light may change. If shorter, the light would follow the stain around wet paint.
+LIGHT_SMOOTHING_MM = 8.0
+MAX_STRAY_MM = 6.0  # greatest distance of a mark from its box
+MIN_CONTRAST = 0.12  # smallest share of the light that paint absorbs
+MIN_CONTRAST_TO_NOISE = 6.0  # smallest contrast of paint, in standard deviations of the paper's noise
+SEEN = 0.3  # of the usual paint: a pixel with more is part of a mark; each mark's edge has its own level
+# A part of the paint with this share and area in the box of another stroke is a mark of that stroke as well.
+MIN_SPLIT_SHARE, MIN_SPLIT_MM2 = 0.15, 3.0
+# Strokes that one piece of paint may cover. With more, it is a shadow or an object on the page.
+MAX_JOINED_STROKES = 2
+MAX_TOUCHING_SHARE = 0.25  # of the strokes: if more touch, this is not one painting of this chart
+# Of the paint: if the strokes' boxes hold this much more of it when turned, the page was turned by 180 degrees.
+MIN_TURNED_EXCESS = 0.1
+MIN_SHARE_IN_BOXES = 0.7  # smallest share of the paint inside the strokes' boxes
+MAX_LEAN_MM_PER_MM = 1.5  # displacement per depth of a leaning tool, with the same limit as in a cell
+MAX_MISSING_SHARE = 0.5  # of the strokes
+MIN_PART_MM2 = 0.5
+MIN_PART_SHARE = 0.03  # of a mark's area: smaller parts are splashes
+SHEET_RIM_MM = 2.0  # width of the rim along the sheet's edges, where the table and shadows show
+# Of a side: a part that runs along more of it is the table around paper that is smaller than the printed page.
+MAX_RIM_SHARE = 0.3
+MIN_LENGTH_SHARE = 0.3  # of its box's length: a shorter mark is a splash where a stroke is missing
+BLUR_MARGIN_MM = 0.5  # distance inside a mark's edge beyond which blur does not reduce its paint
+MAX_BLUR_FACTOR = 1.3  # largest ratio of a narrow mark's real paint to the paint that the photograph shows
+EDGE_MM = 0.8  # distance from a mark within which its edge is searched
+# Distance between the points of an outline, and the length over which each is averaged to remove pixel steps.
+OUTLINE_STEP_MM, OUTLINE_MEAN_MM = 0.1, 0.2
 
 
 @dataclass(frozen=True)
 class StrokeBox:
-    """Where the mark of a stroke is expected: left, bottom, right, top in mm on the sheet. depth_mm: how deep it is
-    pressed, which displaces it where the tool leans; 0: no such displacement is estimated."""
+    """The box in which the mark of a stroke is expected.
+
+    box_mm: left, bottom, right, top on the sheet; depth_mm: depth of the brush, which displaces the mark where the tool
+    leans. With 0, no displacement is estimated.
+    """
 
     stroke: str
     box_mm: tuple[float, float, float, float]
@@ -52,9 +59,10 @@ class StrokeBox:
 
 @dataclass(frozen=True)
 class Marks:
-    """outlines_mm: rings by stroke; missing: strokes without paint; joined: pairs that touch, cut between their boxes.
+    """The marks that were found on a sheet.
 
-    paint (rows, columns): 0 paper, 1 the usual paint.
+    outlines_mm: rings by stroke; missing: strokes without paint; joined: pairs of strokes whose marks touch, and which
+    are cut between their boxes; paint: (rows, columns), 0 is paper, 1 is the usual paint.
     """
 
     outlines_mm: dict[str, list[np.ndarray]]
@@ -66,11 +74,14 @@ class Marks:
 def find_marks(
     flat: Flat, stroke_boxes: list[StrokeBox], printed_mm: list[np.ndarray], labels_mm: list
 ) -> Marks:
-    """printed_mm: rings round markers and all that is as dark as paint; labels_mm: boxes of pale text, which a mark may
-    cover. Error where there is no paint."""
-    print_ = printed_pixels(flat, printed_mm)
+    """Find the marks of the strokes on a flattened sheet.
+
+    printed_mm: rings around markers and everything printed as dark as paint; labels_mm: boxes of pale text, which a
+    mark may cover. Raises Error where there is no paint.
+    """
+    is_printed = printed_pixels(flat, printed_mm)
     try:
-        paint = paint_seen(flat, print_, stroke_boxes, labels_mm)
+        paint = paint_seen(flat, is_printed, stroke_boxes, labels_mm)
         return assign_marks(paint, flat, stroke_boxes, labels_mm)
     except Error:
         refuse_grainy(grey_light(flat.pixels), "the strokes cannot be distinguished")
@@ -78,103 +89,124 @@ def find_marks(
 
 
 def printed_pixels(flat: Flat, printed_mm) -> np.ndarray:
-    """Mask (rows, columns) of rings round what is printed."""
-    print_ = np.zeros(flat.pixels.shape[:2], np.uint8)
+    """Return the mask (rows, columns) of the printed area, inside the rings."""
+    is_printed = np.zeros(flat.pixels.shape[:2], np.uint8)
     for ring in printed_mm:
-        cv2.fillPoly(print_, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
-    return print_
+        cv2.fillPoly(is_printed, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
+    return is_printed
 
 
-def paint_seen(flat: Flat, print_: np.ndarray, stroke_boxes: list[StrokeBox], labels_mm=()) -> np.ndarray:
-    """Return the paint along the colour that separates it best from paper, from the light that paper next to it would
-    throw back; paint is darker than paper, or lighter."""
+def paint_seen(flat: Flat, is_printed: np.ndarray, stroke_boxes: list[StrokeBox], labels_mm=()) -> np.ndarray:
+    """Return the amount of paint in each pixel: 0 is paper, 1 is the usual paint.
+
+    The amount (rows, columns) is measured along the colour that best separates paint from paper, relative to the light
+    that bare paper would reflect at the same place. Paint may be darker or lighter than paper. is_printed: mask (rows,
+    columns) of pixels that do not count; labels_mm: boxes that do not count as bare paper.
+    """
     light = cv2.LUT(flat.pixels, LIGHT)
-    printed = print_.copy()
+    printed = is_printed.copy()
     for box in labels_mm:
-        c0, r0, c1, r1 = _window(flat, box, 0.5)
+        c0, r0, c1, r1 = _box_pixels(flat, box, 0.5)
         printed[r0:r1, c0:c1] = 1
-    paper, is_lighter = _paper(light, printed, flat.px_per_mm)
-    taken = 1.0 - light / np.maximum(paper, 1e-3)
+    paper, is_lighter = _estimate_paper_light(light, printed, flat.px_per_mm)
+    absorbed = 1.0 - light / np.maximum(paper, 1e-3)
     if is_lighter:
-        taken = -taken
-    inside = np.zeros_like(print_)
+        absorbed = -absorbed
+    inside = np.zeros_like(is_printed)
     for stroke_box in stroke_boxes:
-        c0, r0, c1, r1 = _window(flat, stroke_box.box_mm, 0.0)
+        c0, r0, c1, r1 = _box_pixels(flat, stroke_box.box_mm, 0.0)
         inside[r0:r1, c0:c1] = 1
-    sample = taken[::3, ::3][(inside[::3, ::3] == 1) & (print_[::3, ::3] == 0)]
-    weights = _contrast(sample)
-    paint = cv2.transform(taken, weights[None])
-    paint[print_ == 1] = 0.0
-    rim = _rim_px(flat)
-    paint[:rim] = paint[-rim:] = paint[:, :rim] = paint[:, -rim:] = 0.0
+    sample = absorbed[::3, ::3][(inside[::3, ::3] == 1) & (is_printed[::3, ::3] == 0)]
+    weights = _paint_weights(sample)
+    paint = cv2.transform(absorbed, weights[None])
+    paint[is_printed == 1] = 0.0
+    rim_px = _rim_px(flat)
+    paint[:rim_px] = paint[-rim_px:] = paint[:, :rim_px] = paint[:, -rim_px:] = 0.0
     return paint
 
 
 def _rim_px(flat: Flat) -> int:
-    return max(1, round(RIM_MM * flat.px_per_mm))
+    return max(1, round(SHEET_RIM_MM * flat.px_per_mm))
 
 
-def _paper(light: np.ndarray, print_: np.ndarray, px_per_mm: float) -> tuple[np.ndarray, bool]:
-    """What bare paper would show at every pixel: the light of the paper round about, at a pixel per mm; and whether
-    paint is lighter than it: paper is what most of the surroundings are."""
+def _estimate_paper_light(
+    light: np.ndarray, is_printed: np.ndarray, px_per_mm: float
+) -> tuple[np.ndarray, bool]:
+    """Return the light of bare paper at every pixel.
+
+    Returns also whether paint is lighter than paper. The light is smoothed from the bare paper around, at one pixel per
+    mm. Most of the surroundings of a pixel are taken to be paper.
+    """
     rows, columns = light.shape[:2]
     size = (max(8, round(columns / px_per_mm)), max(8, round(rows / px_per_mm)))
     coarse = cv2.resize(light, size, interpolation=cv2.INTER_AREA)
-    covered = cv2.resize(print_.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0
-    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (BROADEST_MM, BROADEST_MM))
-    is_lighter = _is_lighter(coarse, covered)
+    is_covered = cv2.resize(is_printed.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (MAX_PAINT_WIDTH_MM, MAX_PAINT_WIDTH_MM))
+    is_lighter = _is_paint_lighter(coarse, is_covered)
     if is_lighter:
-        no_print = np.where(covered[..., None], np.float32(1.0), coarse)
+        no_print = np.where(is_covered[..., None], np.float32(1.0), coarse)
         around = cv2.morphologyEx(no_print, cv2.MORPH_OPEN, kernel, borderType=cv2.BORDER_REPLICATE)
         share = around / np.maximum(coarse, 1e-3)
     else:
         around = cv2.morphologyEx(coarse, cv2.MORPH_CLOSE, kernel, borderType=cv2.BORDER_REPLICATE)
         share = coarse / np.maximum(around, 1e-3)
-    bare = (share.min(axis=2) > PAPER) & ~covered
-    weight = cv2.GaussianBlur(bare.astype(np.float32), None, SMOOTH_MM)
-    mean = cv2.GaussianBlur(coarse * bare[..., None].astype(np.float32), None, SMOOTH_MM)
+    bare = (share.min(axis=2) > MIN_BARE_LIGHT_RATIO) & ~is_covered
+    weight = cv2.GaussianBlur(bare.astype(np.float32), None, LIGHT_SMOOTHING_MM)
+    mean = cv2.GaussianBlur(coarse * bare[..., None].astype(np.float32), None, LIGHT_SMOOTHING_MM)
     is_lit = weight[..., None] > 0.02
-    even = np.where(is_lit, mean / np.maximum(weight[..., None], 1e-6), around).astype(np.float32)
-    return cv2.resize(even, (columns, rows), interpolation=cv2.INTER_LINEAR), is_lighter
+    smoothed = np.where(is_lit, mean / np.maximum(weight[..., None], 1e-6), around).astype(np.float32)
+    return cv2.resize(smoothed, (columns, rows), interpolation=cv2.INTER_LINEAR), is_lighter
 
 
-def _is_lighter(coarse: np.ndarray, covered: np.ndarray) -> bool:
-    """Whether what is lighter than most of its surroundings covers more than what is darker, by a pixel per mm."""
-    numbers = np.uint8(np.round(255 * np.sqrt(np.clip(coarse, 0, 1))))  # a median of so many takes 8 bits
-    usual = np.dstack([cv2.medianBlur(each, BROADEST_MM) for each in cv2.split(numbers)])
-    ratio = (numbers + 1.0) / (usual + 1.0)
-    darker, lighter = ((each > 1 / np.sqrt(PAPER)).any(axis=2) & ~covered for each in (1 / ratio, ratio))
+def _is_paint_lighter(coarse: np.ndarray, is_covered: np.ndarray) -> bool:
+    """Return whether paint is lighter than paper.
+
+    Pixels that are lighter than their surroundings then outnumber darker ones, at one pixel per mm.
+    """
+    levels = np.uint8(
+        np.round(255 * np.sqrt(np.clip(coarse, 0, 1)))
+    )  # a median over so many pixels needs 8 bits
+    surroundings = np.dstack([cv2.medianBlur(channel, MAX_PAINT_WIDTH_MM) for channel in cv2.split(levels)])
+    ratio = (levels + 1.0) / (surroundings + 1.0)
+    darker, lighter = (
+        (channel > 1 / np.sqrt(MIN_BARE_LIGHT_RATIO)).any(axis=2) & ~is_covered
+        for channel in (1 / ratio, ratio)
+    )
     return int(lighter.sum()) > int(darker.sum())
 
 
-def _contrast(taken: np.ndarray) -> np.ndarray:
-    """Weights of the colours by which paint comes out as 1, paper as 0, and noise least: Fisher's discriminant."""
-    size = np.linalg.norm(np.maximum(taken, 0.0), axis=1) / np.sqrt(3)
-    level, _ = cv2.threshold(
-        np.uint8(np.clip(size * 255, 0, 255))[:, None], 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU
+def _paint_weights(absorbed: np.ndarray) -> np.ndarray:
+    """Return colour weights (3,) that map paint to 1 and paper to 0.
+
+    With these weights, noise is smallest. This is Fisher's linear discriminant. absorbed: (n, 3) absorbed shares of the
+    light. Raises Error where paint and paper cannot be separated.
+    """
+    strength = np.linalg.norm(np.maximum(absorbed, 0.0), axis=1) / np.sqrt(3)
+    threshold, _ = cv2.threshold(
+        np.uint8(np.clip(strength * 255, 0, 255))[:, None], 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU
     )
-    painted = size > level / 255
-    if not 10 < painted.sum() < 0.99 * len(size):
-        raise Error(_NO_PAINT, code="photo-without-paint")
-    paper, paint = taken[~painted], np.median(taken[painted], axis=0)
-    ground = np.median(paper, axis=0)
-    noise = 1.4826 * np.median(np.abs(paper - ground), axis=0)
-    if np.abs(paint - ground).max() < max(FAINTEST, CERTAIN * float(noise.max())):
-        raise Error(_NO_PAINT, code="photo-without-paint")
-    bare = paper[(np.abs(paper - ground) < 4 * noise + 1e-3).all(axis=1)]
+    painted = strength > threshold / 255
+    if not 10 < painted.sum() < 0.99 * len(strength):
+        raise Error(NO_PAINT_MESSAGE, code="photo-without-paint")
+    paper, paint = absorbed[~painted], np.median(absorbed[painted], axis=0)
+    paper_median = np.median(paper, axis=0)
+    noise = 1.4826 * np.median(np.abs(paper - paper_median), axis=0)
+    if np.abs(paint - paper_median).max() < max(MIN_CONTRAST, MIN_CONTRAST_TO_NOISE * float(noise.max())):
+        raise Error(NO_PAINT_MESSAGE, code="photo-without-paint")
+    bare = paper[(np.abs(paper - paper_median) < 4 * noise + 1e-3).all(axis=1)]
     spread = np.cov(bare, rowvar=False) + 0.02**2 * np.eye(3)
-    weights = np.linalg.solve(spread, paint - ground)
-    return weights / (weights @ (paint - ground))
+    weights = np.linalg.solve(spread, paint - paper_median)
+    return weights / (weights @ (paint - paper_median))
 
 
-_NO_PAINT = (
+NO_PAINT_MESSAGE = (
     "no paint is found where the strokes should be: is this the painted page, "
     "and does its paint differ from the paper?"
 )
 
 
-def _window(flat: Flat, box_mm, beyond_mm: float) -> tuple[int, int, int, int]:
-    """Columns and rows of pixels, left, top, right, bottom."""
+def _box_pixels(flat: Flat, box_mm, beyond_mm: float) -> tuple[int, int, int, int]:
+    """Return the pixel columns and rows of an enlarged box: left, top, right, bottom."""
     left, bottom, right, top = box_mm
     rows, columns = flat.pixels.shape[:2]
     (c0, r0), (c1, r1) = flat.to_px(
@@ -188,81 +220,97 @@ def _window(flat: Flat, box_mm, beyond_mm: float) -> tuple[int, int, int, int]:
     )
 
 
-def _nearest_box(flat: Flat, stroke_boxes: list[StrokeBox]) -> np.ndarray:
-    """Number from 1 on of the box that is nearest to each pixel, of several round it the one whose edge is farthest;
-    0 beyond STRAY_MM of all."""
+def _number_nearest_boxes(flat: Flat, stroke_boxes: list[StrokeBox]) -> np.ndarray:
+    """Return the number, from 1, of the box nearest to each pixel (rows, columns).
+
+    Where several boxes contain a pixel, the box whose edge is farthest is chosen. Pixels more than MAX_STRAY_MM away
+    from all boxes get 0.
+    """
     rows, columns = flat.pixels.shape[:2]
     step = max(1, round(flat.px_per_mm / 2))
     x = (np.arange(0, columns, step) + 0.5) / flat.px_per_mm
     y = flat.sheet_mm[1] - (np.arange(0, rows, step) + 0.5) / flat.px_per_mm
-    nearest, owner = np.full((len(y), len(x)), STRAY_MM), np.zeros((len(y), len(x)), np.uint16)
+    nearest, owner = np.full((len(y), len(x)), MAX_STRAY_MM), np.zeros((len(y), len(x)), np.uint16)
     for number, stroke_box in enumerate(stroke_boxes, 1):
         left, bottom, right, top = stroke_box.box_mm
         across = np.maximum(left - x, x - right)[None]
-        up = np.maximum(bottom - y, y - top)[:, None]
-        away = np.hypot(np.maximum(across, 0.0), np.maximum(up, 0.0)) + np.minimum(
-            np.maximum(across, up), 0.0
+        above = np.maximum(bottom - y, y - top)[:, None]
+        distance = np.hypot(np.maximum(across, 0.0), np.maximum(above, 0.0)) + np.minimum(
+            np.maximum(across, above), 0.0
         )
-        closer = away < nearest
-        nearest[closer], owner[closer] = away[closer], number
+        closer = distance < nearest
+        nearest[closer], owner[closer] = distance[closer], number
     return np.repeat(np.repeat(owner, step, axis=0), step, axis=1)[:rows, :columns]
 
 
 def assign_marks(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], labels_mm: list) -> Marks:
-    """Return the marks, each by the box that holds most of it; where marks are in the boxes of others, as with a
-    leaning tool, by boxes that lean as they do. paint: as paint_seen gives it, or a mean over several pictures."""
+    """Assign each piece of paint to the stroke whose box holds most of it.
+
+    Where marks are in the boxes of other strokes, as with a leaning tool, the boxes are moved with the lean first.
+    paint: from paint_seen, or a mean over several pictures.
+    """
     try:
-        found = _assign_marks_once(paint, flat, stroke_boxes, labels_mm)
+        marks = _assign_marks_once(paint, flat, stroke_boxes, labels_mm)
     except Error as refusal:
         if refusal.code != "photo-paint-elsewhere":
             raise
-        leaning = _leaning(paint, flat, stroke_boxes)
-        if leaning is None:
+        leaning_boxes = _lean_boxes(paint, flat, stroke_boxes)
+        if leaning_boxes is None:
             raise
         try:
-            return _assign_marks_once(paint, flat, leaning, labels_mm)
+            return _assign_marks_once(paint, flat, leaning_boxes, labels_mm)
         except Error:
             raise refusal from None
-    if (found.joined or found.missing) and (leaning := _leaning(paint, flat, stroke_boxes)) is not None:
+    if (marks.joined or marks.missing) and (
+        leaning_boxes := _lean_boxes(paint, flat, stroke_boxes)
+    ) is not None:
         with contextlib.suppress(Error):
-            again = _assign_marks_once(paint, flat, leaning, labels_mm)
-            if len(again.joined) + len(again.missing) < len(found.joined) + len(found.missing):
-                return again
-    return found
+            retried = _assign_marks_once(paint, flat, leaning_boxes, labels_mm)
+            if len(retried.joined) + len(retried.missing) < len(marks.joined) + len(marks.missing):
+                return retried
+    return marks
 
 
-def _leaning(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> list[StrokeBox] | None:
-    """Return the boxes moved in proportion to depth, to where the middles of most parts of paint are in those of their
-    boxes.
-    None where no depth is known, and where the same shift of all does better: the sheet was not at its place."""
+def _lean_boxes(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> list[StrokeBox] | None:
+    """Move the boxes in proportion to depth, so that they match the paint.
+
+    The middles of the boxes then match those of most parts of the paint. Returns None where no depth is known. Returns
+    None also where one shift of all boxes fits better, because then the sheet was out of place.
+    """
     depths = np.array([stroke_box.depth_mm for stroke_box in stroke_boxes])
     if not depths.any():
         return None
     _, _, stats, _ = cv2.connectedComponentsWithStats(np.uint8(paint > SEEN), connectivity=8)
-    fine = flat.px_per_mm
-    parts = stats[1:][stats[1:, cv2.CC_STAT_AREA] > SPLIT_MM2 * fine**2] / fine
+    px_per_mm = flat.px_per_mm
+    parts = stats[1:][stats[1:, cv2.CC_STAT_AREA] > MIN_SPLIT_MM2 * px_per_mm**2] / px_per_mm
     size = parts[:, 2:4]
     middle = np.column_stack([0, flat.sheet_mm[1]]) + (parts[:, :2] + 0.5 * size) * (1, -1)
     boxes = np.array([stroke_box.box_mm for stroke_box in stroke_boxes])
-    unlike = size[:, None] - (boxes[:, 2:] - boxes[:, :2])
+    size_differences = size[:, None] - (boxes[:, 2:] - boxes[:, :2])
     offsets = middle[:, None] - 0.5 * (boxes[:, :2] + boxes[:, 2:])
 
-    def nearest(by: np.ndarray) -> tuple[float, np.ndarray]:
-        """How far parts stay off at least where rooms move by up to MOST_LEAN times `by` (rooms,), and by how much."""
+    def fit_boxes(by: np.ndarray) -> tuple[float, np.ndarray]:
+        """Fit the factors (2,) by which boxes move, and return the distance left.
 
-        def off(times) -> float:
-            away = np.linalg.norm(np.dstack([offsets - np.outer(by, times), 0.5 * unlike]), axis=2)
-            return float(np.minimum(away.min(axis=1), STRAY_MM).sum())
+        The distance is the smallest total distance of the parts from boxes. The boxes move by the factors times `by`
+        (boxes,). The factors are at most MAX_LEAN_MM_PER_MM.
+        """
 
-        times, reach = np.zeros(2), MOST_LEAN
+        def total_distance_mm(factors) -> float:
+            distances = np.linalg.norm(
+                np.dstack([offsets - np.outer(by, factors), 0.5 * size_differences]), axis=2
+            )
+            return float(np.minimum(distances.min(axis=1), MAX_STRAY_MM).sum())
+
+        factors, reach = np.zeros(2), MAX_LEAN_MM_PER_MM
         for _ in range(2):
             steps = np.linspace(-reach, reach, 31)
-            times = min((times + np.array([x, y]) for x in steps for y in steps), key=off)
+            factors = min((factors + np.array([x, y]) for x in steps for y in steps), key=total_distance_mm)
             reach /= 10
-        return off(times), times
+        return total_distance_mm(factors), factors
 
-    off, lean = nearest(depths)
-    is_shifted = nearest(np.full(len(depths), depths.max()))[0] < off
+    distance_mm, lean = fit_boxes(depths)
+    is_shifted = fit_boxes(np.full(len(depths), depths.max()))[0] < distance_mm
     if is_shifted:
         return None
     moved = boxes + np.outer(depths, np.tile(lean, 2))
@@ -275,47 +323,59 @@ def _leaning(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> li
 def _assign_marks_once(
     paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], labels_mm: list
 ) -> Marks:
-    fine = flat.px_per_mm
+    px_per_mm = flat.px_per_mm
     count, part, stats, _ = cv2.connectedComponentsWithStats(np.uint8(paint > SEEN), connectivity=8)
-    owner = _nearest_box(flat, stroke_boxes)
-    where = np.flatnonzero(part)
-    both = part.ravel()[where].astype(np.int64) * (len(stroke_boxes) + 1) + owner.ravel()[where]
-    shares = np.bincount(both, minlength=count * (len(stroke_boxes) + 1)).reshape(count, -1)
+    owner = _number_nearest_boxes(flat, stroke_boxes)
+    painted_px = np.flatnonzero(part)
+    pairs_of_numbers = (
+        part.ravel()[painted_px].astype(np.int64) * (len(stroke_boxes) + 1) + owner.ravel()[painted_px]
+    )
+    areas_in_boxes = np.bincount(pairs_of_numbers, minlength=count * (len(stroke_boxes) + 1)).reshape(
+        count, -1
+    )
     areas = stats[:, cv2.CC_STAT_AREA].astype(float)
-    text = np.zeros(part.shape, bool)
+    is_text = np.zeros(part.shape, bool)
     for box in labels_mm:
-        c0, r0, c1, r1 = _window(flat, box, 0.2)
-        text[r0:r1, c0:c1] = True
-    of_text = np.bincount(part[text], minlength=count)
-    kept = (areas > 0.5 * LEAST_MM2 * fine**2) & (of_text < 0.7 * areas)
-    kept[0] = False
-    kept &= ~_along_rim(part, count, _rim_px(flat))
-    home = shares[:, 1:].argmax(axis=1) + 1
-    home[shares[:, 1:].max(axis=1) == 0] = 0
-    second = np.sort(shares[:, 1:], axis=1)[:, -2] if len(stroke_boxes) > 1 else np.zeros(count)
-    reaching = kept & _reaches(second, areas, fine)
-    cut = reaching & _reaches(_largest_foreign(shares, areas, home, kept), areas, fine)
-    _refuse_covered(shares, areas, reaching, stroke_boxes, fine)
-    _refuse_elsewhere(kept[part], flat, stroke_boxes)
-    _refuse_displaced(shares, reaching, stroke_boxes)
+        c0, r0, c1, r1 = _box_pixels(flat, box, 0.2)
+        is_text[r0:r1, c0:c1] = True
+    text_areas = np.bincount(part[is_text], minlength=count)
+    is_kept = (areas > 0.5 * MIN_PART_MM2 * px_per_mm**2) & (text_areas < 0.7 * areas)
+    is_kept[0] = False
+    is_kept &= ~_is_along_rim(part, count, _rim_px(flat))
+    own_box = areas_in_boxes[:, 1:].argmax(axis=1) + 1
+    own_box[areas_in_boxes[:, 1:].max(axis=1) == 0] = 0
+    second = np.sort(areas_in_boxes[:, 1:], axis=1)[:, -2] if len(stroke_boxes) > 1 else np.zeros(count)
+    is_reaching = is_kept & _is_separate_mark(second, areas, px_per_mm)
+    is_cut = is_reaching & _is_separate_mark(
+        _largest_area_elsewhere(areas_in_boxes, areas, own_box, is_kept), areas, px_per_mm
+    )
+    _refuse_covered(areas_in_boxes, areas, is_reaching, stroke_boxes, px_per_mm)
+    _refuse_elsewhere(is_kept[part], flat, stroke_boxes)
+    _refuse_displaced(areas_in_boxes, is_reaching, stroke_boxes)
     usual = float(np.median(paint[paint > SEEN])) if (paint > SEEN).any() else 1.0
     outlines, missing, joined = {}, [], []
     for number, stroke_box in enumerate(stroke_boxes, 1):
-        own = kept & np.where(cut, shares[:, number] > LEAST_MM2 * fine**2, home == number)
-        rings = _outlines(paint, part, owner, own, cut, number, stats, fine, flat.sheet_mm[1], usual)
-        if rings and _long(rings) > LEAST_LENGTH * _long([np.reshape(stroke_box.box_mm, (2, 2))]):
+        is_own = is_kept & np.where(
+            is_cut, areas_in_boxes[:, number] > MIN_PART_MM2 * px_per_mm**2, own_box == number
+        )
+        rings = _outlines_of_stroke(
+            paint, part, owner, is_own, is_cut, number, stats, px_per_mm, flat.sheet_mm[1], usual
+        )
+        if rings and _longest_side(rings) > MIN_LENGTH_SHARE * _longest_side(
+            [np.reshape(stroke_box.box_mm, (2, 2))]
+        ):
             outlines[stroke_box.stroke] = rings
         else:
             missing.append(stroke_box.stroke)
-        for each in np.flatnonzero(own & cut):
-            other = [k for k in np.argsort(shares[each, 1:])[::-1][:2] + 1 if k != number]
+        for number_of_part in np.flatnonzero(is_own & is_cut):
+            other = [k for k in np.argsort(areas_in_boxes[number_of_part, 1:])[::-1][:2] + 1 if k != number]
             pair = tuple(sorted((stroke_box.stroke, stroke_boxes[other[0] - 1].stroke)))
             if pair not in joined:
                 joined.append(pair)
-    if len(missing) > MOST_MISSING * len(stroke_boxes):
+    if len(missing) > MAX_MISSING_SHARE * len(stroke_boxes):
         raise Error(
             f"no paint is found of {len(missing)} of the {len(stroke_boxes)} strokes, the range is "
-            f"[0, {int(MOST_MISSING * len(stroke_boxes))}]: is this chart painted, at its place and the right way "
+            f"[0, {int(MAX_MISSING_SHARE * len(stroke_boxes))}]: is this chart painted, at its place and the right way "
             "round?",
             value=len(missing),
             code="mark-missing",
@@ -323,146 +383,176 @@ def _assign_marks_once(
     return Marks(outlines, missing, joined, paint)
 
 
-def _along_rim(part: np.ndarray, count: int, rim: int) -> np.ndarray:
-    """Which parts go along a side of the sheet."""
+def _is_along_rim(part: np.ndarray, count: int, rim: int) -> np.ndarray:
+    """Return which parts (count,) run along a side of the sheet."""
     sides = (part[rim], part[-rim - 1], part[:, rim], part[:, -rim - 1])
-    return np.any([np.bincount(side, minlength=count) > ALONG_RIM * len(side) for side in sides], axis=0)
+    return np.any([np.bincount(side, minlength=count) > MAX_RIM_SHARE * len(side) for side in sides], axis=0)
 
 
-def _reaches(other, areas, fine: float) -> np.ndarray:
-    """Whether so much of each part (pixels) in another room than its own is a mark of its own."""
-    return (other > SPLIT * areas) & (other > SPLIT_MM2 * fine**2)
+def _is_separate_mark(other, areas, px_per_mm: float) -> np.ndarray:
+    """Return whether each part is a separate mark in another box.
+
+    other: area of each part in another box [px]; areas: whole area [px].
+    """
+    return (other > MIN_SPLIT_SHARE * areas) & (other > MIN_SPLIT_MM2 * px_per_mm**2)
 
 
-def _largest_foreign(shares, areas, home, kept) -> np.ndarray:
-    """Return the share of each part in the box of a stroke that has no larger mark: a part that reaches into the box of
-    a stroke with a larger mark is displaced."""
-    own = np.zeros(shares.shape[1])
-    np.maximum.at(own, home[kept], areas[kept])
-    foreign = shares * (np.arange(shares.shape[1]) != home[:, None])
+def _largest_area_elsewhere(areas_in_boxes, areas, own_box, is_kept) -> np.ndarray:
+    """Return the largest area of each part in a box of another stroke.
+
+    Only boxes of strokes without a larger mark count. A part that reaches into the box of a stroke with a larger mark
+    is displaced, not joined.
+    """
+    largest_marks = np.zeros(areas_in_boxes.shape[1])
+    np.maximum.at(largest_marks, own_box[is_kept], areas[is_kept])
+    foreign = areas_in_boxes * (np.arange(areas_in_boxes.shape[1]) != own_box[:, None])
     foreign[:, 0] = 0
-    foreign[foreign < own] = 0
+    foreign[foreign < largest_marks] = 0
     return foreign.max(axis=1)
 
 
-def _refuse_displaced(shares, reaching: np.ndarray, stroke_boxes: list[StrokeBox]) -> None:
-    """reaching: which parts are in the boxes of more strokes than one."""
-    touching = np.unique(np.argsort(shares[reaching, 1:], axis=1)[:, -2:])
-    if len(touching) > MOST_TOUCHING * len(stroke_boxes):
+def _refuse_displaced(areas_in_boxes, reaching: np.ndarray, stroke_boxes: list[StrokeBox]) -> None:
+    """Refuse a sheet on which too many marks touch or are displaced.
+
+    reaching: which parts are in the boxes of several strokes.
+    """
+    touching = np.unique(np.argsort(areas_in_boxes[reaching, 1:], axis=1)[:, -2:])
+    if len(touching) > MAX_TOUCHING_SHARE * len(stroke_boxes):
         raise Error(
             f"the marks of {len(touching)} of {len(stroke_boxes)} strokes touch each other, or reach where the next "
-            f"one should be, the range is [0, {int(MOST_TOUCHING * len(stroke_boxes))}]: was this chart painted on "
-            "this page, once, and was the page at its stop? Or the page was not printed at 100 % (measure its bar), or "
-            "the brush is wider than the chart has room for",
+            f"one should be, the range is [0, {int(MAX_TOUCHING_SHARE * len(stroke_boxes))}]: was this chart painted "
+            "on this page, once, and was the page at its stop? Or the page was not printed at 100 % (measure its bar), "
+            "or the brush is wider than the chart has room for",
             value=len(touching),
             code="photo-paint-elsewhere",
         )
 
 
-def _refuse_covered(shares, areas, several, stroke_boxes: list[StrokeBox], fine: float) -> None:
-    """several: which parts are in the boxes of more strokes than one."""
+def _refuse_covered(areas_in_boxes, areas, several, stroke_boxes: list[StrokeBox], px_per_mm: float) -> None:
+    """Refuse a part that covers the boxes of many strokes.
+
+    Then the part is a shadow or an object on the page. several: which parts are in the boxes of several strokes.
+    """
     widest = max(
         (stroke_box.box_mm[2] - stroke_box.box_mm[0]) * (stroke_box.box_mm[3] - stroke_box.box_mm[1])
         for stroke_box in stroke_boxes
     )
-    for each in np.flatnonzero(several):
-        large = np.flatnonzero(shares[each, 1:] > np.maximum(0.5 * SPLIT * areas[each], SPLIT_MM2 * fine**2))
-        if len(large) > MOST_JOINED and areas[each] > widest * fine**2:
+    for number in np.flatnonzero(several):
+        large = np.flatnonzero(
+            areas_in_boxes[number, 1:]
+            > np.maximum(0.5 * MIN_SPLIT_SHARE * areas[number], MIN_SPLIT_MM2 * px_per_mm**2)
+        )
+        if len(large) > MAX_JOINED_STROKES and areas[number] > widest * px_per_mm**2:
             names = ", ".join(stroke_boxes[k].stroke for k in large)
             raise Error(
-                f"something dark of {areas[each] / fine**2 / 100:.0f} cm^2 covers the room of {len(large)} strokes "
-                f"({names}): a shadow with a hard edge, a thing on the page, or paint that was smeared; take it away, "
-                "and photograph in even light",
+                f"something dark of {areas[number] / px_per_mm**2 / 100:.0f} cm^2 covers the room of {len(large)} "
+                f"strokes ({names}): a shadow with a hard edge, a thing on the page, or paint that was smeared; take "
+                "it away, and photograph in even light",
                 value=len(large),
                 code="photo-covered",
             )
 
 
 def _refuse_elsewhere(painted: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> None:
-    """Refuse paint outside of the strokes' boxes. painted (rows, columns): what counts as paint."""
-    stroke_box = np.zeros(painted.shape, bool)
-    for each in stroke_boxes:
-        c0, r0, c1, r1 = _window(flat, each.box_mm, 0.5)
-        stroke_box[r0:r1, c0:c1] = True
+    """Refuse paint outside the strokes' boxes.
+
+    painted: (rows, columns), the pixels that count as paint.
+    """
+    is_in_box = np.zeros(painted.shape, bool)
+    for stroke_box in stroke_boxes:
+        c0, r0, c1, r1 = _box_pixels(flat, stroke_box.box_mm, 0.5)
+        is_in_box[r0:r1, c0:c1] = True
     total = max(int(painted.sum()), 1)
-    here, turned = ((painted & there).sum() / total for there in (stroke_box, stroke_box[::-1, ::-1]))
-    if turned > here + TURNED:
+    inside_share, turned_share = (
+        (painted & mask).sum() / total for mask in (is_in_box, is_in_box[::-1, ::-1])
+    )
+    if turned_share > inside_share + MIN_TURNED_EXCESS:
         raise Error(
-            f"{100 * turned:.0f} % of the paint is where the strokes would be if the page were turned by 180 degrees, "
-            f"{100 * here:.0f} % where they should be: turn the page round for the machine",
-            value=turned,
+            f"{100 * turned_share:.0f} % of the paint is where the strokes would be if the page were turned by 180 "
+            f"degrees, {100 * inside_share:.0f} % where they should be: turn the page round for the machine",
+            value=turned_share,
             code="photo-paint-elsewhere",
         )
-    if here < IN_STROKE_BOX:
+    if inside_share < MIN_SHARE_IN_BOXES:
         raise Error(
-            f"only {100 * here:.0f} % of the paint is where strokes of this chart should be, at least "
-            f"{100 * IN_STROKE_BOX:.0f} % must be: was this chart painted on this page, once, was the page at its "
+            f"only {100 * inside_share:.0f} % of the paint is where strokes of this chart should be, at least "
+            f"{100 * MIN_SHARE_IN_BOXES:.0f} % must be: was this chart painted on this page, once, was the page at its "
             "stop, and was it printed at 100 % (measure its bar)?",
-            value=here,
+            value=inside_share,
             code="photo-paint-elsewhere",
         )
 
 
-def _outlines(paint, part, owner, own, cut, number: int, stats, fine: float, height_mm: float, usual) -> list:
-    parts = np.flatnonzero(own)
+def _outlines_of_stroke(
+    paint, part, owner, is_own_part, is_cut, number: int, stats, px_per_mm: float, height_mm: float, usual
+) -> list:
+    parts = np.flatnonzero(is_own_part)
     if not len(parts):
         return []
-    margin = int(np.ceil(EDGE_MM * fine)) + 2
+    margin = int(np.ceil(EDGE_MM * px_per_mm)) + 2
     left, top = stats[parts, :2].min(axis=0) - margin
     right, bottom = (stats[parts, :2] + stats[parts, 2:4]).max(axis=0) + margin
     rows = slice(max(top, 0), min(bottom, part.shape[0]))
     columns = slice(max(left, 0), min(right, part.shape[1]))
-    seen, here = part[rows, columns], owner[rows, columns] == number
-    mine = own[seen] & (here | ~cut[seen])
-    corner = columns.start / fine, height_mm - rows.start / fine
-    return outlines_of(paint[rows, columns], mine, (seen > 0) & ~mine, usual, fine, corner)
+    part_numbers, is_in_box = part[rows, columns], owner[rows, columns] == number
+    is_own = is_own_part[part_numbers] & (is_in_box | ~is_cut[part_numbers])
+    corner = columns.start / px_per_mm, height_mm - rows.start / px_per_mm
+    return outlines_of(paint[rows, columns], is_own, (part_numbers > 0) & ~is_own, usual, px_per_mm, corner)
 
 
-def outlines_of(amount, mine, foreign, usual: float, fine: float, left_top_mm) -> list[np.ndarray]:
-    """Rings round one mark, half way between paper and its paint. amount (rows, columns): of paint; mine, foreign:
-    where it certainly is, and where that of others is; usual: paint of a mark; left_top_mm: of the part of the
-    sheet."""
-    level = 0.5 * _amount_of(amount, mine, usual, fine)
-    reach = max(1, round(EDGE_MM * fine))
+def outlines_of(amount, is_own, is_foreign, usual: float, px_per_mm: float, left_top_mm) -> list[np.ndarray]:
+    """Return rings [mm] around one mark, half way between paper and its paint.
+
+    amount: (rows, columns) of paint; is_own, is_foreign: masks of pixels that certainly belong to the mark, and to
+    other marks; usual: amount of paint of a typical mark; left_top_mm: corner of this part of the sheet.
+    """
+    level = 0.5 * _full_paint(amount, is_own, usual, px_per_mm)
+    reach = max(1, round(EDGE_MM * px_per_mm))
     ellipse = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
-    near = cv2.dilate(np.uint8(mine), ellipse) == 1
-    amount = np.where(near & ~foreign, amount, 0.0)
-    rings = mask_outlines(amount, level, 1.0 / fine, left_top_mm, LEAST_MM2)
-    sizes = [_area(ring) for ring in rings]
-    least = BLOT * max(sizes, default=0.0)
-    return [_even(ring) for ring, size in zip(rings, sizes, strict=True) if size >= least or size < 0]
+    near = cv2.dilate(np.uint8(is_own), ellipse) == 1
+    amount = np.where(near & ~is_foreign, amount, 0.0)
+    rings = mask_outlines(amount, level, 1.0 / px_per_mm, left_top_mm, MIN_PART_MM2)
+    sizes = [_signed_area(ring) for ring in rings]
+    least = MIN_PART_SHARE * max(sizes, default=0.0)
+    return [_smooth_ring(ring) for ring, size in zip(rings, sizes, strict=True) if size >= least or size < 0]
 
 
-def _amount_of(amount: np.ndarray, mine: np.ndarray, usual: float, fine: float) -> float:
-    """Return how much paint a mark has where blur removes none of it; for a narrow one, without such a place, the usual
-    amount as far as that is possible: half of less is outside of its edge."""
-    broad = cv2.erode(np.uint8(mine), None, iterations=max(1, round(CLEAR_MM * fine))) == 1
-    if broad.sum() > 0.1 * mine.sum():
-        return float(np.median(amount[broad]))
-    core = cv2.erode(np.uint8(mine), None, iterations=1) == 1
-    own = float(np.quantile(amount[core if core.any() else mine], 0.8))
-    return float(np.clip(usual, own, MOST_BLURRED * own))
+def _full_paint(amount: np.ndarray, is_own: np.ndarray, usual: float, px_per_mm: float) -> float:
+    """Return how much paint a mark has where blur does not reduce it.
+
+    A narrow mark has no such place. It gets the usual amount, limited to MAX_BLUR_FACTOR times its own, because half
+    of a smaller amount would be outside its edge.
+    """
+    inner = cv2.erode(np.uint8(is_own), None, iterations=max(1, round(BLUR_MARGIN_MM * px_per_mm))) == 1
+    if inner.sum() > 0.1 * is_own.sum():
+        return float(np.median(amount[inner]))
+    core = cv2.erode(np.uint8(is_own), None, iterations=1) == 1
+    own_paint = float(np.quantile(amount[core if core.any() else is_own], 0.8))
+    return float(np.clip(usual, own_paint, MAX_BLUR_FACTOR * own_paint))
 
 
-def _long(rings: list[np.ndarray]) -> float:
+def _longest_side(rings: list[np.ndarray]) -> float:
     return float(np.ptp(np.vstack(rings), axis=0).max())
 
 
-def _area(ring: np.ndarray) -> float:
+def _signed_area(ring: np.ndarray) -> float:
     x, y = ring.T
     return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
 
-def _even(ring: np.ndarray) -> np.ndarray:
-    """Points STEP_MM apart, each a mean over OVER_MM of the outline."""
+def _smooth_ring(ring: np.ndarray) -> np.ndarray:
+    """Resample a ring evenly and smooth it.
+
+    Points are OUTLINE_STEP_MM apart, each averaged over OUTLINE_MEAN_MM of the outline.
+    """
     closed = np.vstack([ring, ring[:1]])
     at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
-    finer = 4
-    count = max(12, round(at[-1] / STEP_MM)) * finer
+    oversampling = 4
+    count = max(12, round(at[-1] / OUTLINE_STEP_MM)) * oversampling
     places = np.arange(count) * at[-1] / count
     points = np.column_stack([np.interp(places, at, closed[:, k]) for k in (0, 1)])
-    wide = 2 * (round(OVER_MM / STEP_MM * finer) // 2) + 1
-    around = np.arange(-(wide // 2), count + wide // 2) % count
-    kernel = np.full(wide, 1.0 / wide)
-    even = np.column_stack([np.convolve(points[around, k], kernel, "valid") for k in (0, 1)])
-    return even[::finer]
+    kernel_size = 2 * (round(OUTLINE_MEAN_MM / OUTLINE_STEP_MM * oversampling) // 2) + 1
+    around = np.arange(-(kernel_size // 2), count + kernel_size // 2) % count
+    kernel = np.full(kernel_size, 1.0 / kernel_size)
+    smooth = np.column_stack([np.convolve(points[around, k], kernel, "valid") for k in (0, 1)])
+    return smooth[::oversampling]

@@ -1,5 +1,7 @@
-"""ArUco markers in a photograph: found, their corners where straight lines through their edges meet, and the camera's
-view of the sheet from them. Refuses pictures that cannot be measured in."""
+"""Find ArUco markers in a photograph, refine their corners, and fit the camera's view of the sheet to them.
+
+A corner is where straight lines through two edges of its marker meet. Pictures that cannot be measured are refused.
+"""
 
 from __future__ import annotations
 
@@ -12,37 +14,42 @@ import numpy as np
 from ..errors import Error
 from .photo import blur_px, grey_light, refuse_dark_paper, refuse_grainy, white_share
 
-FEWEST = 3  # markers: two leave the tilt of the sheet open to the noise of their corners
-SEEN_AT_PX = 2400  # longer side of the picture that markers are looked for in; their corners are found in the whole one
-ALONG = np.linspace(0.08, 0.92, 31)  # of an edge of a marker, where it is looked across
-ACROSS = 0.8  # modules to both sides: beyond one module there are other black ones
-CORNER_PX = 0.15  # standard deviation of a corner
-# Standard deviations of a lens's k1 and k2, at half the picture's diagonal: they hold what few markers leave open.
-# Without k2 the middle of a page is 0.05 mm off, with it 0.013.
-BENT = np.array([0.1, 0.03])
-LEAST_PX_PER_MM = 4.0
-MOST_BLUR_MM = 0.3  # standard deviation: half way is then still half way, but narrow strokes grow pale
-# Residual [mm] at most, with all eight markers and with fewer, in addition to so many pixels for the corners
-# themselves. Paper that bulges by a millimetre leaves 0.15 on A4 with eight and moves marks by as much; on A5 with six
-# it leaves 0.10 and moves them by 0.4. Half of it is remarked on.
-MOST_MM, MOST_MM_OF_FEW, MANY, MOST_PX = 0.12, 0.06, 8, 0.2
-# Times the limit that a covered marker is displaced at least, and that the others fit better than it
-COVERED = 2.0
-# Less of the usual contrast along a marker's edges hides a place; more hidden places of an edge cover it
-HIDDEN, LEAST_HIDDEN = 0.75, 0.05
-# Shares of half the picture's diagonal: how finely the middle of a lens is looked for, and how much of a picture counts
-# as cut off
-CUT_STEPS, LEAST_CUT = np.array([0.2, 0.08, 0.03]), 0.05
-TOO_WHITE = 0.5  # share of the brightest parts that are as white as can be
-UNPRINTED = "of a flatbed's scan of a sheet on which nothing is printed, give --dpi"
-# Where no marker is found, edges over more of the picture's longer side are the reason: a module is lost in them
-SMEARED = 1 / 250
+MIN_MARKERS = 3  # with two, the noise of their corners leaves the tilt of the sheet undetermined
+# Longer side of the reduced picture in which markers are detected. Their corners are refined at full size.
+MAX_SEARCH_SIDE_PX = 2400
+EDGE_PLACES = np.linspace(0.08, 0.92, 31)  # shares of a marker's edge at which light is sampled across it
+EDGE_REACH_MODULES = 0.8  # sampled to both sides: other black modules begin at one module
+CORNER_SIGMA_PX = 0.15  # standard deviation of a corner
+# Standard deviations of a lens's k1 and k2, at half the picture's diagonal. They determine what a few markers leave
+# open. Without k2 the middle of a page is 0.05 mm off, with it 0.013.
+DISTORTION_SIGMA = np.array([0.1, 0.03])
+MIN_PX_PER_MM = 4.0
+# Standard deviation of the blur. Half way is still half way at this blur, but narrow strokes become pale.
+MAX_BLUR_MM = 0.3
+# Largest residual [mm], with all eight markers and with fewer, and the pixels added to it for the corners themselves.
+# Paper that bulges by 1 mm leaves 0.15 mm on A4 with eight markers and moves marks by as much. On A5 with six markers
+# it leaves 0.10 mm and moves marks by 0.4 mm. Half of the limit causes a warning.
+MAX_RESIDUAL_MM, MAX_RESIDUAL_MM_OF_FEW, MANY_MARKERS, MAX_RESIDUAL_PX = 0.12, 0.06, 8, 0.2
+# Factor by which a covered marker exceeds the limit, and by which the other markers must stay below it.
+MIN_COVERED_FACTOR = 2.0
+# A place on a marker's edge with less of the usual contrast is hidden. An edge with more hidden places is covered.
+MIN_EDGE_CONTRAST, MAX_HIDDEN_SHARE = 0.75, 0.05
+# Shares of half the picture's diagonal: the steps of the search for the middle of the lens, and the narrowest strip
+# that counts as cut off.
+LENS_MIDDLE_STEPS, MIN_CUT_SHARE = np.array([0.2, 0.08, 0.03]), 0.05
+TOO_WHITE = 0.5  # share of the brightest parts that are fully white
+ADVICE_FOR_UNPRINTED = "of a flatbed's scan of a sheet on which nothing is printed, give --dpi"
+# Of the picture's longer side. Where no marker is found, wider edges are the reason: they blur out whole modules.
+MAX_EDGE_SHARE = 1 / 250
 
 
 @dataclass(frozen=True)
 class Printed:
-    """What a page shows: markers by id, corners (4, 2) in mm on the sheet, upper left first, clockwise; of which
-    dictionary of OpenCV; who it is, for a sentence."""
+    """The markers that are printed on a page.
+
+    corners_mm: corners (4, 2) by marker id, in mm on the sheet, upper left first, clockwise; dictionary: OpenCV's name
+    of the marker dictionary; name: the page's name for messages.
+    """
 
     sheet_mm: tuple[float, float]
     corners_mm: dict[int, np.ndarray]
@@ -52,12 +59,14 @@ class Printed:
 
 @dataclass(frozen=True)
 class View:
-    """How a photograph shows the sheet: a homography from mm, then radial distortion about the picture's middle.
+    """The camera's view of the sheet.
 
-    residual_mm: rms distance of the markers' corners from where the view has them, and worst, the marker where it is
-    largest, with its own; unsure_mm: standard deviation of the least certain place on the sheet, by its corners;
-    blur_mm: standard deviation of the blur, from the markers' edges, across or down, whichever is more; white: share of
-    the sheet's brightest parts that are as white as can be.
+    A point in mm is mapped by a homography, then by radial distortion about the picture's middle.
+
+    residual_mm: rms distance of the markers' corners from their places in the view; worst: the marker with the largest
+    residual, and this residual; unsure_mm: standard deviation of the least certain place on the sheet, from the
+    corners; blur_mm: standard deviation of the blur of the markers' edges, the larger of across and down; white: share
+    of the sheet's brightest parts that are fully white.
     """
 
     homography: np.ndarray
@@ -74,10 +83,15 @@ class View:
 
     @property
     def most_residual_mm(self) -> float:
-        return (MOST_MM if len(self.seen) >= MANY else MOST_MM_OF_FEW) + MOST_PX / self.px_per_mm
+        return (
+            MAX_RESIDUAL_MM if len(self.seen) >= MANY_MARKERS else MAX_RESIDUAL_MM_OF_FEW
+        ) + MAX_RESIDUAL_PX / self.px_per_mm
 
     def to_px(self, mm: np.ndarray) -> np.ndarray:
-        """Points (n, 2) of the sheet in pixels, (0, 0) the middle of the upper left pixel."""
+        """Map points (n, 2) of the sheet to pixels.
+
+        (0, 0) is the middle of the upper left pixel.
+        """
         x, y = mm.T
         h = self.homography
         w = h[2, 0] * x + h[2, 1] * y + h[2, 2]
@@ -91,32 +105,38 @@ class View:
 
 
 def find_view(pixels: np.ndarray, printed: Printed) -> View:
-    """Error in one sentence where markers are missing, doubled, of another chart or mirrored, where the picture is too
-    small or blurred, or where the corners are not where flat paper has them."""
+    """Find the printed markers in a photograph and fit the view of the sheet to them.
+
+    Raises Error where markers are missing, appear twice, are mirrored or belong to another chart. It also refuses
+    pictures that are too small or blurred, and corners that do not match flat paper.
+    """
     light = grey_light(pixels)
-    found = _of_this_chart(pixels, light, printed)
-    modules = _modules(printed.dictionary)
+    found = _find_chart_markers(pixels, light, printed)
+    modules = _modules_per_side(printed.dictionary)
     corners, blurs, clear = {}, [], {}
     for number, rough in found.items():
-        corners[number], blur, clear[number] = _exact(light, rough, modules)
+        corners[number], blur, clear[number] = _refine_corners(light, rough, modules)
         blurs.append(blur)
     try:
-        view = _fitted(corners, printed, pixels.shape)
-        view = _without_covered(view, corners, clear, printed, pixels.shape)
+        view = _fit_view(corners, printed, pixels.shape)
+        view = _fit_without_covered(view, corners, clear, printed, pixels.shape)
         blur_mm = float(np.median(blurs)) / view.px_per_mm
-        view = replace(view, blur_mm=blur_mm, white=white_share(_of_sheet(light, view, printed)))
+        view = replace(view, blur_mm=blur_mm, white=white_share(_sheet_light(light, view, printed)))
         _refuse_unmeasurable(view, printed)
-    except Error as refusal:  # markers along one edge of the page give its view poorly
+    except Error as refusal:  # markers along only one edge determine the view poorly
         _refuse_cropped(found, printed, light.shape)
         if refusal.code == "photo-not-flat":
             refuse_grainy(light, f"the markers are {view.residual_mm:.2f} mm (rms) off")
-            _refuse_cut(corners, printed, pixels.shape, view)
+            _refuse_cut_off(corners, printed, pixels.shape, view)
         raise
     return view
 
 
-def _of_sheet(light: np.ndarray, view: View, printed: Printed) -> np.ndarray:
-    """Return the light of the sheet, (n, 1): around it is a table, or the fill of a picture that was turned."""
+def _sheet_light(light: np.ndarray, view: View, printed: Printed) -> np.ndarray:
+    """Return the light of the sheet's pixels, (n, 1).
+
+    Pixels around the sheet show a table, or the fill of a rotated picture, and do not count.
+    """
     share = np.linspace(0.02, 0.98, 200)
     x, y = np.meshgrid(share * printed.sheet_mm[0], share * printed.sheet_mm[1])
     column, row = view.to_px(np.column_stack([x.ravel(), y.ravel()])).round().T
@@ -124,13 +144,13 @@ def _of_sheet(light: np.ndarray, view: View, printed: Printed) -> np.ndarray:
     return light[row[inside].astype(int), column[inside].astype(int)][:, None]
 
 
-def _modules(dictionary: str) -> int:
+def _modules_per_side(dictionary: str) -> int:
     return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary)).markerSize + 2
 
 
-def detected(pixels: np.ndarray, dictionary: str) -> list[tuple[int, np.ndarray]]:
-    """Ids with rough corners (4, 2) in px."""
-    shrunk = max(1.0, max(pixels.shape[:2]) / SEEN_AT_PX)
+def detect_markers(pixels: np.ndarray, dictionary: str) -> list[tuple[int, np.ndarray]]:
+    """Return the ids of all markers in the picture, with rough corners (4, 2) in px."""
+    shrunk = max(1.0, max(pixels.shape[:2]) / MAX_SEARCH_SIDE_PX)
     grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY)
     small = cv2.resize(grey, None, fx=1 / shrunk, fy=1 / shrunk, interpolation=cv2.INTER_AREA)
     known = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary))
@@ -144,10 +164,10 @@ def detected(pixels: np.ndarray, dictionary: str) -> list[tuple[int, np.ndarray]
     ]
 
 
-def _of_this_chart(pixels: np.ndarray, light: np.ndarray, printed: Printed) -> dict[int, np.ndarray]:
-    seen = detected(pixels, printed.dictionary)
-    ours = [(number, corners) for number, corners in seen if number in printed.corners_mm]
-    others = {number for number, _ in seen} - set(printed.corners_mm)
+def _find_chart_markers(pixels: np.ndarray, light: np.ndarray, printed: Printed) -> dict[int, np.ndarray]:
+    markers_in_picture = detect_markers(pixels, printed.dictionary)
+    ours = [(number, corners) for number, corners in markers_in_picture if number in printed.corners_mm]
+    others = {number for number, _ in markers_in_picture} - set(printed.corners_mm)
     found: dict[int, np.ndarray] = {}
     for number, corners in ours:
         if number in found:
@@ -156,70 +176,76 @@ def _of_this_chart(pixels: np.ndarray, light: np.ndarray, printed: Printed) -> d
                 code="photo-marker-twice",
             )
         found[number] = corners
-    if len(found) >= FEWEST:
+    if len(found) >= MIN_MARKERS:
         return found
     name = f" {printed.name}" if printed.name else ""
-    if len(others) >= FEWEST:
+    if len(others) >= MIN_MARKERS:
         raise Error(
-            f"the picture shows another chart: its markers are {_listed(others)}, those of chart{name} are "
-            f"{_listed(printed.corners_mm)}",
+            f"the picture shows another chart: its markers are {_list_numbers(others)}, those of chart{name} are "
+            f"{_list_numbers(printed.corners_mm)}",
             code="photo-of-another-chart",
             advice="give the --chart that was written with this page; calibrate the page of a job (convert --page, "
             "simulate-photo) with --plan and --prior",
         )
-    mirrored = [number for number, _ in detected(pixels[:, ::-1], printed.dictionary)]
-    if len(set(mirrored) & set(printed.corners_mm)) >= FEWEST:
+    mirrored = [number for number, _ in detect_markers(pixels[:, ::-1], printed.dictionary)]
+    if len(set(mirrored) & set(printed.corners_mm)) >= MIN_MARKERS:
         raise Error(
             "the picture is mirrored: turn off the mirroring of the camera, or flip the picture back",
             code="photo-mirrored",
         )
     if not found:
-        _refuse_blind(light, 0)
+        _refuse_poor_picture(light, 0)
         raise Error(
             f"no marker of chart{name} is in the picture: photograph the whole page, sharp and without deep shadows",
             code="photo-markers-missing",
-            advice=UNPRINTED,
+            advice=ADVICE_FOR_UNPRINTED,
         )
-    _refuse_blind(light, len(found))
+    _refuse_poor_picture(light, len(found))
     _refuse_cropped(found, printed, light.shape)
     raise Error(
-        f"found {len(found)} of {len(printed.corners_mm)} markers ({_listed(found)}), at least {FEWEST} are needed: "
-        "photograph the whole page, with nothing over its markers",
+        f"found {len(found)} of {len(printed.corners_mm)} markers ({_list_numbers(found)}), at least {MIN_MARKERS} are "
+        "needed: photograph the whole page, with nothing over its markers",
         code="photo-markers-missing",
     )
 
 
 def _refuse_cropped(found: dict[int, np.ndarray], printed: Printed, shape) -> None:
-    """Refuse a page of which half of the other markers or more are beyond the picture, judged by the corners of these
-    few."""
+    """Refuse a page if at least half of the missing markers are outside the picture.
+
+    Their places are estimated from the corners of the markers that were found.
+    """
     others = [c.mean(axis=0) for number, c in printed.corners_mm.items() if number not in found]
     if not others:
         return
     mm = np.vstack([printed.corners_mm[number] for number in found])
-    roughly, _ = cv2.estimateAffinePartial2D(mm * (1, -1), np.vstack([*found.values()]))
-    if roughly is None:
+    rough_view, _ = cv2.estimateAffinePartial2D(mm * (1, -1), np.vstack([*found.values()]))
+    if rough_view is None:
         return
-    px = np.array(others) * (1, -1) @ roughly[:, :2].T + roughly[:, 2]
+    px = np.array(others) * (1, -1) @ rough_view[:, :2].T + rough_view[:, 2]
     beyond = (px < 0).any(axis=1) | (px > np.array(shape[1::-1]) - 1).any(axis=1)
     if beyond.mean() >= 0.5:
         raise Error(
-            f"the page is cropped: only {len(found)} of its {len(printed.corners_mm)} markers ({_listed(found)}) are "
-            "in the picture, others are beyond its edge: photograph the whole page",
+            f"the page is cropped: only {len(found)} of its {len(printed.corners_mm)} markers ({_list_numbers(found)}) "
+            "are in the picture, others are beyond its edge: photograph the whole page",
             value=len(found),
             code="photo-cropped",
         )
 
 
-def _refuse_cut(corners: dict[int, np.ndarray], printed: Printed, shape, view: View) -> None:
-    """Where the sheet is flat to a lens whose middle is not the picture's, which cameras have there."""
+def _refuse_cut_off(corners: dict[int, np.ndarray], printed: Printed, shape, view: View) -> None:
+    """Refuse a picture of which a part was cut off.
+
+    Such a picture fits flat paper only if the middle of the lens is not the middle of the picture. Cameras have both in
+    the same place, so that a part of this picture was cut off.
+    """
     at = np.zeros(2)
-    for step in CUT_STEPS * view.radius_px:
+    for step in LENS_MIDDLE_STEPS * view.radius_px:
         places = [at + step * np.array([i, j]) for i in range(-2, 3) for j in range(-2, 3)]
-        fits = [_fitted(corners, printed, shape, place) for place in places]
+        fits = [_fit_view(corners, printed, shape, place) for place in places]
         best = min(range(len(fits)), key=lambda k: fits[k].residual_mm)
         at, view = places[best], fits[best]
     cut = 2 * np.abs(at)
-    if view.residual_mm < view.most_residual_mm / 2 and cut.max() > LEAST_CUT * view.radius_px:
+    if view.residual_mm < view.most_residual_mm / 2 and cut.max() > MIN_CUT_SHARE * view.radius_px:
         raise Error(
             f"about {cut[0]:.0f} x {cut[1]:.0f} pixels of the picture were cut off, as the lens's middle has it: give "
             "it whole, as the camera took it",
@@ -228,8 +254,11 @@ def _refuse_cut(corners: dict[int, np.ndarray], printed: Printed, shape, view: V
         )
 
 
-def _refuse_blind(light: np.ndarray, count: int) -> None:
-    """Where markers are not found because of the picture as a whole."""
+def _refuse_poor_picture(light: np.ndarray, count: int) -> None:
+    """Refuse a picture that is too poor for its markers to be found.
+
+    The reasons are grain, darkness, glare and blur.
+    """
     few = f"{count or 'no'} marker{'s' * (count > 1)} can be read"
     refuse_grainy(light, few)
     if not count:
@@ -240,94 +269,108 @@ def _refuse_blind(light: np.ndarray, count: int) -> None:
             "overexposed; take it with less light, without glare, or with the exposure turned down",
             value=white,
             code="photo-overexposed",
-            advice="" if count else UNPRINTED,
+            advice="" if count else ADVICE_FOR_UNPRINTED,
         )
-    if (wide := blur_px(light)) > SMEARED * max(light.shape):
+    if (edge_width_px := blur_px(light)) > MAX_EDGE_SHARE * max(light.shape):
         raise Error(
-            f"{few}, and edges go over {wide:.0f} pixels, more than {SMEARED * max(light.shape):.0f}: the picture is "
-            "blurred; hold the camera still and let it focus on the paper",
-            value=wide,
+            f"{few}, and edges go over {edge_width_px:.0f} pixels, more than "
+            f"{MAX_EDGE_SHARE * max(light.shape):.0f}: the picture is blurred; hold the camera still and let it focus "
+            "on the paper",
+            value=edge_width_px,
             code="photo-blurred",
         )
 
 
-def _listed(numbers) -> str:
+def _list_numbers(numbers) -> str:
     return ", ".join(map(str, sorted(numbers)))
 
 
-def _exact(light: np.ndarray, corners: np.ndarray, modules: int) -> tuple[np.ndarray, float, np.ndarray]:
-    """Corners where lines through the edges meet, the blur [px] of the edges, and between which edges that nothing
-    covers corners (4,) are."""
+def _refine_corners(
+    light: np.ndarray, corners: np.ndarray, modules: int
+) -> tuple[np.ndarray, float, np.ndarray]:
+    """Refine a marker's corners (4, 2) to where lines through its edges meet.
+
+    Returns the corners, the edges' blur [px] and the visibility. The visibility (4,) is true for corners between two
+    edges that nothing covers.
+    """
     blur, is_seen = 0.0, np.ones(4, bool)
-    for again in range(3):  # the second time the lines run where they should; the third only looks along them
+    for iteration in range(3):  # the first two passes correct the lines; the third only measures along them
         lines, blurs, contrasts = [], [], []
         for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-            points, spread, contrast = _edge_points(light, a, b, np.hypot(*(b - a)) / modules)
-            lines.append(_line(points))
+            points, spread, contrast = _locate_edge(light, a, b, np.hypot(*(b - a)) / modules)
+            lines.append(_fit_line(points))
             blurs.append(spread)
             contrasts.append(contrast)
-        lost = np.array(contrasts) < HIDDEN * np.median(contrasts)
-        is_seen &= lost.mean(axis=1) <= LEAST_HIDDEN
-        if again < 2:
-            corners = np.array([_meet(lines[k - 1], lines[k]) for k in range(4)])
-            # a camera that moves blurs one way alone
+        is_hidden = np.array(contrasts) < MIN_EDGE_CONTRAST * np.median(contrasts)
+        is_seen &= is_hidden.mean(axis=1) <= MAX_HIDDEN_SHARE
+        if iteration < 2:
+            corners = np.array([_intersect_lines(lines[k - 1], lines[k]) for k in range(4)])
+            # A moving camera blurs in one direction only.
             blur = max(blurs[0] + blurs[2], blurs[1] + blurs[3]) / 2
     return corners, blur, is_seen & np.roll(is_seen, 1)
 
 
-def _edge_points(light, a, b, module_px: float) -> tuple[np.ndarray, float, np.ndarray]:
-    """Points (n, 2) of the edge from a to b, white on its left as the picture is drawn, its blur [px], and by how much
-    each place (n,) is lighter outside of the edge than inside.
+def _locate_edge(light, a, b, module_px: float) -> tuple[np.ndarray, float, np.ndarray]:
+    """Locate the edge from a to b, with white on its left in the picture.
 
-    Across an edge from black to white, the sum of light against all white gives the place of the edge, however much
-    it is blurred: area under the profile = white times the way behind the edge.
+    Returns points (n, 2) on the edge, its blur [px], and the contrast (n,): how much lighter each place is outside the
+    edge than inside. The position of an edge from black to white follows from the sum of the light across it, however
+    blurred the edge is: the area under the profile is the white level times the distance behind the edge.
     """
     along = (b - a) / np.hypot(*(b - a))
-    out = np.array([along[1], -along[0]])  # corners run clockwise with y down
-    reach = ACROSS * module_px
+    outward = np.array([along[1], -along[0]])  # corners run clockwise with y down
+    reach = EDGE_REACH_MODULES * module_px
     count = max(9, 2 * round(reach * 2) + 1)
     across = np.linspace(-reach, reach, count)
-    at = a + ALONG[:, None] * (b - a)
-    places = (at[:, None] + across[:, None] * out).astype(np.float32)
-    seen = cv2.remap(light, places[..., 0], places[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    at = a + EDGE_PLACES[:, None] * (b - a)
+    places = (at[:, None] + across[:, None] * outward).astype(np.float32)
+    profiles = cv2.remap(
+        light, places[..., 0], places[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
+    )
     end = max(2, count // 6)
     black, white = (
-        np.median(seen[:, :end], axis=1, keepdims=True),
-        np.median(seen[:, -end:], axis=1, keepdims=True),
+        np.median(profiles[:, :end], axis=1, keepdims=True),
+        np.median(profiles[:, -end:], axis=1, keepdims=True),
     )
-    share = (seen - black) / np.maximum(white - black, 1e-3)
+    share = (profiles - black) / np.maximum(white - black, 1e-3)
     step = across[1] - across[0]
     offset = reach - step * (share.sum(axis=1) - 0.5 * (share[:, 0] + share[:, -1]))
     offset = np.clip(offset, -reach, reach)
-    middle = np.median(share, axis=0)
-    rising = np.maximum.accumulate(middle) + 1e-9 * np.arange(count)
+    mean_profile = np.median(share, axis=0)
+    rising = np.maximum.accumulate(mean_profile) + 1e-9 * np.arange(count)
     low, high = np.interp([0.2, 0.8], rising, across)
-    return at + offset[:, None] * out, float(high - low) / 1.683, (white - black)[:, 0]
+    return at + offset[:, None] * outward, float(high - low) / 1.683, (white - black)[:, 0]
 
 
-def _line(points: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return (normal, distance from the origin), without outliers."""
-    kept = points
+def _fit_line(points: np.ndarray) -> tuple[np.ndarray, float]:
+    """Fit a line to points without outliers.
+
+    Returns its normal and its distance from the origin.
+    """
+    inliers = points
     for _ in range(3):
-        middle = kept.mean(axis=0)
-        normal = np.linalg.svd(kept - middle, full_matrices=False)[2][1]
-        off = np.abs((points - middle) @ normal)
-        kept = points[off <= max(3 * 1.4826 * np.median(off), 0.05)]
+        middle = inliers.mean(axis=0)
+        normal = np.linalg.svd(inliers - middle, full_matrices=False)[2][1]
+        distances = np.abs((points - middle) @ normal)
+        inliers = points[distances <= max(3 * 1.4826 * np.median(distances), 0.05)]
     return normal, float(normal @ middle)
 
 
-def _meet(one, other) -> np.ndarray:
-    normals = np.array([one[0], other[0]])
-    return np.linalg.solve(normals, [one[1], other[1]])
+def _intersect_lines(line, other_line) -> np.ndarray:
+    normals = np.array([line[0], other_line[0]])
+    return np.linalg.solve(normals, [line[1], other_line[1]])
 
 
-def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape, shift_px=(0.0, 0.0)) -> View:
-    """Fit by least squares all corners that are not NaN. shift_px: of the lens's middle from the picture's."""
+def _fit_view(corners: dict[int, np.ndarray], printed: Printed, shape, shift_px=(0.0, 0.0)) -> View:
+    """Fit the view to all corners that are not NaN, by least squares.
+
+    shift_px: displacement of the middle of the lens from the middle of the picture.
+    """
     ids = tuple(number for number in sorted(corners) if np.isfinite(corners[number]).all())
     marker = np.repeat(sorted(corners), 4)
     mm = np.vstack([printed.corners_mm[i] for i in sorted(corners)])
     px = np.vstack([corners[i] for i in sorted(corners)])
-    marker, mm, px = (each[np.isfinite(px).all(axis=1)] for each in (marker, mm, px))
+    marker, mm, px = (rms_of_marker[np.isfinite(px).all(axis=1)] for rms_of_marker in (marker, mm, px))
     middle = np.array([(shape[1] - 1) / 2, (shape[0] - 1) / 2])
     radius = float(np.hypot(*middle))
     middle = middle + shift_px
@@ -339,102 +382,107 @@ def _fitted(corners: dict[int, np.ndarray], printed: Printed, shape, shift_px=(0
             "the markers are on one line in the picture: photograph the page from above",
             code="photo-markers-missing",
         )
-    unknowns = np.concatenate([start.ravel()[:8] / start[2, 2], np.zeros(len(BENT))])
+    unknowns = np.concatenate([start.ravel()[:8] / start[2, 2], np.zeros(len(DISTORTION_SIGMA))])
 
     def view(u: np.ndarray) -> View:
         homography = np.append(u[:8], 1.0).reshape(3, 3) @ to_unit
         return View(homography, tuple(u[8:]), middle, radius)
 
-    def off(u: np.ndarray) -> np.ndarray:
-        return np.concatenate([((view(u).to_px(mm) - px) / CORNER_PX).ravel(), u[8:] / BENT])
+    def residuals(u: np.ndarray) -> np.ndarray:
+        return np.concatenate(
+            [((view(u).to_px(mm) - px) / CORNER_SIGMA_PX).ravel(), u[8:] / DISTORTION_SIGMA]
+        )
 
     for _ in range(15):
-        now = off(unknowns)
+        now = residuals(unknowns)
         slopes = np.column_stack(
-            [(off(unknowns + step) - now) / 1e-6 for step in 1e-6 * np.eye(len(unknowns))]
+            [(residuals(unknowns + step) - now) / 1e-6 for step in 1e-6 * np.eye(len(unknowns))]
         )
         change = np.linalg.lstsq(slopes, -now, rcond=None)[0]
         unknowns = unknowns + change
         if np.abs(change).max() < 1e-9:
             break
-    found = view(unknowns)
-    scale = _px_per_mm(found, printed.sheet_mm)
-    squares = np.sum((found.to_px(mm) - px) ** 2, axis=1) / scale**2
-    freedom = len(mm) - 4.5  # the homography and k1, two numbers a corner
-    each = {number: float(np.sqrt(squares[marker == number].mean())) for number in np.unique(marker).tolist()}
-    worst = max(each, key=lambda number: each[number])
+    fitted = view(unknowns)
+    scale = _min_px_per_mm(fitted, printed.sheet_mm)
+    squares = np.sum((fitted.to_px(mm) - px) ** 2, axis=1) / scale**2
+    freedom = len(mm) - 4.5  # eight of the homography and k1; each corner gives two numbers
+    rms_of_marker = {
+        number: float(np.sqrt(squares[marker == number].mean())) for number in np.unique(marker).tolist()
+    }
+    worst = max(rms_of_marker, key=lambda number: rms_of_marker[number])
     residual = float(np.sqrt(squares.sum() / freedom))
-    unsure = _unsure_px(view, unknowns, np.linalg.pinv(slopes.T @ slopes), printed.sheet_mm) / scale
+    unsure_mm = _least_certain_px(view, unknowns, np.linalg.pinv(slopes.T @ slopes), printed.sheet_mm) / scale
     return View(
-        found.homography,
-        found.distortion,
+        fitted.homography,
+        fitted.distortion,
         middle,
         radius,
         scale,
         residual,
-        (worst, each[worst]),
+        (worst, rms_of_marker[worst]),
         seen=ids,
-        unsure_mm=unsure,
+        unsure_mm=unsure_mm,
     )
 
 
-def _without_covered(view: View, corners: dict, clear: dict, printed: Printed, shape) -> View:
-    """Leave out the corners that something covers, of as few markers as possible, so that the others fit flat paper.
+def _fit_without_covered(view: View, corners: dict, clear: dict, printed: Printed, shape) -> View:
+    """Fit the view without covered corners.
 
-    clear: by marker, which of its corners (4,) are between edges that are seen. The marker that is displaced most is
-    tried as a whole as well: what covers it may have its own edge next to the marker's. Paper that bulges moves all
-    markers, and the clear corners of covered ones with them.
+    As few markers as possible lose corners, and the others must then fit flat paper. clear: for each marker, which of
+    its corners (4,) are between visible edges. The marker with the largest displacement is also tried without all its
+    corners, because the edge of the covering object may be mistaken for the marker's edge. Bulging paper, in contrast,
+    moves all markers, and the clear corners of covered ones with them.
     """
-    number, own = view.worst
+    number, worst_mm = view.worst
     limit = view.most_residual_mm
     if view.residual_mm <= limit:
         return view
-    hidden = {k: ~each for k, each in clear.items() if not each.all()}
-    if own >= COVERED * limit:
+    hidden = {k: ~is_clear for k, is_clear in clear.items() if not is_clear.all()}
+    if worst_mm >= MIN_COVERED_FACTOR * limit:
         hidden.setdefault(number, np.ones(4, bool))
-    for count in range(1, min(len(hidden), len(corners) - FEWEST) + 1):
+    for count in range(1, min(len(hidden), len(corners) - MIN_MARKERS) + 1):
         fits = [
-            _fitted(corners | {k: _without(corners[k], hidden[k]) for k in chosen}, printed, shape)
+            _fit_view(corners | {k: _mask_corners(corners[k], hidden[k]) for k in chosen}, printed, shape)
             for chosen in combinations(sorted(hidden), count)
         ]
-        others = min(fits, key=lambda each: each.residual_mm)
-        if others.residual_mm < others.most_residual_mm / COVERED:
+        others = min(fits, key=lambda is_clear: is_clear.residual_mm)
+        if others.residual_mm < others.most_residual_mm / MIN_COVERED_FACTOR:
             return others
     return view
 
 
-def _without(corners: np.ndarray, hidden: np.ndarray) -> np.ndarray:
+def _mask_corners(corners: np.ndarray, hidden: np.ndarray) -> np.ndarray:
     return np.where(hidden[:, None], np.nan, corners)
 
 
-def _unsure_px(view, unknowns: np.ndarray, covariance: np.ndarray, sheet_mm) -> float:
+def _least_certain_px(view, unknowns: np.ndarray, covariance: np.ndarray, sheet_mm) -> float:
     at = np.array([(x * sheet_mm[0], y * sheet_mm[1]) for x in (0.1, 0.5, 0.9) for y in (0.1, 0.5, 0.9)])
-    here = view(unknowns).to_px(at)
+    places_px = view(unknowns).to_px(at)
     slopes = [
-        (view(unknowns + step).to_px(at) - here).ravel() / 1e-6 for step in 1e-6 * np.eye(len(unknowns))
+        (view(unknowns + step).to_px(at) - places_px).ravel() / 1e-6 for step in 1e-6 * np.eye(len(unknowns))
     ]
     spread = np.einsum("ki,kl,li->i", slopes, covariance, slopes).reshape(-1, 2)
     return float(np.sqrt(spread.sum(axis=1).max()))
 
 
-def _px_per_mm(view: View, sheet_mm) -> float:
-    """The least on the sheet, by how much areas grow."""
+def _min_px_per_mm(view: View, sheet_mm) -> float:
+    """Return the smallest resolution on the sheet, from the magnification of areas."""
     at = np.array([(x * sheet_mm[0], y * sheet_mm[1]) for x in (0.1, 0.5, 0.9) for y in (0.1, 0.5, 0.9)])
     right, up = (view.to_px(at + step) - view.to_px(at - step) for step in 0.5 * np.eye(2))
     return float(np.sqrt(np.abs(right[:, 0] * up[:, 1] - right[:, 1] * up[:, 0]).min()))
 
 
 def _refuse_unmeasurable(view: View, printed: Printed) -> None:
-    if view.px_per_mm < LEAST_PX_PER_MM:
+    if view.px_per_mm < MIN_PX_PER_MM:
         raise Error(
-            f"the picture shows {view.px_per_mm:.1f} pixels per mm, at least {LEAST_PX_PER_MM:g} are needed: let the "
+            f"the picture shows {view.px_per_mm:.1f} pixels per mm, at least {MIN_PX_PER_MM:g} are needed: let the "
             "page fill the picture, and take it as large as the camera gives it",
             value=view.px_per_mm,
             code="photo-too-coarse",
         )
-    if view.blur_mm > MOST_BLUR_MM:
+    if view.blur_mm > MAX_BLUR_MM:
         raise Error(
-            f"the picture is blurred, edges over {view.blur_mm:.2f} mm where {MOST_BLUR_MM:g} is the most: hold the "
+            f"the picture is blurred, edges over {view.blur_mm:.2f} mm where {MAX_BLUR_MM:g} is the most: hold the "
             "camera still and let it focus on the paper",
             value=view.blur_mm,
             code="photo-blurred",
@@ -448,10 +496,11 @@ def _refuse_unmeasurable(view: View, printed: Printed) -> None:
             code="photo-overexposed",
         )
     if view.residual_mm > limit:
-        number, own = view.worst
+        number, worst_mm = view.worst
         raise Error(
             f"the markers are {view.residual_mm:.2f} mm (rms) from where flat paper would have them, more than "
-            f"{limit:.2f}; marker {number} most, {own:.2f} mm: press the page flat, and take it from straight above",
+            f"{limit:.2f}; marker {number} most, {worst_mm:.2f} mm: press the page flat, and take it from straight "
+            "above",
             value=view.residual_mm,
             code="photo-not-flat",
         )

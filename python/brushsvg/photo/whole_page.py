@@ -1,4 +1,4 @@
-"""Whether the whole page is in the picture, and its markers with it."""
+"""Check that the whole page and its markers are in the picture."""
 
 from __future__ import annotations
 
@@ -8,36 +8,39 @@ from ..errors import Error
 from .edges import StrokeBox
 from .markers import View
 
-MOST_UNSURE_MM = 0.5  # of a place on the sheet
+MAX_UNSURE_MM = 0.5  # standard deviation of a place on the sheet
 
 
 def refuse_cropped(pixels: np.ndarray, view: View, stroke_boxes: list[StrokeBox]) -> None:
     """Refuse a picture that cuts off the box of a stroke."""
-    cut = []
+    cropped = []
     for stroke_box in stroke_boxes:
         left, bottom, right, top = stroke_box.box_mm
         corners = view.to_px(np.array([(left, bottom), (right, bottom), (right, top), (left, top)]))
         if (corners < 0).any() or (corners > np.array(pixels.shape[1::-1]) - 1).any():
-            cut.append(stroke_box.stroke)
-    if cut:
+            cropped.append(stroke_box.stroke)
+    if cropped:
         raise Error(
-            f"the page is cropped: the room of {len(cut)} stroke{'s' * (len(cut) > 1)} runs out of the picture "
-            f"({', '.join(cut[:4])}{', ...' * (len(cut) > 4)}): photograph the whole page",
-            value=len(cut),
+            f"the page is cropped: the room of {len(cropped)} stroke{'s' * (len(cropped) > 1)} runs out of the picture "
+            f"({', '.join(cropped[:4])}{', ...' * (len(cropped) > 4)}): photograph the whole page",
+            value=len(cropped),
             code="photo-cropped",
         )
 
 
 def refuse_unsure(pixels: np.ndarray, view: View, corners_mm: dict[int, np.ndarray]) -> None:
-    """Refuse markers that do not determine the whole sheet. corners_mm: of all, by their number."""
-    if view.unsure_mm <= MOST_UNSURE_MM:
+    """Refuse markers that do not determine the whole sheet.
+
+    corners_mm: corners of all markers by their number.
+    """
+    if view.unsure_mm <= MAX_UNSURE_MM:
         return
     unseen = np.vstack([corners for number, corners in corners_mm.items() if number not in view.seen])
     px = view.to_px(unseen)
     beyond = bool((px < 0).any() or (px > np.array(pixels.shape[1::-1]) - 1).any())
     raise Error(
         f"the {len(view.seen)} markers that can be seen ({', '.join(map(str, view.seen))}) leave places on the sheet "
-        f"open by {view.unsure_mm:.2f} mm, {MOST_UNSURE_MM:g} is the most, "
+        f"open by {view.unsure_mm:.2f} mm, {MAX_UNSURE_MM:g} is the most, "
         + ("and others are beyond the picture" if beyond else "and others are covered")
         + ": photograph the whole page, with nothing over its markers",
         value=view.unsure_mm,

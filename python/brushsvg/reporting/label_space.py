@@ -8,20 +8,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-GAP = 0.3  # label heights, between an anchor and its label
-RINGS = (1.0, 2.0, 4.0, 8.0, 16.0)  # label heights from the anchor: within each, longer texts are tried first
+LABEL_GAP = 0.3  # between an anchor and its label, in label heights
+# Distances from the anchor, in label heights. Within each distance, longer texts are tried first.
+SEARCH_RINGS = (1.0, 2.0, 4.0, 8.0, 16.0)
 DIRECTIONS = 16  # around an anchor
-LEADER_SAMPLES = 16  # places along a leader that must be off other labels
-LABEL_WEIGHT = 1e3  # a label on another label is worse than one on marks
+LEADER_SAMPLES = 16  # places along a leader that must not be on other labels
+LABEL_WEIGHT = 1e3  # cost of an area on other labels, relative to an area on marks
 UP_RIGHT = (1.0, -1.0)
 
 
 @dataclass(frozen=True)
 class PlacedLabel:
-    """A label's box, in the units of the picture, y down.
+    """The box of a label, in the units of the picture, y down.
 
-    choice: which of the sizes it has. leader: a line from the anchor to the box, None next to the anchor. is_free: it
-    covers neither marks nor other labels, and its leader crosses none; covers_labels: it covers other labels.
+    choice: index of the chosen size; leader: a line from the anchor to the box, None next to the anchor; is_free: the
+    label covers neither marks nor other labels, and its leader crosses no label; covers_labels: it covers other labels.
     """
 
     left: float
@@ -40,11 +41,11 @@ class PlacedLabel:
 
 
 class LabelSpace:
-    """The room for labels in one picture.
+    """The free space for labels in one picture.
 
-    marks: (rows, columns) of booleans, where labels would cover something. cell: the side of one of them in the units
-    of the picture, pixels or millimetres. bounds: left, top, right, bottom that labels stay in, by default all of
-    marks. anchors: (n, 2) places that labels keep free, with a disc of radius around them.
+    marks: (rows, columns) of booleans, true where labels would cover something; cell: side of one element of marks in
+    the units of the picture, pixels or millimetres; bounds: left, top, right, bottom that labels stay within, by
+    default all of marks; anchors: (n, 2) places that labels keep free, with a disc of radius around them.
     """
 
     def __init__(
@@ -61,15 +62,15 @@ class LabelSpace:
     def place(
         self, anchor, sizes, towards=UP_RIGHT, reach: float = math.inf, may_cover: bool = True
     ) -> PlacedLabel | None:
-        """Place one label: at the first candidate that is free, else where it covers least.
+        """Place one label at the first free candidate, else where it covers least.
 
-        anchor: (x, y). sizes: (width, height) of the texts to choose from, the best first: one near the anchor is
-        better than a longer one far from it. towards: direction of the first candidate. reach: largest distance of the
-        label from its anchor. may_cover: else None where it would cover other labels.
+        anchor: (x, y); sizes: (width, height) of the texts to choose from, the best first, although a short text near
+        the anchor is preferred to a longer one far from it; towards: direction of the first candidate; reach: largest
+        distance of the label from its anchor; may_cover: place it even where it covers other labels, else return None.
         """
         anchor = np.asarray(anchor, float)
         best = None
-        for limit in dict.fromkeys(min(reach, times * sizes[0][1]) for times in (*RINGS, math.inf)):
+        for limit in dict.fromkeys(min(reach, times * sizes[0][1]) for times in (*SEARCH_RINGS, math.inf)):
             for choice, size in enumerate(sizes):
                 boxes = self._candidates(anchor, np.asarray(size, float), towards, limit)
                 cost, on_labels = self._cost(boxes, anchor)
@@ -92,22 +93,29 @@ class LabelSpace:
         return PlacedLabel(left, top, right - left, bottom - top, choice, leader, cost == 0, on_labels > 0)
 
     def _candidates(self, anchor, size, towards, reach: float) -> np.ndarray:
-        """(n, 4) boxes around the anchor, in rings of growing distance, moved into the picture."""
+        """Return boxes (n, 4) around the anchor, in rings of growing distance.
+
+        The boxes are moved into the picture.
+        """
         low, high = self.bounds[:2], self.bounds[2:]
         farthest = min(reach, float(np.hypot(*(high - low))))
-        nearest = self.radius + GAP * size[1]
+        nearest = self.radius + LABEL_GAP * size[1]
         away = nearest + np.arange(0.0, max(farthest - nearest, 0.0) + 1e-9, size[1] / 2)
         turns = 2 * np.pi / DIRECTIONS * np.array([(k + 1) // 2 * (-1) ** k for k in range(DIRECTIONS)])
         angles = math.atan2(towards[1], towards[0]) + turns
         aim = np.column_stack([np.cos(angles), np.sin(angles)])
-        aim /= np.abs(aim).max(axis=1, keepdims=True)  # on a square: boxes touch the same distance
+        # On a square, so that boxes in all directions are equally far.
+        aim /= np.abs(aim).max(axis=1, keepdims=True)
         middles = anchor + aim * size / 2 + (aim / np.hypot(*aim.T)[:, None]) * away[:, None, None]
         corners = middles.reshape(-1, 2) - size / 2
         corners = np.clip(corners, low, np.maximum(high - size, low))
         return np.hstack([corners, corners + size])
 
     def _cost(self, boxes: np.ndarray, anchor) -> tuple[np.ndarray, np.ndarray]:
-        """What each box covers: 0 for a free one; and the area of labels in it."""
+        """Return the cost (n,) of what each box covers, 0 for a free box.
+
+        Returns also the area (n,) of other labels in each box.
+        """
         low = np.minimum(boxes[:, :2].min(axis=0), anchor) - self.radius
         high = np.maximum(boxes[:, 2:].max(axis=0), anchor) + self.radius
         taken = self._boxes[((self._boxes[:, 2:] > low) & (self._boxes[:, :2] < high)).all(axis=1)]
@@ -125,23 +133,23 @@ class LabelSpace:
         nearest = np.clip(anchors, boxes[:, None, :2], boxes[:, None, 2:])
         covered = (np.hypot(*np.moveaxis(nearest - anchors, -1, 0)) <= self.radius).sum(axis=1)
         areas = (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
-        covered += _inside(crossed, boxes).any(axis=0)
+        covered += _are_points_inside(crossed, boxes).any(axis=0)
         ends = np.clip(anchor, boxes[:, :2], boxes[:, 2:])
         leaders = np.linspace(np.broadcast_to(anchor, ends.shape), ends, LEADER_SAMPLES)
-        covered += _inside(leaders[:, :, None], taken).any(axis=(0, 2))
+        covered += _are_points_inside(leaders[:, :, None], taken).any(axis=(0, 2))
         return marks * self.cell**2 + LABEL_WEIGHT * labels + covered * areas, labels
 
     def _leader(self, anchor, box):
-        """A line from an anchor to its label, None where they are next to each other."""
+        """Return a line from an anchor to its label, None where they are close."""
         end = np.clip(anchor, box[:2], box[2:])
         away = float(np.hypot(*(end - anchor)))
-        if away <= self.radius + 2 * GAP * (box[3] - box[1]):
+        if away <= self.radius + 2 * LABEL_GAP * (box[3] - box[1]):
             return None
         start = anchor + (end - anchor) * self.radius / away
         return tuple(start.tolist()), tuple(end.tolist())
 
 
-def _inside(points, boxes) -> np.ndarray:
-    """Which points (..., 2) are in which boxes (n, 4): (..., n)."""
+def _are_points_inside(points, boxes) -> np.ndarray:
+    """Return which points (..., 2) are inside which boxes (n, 4), as (..., n)."""
     at = points[..., None, :] if points.ndim == 2 else points
     return ((at > boxes[:, :2]) & (at < boxes[:, 2:])).all(axis=-1)

@@ -1,55 +1,65 @@
-"""A report as people read it: a verdict, a few lines, and details for those who ask for them."""
+"""Format reports for people: a verdict, a few lines, and optional details."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-MOST_LINES = 10
-MOST_REASONS = 2  # in a verdict: the others are in the lines below it
+MAX_LINES = 10
+MAX_REASONS = 2  # in a verdict; other reasons are in the lines below it
 GOOD = "good"
 AGAINST = "do not use"
 GOOD_OVERLAP = 0.95  # differences are hard to see
-USABLE_OVERLAP = 0.70  # with another brush than the one in the file it is about 0.6
+USABLE_OVERLAP = 0.70  # the overlap is about 0.6 when the brush is not the one in the file
 
 
 @dataclass(frozen=True)
 class Report:
-    """What a person reads. verdict: see `verdict`; lines: what matters most; details: tables and coefficients."""
+    """A report for people.
+
+    verdict: see `verdict`; lines: the main results; details: tables and coefficients.
+    """
 
     verdict: str
     lines: tuple[str, ...]
     details: tuple[str, ...] = ()
 
     def text(self, details: bool = False, picture: str = "") -> str:
-        """Return at most ten lines, or with details all of them, coefficients last. picture: a file that shows it."""
+        """Return at most ten lines, or all lines and the details.
+
+        picture: name of a picture of the results.
+        """
         lines, last = [self.verdict, *self.lines], [f"Picture: {picture}"] if picture else []
-        most = MOST_LINES - len(last)
+        most = MAX_LINES - len(last)
         if len(lines) > most and not details:
             lines[most - 1 :] = [f"and {len(lines) - most + 1} more lines in the details"]
         return "\n".join([*lines, *last, *(["", *self.details] if details and self.details else []), ""])
 
 
 def verdict(against: Iterable[str], but: Iterable[str] = ()) -> str:
-    """Say in a line whether to use something.
+    """Return one line that says whether to use a result.
 
-    against: why not to use it at all; but: what to know before using it. The gravest reasons come first.
+    against: reasons not to use it at all; but: reasons for caution. The gravest reasons come first.
     """
     against, but = list(filter(None, against)), list(filter(None, but))
     if against:
-        return f"{AGAINST}, because {_joined(against)}"
-    return f"usable, but {_joined(but)}" if but else GOOD
+        return f"{AGAINST}, because {_join_reasons(against)}"
+    return f"usable, but {_join_reasons(but)}" if but else GOOD
 
 
-def _joined(reasons: list[str]) -> str:
-    more = len(reasons) - MOST_REASONS
-    return ", and ".join(reasons[:MOST_REASONS]) + (f" ({more} more reasons below)" if more > 0 else "")
+def _join_reasons(reasons: list[str]) -> str:
+    more = len(reasons) - MAX_REASONS
+    return ", and ".join(reasons[:MAX_REASONS]) + (f" ({more} more reasons below)" if more > 0 else "")
 
 
 def overlap_reasons(
     overlap: float | None, words: str, good: float = GOOD_OVERLAP, usable: float = USABLE_OVERLAP
 ) -> tuple[list[str], list[str]]:
-    """What an overlap says against use, and what to know. words: for what coincides, such as "paint and drawing"."""
+    """Return the reasons that follow from an overlap.
+
+    The first list has reasons against use, the second reasons for caution. words: the things that coincide, such as
+    "paint and drawing".
+    """
     if overlap is None or overlap >= good:
         return [], []
     reason = f"only {percent(overlap)} of {words} coincide"
@@ -57,24 +67,30 @@ def overlap_reasons(
 
 
 def percent(share: float) -> str:
-    """A share in words, rounded down: 95 % is never less than 0.95, and 100 % is all."""
+    """Format a share as a percentage, rounded down.
+
+    95 % is never less than 0.95, and 100 % is everything.
+    """
     return f"{int(100 * share + 1e-9)} %"
 
 
 def plural(count: int, noun: str) -> str:
-    """A count with its noun."""
+    """Format a count with its noun."""
     return f"{count} {noun}{'s' * (count != 1)}"
 
 
 def place_line(number: int, stroke: str, at_mm, size: str, reason: str, remedy: str = "") -> str:
-    """A place in one line, by the number that the picture shows."""
+    """Format a place as one line, with the number that the picture shows."""
     advice = f". {remedy[0].upper()}{remedy[1:]}." if remedy else ""
     reason = f"; {reason}" if reason else ""
     return f"{number}. {stroke}, x {at_mm[0]:.1f}, y {at_mm[1]:.1f} mm: {size}{reason}{advice}"
 
 
 def table(head, rows, notes=()) -> list[str]:
-    """Lines of a table: the first column flush left, the others flush right. notes: follow the cells of each line."""
+    """Return the lines of a table.
+
+    The first column is flush left, the others flush right. notes: texts that follow the cells of each line.
+    """
     cells = [tuple(head), *(tuple(row) for row in rows)]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     lines = [

@@ -8,18 +8,18 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-MOST_AREAS = 5
+MAX_AREAS = 5
 MIN_THICKNESS_MM = 0.2  # thinner slivers along an edge are hard to see
 MIN_AREA_MM2 = 0.1
-JOIN_MM = 0.25  # areas of one stroke that are so near are one place
+JOIN_MM = 0.25  # areas of one stroke with a smaller gap are one place
 
 
 @dataclass(frozen=True)
 class WorstArea:
     """An area near one stroke where paint and drawing differ.
 
-    stroke: its number. at_mm: the thickest place of the area. missing_mm2: target without paint; outside_mm2: paint
-    outside the target.
+    stroke: number of the stroke; at_mm: the thickest place of the area; missing_mm2: target without paint; outside_mm2:
+    paint outside the target.
     """
 
     stroke: int
@@ -33,12 +33,15 @@ class WorstArea:
 
     @property
     def is_missing(self) -> bool:
-        """Whether most of it is target without paint."""
+        """Whether most of the area is target without paint."""
         return self.missing_mm2 >= self.outside_mm2
 
     @property
     def words(self) -> str:
-        """Its size, for people: "1.2 mm^2 unpainted, 0.3 mm^2 painted outside"."""
+        """The size of the area in words.
+
+        For example, "1.2 mm^2 unpainted, 0.3 mm^2 painted outside".
+        """
         parts = (self.missing_mm2, "unpainted"), (self.outside_mm2, "painted outside")
         named = [
             f"{mm2:.{1 if mm2 < 10 else 0}f} mm^2 {what}" for mm2, what in parts if mm2 >= MIN_AREA_MM2 / 2
@@ -52,12 +55,12 @@ def worst_areas(
     corner_mm: tuple[float, float],
     px_per_mm: float,
     lines_mm: Sequence[np.ndarray],
-    most: int = MOST_AREAS,
+    most: int = MAX_AREAS,
 ) -> list[WorstArea]:
     """Return the largest differences first.
 
-    target, painted: (rows, columns) shares of the same pixels. corner_mm: the upper left corner, y up. lines_mm: (n, 2)
-    a line along each stroke; each difference belongs to the nearest one.
+    target, painted: (rows, columns) covered share of each pixel; corner_mm: the upper left corner of the picture, y up;
+    lines_mm: a line (n, 2) along each stroke. Each difference belongs to the nearest line.
     """
     differences = target - painted
     size = max(2, round(MIN_THICKNESS_MM * px_per_mm))
@@ -78,23 +81,23 @@ def worst_areas(
     _, group = np.unique(keys, return_inverse=True)
     sums = [np.bincount(group, weights=mask[rows, columns]) / px_per_mm**2 for mask in (missing, outside)]
     thickness = np.maximum(*(cv2.distanceTransform(mask, cv2.DIST_L2, 3) for mask in (missing, outside)))
-    found = []
+    areas = []
     for k in np.argsort(-(sums[0] + sums[1]), kind="stable")[:most]:
-        missing_mm2, outside_mm2 = (float(each[k]) for each in sums)
+        missing_mm2, outside_mm2 = (float(values[k]) for values in sums)
         if missing_mm2 + outside_mm2 < MIN_AREA_MM2:
             break
         mask = missing if missing_mm2 >= outside_mm2 else outside
-        here = np.flatnonzero((group == k) & (mask[rows, columns] > 0))
-        at = here[thickness[rows[here], columns[here]].argmax()]
+        area_px = np.flatnonzero((group == k) & (mask[rows, columns] > 0))
+        at = area_px[thickness[rows[area_px], columns[area_px]].argmax()]
         x = corner_mm[0] + (columns[at] + 0.5) / px_per_mm
         y = corner_mm[1] - (rows[at] + 0.5) / px_per_mm
         stroke = int(nearest[rows[at], columns[at]])
-        found.append(WorstArea(stroke, (float(x), float(y)), missing_mm2, outside_mm2))
-    return found
+        areas.append(WorstArea(stroke, (float(x), float(y)), missing_mm2, outside_mm2))
+    return areas
 
 
 def _nearest_line(shape, corner_mm, px_per_mm: float, lines_mm) -> np.ndarray:
-    """Number of the nearest line for each pixel."""
+    """Return the number of the nearest line for each pixel."""
     drawn = np.zeros(shape, np.int32)
     for number, line in enumerate(lines_mm):
         at = (np.asarray(line, float)[:, :2] - corner_mm) * (px_per_mm, -px_per_mm) - 0.5

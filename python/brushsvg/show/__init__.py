@@ -1,1 +1,1 @@
-"""Marks, drawings and programs to look at."""
+"""Pictures and animations of marks, drawings and programs."""

@@ -1,4 +1,4 @@
-"""Marks -> PNG: a page of predicted paint."""
+"""Draw marks as PNG: a page of predicted paint."""
 
 from __future__ import annotations
 
@@ -9,9 +9,18 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, need
-from .marks_svg import BAND, EDGE, TOOLPATH, Band, check_picture, known_colour, travels
+from .marks_svg import BAND, LINE_WIDTH_SHARE, TOOLPATH, Band, check_picture, known_colour, travels
 from .overlap_svg import MISSING
-from .png_canvas import PNG_LONG_SIDE_PX, SUB_PIXEL_BITS, TEXT, bgr, blend, canvas, encoded, write
+from .png_canvas import (
+    PNG_LONG_SIDE_PX,
+    SUB_PIXEL_BITS,
+    TEXT,
+    bgr,
+    blank_canvas,
+    blend,
+    encode_png,
+    write_text,
+)
 
 
 def marks_png(
@@ -23,10 +32,11 @@ def marks_png(
     blank: Iterable[np.ndarray] = (),
     toolpath_mm: Sequence[np.ndarray] = (),
 ) -> bytes:
-    """Draw the sheet with its paint, anti-aliased, with colours over each other in painting order.
+    """Draw the sheet with its paint, anti-aliased.
 
-    band: of the edges, drawn with a legend; blank: rings of the unpainted parts of shapes, outlined; toolpath_mm: of
-    each pass the positions of the tool (n, 2) or (n, 3), drawn over the paint, thinner where it travels in the air.
+    Later colours cover earlier ones. band: the 95 % band of the marks' edges, drawn with a legend; blank: rings of the
+    unpainted parts of shapes, outlined; toolpath_mm: the tool's positions (n, 2) or (n, 3) in each pass, drawn over the
+    paint, thinner where the tool travels in the air. Raises Error where there is nothing to draw.
     """
     check_picture(marks, sheet_mm, colours)
     need(brush, _core.Brush, "a brush")
@@ -40,12 +50,12 @@ def marks_png(
         run = _core.Marks()
         run.passes = list(marks.passes[first:last])
         paint = _core.coverage(run, brush, window, px_per_mm)
-        image = canvas(paint.shape, "#ffffff") if image is None else image
+        image = blank_canvas(paint.shape, "#ffffff") if image is None else image
         blend(image, paint, known_colour(colours[first]))
         first = last
     if image is None:
         raise Error("there is nothing to draw", code="nothing-to-show")
-    thick = max(round(EDGE * max(image.shape[:2])), 1)
+    thick = max(round(LINE_WIDTH_SHARE * max(image.shape[:2])), 1)
 
     def draw_line(points_mm, is_closed: bool, colour: str, thick_px: int) -> None:
         at = (np.asarray(points_mm)[:, :2] * (1, -1) + (0, sheet_mm[1])) * px_per_mm - 0.5
@@ -60,7 +70,7 @@ def marks_png(
         draw_line(line, False, TOOLPATH, thick)
     if band is not None:
         _draw_band(image, band, window, px_per_mm)
-    return encoded(image)
+    return encode_png(image)
 
 
 def _draw_band(image, band, window, px_per_mm: float) -> None:
@@ -73,4 +83,4 @@ def _draw_band(image, band, window, px_per_mm: float) -> None:
         box[low - size : low, left : left + 2 * size] = 0.45
         blend(image, box, BAND)
         left += round(2.5 * size)
-    write(image, band.words, (left, low - round(0.15 * size)), size, 400, TEXT)
+    write_text(image, band.words, (left, low - round(0.15 * size)), size, 400, TEXT)

@@ -1,4 +1,4 @@
-"""Marks -> SVG. Apart from the other pictures: a preview in a drawing program has no time to load OpenCV."""
+"""Draw marks as SVG. This module does not load OpenCV, because a preview in a drawing program has to be fast."""
 
 from __future__ import annotations
 
@@ -18,11 +18,14 @@ from .svg_text import path_data, printable, quoted
 
 BAND = "#e0862b"  # the 95 % band of an edge
 TOOLPATH = "#2f6fd0"
-EDGE = 0.002  # of the sheet, how wide the line round what stays blank is
+LINE_WIDTH_SHARE = 0.002  # of the sheet's longer side, for outlines of unpainted parts and for the toolpath
 
 
 class Band(Protocol):
-    """The 95 % band of the edge of each mark: rings [mm], and its source in words."""
+    """The 95 % bands of the marks' edges.
+
+    rings: rings [mm] per mark; words: their source in words.
+    """
 
     @property
     def rings(self) -> Iterable[list[np.ndarray]]: ...
@@ -44,10 +47,10 @@ def marks_svg(
 ) -> str:
     """Draw one path per pass in its colour, in millimetres of the sheet.
 
-    marks: with outlines; tracking_errors: of the passes, if known; made: how, in words; band: of their edges,
-    drawn with a legend; blank: rings of the unpainted parts of shapes, outlined; astray: names of strokes that are
-    marked, since their paint is displaced; toolpath_mm: of each pass the (n, 2) or (n, 3) positions of the tool,
-    drawn over the paint, dashed where it travels in the air.
+    marks: with outlines; tracking_errors: one per pass, if known; made: how the marks were made, in words; band: the
+    95 % band of their edges, drawn with a legend; blank: rings of the unpainted parts of shapes, outlined; astray:
+    names of strokes that are marked because their paint is displaced; toolpath_mm: the tool's positions (n, 2) or
+    (n, 3) in each pass, drawn over the paint, dashed where the tool travels in the air.
     """
     check_picture(marks, sheet_mm, colours)
     width, height = sheet_mm
@@ -61,25 +64,29 @@ def marks_svg(
         if trace.outline_mm:
             stroke = quoted(trace.stroke)
             lines.append(
-                f'<path data-stroke={stroke}{_missed(error, trace.stroke in astray)} fill="{known_colour(colour)}" d="'
+                f"<path data-stroke={stroke}{_error_attributes(error, trace.stroke in astray)} "
+                f'fill="{known_colour(colour)}" d="'
             )
             lines += [path_data(ring, height) for ring in trace.outline_mm]
             lines[-1] += '"/>'
     if blank:
         data = "".join(path_data(ring, height) for ring in blank)
-        wide = round(EDGE * max(width, height), 3)
+        line_width = round(LINE_WIDTH_SHARE * max(width, height), 3)
         lines.append(
-            f'<path class="blank" fill="none" stroke="{MISSING}" stroke-width="{wide:g}" d="{data}"/>'
+            f'<path class="blank" fill="none" stroke="{MISSING}" stroke-width="{line_width:g}" d="{data}"/>'
         )
     if toolpath_mm:
-        lines += _toolpath(toolpath_mm, width, height)
+        lines += _toolpath_elements(toolpath_mm, width, height)
     if band is not None:
-        lines += _band(band, width, height)
+        lines += _band_elements(band, width, height)
     return "\n".join([*lines, "</svg>", ""])
 
 
 def check_picture(marks: _core.Marks, sheet_mm: tuple[float, float], colours: list[str]) -> None:
-    """Error for a sheet that has no size, or where not every pass has a colour."""
+    """Raise Error for a sheet or colours that cannot be drawn.
+
+    The sheet must have a size, and each pass a colour.
+    """
     need(marks, _core.Marks, "marks, as simulate returns them")
     need(sheet_mm, (tuple, list), "a sheet's width and height")
     for side in sheet_mm:
@@ -97,12 +104,15 @@ def check_picture(marks: _core.Marks, sheet_mm: tuple[float, float], colours: li
 
 
 def travels(toolpath_mm: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Return the moves in the air: from the end of each pass to the start of the next, each (2, 2) in mm."""
+    """Return the moves in the air between passes, each (2, 2) in mm.
+
+    They go from the end of each pass to the start of the next.
+    """
     return [np.stack((a[-1, :2], b[0, :2])) for a, b in pairwise(toolpath_mm)]
 
 
-def _toolpath(toolpath_mm, width: float, height: float) -> list[str]:
-    thick = round(EDGE * max(width, height), 3)
+def _toolpath_elements(toolpath_mm, width: float, height: float) -> list[str]:
+    thick = round(LINE_WIDTH_SHARE * max(width, height), 3)
     style = f'fill="none" stroke="{TOOLPATH}" stroke-linejoin="round" stroke-width='
     in_air = "".join(_line_data(line, height) for line in travels(toolpath_mm))
     painting = "".join(_line_data(line, height) for line in toolpath_mm)
@@ -113,11 +123,11 @@ def _toolpath(toolpath_mm, width: float, height: float) -> list[str]:
 
 
 def _line_data(points_mm: np.ndarray, height: float) -> str:
-    """Return SVG path data of an open line; y points down there."""
+    """Return the SVG path data of an open line, where y points down."""
     return "M" + "L".join(f"{x:.3f} {height - y:.3f}" for x, y in points_mm[:, :2])
 
 
-def _band(band, width: float, height: float) -> list[str]:
+def _band_elements(band, width: float, height: float) -> list[str]:
     size = round(min(width, height) / 40, 3)
     lines = []
     for rings in filter(None, band.rings):
@@ -132,12 +142,15 @@ def _band(band, width: float, height: float) -> list[str]:
     return [*lines, f'<text {text} fill="#22252b">{escape(band.words)}</text>']
 
 
-def _missed(error, is_astray: bool) -> str:
+def _error_attributes(error, is_astray: bool) -> str:
     if error is None:
         return ""
     return f' data-tracking-error-mm="{error.largest_mm:.3f}"' + ' data-off-line="yes"' * is_astray
 
 
 def known_colour(colour: str) -> str:
-    """A plan from elsewhere may say anything of its colours: what is not #rrggbb is drawn black."""
+    """Return the colour, or black where it is not #rrggbb.
+
+    Plans from other programs may have other colours.
+    """
     return colour if re.fullmatch("#[0-9a-fA-F]{6}", colour) else "#000000"

@@ -1,4 +1,4 @@
-"""Where paint is missing and where there is too much of it, as a PNG."""
+"""Draw where paint is missing and where there is too much paint, as PNG."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 
 from ..reporting.label_space import LabelSpace
-from .overlap_svg import BOTH, MISSING, OVERLAP_COLOURS, RING, SEEN, SPILT
-from .png_canvas import TEXT, bgr, canvas, encoded, text_width, write
+from .overlap_svg import BOTH, MIN_COVERAGE, MISSING, OVERLAP_COLOURS, OVERSPILL, RING_RADIUS
+from .png_canvas import TEXT, bgr, blank_canvas, encode_png, text_width, write_text
 
 
 def overlap_png(
@@ -18,43 +18,47 @@ def overlap_png(
     legend: bool = True,
     places: Mapping[int, tuple[float, float]] | None = None,
 ) -> bytes:
-    """Draw where paint is missing and where there is too much of it, and number places.
+    """Draw where paint is missing and where there is too much paint.
 
-    target, painted: shares of the same pixels. places: number -> (x, y) px.
+    The given places are numbered. target, painted: (rows, columns) covered share of each pixel; places: number -> (x,
+    y) px.
     """
     common = np.minimum(target, painted)
     rows, columns = common.shape
     size = max(14, round(0.016 * max(rows, columns)))
-    image = canvas((rows + 2 * size * legend, columns), "#ffffff")
-    shares = ((common, BOTH), (target - common, MISSING), (painted - common, SPILT))
+    image = blank_canvas((rows + 2 * size * legend, columns), "#ffffff")
+    shares = ((common, BOTH), (target - common, MISSING), (painted - common, OVERSPILL))
     page = np.full((rows, columns, 3), 255.0)
-    for share, colour in shares:  # side by side in a pixel, not over each other
+    for share, colour in shares:  # the shares of a pixel add up; they do not cover each other
         page -= share[..., None] * (255.0 - np.array(bgr(colour)))
     image[:rows] = np.round(page).clip(0, 255).astype(np.uint8)
-    _number(image, np.maximum(target, painted) > SEEN, places or {}, size)
+    _number_places(image, np.maximum(target, painted) > MIN_COVERAGE, places or {}, size)
     if legend:
         write_legend(image, size, rows + size // 2, size)
-    return encoded(image)
+    return encode_png(image)
 
 
-def _number(
+def _number_places(
     image: np.ndarray, marks: np.ndarray, places: Mapping[int, tuple[float, float]], size: int
 ) -> None:
-    """A ring around each place, and its number next to it."""
-    space = LabelSpace(marks, anchors=[*places.values()], radius=RING * size)
+    """Draw a ring around each place, and its number next to the ring."""
+    space = LabelSpace(marks, anchors=[*places.values()], radius=RING_RADIUS * size)
     for number, (x, y) in places.items():
         cv2.circle(
-            image, (round(x), round(y)), round(RING * size), bgr(TEXT), max(1, size // 12), cv2.LINE_AA
+            image, (round(x), round(y)), round(RING_RADIUS * size), bgr(TEXT), max(1, size // 12), cv2.LINE_AA
         )
         label = space.place((x, y), [(text_width(str(number), size, 700), size)])
         if label.leader:
             ends = [tuple(map(round, end)) for end in label.leader]
             cv2.line(image, *ends, bgr(TEXT), max(1, size // 12), cv2.LINE_AA)
-        write(image, str(number), (round(label.left), round(label.top + 0.86 * size)), size, 700, TEXT)
+        write_text(image, str(number), (round(label.left), round(label.top + 0.86 * size)), size, 700, TEXT)
 
 
 def write_legend(image: np.ndarray, x: int, y: int, size: int) -> None:
-    """What the colours mean, from x, y (px) on, in letters of that size."""
+    """Write the meaning of the colours from x, y (px) on.
+
+    size: height of the letters (px).
+    """
     for colour, words in OVERLAP_COLOURS:
         image[y : y + size, x : x + size] = bgr(colour)
-        x = write(image, words, (x + 3 * size // 2, y + 7 * size // 8), size, 400, TEXT) + 2 * size
+        x = write_text(image, words, (x + 3 * size // 2, y + 7 * size // 8), size, 400, TEXT) + 2 * size

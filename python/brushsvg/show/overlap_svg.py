@@ -1,4 +1,4 @@
-"""Where paint is missing and where there is too much of it, as an SVG; and the colours of such pictures."""
+"""Draw where paint is missing and where there is too much paint, as SVG; the colours of overlap pictures."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from .. import _core
 from ..reporting.label_space import LabelSpace
 from .svg_text import path_data, printable
 
-BOTH, MISSING, SPILT = "#b4b8c0", "#d1431f", "#2f6fd0"
+BOTH, MISSING, OVERSPILL = "#b4b8c0", "#d1431f", "#2f6fd0"
 OVERLAP_COLOURS = (
     (BOTH, "painted as drawn"),
     (MISSING, "drawn, not painted"),
-    (SPILT, "painted, not drawn"),
+    (OVERSPILL, "painted, not drawn"),
 )
 
 
-CELLS = 1000  # of the longer side, by which labels keep clear of marks
-SEEN = 0.05  # share of a cell, below which rounding leaves some
-RING = 0.6  # radius of the ring around a place, in letter heights
-LETTER = 0.65  # width of a figure, in letter heights
+LABEL_GRID_CELLS = 1000  # along the longer side, for labels to keep clear of marks
+MIN_COVERAGE = 0.05  # share of a cell: less is a rounding error
+RING_RADIUS = 0.6  # of the ring around a place, in letter heights
+DIGIT_WIDTH = 0.65  # in letter heights
 
 
 def overlap_svg(
@@ -30,9 +30,10 @@ def overlap_svg(
     title: str = "",
     places: Mapping[int, tuple[float, float]] | None = None,
 ) -> str:
-    """Draw where paint is missing and where there is too much of it, in millimetres of the sheet, and number places.
+    """Draw where paint is missing and where there is too much paint.
 
-    target, painted: rings of all that was drawn, and of all paint. places: number -> (x, y) on the sheet.
+    Lengths are millimetres of the sheet. target, painted: rings of everything that was drawn, and of all paint; places:
+    number -> (x, y) on the sheet, shown with rings and numbers.
     """
     width, height = sheet_mm
     size = max(2.0, 0.018 * max(width, height))
@@ -48,10 +49,10 @@ def overlap_svg(
         f'<clipPath id="wanted"><path d="{data["wanted"]}"/></clipPath>',
         f'<rect width="{width:g}" height="{foot:g}" fill="#ffffff"/>',
         f'<path fill="{MISSING}" d="{data["wanted"]}"/>',
-        f'<path fill="{SPILT}" d="{data["painted"]}"/>',
+        f'<path fill="{OVERSPILL}" d="{data["painted"]}"/>',
         f'<path fill="{BOTH}" clip-path="url(#wanted)" d="{data["painted"]}"/>',
     ]
-    lines += _numbers([*target, *painted], sheet_mm, places, size) if places else []
+    lines += _number_places([*target, *painted], sheet_mm, places, size) if places else []
     x = size
     for colour, words in OVERLAP_COLOURS:
         lines.append(
@@ -65,19 +66,21 @@ def overlap_svg(
     return "\n".join([*lines, "</svg>", ""])
 
 
-def _numbers(rings: list, sheet_mm, places: Mapping[int, tuple[float, float]], size: float) -> list[str]:
-    """A ring around each place, and its number next to it."""
+def _number_places(
+    rings: list, sheet_mm, places: Mapping[int, tuple[float, float]], size: float
+) -> list[str]:
+    """Return the SVG elements of a ring and a number at each place."""
     width, height = sheet_mm
-    cells = CELLS / max(width, height)
-    marks = _core.coverage(rings, (0.0, 0.0, width, height), cells) > SEEN
+    cells = LABEL_GRID_CELLS / max(width, height)
+    marks = _core.coverage(rings, (0.0, 0.0, width, height), cells) > MIN_COVERAGE
     down = {number: (x, height - y) for number, (x, y) in places.items()}
     bounds = (0.0, 0.0, width, height)
-    space = LabelSpace(marks, 1 / cells, bounds, [*down.values()], RING * size)
+    space = LabelSpace(marks, 1 / cells, bounds, [*down.values()], RING_RADIUS * size)
     lines = [f'<g class="places" stroke="#22252b" stroke-width="{size / 12:.3g}" fill="none">']
     texts = []
     for number, (x, y) in down.items():
-        lines.append(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{RING * size:.3g}"/>')
-        label = space.place((x, y), [(LETTER * size * len(str(number)), size)])
+        lines.append(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{RING_RADIUS * size:.3g}"/>')
+        label = space.place((x, y), [(DIGIT_WIDTH * size * len(str(number)), size)])
         if label.leader:
             lines.append(
                 '<path d="M{:.2f},{:.2f}L{:.2f},{:.2f}"/>'.format(*label.leader[0], *label.leader[1])

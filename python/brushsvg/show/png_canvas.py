@@ -1,4 +1,4 @@
-"""A picture of pixels: paper, paint laid over it, words, the bytes of a PNG."""
+"""Draw on a picture of pixels: paper, paint blended over it, text; encode the picture as PNG."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ PNG_LONG_SIDE_PX = 2400
 SUB_PIXEL_BITS = 4  # cv2 draws lines at 1/16 px
 
 
-def canvas(shape: tuple[int, int], colour: str) -> np.ndarray:
+def blank_canvas(shape: tuple[int, int], colour: str) -> np.ndarray:
     return np.full((*shape, 3), bgr(colour), np.uint8)
 
 
@@ -24,17 +24,17 @@ def bgr(colour: str) -> tuple[int, int, int]:
     return int(colour[5:7], 16), int(colour[3:5], 16), int(colour[1:3], 16)
 
 
-def write(image, text: str, baseline: tuple[int, int], size: int, weight: int, colour: str) -> int:
-    """Text in OpenCV's own font; the x where it ends."""
+def write_text(image, text: str, baseline: tuple[int, int], size: int, weight: int, colour: str) -> int:
+    """Write text in OpenCV's own font; return the x [px] where the text ends."""
     end, _ = cv2.putText(image, text, baseline, bgr(colour), cv2.FontFace("sans"), size, weight)
     return int(end[0])
 
 
 def text_width(text: str, size: int, weight: int) -> int:
-    """How far a text reaches to the right of where it begins [px]."""
+    """Return how far a text reaches to the right of its start [px]."""
     (x, _, width, _) = cv2.getTextSize((10000, 100), text, (0, 0), cv2.FontFace("sans"), size, weight)
     return x + width
 
 
-def encoded(image: np.ndarray) -> bytes:
+def encode_png(image: np.ndarray) -> bytes:
     return cv2.imencode(".png", image)[1].tobytes()

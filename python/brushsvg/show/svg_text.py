@@ -1,4 +1,4 @@
-"""What goes into an SVG that we write: rings as path data, and any text at all."""
+"""Format the contents of an SVG: rings as path data, and text."""
 
 from __future__ import annotations
 

@@ -10,34 +10,37 @@ import numpy as np
 from ..machine.arm.place import LIMITED, REACHED, SINGULAR, UNREACHED, Table
 from ..machine.cells.cell import Cell
 from ..machine.frames import moved
-from .png_canvas import TEXT, bgr, canvas, encoded, write
+from .png_canvas import TEXT, bgr, blank_canvas, encode_png, write_text
 from .svg_text import printable
 
-COLOURS = {
+REACH_COLOURS = {
     REACHED: ("#bfe3c4", "reached"),
     LIMITED: ("#f4c37d", "beyond a joint's limits"),
     SINGULAR: ("#d99bd0", "near a singularity"),
     UNREACHED: ("#e4e4e6", "out of reach"),
 }
-PAPER, WOULD_DO, LINE = "#22252b", "#1b66c9", "#ffffff"
+SHEET, ALTERNATIVE_SHEET, GRID_LINE = "#22252b", "#1b66c9", "#ffffff"
 LONG_SIDE_PX = 1200
 GRID_MM = 100.0
 TEXT_PX = 20
 
 
 def table_picture(suffix: str, table: Table, cell: Cell, sheet_mm, frame, found) -> str | bytes:
-    """As .svg or .png. frame: (4, 4) the paper's in the robot's; found: that of where it would do, or None."""
+    """Draw the table as .svg or .png.
+
+    frame: (4, 4) pose of the paper in the robot's frame; found: (4, 4) pose where the paper could be, or None.
+    """
     step_mm = float(np.diff(table.x_mm)[0])
     low = np.array([table.x_mm[0], table.y_mm[0]]) - step_mm / 2
     low = np.minimum(low, -40.0)
     high = np.maximum(np.array([table.x_mm[-1], table.y_mm[-1]]) + step_mm / 2, 40.0)
     corners = np.array([(0, 0, 0), (sheet_mm[0], 0, 0), (*sheet_mm, 0), (0, sheet_mm[1], 0)], dtype=float)
-    sheets = [(moved(frame, corners)[:, :2], PAPER, "paper")]
+    sheets = [(moved(frame, corners)[:, :2], SHEET, "paper")]
     if found is not None:
-        sheets.append((moved(found, corners)[:, :2], WOULD_DO, "would do here"))
+        sheets.append((moved(found, corners)[:, :2], ALTERNATIVE_SHEET, "would do here"))
     for ring, _, _ in sheets:
         low, high = np.minimum(low, ring.min(axis=0) - 10), np.maximum(high, ring.max(axis=0) + 10)
-    drawn = _png if suffix == ".png" else _svg
+    drawn = _draw_png if suffix == ".png" else _draw_svg
     return drawn(
         table,
         step_mm,
@@ -52,12 +55,12 @@ def _ticks(low: float, high: float) -> np.ndarray:
     return np.arange(np.ceil(low / GRID_MM), np.floor(high / GRID_MM) + 1) * GRID_MM
 
 
-def _png(table: Table, step_mm: float, low, high, sheets, title: str) -> bytes:
+def _draw_png(table: Table, step_mm: float, low, high, sheets, title: str) -> bytes:
     px_per_mm = LONG_SIDE_PX / (high - low).max()
     width, height = np.ceil((high - low) * px_per_mm).astype(int)
     head = 2 * TEXT_PX
-    foot = (len(COLOURS) // 2 + 1) * 2 * TEXT_PX
-    image = canvas((head + height + foot, max(width, 36 * TEXT_PX)), "#ffffff")
+    foot = (len(REACH_COLOURS) // 2 + 1) * 2 * TEXT_PX
+    image = blank_canvas((head + height + foot, max(width, 36 * TEXT_PX)), "#ffffff")
 
     def at(x, y) -> tuple[int, int]:
         return round((x - low[0]) * px_per_mm), head + round((high[1] - y) * px_per_mm)
@@ -66,32 +69,32 @@ def _png(table: Table, step_mm: float, low, high, sheets, title: str) -> bytes:
     for y, row in zip(table.y_mm, table.what, strict=True):
         for x, what in zip(table.x_mm, row, strict=True):
             cv2.rectangle(
-                image, at(x - half, y + half), at(x + half, y - half), bgr(COLOURS[int(what)][0]), -1
+                image, at(x - half, y + half), at(x + half, y - half), bgr(REACH_COLOURS[int(what)][0]), -1
             )
     for x in _ticks(low[0], high[0]):
-        cv2.line(image, at(x, low[1]), at(x, high[1]), bgr(LINE), 1)
-        write(image, f"{x:g}", (at(x, 0)[0] + 3, head + height - 4), TEXT_PX * 3 // 4, 400, TEXT)
+        cv2.line(image, at(x, low[1]), at(x, high[1]), bgr(GRID_LINE), 1)
+        write_text(image, f"{x:g}", (at(x, 0)[0] + 3, head + height - 4), TEXT_PX * 3 // 4, 400, TEXT)
     for y in _ticks(low[1], high[1]):
-        cv2.line(image, at(low[0], y), at(high[0], y), bgr(LINE), 1)
-        if at(0, y)[1] < head + height - 2 * TEXT_PX:  # above the numbers of x
-            write(image, f"{y:g}", (3, at(0, y)[1] - 3), TEXT_PX * 3 // 4, 400, TEXT)
+        cv2.line(image, at(low[0], y), at(high[0], y), bgr(GRID_LINE), 1)
+        if at(0, y)[1] < head + height - 2 * TEXT_PX:  # keep clear of the numbers of x
+            write_text(image, f"{y:g}", (3, at(0, y)[1] - 3), TEXT_PX * 3 // 4, 400, TEXT)
     cv2.circle(image, at(0, 0), 9, bgr(TEXT), -1, cv2.LINE_AA)
-    write(image, "robot", (at(0, 0)[0] + 14, at(0, 0)[1] + 7), TEXT_PX, 400, TEXT)
+    write_text(image, "robot", (at(0, 0)[0] + 14, at(0, 0)[1] + 7), TEXT_PX, 400, TEXT)
     for ring, colour, words in sheets:
         points = np.array([at(*point) for point in ring], dtype=np.int32)
         cv2.polylines(image, [points], True, bgr(colour), 3, cv2.LINE_AA)
         cv2.circle(image, points[0].tolist(), 6, bgr(colour), -1, cv2.LINE_AA)
         x, y = points.mean(axis=0).astype(int)
-        write(image, words, (x - 5 * len(words), y + 7), TEXT_PX, 400, colour)
-    write(image, title, (TEXT_PX // 2, TEXT_PX + 6), TEXT_PX, 600, TEXT)
-    for number, (colour, words) in enumerate(COLOURS.values()):
+        write_text(image, words, (x - 5 * len(words), y + 7), TEXT_PX, 400, colour)
+    write_text(image, title, (TEXT_PX // 2, TEXT_PX + 6), TEXT_PX, 600, TEXT)
+    for number, (colour, words) in enumerate(REACH_COLOURS.values()):
         x, y = TEXT_PX // 2 + number % 2 * 18 * TEXT_PX, head + height + TEXT_PX + number // 2 * 2 * TEXT_PX
         cv2.rectangle(image, (x, y - TEXT_PX // 2), (x + TEXT_PX, y + TEXT_PX // 2), bgr(colour), -1)
-        write(image, words, (x + 3 * TEXT_PX // 2, y + 7), TEXT_PX, 400, TEXT)
-    return encoded(image)
+        write_text(image, words, (x + 3 * TEXT_PX // 2, y + 7), TEXT_PX, 400, TEXT)
+    return encode_png(image)
 
 
-def _svg(table: Table, step_mm: float, low, high, sheets, title: str) -> str:
+def _draw_svg(table: Table, step_mm: float, low, high, sheets, title: str) -> str:
     width, height = high - low
     head, foot, size = 30.0, 60.0, 13.0
     whole = max(float(width), 470.0)
@@ -107,7 +110,7 @@ def _svg(table: Table, step_mm: float, low, high, sheets, title: str) -> str:
         f'<text x="6" y="20" font-weight="bold">{escape(printable(title), quote=False)}</text>',
     ]
     half = step_mm / 2
-    for what, (colour, _) in COLOURS.items():
+    for what, (colour, _) in REACH_COLOURS.items():
         rows, columns = np.nonzero(table.what == what)
         squares = "".join(
             f"M{at(table.x_mm[c] - half, table.y_mm[r] + half)}h{step_mm:g}v{step_mm:g}h{-step_mm:g}z"
@@ -115,13 +118,13 @@ def _svg(table: Table, step_mm: float, low, high, sheets, title: str) -> str:
         )
         lines.append(f'<path fill="{colour}" d="{squares}"/>')
     for x in _ticks(low[0], high[0]):
-        lines.append(f'<path stroke="{LINE}" d="M{at(x, low[1])}L{at(x, high[1])}"/>')
+        lines.append(f'<path stroke="{GRID_LINE}" d="M{at(x, low[1])}L{at(x, high[1])}"/>')
         lines.append(
             f'<text x="{x - low[0] + 2:.1f}" y="{head + height - 3:.1f}" font-size="10">{x:g}</text>'
         )
     for y in _ticks(low[1], high[1]):
-        lines.append(f'<path stroke="{LINE}" d="M{at(low[0], y)}L{at(high[0], y)}"/>')
-        if high[1] - y < height - 2 * size:  # above the numbers of x
+        lines.append(f'<path stroke="{GRID_LINE}" d="M{at(low[0], y)}L{at(high[0], y)}"/>')
+        if high[1] - y < height - 2 * size:  # keep clear of the numbers of x
             lines.append(f'<text x="2" y="{head + high[1] - y - 2:.1f}" font-size="10">{y:g}</text>')
     lines.append(f'<circle cx="{-low[0]:.1f}" cy="{head + high[1]:.1f}" r="6" fill="{TEXT}"/>')
     lines.append(f'<text x="{10 - low[0]:.1f}" y="{head + high[1] + 5:.1f}">robot</text>')
@@ -131,7 +134,7 @@ def _svg(table: Table, step_mm: float, low, high, sheets, title: str) -> str:
         x, y = ring.mean(axis=0)
         place = f'x="{x - low[0]:.1f}" y="{head + high[1] - y:.1f}"'
         lines.append(f'<text {place} text-anchor="middle" fill="{colour}">{words}</text>')
-    for number, (colour, words) in enumerate(COLOURS.values()):
+    for number, (colour, words) in enumerate(REACH_COLOURS.values()):
         x, y = 6 + number % 2 * 230, head + height + 12 + number // 2 * 24
         lines.append(f'<rect x="{x}" y="{y:.1f}" width="14" height="14" fill="{colour}"/>')
         lines.append(f'<text x="{x + 20}" y="{y + 11:.1f}">{words}</text>')

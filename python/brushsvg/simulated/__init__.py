@@ -1,1 +1,1 @@
-"""A studio without a robot: a machine, a brush and a camera that are not quite as they should be."""
+"""Simulation of a studio without a robot: its machine, brush and camera have small errors."""

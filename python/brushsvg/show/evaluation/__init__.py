@@ -1,1 +1,1 @@
-"""How well it will be painted, why not, and with what confidence."""
+"""Evaluate a planned job: how well it will be painted, where it differs and why, and with what confidence."""

@@ -1,4 +1,4 @@
-"""Find the places where the predicted paint differs most from the drawing, why, and what helps."""
+"""Find the places where the predicted paint differs most from the drawing, with causes and remedies."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from ... import _core
 from ...reporting.report_text import place_line
 from .error_causes import Cause, remedy
 
-PX_PER_MM, MOST_PX = 10.0, 8e6  # of the pixels that are compared
-AROUND_MM = 10.0  # of the drawing, where its paint can be
-ROUGH_MM = 0.05  # of a line along a stroke
+PX_PER_MM, MAX_PIXELS = 10.0, 8e6  # limits of the resolution and number of compared pixels
+MARGIN_MM = 10.0  # around the drawing, where its paint can be
+LINE_TOLERANCE_MM = 0.05  # tolerance of the polyline along a stroke
 
 
 @dataclass(frozen=True)
 class Place:
-    """A place where paint and drawing differ, by its number in the report and in the picture.
+    """A place where paint and drawing differ.
 
-    place_mm: (x, y). missing_mm2: target without paint; outside_mm2: paint outside the target. tracking_error_mm: the
-    largest of a drawn line, where it is above the tolerance; reason, code: see error_causes; remedy: what helps, "" for
-    nothing; size: all of these sizes in words.
+    number: in the report and in the picture; place_mm: (x, y); missing_mm2: target without paint; outside_mm2: paint
+    outside the target; tracking_error_mm: the largest tracking error of a drawn line, where it is above the tolerance;
+    reason, code: see error_causes; remedy: the remedy, "" for none; size: these sizes in words.
     """
 
     number: int
@@ -62,23 +62,25 @@ def find_places(
 ) -> tuple[Place, ...]:
     """Return the five worst places, the largest first.
 
-    drawn: strokes that the marks should be. why: of a stroke's id and a worst_areas.WorstArea, the cause and the
-    tracking error [mm].
+    drawn: the strokes that the marks should match; why: function of a stroke's id and a worst_areas.WorstArea that
+    returns the cause and the tracking error [mm].
     """
     if not drawn or not marks.passes:
         return ()
-    from ...reporting.worst_areas import worst_areas  # brings OpenCV, which a verdict does not need
+    from ...reporting.worst_areas import worst_areas  # loads OpenCV, which a verdict does not need
 
-    lines = [_core.flatten(stroke, ROUGH_MM) for stroke in drawn]
-    window, px_per_mm = _window(lines)
+    lines = [_core.flatten(stroke, LINE_TOLERANCE_MM) for stroke in drawn]
+    window, px_per_mm = _window_around(lines)
     target = _core.wanted_coverage(drawn, window, px_per_mm)
     painted = _core.coverage(marks, brush, window, px_per_mm)
     corner = (window[0], window[1] + window[3])
     areas = worst_areas(target, painted, corner, px_per_mm, [line[:, :2] for line in lines])
-    return tuple(_place(number, drawn[area.stroke], area, why) for number, area in enumerate(areas, 1))
+    return tuple(
+        _describe_place(number, drawn[area.stroke], area, why) for number, area in enumerate(areas, 1)
+    )
 
 
-def _place(number: int, stroke, area, why) -> Place:
+def _describe_place(number: int, stroke, area, why) -> Place:
     cause, error_mm = why(stroke.id, area)
     size = area.words
     if error_mm is not None:
@@ -89,9 +91,9 @@ def _place(number: int, stroke, area, why) -> Place:
     )
 
 
-def _window(lines: Iterable[np.ndarray]) -> tuple[tuple[float, float, float, float], float]:
+def _window_around(lines: Iterable[np.ndarray]) -> tuple[tuple[float, float, float, float], float]:
     points = np.vstack([line[:, :2] for line in lines])
     half = max(float(line[:, 3].max()) for line in lines)
-    low, high = points.min(axis=0) - half - AROUND_MM, points.max(axis=0) + half + AROUND_MM
+    low, high = points.min(axis=0) - half - MARGIN_MM, points.max(axis=0) + half + MARGIN_MM
     size = high - low
-    return (*low.tolist(), *size.tolist()), min(PX_PER_MM, float(np.sqrt(MOST_PX / size.prod())))
+    return (*low.tolist(), *size.tolist()), min(PX_PER_MM, float(np.sqrt(MAX_PIXELS / size.prod())))

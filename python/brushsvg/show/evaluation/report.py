@@ -1,4 +1,4 @@
-"""How well a plan paints what was drawn, in mm: per stroke and in all, as text, JSON and CSV."""
+"""Report how well a plan paints the drawing, in mm: per stroke and in total, as text, JSON and CSV."""
 
 from __future__ import annotations
 
@@ -24,20 +24,23 @@ from .uncertainty import Confidence, PlanConfidence
 from .verdict import verdict_of
 
 RING_TOLERANCE_MM = 0.01
-SMALL_MM2 = 0.005  # that is no difference worth a word
-_LEAST_SQUARE_MM = 0.5  # in which paint and drawing differ most, at least: see stroke_score
-_BARE = 0.1  # of that square, what no stroke reaches: less does not make it the worst place
+MIN_DIFFERENCE_MM2 = 0.005  # a smaller difference is not reported
+_MIN_SQUARE_MM = 0.5  # smallest side of the square in which paint and drawing differ most, see stroke_score
+_MIN_BARE_SHARE = 0.1  # of this square: a smaller area that no stroke reaches does not explain the difference
 
 
 @dataclass(frozen=True)
 class Figures:
-    """Lengths in mm. None: the drawing is not known, or nothing could be measured.
+    """The figures of one stroke, or of all strokes together.
+
+    None means that the drawing is not known, or that nothing could be measured.
 
     overlap: area of intersection over area of union of predicted and drawn mark.
-    centre_*: distance of the widest point from the middle line over taut rows.
+    centre_mean_mm, centre_largest_mm: distance of the widest point from the middle line over taut rows.
     width_error_mm: mean absolute difference of predicted and drawn width across the middle line.
-    excess_turning: how much more the mark's outline turns than the drawn one's, in full turns; over all, the mean.
-    drawn_mm, painted_mm: length of the middle line; of the TCP's path on the paper.
+    widths_out_of_reach: number of the stroke's half widths that the brush cannot paint.
+    excess_turning: how much more the mark's outline turns than the drawn one's, in full turns; the mean over all.
+    drawn_mm, painted_mm: length of the middle line, and of the TCP's path on the paper.
     """
 
     stroke: str
@@ -57,8 +60,8 @@ class Figures:
 class Worst:
     """The place where a stroke's paint differs most from the drawing.
 
-    place_mm: (x, y); is_missing: drawn but not painted, else painted but not drawn; area_mm2: of the difference near
-    that place; reason: why, in words; code: see error_causes.
+    place_mm: (x, y); is_missing: drawn but not painted, else painted but not drawn; area_mm2: area of the difference
+    near this place; reason: the cause in words; code: see error_causes.
     """
 
     place_mm: tuple[float, float]
@@ -70,8 +73,10 @@ class Worst:
 
 @dataclass(frozen=True)
 class Group:
-    """Strokes that touch or cross, a letter perhaps: overlap of all their paint with all that was drawn of them, so
-    that paint of one on the other is not counted against it."""
+    """Strokes that touch or cross, for example a letter.
+
+    overlap: of all their paint with everything drawn of them, so that paint of one stroke on another is no error.
+    """
 
     strokes: tuple[str, ...]
     overlap: float
@@ -79,9 +84,9 @@ class Group:
 
 @dataclass(frozen=True)
 class Report:
-    """Everything that is known of how a plan will look.
+    """Everything that is known about the paint of a plan.
 
-    assumed: the properties of the brush that were never measured, in words; places: the worst ones, with the numbers
+    assumed: the properties of the brush that were never measured, in words; places: the worst places, with the numbers
     of the overlap picture.
     """
 
@@ -93,10 +98,10 @@ class Report:
     total: Figures
     time_s: float
     warnings: tuple[Notice, ...] = ()
-    refused: tuple[Notice, ...] = ()  # strokes that are not among those of the report
-    forbidden: tuple[Notice, ...] = ()  # of the warnings, those for which no program would be written
+    refused: tuple[Notice, ...] = ()  # strokes that were left out
+    forbidden: tuple[Notice, ...] = ()  # warnings for which no program would be written
     confidence: PlanConfidence | None = None  # None: the brush has no confidence
-    is_tilted: bool = False  # the brush, somewhere: of that no confidence is known
+    is_tilted: bool = False  # the brush tilts somewhere, for which no confidence is known
     groups: tuple[Group, ...] = ()
     advice: str = ""  # on the drawing's size
     assumed: tuple[str, ...] = ()
@@ -109,7 +114,10 @@ class Report:
 
 
 class Bare(Protocol):
-    """A piece of an element's shape that no stroke reaches: rings [mm]; is_rim: of a stroke wider than the brush."""
+    """A piece of an element's shape that no stroke reaches.
+
+    rings: its outlines [mm]; is_rim: it belongs to a stroke that is wider than the brush.
+    """
 
     @property
     def element(self) -> str: ...
@@ -120,16 +128,16 @@ class Bare(Protocol):
 
 
 def target_rings(strokes: Iterable[_core.Stroke]) -> list[np.ndarray]:
-    """Outline of everything that was drawn."""
+    """Return the outline of everything that was drawn."""
     return _core.unite([ring for s in strokes for ring in _core.wanted_outline(s, RING_TOLERANCE_MM)])
 
 
 @dataclass(frozen=True)
 class PaintedPlan:
-    """A plan with what it paints, and what was drawn.
+    """A plan with its marks and its drawing.
 
-    strokes: one per pass, None if unknown, or None for a pass that is a part of a stroke; drawn: then all that was
-    drawn, the strokes themselves where it is None; unreached: pieces of shapes that no stroke reaches.
+    strokes: one per pass, or None if they are unknown; a pass that is a part of a stroke has None; drawn: everything
+    that was drawn, None where it equals the strokes; unreached: pieces of shapes that no stroke reaches.
     """
 
     plan: _core.Plan
@@ -143,35 +151,37 @@ class PaintedPlan:
 
 
 def measure(painted: PaintedPlan) -> tuple[tuple[Figures, ...], Figures]:
-    """Figures for each pass and for all."""
+    """Return the figures of each pass, and of all passes together."""
     plan, strokes, brush = painted.plan, painted.strokes, painted.brush
     if strokes is None:
-        rows = tuple(_bare_figures(a_pass) for a_pass in plan.passes)
-        return rows, _in_all(rows, None)
-    runs, traces = plan.passes, painted.marks.passes
-    known = [k for k, stroke in enumerate(strokes) if stroke is not None]
-    alone = [strokes[k] for k in known]
-    verdicts = _core.verdicts([traces[k] for k in known], alone, brush)
-    tracking_errors = _core.tracking_errors_of([runs[k] for k in known], alone, brush, painted.tolerance_mm)
-    found = iter(zip(verdicts, tracking_errors, strict=True))
-    rows = tuple(
-        _bare_figures(a_pass) if stroke is None else _figures(painted, a_pass, stroke, *next(found))
-        for a_pass, stroke in zip(runs, strokes, strict=True)
+        rows = tuple(_path_figures(a_pass) for a_pass in plan.passes)
+        return rows, _total_figures(rows, None)
+    passes, traces = plan.passes, painted.marks.passes
+    known_passes = [k for k, stroke in enumerate(strokes) if stroke is not None]
+    known_strokes = [strokes[k] for k in known_passes]
+    verdicts = _core.verdicts([traces[k] for k in known_passes], known_strokes, brush)
+    tracking_errors = _core.tracking_errors_of(
+        [passes[k] for k in known_passes], known_strokes, brush, painted.tolerance_mm
     )
-    target = alone if painted.drawn is None else list(painted.drawn)
+    measured = iter(zip(verdicts, tracking_errors, strict=True))
+    rows = tuple(
+        _path_figures(a_pass) if stroke is None else _stroke_figures(painted, a_pass, stroke, *next(measured))
+        for a_pass, stroke in zip(passes, strokes, strict=True)
+    )
+    target = known_strokes if painted.drawn is None else list(painted.drawn)
     overlap = _core.common_area(traces, target, brush).overlap if rows else None
-    return rows, _in_all(rows, overlap)
+    return rows, _total_figures(rows, overlap)
 
 
-def _figures(painted: PaintedPlan, a_pass, stroke, verdict, tracking_error) -> Figures:
+def _stroke_figures(painted: PaintedPlan, a_pass, stroke, verdict, tracking_error) -> Figures:
     line = _core.flatten(stroke, RING_TOLERANCE_MM)
     worst, place = None, verdict.worst
-    if place.area_mm2 >= SMALL_MM2:
-        size_mm = _square_mm(line)
-        why = _why(painted, stroke, line, place, size_mm, tracking_error)
+    if place.area_mm2 >= MIN_DIFFERENCE_MM2:
+        size_mm = _square_side_mm(line)
+        why = _find_cause(painted, stroke, line, place, size_mm, tracking_error)
         worst = Worst(tuple(place.at_mm), place.is_missing, place.area_mm2, why.words, why.code)
     return replace(
-        _bare_figures(a_pass),
+        _path_figures(a_pass),
         overlap=verdict.overlap,
         centre_mean_mm=tracking_error.mean_mm,
         centre_largest_mm=tracking_error.largest_mm,
@@ -184,7 +194,10 @@ def _figures(painted: PaintedPlan, a_pass, stroke, verdict, tracking_error) -> F
 
 
 def worst_places(painted: PaintedPlan) -> tuple[Place, ...]:
-    """Where all paint differs most from all that was drawn, the largest first."""
+    """Return the places where paint differs most from the drawing.
+
+    The largest difference comes first.
+    """
     pairs = zip(painted.plan.passes, painted.strokes or (), strict=bool(painted.strokes))
     whole = {stroke.id: (run, stroke) for run, stroke in pairs if stroke is not None}
 
@@ -194,28 +207,31 @@ def worst_places(painted: PaintedPlan) -> tuple[Place, ...]:
         run, stroke = whole[name]
         (error,) = _core.tracking_errors_of([run], [stroke], painted.brush, painted.tolerance_mm)
         line = _core.flatten(stroke, RING_TOLERANCE_MM)
-        size_mm = max(_square_mm(line), area.area_mm2**0.5)
-        found = _why(painted, stroke, line, area, size_mm, error)
-        is_off = not (stroke.wanted_mm or error.within_tolerance or "tracking error" in found.words)
-        return found, error.largest_mm if is_off else None
+        size_mm = max(_square_side_mm(line), area.area_mm2**0.5)
+        found_cause = _find_cause(painted, stroke, line, area, size_mm, error)
+        is_off = not (stroke.wanted_mm or error.within_tolerance or "tracking error" in found_cause.words)
+        return found_cause, error.largest_mm if is_off else None
 
     targets = painted.drawn if painted.drawn is not None else [stroke for _, stroke in whole.values()]
     return find_places(painted.marks, painted.brush, list(targets), why)
 
 
-def _square_mm(line: np.ndarray) -> float:
-    return max(_LEAST_SQUARE_MM, float(np.median(line[:, 3])))
+def _square_side_mm(line: np.ndarray) -> float:
+    return max(_MIN_SQUARE_MM, float(np.median(line[:, 3])))
 
 
-def _why(painted: PaintedPlan, stroke, line, place, size_mm, tracking_error) -> Cause:
-    """Why paint differs at a place. size_mm: side of the square around it that is looked at."""
-    here = [
+def _find_cause(painted: PaintedPlan, stroke, line, place, size_mm, tracking_error) -> Cause:
+    """Find why paint differs at a place.
+
+    size_mm: side of the square around the place that is examined.
+    """
+    pieces_here = [
         piece
         for piece in painted.unreached
-        if piece.element == stroke.origin.element and _is_in(place.at_mm, piece.rings, size_mm / 2)
+        if piece.element == stroke.origin.element and _is_near_rings(place.at_mm, piece.rings, size_mm / 2)
     ]
-    is_bare = place.is_missing and any(not piece.is_rim for piece in here)
-    is_rim = place.is_missing and bool(here)
+    is_bare = place.is_missing and any(not piece.is_rim for piece in pieces_here)
+    is_rim = place.is_missing and bool(pieces_here)
     is_corner = place.is_missing and _outside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
     where = "bare" if is_bare else "rim" if is_rim else "corner" if is_corner else ""
     return cause(
@@ -231,21 +247,31 @@ def _why(painted: PaintedPlan, stroke, line, place, size_mm, tracking_error) -> 
     )
 
 
-def _is_in(place_mm, rings, reach_mm: float) -> bool:
-    """Whether a square about a place meets what rings enclose."""
-    return _core.area(_core.intersect([_square(place_mm, reach_mm)], rings)) > _BARE * (2 * reach_mm) ** 2
+def _is_near_rings(place_mm, rings, reach_mm: float) -> bool:
+    """Return whether rings enclose enough of a square around a place.
+
+    The limit is _MIN_BARE_SHARE of the square.
+    """
+    return (
+        _core.area(_core.intersect([_square_ring(place_mm, reach_mm)], rings))
+        > _MIN_BARE_SHARE * (2 * reach_mm) ** 2
+    )
 
 
 def _outside_discs_mm2(stroke, place_mm, size_mm: float) -> float:
-    """What discs of its widths leave of a stroke's shape in a square about a place: there no round brush paints."""
+    """Return the area of a shape near a place that discs do not cover.
+
+    The discs have the widths of the stroke. A round brush cannot paint there. The square is around place_mm, with side
+    size_mm.
+    """
     if not stroke.wanted_mm:
         return 0.0
-    within = _core.intersect([_square(place_mm, size_mm / 2)], stroke.wanted_mm)
+    within = _core.intersect([_square_ring(place_mm, size_mm / 2)], stroke.wanted_mm)
     discs = _core.wanted_outline(stroke.replaced(wanted_mm=[]), RING_TOLERANCE_MM)
     return _core.area(within) - _core.area(_core.intersect(within, discs))
 
 
-def _square(place_mm, reach_mm: float) -> np.ndarray:
+def _square_ring(place_mm, reach_mm: float) -> np.ndarray:
     x, y = place_mm
     sides = ((-1, -1), (1, -1), (1, 1), (-1, 1))
     return np.array([(x + reach_mm * right, y + reach_mm * up) for right, up in sides])
@@ -254,25 +280,30 @@ def _square(place_mm, reach_mm: float) -> np.ndarray:
 def groups(
     marks: _core.Marks, brush: _core.Brush, strokes: Sequence[_core.Stroke] | None
 ) -> tuple[Group, ...]:
-    """Strokes that touch, each letter judged as one. strokes: one per pass, None for a part of one."""
-    known = [pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None]
-    traces, targets = [trace for trace, _ in known], [stroke for _, stroke in known]
-    together = _core.touching(targets)
-    areas = _core.common_areas(traces, targets, together, brush)
+    """Return groups of strokes that touch, so that each letter is judged as a whole.
+
+    strokes: one per pass, None for a pass that is a part of a stroke.
+    """
+    known_pairs = [
+        pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None
+    ]
+    traces, targets = [trace for trace, _ in known_pairs], [stroke for _, stroke in known_pairs]
+    touching = _core.touching(targets)
+    areas = _core.common_areas(traces, targets, touching, brush)
     return tuple(
         Group(tuple(targets[k].id for k in members), area.overlap)
-        for members, area in zip(together, areas, strict=True)
+        for members, area in zip(touching, areas, strict=True)
     )
 
 
-def _bare_figures(a_pass) -> Figures:
+def _path_figures(a_pass) -> Figures:
     poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     painted_mm = length(poses)
     return Figures(a_pass.stroke, None, None, None, None, None, None, painted_mm, len(poses))
 
 
-def _in_all(rows: tuple[Figures, ...], overlap: float | None) -> Figures:
-    def known(name, combine):
+def _total_figures(rows: tuple[Figures, ...], overlap: float | None) -> Figures:
+    def combine_known(name, combine):
         values = [(getattr(row, name), row.drawn_mm or 0.0) for row in rows if getattr(row, name) is not None]
         return combine(*zip(*values, strict=True)) if values else None
 
@@ -282,12 +313,12 @@ def _in_all(rows: tuple[Figures, ...], overlap: float | None) -> Figures:
     return Figures(
         stroke="all",
         overlap=overlap,
-        centre_mean_mm=known("centre_mean_mm", mean),
-        centre_largest_mm=known("centre_largest_mm", lambda values, _: max(values)),
-        width_error_mm=known("width_error_mm", mean),
-        excess_turning=known("excess_turning", lambda values, _: float(np.mean(values))),
-        widths_out_of_reach=known("widths_out_of_reach", lambda values, _: sum(values)),
-        drawn_mm=known("drawn_mm", lambda values, _: sum(values)),
+        centre_mean_mm=combine_known("centre_mean_mm", mean),
+        centre_largest_mm=combine_known("centre_largest_mm", lambda values, _: max(values)),
+        width_error_mm=combine_known("width_error_mm", mean),
+        excess_turning=combine_known("excess_turning", lambda values, _: float(np.mean(values))),
+        widths_out_of_reach=combine_known("widths_out_of_reach", lambda values, _: sum(values)),
+        drawn_mm=combine_known("drawn_mm", lambda values, _: sum(values)),
         painted_mm=sum(row.painted_mm for row in rows),
         poses=sum(row.poses for row in rows),
     )
@@ -300,20 +331,23 @@ def _out_of_reach(stroke, brush) -> int:
     return sum(not least - 1e-9 <= half_width <= greatest + 1e-9 for _, half_width in stroke.half_width)
 
 
-def _rounded(value):
+def _round_floats(value):
     if isinstance(value, dict):
-        return {key: _rounded(each) for key, each in value.items()}
+        return {key: _round_floats(each) for key, each in value.items()}
     if isinstance(value, tuple):
-        return [_rounded(each) for each in value]
+        return [_round_floats(each) for each in value]
     return round(value, 6) if isinstance(value, float) else value
 
 
 def to_json(report: Report) -> str:
-    """Lengths to 1e-6 mm, so that the same input gives the same bytes."""
+    """Return the report as JSON.
+
+    Lengths are rounded to 1e-6 mm, so that the same input gives the same bytes.
+    """
 
     def figures(row: Figures, confidence) -> dict:
-        known = {} if confidence is None else {"uncertainty_95": _rounded(asdict(confidence))}
-        return _rounded(asdict(row)) | known
+        intervals_95 = {} if confidence is None else {"uncertainty_95": _round_floats(asdict(confidence))}
+        return _round_floats(asdict(row)) | intervals_95
 
     confidence = report.confidence
     intervals = [None] * len(report.strokes) if confidence is None else confidence.strokes
@@ -340,7 +374,7 @@ def to_json(report: Report) -> str:
                 ],
                 "advice": report.advice,
                 "verdict": report.verdict,
-                "places": [_rounded(place.as_json()) for place in report.places],
+                "places": [_round_floats(place.as_json()) for place in report.places],
             },
             indent=1,
             ensure_ascii=False,
@@ -350,17 +384,23 @@ def to_json(report: Report) -> str:
 
 
 def as_text(kind: str, report: Report, details: bool = False, picture: str = "") -> str:
-    """As JSON for .json, as a table of strokes for .csv, else for people: see to_text."""
+    """Return the report as JSON, CSV or text.
+
+    kind: .json for JSON, .csv for a table of strokes, else text, see to_text.
+    """
     if kind == ".json":
         return to_json(report)
     return to_csv(report) if kind == ".csv" else to_text(report, details, picture)
 
 
 def to_csv(report: Report) -> str:
-    """One row for each stroke, with the columns of the JSON; empty cells for what is not known."""
-    plain = [each.name for each in fields(Figures) if each.name != "worst"]
-    worst = [each.name for each in fields(Worst) if each.name != "place_mm"]
-    known = [each.name for each in fields(Confidence)] if report.confidence else []
+    """Return the report as CSV, one row per stroke.
+
+    The columns are the keys of the JSON. Unknown values are empty cells.
+    """
+    plain = [column.name for column in fields(Figures) if column.name != "worst"]
+    worst = [column.name for column in fields(Worst) if column.name != "place_mm"]
+    interval_names = [column.name for column in fields(Confidence)] if report.confidence else []
     out = io.StringIO()
     rows = csv.writer(out, lineterminator="\n")
     rows.writerow(
@@ -369,7 +409,7 @@ def to_csv(report: Report) -> str:
             "worst_x_mm",
             "worst_y_mm",
             *(f"worst_{name}" for name in worst),
-            *(f"{name}_95" for name in known),
+            *(f"{name}_95" for name in interval_names),
         ]
     )
     intervals = report.confidence.strokes if report.confidence else [None] * len(report.strokes)
@@ -377,34 +417,36 @@ def to_csv(report: Report) -> str:
         at = row.worst.place_mm if row.worst else ("", "")
         cells = [getattr(row, name) for name in plain]
         cells += [*at, *(getattr(row.worst, name, "") for name in worst)]
-        rows.writerow([_rounded(cell) for cell in (*cells, *(getattr(interval, name) for name in known))])
+        rows.writerow(
+            [_round_floats(cell) for cell in (*cells, *(getattr(interval, name) for name in interval_names))]
+        )
     return out.getvalue()
 
 
 def to_text(report: Report, details: bool = False, picture: str = "") -> str:
-    """At most ten lines: the verdict, the overlap and the time, the worst places, and what was left out.
+    """Return the report in at most ten lines.
 
-    details: also tables of the strokes and of those that touch, and every warning. picture: the file that numbers the
-    places, "" for none.
+    The lines show verdict, overlap, time, worst places and strokes left out. details: add tables of the strokes and of
+    those that touch, and every warning; picture: the file that shows the numbers of the places, "" for none.
     """
-    lines = [_sum(report), *(place.line for place in report.places)]
+    lines = [_summary_line(report), *(place.line for place in report.places)]
     if not report.places and report.total.overlap is not None:
         lines.append("Paint and drawing differ nowhere by more than 0.2 mm.")
     if report.refused:
         count = len(report.refused)
         lines.append(
-            f"Left out: {_listed(report.refused)}"
+            f"Left out: {_first_notice(report.refused)}"
             if count == 1
-            else f"Left out: {count}, {_listed(report.refused)}"
+            else f"Left out: {count}, {_first_notice(report.refused)}"
         )
     if report.warnings:
-        lines.append(f"{plural(len(report.warnings), 'warning')}: {_listed(report.warnings)}")
-    if report.advice and len(lines) + 2 + bool(picture) <= report_text.MOST_LINES:
+        lines.append(f"{plural(len(report.warnings), 'warning')}: {_first_notice(report.warnings)}")
+    if report.advice and len(lines) + 2 + bool(picture) <= report_text.MAX_LINES:
         lines.append(report.advice)
     return report_text.Report(report.verdict, tuple(lines), tuple(_details(report))).text(details, picture)
 
 
-def _sum(report: Report) -> str:
+def _summary_line(report: Report) -> str:
     name, total = report.title or "untitled", report.total
     what = f"{plural(len(report.strokes), 'stroke')}"
     if total.overlap is not None:
@@ -412,30 +454,36 @@ def _sum(report: Report) -> str:
     return f"{name}: {what}; painting takes {clock(report.time_s)}."
 
 
-def _listed(notices: Iterable[Notice]) -> str:
-    """The first of the notices; the details have all of them."""
+def _first_notice(notices: Iterable[Notice]) -> str:
+    """Return the first notice as text.
+
+    "..." stands for others, which are all in the details.
+    """
     first, *others = summarized(notices)
     return ": ".join(filter(None, (first.where, first.text))) + (" ..." if others else "")
 
 
 def _details(report: Report) -> list[str]:
-    """Tables of all strokes, and everything that was left out or warned of."""
+    """Return the lines of the details.
+
+    The details are tables of all strokes, all strokes left out and all warnings.
+    """
     rows = [*report.strokes, report.total]
     columns = [
-        ("stroke", [_short(row.stroke) for row in rows]),
-        ("overlap", [_figure(row.overlap, 3) for row in rows]),
-        ("centre mean", [_figure(row.centre_mean_mm, 3) for row in rows]),
-        ("largest", [_figure(row.centre_largest_mm, 3) for row in rows]),
-        ("width error", [_figure(row.width_error_mm, 3) for row in rows]),
-        ("turning", [_figure(row.excess_turning, 2) for row in rows]),
-        ("out of reach", [_figure(row.widths_out_of_reach, 0) for row in rows]),
-        ("drawn", [_figure(row.drawn_mm, 1) for row in rows]),
-        ("painted", [_figure(row.painted_mm, 1) for row in rows]),
+        ("stroke", [_shorten(row.stroke) for row in rows]),
+        ("overlap", [_format_figure(row.overlap, 3) for row in rows]),
+        ("centre mean", [_format_figure(row.centre_mean_mm, 3) for row in rows]),
+        ("largest", [_format_figure(row.centre_largest_mm, 3) for row in rows]),
+        ("width error", [_format_figure(row.width_error_mm, 3) for row in rows]),
+        ("turning", [_format_figure(row.excess_turning, 2) for row in rows]),
+        ("out of reach", [_format_figure(row.widths_out_of_reach, 0) for row in rows]),
+        ("drawn", [_format_figure(row.drawn_mm, 1) for row in rows]),
+        ("painted", [_format_figure(row.painted_mm, 1) for row in rows]),
         ("poses", [str(row.poses) for row in rows]),
         *_confidence_columns(report.confidence),
     ]
-    notes = ["differs most", *map(_worst_text, rows)] if any(row.worst for row in rows) else []
-    lines = _ruled(columns, notes)
+    notes = ["differs most", *map(_describe_worst, rows)] if any(row.worst for row in rows) else []
+    lines = _ruled_table(columns, notes)
     how = f", compensation {report.compensation}" if report.compensation else ""
     how += f", tolerance {report.tolerance_mm:g} mm" if report.tolerance_mm is not None else ""
     lines = [
@@ -451,8 +499,8 @@ def _details(report: Report) -> list[str]:
         *_confidence_words(report.confidence, report.is_tilted),
     ]
     if report.groups:
-        names = [_short(" + ".join(group.strokes), 64) for group in report.groups]
-        overlaps = [_figure(group.overlap, 3) for group in report.groups]
+        names = [_shorten(" + ".join(group.strokes), 64) for group in report.groups]
+        overlaps = [_format_figure(group.overlap, 3) for group in report.groups]
         lines += ["", "Strokes that touch, judged together:", ""]
         lines += table(("strokes", "overlap"), zip(names, overlaps, strict=True))
     if report.advice:
@@ -466,8 +514,8 @@ def _details(report: Report) -> list[str]:
     return lines
 
 
-def _ruled(columns: list[tuple[str, list[str]]], notes: Sequence[str] = ()) -> list[str]:
-    """Lines of a table by its columns, with a rule below their names."""
+def _ruled_table(columns: list[tuple[str, list[str]]], notes: Sequence[str] = ()) -> list[str]:
+    """Return the lines of a table from its columns, with a rule below their names."""
     head, *rows = table(
         [name for name, _ in columns], zip(*(cells for _, cells in columns), strict=True), notes
     )
@@ -479,9 +527,9 @@ def _confidence_columns(confidence: PlanConfidence | None) -> list[tuple[str, li
         return []
     rows = [*confidence.strokes, confidence.total]
     return [
-        ("middle +-", [_figure(row.middle_mm, 2) for row in rows]),
-        ("ends +-", [_figure(row.ends_mm, 2) for row in rows]),
-        ("width +-", [_figure(row.width_mm, 2) for row in rows]),
+        ("middle +-", [_format_figure(row.middle_mm, 2) for row in rows]),
+        ("ends +-", [_format_figure(row.ends_mm, 2) for row in rows]),
+        ("width +-", [_format_figure(row.width_mm, 2) for row in rows]),
     ]
 
 
@@ -497,13 +545,16 @@ def _confidence_words(confidence: PlanConfidence | None, is_tilted: bool) -> lis
 
 
 def comparison_text(rows: list[tuple[str, Figures]]) -> str:
-    """A table of several ways to paint the same drawing: (how, its figures in all)."""
-    lines = _ruled(
+    """Return a table of several ways to paint the same drawing.
+
+    rows: (compensation, total figures).
+    """
+    lines = _ruled_table(
         [
             ("compensation", [how for how, _ in rows]),
-            ("overlap", [_figure(total.overlap, 3) for _, total in rows]),
-            ("centre mean", [_figure(total.centre_mean_mm, 3) for _, total in rows]),
-            ("largest", [_figure(total.centre_largest_mm, 3) for _, total in rows]),
+            ("overlap", [_format_figure(total.overlap, 3) for _, total in rows]),
+            ("centre mean", [_format_figure(total.centre_mean_mm, 3) for _, total in rows]),
+            ("largest", [_format_figure(total.centre_largest_mm, 3) for _, total in rows]),
         ]
     )
     heading = "Compensations compared; distances of the widest point from the middle line in mm:"
@@ -511,29 +562,32 @@ def comparison_text(rows: list[tuple[str, Figures]]) -> str:
 
 
 def brushes_json(title: str, suits) -> str:
-    """Several suit.Suit, in their order; overlaps to 1e-6."""
-    rows = [_rounded(asdict(each)) for each in suits]
-    made = {"format": "brushsvg/brushes", "version": 1, "title": title, "brushes": rows}
-    return json.dumps(made, indent=1, ensure_ascii=False) + "\n"
+    """Return several other_brushes.Suit as JSON, in their order.
+
+    Overlaps are rounded to 1e-6.
+    """
+    rows = [_round_floats(asdict(suit)) for suit in suits]
+    document = {"format": "brushsvg/brushes", "version": 1, "title": title, "brushes": rows}
+    return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
 
 
 def brushes_text(title: str, suits) -> str:
-    """A table of brushes that were tried on a drawing, see suit.Suit."""
-    lines = _ruled(
+    """Return a table of brushes that were tried on a drawing, see other_brushes.Suit."""
+    lines = _ruled_table(
         [
-            ("brush", [each.brush for each in suits]),
-            ("overlap", [_figure(each.overlap, 3) for each in suits]),
-            ("worst stroke", [_short(each.worst or "-") for each in suits]),
-            ("its overlap", [_figure(each.worst_overlap, 3) for each in suits]),
-            ("refused", [f"{each.refused} of {each.strokes}" for each in suits]),
+            ("brush", [suit.brush for suit in suits]),
+            ("overlap", [_format_figure(suit.overlap, 3) for suit in suits]),
+            ("worst stroke", [_shorten(suit.worst or "-") for suit in suits]),
+            ("its overlap", [_format_figure(suit.worst_overlap, 3) for suit in suits]),
+            ("refused", [f"{suit.refused} of {suit.strokes}" for suit in suits]),
         ],
-        ["", *(_short(each.why, 100) for each in suits)],
+        ["", *(_shorten(suit.why, 100) for suit in suits)],
     )
     heading = f"{title or 'untitled'}: which brush suits it; overlap of all that was drawn, refused strokes included"
     return "\n".join([heading, "", *lines, ""])
 
 
-def _worst_text(row: Figures) -> str:
+def _describe_worst(row: Figures) -> str:
     if row.worst is None:
         return ""
     x, y = row.worst.place_mm
@@ -541,9 +595,9 @@ def _worst_text(row: Figures) -> str:
     return f"x {x:.1f}, y {y:.1f}: {what}; {row.worst.reason}"
 
 
-def _figure(value, decimals: int) -> str:
+def _format_figure(value, decimals: int) -> str:
     return "-" if value is None else f"{value:.{decimals}f}"
 
 
-def _short(name: str, most: int = 24) -> str:
+def _shorten(name: str, most: int = 24) -> str:
     return name if len(name) <= most else name[: most - 3] + "..."

@@ -1,8 +1,8 @@
 """Judge a planned job: the one place that defines the verdict of `report`, `check` and `convert --report`.
 
-do not use:   a limit forbids to run the program; no stroke can be painted; the overlap is below 0.70
+do not use:   a limit forbids running the program; no stroke can be painted; the overlap is below 0.70
 usable, but:  strokes are left out; the overlap is below 0.95; paint visibly misses the drawing; a law of the brush was
-              never measured, or is known so badly that paint may be 1 mm from the prediction; the drawing is not known
+              never measured, or is so uncertain that paint may be 1 mm from the prediction; the drawing is not known
 good:         none of these
 
 An overlap of 0.95 is where differences become hard to see. The shipped brush in place of the real one gives about 0.6.
@@ -14,8 +14,8 @@ from collections.abc import Iterable
 
 from ...reporting.report_text import overlap_reasons, plural, verdict
 
-UNCERTAIN_MM = 1.0  # half of a 95 % interval of where the middle of a mark is
-OFF_DRAWING = ("off-middle-line", "paint-outside")  # codes of warnings: by more than the brush is known to
+UNCERTAIN_MM = 1.0  # half of the 95 % interval of the middle of a mark
+OFF_DRAWING = ("off-middle-line", "paint-outside")  # codes of warnings about paint that misses the drawing
 
 
 def verdict_of(report) -> str:
@@ -25,28 +25,31 @@ def verdict_of(report) -> str:
         against.append("no stroke can be painted" if report.refused else "there is nothing to paint")
     too_low, low = overlap_reasons(report.total.overlap, "paint and drawing")
     return verdict(
-        [*against, *too_low], [*_left_out(report), *low, *_off(report.warnings), *_of_brush(report)]
+        [*against, *too_low],
+        [*_left_out_reasons(report), *low, *_off_drawing_reasons(report.warnings), *_brush_reasons(report)],
     )
 
 
-def _left_out(report) -> list[str]:
-    count, every = len(report.refused), len(report.strokes) + len(report.refused)
-    left_out = [f"{count} of {plural(every, 'stroke')} cannot be painted"] if count else []
+def _left_out_reasons(report) -> list[str]:
+    count, total = len(report.refused), len(report.strokes) + len(report.refused)
+    left_out = [f"{count} of {plural(total, 'stroke')} cannot be painted"] if count else []
     if report.strokes and report.total.overlap is None:
         left_out.append("the drawing is not known, so nobody can say whether the paint matches it")
     return left_out
 
 
-def _off(warnings: Iterable) -> list[str]:
-    off = {notice.where for notice in warnings if notice.code in OFF_DRAWING}
+def _off_drawing_reasons(warnings: Iterable) -> list[str]:
+    strokes_off = {notice.where for notice in warnings if notice.code in OFF_DRAWING}
     return (
-        [f"{plural(len(off), 'stroke')} visibly {'miss' if len(off) > 1 else 'misses'} the drawing"]
-        if off
+        [
+            f"{plural(len(strokes_off), 'stroke')} visibly {'miss' if len(strokes_off) > 1 else 'misses'} the drawing"
+        ]
+        if strokes_off
         else []
     )
 
 
-def _of_brush(report) -> list[str]:
+def _brush_reasons(report) -> list[str]:
     if report.assumed:
         names, verb = " and ".join(report.assumed), "was" if len(report.assumed) == 1 else "were"
         return [f"the {names} of brush {report.brush} {verb} never measured: calibrate your brush"]
