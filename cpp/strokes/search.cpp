@@ -102,6 +102,8 @@ class Search {
             const bool fills = given.start_covered && given.end_covered;
             Painting painting{{given}, tiles_[k]};
             if (!improve_stroke(painting, k, {fills, true, fills && k > 0, false})) continue;
+            tiles_[k] = std::move(painting.tile);
+            repaint(about(given));
             found.strokes[k] = std::move(painting.strokes);
             found.changed[k] = true;
         }
@@ -123,7 +125,8 @@ class Search {
         bool reversed, cut, left_out, is_last;
     };
 
-    /// Change a stroke, of the tile k, so that it costs less. Return false if no change does.
+    /// Change a stroke, of the tile k, so that it costs less. Return false if no change does. k: the number of tiles if
+    /// the stroke has none yet.
     bool improve_stroke(Painting& painting, std::size_t k, const Allowed& may) {
         const Stroke given = painting.strokes.front();
         const PixelBox box = about(given);
@@ -208,11 +211,14 @@ class Search {
             if (is_better) gaps = best_gaps;
         }
         if (may.left_out) keep_better({{}, Tile{}});
-        if (!is_changed) return false;
-        tiles_[k] = painting.tile;
-        paint_.block(box.row, box.column, box.rows, box.columns) = rest;
-        paint_over(paint_, canvas_.whole(), tiles_[k]);
-        return true;
+        return is_changed;
+    }
+
+    /// Update the paint in a box after a stroke has changed.
+    void repaint(const PixelBox& box) {
+        Coverage paint = Coverage::Zero(box.rows, box.columns);
+        for (const Tile& tile : tiles_) paint_over(paint, box, tile);
+        paint_.block(box.row, box.column, box.rows, box.columns) = paint;
     }
 
     static MiddlePolyline middle_of(const std::vector<Stroke>& parts) {
@@ -406,11 +412,15 @@ class Search {
         }
         // a mark that is finer than a pixel everywhere has no outline
         if (trial.tile.box.is_empty() || trial.tile.share.maxCoeff() <= kHalfPainted) return std::nullopt;
-        const PixelBox& box = trial.tile.box;
-        const Coverage before = paint_.block(box.row, box.column, box.rows, box.columns);
-        trial.won_mm2 =
-            canvas_.cost_mm2(box, before) - canvas_.cost_mm2(box, before.cwiseMax(trial.tile.share)) - stroke_mm2();
+        trial.won_mm2 = area_won_mm2(trial.tile);
         return trial;
+    }
+
+    /// Return how much less the areas cost with a tile, less the price of its stroke.
+    double area_won_mm2(const Tile& tile) const {
+        const PixelBox& box = tile.box;
+        const Coverage before = paint_.block(box.row, box.column, box.rows, box.columns);
+        return canvas_.cost_mm2(box, before) - canvas_.cost_mm2(box, before.cwiseMax(tile.share)) - stroke_mm2();
     }
 
     /// Return how much more the outline of the paint turns with a tile, in full turns.
@@ -439,14 +449,19 @@ class Search {
         const Rings area_mm = bare_rings(pixels_);
         best->stroke.settings.start = "pointed";  // under the paint of other strokes
         best->stroke.settings.end = "round";
-        Painting painting{{best->stroke}, best->tile};
+        if (weights_.bulge * canvas_.bulge_mm2(best->tile) > kWorthMm2) {
+            Painting painting{{best->stroke}, best->tile};
+            improve_stroke(painting, tiles_.size(), {true, false, false, true});
+            // measured as the trials were: otherwise the same trial can win again and again
+            const double won_mm2 = area_won_mm2(painting.tile) - turn_mm2() * turned(painting.tile);
+            if (won_mm2 > best->won_mm2)
+                best = Trial{std::move(painting.strokes.front()), std::move(painting.tile), won_mm2};
+        }
         tiles_.push_back(best->tile);
         paint_over(paint_, canvas_.whole(), best->tile);
-        if (weights_.bulge * canvas_.bulge_mm2(best->tile) > kWorthMm2)
-            improve_stroke(painting, tiles_.size() - 1, {true, false, false, true});
         AddedStroke added;
-        added.stroke = std::move(painting.strokes.front());
-        added.mark_mm = half_painted(painting.tile.share, canvas_.window_of(painting.tile.box), canvas_.px_per_mm());
+        added.mark_mm = half_painted(best->tile.share, canvas_.window_of(best->tile.box), canvas_.px_per_mm());
+        added.stroke = std::move(best->stroke);
         added.neighbour = nearest_middle(area.deepest);
         added.area_mm = area_mm;
         return added;
